@@ -1,0 +1,1 @@
+"""The temperature correction of Algorithm 3, simulated and evaluated."""

@@ -1,0 +1,1 @@
+"""The friction model (16) and its identification."""

@@ -1,0 +1,1 @@
+"""Samples to pairs to torques: constant-velocity parts, counter-directed partners, separation."""

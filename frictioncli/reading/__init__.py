@@ -1,0 +1,1 @@
+"""Logs to samples: the only place where units are converted."""

@@ -1,0 +1,1 @@
+"""Figures and the page that a user reads; the only importer of matplotlib."""

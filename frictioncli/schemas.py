@@ -1,0 +1,178 @@
+"""The tables that the stages hand to each other: one row per what, which columns, which units."""
+
+from dataclasses import dataclass
+
+import pyarrow as pa
+
+from frictioncli import quantities as q
+from frictioncli.quantities import Quantity
+
+_TEXT = pa.string()
+_LABEL = pa.dictionary(pa.int32(), pa.string())
+_REAL = pa.float64()
+_COUNT = pa.int64()
+_JOINT = pa.int16()
+_FLAG = pa.bool_()
+
+
+@dataclass(frozen=True, slots=True)
+class Column:
+    """One column: its name, Arrow type, unit ("" where it has none) and meaning."""
+
+    name: str
+    type: pa.DataType
+    unit: str
+    description: str
+    nullable: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class Table:
+    """A table's file stem, what one of its rows is, and its columns in order."""
+
+    name: str
+    row: str
+    columns: tuple[Column, ...]
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """Column names in order."""
+        return tuple(column.name for column in self.columns)
+
+    @property
+    def required(self) -> tuple[str, ...]:
+        """Names of the columns that must have a value in every row."""
+        return tuple(column.name for column in self.columns if not column.nullable)
+
+
+def _of(quantity: Quantity, *, nullable: bool = False) -> Column:
+    return Column(quantity.name, _REAL, quantity.unit, quantity.description, nullable)
+
+
+_RUN = Column("run", _LABEL, "", "one folder of logs: one day, one thermal history")
+_RECORDING = Column("recording", _LABEL, "", "one log file of the run")
+_JOINT_COLUMN = Column("joint", _JOINT, "", "joint number, from 1")
+_PAIR = Column("pair", _COUNT, "", "number of the pair, unique within run and joint")
+_PHASE = Column("phase", _LABEL, "", "heat-up, cool-down or sweep")
+_SPEED = _of(q.SPEED)
+_PAIR_TIME = Column("time", _REAL, "s", "middle of the pair, since the run's first sample")
+_CRITERION = Column("criterion", _LABEL, "", "rule that decides when to correct")
+_K = Column("k", _REAL, "", "scale of the periodicity criterion (20)", nullable=True)
+_TMAX = Column("tmax", _REAL, "s", "time after which a correction is forced", nullable=True)
+
+SAMPLES = Table(
+    "samples",
+    "controller sample",
+    (
+        _RUN,
+        _RECORDING,
+        _JOINT_COLUMN,
+        _of(q.TIME),
+        _of(q.POSITION),
+        _of(q.VELOCITY),
+        _of(q.MOTOR_TORQUE),
+        _of(q.MOTOR_TEMPERATURE, nullable=True),
+        _of(q.HOUSING_TEMPERATURE, nullable=True),
+        _of(q.MOTOR_TEMPERATURE_READING, nullable=True),
+        _of(q.LOAD, nullable=True),
+    ),
+)
+
+RECORDINGS = Table(
+    "recordings",
+    "recording and joint",
+    (
+        _RUN,
+        _RECORDING,
+        _JOINT_COLUMN,
+        Column("file", _TEXT, "", "the file as it was named on the command line or found"),
+        Column("started_at", _TEXT, "", "start, ISO 8601, where the log or manifest says", True),
+        Column("start", _REAL, "s", "start since the run's first sample"),
+        Column("phase", _LABEL, "", "phase given by the manifest", True),
+        Column("payload", _REAL, "kg", "payload given by the manifest", True),
+        Column("ambient", _REAL, "°C", "ambient temperature given by the manifest", True),
+        Column("rows_read", _COUNT, "", "rows read"),
+        Column("rows_kept", _COUNT, "", "rows that became samples"),
+        Column("rows_rejected", _COUNT, "", "rows that could not be used"),
+        Column("period", _REAL, "s", "median time between samples"),
+        Column("notes", _TEXT, "", "what was found and believed, one note a line"),
+    ),
+)
+
+REJECTED = Table(
+    "rejected",
+    "rejected row or file",
+    (
+        _RUN,
+        _RECORDING,
+        Column("row", _COUNT, "", "line in the file, from 1; none where the whole file", True),
+        Column("reason", _LABEL, "", "why it cannot be used"),
+        Column("text", _TEXT, "", "the row, or what was found in the file"),
+    ),
+)
+
+_PAIR_COLUMNS = (
+    _RUN,
+    _JOINT_COLUMN,
+    _PAIR,
+    _SPEED,
+    _PAIR_TIME,
+    _PHASE,
+    _of(q.MOTOR_TEMPERATURE, nullable=True),
+    _of(q.HOUSING_TEMPERATURE, nullable=True),
+    Column("position", _REAL, "deg", "centre of the angle bin"),
+    Column("torque_forward", _REAL, q.TORQUE, "mean torque in the bin while position grows"),
+    Column("torque_reverse", _REAL, q.TORQUE, "mean torque in the bin while position falls"),
+    Column("n_forward", _COUNT, "", "samples of the forward mean"),
+    Column("n_reverse", _COUNT, "", "samples of the reverse mean"),
+    _of(q.MOTOR_TEMPERATURE_READING, nullable=True),
+    _of(q.LOAD, nullable=True),
+)
+
+PAIRS = Table("pairs", "pair and angle bin", _PAIR_COLUMNS)
+
+TORQUES = Table(
+    "torques",
+    "pair and angle bin",
+    (*_PAIR_COLUMNS, _of(q.FRICTION_TORQUE), _of(q.LOAD_TORQUE)),
+)
+
+SCHEDULE = Table(
+    "schedule",
+    "pair",
+    (
+        _RUN,
+        _JOINT_COLUMN,
+        _PAIR,
+        _SPEED,
+        _PAIR_TIME,
+        _PHASE,
+        _CRITERION,
+        _K,
+        _TMAX,
+        _of(q.TEMPERATURE_PARAMETER),
+        _of(q.TEMPERATURE_CORRECTION),
+        Column("corrected", _FLAG, "", "a correction was tried at this pair"),
+        Column("failed", _FLAG, "", "the correction could not be computed; the last one was kept"),
+        Column("friction_torque", _REAL, q.TORQUE, "measured friction torque at zero load"),
+        Column("friction_smoothed", _REAL, q.TORQUE, "the same, smoothed over motor temperature"),
+        Column("friction_predicted", _REAL, q.TORQUE, "friction torque predicted at zero load"),
+    ),
+)
+
+EVALUATION = Table(
+    "evaluation",
+    "phase, criterion and setting",
+    (
+        _RUN,
+        _JOINT_COLUMN,
+        _PHASE,
+        _CRITERION,
+        _K,
+        _TMAX,
+        Column("corrections", _COUNT, "", "corrections tried in the phase"),
+        Column("failed", _COUNT, "", "of these, those that could not be computed"),
+        Column("epsilon", _REAL, q.TORQUE, "error (21) against the smoothed friction torque"),
+        Column("epsilon_unsmoothed", _REAL, q.TORQUE, "the same against the unsmoothed one"),
+    ),
+)
