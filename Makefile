@@ -1,0 +1,31 @@
+# Needs only Python 3.11 or newer and make. Everything lives in .venv.
+PYTHON ?= python3
+VENV := .venv
+BIN := $(VENV)/bin
+RUN ?= friction-run
+
+.PHONY: reproduce test lint clean
+
+reproduce: $(VENV)/installed
+	$(BIN)/frictioncli run sample_logs/kr10/day1 sample_logs/kr10/day2 -w $(RUN)
+	$(BIN)/python docs/reproduce.py $(RUN)
+
+test: $(VENV)/tested
+	$(BIN)/pytest -n 2
+
+lint: $(VENV)/tested
+	$(BIN)/ruff check .
+	$(BIN)/ruff format --check .
+	$(BIN)/mypy
+
+$(VENV)/installed: pyproject.toml
+	$(PYTHON) -m venv $(VENV)
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable .
+	touch $@
+
+$(VENV)/tested: $(VENV)/installed
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable '.[dev]'
+	touch $@
+
+clean:
+	rm -rf $(VENV) $(RUN)

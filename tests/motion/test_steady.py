@@ -1,0 +1,87 @@
+"""Only the part at constant velocity is kept."""
+
+import numpy as np
+import pytest
+
+from frictioncli.errors import OptionError
+from frictioncli.motion.settings import SteadySettings
+from frictioncli.motion.steady import STEADY, steady_parts
+from tests.moves import journey, trapezoid
+
+
+def parts_of(motion, **settings):
+    time, velocity = motion["time"].to_numpy(), motion["velocity"].to_numpy()
+    return steady_parts(time, velocity, SteadySettings(**settings))
+
+
+@pytest.mark.parametrize("speed", [2.3, 19.1, 67.5, 101.2, 290.0])
+def test_plateau_of_a_trapezoid_holds_no_acceleration(speed):
+    motion = trapezoid(0, 180, speed, acceleration=2000.0)
+    (part,), _ = parts_of(motion)
+    inside = motion.iloc[part.start : part.stop]
+    assert (inside["acceleration"] == 0).all()
+    assert part.speed == pytest.approx(speed, rel=1e-9)
+    # the constant part lasts 180/v - v/a seconds, of which at most a quarter settles
+    cruise = 180 / speed - speed / 2000
+    assert inside["time"].iloc[-1] - inside["time"].iloc[0] > 0.6 * min(cruise, cruise - 0.25)
+
+
+def test_direction_is_in_the_sign_of_the_speed():
+    parts, _ = parts_of(journey([0, 180, 0], [50, 50]))
+    assert [np.sign(part.speed) for part in parts] == [1, -1]
+
+
+def test_settling_is_dropped():
+    motion = trapezoid(0, 180, 50.0)
+    begun = motion.loc[motion["velocity"] == 50.0, "time"].iloc[0]
+    (part,), _ = parts_of(motion, settling=0.5)
+    assert motion["time"].iloc[part.start] >= begun + 0.5 - 0.02
+
+
+def test_a_move_that_never_holds_its_speed_is_dropped():
+    motion = trapezoid(0, 60, 1000.0)
+    parts, classes = parts_of(motion)
+    assert parts == []
+    assert not (classes == STEADY).any()
+
+
+def test_stop_and_go_without_rest_gives_two_parts():
+    """The joint slows down to 2 % of its speed and goes on in the same direction."""
+    motion = journey([0, 90, 180], [60, 60], rest=0.0)
+    motion["velocity"] = np.maximum(motion["velocity"], 1.2)
+    parts, _ = parts_of(motion)
+    assert len(parts) == 2
+
+
+@pytest.mark.parametrize("speed", [2.3, 20.0, 100.0])
+def test_noise_on_the_velocity_does_not_hide_the_plateau(speed):
+    generator = np.random.default_rng(3)
+    motion = trapezoid(0, 180, speed)
+    motion["velocity"] += generator.normal(0, 0.02 * speed, len(motion))
+    (part,), _ = parts_of(motion)
+    inside = motion.iloc[part.start : part.stop]
+    assert (inside["acceleration"] == 0).mean() > 0.98
+    cruise = 180 / speed - speed / 400
+    assert inside["time"].iloc[-1] - inside["time"].iloc[0] > 0.5 * cruise
+
+
+def test_slow_sampling_keeps_a_plateau_of_a_few_samples():
+    """2 Hz, 50 deg/s over 200 deg: about seven samples at full speed."""
+    motion = trapezoid(-100, 100, 50.0, period=0.5, rest=2.0)
+    (part,), _ = parts_of(motion)
+    assert part.stop - part.start >= 4
+    assert part.speed == pytest.approx(50.0)
+
+
+def test_every_sample_has_one_class():
+    motion = journey([0, 180, 20, 150], [19.1, 67.5, 400.0])
+    parts, classes = parts_of(motion)
+    assert (classes == STEADY).sum() == sum(part.stop - part.start for part in parts)
+
+
+@pytest.mark.parametrize(
+    "wrong", [{"min_speed": 0.0}, {"speed_tolerance": 0.6}, {"settling": -1.0}, {"min_samples": 1}]
+)
+def test_senseless_settings_are_refused(wrong):
+    with pytest.raises(OptionError, match="expected"):
+        SteadySettings(**wrong)
