@@ -1,0 +1,159 @@
+"""Stage ``fit``: the friction torques of a joint to its friction model."""
+
+from typing import Any
+
+import numpy as np
+import pandas as pd
+
+from frictioncli.errors import NotEnoughData
+from frictioncli.model.determinacy import Determination, at_bound, determined_fit
+from frictioncli.model.document import PARAMETERS, FrictionModel, ParameterEstimate
+from frictioncli.model.identification import Estimate
+from frictioncli.model.observations import observations
+from frictioncli.model.paper_method import consecutive_fit
+from frictioncli.model.settings import FitSettings
+
+_LEAST_PAIRS = 3
+
+
+def fit_joint(torques: pd.DataFrame, facts: dict[str, Any], settings: FitSettings) -> FrictionModel:
+    """Identify equation (16) from the torques of one joint.
+
+    Parameters
+    ----------
+    torques : DataFrame
+        Rows of :data:`frictioncli.schemas.TORQUES` of a single joint.
+    facts : dict
+        Facts of the torque table: ``torque_unit``, ``load_unit``, ``torque_side``, ``sign``.
+    settings : FitSettings
+        Method and temperature.
+
+    Returns
+    -------
+    FrictionModel
+        The model with intervals and with what the data cannot determine.
+
+    Raises
+    ------
+    NotEnoughData
+        If there are too few pairs, or the method or temperature needs what the log does not have.
+    """
+    joint = int(torques["joint"].iloc[0])
+    temperature = settings.temperature
+    if temperature == "auto":
+        both = settings.method == "paper" and torques["housing_temperature"].notna().any()
+        temperature = "mean" if both else "motor"
+    known, notes = _with_temperature(torques, temperature, joint)
+    observed = observations(known, temperature)
+    n_pairs = len(observed.friction)
+    if n_pairs < _LEAST_PAIRS:
+        raise NotEnoughData(
+            f"joint {joint}: {n_pairs} pair(s) of counter-directed moves found, expected at least"
+            f" {_LEAST_PAIRS}; log more moves, or loosen the options of 'frictioncli pair'"
+        )
+    if settings.method == "paper":
+        estimate, determination = consecutive_fit(known, observed, temperature)
+    else:
+        estimate, determination = determined_fit(observed)
+    return FrictionModel(
+        joint=joint,
+        method=settings.method,
+        temperature=temperature,
+        torque_unit=facts.get("torque_unit", "N·m"),
+        torque_side=facts.get("torque_side", "joint"),
+        sign=int(facts.get("sign", {}).get(str(joint), 1)),
+        parameters=_estimates(estimate, determination, facts),
+        rmse=estimate.rmse,
+        n_pairs=n_pairs,
+        noise=estimate.noise,
+        correlation=_correlations(estimate),
+        range=_ranges(known, observed.temperature),
+        notes=tuple(notes),
+    )
+
+
+def _with_temperature(
+    torques: pd.DataFrame, kind: str, joint: int
+) -> tuple[pd.DataFrame, list[str]]:
+    """Return the rows that can be used, and what is to be noted about the others."""
+    columns = {"motor": ["motor_temperature"], "housing": ["housing_temperature"]}.get(
+        kind, ["motor_temperature", "housing_temperature"]
+    )
+    usable = torques[columns].notna().all(axis=1)
+    if usable.all():
+        return torques, []
+    if usable.any():
+        lost = torques.loc[~usable].groupby(["run", "pair"], observed=True).ngroups
+        return torques[usable], [f"{lost} pairs without {kind} temperature were not used"]
+    if kind != "motor":
+        raise NotEnoughData(
+            f"joint {joint}: the log has no {' and '.join(columns)}, which --temperature {kind}"
+            " needs; use --temperature motor"
+        )
+    return torques, ["no motor temperature in the log: friction is a function of speed and load"]
+
+
+def _estimates(
+    estimate: Estimate, determination: Determination, facts: dict[str, Any]
+) -> dict[str, ParameterEstimate]:
+    units = _units(facts)
+    bounds = at_bound(estimate)
+    found = {}
+    for name in PARAMETERS:
+        if name not in estimate.names:
+            found[name] = ParameterEstimate(
+                estimate=0.0,
+                ci95=None,
+                unit=units[name],
+                determined=False,
+                reason=determination.dropped.get(name),
+            )
+            continue
+        low, high = estimate.interval(name)
+        found[name] = ParameterEstimate(
+            estimate=getattr(estimate.parameters, name),
+            ci95=(max(low, 0.0), high),
+            unit=units[name],
+            determined=name not in bounds,
+            reason=bounds.get(name, determination.merged.get(name)),
+        )
+    return found
+
+
+def _units(facts: dict[str, Any]) -> dict[str, str]:
+    torque = facts.get("torque_unit", "N·m")
+    load = facts.get("load_unit", torque)
+    alpha = f"1/({load})" if load == torque else f"{torque}/({load})²"
+    viscous = f"{torque}/(deg/s)^0.5"
+    return {
+        "tau_c": torque,
+        "alpha": alpha,
+        "beta": viscous,
+        "gamma": viscous,
+        "delta": "1/°C",
+    }
+
+
+def _correlations(estimate: Estimate) -> dict[str, dict[str, float]]:
+    deviation = np.sqrt(np.maximum(np.diag(estimate.covariance), 1e-300))
+    correlation = estimate.covariance / np.outer(deviation, deviation)
+    return {
+        name: {other: round(float(correlation[i, j]), 4) for j, other in enumerate(estimate.names)}
+        for i, name in enumerate(estimate.names)
+    }
+
+
+def _ranges(
+    torques: pd.DataFrame, temperature: np.ndarray
+) -> dict[str, tuple[float, float] | None]:
+    def limits(values: Any) -> tuple[float, float] | None:
+        finite = np.asarray(values, dtype=float)
+        finite = finite[np.isfinite(finite)]
+        return (float(finite.min()), float(finite.max())) if finite.size else None
+
+    return {
+        "speed": limits(torques["speed"]),
+        "load": limits(torques["load_torque"]),
+        "temperature": limits(temperature),
+        "position": limits(torques["position"]),
+    }

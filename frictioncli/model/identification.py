@@ -1,0 +1,218 @@
+"""Joint identification of equation (16): least squares on all pairs, with honest intervals.
+
+The estimate is a weighted least-squares fit: a pair weighs what its own noise allows, whatever its
+number of angle bins. Its covariance takes the noise as it is, with what pairs share and with slow
+drift (see :mod:`frictioncli.model.noise`), so the intervals hold when the experiment is repeated.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy import stats
+
+from frictioncli.model.friction import FrictionParameters, friction_torque
+from frictioncli.model.noise import Noise, pair_covariance, plausible_noise
+from frictioncli.model.observations import Observations
+from frictioncli.model.projection import Equations, jacobian, minimise
+
+Array = NDArray[np.float64]
+
+_ROUNDS = 2
+"""Rounds of fit and noise estimate; the weights hardly change after the first."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Estimate:
+    """A fit of some of the parameters of equation (16).
+
+    Attributes
+    ----------
+    parameters : FrictionParameters
+        Estimates; parameters that were not fitted are zero.
+    names : tuple of str
+        The parameters that were fitted, in the order of ``covariance``.
+    covariance : ndarray, shape (names, names)
+        Covariance of the estimates under the estimated noise.
+    freedom : float
+        Degrees of freedom of that noise estimate.
+    noise : Noise
+        The noise of the measurements.
+    residual : ndarray, shape (pairs,)
+        Mean residual of each pair. [N·m]
+    rmse : float
+        Root mean square of the residuals over all angle bins. [N·m]
+    """
+
+    parameters: FrictionParameters
+    names: tuple[str, ...]
+    covariance: Array
+    freedom: float
+    noise: Noise
+    residual: Array
+    rmse: float
+
+    def interval(self, name: str, level: float = 0.95) -> tuple[float, float]:
+        """Return the confidence interval of a fitted parameter."""
+        index = self.names.index(name)
+        reach = stats.t.ppf(0.5 + level / 2, self.freedom) * np.sqrt(self.covariance[index, index])
+        centre = getattr(self.parameters, name)
+        return float(centre - reach), float(centre + reach)
+
+
+def fit_terms(observed: Observations, terms: tuple[str, ...]) -> Estimate:
+    """Fit the chosen terms of equation (16) to all pairs jointly.
+
+    Parameters
+    ----------
+    observed : Observations
+        Friction of one joint.
+    terms : tuple of str
+        Those of :data:`frictioncli.model.projection.COEFFICIENTS` to fit.
+    """
+    names = (*terms, "delta") if "gamma" in terms else terms
+    noise = _first_noise(observed, terms)
+    for _ in range(_ROUNDS):
+        equations = weighted_equations(observed, noise)
+        parameters = minimise(equations, terms)
+        residual = pair_residual(observed, parameters)
+        unweighted = jacobian(pair_equations(observed), terms, parameters)
+        plausible = plausible_noise(
+            residual=residual,
+            design=unweighted,
+            time=observed.time,
+            run=observed.run,
+            bins=observed.bins,
+            point=point_noise(observed, parameters.alpha),
+        )
+        noise = plausible[0][0]
+    covariance = _covariance(observed, terms, parameters, plausible)
+    within = observed.friction_within - parameters.alpha * observed.squared_load_within
+    rows = len(within)
+    squares = np.sum(observed.bins * np.square(residual)) + within @ within
+    return Estimate(
+        parameters=parameters,
+        names=names,
+        covariance=covariance,
+        freedom=freedom(observed, noise, len(names)),
+        noise=noise,
+        residual=residual,
+        rmse=float(np.sqrt(squares / rows)),
+    )
+
+
+def pair_residual(observed: Observations, parameters: FrictionParameters) -> Array:
+    """Return the mean of measured minus modelled friction torque of each pair. [N·m]."""
+    modelled = friction_torque(
+        parameters,
+        load=np.sqrt(observed.squared_load),
+        speed=observed.speed,
+        temperature=_finite(observed.temperature),
+    )
+    return observed.friction - modelled
+
+
+def pair_equations(observed: Observations) -> Equations:
+    """Return one unweighted equation per pair."""
+    return Equations(
+        constant=np.ones_like(observed.friction),
+        squared_load=observed.squared_load,
+        root_speed=np.sqrt(observed.speed),
+        temperature=_finite(observed.temperature),
+        friction=observed.friction,
+    )
+
+
+def weighted_equations(observed: Observations, noise: Noise) -> Equations:
+    """Return one equation per pair and one for the load's contrast inside all pairs."""
+    deviation = np.sqrt(noise.pair**2 + noise.drift**2 + noise.point**2 / observed.bins)
+    pairs = pair_equations(observed)
+    contrast = np.sqrt(observed.load_contrast)
+    inside = 0.0
+    if contrast > 0:
+        inside = float(observed.squared_load_within @ observed.friction_within) / contrast
+
+    def rows(between: Array, within: float) -> Array:
+        return np.append(between / deviation, within / noise.point)
+
+    return Equations(
+        constant=rows(pairs.constant, 0.0),
+        squared_load=rows(pairs.squared_load, contrast),
+        root_speed=rows(pairs.root_speed, 0.0),
+        temperature=np.append(pairs.temperature, 0.0),
+        friction=rows(pairs.friction, inside),
+    )
+
+
+def _finite(temperature: Array) -> Array:
+    """Without a temperature gamma is not fitted; the number then only has to be finite."""
+    return np.nan_to_num(temperature, nan=0.0)
+
+
+def load_coefficient(observed: Observations) -> float:
+    """Return alpha of equation (10) from within the pairs alone; 0 where load does not vary."""
+    if observed.load_contrast <= 0:
+        return 0.0
+    slope = observed.squared_load_within @ observed.friction_within / observed.load_contrast
+    return max(float(slope), 0.0)
+
+
+def point_noise(observed: Observations, alpha: float) -> float:
+    """Return the standard deviation of one angle bin about its pair. [N·m]."""
+    within = observed.friction_within - alpha * observed.squared_load_within
+    freedom = max(len(within) - len(observed.friction) - 1, 1)
+    floor = 1e-6 * max(float(np.mean(np.abs(observed.friction))), 1e-12)
+    return max(float(np.sqrt(within @ within / freedom)), floor)
+
+
+def _first_noise(observed: Observations, terms: tuple[str, ...]) -> Noise:
+    point = point_noise(observed, load_coefficient(observed) if "alpha" in terms else 0.0)
+    return Noise(point=point, pair=point, drift=point, drift_time=3600.0)
+
+
+def _covariance(
+    observed: Observations,
+    terms: tuple[str, ...],
+    parameters: FrictionParameters,
+    plausible: list[tuple[Noise, float]],
+) -> Array:
+    """Return the covariance of the weighted estimates, averaged over the plausible noises."""
+    noise = plausible[0][0]
+    weighted = jacobian(weighted_equations(observed, noise), terms, parameters)
+    size = np.maximum(np.linalg.norm(weighted, axis=0), 1e-300)
+    between, inside = weighted[:-1] / size, weighted[-1] / size
+    deviation = np.sqrt(noise.pair**2 + noise.drift**2 + noise.point**2 / observed.bins)
+    spread = between / deviation[:, np.newaxis]
+    filling = np.outer(inside, inside) * contrast_inflation(observed, parameters.alpha, noise.point)
+    for possible, weight in plausible:
+        truth = pair_covariance(possible, time=observed.time, run=observed.run, bins=observed.bins)
+        filling += weight * (spread.T @ truth.times(spread))
+    bread = np.linalg.pinv(between.T @ between + np.outer(inside, inside))
+    return np.asarray(bread @ filling @ bread / np.outer(size, size))
+
+
+def contrast_inflation(observed: Observations, alpha: float, point: float) -> float:
+    """Return by how much the load's contrast varies more than independent bins would let it.
+
+    Residuals that neighbouring bins of a pair share, or that all pairs share at an angle, make
+    alpha less certain; clustering by pair and by angle shows it.
+    """
+    if observed.load_contrast <= 0:
+        return 1.0
+    residual = observed.friction_within - alpha * observed.squared_load_within
+    score = observed.squared_load_within * residual
+    independent = point**2 * observed.load_contrast
+    clusters = (observed.row_pair, np.unique(observed.row_position, return_inverse=True)[1])
+    clustered = [float(np.sum(np.square(np.bincount(cluster, score)))) for cluster in clusters]
+    return max(1.0, *(value / independent for value in clustered))
+
+
+def freedom(observed: Observations, noise: Noise, parameters: int) -> float:
+    """Return how many independent stretches the noise estimate rests on, less the parameters."""
+    white = noise.pair**2 + noise.point**2 / np.mean(observed.bins)
+    runs = [observed.time[observed.run == run] for run in np.unique(observed.run)]
+    stretches = sum(1 + np.ptp(time) / (2 * noise.drift_time) for time in runs)
+    share = noise.drift**2 / (noise.drift**2 + white)
+    pairs = len(observed.friction)
+    effective = 1 / (share / min(stretches, pairs) + (1 - share) / pairs)
+    return float(max(effective - parameters, 2.0))

@@ -1,0 +1,237 @@
+r"""Noise of friction measurements: per point, per pair, and a slow drift over time.
+
+The mean friction torque of pair *i* with :math:`n_i` angle bins is disturbed by
+
+.. math:: \bar e_i + p_i + d(t_i), \quad
+    \operatorname{var} = \sigma_e^2 / n_i + \sigma_p^2 + \sigma_d^2
+
+with white :math:`p` and an Ornstein-Uhlenbeck drift :math:`d`, independent between runs, whose
+correlation is :math:`\exp(-|t_i - t_j| / \theta)`. Treating such data as independent makes
+intervals several times too narrow. The drift is a Markov process: its inverse covariance is
+tridiagonal, so every operation here costs O(pairs).
+
+References
+----------
+.. [1] H. D. Patterson and R. Thompson, "Recovery of inter-block information when block sizes are
+   unequal," Biometrika 58(3), 1971, doi:10.1093/biomet/58.3.545 (restricted likelihood).
+.. [2] H. Rue and L. Held, Gaussian Markov Random Fields, 2005, doi:10.1201/9780203492024.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.linalg import cho_solve_banded, cholesky_banded
+from scipy.optimize import minimize
+
+Array = NDArray[np.float64]
+
+_DRIFT_TIMES = 12
+"""Number of correlation times that are tried, from the pairs' distance to the run's length."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Noise:
+    """Standard deviations of the three parts, and the drift's correlation time.
+
+    Attributes
+    ----------
+    point : float
+        One angle bin of one pair. [N·m]
+    pair : float
+        What all bins of a pair share and other pairs do not. [N·m]
+    drift : float
+        The slow drift. [N·m]
+    drift_time : float
+        Its correlation time. [s]
+    """
+
+    point: float
+    pair: float
+    drift: float
+    drift_time: float
+
+
+@dataclass(frozen=True, slots=True)
+class PairCovariance:
+    """Covariance of pair means: ``diag(white) + drift² exp(-|Δt|/θ)`` within each run.
+
+    Attributes
+    ----------
+    white : ndarray, shape (pairs,)
+        Variance that pairs do not share. [(N·m)²]
+    factor : ndarray, shape (2, pairs)
+        Banded Cholesky factor of the drift's precision plus ``1/white``.
+    log_determinant : float
+        Logarithm of the covariance's determinant.
+    correlation : ndarray, shape (pairs,)
+        Correlation of each pair's drift with that of the pair before it; 0 where a run starts.
+    drift : float
+        Standard deviation of the drift. [N·m]
+    """
+
+    white: Array
+    factor: Array
+    log_determinant: float
+    correlation: Array
+    drift: float
+
+    def solve(self, right: Array) -> Array:
+        """Return the inverse covariance times ``right``, shape (pairs, ...)."""
+        weighted = (right.T / self.white).T
+        smooth = cho_solve_banded((self.factor, False), weighted)
+        return weighted - (smooth.T / self.white).T
+
+    def times(self, right: Array) -> Array:
+        """Return the covariance times ``right``, shape (pairs, columns)."""
+        # exp(-|Δt|/θ) summed forwards and backwards, as a first-order recursion in each direction
+        forward, backward = np.array(right), np.array(right)
+        for i in range(1, len(right)):
+            forward[i] += self.correlation[i] * forward[i - 1]
+        for i in range(len(right) - 2, -1, -1):
+            backward[i] += self.correlation[i + 1] * backward[i + 1]
+        drift = self.drift**2 * (forward + backward - right)
+        return (right.T * self.white).T + drift
+
+    def draw(self, generator: np.random.Generator) -> Array:
+        """Return one random disturbance of the pair means, shape (pairs,). [N·m]."""
+        drift = generator.standard_normal(len(self.white))
+        for i in range(1, len(drift)):
+            fresh = np.sqrt(1 - self.correlation[i] ** 2)
+            drift[i] = self.correlation[i] * drift[i - 1] + fresh * drift[i]
+        white = np.sqrt(self.white) * generator.standard_normal(len(self.white))
+        return np.asarray(self.drift * drift + white)
+
+
+def pair_covariance(
+    noise: Noise, *, time: Array, run: NDArray[np.intp], bins: Array
+) -> PairCovariance:
+    """Return the covariance of pair means.
+
+    Parameters
+    ----------
+    noise : Noise
+        The noise's parts.
+    time : ndarray, shape (pairs,)
+        Times, growing within each run. [s]
+    run : ndarray of int, shape (pairs,)
+        Run of each pair; pairs of a run stand together.
+    bins : ndarray, shape (pairs,)
+        Number of angle bins averaged in each pair.
+    """
+    white = noise.pair**2 + noise.point**2 / bins
+    # a drift of zero would have an infinite precision: keep it far below everything else
+    variance = max(noise.drift**2, 1e-9 * float(np.mean(white)))
+    step = np.where(np.diff(run) == 0, np.diff(time), np.inf)
+    decay = np.exp(-np.maximum(step, 1e-3) / noise.drift_time)
+    decay = np.minimum(decay, 1 - 1e-9)
+    innovation = 1 - np.square(np.concatenate([[0.0], decay]))
+    diagonal = 1 / innovation
+    diagonal[:-1] += np.square(decay) / innovation[1:]
+    banded = np.zeros((2, len(time)))
+    banded[0, 1:] = -decay / innovation[1:] / variance
+    banded[1] = diagonal / variance + 1 / white
+    factor = cholesky_banded(banded)
+    log_determinant = (
+        2 * np.sum(np.log(factor[1]))
+        + np.sum(np.log(white))
+        + np.sum(np.log(innovation))
+        + len(time) * np.log(variance)
+    )
+    return PairCovariance(
+        white=white,
+        factor=factor,
+        log_determinant=float(log_determinant),
+        correlation=np.concatenate([[0.0], decay]),
+        drift=float(np.sqrt(variance)),
+    )
+
+
+def restricted_log_likelihood(covariance: PairCovariance, residual: Array, design: Array) -> float:
+    """Return the restricted log likelihood of pair residuals, but for a constant.
+
+    Parameters
+    ----------
+    covariance : PairCovariance
+        The assumed covariance.
+    residual : ndarray, shape (pairs,)
+        Residuals of any fit within the span of ``design``. [N·m]
+    design : ndarray, shape (pairs, parameters)
+        Derivatives of the model by the parameters that were fitted.
+    """
+    solved = covariance.solve(np.column_stack([design, residual]))
+    information = design.T @ solved[:, :-1]
+    projected = design.T @ solved[:, -1]
+    explained = projected @ np.linalg.solve(information, projected)
+    quadratic = residual @ solved[:, -1] - explained
+    return float(
+        -0.5 * (covariance.log_determinant + np.linalg.slogdet(information)[1] + quadratic)
+    )
+
+
+def plausible_noise(
+    *,
+    residual: Array,
+    design: Array,
+    time: Array,
+    run: NDArray[np.intp],
+    bins: Array,
+    point: float,
+) -> list[tuple[Noise, float]]:
+    """Return noises that agree with the residuals and how plausible each is, best first.
+
+    One run says little about how slow its drift is. So the correlation time is scanned, the two
+    standard deviations are fitted at each of its values by restricted maximum likelihood [1]_, and
+    the likelihoods (with an even prior in the logarithm of time) become the weights.
+
+    Parameters
+    ----------
+    residual : ndarray, shape (pairs,)
+        Mean residual of each pair. [N·m]
+    design : ndarray, shape (pairs, parameters)
+        Derivatives of the model by the fitted parameters.
+    time : ndarray, shape (pairs,)
+        Times, growing within each run. [s]
+    run : ndarray of int, shape (pairs,)
+        Run of each pair.
+    bins : ndarray, shape (pairs,)
+        Angle bins of each pair.
+    point : float
+        Standard deviation of one bin, known from within the pairs. [N·m]
+
+    Returns
+    -------
+    list of (Noise, float)
+        The weights sum to 1.
+    """
+    # an orthonormal basis: alpha's column may be a multiple of tau_c's, and units differ widely
+    basis, size, _ = np.linalg.svd(design / np.linalg.norm(design, axis=0), full_matrices=False)
+    basis = basis[:, size > 1e-9 * size[0]]
+    scale = max(float(np.std(residual)), 1e-9)
+    gaps = np.diff(time)[np.diff(run) == 0]
+    shortest = max(float(np.median(gaps)), 1e-3) if gaps.size else 1.0
+    # a drift slower than the run is an offset of that run: one run cannot tell it from tau_c
+    longest = max(max(np.ptp(time[run == number]) for number in np.unique(run)), 2 * shortest)
+
+    def of(logs: Array, duration: float) -> Noise:
+        pair, drift = np.exp(logs)
+        return Noise(point=point, pair=float(pair), drift=float(drift), drift_time=duration)
+
+    def cost(logs: Array, duration: float) -> float:
+        covariance = pair_covariance(of(logs, duration), time=time, run=run, bins=bins)
+        return -restricted_log_likelihood(covariance, residual, basis)
+
+    bounds = [(np.log(scale * 1e-3), np.log(scale * 10))] * 2
+    start = np.log([scale / 2, scale / 2])
+    found = []
+    for duration in np.geomspace(shortest, longest, _DRIFT_TIMES):
+        best = minimize(cost, start, args=(duration,), method="L-BFGS-B", bounds=bounds)
+        start = best.x
+        found.append((of(best.x, float(duration)), -float(best.fun)))
+    highest = max(likelihood for _, likelihood in found)
+    weights = [np.exp(likelihood - highest) for _, likelihood in found]
+    together = [
+        (noise, float(weight / sum(weights)))
+        for (noise, _), weight in zip(found, weights, strict=True)
+    ]
+    return sorted(together, key=lambda entry: -entry[1])

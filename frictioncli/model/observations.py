@@ -1,0 +1,89 @@
+"""What an identification needs of the torques: sums per pair, and the load's contrast inside pairs.
+
+Speed and temperature are constant within a pair, so only the load term varies there. Everything
+else of equation (16) is decided between pairs, on one mean per pair. The split is exact and makes
+the cost of a fit independent of the number of angle bins.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+import pandas as pd
+from numpy.typing import NDArray
+
+from frictioncli.model.zero_load import PAIR_KEY, temperature_of
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Observations:
+    """Friction of one joint, ordered by run and time.
+
+    Attributes
+    ----------
+    run : ndarray of int, shape (pairs,)
+        Number of the run that each pair belongs to.
+    time, speed, temperature : ndarray, shape (pairs,)
+        Of each pair. Temperature is NaN where the log has none. [s], [deg/s], [°C]
+    friction, squared_load : ndarray, shape (pairs,)
+        Means over the pair's angle bins. [N·m], [(N·m)²]
+    bins : ndarray of int, shape (pairs,)
+        Number of angle bins.
+    friction_within, squared_load_within : ndarray, shape (rows,)
+        Deviations of the bins from their pair's means. [N·m], [(N·m)²]
+    row_pair, row_position : ndarray, shape (rows,)
+        The pair and the angle of each row. [-], [deg]
+    """
+
+    run: NDArray[np.intp]
+    time: Array
+    speed: Array
+    temperature: Array
+    friction: Array
+    squared_load: Array
+    bins: Array
+    friction_within: Array
+    squared_load_within: Array
+    row_pair: NDArray[np.intp]
+    row_position: Array
+
+    @property
+    def load_contrast(self) -> float:
+        """Sum of squares, in (N·m)⁴, of the squared load about its pair means."""
+        return float(self.squared_load_within @ self.squared_load_within)
+
+
+def observations(torques: pd.DataFrame, temperature: str) -> Observations:
+    """Return the observations of one joint.
+
+    Parameters
+    ----------
+    torques : DataFrame
+        Rows of :data:`frictioncli.schemas.TORQUES` of a single joint.
+    temperature : {"motor", "housing", "mean"}
+        Temperature that the friction function is given.
+    """
+    ordered = torques.assign(
+        squared_load=np.square(torques["load_torque"]),
+        temperature=temperature_of(torques, temperature),
+    ).sort_values(["run", "time", "pair", "position"])
+    grouped = ordered.groupby(PAIR_KEY, sort=False, observed=True)
+    columns = ["time", "speed", "temperature", "friction_torque", "squared_load"]
+    means = grouped[columns].mean().reset_index()
+    row_pair = grouped.ngroup().to_numpy()
+    return Observations(
+        run=pd.factorize(means["run"])[0],
+        time=means["time"].to_numpy(float),
+        speed=means["speed"].to_numpy(float),
+        temperature=means["temperature"].to_numpy(float),
+        friction=means["friction_torque"].to_numpy(float),
+        squared_load=means["squared_load"].to_numpy(float),
+        bins=grouped.size().to_numpy(float),
+        friction_within=ordered["friction_torque"].to_numpy(float)
+        - means["friction_torque"].to_numpy(float)[row_pair],
+        squared_load_within=ordered["squared_load"].to_numpy(float)
+        - means["squared_load"].to_numpy(float)[row_pair],
+        row_pair=row_pair,
+        row_position=ordered["position"].to_numpy(float),
+    )

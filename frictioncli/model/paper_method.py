@@ -1,0 +1,178 @@
+r"""The source paper's consecutive identification: load first, then the viscous law on branch means.
+
+Within a pair friction is :math:`\alpha L^2 + G` (equations (9), (10)), which gives alpha and each
+pair's G. Heating and cooling branches of G are averaged (11), and the means are fitted by
+:math:`\tau^* = \tau_c + (\beta + \gamma e^{-\delta T^*}) \sqrt{\dot\varphi}` ((12), (13)).
+Intervals come from repeating all of it on data disturbed by the estimated noise.
+"""
+
+import numpy as np
+import pandas as pd
+from numpy.typing import NDArray
+
+from frictioncli.errors import NotEnoughData
+from frictioncli.model.determinacy import Determination
+from frictioncli.model.friction import FrictionParameters, friction_torque
+from frictioncli.model.identification import (
+    Estimate,
+    contrast_inflation,
+    freedom,
+    load_coefficient,
+    pair_equations,
+    pair_residual,
+    point_noise,
+)
+from frictioncli.model.noise import pair_covariance, plausible_noise
+from frictioncli.model.observations import Observations
+from frictioncli.model.projection import COEFFICIENTS, Equations, jacobian, minimise
+from frictioncli.model.zero_load import friction_at_zero_load, temperature_of
+
+Array = NDArray[np.float64]
+
+_GRID_STEP = 0.5
+"""Distance of the temperatures at which the branches are averaged. [°C]"""
+
+_REPETITIONS = 200
+_SEED = 0
+
+
+def branch_means(pairs: pd.DataFrame, temperature: str = "mean") -> pd.DataFrame:
+    r"""Return the mean of the heating and the cooling branch, per speed, on a temperature grid.
+
+    Parameters
+    ----------
+    pairs : DataFrame
+        Rows of :func:`frictioncli.model.zero_load.friction_at_zero_load`.
+    temperature : {"mean", "motor", "housing"}
+        The temperature against which the branches are averaged; ``mean`` is the paper's.
+
+    Returns
+    -------
+    DataFrame
+        Columns ``speed`` [deg/s], ``temperature`` [°C], ``friction_torque`` [N·m]; empty where no
+        speed has both branches over a common temperature range.
+
+    Notes
+    -----
+    Equation (11): :math:`\tau^*(T^*) = (\tau_{heatup}(T^*) + \tau_{cooldown}(T^*)) / 2` with
+    :math:`T^* = (T_c + T_m)/2`. Each branch is interpolated linearly between its measurements;
+    branches of several runs are averaged run by run.
+    """
+    known = pairs.assign(temperature=temperature_of(pairs, temperature)).dropna(
+        subset=["temperature"]
+    )
+    means = []
+    for (_, _, speed), group in known.groupby(["run", "joint", "speed"], observed=True):
+        heating = group[group["phase"] == "heat-up"].sort_values("temperature")
+        cooling = group[group["phase"] == "cool-down"].sort_values("temperature")
+        if min(len(heating), len(cooling)) < 2:
+            continue
+        low = max(heating["temperature"].iloc[0], cooling["temperature"].iloc[0])
+        high = min(heating["temperature"].iloc[-1], cooling["temperature"].iloc[-1])
+        grid = np.arange(np.ceil(low / _GRID_STEP), np.floor(high / _GRID_STEP) + 1) * _GRID_STEP
+        branches = [
+            np.interp(grid, branch["temperature"], branch["friction_torque"])
+            for branch in (heating, cooling)
+        ]
+        means.append(
+            pd.DataFrame(
+                {"speed": speed, "temperature": grid, "friction_torque": np.mean(branches, axis=0)}
+            )
+        )
+    if not means:
+        return pd.DataFrame(columns=["speed", "temperature", "friction_torque"], dtype=float)
+    together = pd.concat(means).groupby(["speed", "temperature"], as_index=False)
+    return together["friction_torque"].mean()
+
+
+def consecutive_fit(
+    torques: pd.DataFrame, observed: Observations, temperature: str
+) -> tuple[Estimate, Determination]:
+    """Identify equation (16) as the source paper does.
+
+    Parameters
+    ----------
+    torques : DataFrame
+        Rows of :data:`frictioncli.schemas.TORQUES` of one joint, with the temperatures needed.
+    observed : Observations
+        The same, summed per pair.
+    temperature : {"mean", "motor", "housing"}
+        Temperature of the branch means; ``mean`` is the paper's.
+
+    Raises
+    ------
+    NotEnoughData
+        If no two speeds have both a heating and a cooling branch.
+    """
+    alpha = load_coefficient(observed)
+    pairs = friction_at_zero_load(torques, alpha)
+    parameters = _viscous_law(pairs, temperature, alpha)
+    residual = pair_residual(observed, parameters)
+    names = (*COEFFICIENTS, "delta")
+    point = point_noise(observed, alpha)
+    plausible = plausible_noise(
+        residual=residual,
+        design=jacobian(pair_equations(observed), COEFFICIENTS, parameters),
+        time=observed.time,
+        run=observed.run,
+        bins=observed.bins,
+        point=point,
+    )
+    generator = np.random.default_rng(_SEED)
+    covariances = [
+        pair_covariance(noise, time=observed.time, run=observed.run, bins=observed.bins)
+        for noise, _ in plausible
+    ]
+    choices = generator.choice(len(plausible), _REPETITIONS, p=[weight for _, weight in plausible])
+    alpha_error = point * np.sqrt(
+        contrast_inflation(observed, alpha, point) / max(observed.load_contrast, 1e-300)
+    )
+    unloaded = friction_torque(
+        parameters,
+        load=0.0,
+        speed=pairs["speed"].to_numpy(float),
+        temperature=temperature_of(pairs, temperature).to_numpy(float),
+    )
+    repeated = []
+    for choice in choices:
+        shift = alpha_error * generator.standard_normal()
+        disturbance = covariances[choice].draw(generator) - shift * observed.squared_load
+        again = _viscous_law(
+            pairs.assign(friction_torque=unloaded + disturbance), temperature, alpha + shift
+        )
+        repeated.append([getattr(again, name) for name in names])
+    within = observed.friction_within - alpha * observed.squared_load_within
+    squares = np.sum(observed.bins * np.square(residual)) + within @ within
+    estimate = Estimate(
+        parameters=parameters,
+        names=names,
+        covariance=np.cov(np.array(repeated).T),
+        freedom=freedom(observed, plausible[0][0], len(names)),
+        noise=plausible[0][0],
+        residual=residual,
+        rmse=float(np.sqrt(squares / len(within))),
+    )
+    return estimate, Determination()
+
+
+def _viscous_law(pairs: pd.DataFrame, temperature: str, alpha: float) -> FrictionParameters:
+    """Return the fit of (12), (13) to the branch means."""
+    means = branch_means(pairs, temperature)
+    if means["speed"].nunique() < 2:
+        raise NotEnoughData(
+            "--method paper needs a heating and a cooling branch at two speeds at least; found"
+            f" {means['speed'].nunique()}; use --method joint"
+        )
+    found = minimise(
+        Equations(
+            constant=np.ones(len(means)),
+            squared_load=np.zeros(len(means)),
+            root_speed=np.sqrt(means["speed"].to_numpy(float)),
+            temperature=means["temperature"].to_numpy(float),
+            friction=means["friction_torque"].to_numpy(float),
+        ),
+        ("tau_c", "beta", "gamma"),
+    )
+    return FrictionParameters(
+        tau_c=found.tau_c, alpha=alpha, beta=found.beta, gamma=found.gamma, delta=found.delta
+    )

@@ -1,0 +1,59 @@
+"""Friction of each pair without load: the points of the source paper's Figures 5, 6, 9 and 10."""
+
+import numpy as np
+import pandas as pd
+
+PAIR_KEY = ["run", "joint", "pair"]
+"""What identifies a pair of counter-directed moves."""
+
+_PAIR_COLUMNS = [
+    "speed",
+    "time",
+    "phase",
+    "motor_temperature",
+    "housing_temperature",
+    "motor_temperature_reading",
+]
+
+
+def friction_at_zero_load(torques: pd.DataFrame, alpha: float) -> pd.DataFrame:
+    r"""Return one row per pair with its friction torque at zero load.
+
+    Parameters
+    ----------
+    torques : DataFrame
+        Rows of :data:`frictioncli.schemas.TORQUES`.
+    alpha : float
+        Load coefficient of equation (16). [1/(N·m)]
+
+    Returns
+    -------
+    DataFrame
+        Columns ``run, joint, pair, speed, time, phase``, the temperatures, and
+        ``friction_torque``, ordered by run, joint and time. [N·m]
+
+    Notes
+    -----
+    Within one pair, speed and temperature are constant, so equation (9) leaves
+    :math:`\tau = \alpha L^2 + G`. G is the mean of :math:`\tau - \alpha L^2` over the pair's angle
+    bins: it uses them all, and exists also where the load never crosses zero.
+    """
+    unloaded = torques["friction_torque"] - alpha * np.square(torques["load_torque"])
+    grouped = torques.assign(friction_torque=unloaded).groupby(PAIR_KEY, sort=False, observed=True)
+    present = [name for name in _PAIR_COLUMNS if name in torques]
+    pairs = grouped[present].first().assign(friction_torque=grouped["friction_torque"].mean())
+    return pairs.reset_index().sort_values(["run", "joint", "time"], ignore_index=True)
+
+
+def temperature_of(pairs: pd.DataFrame, kind: str) -> pd.Series:
+    """Return the temperature that the friction function is given: motor, housing or their mean.
+
+    Parameters
+    ----------
+    pairs : DataFrame
+        Rows with ``motor_temperature`` and ``housing_temperature``. [°C]
+    kind : {"motor", "housing", "mean"}
+        ``mean`` is :math:`T^*` of equation (11).
+    """
+    motor, housing = pairs["motor_temperature"], pairs["housing_temperature"]
+    return {"motor": motor, "housing": housing, "mean": (motor + housing) / 2}[kind]
