@@ -1,0 +1,88 @@
+"""Settings of the stages ``simulate`` and ``evaluate``."""
+
+from dataclasses import dataclass
+
+from frictioncli.errors import OptionError
+
+CRITERIA = ("first_degree", "latest_degree", "none", "equal")
+"""Rules that decide when to correct: two readings of (20), never, and evenly in time."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class CorrectionSettings:
+    """How corrections are computed and judged.
+
+    Attributes
+    ----------
+    correction_speed : float or None
+        Speed of the pairs that corrections use; two thirds of the highest if none. [deg/s]
+    smoothing_degree : int
+        Degree of the polynomials in motor temperature that smooth the reference of (21).
+    """
+
+    correction_speed: float | None = None
+    smoothing_degree: int = 3
+
+    def __post_init__(self) -> None:
+        if not 0 <= self.smoothing_degree <= 9:
+            raise OptionError(f"smoothing degree {self.smoothing_degree}: expected 0 to 9")
+        if self.correction_speed is not None and self.correction_speed <= 0:
+            raise OptionError(f"correction speed {self.correction_speed:g} deg/s: expected > 0")
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ScheduleSettings:
+    """The schedule that ``simulate`` replays.
+
+    Attributes
+    ----------
+    criterion : str
+        One of :data:`CRITERIA`.
+    k : float
+        Scale of criterion (20).
+    tmax : float
+        Time after which a correction is forced. [s]
+    """
+
+    criterion: str = "first_degree"
+    k: float = 5.0
+    tmax: float = 3600.0
+
+    def __post_init__(self) -> None:
+        if self.criterion not in CRITERIA:
+            raise OptionError(
+                f"criterion '{self.criterion}': expected one of {', '.join(CRITERIA)}"
+            )
+        _check_positive("k", (self.k,))
+        _check_positive("tmax", (self.tmax,))
+
+    def told(self) -> str:
+        """Return the schedule in words."""
+        return f"criterion {self.criterion}, k = {self.k:g}, tmax = {self.tmax / 60:g} min"
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class EvaluationGrid:
+    """The schedules that ``evaluate`` compares: every k with every tmax.
+
+    Attributes
+    ----------
+    k : tuple of float
+        Scales of criterion (20).
+    tmax : tuple of float
+        Times after which a correction is forced. [s]
+    """
+
+    k: tuple[float, ...] = (1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 8.0, 10.0, 15.0, 20.0)
+    tmax: tuple[float, ...] = (600.0, 1200.0, 1800.0, 3600.0, 7200.0)
+
+    def __post_init__(self) -> None:
+        _check_positive("k", self.k)
+        _check_positive("tmax", self.tmax)
+
+
+def _check_positive(name: str, values: tuple[float, ...]) -> None:
+    bad = [value for value in values if not value > 0]
+    if bad or not values:
+        found = ", ".join(f"{value:g}" for value in bad) or "nothing"
+        raise OptionError(f"--{name}: found {found}, expected numbers > 0")
