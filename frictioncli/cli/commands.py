@@ -1,0 +1,212 @@
+"""One function per command."""
+
+from typing import Annotated
+
+import typer
+
+from frictioncli.cli import options as o
+from frictioncli.correction.settings import CorrectionSettings, EvaluationGrid, ScheduleSettings
+from frictioncli.errors import OptionError
+from frictioncli.model.settings import FitSettings
+from frictioncli.motion.settings import PairingSettings, SteadySettings
+
+app = typer.Typer(
+    name="frictioncli",
+    help="Friction of a robot joint from its torque logs. Units: deg, deg/s, s, N·m, °C.",
+    no_args_is_help=True,
+    add_completion=False,
+    rich_markup_mode=None,
+    pretty_exceptions_enable=False,
+)
+
+
+def _show_version(wanted: bool) -> None:
+    if wanted:
+        from frictioncli import __version__
+
+        typer.echo(f"frictioncli {__version__}")
+        raise typer.Exit
+
+
+@app.callback()
+def _common(
+    version: Annotated[
+        bool, typer.Option("--version", callback=_show_version, is_eager=True, help="Show it.")
+    ] = False,
+) -> None:
+    """Friction of a robot joint from its torque logs. Units: deg, deg/s, s, N·m, °C."""
+
+
+@app.command()
+def ingest(
+    logs: o.Logs,
+    work: o.Work = o.WORK,
+    joints: o.Joints = None,
+    map_file: o.Map = None,
+    gear_ratio: o.GearRatio = None,
+    time_unit: o.TimeUnit = None,
+    position_unit: o.PositionUnit = None,
+    velocity_unit: o.VelocityUnit = None,
+    torque_unit: o.TorqueUnit = None,
+    temperature_unit: o.TemperatureUnit = None,
+) -> None:
+    """Read logs into samples: deg, deg/s, s, N·m (or A), °C."""
+    from frictioncli import chain
+    from frictioncli.reading.settings import IngestSettings
+
+    settings = o.chosen(IngestSettings, locals())
+    typer.echo(chain.ingest(logs, work, settings))
+
+
+@app.command()
+def pair(
+    work: o.Work = o.WORK,
+    bin_width: o.BinWidth = o.PAIRING.bin_width,
+    min_speed: o.MinSpeed = o.STEADY.min_speed,
+    speed_tolerance: o.SpeedTolerance = o.STEADY.speed_tolerance,
+    settling: o.Settling = o.STEADY.settling,
+    min_samples: o.MinSamples = o.STEADY.min_samples,
+    same_speed: o.SameSpeed = o.PAIRING.same_speed,
+    same_temperature: o.SameTemperature = o.PAIRING.same_temperature,
+    longest_pause: o.LongestPause = o.PAIRING.longest_pause,
+) -> None:
+    """Match counter-directed constant-speed motion by speed [deg/s] and angle bin [deg]."""
+    from frictioncli import chain
+
+    steady = o.chosen(SteadySettings, locals())
+    settings = o.chosen(PairingSettings, locals())
+    typer.echo(chain.pair(work, settings))
+
+
+@app.command()
+def separate(work: o.Work = o.WORK, sign: o.Sign = "auto") -> None:
+    """Separate friction torque from load torque [N·m] by equation (8)."""
+    from frictioncli import chain
+
+    typer.echo(chain.separate(work, _sign(sign)))
+
+
+@app.command()
+def fit(
+    work: o.Work = o.WORK,
+    method: o.Method = o.FIT.method,
+    temperature: o.Temperature = o.FIT.temperature,
+) -> None:
+    """Identify the friction model (16): load [N·m], speed [deg/s], temperature [°C]."""
+    from frictioncli import chain
+
+    typer.echo(chain.fit(work, FitSettings(method=method, temperature=temperature)))
+
+
+@app.command()
+def simulate(
+    work: o.Work = o.WORK,
+    k: o.K = o.SCHEDULE.k,
+    tmax: o.TMax = o.SCHEDULE.tmax / 60,
+    criterion: o.Criterion = o.SCHEDULE.criterion,
+    correction_speed: o.CorrectionSpeed = None,
+    smoothing_degree: o.SmoothingDegree = o.CORRECTION.smoothing_degree,
+) -> None:
+    """Simulate the temperature correction of Algorithm 3; tmax in minutes, epsilon in N·m."""
+    from frictioncli import chain
+
+    schedule = ScheduleSettings(criterion=criterion, k=k, tmax=tmax * 60)
+    correction = o.chosen(CorrectionSettings, locals())
+    typer.echo(chain.simulate(work, schedule, correction))
+
+
+@app.command()
+def evaluate(
+    work: o.Work = o.WORK,
+    k: o.KGrid = None,
+    tmax: o.TMaxGrid = None,
+    correction_speed: o.CorrectionSpeed = None,
+    smoothing_degree: o.SmoothingDegree = o.CORRECTION.smoothing_degree,
+) -> None:
+    """Evaluate correction schedules over k and tmax [min]: epsilon [N·m] by corrections."""
+    from frictioncli import chain
+
+    correction = o.chosen(CorrectionSettings, locals())
+    typer.echo(chain.evaluate(work, _grid(k, tmax), correction))
+
+
+@app.command()
+def report(work: o.Work = o.WORK) -> None:
+    """Draw the figures (deg, deg/s, s, N·m, °C) and write report/index.html."""
+    from frictioncli import chain
+
+    typer.echo(chain.report(work))
+
+
+@app.command()
+def run(
+    logs: o.Logs,
+    work: o.Work = o.WORK,
+    joints: o.Joints = None,
+    map_file: o.Map = None,
+    gear_ratio: o.GearRatio = None,
+    time_unit: o.TimeUnit = None,
+    position_unit: o.PositionUnit = None,
+    velocity_unit: o.VelocityUnit = None,
+    torque_unit: o.TorqueUnit = None,
+    temperature_unit: o.TemperatureUnit = None,
+    bin_width: o.BinWidth = o.PAIRING.bin_width,
+    min_speed: o.MinSpeed = o.STEADY.min_speed,
+    speed_tolerance: o.SpeedTolerance = o.STEADY.speed_tolerance,
+    settling: o.Settling = o.STEADY.settling,
+    min_samples: o.MinSamples = o.STEADY.min_samples,
+    same_speed: o.SameSpeed = o.PAIRING.same_speed,
+    same_temperature: o.SameTemperature = o.PAIRING.same_temperature,
+    longest_pause: o.LongestPause = o.PAIRING.longest_pause,
+    sign: o.Sign = "auto",
+    method: o.Method = o.FIT.method,
+    temperature: o.Temperature = o.FIT.temperature,
+    criterion: o.Criterion = o.SCHEDULE.criterion,
+    k: o.K = o.SCHEDULE.k,
+    tmax: o.TMax = o.SCHEDULE.tmax / 60,
+    correction_speed: o.CorrectionSpeed = None,
+    smoothing_degree: o.SmoothingDegree = o.CORRECTION.smoothing_degree,
+) -> None:
+    """Run the whole chain, from logs to the report. Units: deg, deg/s, s, N·m, °C."""
+    from frictioncli import chain
+    from frictioncli.reading.settings import IngestSettings
+
+    steady = o.chosen(SteadySettings, locals())
+    settings = chain.RunSettings(
+        ingest=o.chosen(IngestSettings, locals()),
+        pairing=o.chosen(PairingSettings, locals()),
+        sign=_sign(sign),
+        fit=o.chosen(FitSettings, locals()),
+        schedule=ScheduleSettings(criterion=criterion, k=k, tmax=tmax * 60),
+        correction=o.chosen(CorrectionSettings, locals()),
+    )
+    chain.run(logs, work, settings, tell=_tell)
+
+
+def _tell(stage: str, text: object) -> None:
+    first, *others = str(text).splitlines() or [""]
+    typer.echo(f"{stage:9s} {first}")
+    for line in others:
+        typer.echo(f"{'':9s} {line}")
+
+
+def _sign(text: str) -> int | None:
+    signs = {"auto": None, "+1": 1, "1": 1, "+": 1, "-1": -1, "-": -1}
+    if text not in signs:
+        raise OptionError(f"--sign {text}: expected auto, +1 or -1")
+    return signs[text]
+
+
+def _grid(k: list[str] | None, tmax: list[str] | None) -> EvaluationGrid:
+    return EvaluationGrid(
+        k=_numbers("k", k) if k else o.GRID.k,
+        tmax=tuple(60 * minutes for minutes in _numbers("tmax", tmax)) if tmax else o.GRID.tmax,
+    )
+
+
+def _numbers(name: str, texts: list[str]) -> tuple[float, ...]:
+    parts = [part for text in texts for part in text.replace(",", " ").split()]
+    try:
+        return tuple(float(part) for part in parts)
+    except ValueError:
+        raise OptionError(f"--{name} {' '.join(texts)}: expected numbers, such as 2,5,10") from None

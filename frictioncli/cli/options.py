@@ -1,0 +1,145 @@
+"""Every option once, with its unit; defaults come from the settings of the stages."""
+
+from collections.abc import Mapping
+from dataclasses import fields
+from pathlib import Path
+from typing import Annotated, Any, TypeVar
+
+import typer
+
+from frictioncli.correction.settings import (
+    CRITERIA,
+    CorrectionSettings,
+    EvaluationGrid,
+    ScheduleSettings,
+)
+from frictioncli.model.settings import METHODS, TEMPERATURES, FitSettings
+from frictioncli.motion.settings import PairingSettings, SteadySettings
+
+PAIRING = PairingSettings()
+STEADY = SteadySettings()
+FIT = FitSettings()
+SCHEDULE = ScheduleSettings()
+GRID = EvaluationGrid()
+CORRECTION = CorrectionSettings()
+WORK = Path("friction-run")
+
+_READ, _PAIR, _FIT, _CORRECT = "Reading", "Pairing", "Model", "Correction"
+
+Logs = Annotated[
+    list[Path], typer.Argument(help="Log files or folders; each folder is one run.", metavar="LOGS")
+]
+Work = Annotated[
+    Path, typer.Option("-w", "--work", metavar="RUN", help="Work folder that holds the tables.")
+]
+Joints = Annotated[
+    list[int] | None,
+    typer.Option(
+        "--joint", help="Joint to read, from 1; repeatable. All with torque.", rich_help_panel=_READ
+    ),
+]
+Map = Annotated[
+    Path | None,
+    typer.Option("--map", help="TOML file that names channels and units.", rich_help_panel=_READ),
+]
+GearRatio = Annotated[
+    float | None,
+    typer.Option(
+        help="Motor turns per joint turn, for motor-side channels.", rich_help_panel=_READ
+    ),
+]
+TimeUnit = Annotated[
+    str | None, typer.Option(help="Force the unit: s, ms, us.", rich_help_panel=_READ)
+]
+PositionUnit = Annotated[
+    str | None, typer.Option(help="Force the unit: deg, rad, udeg.", rich_help_panel=_READ)
+]
+VelocityUnit = Annotated[
+    str | None, typer.Option(help="Force the unit: deg/s, rad/s, rpm.", rich_help_panel=_READ)
+]
+TorqueUnit = Annotated[
+    str | None, typer.Option(help="Force the unit: N·m (or Nm), mNm, A, mA.", rich_help_panel=_READ)
+]
+TemperatureUnit = Annotated[
+    str | None, typer.Option(help="Force the unit: degC, K, degF.", rich_help_panel=_READ)
+]
+BinWidth = Annotated[
+    float, typer.Option(help="Width of the angle bins [deg].", rich_help_panel=_PAIR)
+]
+MinSpeed = Annotated[
+    float, typer.Option(help="Below this the joint stands [deg/s].", rich_help_panel=_PAIR)
+]
+SpeedTolerance = Annotated[
+    float,
+    typer.Option(help="Departure from constant speed [share of it].", rich_help_panel=_PAIR),
+]
+Settling = Annotated[
+    float, typer.Option(help="Time dropped after acceleration [s].", rich_help_panel=_PAIR)
+]
+MinSamples = Annotated[
+    int, typer.Option(help="Least samples of a constant-speed part.", rich_help_panel=_PAIR)
+]
+SameSpeed = Annotated[
+    float, typer.Option(help="Greatest difference of speed [share].", rich_help_panel=_PAIR)
+]
+SameTemperature = Annotated[
+    float, typer.Option(help="Greatest difference of temperature [°C].", rich_help_panel=_PAIR)
+]
+LongestPause = Annotated[
+    float, typer.Option(help="Longest pause between partners [s].", rich_help_panel=_PAIR)
+]
+Sign = Annotated[
+    str,
+    typer.Option(
+        help="Torque in forward motion: +1 load + friction, -1 load - friction, auto.",
+        rich_help_panel=_PAIR,
+    ),
+]
+Method = Annotated[
+    str, typer.Option(help=f"Identification: {', '.join(METHODS)}.", rich_help_panel=_FIT)
+]
+Temperature = Annotated[
+    str,
+    typer.Option(
+        help=f"Temperature in the model: auto, {', '.join(TEMPERATURES)}.", rich_help_panel=_FIT
+    ),
+]
+Criterion = Annotated[
+    str, typer.Option(help=f"When to correct: {', '.join(CRITERIA)}.", rich_help_panel=_CORRECT)
+]
+K = Annotated[
+    float, typer.Option("--k", help="Scale k of criterion (20).", rich_help_panel=_CORRECT)
+]
+TMax = Annotated[
+    float,
+    typer.Option("--tmax", help="Time that forces a correction [min].", rich_help_panel=_CORRECT),
+]
+KGrid = Annotated[
+    list[str] | None,
+    typer.Option("--k", help="Scales k to evaluate, repeated or 1,2,5.", rich_help_panel=_CORRECT),
+]
+TMaxGrid = Annotated[
+    list[str] | None,
+    typer.Option(
+        "--tmax", help="Forcing times to evaluate [min], as --k.", rich_help_panel=_CORRECT
+    ),
+]
+CorrectionSpeed = Annotated[
+    float | None,
+    typer.Option(
+        help="Speed of correction pairs [deg/s]; 2/3 of the highest.", rich_help_panel=_CORRECT
+    ),
+]
+SmoothingDegree = Annotated[
+    int,
+    typer.Option(help="Degree of the polynomial that smooths (21).", rich_help_panel=_CORRECT),
+]
+
+Settings = TypeVar("Settings")
+
+
+def chosen(kind: type[Settings], given: Mapping[str, Any]) -> Settings:
+    """Return settings of a stage from a command's arguments of the same names."""
+    named = {field.name: given[field.name] for field in fields(kind) if field.name in given}  # type: ignore[arg-type]
+    lists = {name: tuple(value) for name, value in named.items() if isinstance(value, list)}
+    return kind(**named | lists)
