@@ -1,0 +1,72 @@
+"""The arm that the joint carries: bodies, their gravity torque and inertia about the joint axis."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+GRAVITY = 9.81
+"""Acceleration of free fall [m/s²]."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Body:
+    """A rigid body on the link.
+
+    Attributes
+    ----------
+    name : str
+        What it is.
+    mass : float
+        Mass. [kg]
+    along : float
+        Distance of its centre from the axis, along the link. [m]
+    across : float
+        Offset of its centre square to the link. [m]
+    own_inertia : float
+        Inertia about its own centre, parallel to the joint axis. [kg·m²]
+    """
+
+    name: str
+    mass: float
+    along: float
+    across: float
+    own_inertia: float = 0.0
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Arm:
+    """The bodies that turn with the joint; at 0 deg the link is horizontal.
+
+    Attributes
+    ----------
+    bodies : tuple of Body
+        Links and wrist.
+    payload : Body
+        What the flange holds.
+    rotor_inertia : float
+        Inertia of rotor and gear input, seen at the joint (times the gear ratio squared). [kg·m²]
+    """
+
+    bodies: tuple[Body, ...]
+    payload: Body
+    rotor_inertia: float
+
+    def gravity_coefficients(self) -> tuple[float, float]:
+        """Return P and Q of the gravity torque ``P cos q + Q sin q`` [N·m]."""
+        bodies = (*self.bodies, self.payload)
+        cosine = sum(GRAVITY * body.mass * body.along for body in bodies)
+        sine = -sum(GRAVITY * body.mass * body.across for body in bodies)
+        return cosine, sine
+
+    def gravity_torque(self, position: ArrayLike) -> NDArray[np.float64]:
+        """Return the torque that holds the arm at an angle in deg [N·m]."""
+        cosine, sine = self.gravity_coefficients()
+        angle = np.radians(np.asarray(position, dtype=float))
+        return np.asarray(cosine * np.cos(angle) + sine * np.sin(angle))
+
+    def inertia(self) -> float:
+        """Return the inertia about the joint axis [kg·m²]."""
+        bodies = (*self.bodies, self.payload)
+        arm = sum(b.own_inertia + b.mass * (b.along**2 + b.across**2) for b in bodies)
+        return arm + self.rotor_inertia

@@ -1,0 +1,113 @@
+"""The simulated joint: arm, servo, friction zones, thermal network and where its heat arises."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from frictioncli.simulator.arm import Arm
+from frictioncli.simulator.profile import Servo, move_duration, round_trips
+from frictioncli.simulator.thermal import ThermalNetwork
+from frictioncli.simulator.zones import Zone, friction_torque
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class HeatEntry:
+    """Where the dissipated power enters the network.
+
+    How the heat is split decides the sign of the loop between heating and cooling: a joint heated
+    at the motor has colder grease than its motor shows while heating, one heated at the gear has
+    warmer grease.
+
+    Attributes
+    ----------
+    copper_loss : float
+        Copper loss per square of the control torque. [W/(N·m)²]
+    shares : mapping of str to float
+        Share of copper loss and friction heat that enters at each node; they sum to 1. [-]
+    """
+
+    copper_loss: float
+    shares: Mapping[str, float]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Joint:
+    """All that is true about the simulated joint."""
+
+    arm: Arm
+    servo: Servo
+    zones: tuple[Zone, ...]
+    network: ThermalNetwork
+    heat: HeatEntry
+
+    def friction(
+        self, *, load: ArrayLike, speed: ArrayLike, temperatures: Mapping[str, ArrayLike]
+    ) -> NDArray[np.float64]:
+        """Return the friction torque at node temperatures [N·m]."""
+        return friction_torque(self.zones, load=load, speed=speed, temperatures=temperatures)
+
+    def heat_shares(self) -> NDArray[np.float64]:
+        """Return the share of the heat per node, in the network's order [-]."""
+        return np.array([self.heat.shares.get(name, 0.0) for name in self.network.names])
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class RoundTrips:
+    """Continued moves there and back at one speed, as the thermal network sees them.
+
+    Attributes
+    ----------
+    speed : float
+        Speed of the constant part. [deg/s]
+    angles : tuple of float
+        Angles between which the joint turns. [deg]
+    dwell : float
+        Standing time after each move. [s]
+    """
+
+    speed: float
+    angles: tuple[float, float]
+    dwell: float
+
+
+HEAT_INTERVAL = 0.005
+"""Step at which a round trip is followed for its mean power [s]."""
+
+
+class MeanPower:
+    """Power dissipated by continued round trips, averaged over one of them."""
+
+    def __init__(self, joint: Joint, trips: RoundTrips) -> None:
+        distance = abs(trips.angles[1] - trips.angles[0])
+        moving = move_duration(joint.servo, distance=distance, speed=trips.speed)
+        motion, _, _ = round_trips(
+            joint.servo,
+            speeds=(trips.speed,),
+            angles=trips.angles,
+            lead=0.0,
+            dwell=trips.dwell,
+            interval=HEAT_INTERVAL,
+        )
+        inertial = joint.arm.inertia() * np.radians(motion.acceleration)
+        frictionless = joint.arm.gravity_torque(motion.position) + inertial
+        load = joint.arm.gravity_torque(np.linspace(*trips.angles, 181))
+        self._zones = joint.zones
+        self._speed = trips.speed
+        self._load = float(np.sqrt(np.mean(np.square(load))))
+        self._copper = joint.heat.copper_loss
+        self._frictionless_square = float(np.mean(np.square(frictionless)))
+        self._moving = moving / (moving + trips.dwell)
+        self._turning = float(np.radians(distance)) / (moving + trips.dwell)
+
+    def __call__(self, temperatures: Mapping[str, float]) -> float:
+        """Return copper loss and friction heat together at node temperatures in °C [W]."""
+        friction = float(
+            friction_torque(
+                self._zones, load=self._load, speed=self._speed, temperatures=temperatures
+            )
+        )
+        # Friction turns its sign on the way back, so it is uncorrelated with the other torques.
+        square = self._frictionless_square + self._moving * friction**2
+        return self._copper * square + friction * self._turning

@@ -1,0 +1,71 @@
+"""Random parts of the log: torque noise, and friction that varies between round trips."""
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.signal import lfilter
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Noise:
+    """Standard deviations and correlation times of the random parts.
+
+    Attributes
+    ----------
+    white : float
+        Torque noise, independent from sample to sample. [N·m]
+    correlated : float
+        Torque noise with memory, from ripple and control. [N·m]
+    correlation_time : float
+        Its correlation time. [s]
+    slow : float
+        Slow variation of friction over the run, from grease that redistributes. [N·m]
+    slow_time : float
+        Its correlation time. [s]
+    per_pair : float
+        Variation of friction from one round trip to the next. [N·m]
+    """
+
+    white: float
+    correlated: float
+    correlation_time: float
+    slow: float
+    slow_time: float
+    per_pair: float
+
+    def scaled(self, factor: float) -> "Noise":
+        """Return the noise with all deviations multiplied by ``factor``."""
+        return replace(
+            self,
+            white=self.white * factor,
+            correlated=self.correlated * factor,
+            slow=self.slow * factor,
+            per_pair=self.per_pair * factor,
+        )
+
+    def torque(
+        self, generator: np.random.Generator, *, count: int, interval: float
+    ) -> NDArray[np.float64]:
+        """Return ``count`` samples of torque noise, ``interval`` seconds apart [N·m]."""
+        memory = float(np.exp(-interval / self.correlation_time))
+        drive = generator.standard_normal(count) * np.sqrt(1.0 - memory**2)
+        if count:
+            drive[0] /= np.sqrt(1.0 - memory**2)  # starts in its stationary state
+        correlated = lfilter([1.0], [1.0, -memory], drive)
+        white = generator.standard_normal(count)
+        return np.asarray(self.correlated * correlated + self.white * white)
+
+    def pair_offsets(
+        self, generator: np.random.Generator, times: NDArray[np.float64]
+    ) -> NDArray[np.float64]:
+        """Return the friction offset of round trips at increasing times in s [N·m]."""
+        drive = generator.standard_normal(times.shape)
+        memory = np.exp(-np.diff(times) / self.slow_time)
+        slow = np.empty(times.shape)
+        level = 0.0
+        for number, pulse in enumerate(drive):
+            kept = float(memory[number - 1]) if number else 0.0
+            level = kept * level + float(np.sqrt(1.0 - kept**2) * pulse)
+            slow[number] = level
+        return np.asarray(self.slow * slow + self.per_pair * generator.standard_normal(times.shape))

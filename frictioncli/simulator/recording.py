@@ -1,0 +1,161 @@
+"""What the controller logs of a series: equation (1) for the torque, and the registered signals."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from frictioncli.simulator.history import HOUSING, MOTOR, ThermalHistory
+from frictioncli.simulator.joint import Joint
+from frictioncli.simulator.noise import Noise
+from frictioncli.simulator.profile import Motion, round_trips
+from frictioncli.simulator.program import Program, Series
+
+STANDING_SPEED = 0.2
+"""Below this velocity friction goes linearly through zero: at rest, torque is load [deg/s]."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Logger:
+    """How the controller samples and logs.
+
+    Attributes
+    ----------
+    interval : float
+        Sampling interval. [s]
+    position_step : float
+        Resolution of the joint encoder. [deg]
+    torque_step : float
+        Resolution of the torque. [N·m]
+    motor_step : float
+        Resolution of the registered motor temperature. [°C]
+    housing_step : float
+        Resolution of the housing sensor. [°C]
+    sign : int
+        +1: torque is load + friction in forward motion; -1: load - friction, as in the paper's (1).
+    """
+
+    interval: float
+    position_step: float
+    torque_step: float
+    motor_step: float
+    housing_step: float
+    sign: int
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Recording:
+    """The logged signals of one series.
+
+    Attributes
+    ----------
+    time : ndarray
+        Time since the recording's start. [s]
+    position : ndarray
+        Joint angle. [deg]
+    torque : ndarray
+        Control torque at the joint. [N·m]
+    motor_temperature, housing_temperature : ndarray
+        Registered temperatures. [°C]
+    """
+
+    time: NDArray[np.float64]
+    position: NDArray[np.float64]
+    torque: NDArray[np.float64]
+    motor_temperature: NDArray[np.float64]
+    housing_temperature: NDArray[np.float64]
+
+
+def registered(value: ArrayLike, step: float) -> NDArray[np.float64]:
+    """Return ``value`` as a sensor with resolution ``step`` registers it: the nearest step."""
+    return np.asarray(np.floor(np.asarray(value, dtype=float) / step + 0.5) * step)
+
+
+def control_torque(
+    joint: Joint,
+    motion: Motion,
+    *,
+    temperatures: dict[str, NDArray[np.float64]],
+    sign: int,
+    friction_offset: NDArray[np.float64] | float = 0.0,
+) -> NDArray[np.float64]:
+    r"""Return the control torque of a motion, without noise [N·m].
+
+    Parameters
+    ----------
+    joint : Joint
+        The joint.
+    motion : Motion
+        Its motion.
+    temperatures : dict
+        Node temperatures at the motion's samples. [°C]
+    sign : int
+        Sign convention of the log, +1 or -1.
+    friction_offset : ndarray or float
+        Further friction torque. [N·m]
+
+    Notes
+    -----
+    Equation (1) of the paper for one joint, for which the Coriolis term is zero:
+
+    .. math:: u = M \ddot\varphi + L(\varphi) \pm \operatorname{sign}(\dot\varphi) \tau
+    """
+    load = joint.arm.gravity_torque(motion.position)
+    friction = joint.friction(load=load, speed=np.abs(motion.velocity), temperatures=temperatures)
+    direction = np.clip(motion.velocity / STANDING_SPEED, -1.0, 1.0)
+    inertial = joint.arm.inertia() * np.radians(motion.acceleration)
+    return np.asarray(inertial + load + sign * direction * (friction + friction_offset))
+
+
+def record(
+    joint: Joint,
+    program: Program,
+    history: ThermalHistory,
+    series: Series,
+    *,
+    logger: Logger,
+    noise: Noise,
+    pair_offsets: NDArray[np.float64],
+    generator: np.random.Generator,
+) -> Recording:
+    """Return what the controller logs of ``series``.
+
+    Parameters
+    ----------
+    joint, program, history : Joint, Program, ThermalHistory
+        What moves, how, and at which temperatures.
+    series : Series
+        The series to log.
+    logger : Logger
+        Sampling and resolutions.
+    noise : Noise
+        Torque noise.
+    pair_offsets : ndarray
+        Friction offset of each of the series' round trips. [N·m]
+    generator : numpy.random.Generator
+        Source of the torque noise.
+    """
+    motion, time, trips = round_trips(
+        joint.servo,
+        speeds=series.speeds,
+        angles=program.angles,
+        lead=program.lead,
+        dwell=program.dwell,
+        interval=logger.interval,
+    )
+    temperatures = history.at(series.start + time)
+    torque = control_torque(
+        joint,
+        motion,
+        temperatures=temperatures,
+        sign=logger.sign,
+        friction_offset=pair_offsets[trips],
+    )
+    torque = torque + noise.torque(generator, count=len(time), interval=logger.interval)
+    return Recording(
+        time=time,
+        position=registered(motion.position, logger.position_step),
+        torque=registered(torque, logger.torque_step),
+        motor_temperature=registered(temperatures[MOTOR], logger.motor_step),
+        housing_temperature=registered(temperatures[HOUSING], logger.housing_step),
+    )

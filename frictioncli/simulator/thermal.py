@@ -1,0 +1,105 @@
+"""The joint's thermal network: heat capacities, conductances, ambient."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ThermalNode:
+    """A part of the joint with one temperature.
+
+    Attributes
+    ----------
+    name : str
+        What it is.
+    capacity : float
+        Heat capacity. [J/K]
+    to_ambient : float
+        Conductance to ambient. [W/K]
+    """
+
+    name: str
+    capacity: float
+    to_ambient: float
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ThermalLink:
+    """A conductance between two nodes [W/K]."""
+
+    first: str
+    second: str
+    conductance: float
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ThermalNetwork:
+    r"""Nodes and the links between them.
+
+    Notes
+    -----
+    .. math:: C_i \dot T_i = P_i - \sum_j G_{ij} (T_i - T_j) - G_{ia} (T_i - T_a)
+    """
+
+    nodes: tuple[ThermalNode, ...]
+    links: tuple[ThermalLink, ...]
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """Names of the nodes, in the order of every vector here."""
+        return tuple(node.name for node in self.nodes)
+
+    def capacities(self) -> NDArray[np.float64]:
+        """Return heat capacities [J/K]."""
+        return np.array([node.capacity for node in self.nodes])
+
+    def to_ambient(self) -> NDArray[np.float64]:
+        """Return conductances to ambient [W/K]."""
+        return np.array([node.to_ambient for node in self.nodes])
+
+    def conductance_matrix(self) -> NDArray[np.float64]:
+        """Return G, with ``G @ T - to_ambient * ambient`` the heat leaving the nodes [W/K]."""
+        matrix = np.diag(self.to_ambient())
+        index = {name: i for i, name in enumerate(self.names)}
+        for link in self.links:
+            i, j = index[link.first], index[link.second]
+            matrix[i, i] += link.conductance
+            matrix[j, j] += link.conductance
+            matrix[i, j] -= link.conductance
+            matrix[j, i] -= link.conductance
+        return matrix
+
+    def steady_state(self, *, power: ArrayLike, ambient: float) -> NDArray[np.float64]:
+        """Return the temperatures at which constant heat input and loss balance [°C].
+
+        Parameters
+        ----------
+        power : array_like
+            Heat input per node. [W]
+        ambient : float
+            Ambient temperature. [°C]
+        """
+        inflow = np.asarray(power, dtype=float) + self.to_ambient() * ambient
+        return np.asarray(np.linalg.solve(self.conductance_matrix(), inflow))
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Ambient:
+    """Ambient temperature through the day.
+
+    Attributes
+    ----------
+    start : float
+        At the run's first sample. [°C]
+    drift : float
+        Change per hour. [K/h]
+    """
+
+    start: float
+    drift: float = 0.0
+
+    def at(self, time: ArrayLike) -> NDArray[np.float64]:
+        """Return the ambient temperature at a time in s [°C]."""
+        return np.asarray(self.start + self.drift * np.asarray(time, dtype=float) / 3600.0)
