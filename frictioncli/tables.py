@@ -161,8 +161,8 @@ def read(path: Path, table: Table) -> pd.DataFrame:
         frame = file.read(columns=present).to_pandas()
     for column in table.columns:
         if column.name not in frame:
-            frame[column.name] = pd.Series([None] * len(frame), dtype=column.type.to_pandas_dtype())
-        elif isinstance(frame[column.name].dtype, pd.CategoricalDtype):
+            frame[column.name] = pa.nulls(len(frame), pa.float64()).to_pandas()
+        if isinstance(frame[column.name].dtype, pd.CategoricalDtype):
             frame[column.name] = frame[column.name].astype(frame[column.name].cat.categories.dtype)
     return frame[list(table.names)]
 

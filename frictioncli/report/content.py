@@ -1,0 +1,208 @@
+"""The tables of the page, as text: parameters, errors of the corrections, pairs."""
+
+from dataclasses import dataclass
+
+import pandas as pd
+
+from frictioncli.model.document import PARAMETERS
+from frictioncli.model.friction import PUBLISHED
+from frictioncli.report.epsilon import compared_criterion
+from frictioncli.report.labels import CRITERION_WORDS, number, speed_text
+from frictioncli.report.results import JointResults, by_speed
+from frictioncli.report.style import PHASE_WORDS, PHASES
+
+_SYMBOLS = {"tau_c": "τc", "alpha": "α", "beta": "β", "gamma": "γ", "delta": "δ"}
+
+_MEANINGS = {
+    "tau_c": "Coulomb friction",
+    "alpha": "load coefficient",
+    "beta": "viscous, stays when hot",
+    "gamma": "viscous, falls with temperature",
+    "delta": "rate of its fall",
+}
+
+_NEIGHBOURS = 3
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class TextTable:
+    """A table ready to be shown.
+
+    Attributes
+    ----------
+    title : str
+        What it holds.
+    header : tuple of str
+        Column headings.
+    groups : tuple of (str, int)
+        Headings above them, each with the number of columns it spans.
+    rows : tuple of tuple of str
+        Cells.
+    texts : int
+        Number of leading columns that hold text; the others hold numbers.
+    marked : tuple of int
+        Numbers of the rows that stand out.
+    """
+
+    title: str
+    header: tuple[str, ...]
+    rows: tuple[tuple[str, ...], ...]
+    texts: int = 1
+    marked: tuple[int, ...] = ()
+    groups: tuple[tuple[str, int], ...] = ()
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ParameterRow:
+    """One parameter of the model as the page states it; ``remark`` says why it is not known."""
+
+    symbol: str
+    meaning: str
+    estimate: str
+    interval: str
+    unit: str
+    published: str
+    remark: str
+
+
+def parameter_rows(results: JointResults) -> list[ParameterRow]:
+    """Return the model's parameters with intervals, units and the published values.
+
+    Parameters
+    ----------
+    results : JointResults
+        One joint's results.
+    """
+    rows = []
+    for name in PARAMETERS:
+        stated = results.model.parameters[name]
+        interval = stated.ci95
+        remark = "" if stated.determined else "not determined by these data"
+        if stated.reason:
+            remark = f"{remark}: {stated.reason}".removeprefix(": ")
+        rows.append(
+            ParameterRow(
+                symbol=_SYMBOLS[name],
+                meaning=_MEANINGS[name],
+                estimate=number(stated.estimate, 4),
+                interval=f"{number(interval[0])} to {number(interval[1])}" if interval else "–",
+                unit=stated.unit,
+                published=f"{getattr(PUBLISHED, name):g}",
+                remark=remark,
+            )
+        )
+    return rows
+
+
+def is_published_joint(results: JointResults, traces: str) -> bool:
+    """Return whether the published values belong to this joint: joint 2 of a KR10, in N·m.
+
+    Parameters
+    ----------
+    results : JointResults
+        One joint's results.
+    traces : str
+        Names of the logs, in which the robot's name would stand.
+    """
+    if results.joint != 2 or results.unit != "N·m":
+        return False
+    named = " ".join([*results.runs, traces]).lower().replace(" ", "").replace("-", "")
+    return results.model.torque_side == "joint" and "kr10" in named
+
+
+def epsilon_tables(results: JointResults) -> list[TextTable]:
+    """Return the errors of the simulated setting and its neighbours, one table per run.
+
+    Parameters
+    ----------
+    results : JointResults
+        One joint's results; without an evaluation there is no table.
+    """
+    evaluation = results.evaluation
+    criterion = compared_criterion(results)
+    simulated = _simulated_setting(results)
+    settings = _neighbours(evaluation[evaluation["criterion"] == criterion], simulated)
+    shown = [c for c in CRITERION_WORDS if c != "none" and (evaluation["criterion"] == c).any()]
+    tables = []
+    for run, own in evaluation.groupby("run"):
+        without = _cells(own[own["criterion"] == "none"], ["none"])
+        blank = [""] * (len(shown) - 1)
+        rows = [("no correction", "", without[0], *blank, without[1], *blank)]
+        for k, tmax in settings:
+            at = own[(own["k"] == k) & (own["tmax"] == tmax)]
+            rows.append((f"k = {k:g}", f"{tmax / 60.0:g}", *_cells(at, shown)))
+        tables.append(
+            TextTable(
+                title=f"{run}: error ε of equation (21) [{results.unit}] (number of corrections)",
+                groups=(("", 2), *((PHASE_WORDS[phase], len(shown)) for phase in PHASES)),
+                header=("setting", "tmax [min]", *(CRITERION_WORDS[c] for c in shown * 2)),
+                rows=tuple(rows),
+                marked=tuple(n + 1 for n, setting in enumerate(settings) if setting == simulated),
+            )
+        )
+    return tables
+
+
+def _cells(rows: pd.DataFrame, criteria: list[str]) -> list[str]:
+    return [
+        _cell(rows[(rows["phase"] == phase) & (rows["criterion"] == criterion)])
+        for phase in PHASES
+        for criterion in criteria
+    ]
+
+
+def _simulated_setting(results: JointResults) -> tuple[float, float] | None:
+    if results.schedule.empty:
+        return None
+    first = results.schedule.iloc[0]
+    return (float(first["k"]), float(first["tmax"])) if pd.notna(first["k"]) else None
+
+
+def _neighbours(
+    rows: pd.DataFrame, simulated: tuple[float, float] | None
+) -> list[tuple[float, float]]:
+    """Return the settings next to the simulated one, in k and in tmax; else a few of them."""
+    known = rows[["k", "tmax"]].dropna().drop_duplicates().sort_values(["k", "tmax"])
+    settings = [(float(k), float(tmax)) for k, tmax in zip(known["k"], known["tmax"], strict=True)]
+    if simulated not in settings or simulated is None:
+        return settings[: 2 * _NEIGHBOURS + 1]
+    same_tmax = [setting for setting in settings if setting[1] == simulated[1]]
+    same_k = [setting for setting in settings if setting[0] == simulated[0]]
+    near = {
+        setting
+        for line, reach in ((same_tmax, _NEIGHBOURS), (same_k, 1))
+        for setting in line[
+            max(line.index(simulated) - reach, 0) : line.index(simulated) + reach + 1
+        ]
+    }
+    return sorted(near)
+
+
+def _cell(rows: pd.DataFrame) -> str:
+    if rows.empty:
+        return "–"
+    row = rows.iloc[0]
+    failed = f", {int(row['failed'])} failed" if row["failed"] > 0 else ""
+    return f"{number(float(row['epsilon']))} ({int(row['corrections'])}{failed})"
+
+
+def pairs_table(results: JointResults) -> TextTable:
+    """Return how many pairs there are per speed and phase.
+
+    Parameters
+    ----------
+    results : JointResults
+        One joint's results.
+    """
+    found = sorted({str(phase) for phase in results.pairs["phase"]})
+    phases = [phase for phase in (*PHASES, "sweep") if phase in found]
+    phases += [phase for phase in found if phase not in phases]
+    rows = []
+    for speed, own in by_speed(results.pairs):
+        counts = [int((own["phase"] == phase).sum()) for phase in phases]
+        rows.append((speed_text(speed), *(str(count) for count in counts), str(len(own))))
+    return TextTable(
+        title="Pairs per speed and phase",
+        header=("speed", *(PHASE_WORDS.get(phase, phase) for phase in phases), "all"),
+        rows=tuple(rows),
+    )

@@ -1,0 +1,115 @@
+"""Figures 9 and 10: friction predicted with a corrected temperature, through each phase."""
+
+import pandas as pd
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from frictioncli.report.labels import TEMPERATURE_SYMBOLS, friction_label, plain, speed_text
+from frictioncli.report.results import MOST_RUNS, JointResults, by_speed
+from frictioncli.report.style import FAINT, MODEL, WIDTH, label_right, legend_above, points
+
+_LABEL_SPACE = 0.028
+"""Least distance of two labels, as a part of the time shown."""
+
+_FRICTION_HEIGHT = 3.6
+_STRIP_HEIGHT = 1.5
+
+
+def corrected_estimates(results: JointResults, phase: str) -> Figure:
+    """Draw Figure 9 or 10: measured, smoothed and predicted friction through one phase.
+
+    Below each panel runs the measured temperature with the temperature parameter of (17).
+
+    Parameters
+    ----------
+    results : JointResults
+        One joint's results.
+    phase : {"heat-up", "cool-down"}
+        Heating gives Figure 9, cooling Figure 10.
+    """
+    schedule = results.schedule[results.schedule["phase"] == phase]
+    runs = sorted(schedule["run"].unique())[:MOST_RUNS]
+    height = _FRICTION_HEIGHT + _STRIP_HEIGHT
+    figure = Figure(figsize=(WIDTH, height * len(runs) + 0.4), layout="constrained")
+    grid = figure.subplots(
+        2 * len(runs),
+        1,
+        squeeze=False,
+        gridspec_kw={"height_ratios": [_FRICTION_HEIGHT, _STRIP_HEIGHT] * len(runs)},
+    )[:, 0]
+    for index, run in enumerate(runs):
+        friction, temperature = grid[2 * index], grid[2 * index + 1]
+        own = schedule[schedule["run"] == run].sort_values("time")
+        _friction_through_phase(friction, own, results)
+        _temperature_through_phase(temperature, own, results)
+        _mark_corrections(friction, temperature, own)
+        friction.set_title(plain(run))
+        friction.tick_params(labelbottom=False)
+        friction.sharex(temperature)
+        temperature.set_xlabel("time t [min]")
+    return figure
+
+
+def _friction_through_phase(panel: Axes, own: pd.DataFrame, results: JointResults) -> None:
+    labels = []
+    for speed, group in by_speed(own):
+        style = results.style(speed)
+        minutes = group["time"] / 60.0
+        points(panel, minutes, group["friction_torque"], style, opacity=0.5)
+        panel.plot(minutes, group["friction_smoothed"], color=style.colour, linewidth=1.0)
+        panel.plot(minutes, group["friction_predicted"], "--", color=style.colour, linewidth=2.0)
+        labels.append(
+            (float(group["friction_predicted"].iloc[-1]), speed_text(speed), style.colour)
+        )
+    panel.plot([], [], "o", color=FAINT, markersize=3.5, label="measured")
+    panel.plot([], [], "-", color=FAINT, linewidth=1.0, label="smoothed")
+    panel.plot([], [], "--", color=FAINT, linewidth=2.0, label="predicted")
+    panel.plot([], [], "-", color=MODEL, linewidth=0.9, label="correction, new ΔT")
+    low, high = panel.get_ylim()
+    # room above the data for the values of the correction
+    panel.set_ylim(low, high + 0.32 * (high - low))
+    panel.set_ylabel(friction_label(results.unit))
+    legend_above(panel)
+    label_right(panel, labels, height=_FRICTION_HEIGHT)
+
+
+def _temperature_through_phase(panel: Axes, own: pd.DataFrame, results: JointResults) -> None:
+    symbol = TEMPERATURE_SYMBOLS[results.model.temperature]
+    minutes = own["time"] / 60.0
+    measured = own["temperature_parameter"] - own["temperature_correction"]
+    panel.plot(minutes, measured, color=FAINT, label=symbol)
+    panel.plot(minutes, own["temperature_parameter"], color=MODEL, label=f"T = {symbol} + ΔT")
+    panel.set_ylabel("T [°C]")
+    legend_above(panel)
+
+
+def _mark_corrections(friction: Axes, temperature: Axes, own: pd.DataFrame) -> None:
+    tried = own[own["corrected"].astype(bool) | own["failed"].astype(bool)]
+    span = (own["time"].iloc[-1] - own["time"].iloc[0]) / 60.0
+    labelled = float("-inf")
+    for row in tried.to_dict("records"):
+        at = row["time"] / 60.0
+        style = ":" if row["failed"] else "-"
+        for panel in (friction, temperature):
+            panel.axvline(at, color=MODEL, linewidth=0.9, linestyle=style, alpha=0.6, zorder=0.5)
+        # crowded labels would cover each other: every correction keeps its line, not its label
+        if at - labelled < _LABEL_SPACE * span:
+            continue
+        labelled = at
+        friction.annotate(
+            "failed" if row["failed"] else signed(row["temperature_correction"]),
+            (at, 0.985),
+            xycoords=("data", "axes fraction"),
+            xytext=(2, 0),
+            textcoords="offset points",
+            rotation=90,
+            ha="left",
+            va="top",
+            fontsize=9,
+            color=MODEL,
+        )
+
+
+def signed(correction: float) -> str:
+    """Return a temperature correction with its sign and unit."""
+    return f"{correction:+.1f} °C".replace("-", "−")

@@ -1,0 +1,130 @@
+"""Words and numbers as figures and tables of the report write them."""
+
+import math
+from collections.abc import Sequence
+
+from matplotlib.font_manager import FontProperties, findfont, get_font
+
+TEMPERATURE_LABELS = {
+    "motor": "motor temperature Tm [°C]",
+    "housing": "housing temperature Tc [°C]",
+    "mean": "mean temperature T* = (Tm + Tc)/2 [°C]",
+}
+
+TEMPERATURE_SYMBOLS = {"motor": "Tm", "housing": "Tc", "mean": "T*"}
+
+TEMPERATURE_WORDS = {
+    "motor": "motor temperature Tm",
+    "housing": "housing temperature Tc",
+    "mean": "mean of motor and housing temperature T*",
+}
+
+CRITERION_WORDS = {
+    "first_degree": "first degree",
+    "latest_degree": "latest degree",
+    "equal": "equally spaced",
+    "none": "no correction",
+    "uncertainty": "uncertainty",
+}
+
+_LONGEST_NAME = 32
+_MOST_NAMES = 5
+
+
+def plain(text: str) -> str:
+    """Return a name from the input as text that a figure can show as it is.
+
+    Dollar signs would start a formula, and characters that the font lacks a warning.
+
+    Parameters
+    ----------
+    text : str
+        Any text, such as the name of a run.
+    """
+    font = get_font(findfont(FontProperties(family=["sans-serif"])))
+    shown = "".join(c if font.get_char_index(ord(c)) else "?" for c in text)
+    if len(shown) > _LONGEST_NAME:
+        shown = shown[: _LONGEST_NAME - 1] + "…"
+    return shown.replace("$", r"\$")
+
+
+def friction_label(unit: str) -> str:
+    """Return the label of an axis of friction torque.
+
+    Parameters
+    ----------
+    unit : str
+        N·m or A.
+    """
+    return f"friction torque τ [{unit}]"
+
+
+def speed_text(speed: float) -> str:
+    """Return a speed with its unit, to a tenth or, where it is slow, to two digits."""
+    shown = f"{speed:.1f}".removesuffix(".0") if speed >= 1.0 else f"{speed:.2g}"
+    return f"{shown} deg/s"
+
+
+def number(value: float | None, digits: int = 3) -> str:
+    """Return a number with so many significant digits, a dash where there is none.
+
+    Whole digits before the point are never rounded away.
+
+    Parameters
+    ----------
+    value : float or None
+        The number.
+    digits : int
+        Significant digits.
+    """
+    if value is None or not math.isfinite(value):
+        return "–"
+    if value == 0.0:
+        return "0"
+    magnitude = math.floor(math.log10(abs(value)))
+    if magnitude < -4:
+        return f"{value:.{digits - 1}e}".replace("-", "−")
+    shown = f"{value:.{max(digits - 1 - magnitude, 0)}f}"
+    return shown.replace("-", "−")
+
+
+def counted(count: int, singular: str, plural: str = "") -> str:
+    """Return a count with its noun, thousands set apart.
+
+    Parameters
+    ----------
+    count : int
+        How many.
+    singular, plural : str
+        The noun; the plural is the singular with an s if not given.
+    """
+    noun = singular if count == 1 else plural or singular + "s"
+    return f"{grouped(count)} {noun}"
+
+
+def grouped(count: int) -> str:
+    """Return a count with its thousands set apart by thin spaces."""
+    return f"{count:,}".replace(",", "\u202f")
+
+
+def duration(seconds: float) -> str:
+    """Return a duration in minutes, or in hours and minutes from three hours."""
+    minutes = seconds / 60.0
+    if minutes >= 180.0:
+        hours, rest = divmod(round(minutes), 60)
+        return f"{hours} h {rest:02d} min"
+    return f"{minutes:.0f} min"
+
+
+def listed(names: Sequence[str]) -> str:
+    """Return names as a list in words, cut after five.
+
+    Parameters
+    ----------
+    names : sequence of str
+        At least one name.
+    """
+    shown = list(names[:_MOST_NAMES])
+    if len(names) > _MOST_NAMES:
+        shown.append(f"{len(names) - _MOST_NAMES} more")
+    return shown[0] if len(shown) == 1 else f"{', '.join(shown[:-1])} and {shown[-1]}"

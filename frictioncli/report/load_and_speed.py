@@ -1,0 +1,192 @@
+"""Figures 3 and 8: friction against load, and against speed at one temperature."""
+
+import numpy as np
+import pandas as pd
+from matplotlib.figure import Figure
+
+from frictioncli.model.friction import carried_to_temperature
+from frictioncli.report.labels import friction_label, plain, speed_text
+from frictioncli.report.results import MOST_RUNS, JointResults, by_speed
+from frictioncli.report.style import (
+    FAINT,
+    MODEL,
+    PHASES,
+    WIDTH,
+    label_right,
+    legend_above,
+    panels,
+    points,
+)
+
+REFERENCE_TEMPERATURE = 20.0
+"""Temperature T0 to which Figure 8 carries friction. [°C]"""
+
+_MOST_CURVES = 8
+_MOST_HOT = 2
+_CURVES_HEIGHT = 3.6
+_SHIFTED_HEIGHT = 1.7
+
+
+def friction_against_load(results: JointResults) -> Figure:
+    """Draw Figure 3: the friction of single pairs against load, with alpha L² + G.
+
+    The panel below takes the shift G away, which leaves the load term alone.
+
+    Parameters
+    ----------
+    results : JointResults
+        One joint's results.
+    """
+    runs = results.runs[:MOST_RUNS]
+    height = _CURVES_HEIGHT + _SHIFTED_HEIGHT
+    figure = Figure(figsize=(WIDTH, height * len(runs) + 0.5), layout="constrained")
+    grid = figure.subplots(
+        2 * len(runs),
+        1,
+        sharex=True,
+        squeeze=False,
+        gridspec_kw={"height_ratios": [_CURVES_HEIGHT, _SHIFTED_HEIGHT] * len(runs)},
+    )[:, 0]
+    alpha = results.model.friction.alpha
+    span = results.torques["load_torque"].min(), results.torques["load_torque"].max()
+    for index, run in enumerate(runs):
+        panel, shifted = grid[2 * index], grid[2 * index + 1]
+        labels = []
+        chosen = telling_pairs(results.pairs[results.pairs["run"] == run])
+        for pair in chosen.to_dict("records"):
+            style = results.style(pair["speed"])
+            rows = results.torques[
+                (results.torques["run"] == run) & (results.torques["pair"] == pair["pair"])
+            ]
+            load = np.linspace(rows["load_torque"].min(), rows["load_torque"].max(), 80)
+            for where, shift in ((panel, 0.0), (shifted, pair["friction_torque"])):
+                points(
+                    where, rows["load_torque"], rows["friction_torque"] - shift, style, opacity=0.6
+                )
+            fitted = alpha * load**2 + pair["friction_torque"]
+            panel.plot(load, fitted, color=style.colour)
+            motor = pair["motor_temperature"]
+            known = "" if pd.isna(motor) else f", {motor:.0f} °C"
+            labels.append((float(fitted[-1]), speed_text(pair["speed"]) + known, style.colour))
+        panel.set_title(plain(run))
+        panel.set_ylabel(friction_label(results.unit))
+        panel.margins(y=0.08)
+        label_right(panel, labels, height=_CURVES_HEIGHT)
+        load = np.linspace(*span, 120)
+        shifted.plot(load, alpha * load**2, color=MODEL, label="α L²")
+        shifted.set_ylabel(f"τ − G [{results.unit}]")
+        legend_above(shifted)
+    grid[-1].set_xlabel(f"load torque L [{results.load_unit}]")
+    return figure
+
+
+def telling_pairs(pairs: pd.DataFrame) -> pd.DataFrame:
+    """Return at most eight pairs of a run that span its speeds and temperatures.
+
+    A speed sweep gives one pair per speed, a thermal cycle the coldest and the hottest of each;
+    with both, the sweep's pairs stand for the cold ones.
+
+    Parameters
+    ----------
+    pairs : DataFrame
+        One row per pair of one run.
+    """
+    # a pair of few angle bins shows no parabola
+    pairs = pairs[pairs["bins"] >= 0.5 * pairs.groupby("speed")["bins"].transform("max")]
+    sweep = pairs[pairs["phase"] == "sweep"].groupby("speed").head(1).sort_values("speed")
+    cycle = pairs[pairs["phase"].isin(PHASES)]
+    warm = cycle.dropna(subset=["motor_temperature"])
+    by_warmth = warm.sort_values("motor_temperature", kind="stable").groupby("speed")
+    hottest = by_warmth.tail(1).sort_values("speed")
+    coldest = by_warmth.head(1).sort_values("speed")
+    if warm.empty:
+        return _spread(pairs.groupby("speed").head(1).sort_values("speed"), _MOST_CURVES)
+    if len(sweep) > 1:
+        hot = _spread(hottest, _MOST_HOT)
+        return pd.concat([_spread(sweep, _MOST_CURVES - len(hot)), hot])
+    chosen = pd.concat([_spread(coldest, _MOST_CURVES // 2), _spread(hottest, _MOST_CURVES // 2)])
+    return chosen.drop_duplicates("pair")
+
+
+def _spread(pairs: pd.DataFrame, most: int) -> pd.DataFrame:
+    if len(pairs) <= most:
+        return pairs
+    return pairs.iloc[np.linspace(0, len(pairs) - 1, most).round().astype(int)]
+
+
+def friction_against_speed(results: JointResults) -> Figure:
+    """Draw Figure 8: friction at zero load against speed, carried to 20 °C by (15), and the model.
+
+    Without a temperature the friction is drawn as measured.
+
+    Parameters
+    ----------
+    results : JointResults
+        One joint's results.
+    """
+    runs = results.runs[:MOST_RUNS]
+    figure, axes = panels(len(runs), height=3.6)
+    carried = at_reference_temperature(results)
+    fastest = carried["speed"].max()
+    # square-root spacing resolves the low speeds, where a Stribeck rise would be
+    speeds = np.linspace(0.0, np.sqrt(fastest * 1.03), 200) ** 2
+    curve = results.predict(load=0.0, speed=speeds, temperature=REFERENCE_TEMPERATURE)
+    for run, panel in zip(runs, axes, strict=True):
+        own = carried[carried["run"] == run]
+        panel.plot(speeds, curve, color=MODEL, label="model (16), L = 0")
+        for speed, group in by_speed(own):
+            points(panel, group["speed"], group["carried"], results.style(speed), opacity=0.35)
+        means = own.groupby("speed")["carried"].mean()
+        panel.plot(
+            means.index,
+            means,
+            linestyle="none",
+            marker="_",
+            markersize=13,
+            markeredgewidth=2.2,
+            color=MODEL,
+            zorder=1.9,
+            label="mean of the pairs at a speed",
+        )
+        panel.plot([], [], "o", color=FAINT, markersize=3.5, label="one pair")
+        panel.set_title(plain(run))
+        panel.set_ylabel(friction_label(results.unit))
+        panel.set_ylim(bottom=min(0.0, panel.get_ylim()[0]))
+        panel.set_xlim(left=0.0)
+        legend_above(panel)
+    axes[-1].set_xlabel("speed |φ'| [deg/s]")
+    return figure
+
+
+def carries_temperature(results: JointResults) -> bool:
+    """Return whether friction can be carried from one temperature to another.
+
+    Parameters
+    ----------
+    results : JointResults
+        One joint's results.
+    """
+    return results.model.knows_temperature and results.has("temperature")
+
+
+def at_reference_temperature(results: JointResults) -> pd.DataFrame:
+    """Return the pairs with ``carried``: their friction torque at 20 °C by equation (15).
+
+    Parameters
+    ----------
+    results : JointResults
+        One joint's results.
+    """
+    pairs = results.pairs
+    if not carries_temperature(results):
+        return pairs.assign(carried=pairs["friction_torque"])
+    known = pairs.dropna(subset=["temperature"])
+    return known.assign(
+        carried=carried_to_temperature(
+            results.model.friction,
+            friction=known["friction_torque"],
+            speed=known["speed"],
+            temperature=known["temperature"],
+            target=REFERENCE_TEMPERATURE,
+        )
+    )

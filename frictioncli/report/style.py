@@ -1,0 +1,286 @@
+"""How the figures look: one style, one colour per speed, labels that do not overlap.
+
+Nothing here changes matplotlib's global settings: :func:`styled` applies the style for the time of
+a ``with`` block.
+"""
+
+import io
+import re
+from collections.abc import Sequence
+from contextlib import AbstractContextManager
+from dataclasses import dataclass
+from typing import Any
+
+import matplotlib
+import numpy as np
+import pandas as pd
+from matplotlib.axes import Axes
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.backends.backend_svg import FigureCanvasSVG
+from matplotlib.colors import to_hex, to_rgb
+from matplotlib.figure import Figure
+from numpy.typing import ArrayLike
+
+WIDTH = 8.0
+"""Width of every figure, so that its text has one size on the page. [inch]"""
+
+PNG_DPI = 200
+
+RASTER_FROM = 3000
+"""More points than this are stored as a picture inside the SVG, which would else grow large."""
+
+_LINE_HEIGHT = 0.18
+"""Height of a line of the smallest text. [inch]"""
+
+HEATING = "#C44536"
+COOLING = "#2B6CB0"
+OTHER_PHASE = "#8A8F98"
+MODEL = "#222222"
+FAINT = "#9AA0A6"
+
+PHASES = ("heat-up", "cool-down")
+"""The phases of a thermal cycle, in the order in which they are drawn."""
+
+PHASE_COLOURS = {"heat-up": HEATING, "cool-down": COOLING}
+PHASE_WORDS = {"heat-up": "heating", "cool-down": "cooling"}
+
+_SPEED_COLOURS = ("#0072B2", "#009E73", "#E69F00", "#D55E00", "#A03C78", "#4B4B4B")
+_SLOWEST = "#6A5ACD"
+_FASTEST = "#5C1A33"
+_MARKERS = ("o", "s", "^", "D", "v", "P")
+
+_STYLE = {
+    "font.family": "sans-serif",
+    "font.size": 10.0,
+    "axes.titlesize": 10.5,
+    "axes.titleweight": "bold",
+    "axes.titlelocation": "left",
+    "axes.labelsize": 10.0,
+    "xtick.labelsize": 9.0,
+    "ytick.labelsize": 9.0,
+    "legend.fontsize": 9.0,
+    "legend.frameon": False,
+    "axes.spines.top": False,
+    "axes.spines.right": False,
+    "axes.grid": True,
+    "axes.axisbelow": True,
+    "grid.color": "#E4E6EA",
+    "grid.linewidth": 0.7,
+    "axes.edgecolor": "#6B7078",
+    "lines.linewidth": 1.6,
+    "lines.markersize": 4.5,
+    "figure.facecolor": "white",
+    "savefig.facecolor": "white",
+    "axes.unicode_minus": True,
+    "svg.fonttype": "none",
+}
+
+
+@dataclass(frozen=True, slots=True)
+class SpeedStyle:
+    """Colour and marker of one speed, the same in every figure of a joint."""
+
+    colour: str
+    marker: str
+
+
+def styled(salt: str = "frictioncli") -> AbstractContextManager[None]:
+    """Return a context in which figures are drawn and saved in this style.
+
+    Parameters
+    ----------
+    salt : str
+        Goes into the identifiers of the SVG, which are then the same at every call.
+    """
+    settings: dict[Any, Any] = {**_STYLE, "svg.hashsalt": salt}
+    return matplotlib.rc_context(settings)
+
+
+def speed_styles(pairs: pd.DataFrame) -> dict[float, SpeedStyle]:
+    """Return a style for each speed: set apart for the main speeds, graded for those between.
+
+    The main speeds are those of the thermal cycle or, without one, all of them.
+
+    Parameters
+    ----------
+    pairs : DataFrame
+        One row per pair with ``speed`` and ``phase``.
+    """
+    speeds = sorted({float(speed) for speed in pairs["speed"]})
+    main = sorted({float(s) for s in pairs.loc[pairs["phase"].isin(PHASES), "speed"]}) or speeds
+    anchors = dict(zip(main, _spread_colours(len(main)), strict=True))
+    if speeds[0] < main[0]:
+        anchors[speeds[0]] = _SLOWEST
+    if speeds[-1] > main[-1]:
+        anchors[speeds[-1]] = _FASTEST
+    at = sorted(anchors)
+    channels = np.array([to_rgb(anchors[speed]) for speed in at])
+    return {
+        speed: SpeedStyle(
+            _mixed(np.log(speed), np.log(at), channels),
+            _MARKERS[(main.index(speed) if speed in main else rank) % len(_MARKERS)],
+        )
+        for rank, speed in enumerate(speeds)
+    }
+
+
+def _spread_colours(count: int) -> list[str]:
+    if count <= len(_SPEED_COLOURS):
+        # few speeds: skip the middle ones, so that neighbours differ most
+        chosen = {1: (0,), 2: (0, 3), 3: (0, 1, 3)}.get(count, range(count))
+        return [_SPEED_COLOURS[i] for i in chosen]
+    channels = np.array([to_rgb(colour) for colour in _SPEED_COLOURS])
+    at = np.linspace(0, len(_SPEED_COLOURS) - 1, count)
+    known = np.arange(len(_SPEED_COLOURS))
+    return [_mixed(float(x), known, channels) for x in at]
+
+
+def _mixed(at: float, known: np.ndarray, channels: np.ndarray) -> str:
+    red, green, blue = (float(np.interp(at, known, channels[:, i])) for i in range(3))
+    return to_hex((red, green, blue))
+
+
+def panels(rows: int, *, height: float, share_y: bool = True) -> tuple[Figure, list[Axes]]:
+    """Return a figure with one panel under the other and a common horizontal axis."""
+    figure = Figure(figsize=(WIDTH, height * rows + 0.5), layout="constrained")
+    grid = figure.subplots(rows, 1, sharex=True, sharey=share_y, squeeze=False)
+    return figure, list(grid[:, 0])
+
+
+def points(
+    axes: Axes,
+    x: ArrayLike,
+    y: ArrayLike,
+    look: SpeedStyle,
+    *,
+    filled: bool = True,
+    size: float = 3.5,
+    opacity: float = 1.0,
+) -> None:
+    """Draw measured points of one speed.
+
+    Parameters
+    ----------
+    axes : Axes
+        The panel.
+    x, y : array_like
+        Their places.
+    look : SpeedStyle
+        Colour and marker.
+    filled : bool
+        Whether the markers are filled or hollow.
+    size : float
+        Of the markers. [pt]
+    opacity : float
+        1 hides what is below.
+    """
+    axes.plot(
+        np.asarray(x),
+        np.asarray(y),
+        linestyle="none",
+        marker=look.marker,
+        color=look.colour,
+        markerfacecolor=look.colour if filled else "white",
+        markeredgewidth=0.0 if filled else 1.0,
+        markersize=size,
+        alpha=opacity,
+        rasterized=np.size(x) > RASTER_FROM,
+    )
+
+
+def legend_above(axes: Axes) -> None:
+    """Put the legend in one row above the panel, right of its title, where no data are."""
+    entries = len(axes.get_legend_handles_labels()[1])
+    if not entries:
+        return
+    axes.legend(
+        loc="lower right",
+        bbox_to_anchor=(1.0, 0.99),
+        ncols=entries,
+        borderaxespad=0.0,
+        columnspacing=1.2,
+        handlelength=1.6,
+        handletextpad=0.5,
+    )
+
+
+def label_right(axes: Axes, labels: Sequence[tuple[float, str, str]], *, height: float) -> None:
+    """Write labels right of a panel, moved apart where they would touch.
+
+    Parameters
+    ----------
+    axes : Axes
+        The panel, with its final vertical limits.
+    labels : sequence of (float, str, str)
+        Height in data units, text and colour of each label.
+    height : float
+        Height of the panel with its margins. [inch]
+    """
+    ordered = sorted(label for label in labels if np.isfinite(label[0]))
+    if not ordered:
+        return
+    low, high = axes.get_ylim()
+    axes.set_ylim(low, high)
+    line = (high - low) * _LINE_HEIGHT / height
+    places = _apart(np.array([y for y, _, _ in ordered]), line)
+    for place, (y, text, colour) in zip(places, ordered, strict=True):
+        axes.annotate(
+            text,
+            xy=(1.0, y),
+            xytext=(1.02, place),
+            xycoords=("axes fraction", "data"),
+            textcoords=("axes fraction", "data"),
+            color=colour,
+            fontsize=9,
+            va="center",
+            annotation_clip=False,
+        )
+
+
+def _apart(wanted: np.ndarray, gap: float) -> np.ndarray:
+    """Return ascending places at least ``gap`` apart, near the wanted ones on the whole."""
+    offsets = np.arange(len(wanted)) * gap
+    free = wanted - offsets
+    # pooling neighbours that are out of order gives the least-squares ascending sequence
+    blocks: list[list[float]] = []
+    for value in free:
+        blocks.append([float(value), 1.0])
+        while len(blocks) > 1 and blocks[-2][0] > blocks[-1][0]:
+            mean, count = blocks.pop()
+            before, size = blocks.pop()
+            blocks.append([(mean * count + before * size) / (count + size), count + size])
+    return np.concatenate([np.full(int(size), mean) for mean, size in blocks]) + offsets
+
+
+def svg(figure: Figure, name: str, title: str) -> str:
+    """Return the figure as an SVG element that can stand in a page beside others.
+
+    Parameters
+    ----------
+    figure : Figure
+        The figure.
+    name : str
+        Prefix of all identifiers in it, so that those of two figures differ.
+    title : str
+        What a screen reader says. It must be escaped already.
+    """
+    stream = io.StringIO()
+    # printing by the canvas draws once, where Figure.savefig draws twice
+    FigureCanvasSVG(figure).print_svg(
+        stream, metadata={"Date": None, "Creator": None, "Format": None, "Type": None}
+    )
+    # the layout is found now: the next drawing need not find it again
+    figure.set_layout_engine("none")
+    text = stream.getvalue()
+    text = text[text.index("<svg") :]
+    text = re.sub(r'\bid="', f'id="{name}-', text)
+    text = text.replace("url(#", f"url(#{name}-").replace('href="#', f'href="#{name}-')
+    return text.replace("<svg ", f'<svg role="img" aria-label="{title}" ', 1)
+
+
+def png(figure: Figure) -> bytes:
+    """Return the figure as a PNG without dates or program names."""
+    stream = io.BytesIO()
+    figure.dpi = PNG_DPI
+    FigureCanvasAgg(figure).print_png(stream, metadata={"Software": None})
+    return stream.getvalue()

@@ -1,0 +1,197 @@
+"""Figures 4 to 7: the thermal cycle and what temperature does to friction."""
+
+import numpy as np
+import pandas as pd
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from frictioncli.model.paper_method import branch_means
+from frictioncli.report.labels import (
+    TEMPERATURE_LABELS,
+    duration,
+    friction_label,
+    plain,
+    speed_text,
+)
+from frictioncli.report.results import MOST_RUNS, JointResults, by_speed
+from frictioncli.report.style import (
+    COOLING,
+    FAINT,
+    HEATING,
+    OTHER_PHASE,
+    PHASE_COLOURS,
+    PHASE_WORDS,
+    PHASES,
+    label_right,
+    legend_above,
+    panels,
+    points,
+)
+
+_PANEL_HEIGHT = 3.6
+
+_LABEL_SPACE = 0.19
+"""Least part of a run's time that a phase must last for its label to fit."""
+
+
+def thermal_runs(results: JointResults, *columns: str) -> list[str]:
+    """Return the runs that heat up or cool down with a temperature, as many as are drawn.
+
+    Parameters
+    ----------
+    results : JointResults
+        One joint's results.
+    *columns : str
+        Columns of temperatures, of which one must have values.
+    """
+    pairs = results.thermal_pairs
+    known = pairs[pairs[list(columns)].notna().any(axis=1)]
+    return sorted(known["run"].unique())[:MOST_RUNS]
+
+
+def temperatures_over_time(results: JointResults) -> Figure:
+    """Draw Figure 4: motor and housing temperature over time, phases shaded.
+
+    Parameters
+    ----------
+    results : JointResults
+        One joint's results.
+    """
+    runs = thermal_runs(results, "motor_temperature", "housing_temperature")
+    figure, axes = panels(len(runs), height=3.2)
+    for run, panel in zip(runs, axes, strict=True):
+        own = results.pairs[results.pairs["run"] == run].sort_values("time")
+        minutes = own["time"] / 60.0
+        for column, name, colour in (
+            ("motor_temperature", "motor Tm", HEATING),
+            ("housing_temperature", "housing Tc", COOLING),
+        ):
+            if own[column].notna().any():
+                panel.plot(minutes, own[column], color=colour, label=name)
+        low, high = panel.get_ylim()
+        panel.set_ylim(low, high + 0.16 * (high - low))
+        for start, end, phase in phase_spans(own):
+            colour = PHASE_COLOURS.get(phase, OTHER_PHASE)
+            panel.axvspan(start / 60.0, end / 60.0, color=colour, alpha=0.08, linewidth=0)
+            # a label wider than its phase would cover the next one's
+            if phase in PHASE_WORDS and end - start > _LABEL_SPACE * own["time"].iloc[-1]:
+                panel.annotate(
+                    f"{PHASE_WORDS[phase]}, {duration(end - start)}",
+                    ((start + end) / 120.0, 0.97),
+                    xycoords=("data", "axes fraction"),
+                    ha="center",
+                    va="top",
+                    color=colour,
+                    fontsize=9,
+                    fontweight="bold",
+                )
+        panel.set_title(plain(run))
+        panel.set_ylabel("temperature [°C]")
+        legend_above(panel)
+    axes[-1].set_xlabel("time t [min]")
+    return figure
+
+
+def phase_spans(pairs: pd.DataFrame) -> list[tuple[float, float, str]]:
+    """Return ``(start, end, phase)`` in seconds for each unbroken phase of one run.
+
+    Parameters
+    ----------
+    pairs : DataFrame
+        One row per pair of one run, in order of time.
+    """
+    block = (pairs["phase"] != pairs["phase"].shift()).cumsum()
+    return [
+        (float(rows["time"].iloc[0]), float(rows["time"].iloc[-1]), str(rows["phase"].iloc[0]))
+        for _, rows in pairs.groupby(block)
+    ]
+
+
+def friction_against_temperature(results: JointResults, kind: str) -> Figure:
+    """Draw Figure 5 or 6: friction at zero load against a measured temperature, per speed.
+
+    Parameters
+    ----------
+    results : JointResults
+        One joint's results.
+    kind : {"motor", "housing"}
+        Which temperature: motor gives Figure 5, housing Figure 6.
+    """
+    column = f"{kind}_temperature"
+    runs = thermal_runs(results, column)
+    figure, axes = panels(len(runs), height=_PANEL_HEIGHT)
+    for run, panel in zip(runs, axes, strict=True):
+        own = results.thermal_pairs.dropna(subset=[column])
+        own = own[own["run"] == run]
+        labels = []
+        for speed, group in by_speed(own):
+            style = results.style(speed)
+            for phase in PHASES:
+                branch = group[group["phase"] == phase]
+                filled = phase == "heat-up"
+                points(
+                    panel, branch[column], branch["friction_torque"], style, filled=filled, size=4.5
+                )
+            at_hottest = group.sort_values(column, kind="stable")["friction_torque"].iloc[-1]
+            labels.append((float(at_hottest), speed_text(speed), style.colour))
+        _phase_legend(panel)
+        panel.set_title(plain(run))
+        panel.set_ylabel(friction_label(results.unit))
+        label_right(panel, labels, height=_PANEL_HEIGHT)
+    axes[-1].set_xlabel(TEMPERATURE_LABELS[kind])
+    return figure
+
+
+def _phase_legend(panel: Axes) -> None:
+    panel.plot([], [], "o", color=FAINT, label="heating")
+    panel.plot([], [], "o", color=FAINT, markerfacecolor="white", label="cooling")
+    legend_above(panel)
+
+
+def branch_means_with_model(results: JointResults) -> Figure:
+    """Draw Figure 7: the mean of both branches (11) per speed, with the model (12), (13).
+
+    Parameters
+    ----------
+    results : JointResults
+        One joint's results.
+    """
+    kind = results.model.temperature
+    means = means_per_run(results)
+    runs = sorted(means["run"].unique())[:MOST_RUNS]
+    figure, axes = panels(len(runs), height=_PANEL_HEIGHT)
+    for run, panel in zip(runs, axes, strict=True):
+        labels = []
+        for speed, group in by_speed(means[means["run"] == run]):
+            style = results.style(speed)
+            points(panel, group["temperature"], group["friction_torque"], style)
+            at = np.linspace(group["temperature"].min(), group["temperature"].max(), 60)
+            curve = results.predict(load=0.0, speed=speed, temperature=at)
+            panel.plot(at, curve, color=style.colour)
+            labels.append((float(curve[-1]), speed_text(speed), style.colour))
+        panel.plot([], [], "o", color=FAINT, markersize=3.5, label="mean of heating and cooling")
+        panel.plot([], [], "-", color=FAINT, label="model (12), (13)")
+        legend_above(panel)
+        panel.set_title(plain(run))
+        panel.set_ylabel(friction_label(results.unit).replace("τ", "τ*"))
+        label_right(panel, labels, height=_PANEL_HEIGHT)
+    axes[-1].set_xlabel(TEMPERATURE_LABELS[kind])
+    return figure
+
+
+def means_per_run(results: JointResults) -> pd.DataFrame:
+    """Return the branch means (11) of each run over the model's temperature.
+
+    Parameters
+    ----------
+    results : JointResults
+        One joint's results.
+    """
+    means = [
+        branch_means(own, results.model.temperature).assign(run=str(run))
+        for run, own in results.thermal_pairs.groupby("run")
+    ]
+    present = [frame for frame in means if len(frame)]
+    if not present:
+        return pd.DataFrame(columns=["speed", "temperature", "friction_torque", "run"])
+    return pd.concat(present, ignore_index=True)

@@ -1,0 +1,158 @@
+"""The page is whole, self-contained, safe against hostile names and the same at every call."""
+
+import json
+import re
+import xml.etree.ElementTree as ElementTree
+
+import pytest
+
+from frictioncli.errors import TableError
+from frictioncli.report.content import epsilon_tables, is_published_joint, parameter_rows
+from frictioncli.report.labels import listed
+from frictioncli.report.page import write_report
+from frictioncli.report.summary import summary
+
+HOSTILE = "<script>alert(1)</script>&\"'$\\frac{kr10$"
+
+
+@pytest.fixture(scope="module")
+def hostile_page(tmp_path_factory, write_work):
+    work = write_work(tmp_path_factory.mktemp("hostile"), runs=(HOSTILE,))
+    model = json.loads((work / "model.json").read_text())
+    model["parameters"]["tau_c"]["reason"] = "<img src=x onerror=alert(2)>"
+    (work / "model.json").write_text(json.dumps(model))
+    return write_report(work)
+
+
+def test_folder_holds_the_page_and_two_files_per_figure(hostile_page):
+    figures = [f"fig{n}" for n in range(3, 12)] + ["residuals"]
+    wanted = {"index.html"} | {f"{f}.{kind}" for f in figures for kind in ("svg", "png")}
+    assert {path.name for path in hostile_page.parent.iterdir()} == wanted
+    for path in hostile_page.parent.glob("*.svg"):
+        ElementTree.parse(path)
+    for path in hostile_page.parent.glob("*.png"):
+        assert path.read_bytes().startswith(b"\x89PNG")
+
+
+def test_page_escapes_names(hostile_page):
+    page = hostile_page.read_text(encoding="utf-8")
+    assert "<script" not in page
+    assert "<img" not in page
+    assert "&lt;script&gt;alert(1)&lt;/script&gt;" in page
+    assert "&lt;img src=x onerror=alert(2)&gt;" in page
+
+
+def test_page_needs_nothing_from_elsewhere(hostile_page):
+    page = hostile_page.read_text(encoding="utf-8")
+    assert not re.findall(r'(?:src|href)="(?!#)[^"]*"', page)
+    assert not re.findall(r"url\((?!#)", page)
+    assert "@import" not in page
+    assert "<link" not in page
+
+
+def test_identifiers_are_unique_and_references_hit(hostile_page):
+    page = hostile_page.read_text(encoding="utf-8")
+    known = re.findall(r'\bid="([^"]+)"', page)
+    assert len(known) == len(set(known))
+    assert set(re.findall(r'href="#([^"]+)"', page)) <= set(known)
+    assert set(re.findall(r"url\(#([^)]+)\)", page)) <= set(known)
+
+
+def test_same_inputs_give_the_same_bytes_and_replace_the_whole_folder(hostile_page):
+    folder = hostile_page.parent
+    work = folder.parent
+    before = {path.name: path.read_bytes() for path in folder.iterdir()}
+    (folder / "stale.svg").write_text("old")
+    write_report(work)
+    assert {path.name: path.read_bytes() for path in folder.iterdir()} == before
+    assert [path.name for path in work.iterdir() if path.name.startswith(".")] == []
+
+
+@pytest.mark.parametrize(
+    ("file", "command"),
+    [("torques.parquet", "frictioncli separate"), ("model.json", "frictioncli fit")],
+)
+def test_missing_inputs_are_named_with_the_command(tmp_path, write_work, file, command):
+    work = write_work(tmp_path, runs=("day-1",))
+    (work / file).unlink()
+    with pytest.raises(TableError, match=file) as caught:
+        write_report(work)
+    assert command in str(caught.value)
+    assert not (work / "report").exists()
+
+
+def test_damaged_model_is_refused(tmp_path, write_work):
+    work = write_work(tmp_path, runs=("day-1",))
+    (work / "model.json").write_text("{}")
+    with pytest.raises(TableError, match=r"model\.json"):
+        write_report(work)
+
+
+def test_each_joint_has_its_section_and_files(tmp_path, write_work):
+    work = write_work(tmp_path, runs=("day-1",), joints=(2, 3), temperature=False)
+    page = write_report(work)
+    names = {path.name for path in page.parent.iterdir()}
+    assert {"joint2-fig3.svg", "joint3-fig3.svg", "joint3-fig8.png"} <= names
+    assert "fig3.svg" not in names
+    text = page.read_text(encoding="utf-8")
+    assert "Friction of joints 2 and 3" in text
+    assert text.count("<h2>Joint ") == 2
+    assert text.count("Not drawn.") == 14
+
+
+def test_page_tells_what_became_of_the_data(tmp_path, write_work):
+    work = write_work(tmp_path, runs=("day-1",), temperature=False)
+    text = write_report(work).read_text(encoding="utf-8")
+    cells = re.findall(r"<td[^>]*>([^<]*)</td>", text)
+    rows = " | ".join(cells).replace("\u202f", " ")
+    assert "day-1 | 3 | 3 000 | 2 994 | 6" in rows
+    assert "not a number | 2 | too few columns | 1" in rows
+    assert "not at constant speed | 1 234" in rows
+    assert "2.3 deg/s | 0 | 0 | 1 | 1" in rows
+    assert "19.1 deg/s | 10 | 30 | 1 | 41" in rows
+    assert text.count("sign +1 found") == 1
+    assert "cd" * 32 in text
+    assert "the log has no temperature; merged into beta" in text
+
+
+def test_parameters_are_those_of_the_model(two_runs):
+    rows = parameter_rows(two_runs)
+    assert [row.estimate for row in rows] == ["10.57", "0.001400", "3.480", "15.66", "0.05600"]
+    assert rows[0].interval == "10.0 to 11.1"
+    assert [row.published for row in rows] == ["10.57", "0.0014", "3.48", "15.66", "0.056"]
+    assert [row.remark for row in rows] == [""] * 5
+
+
+def test_published_values_stand_only_beside_the_published_joint(two_runs, current_log):
+    assert is_published_joint(two_runs, "sample_logs/KR 10 R900/day-1.csv")
+    assert not is_published_joint(two_runs, "sample_logs/ur5/day-1.csv")
+    assert not is_published_joint(current_log, "kr10")
+
+
+def test_errors_stand_beside_the_number_of_corrections(two_runs):
+    first, second = epsilon_tables(two_runs)
+    assert first.title.startswith("day-1: error ε of equation (21) [N·m]")
+    assert first.groups == (("", 2), ("heating", 3), ("cooling", 3))
+    assert first.rows[0] == ("no correction", "", "4.00 (0)", "", "", "5.00 (0)", "", "")
+    marked = first.rows[first.marked[0]]
+    assert marked[:5] == ("k = 5", "60", "0.667 (6)", "0.733 (7)", "0.867 (6)")
+    assert "(14, 1 failed)" in first.rows[2][2]
+    assert second.rows == first.rows
+
+
+def test_summary_gives_the_errors_with_their_corrections(two_runs):
+    text = summary(two_runs)
+    assert "2 runs (day-1 and day-2): 338 pairs" in text
+    assert "9 speeds from 2.3 deg/s to 101.2 deg/s" in text
+    assert "misses the measured friction by 1.13 N·m (RMS)" in text
+    # the made evaluation has 4/6 and 5/6 at k = 5, tmax = 60 min
+    assert "0.667 N·m in heating (2 corrections) and 0.833 N·m in cooling (5 corrections)" in text
+
+
+def test_summary_says_what_is_not_determined(without_temperature):
+    assert "do not determine gamma and delta" in summary(without_temperature)
+
+
+def test_long_lists_are_cut():
+    assert listed(["a"]) == "a"
+    assert listed(list("abcdefg")) == "a, b, c, d, e and 2 more"
