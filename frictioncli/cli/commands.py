@@ -1,5 +1,6 @@
 """One function per command."""
 
+from pathlib import Path
 from typing import Annotated
 
 import typer
@@ -9,6 +10,7 @@ from frictioncli.correction.settings import CorrectionSettings, EvaluationGrid, 
 from frictioncli.errors import OptionError
 from frictioncli.model.settings import FitSettings
 from frictioncli.motion.settings import PairingSettings, SteadySettings
+from frictioncli.simulator.settings import SynthesisSettings
 
 app = typer.Typer(
     name="frictioncli",
@@ -181,6 +183,27 @@ def run(
         correction=o.chosen(CorrectionSettings, locals()),
     )
     chain.run(logs, work, settings, tell=_tell)
+
+
+@app.command()
+def synthesize(
+    folder: Annotated[Path, typer.Argument(help="Folder to make.", metavar="FOLDER")],
+    seed: o.Seed = o.SYNTHESIS.seed,
+    runs: o.Runs = o.SYNTHESIS.runs,
+    joint: o.SimulatedJoint = o.SYNTHESIS.joint,
+    sign: o.SimulatedSign = o.SYNTHESIS.sign,
+    payload: o.Payload = o.SYNTHESIS.payload,
+    lowest: o.Lowest = o.SYNTHESIS.lowest,
+    highest: o.Highest = o.SYNTHESIS.highest,
+    ambient: o.Ambient = None,
+    ambient_drift: o.AmbientDrift = None,
+    motor_heat_share: o.MotorHeatShare = None,
+    noise_scale: o.NoiseScale = o.SYNTHESIS.noise_scale,
+) -> None:
+    """Simulate a joint (deg, deg/s, N·m, °C, kg) and write its traces with truth.json."""
+    from frictioncli.simulator.synthesize import synthesize as make
+
+    typer.echo(make(folder, o.chosen(SynthesisSettings, locals())))
 
 
 def _tell(stage: str, text: object) -> None:

@@ -15,6 +15,7 @@ from frictioncli.correction.settings import (
 )
 from frictioncli.model.settings import METHODS, TEMPERATURES, FitSettings
 from frictioncli.motion.settings import PairingSettings, SteadySettings
+from frictioncli.simulator.settings import SynthesisSettings
 
 PAIRING = PairingSettings()
 STEADY = SteadySettings()
@@ -23,6 +24,8 @@ SCHEDULE = ScheduleSettings()
 GRID = EvaluationGrid()
 CORRECTION = CorrectionSettings()
 WORK = Path("friction-run")
+
+SYNTHESIS = SynthesisSettings()
 
 _READ, _PAIR, _FIT, _CORRECT = "Reading", "Pairing", "Model", "Correction"
 
@@ -134,12 +137,35 @@ SmoothingDegree = Annotated[
     int,
     typer.Option(help="Degree of the polynomial that smooths (21).", rich_help_panel=_CORRECT),
 ]
+Seed = Annotated[int, typer.Option(help="Seed; the same one gives the same bytes.")]
+Runs = Annotated[int, typer.Option(help="Number of runs, one per day.")]
+SimulatedJoint = Annotated[int, typer.Option(help="Number of the axis in the channel names.")]
+SimulatedSign = Annotated[
+    int, typer.Option(help="Torque in forward motion: 1 load + friction, -1 load - friction.")
+]
+Payload = Annotated[float, typer.Option(help="Mass at the flange [kg].")]
+Lowest = Annotated[int, typer.Option(help="Lowest motor temperature of the cycle [°C].")]
+Highest = Annotated[int, typer.Option(help="Highest motor temperature of the cycle [°C].")]
+Ambient = Annotated[
+    list[float] | None,
+    typer.Option(help=f"Ambient at each run's start [°C], repeatable. {SYNTHESIS.ambient}"),
+]
+AmbientDrift = Annotated[
+    list[float] | None,
+    typer.Option(help=f"Its change in each run [K/h]. {SYNTHESIS.ambient_drift}"),
+]
+MotorHeatShare = Annotated[
+    list[float] | None,
+    typer.Option(help=f"Share of heat entering at the motor. {SYNTHESIS.motor_heat_share}"),
+]
+NoiseScale = Annotated[float, typer.Option(help="Factor on all noise; 0 is bare physics.")]
 
 Settings = TypeVar("Settings")
 
 
 def chosen(kind: type[Settings], given: Mapping[str, Any]) -> Settings:
     """Return settings of a stage from a command's arguments of the same names."""
-    named = {field.name: given[field.name] for field in fields(kind) if field.name in given}  # type: ignore[arg-type]
+    names = [field.name for field in fields(kind)]  # type: ignore[arg-type]
+    named = {name: given[name] for name in names if given.get(name) is not None}
     lists = {name: tuple(value) for name, value in named.items() if isinstance(value, list)}
     return kind(**named | lists)

@@ -132,7 +132,9 @@ def _by_interval(
         squares = observed.squared_load[observed.row_pair] + observed.squared_load_within
         low, high = estimate.interval("alpha")
         vague = reach["alpha"] * np.ptp(squares) > _VAGUE * friction
-        doubtful = low <= 0 and high * np.max(squares) > _NEGLIGIBLE * friction
+        # a load as great as the friction is the least that a user will ask the model about
+        asked = max(float(np.max(squares)), friction**2)
+        doubtful = low <= 0 and high * asked > _NEGLIGIBLE * friction
         if vague or doubtful or np.ptp(squares) <= np.square(3 * estimate.noise.point):
             return chosen.without(
                 "alpha",

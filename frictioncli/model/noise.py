@@ -226,7 +226,6 @@ def plausible_noise(
     found = []
     for duration in np.geomspace(shortest, longest, _DRIFT_TIMES):
         best = minimize(cost, start, args=(duration,), method="L-BFGS-B", bounds=bounds)
-        start = best.x
         found.append((of(best.x, float(duration)), -float(best.fun)))
     highest = max(likelihood for _, likelihood in found)
     weights = [np.exp(likelihood - highest) for _, likelihood in found]

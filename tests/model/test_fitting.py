@@ -1,0 +1,167 @@
+"""Known parameters come back, with intervals that hold, and nothing is invented."""
+
+import numpy as np
+import pytest
+
+from frictioncli.errors import NotEnoughData, OptionError
+from frictioncli.model.fitting import fit_joint
+from frictioncli.model.projection import Equations, minimise
+from frictioncli.model.settings import FitSettings
+from tests.model.worlds import SPEEDS, TRUTH, cycle_temperatures, torques
+
+FACTS = {"torque_unit": "N·m", "sign": {"2": -1}}
+
+
+def fitted(table, **settings):
+    return fit_joint(table, FACTS, FitSettings(**settings))
+
+
+def test_noise_free_data_give_the_parameters_exactly():
+    model = fitted(torques(0, point=1e-9, pair=0.0, drift=0.0))
+    for name, value in TRUTH.items():
+        assert model.parameters[name].estimate == pytest.approx(value, rel=1e-4)
+    assert model.n_pairs == 80 * len(SPEEDS)
+    assert model.sign == -1
+
+
+@pytest.mark.parametrize("method", ["joint", "paper"])
+def test_known_parameters_come_back_within_their_intervals(method):
+    """Four noisy days: of 20 intervals of 95 % at least 17 hold the truth, and none is vast."""
+    held = 0
+    for seed in range(4):
+        model = fitted(torques(seed), method=method)
+        for name, value in TRUTH.items():
+            entry = model.parameters[name]
+            low, high = entry.ci95
+            held += low <= value <= high
+            assert entry.determined
+            assert high - low < value
+    assert held >= 17
+
+
+def test_the_fit_needs_no_start_and_finds_the_global_minimum():
+    """Against a dense scan of delta with the linear problem solved anew, on 40 random joints."""
+    generator = np.random.default_rng(7)
+    for _ in range(40):
+        temperature = generator.uniform(15, 70, 60)
+        root_speed = np.sqrt(generator.uniform(2, 200, 60))
+        delta = generator.uniform(0.005, 0.2)
+        gamma, beta, tau_c = generator.uniform(1, 30), generator.uniform(0, 5), 5.0
+        friction = tau_c + (beta + gamma * np.exp(-delta * temperature)) * root_speed
+        friction = friction + generator.normal(0, 0.2, 60)
+        found = minimise(
+            Equations(
+                constant=np.ones(60),
+                squared_load=np.zeros(60),
+                root_speed=root_speed,
+                temperature=temperature,
+                friction=friction,
+            ),
+            ("tau_c", "beta", "gamma"),
+        )
+        law = found.beta + found.gamma * np.exp(-found.delta * temperature)
+        reached = np.sum(np.square(friction - found.tau_c - law * root_speed))
+        for trial in np.linspace(0.001, 0.3, 600):
+            columns = np.column_stack(
+                [np.ones(60), root_speed, root_speed * np.exp(-trial * temperature)]
+            )
+            solution, *_ = np.linalg.lstsq(columns, friction, rcond=None)
+            if (solution >= 0).all():
+                assert reached <= np.sum(np.square(friction - columns @ solution)) + 1e-9
+
+
+def test_order_of_rows_does_not_matter():
+    table = torques(1)
+    shuffled = table.sample(frac=1.0, random_state=4)
+    assert fitted(table).friction == fitted(shuffled).friction
+
+
+def test_scaling_the_torques_scales_the_torque_parameters():
+    table = torques(2)
+    scaled = table.assign(
+        friction_torque=3 * table["friction_torque"], load_torque=3 * table["load_torque"]
+    )
+    one, three = fitted(table).friction, fitted(scaled).friction
+    assert three.tau_c == pytest.approx(3 * one.tau_c, rel=1e-4)
+    assert three.gamma == pytest.approx(3 * one.gamma, rel=1e-4)
+    assert three.alpha == pytest.approx(one.alpha / 3, rel=1e-4)
+    assert three.delta == pytest.approx(one.delta, rel=1e-4)
+
+
+def test_no_temperature_merges_the_viscous_terms():
+    table = torques(3).assign(motor_temperature=np.nan, housing_temperature=np.nan)
+    model = fitted(table[table["time"] < 600])
+    assert not model.parameters["gamma"].determined
+    assert not model.parameters["delta"].determined
+    assert "merged with beta" in model.parameters["gamma"].reason
+    assert model.parameters["gamma"].ci95 is None
+    assert not model.knows_temperature
+
+
+def test_a_short_temperature_span_merges_the_viscous_terms():
+    """Between 25 and 33 °C; at 29 °C the whole coefficient is 3.48 + 15.66 exp(-1.624) = 6.57."""
+    temperature, time, phase = (values[:9] for values in cycle_temperatures())
+    model = fitted(torques(4, temperatures=(temperature, time, phase)))
+    assert "spans 8.0 °C" in model.parameters["delta"].reason
+    low, high = model.parameters["beta"].ci95
+    assert low < 6.57 < high
+    assert high - low < 2.0
+
+
+def test_one_speed_merges_coulomb_and_viscous_friction():
+    model = fitted(torques(5, speeds=(67.5,)))
+    assert not model.parameters["beta"].determined
+    assert "merged into tau_c" in model.parameters["beta"].reason
+    # the merged value: 10.57 + 3.48 sqrt(67.5) = 39.16
+    low, high = model.parameters["tau_c"].ci95
+    assert low < 39.16 < high
+    assert model.parameters["delta"].estimate == pytest.approx(0.056, rel=0.3)
+
+
+def test_a_small_load_drops_alpha():
+    model = fitted(torques(6, load=2.0))
+    assert not model.parameters["alpha"].determined
+    assert model.friction.alpha == 0.0
+    assert "load spans" in model.parameters["alpha"].reason
+
+
+def test_a_parameter_at_its_bound_is_flagged():
+    truth = TRUTH | {"beta": -1.5}
+    model = fitted(torques(8, truth=truth, drift=0.05))
+    assert model.friction.beta == 0.0
+    assert not model.parameters["beta"].determined
+
+
+def test_paper_method_needs_both_branches():
+    table = torques(9)
+    with pytest.raises(NotEnoughData, match="heating and a cooling branch"):
+        fitted(table[table["phase"] == "heat-up"], method="paper")
+
+
+def test_missing_housing_temperature_is_named():
+    table = torques(9).assign(housing_temperature=np.nan)
+    with pytest.raises(NotEnoughData, match="housing_temperature"):
+        fitted(table, temperature="housing")
+
+
+def test_too_few_pairs_are_named():
+    table = torques(9)
+    with pytest.raises(NotEnoughData, match=r"2 pair\(s\)"):
+        fitted(table[table["pair"] < 2])
+
+
+def test_currents_carry_their_unit():
+    model = fit_joint(torques(1), {"torque_unit": "A", "load_unit": "N·m"}, FitSettings())
+    units = {name: entry.unit for name, entry in model.parameters.items()}
+    assert units == {
+        "tau_c": "A",
+        "alpha": "A/(N·m)²",
+        "beta": "A/(deg/s)^0.5",
+        "gamma": "A/(deg/s)^0.5",
+        "delta": "1/°C",
+    }
+
+
+def test_unknown_methods_are_refused():
+    with pytest.raises(OptionError, match="joint, paper"):
+        FitSettings(method="magic")
