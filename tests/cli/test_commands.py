@@ -1,0 +1,302 @@
+"""The command line end to end, and what it says when the input is at fault."""
+
+import json
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+import pytest
+
+from frictioncli import schemas, tables
+from frictioncli.chain import RunSettings
+from frictioncli.cli.commands import app
+from tests.moves import journey
+
+COMMANDS = (
+    "ingest",
+    "pair",
+    "separate",
+    "fit",
+    "simulate",
+    "evaluate",
+    "report",
+    "run",
+    "synthesize",
+)
+
+
+def frictioncli(*arguments, cwd=None):
+    """Run the program as a user would, in a process of its own."""
+    return subprocess.run(
+        [sys.executable, "-c", "from frictioncli.cli import main; main()", *map(str, arguments)],
+        capture_output=True,
+        text=True,
+        encoding="utf-8",
+        cwd=cwd,
+        check=False,
+    )
+
+
+def write_log(
+    path, *, turns=(0, 170, 0, 170, 0, 170, 0), speeds=(20, 20, 50, 50, 90, 90), **columns
+):
+    """Write a KUKA-style trace whose friction is 5 + 2 sqrt(v) N·m."""
+    motion = journey(list(turns), list(speeds))
+    direction = np.sign(motion["velocity"])
+    friction = 5 + 2 * np.sqrt(motion["velocity"].abs())
+    gravity = 80 * np.cos(np.radians(motion["position"]))
+    torque = gravity + direction * friction + 5 * np.radians(motion["acceleration"])
+    frame = pd.DataFrame(
+        {
+            "Zeit[sec]": motion["time"].round(3),
+            "AxisPos_Act2[°]": motion["position"].round(4),
+            "GearTorq_Act2[Nm]": torque.round(3),
+        }
+        | {name: np.full(len(motion), value) for name, value in columns.items()}
+    )
+    path.parent.mkdir(parents=True, exist_ok=True)
+    frame.to_csv(path, sep=";", index=False, encoding="cp1252")
+    return path
+
+
+@pytest.fixture(scope="module")
+def finished(tmp_path_factory):
+    """A finished run over one short log without temperature."""
+    folder = tmp_path_factory.mktemp("finished")
+    write_log(folder / "logs" / "trace.csv")
+    result = frictioncli("run", folder / "logs", "-w", folder / "work")
+    assert result.returncode == 0, result.stderr
+    return folder, result.stdout
+
+
+def test_run_recovers_the_joint_that_made_the_log(finished):
+    folder, _ = finished
+    model = json.loads((folder / "work" / "model.json").read_text(encoding="utf-8"))
+    assert model["parameters"]["tau_c"]["estimate"] == pytest.approx(5.0, abs=0.2)
+    assert model["parameters"]["beta"]["estimate"] == pytest.approx(2.0, abs=0.03)
+    assert model["sign"] == 1
+    assert not model["parameters"]["delta"]["determined"]
+
+
+def test_run_says_one_line_per_stage_and_what_it_left_out(finished):
+    _, output = finished
+    for stage in ("ingest", "pair", "separate", "fit", "simulate", "evaluate", "report"):
+        assert any(line.startswith(stage) for line in output.splitlines())
+    assert "left out" in output
+
+
+def test_every_output_says_where_it_comes_from(finished):
+    folder, _ = finished
+    work = folder / "work"
+    for name in ("samples", "rejected", "recordings", "pairs", "torques"):
+        document = tables.document(work / f"{name}.parquet")
+        assert document["program"] == "frictioncli"
+        assert {"version", "stage", "settings", "inputs"} <= set(document)
+    model = json.loads((work / "model.json").read_text(encoding="utf-8"))
+    assert set(model["provenance"]["inputs"]) == {"torques.parquet"}
+
+
+def test_tables_carry_units_and_the_columns_of_the_contract(finished):
+    folder, _ = finished
+    torques = tables.read(folder / "work" / "torques.parquet", schemas.TORQUES)
+    assert {"friction_torque", "load_torque", "position", "n_forward"} <= set(torques.columns)
+    batch = next(tables.batches(folder / "work" / "torques.parquet", schemas.TORQUES))
+    units = {field.name: field.metadata[b"unit"].decode() for field in batch.schema}
+    assert units["friction_torque"] == "N·m"
+    assert units["speed"] == "deg/s"
+    assert units["motor_temperature"] == "°C"
+
+
+def test_each_stage_works_alone(finished):
+    folder, _ = finished
+    for stage in ("pair", "separate", "fit", "report"):
+        result = frictioncli(stage, "-w", folder / "work")
+        assert (result.returncode, result.stderr) == (0, "")
+
+
+def test_a_second_run_gives_the_same_bytes(finished, tmp_path):
+    folder, _ = finished
+    assert frictioncli("run", folder / "logs", "-w", tmp_path / "again").returncode == 0
+    for path in sorted((tmp_path / "again").rglob("*")):
+        if path.is_file():
+            first = folder / "work" / path.relative_to(tmp_path / "again")
+            assert first.read_bytes() == path.read_bytes(), path.name
+
+
+def test_simulate_without_temperature_says_why(finished):
+    folder, _ = finished
+    result = frictioncli("simulate", "-w", folder / "work", "--k", 5, "--tmax", 60)
+    assert result.returncode == 2
+    assert "does not know how friction falls with temperature" in result.stderr
+    assert not (folder / "work" / "schedule.parquet").exists()
+
+
+def columns_without(name):
+    def spoil(path):
+        frame = pd.read_csv(path, sep=";", encoding="cp1252")
+        frame.drop(columns=name).to_csv(path, sep=";", index=False, encoding="cp1252")
+
+    return spoil
+
+
+def empty(path):
+    path.write_bytes(b"")
+
+
+def text_for_numbers(path):
+    frame = pd.read_csv(path, sep=";", encoding="cp1252", dtype=str)
+    frame["GearTorq_Act2[Nm]"] = "offline"
+    frame.to_csv(path, sep=";", index=False, encoding="cp1252")
+
+
+def not_a_number(path):
+    frame = pd.read_csv(path, sep=";", encoding="cp1252")
+    frame["GearTorq_Act2[Nm]"] = np.nan
+    frame.to_csv(path, sep=";", index=False, encoding="cp1252", na_rep="NaN")
+
+
+def backwards(path):
+    frame = pd.read_csv(path, sep=";", encoding="cp1252")
+    frame["Zeit[sec]"] = frame["Zeit[sec]"].to_numpy()[::-1]
+    frame.to_csv(path, sep=";", index=False, encoding="cp1252")
+
+
+def one_direction(path):
+    write_log(path, turns=(0, 170), speeds=(20,))
+
+
+def no_constant_speed(path):
+    write_log(path, turns=(0, 50, 0, 50, 0), speeds=(900, 900, 900, 900))
+
+
+def wrong_delimiter(path):
+    path.write_bytes(path.read_bytes().replace(b";", b"|"))
+
+
+@pytest.mark.parametrize(
+    ("spoil", "told"),
+    [
+        (columns_without("GearTorq_Act2[Nm]"), "torque"),
+        (columns_without("AxisPos_Act2[°]"), "position"),
+        (columns_without("Zeit[sec]"), "time"),
+        (empty, "empty"),
+        (text_for_numbers, "offline"),
+        (not_a_number, "GearTorq_Act2"),
+        (backwards, "time"),
+        (one_direction, "no pair of counter-directed moves"),
+        (no_constant_speed, "no constant-velocity motion"),
+        (wrong_delimiter, "|"),
+    ],
+    ids=lambda value: getattr(value, "__name__", None),
+)
+def test_bad_input_gives_one_message_and_nothing_half_written(tmp_path, spoil, told):
+    path = write_log(tmp_path / "logs" / "trace.csv")
+    spoil(path)
+    result = frictioncli("run", tmp_path / "logs", "-w", tmp_path / "work")
+    assert result.returncode == 2
+    assert told in result.stderr
+    assert "Traceback" not in result.stderr
+    assert result.stderr.count("\n") == 1
+    left = {item.name for item in (tmp_path / "work").glob("*")}
+    assert left <= {"samples.parquet", "recordings.parquet", "rejected.parquet"}
+
+
+def test_a_missing_folder_is_named(tmp_path):
+    result = frictioncli("run", tmp_path / "nowhere", "-w", tmp_path / "work")
+    assert result.returncode == 2
+    assert "nowhere" in result.stderr
+
+
+def test_a_stage_without_its_input_names_the_missing_table(tmp_path):
+    result = frictioncli("fit", "-w", tmp_path)
+    assert result.returncode == 2
+    assert "torques.parquet" in result.stderr
+
+
+@pytest.mark.parametrize("name", ["pairs.parquet", "samples.parquet"])
+def test_a_damaged_table_is_named(tmp_path, name):
+    (tmp_path / name).write_bytes(b"PAR1 and then nothing")
+    stage = {"pairs.parquet": "separate", "samples.parquet": "pair"}[name]
+    result = frictioncli(stage, "-w", tmp_path)
+    assert result.returncode == 2
+    assert name in result.stderr
+    assert "Traceback" not in result.stderr
+
+
+@pytest.mark.parametrize(
+    ("arguments", "told"),
+    [
+        (("separate", "--sign", "up"), "expected auto, +1 or -1"),
+        (("evaluate", "--k", "two"), "expected numbers"),
+        (("simulate", "--criterion", "often"), "first_degree"),
+        (("fit", "--method", "magic"), "joint, paper"),
+        (("pair", "--bin-width", "0"), "bin width"),
+        (("simulate", "--tmax", "soon"), "--tmax"),
+    ],
+)
+def test_bad_options_name_what_is_allowed(tmp_path, arguments, told):
+    result = frictioncli(*arguments, "-w", tmp_path)
+    assert result.returncode == 2
+    assert told in result.stderr
+    assert "Traceback" not in result.stderr
+
+
+def test_help_and_usage_errors_load_no_heavy_library():
+    probe = (
+        "import sys; from frictioncli.cli import main\n"
+        "try:\n main()\nexcept SystemExit as end:\n code = end.code\n"
+        "heavy = {'numpy', 'pandas', 'scipy', 'pyarrow', 'matplotlib'} & set(sys.modules)\n"
+        "assert not heavy, heavy\nsys.exit(code)"
+    )
+    for arguments in (["--help"], *([command, "--help"] for command in COMMANDS)):
+        result = subprocess.run([sys.executable, "-c", probe, *arguments], check=False)
+        assert result.returncode == 0
+    assert subprocess.run([sys.executable, "-c", probe, "fly"], check=False).returncode == 2
+
+
+def test_help_names_units():
+    for command in COMMANDS:
+        text = frictioncli(command, "--help").stdout
+        assert any(unit in text for unit in ("deg", "N·m", "°C", "min")), command
+
+
+def test_commands_are_those_listed_here():
+    assert {command.callback.__name__ for command in app.registered_commands} == set(COMMANDS)
+
+
+def test_option_defaults_are_the_settings_defaults():
+    """What ``run --help`` shows as default is what the library does."""
+    settings = RunSettings()
+    text = " ".join(frictioncli("run", "--help").stdout.split())
+    steady, pairing = settings.pairing.steady, settings.pairing
+    for option, value in {
+        "bin-width": pairing.bin_width,
+        "settling": steady.settling,
+        "min-speed": steady.min_speed,
+        "same-speed": pairing.same_speed,
+        "k": settings.schedule.k,
+        "tmax": settings.schedule.tmax / 60,
+        "method": settings.fit.method,
+        "criterion": settings.schedule.criterion,
+    }.items():
+        described = text.split(f"--{option} ")[1]
+        assert described.split("default: ")[1].startswith(f"{value}]"), option
+
+
+def test_version_is_told():
+    assert frictioncli("--version").stdout.startswith("frictioncli 0.")
+
+
+def test_synthesize_makes_what_run_reads(tmp_path):
+    made = frictioncli(
+        "synthesize", tmp_path / "made", "--seed", 4, "--runs", 1, "--lowest", 40, "--highest", 52
+    )
+    assert made.returncode == 0, made.stderr
+    assert (tmp_path / "made" / "truth.json").exists()
+    result = frictioncli("run", tmp_path / "made", "-w", tmp_path / "work")
+    assert result.returncode == 0, result.stderr
+    assert Path(result.stdout.split()[-1]).exists()
+    assert "heat-up" in result.stdout
+    assert "cool-down" in result.stdout
