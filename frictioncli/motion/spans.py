@@ -141,8 +141,7 @@ class _Collector:
         self._settings = settings
         self._width = bin_width
         self._spans: list[dict] = []
-        self._stretches: list[tuple[dict[str, Array], float]] = []
-        self._visits: list[pd.DataFrame] = []
+        self._visits: list[dict[str, Array]] = []
         self._samples = 0
         self._dropped = dict.fromkeys((*REASONS, "angle bin barely crossed"), 0)
 
@@ -178,17 +177,18 @@ class _Collector:
         step = abs(part.speed) * float(np.median(np.diff(time)))
         expected = max(self._width / max(step, 1e-9), 1.0)
         covered = visits["n"] >= _LEAST_COVER * expected
-        self._dropped["angle bin barely crossed"] += int(visits.loc[~covered, "n"].sum())
-        self._visits.append(visits[covered].assign(span=len(self._spans) - 1))
+        self._dropped["angle bin barely crossed"] += int(visits["n"][~covered].sum())
+        kept = {name: values[covered] for name, values in visits.items()}
+        self._visits.append(kept | {"span": np.full(covered.sum(), len(self._spans) - 1)})
 
     def result(self) -> Spans:
-        columns = ["span", "bin", "n", "torque", "load", "time"]
-        visits = [frame for frame in self._visits if len(frame)]
+        names = ("span", "bin", "n", "torque", "load", "time")
+        parts = self._visits or [{name: np.empty(0) for name in names}]
         return Spans(
             spans=pd.DataFrame(self._spans),
-            visits=pd.concat(visits, ignore_index=True)
-            if visits
-            else pd.DataFrame(columns=columns, dtype=float),
+            visits=pd.DataFrame(
+                {name: np.concatenate([part[name] for part in parts]) for name in names}
+            ),
             samples=self._samples,
             dropped=self._dropped,
             bin_width=self._width,
@@ -202,7 +202,7 @@ def _mean(values: Array) -> float:
 
 def bin_means(
     *, position: Array, torque: Array, load: Array, time: Array, width: float
-) -> pd.DataFrame:
+) -> dict[str, Array]:
     """Return mean torque per angle bin, carried to the bin's centre along the torque's slope.
 
     A bin that a move crossed only in part has its samples off its centre; left there, the gravity
@@ -217,8 +217,8 @@ def bin_means(
 
     Returns
     -------
-    DataFrame
-        Columns ``bin, n, torque, load, time``, in the order of growing angle.
+    dict of str to ndarray, shape (bins,)
+        ``bin`` (number), ``n`` (samples), ``torque``, ``load``, ``time``, by growing angle.
     """
     number = np.floor(position / width).astype(np.int64)
     first = number.min()
@@ -233,12 +233,10 @@ def bin_means(
     if len(hit) > 1:
         for values in (mean_torque, mean_load):
             values += np.gradient(values, mean_position) * (centre - mean_position)
-    return pd.DataFrame(
-        {
-            "bin": hit + first,
-            "n": n,
-            "torque": mean_torque,
-            "load": mean_load,
-            "time": mean_time,
-        }
-    )
+    return {
+        "bin": hit + first,
+        "n": n,
+        "torque": mean_torque,
+        "load": mean_load,
+        "time": mean_time,
+    }
