@@ -7,8 +7,8 @@ RUN ?= friction-run
 .PHONY: reproduce test lint clean
 
 reproduce: $(VENV)/installed
-	$(BIN)/frictioncli run sample_logs/kr10/day1 sample_logs/kr10/day2 -w $(RUN)
-	$(BIN)/python docs/reproduce.py $(RUN)
+	$(BIN)/frictioncli run sample_logs/kr10 -w $(RUN)
+	$(BIN)/python docs/compare_with_paper.py $(RUN)
 
 test: $(VENV)/tested
 	$(BIN)/pytest -n 2

@@ -8,6 +8,7 @@ import pytest
 PACKAGE = Path(__file__).parents[1] / "frictioncli"
 
 LAYERS = [
+    {"__main__"},
     {"cli"},
     {"chain"},
     {"report"},
