@@ -1,0 +1,96 @@
+"""The names that robot controllers and loggers give their channels, in German and English."""
+
+from dataclasses import dataclass
+
+TIME = "time"
+POSITION = "position"
+VELOCITY = "velocity"
+TORQUE = "torque"
+MOTOR_TEMPERATURE = "motor_temperature"
+HOUSING_TEMPERATURE = "housing_temperature"
+LOAD = "load"
+TOOL = "tool"
+CHANNELS = (TIME, POSITION, VELOCITY, TORQUE, MOTOR_TEMPERATURE, HOUSING_TEMPERATURE, LOAD)
+
+JOINT_SIDE = "joint"
+MOTOR_SIDE = "motor"
+
+
+@dataclass(frozen=True, slots=True)
+class Meaning:
+    """What an alias stands for.
+
+    ``side`` is "" where names do not tell it. ``rank`` orders the torque channels of one joint:
+    motor torque holds all friction of the drive train, gear torque only a part, current is last.
+    """
+
+    quantity: str
+    side: str = JOINT_SIDE
+    rank: int = 0
+    unit: str = ""
+
+
+# Only measured values: commands (Cmd, Soll, target) and differences are in no line on purpose.
+_ALIASES: tuple[tuple[Meaning, str], ...] = (
+    (
+        Meaning(TIME),
+        "zeit time t timestamp zeitstempel sekunden seconds elapsed elapsedtime robottime tsec"
+        " timesec times zeits datetime recordtime controllertime sec",
+    ),
+    (Meaning(TIME, rank=1, unit="ms"), "sample timems zeitms"),
+    (
+        Meaning(POSITION),
+        "axisposact axispos axisact axisactmeas position positions pos jointposition jointpositions"
+        " actualposition actualjointposition positionact actpos posact q actualq aipos mp stateq"
+        " robotactualjointpositions angle jointangle winkel achswinkel gelenkwinkel istwinkel"
+        " axisangle axisposition achsposition jointpos qact",
+    ),
+    (
+        Meaning(POSITION, MOTOR_SIDE),
+        "istposition motorposition motorpos drivepositionact motorangle motorwinkel",
+    ),
+    (
+        Meaning(VELOCITY),
+        "axisvelact axisvel velocity velocities vel jointvelocity jointvelocities actualvelocity"
+        " velocityact velact qd dq qdot actualqd statedq robotactualjointvelocities speed"
+        " geschwindigkeit achsgeschwindigkeit gelenkgeschwindigkeit axisvelocity jointvel"
+        " axisspeed jointspeed",
+    ),
+    (
+        Meaning(VELOCITY, MOTOR_SIDE),
+        "istgeschwindigkeit motorvelocity motorspeed motorvel motorgeschwindigkeit",
+    ),
+    (Meaning(TORQUE, MOTOR_SIDE, 0), "drivemotortorqact motortorqact drivemotortorq"),
+    (Meaning(TORQUE, "", 0), "istmoment istdrehmoment motortorque motormoment motortorq"),
+    (
+        Meaning(TORQUE, JOINT_SIDE, 1),
+        "torque torques jointtorque jointtorques axistorque drehmoment moment tau effort"
+        " torqueaxisact actualtorque torqueact mt statetauj tauj measuredtorque achsmoment"
+        " gelenkmoment torqact axistorqact",
+    ),
+    (Meaning(TORQUE, JOINT_SIDE, 2), "geartorqact geartorque geartorq getriebemoment"),
+    (
+        Meaning(TORQUE, MOTOR_SIDE, 3, "A"),
+        "iststrom strom current currents motorcurrent motorstrom actualcurrent actualjointcurrent"
+        " robotactualjointcurrent currentact actcurrent curr jointcurrent macur",
+    ),
+    (Meaning(TORQUE, MOTOR_SIDE, 3, "%"), "curract"),
+    (
+        Meaning(MOTOR_TEMPERATURE),
+        "motortemperatur motortemperature motortemperatures mottemp motortemp motortempact"
+        " temperatur temperature temperatures temp jointtemperature jointtemperatures jointtemp"
+        " robotjointtemp motort tm wicklungstemperatur",
+    ),
+    (
+        Meaning(HOUSING_TEMPERATURE),
+        "gehaeusetemperatur gehausetemperatur housingtemperature housingtemp gehaeusetemp"
+        " casetemperature casingtemperature surfacetemperature gehuse gehusetemperatur tc"
+        " oberflaechentemperatur housingtempact",
+    ),
+    (Meaning(LOAD), "load loadtorque lastmoment loadtorqueact"),
+    (Meaning(TOOL, rank=0), "xact toolx tcpx robotcartesiancoordtoolx x"),
+    (Meaning(TOOL, rank=1), "yact tooly tcpy robotcartesiancoordtooly y"),
+    (Meaning(TOOL, rank=2), "zact toolz tcpz robotcartesiancoordtoolz z"),
+)
+MEANINGS = {name: meaning for meaning, names in _ALIASES for name in names.split()}
+"""Name in small letters and digits only, without joint number -> meaning."""

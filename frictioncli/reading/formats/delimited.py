@@ -1,0 +1,222 @@
+"""Delimited text logs: CSV in all its dialects, streamed with pyarrow."""
+
+import re
+from collections.abc import Collection, Iterator
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+import pyarrow as pa
+import pyarrow.compute as pc
+import pyarrow.csv as pcsv
+from numpy.typing import NDArray
+
+from frictioncli.reading.formats.base import CsvHints, RawBatch, Refusal
+from frictioncli.reading.formats.dialect import NOT_NUMBERS, Dialect, detect, split
+from frictioncli.reading.formats.encoding import Piece, decode_head, encoding_of, pieces
+
+_TEXT_LIMIT = 200
+_NULLS = ["", *NOT_NUMBERS]
+_NO_VALUE = 9e34
+"""DIAdem writes 9.9e34 where it has no value. [any unit]"""
+
+
+def read_delimited(path: Path, head: bytes, hints: CsvHints) -> "DelimitedText | Refusal | None":
+    """Open a text log, or say why its text is no table; None when it is not text."""
+    encoding = hints.encoding or encoding_of(head)
+    if encoding is None:
+        return None
+    text = decode_head(head, encoding)
+    if text.count("\ufffd") > 0.2 * len(text):
+        return Refusal(
+            "unreadable_encoding",
+            f"cannot be read as {encoding}; name the encoding with [csv] encoding in --map",
+        )
+    # not splitlines(), which also splits where the streamed pieces do not
+    lines = text.replace("\r\n", "\n").split("\n" if "\n" in text else "\r")
+    if len(lines) > 2 and len(head) >= 1 << 16:
+        lines.pop()  # cut off by the size of the head
+    if lines and lines[0].lower().startswith("sep="):
+        lines[0] = ""
+    dialect = detect(lines, hints)
+    if isinstance(dialect, Refusal):
+        return dialect
+    return DelimitedText(path, encoding, dialect)
+
+
+@dataclass(frozen=True, slots=True)
+class DelimitedText:
+    """A text log whose form is known."""
+
+    path: Path
+    encoding: str
+    dialect: Dialect
+
+    @property
+    def columns(self) -> tuple[str, ...]:
+        """Column names as they stand in the header."""
+        return self.dialect.columns
+
+    @property
+    def form(self) -> str:
+        """The file's form in words."""
+        return f"{self.dialect.text}, {self.encoding.upper()}"
+
+    def batches(self, columns: Collection[int], size: int) -> Iterator[RawBatch]:
+        """Yield the rows in order, about ``size`` bytes of the file at a time."""
+        wanted = sorted(columns)
+        for piece in self._rows(size):
+            batch = self._parse(piece, wanted)
+            if len(batch.lines) or len(batch.bad_lines):
+                yield batch
+
+    def texts(self, lines: NDArray[np.int64], size: int) -> Iterator[tuple[int, str]]:
+        """Yield (line, text) for the asked lines, which must be ascending."""
+        charset = "cp1252" if self.encoding == "cp1252" else "utf-8"
+        position = 0
+        for piece in self._rows(size):
+            if position == len(lines):
+                return
+            content = piece.content.removesuffix(b"\n").split(b"\n")
+            while position < len(lines):
+                offset = int(lines[position]) - piece.first_line
+                if offset >= len(content):
+                    break
+                text = content[offset].decode(charset, "replace").rstrip("\r")
+                yield int(lines[position]), text[:_TEXT_LIMIT]
+                position += 1
+
+    def _rows(self, size: int) -> Iterator[Piece]:
+        """Yield the pieces from the first row on."""
+        for piece in pieces(self.path, self.encoding, size):
+            skip = self.dialect.data_line - piece.first_line
+            if skip <= 0:
+                yield piece
+                continue
+            parts = piece.content.split(b"\n", skip)
+            if len(parts) > skip and parts[skip]:
+                yield Piece(self.dialect.data_line, parts[skip])
+
+    def _parse(self, piece: Piece, wanted: list[int]) -> RawBatch:
+        content = self._blanks_joined(piece.content)
+        n_lines = content.count(b"\n") + (not content.endswith(b"\n"))
+        table = self._table(content, self._types(wanted))
+        if table is not None and table.num_rows == n_lines:
+            lines = np.arange(piece.first_line, piece.first_line + n_lines, dtype=np.int64)
+            return _batch(table, lines, wanted, np.empty(0, np.int64), ())
+        return self._parse_carefully(content, piece.first_line, wanted)
+
+    def _parse_carefully(self, content: bytes, first_line: int, wanted: list[int]) -> RawBatch:
+        """Parse rows of which some are blank or damaged, and say which lines are damaged."""
+        texts = content.split(b"\n")
+        lines = np.array(
+            [first_line + i for i, text in enumerate(texts) if text.strip(b" \r")], np.int64
+        )
+        texts = [text for text in texts if text.strip(b" \r")]
+        right = np.array([self._has_width(text) for text in texts], bool)
+        whole = [text for text, ok in zip(texts, right, strict=True) if ok]
+        readable = right.copy()
+        readable[right] = self._are_numbers(whole, wanted)
+        rows = [text for text, ok in zip(texts, readable, strict=True) if ok]
+        table = self._table(b"\n".join(rows), self._types(wanted)) if rows else None
+        reasons = tuple("not_a_number" if ok else "wrong_field_count" for ok in right[~readable])
+        return _batch(table, lines[readable], wanted, lines[~readable], reasons)
+
+    def _has_width(self, text: bytes) -> bool:
+        if b'"' not in text:
+            count = text.count(self.dialect.delimiter.encode())
+            return count + 1 == len(self.columns)
+        if text.count(b'"') % 2:
+            return False
+        fields = split(text.decode("utf-8", "replace").strip("\r"), self.dialect.delimiter)
+        return len(fields) == len(self.columns)
+
+    def _are_numbers(self, rows: list[bytes], wanted: list[int]) -> NDArray[np.bool_]:
+        """Tell for each row whether all wanted cells are numbers, dates or empty."""
+        good = np.ones(len(rows), bool)
+        if not rows:
+            return good
+        texts = self._table(b"\n".join(rows), {str(i): pa.string() for i in wanted})
+        if texts is not None and texts.num_rows == len(rows):
+            for column in set(wanted) - self.dialect.dates:
+                good &= self._number_cells(texts.column(str(column)))
+        numbers = self._table(
+            b"\n".join(row for row, ok in zip(rows, good, strict=True) if ok), self._types(wanted)
+        )
+        if numbers is None or numbers.num_rows != good.sum():
+            # an open quote joins lines, or a cell only looks like a number: judge line by line
+            alone = (self._table(row, self._types(wanted)) for row in rows)
+            good &= np.array([row is not None and row.num_rows == 1 for row in alone])
+        return good
+
+    def _number_cells(self, cells: pa.ChunkedArray) -> NDArray[np.bool_]:
+        decimal = re.escape(self.dialect.decimal)
+        number = rf"^\s*([+-]?inf|[+-]?(\d+({decimal}\d*)?|{decimal}\d+)([eE][+-]?\d+)?)\s*$"
+        is_null = pc.is_in(cells, value_set=pa.array(_NULLS))
+        is_number = pc.match_substring_regex(cells, number)
+        return np.asarray(pc.or_(is_null, is_number).to_numpy(), bool)
+
+    def _types(self, wanted: list[int]) -> dict[str, pa.DataType]:
+        dates = self.dialect.dates
+        return {str(i): pa.string() if i in dates else pa.float64() for i in wanted}
+
+    def _table(self, content: bytes, types: dict[str, pa.DataType]) -> pa.Table | None:
+        """Return the columns of the given types, or None where pyarrow refuses a row."""
+        if not content:
+            return None
+        try:
+            return pcsv.read_csv(
+                pa.BufferReader(content),
+                read_options=pcsv.ReadOptions(
+                    column_names=[str(i) for i in range(len(self.columns))]
+                ),
+                parse_options=pcsv.ParseOptions(delimiter=self.dialect.delimiter),
+                convert_options=pcsv.ConvertOptions(
+                    column_types=types,
+                    include_columns=list(types),
+                    decimal_point=self.dialect.decimal,
+                    null_values=_NULLS,
+                    check_utf8=False,
+                ),
+            )
+        except pa.ArrowInvalid:
+            return None
+
+    def _blanks_joined(self, content: bytes) -> bytes:
+        if self.dialect.delimiter != " ":
+            return content
+        return re.sub(rb"(?m)^ | (?=\r?$)", b"", re.sub(rb"[ \t]+", b" ", content))
+
+
+def _batch(
+    table: pa.Table | None,
+    lines: NDArray[np.int64],
+    wanted: list[int],
+    bad_lines: NDArray[np.int64],
+    reasons: tuple[str, ...],
+) -> RawBatch:
+    values: dict[int, NDArray[np.float64]] = {}
+    for column in wanted:
+        if table is None:
+            values[column] = np.empty(0)
+            continue
+        cells = table.column(str(column))
+        if pa.types.is_string(cells.type):
+            values[column] = _seconds(cells.to_pylist())
+            continue
+        array = np.array(cells.to_numpy(), float)
+        array[np.abs(array) > _NO_VALUE] = np.where(
+            np.isinf(array[np.abs(array) > _NO_VALUE]), np.inf, np.nan
+        )
+        values[column] = array
+    return RawBatch(lines, values, bad_lines, reasons)
+
+
+def _seconds(texts: list[str]) -> NDArray[np.float64]:
+    """Return ISO 8601 dates as time since 1970 [s]; NaN where there is none."""
+    cleaned = pd.Series([text.strip().replace(",", ".") for text in texts], dtype="str")
+    dates = pd.to_datetime(cleaned, format="ISO8601", errors="coerce", utc=True)
+    epoch = pd.Timestamp(0, tz="UTC")
+    seconds = (dates - epoch) / pd.Timedelta(seconds=1)
+    return np.asarray(seconds.to_numpy(dtype=float), np.float64)

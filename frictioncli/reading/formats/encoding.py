@@ -1,0 +1,133 @@
+"""Bytes of a text log: encoding found, then streamed as UTF-8 in pieces of whole lines."""
+
+import codecs
+import gzip
+import zlib
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+from typing import BinaryIO, cast
+
+from frictioncli.errors import LogError
+
+_GZIP = b"\x1f\x8b"
+_BOMS = (
+    (codecs.BOM_UTF8, "utf-8-sig"),
+    (codecs.BOM_UTF32_LE, "utf-32"),
+    (codecs.BOM_UTF32_BE, "utf-32"),
+    (codecs.BOM_UTF16_LE, "utf-16"),
+    (codecs.BOM_UTF16_BE, "utf-16"),
+)
+_ASCII_BASED = ("utf-8", "cp1252")
+_HEAD_BYTES = 1 << 16
+# bytes that no text log holds; tab, line feed, form feed, carriage return and Ctrl-Z are fine
+_CONTROL = bytes(set(range(32)) - {9, 10, 12, 13, 26})
+
+
+class UnreadableLog(LogError):
+    """A file that cannot be opened, or not be read to its end."""
+
+
+@dataclass(frozen=True, slots=True)
+class Piece:
+    """Whole lines of a log as UTF-8 (or an ASCII-based code page) and the first one's number."""
+
+    first_line: int
+    content: bytes
+
+
+def open_bytes(path: Path) -> BinaryIO:
+    """Open a file for reading, unpacking gzip on the way."""
+    with path.open("rb") as stream:
+        packed = stream.read(2) == _GZIP
+    return cast(BinaryIO, gzip.open(path, "rb")) if packed else path.open("rb")
+
+
+def head_of(path: Path) -> bytes:
+    """Return the first 64 KiB of a file, unpacked.
+
+    Raises
+    ------
+    UnreadableLog
+        If the file cannot be opened or its gzip stream is damaged.
+    """
+    try:
+        with open_bytes(path) as stream:
+            return stream.read(_HEAD_BYTES)
+    except (OSError, EOFError, zlib.error) as error:
+        raise UnreadableLog(f"cannot be opened ({error}); expected a readable file") from error
+
+
+def encoding_of(head: bytes) -> str | None:
+    """Return the encoding of a text file's beginning, or None for binary content."""
+    for bom, encoding in _BOMS:
+        if head.startswith(bom):
+            return encoding
+    if b"\0" in head:
+        # without a byte order mark, mostly-ASCII UTF-16 shows as every second byte zero
+        half = max(len(head) // 2, 1)
+        even, odd = head[::2].count(0), head[1::2].count(0)
+        if odd > 0.6 * half and even < 0.05 * half:
+            return "utf-16-le"
+        if even > 0.6 * half and odd < 0.05 * half:
+            return "utf-16-be"
+        # a few stray zero bytes are damage, many are a binary file
+        if head.count(0) > 0.01 * len(head):
+            return None
+    control = len(head) - len(head.translate(None, _CONTROL))
+    if control > 0.02 * len(head):
+        return None
+    try:
+        codecs.getincrementaldecoder("utf-8")().decode(head)
+    except UnicodeDecodeError:
+        return "cp1252"
+    return "utf-8"
+
+
+def decode_head(head: bytes, encoding: str) -> str:
+    """Return the beginning as text; bytes that do not decode become replacement characters."""
+    return codecs.getincrementaldecoder(encoding)("replace").decode(head)
+
+
+def pieces(path: Path, encoding: str, size: int) -> Iterator[Piece]:
+    """Yield a file as pieces of whole lines, each at most about ``size`` bytes plus one line.
+
+    ASCII-based encodings pass through as they are, others become UTF-8. Line ends become line
+    feeds where a file has lone carriage returns.
+
+    Raises
+    ------
+    UnreadableLog
+        If the file cannot be read to its end.
+    """
+    line = 1
+    rest = b""
+    try:
+        for block in _blocks(path, encoding, size):
+            if b"\r" in block and b"\n" not in block:
+                block = block.replace(b"\r", b"\n")
+            block = rest + block
+            cut = block.rfind(b"\n") + 1
+            if cut:
+                yield Piece(line, block[:cut])
+                line += block.count(b"\n", 0, cut)
+            rest = block[cut:]
+    except (OSError, EOFError, zlib.error) as error:
+        raise UnreadableLog(
+            f"cannot be read beyond line {line} ({error}); expected a whole file: copy it again"
+        ) from error
+    if rest:
+        yield Piece(line, rest)
+
+
+def _blocks(path: Path, encoding: str, size: int) -> Iterator[bytes]:
+    with open_bytes(path) as stream:
+        if encoding in _ASCII_BASED:
+            while block := stream.read(size):
+                yield block
+            return
+        decoder = codecs.getincrementaldecoder(encoding)("replace")
+        while block := stream.read(size):
+            yield decoder.decode(block).encode("utf-8")
+        if last := decoder.decode(b"", final=True):
+            yield last.encode("utf-8")

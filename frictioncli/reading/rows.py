@@ -1,0 +1,230 @@
+"""Rows of one log, checked one after the other: what is kept and what is rejected, and why.
+
+The steps are generators over blocks of rows. None depends on where one block ends and the next
+begins: a step that looks at neighbours holds rows back until it has seen them.
+"""
+
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+
+from frictioncli.reading.derivative import local_slope
+
+LOOK_AHEAD = 8
+_START_ROWS = 200
+_STALE_ROWS = 3
+_STALE_FACTOR = 20.0
+_STALE_JUMP = 0.2  # [deg]
+_STALE_PERIOD = 0.1  # [s]
+
+REASONS = (
+    "not_a_number",
+    "missing_value",
+    "wrong_field_count",
+    "time_not_increasing",
+    "duplicate_time",
+    "implausible_position",
+    "stale_first_rows",
+    "no_neighbours",
+)
+
+
+@dataclass(frozen=True, slots=True)
+class Block:
+    """Consecutive rows: line numbers, time and named columns, all of shape (n,).
+
+    Names are (joint, canonical name); ``time`` is in s.
+    """
+
+    lines: NDArray[np.int64]
+    time: NDArray[np.float64]
+    columns: Mapping[tuple[int, str], NDArray[np.float64]]
+
+    def __len__(self) -> int:
+        return len(self.lines)
+
+    def take(self, which: NDArray[np.bool_] | slice) -> "Block":
+        """Return some of the rows."""
+        columns = {name: values[which] for name, values in self.columns.items()}
+        return Block(self.lines[which], self.time[which], columns)
+
+
+@dataclass(slots=True)
+class Faults:
+    """Lines rejected so far, with the reason's index in ``REASONS``."""
+
+    lines: list[NDArray[np.int64]] = field(default_factory=list)
+    codes: list[NDArray[np.int8]] = field(default_factory=list)
+
+    def add(self, lines: NDArray[np.int64], reason: str) -> None:
+        """Note lines rejected for a reason."""
+        if len(lines):
+            self.lines.append(lines)
+            self.codes.append(np.full(len(lines), REASONS.index(reason), np.int8))
+
+    def ascending(self) -> tuple[NDArray[np.int64], NDArray[np.int8]]:
+        """Return all lines in ascending order, and their codes."""
+        if not self.lines:
+            return np.empty(0, np.int64), np.empty(0, np.int8)
+        lines, codes = np.concatenate(self.lines), np.concatenate(self.codes)
+        order = np.argsort(lines, kind="stable")
+        return lines[order], codes[order]
+
+
+def joined(first: Block, second: Block) -> Block:
+    """Return the rows of two blocks, one after the other."""
+    return Block(
+        np.concatenate((first.lines, second.lines)),
+        np.concatenate((first.time, second.time)),
+        {
+            name: np.concatenate((values, second.columns[name]))
+            for name, values in first.columns.items()
+        },
+    )
+
+
+def with_values(
+    blocks: Iterable[Block], required: Iterable[tuple[int, str]], faults: Faults
+) -> Iterator[Block]:
+    """Yield rows whose time and required columns are finite numbers."""
+    names = list(required)
+    for block in blocks:
+        needed = [block.time, *(block.columns[name] for name in names)]
+        missing = np.any([np.isnan(values) for values in needed], axis=0)
+        infinite = np.any([np.isinf(values) for values in needed], axis=0) & ~missing
+        faults.add(block.lines[missing], "missing_value")
+        faults.add(block.lines[infinite], "not_a_number")
+        yield block.take(~missing & ~infinite)
+
+
+def ascending(blocks: Iterable[Block], faults: Faults) -> Iterator[Block]:
+    """Yield rows whose time grows; a few wild time stamps cost their own rows only."""
+    last = -np.inf
+    held: Block | None = None
+    for incoming in blocks:
+        block = incoming if held is None else joined(held, incoming)
+        ready = max(len(block) - LOOK_AHEAD, 0)
+        kept, last = _growing(block, ready, last, faults)
+        held = block.take(slice(ready, None))
+        yield kept
+    if held is not None:
+        yield _growing(held, len(held), last, faults)[0]
+
+
+def _growing(block: Block, ready: int, last: float, faults: Faults) -> tuple[Block, float]:
+    """Judge the first ``ready`` rows after time ``last``; the rows after them help to judge."""
+    time = block.time
+    steps = np.diff(np.concatenate(([last], time)))
+    if np.all(steps > 0):
+        return block.take(slice(0, ready)), float(time[ready - 1]) if ready else last
+    keep = np.zeros(len(time), bool)
+    equal = np.zeros(len(time), bool)
+    for i in range(ready):
+        if time[i] <= last:
+            equal[i] = time[i] == last
+            continue
+        after = time[i + 1 : i + 1 + LOOK_AHEAD]
+        # wild: most of the next stamps are lower, and yet later than the last good one
+        lower = np.count_nonzero((after < time[i]) & (after > last))
+        if lower >= 2 and 2 * lower > len(after):
+            continue
+        keep[i] = True
+        last = float(time[i])
+    head = block.take(slice(0, ready))
+    keep, equal = keep[:ready], equal[:ready]
+    faults.add(head.lines[~keep & ~equal], "time_not_increasing")
+    faults.add(head.lines[equal], "duplicate_time")
+    return head.take(keep), last
+
+
+def without_stale_start(
+    blocks: Iterable[Block], positions: Iterable[tuple[int, str]], faults: Faults
+) -> Iterator[Block]:
+    """Drop up to three first rows left over from before: a jump unlike the motion that follows."""
+    names = list(positions)
+    start: Block | None = None
+    judged = False
+    for incoming in blocks:
+        if judged:
+            yield incoming
+            continue
+        start = incoming if start is None else joined(start, incoming)
+        if len(start) >= _START_ROWS:
+            yield _judged_start(start, names, faults)
+            judged = True
+    if start is not None and not judged:
+        yield _judged_start(start, names, faults)
+
+
+def _judged_start(block: Block, names: list[tuple[int, str]], faults: Faults) -> Block:
+    stale = max((_stale_rows(block.time, block.columns[name]) for name in names), default=0)
+    faults.add(block.lines[:stale], "stale_first_rows")
+    return block.take(slice(stale, None))
+
+
+def _stale_rows(time: NDArray[np.float64], position: NDArray[np.float64]) -> int:
+    """Return how many first rows lie before a jump that the following motion does not explain."""
+    jumps = np.abs(np.diff(position[:_START_ROWS]))
+    if len(jumps) < 2 * _STALE_ROWS or np.median(np.diff(time[:_START_ROWS])) > _STALE_PERIOD:
+        return 0
+    usual = float(np.max(jumps[_STALE_ROWS:]))
+    wild = np.flatnonzero(jumps[:_STALE_ROWS] > max(_STALE_JUMP, _STALE_FACTOR * usual))
+    return int(wild[-1]) + 1 if len(wild) else 0
+
+
+def with_velocity(
+    blocks: Iterable[Block],
+    derived: Mapping[tuple[int, str], tuple[int, str]],
+    faults: Faults,
+    *,
+    half: int,
+    gap: float,
+) -> Iterator[Block]:
+    """Add velocities differentiated from positions.
+
+    Parameters
+    ----------
+    blocks : iterable of Block
+        Rows in ascending time.
+    derived : mapping
+        Name of each velocity to make -> name of its position.
+    faults : Faults
+        Takes the rows that have no neighbour within the gap.
+    half, gap : int, float
+        See :func:`derivative.local_slope`.
+    """
+    if not derived:
+        yield from blocks
+        return
+    held: Block | None = None
+    done = 0  # rows of ``held`` that went out already and stay as neighbours of what follows
+    for incoming in blocks:
+        block = incoming if held is None else joined(held, incoming)
+        ready = max(len(block) - half, done)
+        yield _differentiated(block, slice(done, ready), derived, faults, half, gap)
+        start = max(ready - half, 0)
+        held, done = block.take(slice(start, None)), ready - start
+    if held is not None:
+        yield _differentiated(held, slice(done, None), derived, faults, half, gap)
+
+
+def _differentiated(
+    block: Block,
+    which: slice,
+    derived: Mapping[tuple[int, str], tuple[int, str]],
+    faults: Faults,
+    half: int,
+    gap: float,
+) -> Block:
+    slopes = {
+        velocity: local_slope(block.time, block.columns[position], half=half, gap=gap)
+        for velocity, position in derived.items()
+    }
+    out = Block(block.lines, block.time, {**block.columns, **slopes}).take(which)
+    alone = np.zeros(len(out), bool)
+    for velocity in derived:
+        alone |= np.isnan(out.columns[velocity])
+    faults.add(out.lines[alone], "no_neighbours")
+    return out.take(~alone)
