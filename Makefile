@@ -4,7 +4,7 @@ VENV := .venv
 BIN := $(VENV)/bin
 RUN ?= friction-run
 
-.PHONY: reproduce test lint clean
+.PHONY: reproduce test lint coverage clean
 
 reproduce: $(VENV)/installed
 	$(BIN)/frictioncli run sample_logs/kr10 -w $(RUN)
@@ -12,6 +12,9 @@ reproduce: $(VENV)/installed
 
 test: $(VENV)/tested
 	$(BIN)/pytest -n 2
+
+coverage: $(VENV)/tested
+	$(BIN)/python -m tests.studies.coverage
 
 lint: $(VENV)/tested
 	$(BIN)/ruff check .

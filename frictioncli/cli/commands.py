@@ -40,6 +40,26 @@ def _common(
 
 
 @app.command()
+def inspect(
+    logs: o.Logs,
+    joints: o.Joints = None,
+    map_file: o.Map = None,
+    gear_ratio: o.GearRatio = None,
+    time_unit: o.TimeUnit = None,
+    position_unit: o.PositionUnit = None,
+    velocity_unit: o.VelocityUnit = None,
+    torque_unit: o.TorqueUnit = None,
+    temperature_unit: o.TemperatureUnit = None,
+) -> None:
+    """Show what logs hold: channels, units (deg, deg/s, s, N·m, °C) found and believed, gaps."""
+    from frictioncli.reading.inspection import inspect as look
+    from frictioncli.reading.settings import IngestSettings
+
+    for found in look(logs, o.chosen(IngestSettings, locals())):
+        typer.echo(found)
+
+
+@app.command()
 def ingest(
     logs: o.Logs,
     work: o.Work = o.WORK,

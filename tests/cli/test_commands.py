@@ -15,6 +15,7 @@ from frictioncli.cli.commands import app
 from tests.moves import journey
 
 COMMANDS = (
+    "inspect",
     "ingest",
     "pair",
     "separate",
@@ -201,6 +202,15 @@ def test_bad_input_gives_one_message_and_nothing_half_written(tmp_path, spoil, t
     assert result.stderr.count("\n") == 1
     left = {item.name for item in (tmp_path / "work").glob("*")}
     assert left <= {"samples.parquet", "recordings.parquet", "rejected.parquet"}
+
+
+def test_inspect_shows_units_and_writes_nothing(tmp_path):
+    write_log(tmp_path / "logs" / "trace.csv", **{"Motortemperatur2[K]": 313})
+    result = frictioncli("inspect", "logs", cwd=tmp_path)
+    assert result.returncode == 0
+    assert "AxisPos_Act2[°], header says °, read as deg" in result.stdout
+    assert "header says K, read as K" in result.stdout
+    assert [item.name for item in tmp_path.iterdir()] == ["logs"]
 
 
 def test_a_missing_folder_is_named(tmp_path):
