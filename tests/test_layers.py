@@ -55,9 +55,7 @@ def imported_parts(module: Path) -> set[str]:
 @pytest.mark.parametrize("module", MODULES, ids=lambda path: str(path.relative_to(PACKAGE)))
 def test_imports_go_downwards(module):
     own = part_of(module)
-    upward = {
-        part for part in imported_parts(module) if part != own and level(part) <= level(own)
-    }
+    upward = {part for part in imported_parts(module) if part != own and level(part) <= level(own)}
     assert not upward
 
 
