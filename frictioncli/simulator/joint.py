@@ -77,7 +77,13 @@ HEAT_INTERVAL = 0.005
 
 
 class MeanPower:
-    """Power dissipated by continued round trips, averaged over one of them."""
+    """Power dissipated by continued round trips, averaged over one of them.
+
+    Attributes
+    ----------
+    turning : float
+        Absolute velocity, averaged with the standing times. [rad/s]
+    """
 
     def __init__(self, joint: Joint, trips: RoundTrips) -> None:
         distance = abs(trips.angles[1] - trips.angles[0])
@@ -99,15 +105,17 @@ class MeanPower:
         self._copper = joint.heat.copper_loss
         self._frictionless_square = float(np.mean(np.square(frictionless)))
         self._moving = moving / (moving + trips.dwell)
-        self._turning = float(np.radians(distance)) / (moving + trips.dwell)
+        self.turning = float(np.radians(distance)) / (moving + trips.dwell)
 
     def __call__(self, temperatures: Mapping[str, float]) -> float:
         """Return copper loss and friction heat together at node temperatures in °C [W]."""
-        friction = float(
-            friction_torque(
-                self._zones, load=self._load, speed=self._speed, temperatures=temperatures
-            )
+        return float(self.at(temperatures))
+
+    def at(self, temperatures: Mapping[str, ArrayLike]) -> NDArray[np.float64]:
+        """Return the same at many temperatures per node [W]."""
+        friction = friction_torque(
+            self._zones, load=self._load, speed=self._speed, temperatures=temperatures
         )
         # Friction turns its sign on the way back, so it is uncorrelated with the other torques.
         square = self._frictionless_square + self._moving * friction**2
-        return self._copper * square + friction * self._turning
+        return self._copper * square + friction * self.turning

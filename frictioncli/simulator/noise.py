@@ -1,6 +1,7 @@
 """Random parts of the log: torque noise, and friction that varies between round trips."""
 
 from dataclasses import dataclass, replace
+from typing import Self
 
 import numpy as np
 from numpy.typing import NDArray
@@ -34,7 +35,7 @@ class Noise:
     slow_time: float
     per_pair: float
 
-    def scaled(self, factor: float) -> "Noise":
+    def scaled(self, factor: float) -> Self:
         """Return the noise with all deviations multiplied by ``factor``."""
         return replace(
             self,
@@ -55,6 +56,17 @@ class Noise:
         correlated = lfilter([1.0], [1.0, -memory], drive)
         white = generator.standard_normal(count)
         return np.asarray(self.correlated * correlated + self.white * white)
+
+    def on(
+        self,
+        generator: np.random.Generator,
+        *,
+        torque: NDArray[np.float64],
+        velocity: NDArray[np.float64],
+        interval: float,
+    ) -> NDArray[np.float64]:
+        """Return the noise of samples with these torques [N·m] and velocities [deg/s] [N·m]."""
+        return self.torque(generator, count=len(torque), interval=interval)
 
     def pair_offsets(
         self, generator: np.random.Generator, times: NDArray[np.float64]

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from frictioncli.errors import OptionError
-from frictioncli.simulator.history import MOTOR, ThermalHistory
+from frictioncli.simulator.history import MOTOR, History, ThermalHistory
 from frictioncli.simulator.joint import Joint, RoundTrips
 from frictioncli.simulator.profile import Servo, move_duration
 from frictioncli.simulator.thermal import Ambient
@@ -66,6 +66,11 @@ class Program:
         durations = self.trip_durations(servo, speeds)
         return np.asarray(self.lead + np.concatenate([[0.0], np.cumsum(durations)[:-1]]))
 
+    def move_begins(self, servo: Servo, speeds: tuple[float, ...]) -> NDArray[np.float64]:
+        """Return when each move of a recording begins, two per round trip [s]."""
+        halves = np.repeat(self.trip_durations(servo, speeds), 2) / 2.0
+        return np.asarray(self.lead + np.concatenate([[0.0], np.cumsum(halves)[:-1]]))
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Series:
@@ -79,16 +84,22 @@ class Series:
         Time of its first sample since the run's beginning, whole milliseconds. [s]
     speeds : tuple of float
         Speed of each round trip. [deg/s]
+    load : int
+        Number of the payload that it is measured with, among the run's.
     """
 
     phase: str
     start: float
     speeds: tuple[float, ...]
+    load: int = 0
 
 
 def run_program(
-    joint: Joint, program: Program, ambient: Ambient
-) -> tuple[ThermalHistory, tuple[Series, ...]]:
+    joint: Joint,
+    program: Program,
+    ambient: Ambient,
+    kind: type[History] = ThermalHistory,
+) -> tuple[History, tuple[Series, ...]]:
     """Run the sweep and then the thermal cycle from a joint at ambient temperature.
 
     The joint is heated from ``lowest`` while it is below ``highest``, then cools while it is above
@@ -99,8 +110,8 @@ def run_program(
     OptionError
         If the joint cannot reach the program's temperatures, or is above them from the start.
     """
-    history = ThermalHistory(joint, ambient)
-    series = [_record(joint, program, history, "sweep", (v,)) for v in program.sweep_speeds]
+    history = kind(joint, ambient)
+    series = [measure(joint, program, history, "sweep", (v,)) for v in program.sweep_speeds]
     sensor = joint.network.names.index(MOTOR)
     if history.state[sensor] >= program.lowest - 0.5:
         raise OptionError(
@@ -120,7 +131,7 @@ def run_program(
             )
         # The highest temperature is measured once, as the beginning of cooling.
         phase = "heat-up" if level < program.highest else "cool-down"
-        series.append(_record(joint, program, history, phase, program.cycle_speeds))
+        series.append(measure(joint, program, history, phase, program.cycle_speeds))
     for level in range(program.highest - 1, program.lowest, -1):
         if history.state[sensor] <= level + 0.5:
             continue
@@ -129,18 +140,18 @@ def run_program(
                 f"the motor does not cool to {level} °C at an ambient temperature of "
                 f"{float(ambient.at(history.time)):.1f} °C; choose a lower ambient temperature"
             )
-        series.append(_record(joint, program, history, "cool-down", program.cycle_speeds))
+        series.append(measure(joint, program, history, "cool-down", program.cycle_speeds))
     return history, tuple(series)
 
 
-def _record(
+def measure(
     joint: Joint,
     program: Program,
-    history: ThermalHistory,
+    history: History,
     phase: str,
     speeds: tuple[float, ...],
 ) -> Series:
-    """Let one recording pass in the thermal history."""
+    """Let one recording pass in the thermal history, and return it."""
     if phase == "sweep":
         history.spend(program.pause)
     start = round(history.time - program.pre_trigger, 3)

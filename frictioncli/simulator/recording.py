@@ -1,18 +1,18 @@
 """What the controller logs of a series: equation (1) for the torque, and the registered signals."""
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from frictioncli.simulator.history import HOUSING, MOTOR, ThermalHistory
+from frictioncli.simulator.history import HOUSING, MOTOR, History
 from frictioncli.simulator.joint import Joint
 from frictioncli.simulator.noise import Noise
+from frictioncli.simulator.planted.journey import Journey
+from frictioncli.simulator.planted.state import STANDING_SPEED, Extra, State, state_of
 from frictioncli.simulator.profile import Motion, round_trips
 from frictioncli.simulator.program import Program, Series
-
-STANDING_SPEED = 0.2
-"""Below this velocity friction goes linearly through zero: at rest, torque is load [deg/s]."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -110,19 +110,21 @@ def control_torque(
 def record(
     joint: Joint,
     program: Program,
-    history: ThermalHistory,
+    history: History,
     series: Series,
     *,
     logger: Logger,
     noise: Noise,
     pair_offsets: NDArray[np.float64],
     generator: np.random.Generator,
+    hidden: Callable[[State], Extra] | None = None,
+    journey: Journey | None = None,
 ) -> Recording:
     """Return what the controller logs of ``series``.
 
     Parameters
     ----------
-    joint, program, history : Joint, Program, ThermalHistory
+    joint, program, history : Joint, Program, History
         What moves, how, and at which temperatures.
     series : Series
         The series to log.
@@ -134,6 +136,10 @@ def record(
         Friction offset of each of the series' round trips. [N·m]
     generator : numpy.random.Generator
         Source of the torque noise.
+    hidden : callable, optional
+        Returns what planted effects add at a state.
+    journey : Journey, optional
+        What the joint went through, for the effects.
     """
     motion, time, trips = round_trips(
         joint.servo,
@@ -151,7 +157,22 @@ def record(
         sign=logger.sign,
         friction_offset=pair_offsets[trips],
     )
-    torque = torque + noise.torque(generator, count=len(time), interval=logger.interval)
+    if hidden is not None and journey is not None:
+        begins = program.move_begins(joint.servo, series.speeds)
+        move = np.maximum(np.searchsorted(begins, time, side="right") - 1, 0)
+        state = state_of(
+            joint,
+            journey,
+            motion,
+            time=series.start + time,
+            since_reversal=np.maximum(time - begins[move], 0.0),
+            temperatures=temperatures,
+        )
+        extra = hidden(state)
+        torque = torque + extra.load + logger.sign * state.direction * extra.friction
+    torque = torque + noise.on(
+        generator, torque=torque, velocity=motion.velocity, interval=logger.interval
+    )
     return Recording(
         time=time,
         position=registered(motion.position, logger.position_step),

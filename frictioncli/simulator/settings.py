@@ -5,6 +5,19 @@ from dataclasses import dataclass
 
 from frictioncli.errors import OptionError
 
+JOINT_KINDS = ("zones", "plain")
+NOISE_KINDS = (
+    "default",
+    "white",
+    "pair",
+    "drift90",
+    "drift97",
+    "drift99",
+    "outliers",
+    "heteroscedastic",
+)
+PROTOCOLS = ("paper", "enriched")
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class SynthesisSettings:
@@ -30,9 +43,24 @@ class SynthesisSettings:
         Its change during each run. [K/h]
     motor_heat_share : tuple of float
         Share of the dissipated heat that enters at the motor, for each run; the rest enters at gear
-        and housing. From about 0.1 down, friction is lower while heating than while cooling. [-]
+        and housing. From about 0.05 down, friction is lower while heating than while cooling. [-]
     noise_scale : float
         Factor on all random parts; 0 gives the bare physics. [-]
+    effects : tuple of str
+        Effects to hide, each ``NAME`` or ``NAME:SIZE``; SIZE is the root mean square of its torque
+        at constant velocity. [N·m]
+    blind : bool
+        Write the truth beside the folder instead of into it, and do not tell it.
+    joint_kind : str
+        ``zones``: three friction zones at three temperatures; ``plain``: friction is equation (16)
+        of the true motor temperature.
+    noise_kind : str
+        Kind of the random parts.
+    protocol : str
+        ``paper``: Algorithms 1 and 2; ``enriched``: speeds in random order, two thermal cycles with
+        different entry of heat, three payloads, pauses.
+    thin : int
+        Log each so many-th sample of the controller only.
     """
 
     seed: int = 0
@@ -42,10 +70,16 @@ class SynthesisSettings:
     payload: float = 2.0
     lowest: int = 25
     highest: int = 65
-    ambient: tuple[float, ...] = (17.9, 16.7)
-    ambient_drift: tuple[float, ...] = (-0.21, -0.21)
-    motor_heat_share: tuple[float, ...] = (0.62, 0.45)
+    ambient: tuple[float, ...] = (16.0, 16.0)
+    ambient_drift: tuple[float, ...] = (-0.10, -0.35)
+    motor_heat_share: tuple[float, ...] = (0.52, 0.48)
     noise_scale: float = 1.0
+    effects: tuple[str, ...] = ()
+    blind: bool = False
+    joint_kind: str = "zones"
+    noise_kind: str = "default"
+    protocol: str = "paper"
+    thin: int = 1
 
     def check(self) -> None:
         """Raise OptionError for a value that makes no sense."""
@@ -56,6 +90,7 @@ class SynthesisSettings:
             (self.sign in (-1, 1), f"sign is {self.sign}, expected 1 or -1"),
             (self.payload >= 0.0, f"payload is {self.payload} kg, expected 0 or more"),
             (self.noise_scale >= 0.0, f"noise scale is {self.noise_scale}, expected 0 or more"),
+            (1 <= self.thin <= 20, f"thin is {self.thin}, expected 1 to 20"),
             (
                 self.lowest < self.highest,
                 f"temperatures from {self.lowest} to {self.highest} °C, expected a rise",
@@ -74,6 +109,15 @@ class SynthesisSettings:
                 f"motor heat share is {self.motor_heat_share}, expected values from 0 to 1",
             ),
         )
-        for met, fault in demands:
+        kinds = (
+            ("joint kind", self.joint_kind, JOINT_KINDS),
+            ("noise kind", self.noise_kind, NOISE_KINDS),
+            ("protocol", self.protocol, PROTOCOLS),
+        )
+        choices = tuple(
+            (value in known, f"{what} is {value!r}, expected one of {', '.join(known)}")
+            for what, value, known in kinds
+        )
+        for met, fault in (*demands, *choices):
             if not met:
                 raise OptionError(fault)

@@ -1,7 +1,7 @@
 """Trace folders from the joint simulator, with everything that is hidden in them beside."""
 
 import json
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, fields
 from pathlib import Path
 from typing import Any
 
@@ -10,8 +10,11 @@ import numpy as np
 from frictioncli import files
 from frictioncli.errors import OptionError
 from frictioncli.provenance import to_json
-from frictioncli.simulator import defaults
-from frictioncli.simulator.run import MANIFEST, RunSummary, prepare, write_run
+from frictioncli.simulator.joint import Joint
+from frictioncli.simulator.planted.catalogue import asked
+from frictioncli.simulator.planted.planting import Planted, plant
+from frictioncli.simulator.run import prepare, simulate
+from frictioncli.simulator.run_files import MANIFEST, RunSummary, write_run
 from frictioncli.simulator.settings import SynthesisSettings
 
 __all__ = ["TRUTH", "SynthesisSettings", "SynthesisSummary", "synthesize"]
@@ -19,14 +22,21 @@ __all__ = ["TRUTH", "SynthesisSettings", "SynthesisSummary", "synthesize"]
 TRUTH = "truth.json"
 """File that holds what the traces hide."""
 
+_EXTENDING = ("effects", "blind", "joint_kind", "noise_kind", "protocol", "thin")
+"""Settings that a truth tells only where they are used."""
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class SynthesisSummary:
-    """What was made, and what is hidden in it; ``str`` gives both."""
+    """What was made, and what is hidden in it; ``str`` gives both, unless it is blind."""
 
     folder: Path
     seed: int
     runs: tuple[RunSummary, ...]
+    truth: Path
+    blind: bool
+    friction: str
+    planted: Planted
 
     def made(self) -> str:
         """Return what was made."""
@@ -40,24 +50,27 @@ class SynthesisSummary:
 
     def hidden(self) -> str:
         """Return what the traces hide."""
-        lines = [f"hidden (all of it in {self.folder / TRUTH}):"]
+        lines = [f"hidden (all of it in {self.truth}):"]
         lines += [
             f"  {run.name}: {run.motor_heat_share:.0%} of the heat enters at the motor, "
             f"ambient {run.ambient:.1f} °C at the start"
             for run in self.runs
         ]
+        lines += [f"  {self.friction}"]
         lines += [
-            "  friction of three zones at three temperatures: "
-            + ", ".join(f"{zone.name} ({zone.node})" for zone in defaults.ZONES)
+            f"  {one.effect.name}, {one.rms:.2f} N·m: {one.effect.equation}"
+            for one in self.planted.buried
         ]
         return "\n".join(lines)
 
     def __str__(self) -> str:
-        return f"{self.made()}\n{self.hidden()}"
+        return self.made() if self.blind else f"{self.made()}\n{self.hidden()}"
 
 
 def synthesize(folder: Path, settings: SynthesisSettings | None = None) -> SynthesisSummary:
-    """Simulate runs and write them as trace folders with a manifest each and the truth beside.
+    """Simulate runs and write them as trace folders with a manifest each, and the truth.
+
+    The truth is ``truth.json`` in the folder, or ``FOLDER-truth.json`` beside it if it is blind.
 
     Parameters
     ----------
@@ -69,37 +82,78 @@ def synthesize(folder: Path, settings: SynthesisSettings | None = None) -> Synth
     Raises
     ------
     OptionError
-        If a setting makes no sense, or the folder holds anything but a former synthesis.
+        If a setting makes no sense, an effect is unknown or cannot be planted, or the folder holds
+        anything but a former synthesis.
     """
     settings = SynthesisSettings() if settings is None else settings
     settings.check()
-    _refuse_foreign(folder)
+    effects = asked(settings.effects)
+    beside = folder.absolute().with_name(f"{folder.absolute().name}-{TRUTH}")
+    _refuse_foreign(folder, beside)
+    if settings.blind and beside.exists() and not _files_of_synthesis(beside):
+        raise OptionError(f"{beside}: is no truth of a former synthesis; choose another folder")
     seeds = np.random.SeedSequence(settings.seed).spawn(settings.runs)
-    runs = [prepare(settings, number, seed) for number, seed in enumerate(seeds)]
+    courses = simulate([prepare(settings, number, seed) for number, seed in enumerate(seeds)])
+    planted = Planted()
+    if effects:
+        states = [state for course in courses for state in course.states()]
+        planted = plant(effects, settings.seed, states, settings.sign)
+    hidden = planted.extra if effects else None
     summaries: list[RunSummary] = []
     truths: list[dict[str, Any]] = []
     with files.whole(folder) as draft:
-        for run in runs:
-            summary, truth = write_run(draft / run.name, run)
+        for course in courses:
+            summary, truth = write_run(draft / course.run.name, course, hidden)
             summaries.append(summary)
             truths.append(truth)
         whole_truth = {
             "program": "frictioncli synthesize",
-            "settings": asdict(settings),
+            "settings": _told(settings),
             "runs": truths,
         }
-        (draft / TRUTH).write_text(to_json(whole_truth), encoding="utf-8", newline="\n")
-    return SynthesisSummary(folder=folder, seed=settings.seed, runs=tuple(summaries))
+        if effects:
+            whole_truth["effects"] = [one.truth() for one in planted.buried]
+        text = to_json(whole_truth)
+        if not settings.blind:
+            (draft / TRUTH).write_text(text, encoding="utf-8", newline="\n")
+    if settings.blind:
+        with files.whole(beside) as draft:
+            draft.write_text(text, encoding="utf-8", newline="\n")
+    return SynthesisSummary(
+        folder=folder,
+        seed=settings.seed,
+        runs=tuple(summaries),
+        truth=beside if settings.blind else folder / TRUTH,
+        blind=settings.blind,
+        friction=_friction(courses[0].run.joint, settings.joint_kind),
+        planted=planted,
+    )
 
 
-def _refuse_foreign(folder: Path) -> None:
-    """Raise OptionError if ``folder`` holds anything that a synthesis did not write."""
+def _friction(joint: Joint, kind: str) -> str:
+    if kind == "plain":
+        return "friction of equation (16) at the motor's true temperature"
+    zones = ", ".join(f"{zone.name} ({zone.node})" for zone in joint.zones)
+    return f"friction of three zones at three temperatures: {zones}"
+
+
+def _told(settings: SynthesisSettings) -> dict[str, Any]:
+    """Return the settings; of those that only extend the sample experiment, what is not default."""
+    told = asdict(settings)
+    for field in fields(settings):
+        if field.name in _EXTENDING and told[field.name] == field.default:
+            del told[field.name]
+    return told
+
+
+def _refuse_foreign(folder: Path, beside: Path) -> None:
+    """Raise OptionError if ``folder`` holds anything that no synthesis, blind or not, wrote."""
     if not folder.exists():
         return
     if not folder.is_dir():
         raise OptionError(f"{folder}: is a file, expected a folder to make; choose another name")
     present = {p.relative_to(folder).as_posix() for p in folder.rglob("*") if p.is_file()}
-    foreign = sorted(present - _files_of_synthesis(folder / TRUTH))
+    foreign = sorted(present - _files_of_synthesis(folder / TRUTH) - _files_of_synthesis(beside))
     if foreign:
         raise OptionError(
             f"{folder}: holds {foreign[0]}, which no former synthesis wrote; "

@@ -19,6 +19,10 @@ class Zone(Protocol):
     """What the sum over zones needs."""
 
     @property
+    def name(self) -> str:
+        """What it is."""
+
+    @property
     def node(self) -> str:
         """Name of the thermal node whose temperature acts here."""
 
@@ -56,7 +60,8 @@ class LubricatedZone:
     .. math:: \tau_i = c + a L^2 + \left(b + g e^{-d (T_i - 40)}\right) |\dot\varphi|^p
 
     The exponent is 1 for a full film in a plain gap and falls towards 0 for greased rolling
-    contacts that starve; the sum over zones is near the square root that was measured [1]_.
+    contacts that starve; the sum over zones is near the square root that was measured, down to
+    the slowest speeds [1]_.
 
     References
     ----------

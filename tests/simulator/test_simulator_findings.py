@@ -172,3 +172,14 @@ def test_about_seven_corrections_keep_the_error_within_2_newton_metres(run):
         assert 4 <= len(chosen) <= 8
         assert 0.8 < error(phase, parameters, chosen) < 2.0
         assert error(phase, parameters, []) > 1.5 * error(phase, parameters, chosen)
+
+
+def test_friction_of_a_cold_joint_follows_the_square_root_down_to_the_slowest_sweep():
+    joint = defaults.joint(payload=ASKED.payload, motor_heat_share=ASKED.motor_heat_share[0])
+    speed = np.array(defaults.PROGRAM.sweep_speeds)
+    cold = dict.fromkeys(joint.network.names, 20.0)
+    friction = joint.friction(load=0.0, speed=speed, temperatures=cold)
+    fast = speed >= min(SPEEDS)
+    slope, tau_c = np.polyfit(np.sqrt(speed[fast]), friction[fast], 1)
+    assert np.abs(tau_c + slope * np.sqrt(speed) - friction).max() < 2.0
+    assert np.all(np.diff(friction) > 0.0)  # no Stribeck rise

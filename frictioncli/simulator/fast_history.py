@@ -1,0 +1,66 @@
+"""The thermal history in fixed steps: within a few hundredths of a kelvin, many times faster."""
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from frictioncli.simulator.history import History
+from frictioncli.simulator.joint import Joint, MeanPower
+from frictioncli.simulator.thermal import Ambient
+
+STEP = 30.0
+"""Longest step; the fastest part of the joint, its sensor, takes minutes [s]."""
+
+
+class FastHistory(History):
+    """The history by the midpoint rule, the dissipated power held within each step."""
+
+    def __init__(self, joint: Joint, ambient: Ambient) -> None:
+        super().__init__(joint, ambient)
+        self._names = joint.network.names
+        self._times = [0.0]
+        self._states = [self.state]
+        self._decay = -self._conductance / self._capacities[:, None]
+
+    def at(self, time: ArrayLike) -> dict[str, NDArray[np.float64]]:
+        """Return the temperatures at times [s] within the history, by node name [°C]."""
+        times = np.asarray(time, dtype=float)
+        known = np.array(self._times)
+        states = np.array(self._states)
+        return {
+            name: np.asarray(np.interp(times, known, states[:, number]))
+            for number, name in enumerate(self._names)
+        }
+
+    def _integrate(self, end: float, power: MeanPower | None, temperature: float | None) -> bool:
+        way = 0.0
+        if temperature is not None:
+            way = 1.0 if temperature > self.state[self._motor] else -1.0
+        while self.time < end - 1e-9:
+            step = min(STEP, end - self.time)
+            source = self._source(power, step)
+            state = self._stepped(source, step)
+            if temperature is not None and way * (state[self._motor] - temperature) >= 0.0:
+                before = self.state[self._motor]
+                step *= float((temperature - before) / (state[self._motor] - before))
+                self._keep(step, self._stepped(source, step))
+                return True
+            self._keep(step, state)
+        return temperature is None
+
+    def _source(self, power: MeanPower | None, step: float) -> NDArray[np.float64]:
+        """Return what warms the nodes apart from each other [K/s]."""
+        heat = self._to_ambient * float(self.ambient.at(self.time + step / 2.0))
+        if power is not None:
+            now = dict(zip(self._names, self.state.tolist(), strict=True))
+            heat = heat + self._shares * power(now)
+        return np.asarray(heat / self._capacities)
+
+    def _stepped(self, source: NDArray[np.float64], step: float) -> NDArray[np.float64]:
+        middle = self.state + step / 2.0 * (source + self._decay @ self.state)
+        return np.asarray(self.state + step * (source + self._decay @ middle))
+
+    def _keep(self, step: float, state: NDArray[np.float64]) -> None:
+        self.time += step
+        self.state = state
+        self._times.append(self.time)
+        self._states.append(state)

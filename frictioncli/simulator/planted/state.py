@@ -1,0 +1,141 @@
+"""The state of the joint at each sample, as a planted effect sees it."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from frictioncli.simulator.history import HOUSING, MOTOR
+from frictioncli.simulator.joint import Joint
+from frictioncli.simulator.planted.journey import Journey
+from frictioncli.simulator.profile import Motion
+
+STANDING_SPEED = 0.2
+"""Below this velocity friction goes linearly through zero: at rest, torque is load [deg/s]."""
+
+
+@dataclass(frozen=True, slots=True)
+class Extra:
+    """Torque that an effect adds, all in N·m.
+
+    Attributes
+    ----------
+    friction : ndarray or float
+        Torque that opposes the motion where positive.
+    load : ndarray or float
+        Torque that the drive holds in either direction.
+    """
+
+    friction: NDArray[np.float64] | float = 0.0
+    load: NDArray[np.float64] | float = 0.0
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class State:
+    """State of the joint at samples of one run.
+
+    Attributes
+    ----------
+    joint : Joint
+        The joint without planted effects.
+    journey : Journey
+        What it went through.
+    time : ndarray
+        Time in the run's thermal history. [s]
+    position, velocity, acceleration : ndarray
+        Motion. [deg], [deg/s], [deg/s²]
+    since_reversal : ndarray
+        Time since the stroke began. [s]
+    temperatures : mapping of str to ndarray
+        Node temperatures. [°C]
+    load, friction, inertial : ndarray
+        Gravity, friction and inertial torque without the effect. [N·m]
+    """
+
+    joint: Joint
+    journey: Journey
+    time: NDArray[np.float64]
+    position: NDArray[np.float64]
+    velocity: NDArray[np.float64]
+    acceleration: NDArray[np.float64]
+    since_reversal: NDArray[np.float64]
+    temperatures: Mapping[str, NDArray[np.float64]]
+    load: NDArray[np.float64]
+    friction: NDArray[np.float64]
+    inertial: NDArray[np.float64]
+
+    @property
+    def speed(self) -> NDArray[np.float64]:
+        """Absolute velocity [deg/s]."""
+        return np.abs(self.velocity)
+
+    @property
+    def direction(self) -> NDArray[np.float64]:
+        """+1 forward, -1 backward, between them at rest [-]."""
+        return np.clip(self.velocity / STANDING_SPEED, -1.0, 1.0)
+
+    @property
+    def motor(self) -> NDArray[np.float64]:
+        """True motor temperature, without the sensor's lag [°C]."""
+        return self.temperatures.get("motor", self.temperatures[MOTOR])
+
+    @property
+    def gear(self) -> NDArray[np.float64]:
+        """Gear temperature [°C]."""
+        return self.temperatures["gear"]
+
+    @property
+    def housing(self) -> NDArray[np.float64]:
+        """Housing temperature [°C]."""
+        return self.temperatures[HOUSING]
+
+    @property
+    def travelled(self) -> NDArray[np.float64]:
+        """Angle turned since the experiment's start, unrecorded moves included [deg]."""
+        return self.journey.travelled(self.time)
+
+    @property
+    def operated(self) -> NDArray[np.float64]:
+        """Time that the runs lasted until now, nights left out [s]."""
+        return self.journey.before.operated + self.time
+
+    @property
+    def progress(self) -> NDArray[np.float64]:
+        """Share of all runs' time that has passed [-]."""
+        return self.operated / self.journey.before.total
+
+    @property
+    def since_turn(self) -> NDArray[np.float64]:
+        """Angle since the joint last turned round [deg]."""
+        low, high = self.journey.angles
+        forward = self.velocity > 0.0
+        return np.maximum(np.where(forward, self.position - low, high - self.position), 0.0)
+
+
+def state_of(
+    joint: Joint,
+    journey: Journey,
+    motion: Motion,
+    *,
+    time: NDArray[np.float64],
+    since_reversal: NDArray[np.float64],
+    temperatures: Mapping[str, NDArray[np.float64]],
+) -> State:
+    """Return the state of a joint in motion; the parameters are the state's attributes."""
+    load = joint.arm.gravity_torque(motion.position)
+    return State(
+        joint=joint,
+        journey=journey,
+        time=time,
+        position=motion.position,
+        velocity=motion.velocity,
+        acceleration=motion.acceleration,
+        since_reversal=since_reversal,
+        temperatures=temperatures,
+        load=load,
+        friction=joint.friction(
+            load=load, speed=np.abs(motion.velocity), temperatures=temperatures
+        ),
+        inertial=joint.arm.inertia() * np.radians(motion.acceleration),
+    )

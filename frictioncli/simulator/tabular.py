@@ -1,0 +1,225 @@
+"""Simulated runs as a table of torques, computed per bin without traces: for studies of many."""
+
+from dataclasses import dataclass
+
+import numpy as np
+import pandas as pd
+from numpy.typing import NDArray
+
+from frictioncli.simulator.cells import Cells, cells_of
+from frictioncli.simulator.fast_history import FastHistory
+from frictioncli.simulator.history import HOUSING, MOTOR
+from frictioncli.simulator.noise import Noise
+from frictioncli.simulator.noise_kinds import OUTLIER, UnevenNoise
+from frictioncli.simulator.planted.catalogue import asked
+from frictioncli.simulator.planted.planting import Planted, plant
+from frictioncli.simulator.recording import registered
+from frictioncli.simulator.run import Course, prepare, simulate
+from frictioncli.simulator.run_files import generator_of
+from frictioncli.simulator.settings import SynthesisSettings
+
+REBUILT = 0.05
+"""Standard deviation of a motor temperature that is rebuilt from its whole degrees [K]."""
+
+REBUILT_MEMORY = 600.0
+"""Correlation time of that error [s]."""
+
+
+@dataclass(frozen=True, slots=True)
+class World:
+    """A simulated experiment.
+
+    Attributes
+    ----------
+    torques : DataFrame
+        A row per round trip and angle bin, with the columns of the table ``torques``.
+    planted : Planted
+        What is hidden in it.
+    """
+
+    torques: pd.DataFrame
+    planted: Planted
+
+
+def simulate_torques(settings: SynthesisSettings, *, rebuilt: bool = True) -> pd.DataFrame:
+    """Return the table of torques of a synthesis; see :func:`simulate_world`."""
+    return simulate_world(settings, rebuilt=rebuilt).torques
+
+
+def simulate_world(settings: SynthesisSettings, *, rebuilt: bool = True) -> World:
+    """Simulate runs bin by bin.
+
+    Friction, load and planted effects are those of the traces; noise is drawn per bin with the
+    variance that its samples' mean has. The random numbers differ from those of the traces.
+
+    Parameters
+    ----------
+    settings : SynthesisSettings
+        What to simulate; ``blind`` has no meaning here.
+    rebuilt : bool
+        Whether the motor temperature is as rebuilt from its whole degrees; else it is the reading.
+
+    Raises
+    ------
+    OptionError
+        If a setting makes no sense, or an effect is unknown or cannot be planted.
+    """
+    settings.check()
+    effects = asked(settings.effects)
+    seeds = np.random.SeedSequence(settings.seed).spawn(settings.runs)
+    runs = [prepare(settings, number, seed) for number, seed in enumerate(seeds)]
+    courses = simulate(runs, FastHistory)
+    cells = [_cells(course) for course in courses]
+    planted = Planted()
+    if effects:
+        states = [part.state for parts in cells for part in parts]
+        planted = plant(effects, settings.seed, states, settings.sign)
+    tables = [
+        _table(course, parts, planted, rebuilt)
+        for course, parts in zip(courses, cells, strict=True)
+    ]
+    together = pd.concat(tables, ignore_index=True)
+    for name, values in (
+        ("run", [course.run.name for course in courses]),
+        ("phase", ["cool-down", "heat-up", "sweep"]),
+    ):
+        together[name] = pd.Categorical(together[name], categories=values)
+    return World(together, planted)
+
+
+def _cells(course: Course) -> list[Cells]:
+    run = course.run
+    return [
+        cells_of(
+            joint,
+            run.program,
+            course.history,
+            course.journey,
+            course.trips,
+            load=load,
+            interval=run.logger.interval,
+        )
+        for load, joint in enumerate(run.joints)
+    ]
+
+
+def _table(course: Course, parts: list[Cells], planted: Planted, rebuilt: bool) -> pd.DataFrame:
+    """Return the torques of one run."""
+    run, trips = course.run, course.trips
+    sign = run.logger.sign
+    offset_seed, noise_seed, register_seed = (generator_of(seed) for seed in run.seeds.spawn(3))
+    offsets = run.noise.pair_offsets(offset_seed, trips.begin)
+    trip = np.concatenate([part.trip for part in parts])
+    order = np.lexsort((np.concatenate([part.position for part in parts]), trip))
+    torque = np.concatenate([_torque(part, planted, sign) for part in parts], axis=1)[:, order]
+    trip = trip[order]
+    count = np.concatenate([part.count for part in parts])[order]
+    way = sign * np.array([1.0, -1.0])[:, None]
+    torque = torque + way * offsets[trip]
+    torque = torque + _noise(
+        run.noise, noise_seed, torque, trips.speed[trip], trip, count, run.logger.interval
+    )
+    middle = trips.begin + _middles(course)
+    motor, reading, housing = _temperatures(course, middle, register_seed, rebuilt)
+    phases = np.array([one.phase for one in course.series])[trips.series]
+    return pd.DataFrame(
+        {
+            "run": run.name,
+            "joint": np.int16(run.axis),
+            "pair": trip,
+            "speed": trips.speed[trip],
+            "time": (middle - course.series[0].start)[trip],
+            "phase": phases[trip],
+            "motor_temperature": motor[trip],
+            "housing_temperature": housing[trip],
+            "position": np.concatenate([part.position for part in parts])[order],
+            "torque_forward": torque[0],
+            "torque_reverse": torque[1],
+            "n_forward": count,
+            "n_reverse": count,
+            "motor_temperature_reading": reading[trip],
+            "load": np.nan,
+            "friction_torque": sign * (torque[0] - torque[1]) / 2.0,
+            "load_torque": (torque[0] + torque[1]) / 2.0,
+        }
+    )
+
+
+def _torque(part: Cells, planted: Planted, sign: int) -> NDArray[np.float64]:
+    """Return the mean torque per direction and cell, without noise [N·m]."""
+    state = part.state
+    extra = planted.extra(state)
+    friction = state.friction + extra.friction
+    torque = state.load + extra.load + sign * state.direction * friction
+    return np.asarray(np.mean(torque, axis=0))
+
+
+def _middles(course: Course) -> NDArray[np.float64]:
+    """Return the time from each round trip's begin to the middle of its pair [s]."""
+    run = course.run
+    durations = [run.program.trip_durations(run.joint.servo, one.speeds) for one in course.series]
+    return np.asarray((np.concatenate(durations) - run.program.dwell) / 2.0 + 0.1)
+
+
+def _temperatures(
+    course: Course, time: NDArray[np.float64], generator: np.random.Generator, rebuilt: bool
+) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
+    """Return motor temperature, its reading and housing temperature per round trip [°C]."""
+    logger, noise = course.run.logger, course.run.noise
+    true = course.history.at(time)
+    reading = registered(true[MOTOR], logger.motor_step)
+    housing = registered(true[HOUSING], logger.housing_step)
+    if not rebuilt:
+        return reading, reading, housing
+    quiet = noise.white == noise.slow == noise.per_pair == 0.0
+    error = Noise(
+        white=0.0,
+        correlated=0.0,
+        correlation_time=1.0,
+        slow=0.0 if quiet else REBUILT,
+        slow_time=REBUILT_MEMORY,
+        per_pair=0.0,
+    )
+    return true[MOTOR] + error.pair_offsets(generator, time), reading, housing
+
+
+def _noise(
+    noise: Noise,
+    generator: np.random.Generator,
+    torque: NDArray[np.float64],
+    speed: NDArray[np.float64],
+    trip: NDArray[np.int64],
+    count: NDArray[np.int64],
+    interval: float,
+) -> NDArray[np.float64]:
+    """Return the noise of the means per direction and cell, cells in order of trip and angle."""
+    shape = torque.shape
+    spread, loud = np.ones(shape), np.zeros(shape)
+    if isinstance(noise, UnevenNoise):
+        spread = noise.spread(torque, speed)
+        loud = generator.binomial(np.broadcast_to(count, shape), noise.outliers).astype(float)
+    white = noise.white * spread * np.sqrt(count + loud * (OUTLIER**2 - 1.0)) / count
+    total = white * generator.standard_normal(shape)
+    if noise.correlated == 0.0:
+        return total
+    # The mean over a bin of noise with memory, and its correlation from bin to bin of a move.
+    bins = count * interval / noise.correlation_time
+    memory = np.exp(-bins)
+    kept = 2.0 / bins * (1.0 - (1.0 - memory) / bins)
+    first = np.concatenate([[True], trip[1:] != trip[:-1]])
+    return total + noise.correlated * np.sqrt(kept) * _remembering(generator, memory, first)
+
+
+def _remembering(
+    generator: np.random.Generator, memory: NDArray[np.float64], first: NDArray[np.bool_]
+) -> NDArray[np.float64]:
+    """Return numbers of variance 1 for both directions, correlated by ``memory`` along moves."""
+    drive = generator.standard_normal((2, len(memory)))
+    place = np.arange(len(memory)) - np.maximum.accumulate(
+        np.where(first, np.arange(len(memory)), 0)
+    )
+    found = drive.copy()
+    for step in range(1, int(place.max(initial=0)) + 1):
+        at = np.flatnonzero(place == step)
+        found[:, at] = memory[at] * found[:, at - 1] + np.sqrt(1.0 - memory[at] ** 2) * drive[:, at]
+    return found
