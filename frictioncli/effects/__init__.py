@@ -1,0 +1,60 @@
+"""The catalogue of effects that the friction model may lack, one file each."""
+
+from collections.abc import Mapping
+from types import MappingProxyType
+
+from frictioncli.effects import (
+    coulomb_temperature,
+    direction_asymmetry,
+    dress_pack,
+    drift,
+    inertia,
+    linear_viscous,
+    load_linear,
+    load_temperature,
+    load_velocity,
+    payload_change,
+    position_ripple,
+    quadratic_drag,
+    rest_recovery,
+    reversal_transient,
+    run_in,
+    step_change,
+    stribeck,
+    thermal_lag,
+    torque_constant,
+    velocity_exponent,
+)
+from frictioncli.effects.base import Effect
+
+EFFECTS: tuple[Effect, ...] = (
+    stribeck.EFFECT,
+    velocity_exponent.EFFECT,
+    linear_viscous.EFFECT,
+    quadratic_drag.EFFECT,
+    coulomb_temperature.EFFECT,
+    load_linear.EFFECT,
+    load_velocity.EFFECT,
+    load_temperature.EFFECT,
+    thermal_lag.EFFECT,
+    drift.EFFECT,
+    run_in.EFFECT,
+    rest_recovery.EFFECT,
+    step_change.EFFECT,
+    direction_asymmetry.EFFECT,
+    torque_constant.EFFECT,
+    payload_change.EFFECT,
+    dress_pack.EFFECT,
+    position_ripple.EFFECT,
+    inertia.EFFECT,
+    reversal_transient.EFFECT,
+)
+"""All effects, in the order of reports."""
+
+BY_NAME: Mapping[str, Effect] = MappingProxyType({effect.name: effect for effect in EFFECTS})
+"""The same by name."""
+
+NEEDS: Mapping[str, tuple[str, ...]] = MappingProxyType(
+    {effect.name: effect.needs for effect in EFFECTS}
+)
+"""Columns that must be known and vary, by effect."""

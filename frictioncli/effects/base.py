@@ -1,0 +1,207 @@
+"""What the catalogue says of one effect, and the table that an effect is evaluated on."""
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from typing import Literal, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+Channel = Literal["friction", "load"]
+Search = Literal["linear", "logarithmic"]
+
+REFERENCE_TEMPERATURE = 25.0
+"""Temperature from which effects count. [°C]"""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Parameter:
+    """A bounded number of an effect.
+
+    Attributes
+    ----------
+    name, symbol, unit : str
+        Its name, its symbol in the equation and its unit; ``torque`` stands for the torque unit.
+    lower, upper : float
+        Physical bounds.
+    description : str
+        What it means.
+    search : {"linear", "logarithmic"}
+        How a grid over a shape parameter is spaced.
+    points : int
+        Number of values that such a grid needs in order not to miss the effect.
+    """
+
+    name: str
+    symbol: str
+    unit: str
+    lower: float
+    upper: float
+    description: str
+    search: Search = "linear"
+    points: int = 10
+
+    def __post_init__(self) -> None:
+        if not self.lower < self.upper:
+            raise ValueError(f"{self.name}: bounds {self.lower} to {self.upper}")
+        if self.search == "logarithmic" and not self.lower > 0:
+            raise ValueError(f"{self.name}: a logarithmic search cannot start at {self.lower}")
+
+    def grid(self) -> Array:
+        """Return the values to try first, from bound to bound."""
+        if self.search == "logarithmic":
+            return np.geomspace(self.lower, self.upper, self.points)
+        return np.linspace(self.lower, self.upper, self.points)
+
+
+@dataclass(frozen=True, slots=True)
+class Signature:
+    """What residuals show where the effect is at work.
+
+    Attributes
+    ----------
+    axis : str
+        Column of :class:`EffectTable` against which residuals are drawn.
+    claim : str
+        What is then seen, in a sentence.
+    """
+
+    axis: str
+    claim: str
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class EffectTable:
+    """Pairs and angle bins of one joint, ordered by run and time, with the fitted base model.
+
+    Attributes
+    ----------
+    run : ndarray of int, shape (rows,)
+        Number of the run; rows of a run stand together.
+    pair : ndarray of int, shape (rows,)
+        Number of the pair over all runs, growing; rows of a pair stand together.
+    time : ndarray, shape (rows,)
+        Middle of the pair since the run's first sample. [s]
+    clock : ndarray, shape (rows,)
+        The same on one clock for all runs, where the days are known; else runs follow each other.
+        [s]
+    speed, position : ndarray, shape (rows,)
+        Speed of the pair and centre of the angle bin. [deg/s], [deg]
+    load : ndarray, shape (rows,)
+        Load torque of the base model at that angle. [N·m]
+    temperature : ndarray, shape (rows,)
+        Temperature that the base model is given. [°C]
+    motor_temperature, housing_temperature : ndarray, shape (rows,)
+        As measured; NaN where unknown. [°C]
+    friction : ndarray, shape (rows,)
+        Friction torque of the base model. [N·m]
+    viscous : ndarray, shape (rows,)
+        Its viscous factor beta + gamma exp(-delta T). [N·m/(deg/s)^0.5]
+    temperature_slope : ndarray, shape (rows,)
+        Its derivative by temperature at fixed speed, <= 0. [N·m/°C]
+    travel : ndarray, shape (rows,)
+        Way travelled in the run up to the pair as far as the log covers it. [deg]
+    rest : ndarray, shape (rows,)
+        Time without recorded motion before the measuring series of the pair. [s]
+    order : ndarray, shape (rows,)
+        Place of the pair in its measuring series, from 0.
+    """
+
+    run: NDArray[np.intp]
+    pair: NDArray[np.intp]
+    time: Array
+    clock: Array
+    speed: Array
+    position: Array
+    load: Array
+    temperature: Array
+    motor_temperature: Array
+    housing_temperature: Array
+    friction: Array
+    viscous: Array
+    temperature_slope: Array
+    travel: Array
+    rest: Array
+    order: Array
+
+
+class Basis(NamedTuple):
+    """Columns by which an effect's coefficients are multiplied, one set per channel.
+
+    Both have shape (rows, coefficients); a channel that the effect leaves alone holds zeros.
+    """
+
+    friction: Array
+    load: Array
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Effect:
+    """A cause of model error: linear in its coefficients, with a few bounded shape parameters.
+
+    A basis may refer to its whole table (its first moment, its mean speed, its angle range).
+    Training and test rows are therefore taken from one basis of all runs.
+
+    Attributes
+    ----------
+    name : str
+        Name in the contract.
+    summary : str
+        The cause in a short sentence.
+    equation : str
+        What it adds to torque, in symbols.
+    source : str
+        Where it is described.
+    channel : {"friction", "load"}
+        Where it shows most.
+    shape : tuple of Parameter
+        Nonlinear parameters; searched between their bounds.
+    coefficients : tuple of Parameter
+        Linear parameters; their bounds are the physical gate.
+    basis : callable
+        ``basis(table, **shape) -> Basis``.
+    needs : tuple of str
+        Columns of the table that must be known and vary, or the effect cannot be judged.
+    uses : tuple of str
+        Further columns that the basis reads, beside ``run`` and ``pair``; they may be constant.
+    signature : Signature
+        What it looks like.
+    confounders : tuple of str
+        Names of the effects it is most easily taken for.
+    experiment : str
+        The experiment that separates it from them.
+    mirror : str
+        What must hold in the other channel; empty where nothing must.
+    """
+
+    name: str
+    summary: str
+    equation: str
+    source: str
+    channel: Channel
+    shape: tuple[Parameter, ...]
+    coefficients: tuple[Parameter, ...]
+    basis: Callable[..., Basis]
+    needs: tuple[str, ...]
+    signature: Signature
+    confounders: tuple[str, ...]
+    experiment: str
+    mirror: str = ""
+    uses: tuple[str, ...] = ()
+
+    def evaluate(self, table: EffectTable, shape: Mapping[str, float]) -> Basis:
+        """Return the basis for given values of the shape parameters."""
+        return self.basis(table, **shape)
+
+
+def friction_only(*columns: Array) -> Basis:
+    """Return a basis that leaves the load channel alone."""
+    stacked = np.column_stack(columns)
+    return Basis(stacked, np.zeros_like(stacked))
+
+
+def load_only(*columns: Array) -> Basis:
+    """Return a basis that leaves the friction channel alone."""
+    stacked = np.column_stack(columns)
+    return Basis(np.zeros_like(stacked), stacked)

@@ -1,0 +1,59 @@
+"""Friction differs between the two directions of motion.
+
+With friction :math:`f_+` forward and :math:`f_-` reverse, half the sum of the torques is the load
+plus :math:`(f_+ - f_-)/2`: the asymmetry ends up in the load channel, half the difference of the
+torques keeps the mean of both. A constant asymmetry looks like an offset of the torque sensor.
+"""
+
+import numpy as np
+
+from frictioncli.effects.base import Basis, Effect, EffectTable, Parameter, Signature, load_only
+
+
+def basis(table: EffectTable) -> Basis:
+    """Return one, and the viscous friction in units of torque."""
+    return load_only(np.ones_like(table.speed), table.viscous * np.sqrt(table.speed))
+
+
+EFFECT = Effect(
+    name="direction_asymmetry",
+    summary="Friction is greater in one direction than in the other.",
+    equation="dL = c0 + c1*(beta + gamma*exp(-delta*T))*sqrt(v)",
+    source=(
+        "Odd part of equation (8) of Nevmerzhitskiy et al. 2019, doi:10.1155/2019/6931563;"
+        " directional friction: model M5 of Rhoban BAM, arXiv:2410.08650"
+    ),
+    channel="load",
+    shape=(),
+    coefficients=(
+        Parameter(
+            name="offset",
+            symbol="c0",
+            unit="torque",
+            lower=-5.0,
+            upper=5.0,
+            description="Half the difference of Coulomb friction, or an offset of the torque",
+        ),
+        Parameter(
+            name="viscous_asymmetry",
+            symbol="c1",
+            unit="1",
+            lower=-0.3,
+            upper=0.3,
+            description="Half the relative difference of viscous friction between directions",
+        ),
+    ),
+    basis=basis,
+    needs=("speed",),
+    uses=("viscous",),
+    signature=Signature(
+        axis="speed",
+        claim="The load torque, which gravity alone should set, shifts with speed.",
+    ),
+    confounders=("dress_pack", "reversal_transient", "torque_constant"),
+    experiment=(
+        "Measure where gravity does not load the joint, or with the arm mounted the other way"
+        " round: gravity turns its sign, asymmetry does not. Read the torque with motors off for"
+        " its zero."
+    ),
+)

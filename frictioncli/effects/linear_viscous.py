@@ -1,0 +1,39 @@
+"""A part of viscous friction is proportional to speed and does not depend on temperature."""
+
+from frictioncli.effects.base import Basis, Effect, EffectTable, Parameter, Signature, friction_only
+
+
+def basis(table: EffectTable) -> Basis:
+    """Return the speed, in deg/s."""
+    return friction_only(table.speed)
+
+
+EFFECT = Effect(
+    name="linear_viscous",
+    summary="Friction has a part proportional to speed.",
+    equation="dtau = kv*v",
+    source="Equation (5) of Nevmerzhitskiy et al. 2019, doi:10.1155/2019/6931563",
+    channel="friction",
+    shape=(),
+    coefficients=(
+        Parameter(
+            name="viscous_coefficient",
+            symbol="kv",
+            unit="torque/(deg/s)",
+            lower=0.0,
+            upper=0.2,
+            description="Friction per speed, beside the square-root term",
+        ),
+    ),
+    basis=basis,
+    needs=("speed",),
+    signature=Signature(
+        axis="speed",
+        claim="Friction bends up with speed, equally when cold and when hot.",
+    ),
+    confounders=("quadratic_drag", "velocity_exponent", "stribeck"),
+    experiment=(
+        "Measure at ten or more speeds up to the fastest, at two temperatures held constant,"
+        " with three or more speeds in the upper half."
+    ),
+)

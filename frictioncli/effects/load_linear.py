@@ -1,0 +1,44 @@
+"""Friction grows with the amount of load, not only with its square."""
+
+import numpy as np
+
+from frictioncli.effects.base import Basis, Effect, EffectTable, Parameter, Signature, friction_only
+
+
+def basis(table: EffectTable) -> Basis:
+    """Return the amount of the load torque."""
+    return friction_only(np.abs(table.load))
+
+
+EFFECT = Effect(
+    name="load_linear",
+    summary="Friction grows with the amount of load, with a kink at zero load.",
+    equation="dtau = al*abs(L)",
+    source=(
+        "Equation (4) of Nevmerzhitskiy et al. 2019, doi:10.1155/2019/6931563; load term of"
+        " Bittencourt and Gunnarsson 2012, J. Dyn. Syst. Meas. Control 134(5) 051013"
+    ),
+    channel="friction",
+    shape=(),
+    coefficients=(
+        Parameter(
+            name="load_share",
+            symbol="al",
+            unit="1",
+            lower=0.0,
+            upper=0.2,
+            description="Friction torque per load torque",
+        ),
+    ),
+    basis=basis,
+    needs=("load",),
+    signature=Signature(
+        axis="load",
+        claim="Residuals have a kink at zero load and rise on both sides of it.",
+    ),
+    confounders=("position_ripple", "load_velocity", "load_temperature"),
+    experiment=(
+        "Measure with three payloads, at angles on both sides of zero load: the kink stays at zero"
+        " load, a ripple stays at its angle."
+    ),
+)

@@ -1,0 +1,69 @@
+"""The arm carries another mass from some moment on.
+
+The load torque gains a gravity term of any phase, since the new mass may sit at any angle. The
+friction that the changed load causes is the base model's alpha L^2 with the new load, and is left
+to that model. The moment counts as in :mod:`frictioncli.effects.step_change`.
+"""
+
+import numpy as np
+
+from frictioncli.effects.base import Basis, Effect, EffectTable, Parameter, Signature, load_only
+from frictioncli.effects.pairs import measured_share
+
+
+def basis(table: EffectTable, *, moment: float) -> Basis:
+    """Return cosine and sine of the angle from the moment on, 0 before."""
+    after = np.where(measured_share(table) >= moment, 1.0, 0.0)
+    angle = np.radians(table.position)
+    return load_only(after * np.cos(angle), after * np.sin(angle))
+
+
+EFFECT = Effect(
+    name="payload_change",
+    summary="The payload changed at one moment.",
+    equation="dL = (Pc*cos(q) + Ps*sin(q))*(1 from m on, 0 before)",
+    source="Gravity torque of a point mass; equation (3) of Nevmerzhitskiy et al. 2019, "
+    "doi:10.1155/2019/6931563",
+    channel="load",
+    shape=(
+        Parameter(
+            name="moment",
+            symbol="m",
+            unit="share of pairs",
+            lower=0.02,
+            upper=0.98,
+            description="Share of all pairs measured before the change",
+            points=49,
+        ),
+    ),
+    coefficients=(
+        Parameter(
+            name="cosine",
+            symbol="Pc",
+            unit="torque",
+            lower=-100.0,
+            upper=100.0,
+            description="Change of the gravity torque at 0 deg",
+        ),
+        Parameter(
+            name="sine",
+            symbol="Ps",
+            unit="torque",
+            lower=-100.0,
+            upper=100.0,
+            description="Change of the gravity torque at 90 deg",
+        ),
+    ),
+    basis=basis,
+    needs=("clock", "position"),
+    signature=Signature(
+        axis="clock",
+        claim="From one moment on the load torque has another amplitude over the angle.",
+    ),
+    confounders=("torque_constant", "dress_pack", "step_change"),
+    experiment=(
+        "Weigh the payload and repeat one slow sweep at the temperature of the first run:"
+        " a changed mass stays, a changed torque constant goes with the heat."
+    ),
+    mirror="Friction must change only by what the base model gives for the new load.",
+)

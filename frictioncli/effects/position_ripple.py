@@ -1,0 +1,70 @@
+"""Friction varies with the angle: eccentric gears, bearings, a seal.
+
+Angle bins sample a ripple: an order above half their number per turn cannot be told from a lower
+one, so the search stops there. At order 2 a ripple resembles the load term of a joint under
+gravity.
+"""
+
+import numpy as np
+
+from frictioncli.effects.base import Basis, Effect, EffectTable, Parameter, Signature, friction_only
+
+
+def basis(table: EffectTable, *, order: float) -> Basis:
+    """Return sine and cosine of the angle times the order; zeros where the bins are too wide."""
+    phase = order * np.radians(table.position)
+    angles = np.unique(table.position)
+    finest = float(np.min(np.diff(angles))) if len(angles) > 1 else 360.0
+    if order > 180.0 / finest:
+        phase = np.zeros_like(phase)
+        return friction_only(phase, phase)
+    return friction_only(np.sin(phase), np.cos(phase))
+
+
+EFFECT = Effect(
+    name="position_ripple",
+    summary="Friction goes up and down with the angle.",
+    equation="dtau = As*sin(N*q) + Ac*cos(N*q)",
+    source="Angle-periodic friction of gears and bearings; size is an engineering estimate",
+    channel="friction",
+    shape=(
+        Parameter(
+            name="order",
+            symbol="N",
+            unit="1/turn",
+            lower=2.0,
+            upper=30.0,
+            description="Periods per turn of the joint",
+            points=57,
+        ),
+    ),
+    coefficients=(
+        Parameter(
+            name="sine",
+            symbol="As",
+            unit="torque",
+            lower=-5.0,
+            upper=5.0,
+            description="Amplitude of the sine",
+        ),
+        Parameter(
+            name="cosine",
+            symbol="Ac",
+            unit="torque",
+            lower=-5.0,
+            upper=5.0,
+            description="Amplitude of the cosine",
+        ),
+    ),
+    basis=basis,
+    needs=("position",),
+    signature=Signature(
+        axis="position",
+        claim="Residuals repeat over the angle, with the same phase at all speeds.",
+    ),
+    confounders=("load_linear", "reversal_transient", "inertia"),
+    experiment=(
+        "Sample the angle finely, without bins, at two speeds: a ripple of the gear keeps its"
+        " angle, a vibration keeps its time. With another payload its angle stays too."
+    ),
+)

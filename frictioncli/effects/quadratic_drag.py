@@ -1,0 +1,41 @@
+"""Gear and bearings churn lubricant: drag grows with the square of speed."""
+
+import numpy as np
+
+from frictioncli.effects.base import Basis, Effect, EffectTable, Parameter, Signature, friction_only
+
+REFERENCE_SPEED = 100.0
+"""Speed to which the drag is related. [deg/s]"""
+
+
+def basis(table: EffectTable) -> Basis:
+    """Return the squared speed, 1 at 100 deg/s."""
+    return friction_only(np.square(table.speed / REFERENCE_SPEED))
+
+
+EFFECT = Effect(
+    name="quadratic_drag",
+    summary="Churned lubricant adds drag with the square of speed.",
+    equation="dtau = kd*(v/100)^2",
+    source="Drag of churned lubricant, turbulent limit; size is an engineering estimate",
+    channel="friction",
+    shape=(),
+    coefficients=(
+        Parameter(
+            name="drag",
+            symbol="kd",
+            unit="torque",
+            lower=0.0,
+            upper=2.0,
+            description="Drag at 100 deg/s",
+        ),
+    ),
+    basis=basis,
+    needs=("speed",),
+    signature=Signature(
+        axis="speed",
+        claim="Only the fastest speeds lie above the model.",
+    ),
+    confounders=("linear_viscous", "velocity_exponent", "inertia"),
+    experiment="Measure at three or more speeds above 150 deg/s, away from the ends of the stroke.",
+)

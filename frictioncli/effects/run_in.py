@@ -1,0 +1,70 @@
+"""Friction falls with the way travelled, as surfaces and grease settle.
+
+Surfaces stay run in, so the way of earlier runs counts too; grease may flow back between runs, and
+then every run starts anew. The shape parameter ``carried_over`` is the share of earlier runs' way
+that counts; within one run it has no effect.
+"""
+
+import numpy as np
+
+from frictioncli.effects.base import Basis, Effect, EffectTable, Parameter, Signature, friction_only
+from frictioncli.effects.pairs import starts
+
+
+def basis(table: EffectTable, *, distance: float, carried_over: float) -> Basis:
+    """Return the share of the running-in that is still to come."""
+    begins = starts(table.run)
+    run = np.cumsum(begins) - 1
+    covered = np.maximum.reduceat(table.travel, np.flatnonzero(begins))
+    before = np.cumsum(covered) - covered
+    return friction_only(np.exp(-(table.travel + carried_over * before[run]) / distance))
+
+
+EFFECT = Effect(
+    name="run_in",
+    summary="Friction falls with the way travelled and then stays.",
+    equation="dtau = A*exp(-(s + c*s_before)/s0)",
+    source="Exponential running-in of lubricated contacts; size is an engineering estimate",
+    channel="friction",
+    shape=(
+        Parameter(
+            name="distance",
+            symbol="s0",
+            unit="deg",
+            lower=3_600.0,
+            upper=3_600_000.0,
+            description="Way after which 37 % of the running-in remain",
+            search="logarithmic",
+        ),
+        Parameter(
+            name="carried_over",
+            symbol="c",
+            unit="1",
+            lower=0.0,
+            upper=1.0,
+            description="Share of the way of earlier runs that still counts",
+            points=3,
+        ),
+    ),
+    coefficients=(
+        Parameter(
+            name="initial_excess",
+            symbol="A",
+            unit="torque",
+            lower=0.0,
+            upper=15.0,
+            description="Friction above the settled one at the start",
+        ),
+    ),
+    basis=basis,
+    needs=("travel",),
+    signature=Signature(
+        axis="travel",
+        claim="Friction starts above the model and falls with the way travelled, not with time.",
+    ),
+    confounders=("drift", "thermal_lag", "rest_recovery"),
+    experiment=(
+        "Compare two stretches of equal duration, one with much motion and one at rest:"
+        " running-in goes on only with motion, and does not come back on the next day."
+    ),
+)

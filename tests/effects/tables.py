@@ -1,0 +1,71 @@
+"""Tables of pairs and angle bins for the tests of effects."""
+
+import numpy as np
+
+from frictioncli.effects.base import EffectTable
+from frictioncli.model.friction import PUBLISHED, friction_torque
+
+COLUMNS = tuple(EffectTable.__dataclass_fields__)
+
+
+def small(**columns) -> EffectTable:
+    """Return a table of the given columns; the others are ones, one run, a pair per row."""
+    rows = max(np.size(values) for values in columns.values())
+    filled = {name: np.ones(rows) for name in COLUMNS}
+    filled |= {"run": np.zeros(rows, int), "pair": np.arange(rows)}
+    filled |= {name: np.broadcast_to(values, rows) for name, values in columns.items()}
+    return EffectTable(**filled)
+
+
+def two_days(*, bins: int = 9, series: int = 12) -> EffectTable:
+    """Return two runs of heating and cooling: series of four speeds in changing order."""
+    random = np.random.default_rng(7)
+    per_pair = []
+    for run in range(2):
+        time, travel = 60.0, 0.0
+        for number in range(series):
+            heating = number < series // 2
+            rest = 0.0 if number == 0 else (30.0 if heating else 600.0)
+            time += rest
+            for order, speed in enumerate(random.permutation([5.0, 20.0, 60.0, 150.0])):
+                warm = number if heating else series - number
+                motor = 25.0 + 5.0 * warm + 0.2 * order + run
+                per_pair.append(
+                    {
+                        "run": run,
+                        "time": time,
+                        "clock": time + 86_400.0 * run,
+                        "speed": speed,
+                        "temperature": motor,
+                        "motor_temperature": motor,
+                        "housing_temperature": 23.0 + 0.6 * (motor - 23.0),
+                        "travel": travel,
+                        "rest": rest,
+                        "order": float(order),
+                    }
+                )
+                time += 360.0 / speed + 20.0
+                travel += 360.0
+    pairs = {name: np.array([row[name] for row in per_pair]) for name in per_pair[0]}
+    rows = {name: np.repeat(values, bins) for name, values in pairs.items()}
+    position = np.tile(np.linspace(5.0, 150.0, bins), len(per_pair))
+    load = 60.0 * np.cos(np.radians(position))
+    viscous = PUBLISHED.beta + PUBLISHED.gamma * np.exp(-PUBLISHED.delta * rows["temperature"])
+    slope = -PUBLISHED.delta * (viscous - PUBLISHED.beta) * np.sqrt(rows["speed"])
+    friction = friction_torque(
+        PUBLISHED, load=load, speed=rows["speed"], temperature=rows["temperature"]
+    )
+    return EffectTable(
+        **rows,
+        pair=np.repeat(np.arange(len(per_pair)), bins),
+        position=position,
+        load=load,
+        friction=friction,
+        viscous=viscous,
+        temperature_slope=slope,
+    )
+
+
+def selected(table: EffectTable, rows) -> EffectTable:
+    """Return some rows of a table."""
+    return EffectTable(**{name: getattr(table, name)[rows] for name in COLUMNS})

@@ -1,0 +1,89 @@
+"""Steps that effects share, against a general integrator and by hand."""
+
+import numpy as np
+import pytest
+from scipy.integrate import solve_ivp
+
+from frictioncli.effects.pairs import (
+    first_order_lag,
+    first_order_response,
+    measured_share,
+    pair_heads,
+    stroke_ends,
+)
+from tests.effects.tables import small
+
+
+def integrated(time, derivative, start):
+    """Return the state at each moment, integrated from knot to knot."""
+    states = [start]
+    for i in range(len(time) - 1):
+        solution = solve_ivp(
+            lambda t, y, i=i: derivative(t, y, i),
+            (time[i], time[i + 1]),
+            [states[-1]],
+            rtol=1e-9,
+            atol=1e-10,
+        )
+        states.append(solution.y[0, -1])
+    return np.array(states)
+
+
+@pytest.fixture
+def knots():
+    random = np.random.default_rng(11)
+    time = np.cumsum(random.uniform(5.0, 400.0, 40))
+    return time, 40.0 + np.cumsum(random.normal(0.0, 2.0, 40))
+
+
+@pytest.mark.parametrize("time_constant", [120.0, 900.0, 14_400.0])
+def test_lag_agrees_with_a_general_integrator(knots, time_constant):
+    time, value = knots
+    follower = integrated(
+        time, lambda t, y, i: (np.interp(t, time, value) - y) / time_constant, value[0]
+    )
+    restart = np.arange(len(time)) == 0
+    lag = first_order_lag(time=time, value=value, restart=restart, time_constant=time_constant)
+    np.testing.assert_allclose(value + lag, follower, atol=1e-6)
+
+
+@pytest.mark.parametrize("time_constant", [120.0, 900.0, 14_400.0])
+def test_response_agrees_with_a_general_integrator(knots, time_constant):
+    time, value = knots
+    follower = integrated(time, lambda t, y, i: (value[i] - y) / time_constant, 0.0)
+    restart = np.arange(len(time)) == 0
+    found = first_order_response(
+        time=time, level=value[:-1], restart=restart, time_constant=time_constant
+    )
+    np.testing.assert_allclose(found, follower, atol=1e-6)
+
+
+def test_follower_forgets_at_a_restart_however_far_the_clock_jumps_back():
+    time = np.array([0.0, 500_000.0, 0.0, 60.0])
+    value = np.array([20.0, 60.0, 25.0, 26.0])
+    restart = np.array([True, False, True, False])
+    lag = first_order_lag(time=time, value=value, restart=restart, time_constant=120.0)
+    assert lag[2] == 0.0
+    assert lag[3] == pytest.approx(-(1 - np.exp(-0.5)) / 0.5)
+
+
+def test_pairs_are_reduced_and_spread():
+    table = small(run=[0, 0, 0, 1], pair=[3, 3, 5, 5], position=[1.0, 4.0, 2.0, 7.0])
+    heads = pair_heads(table)
+    assert heads.first.tolist() == [0, 2, 3]
+    assert heads.mean(table.position).tolist() == [2.5, 2.0, 7.0]
+    assert heads.minimum(table.position).tolist() == [1.0, 2.0, 7.0]
+    assert heads.maximum(table.position).tolist() == [4.0, 2.0, 7.0]
+    assert heads.spread(np.array([1.0, 2.0, 3.0])).tolist() == [1.0, 1.0, 2.0, 3.0]
+
+
+def test_share_measured_before_goes_by_the_clock_of_all_runs():
+    table = small(clock=[10.0, 20.0, 0.0, 5.0], run=[0, 0, 1, 1])
+    assert measured_share(table).tolist() == [0.5, 0.75, 0.0, 0.25]
+
+
+def test_ends_are_those_of_the_own_pair():
+    table = small(position=[0.0, 10.0, 50.0, 55.0], pair=[0, 0, 1, 1])
+    low, high = stroke_ends(table, distance=5.0)
+    assert low.tolist() == pytest.approx([1.0, np.exp(-2), 1.0, np.exp(-1)])
+    assert high.tolist() == pytest.approx([np.exp(-2), 1.0, np.exp(-1), 1.0])

@@ -1,0 +1,235 @@
+"""Each effect's columns, by hand from its equation."""
+
+import numpy as np
+import pytest
+
+from frictioncli.effects import BY_NAME
+from tests.effects.tables import small
+
+
+def friction(name, table, **shape):
+    """Return the friction columns of an effect, one list per row."""
+    return BY_NAME[name].evaluate(table, shape).friction.tolist()
+
+
+def load(name, table, **shape):
+    """Return the load columns of an effect, one list per row."""
+    return BY_NAME[name].evaluate(table, shape).load.tolist()
+
+
+def test_stribeck_falls_to_a_share_of_1_by_e_at_its_velocity():
+    found = friction("stribeck", small(speed=[5.0, 10.0]), velocity=5.0, exponent=2.0)
+    assert found == pytest.approx(np.array([[np.exp(-1)], [np.exp(-4)]]))
+
+
+def test_velocity_exponent_is_zero_at_the_geometric_mean_speed():
+    """Mean of 4, 16, 64 is 16; at 64: 0.5 * 8 * ln 4, at 4: 0.5 * 2 * ln(1/4)."""
+    found = friction("velocity_exponent", small(speed=[4.0, 16.0, 64.0], viscous=0.5))
+    assert found == pytest.approx(np.array([[-np.log(4)], [0.0], [4 * np.log(4)]]))
+
+
+def test_velocity_exponent_is_the_tangent_of_the_power_law():
+    """k v^0.52 less k v^0.5, both equal at the mean speed, is 0.02 times the column to 4 %."""
+    speed = np.array([4.0, 16.0, 64.0])
+    column = np.array(friction("velocity_exponent", small(speed=speed)))[:, 0]
+    exact = np.sqrt(speed) * ((speed / 16.0) ** 0.02 - 1)
+    np.testing.assert_allclose(0.02 * column, exact, rtol=0.04)
+
+
+def test_velocity_exponent_counts_pairs_and_not_angle_bins():
+    """Two bins at 4 deg/s and one at 16 deg/s: the mean stays at 8 deg/s."""
+    found = friction("velocity_exponent", small(speed=[4.0, 4.0, 16.0], pair=[0, 0, 1]))
+    assert found == pytest.approx(np.array([[-2 * np.log(2)]] * 2 + [[4 * np.log(2)]]))
+
+
+def test_linear_viscous_is_the_speed():
+    assert friction("linear_viscous", small(speed=[2.0, 290.0])) == [[2.0], [290.0]]
+
+
+def test_quadratic_drag_is_one_at_100_deg_per_s():
+    assert friction("quadratic_drag", small(speed=[100.0, 300.0])) == [[1.0], [9.0]]
+
+
+def test_coulomb_temperature_counts_tens_of_degrees_from_25():
+    found = friction("coulomb_temperature", small(temperature=[20.0, 65.0]))
+    assert found == [[-0.5], [4.0]]
+
+
+def test_load_linear_does_not_know_the_sign_of_the_load():
+    assert friction("load_linear", small(load=[-30.0, 20.0])) == [[30.0], [20.0]]
+
+
+def test_load_velocity_by_hand():
+    """(20/10)^2 sqrt(25/100) = 2."""
+    assert friction("load_velocity", small(load=-20.0, speed=[25.0])) == [[2.0]]
+
+
+def test_load_temperature_by_hand():
+    """(20/10)^2 (45 - 25)/10 = 8."""
+    assert friction("load_temperature", small(load=-20.0, temperature=[45.0])) == [[8.0]]
+
+
+def test_thermal_lag_follows_a_step():
+    """After a step of 10 °C the gear lags by 10 exp(-t/theta); friction changes by -2 per °C."""
+    table = small(
+        time=[0.0, 0.0, 600.0, 1200.0],
+        motor_temperature=[20.0, 30.0, 30.0, 30.0],
+        temperature_slope=-2.0,
+    )
+    found = np.array(friction("thermal_lag", table, time_constant=600.0))
+    expected = [0.0, 20.0, 20.0 * np.exp(-1), 20.0 * np.exp(-2)]
+    np.testing.assert_allclose(found[:, 0], expected, rtol=1e-12)
+
+
+def test_thermal_lag_behind_a_ramp_settles_at_rate_times_time_constant():
+    """0.01 °C/s for 20 time constants of 300 s: the gear is 3 °C behind."""
+    time = np.arange(0.0, 6001.0, 60.0)
+    table = small(time=time, motor_temperature=20.0 + 0.01 * time, temperature_slope=-1.0)
+    found = np.array(friction("thermal_lag", table, time_constant=300.0))
+    assert found[-1, 0] == pytest.approx(3.0, rel=1e-6)
+
+
+def test_friction_heats_the_gear_while_the_motor_warms_and_not_while_it_cools():
+    """Friction of 40 at 50 deg/s is 0.5 of the power at 100 deg/s; warming ends after 3600 s."""
+    time = np.arange(0.0, 9001.0, 60.0)
+    motor = 60.0 - np.abs(time - 3600.0) / 100.0
+    table = small(
+        time=time, motor_temperature=motor, temperature_slope=-1.0, friction=40.0, speed=50.0
+    )
+    heat = -np.array(friction("thermal_lag", table, time_constant=600.0))[:, 1]
+    warming = time <= 3600.0
+    np.testing.assert_allclose(heat[warming], 0.5 * -np.expm1(-time[warming] / 600.0), rtol=1e-9)
+    fall = heat[-1] / heat[np.searchsorted(time, 6000.0)]
+    assert fall == pytest.approx(np.exp(-3000.0 / 600.0), rel=1e-9)
+
+
+def test_recorded_way_heats_the_gear_even_while_the_motor_cools():
+    """1500 deg of each 60 s at 50 deg/s are half of the time: a quarter of the power."""
+    time = np.arange(0.0, 12_001.0, 60.0)
+    table = small(
+        time=time,
+        motor_temperature=60.0 - time / 1000.0,
+        temperature_slope=-1.0,
+        friction=40.0,
+        speed=50.0,
+        travel=1500.0 * np.arange(len(time)),
+    )
+    heat = -np.array(friction("thermal_lag", table, time_constant=300.0))[:, 1]
+    assert heat[-1] == pytest.approx(0.25, rel=1e-6)
+
+
+@pytest.mark.parametrize(("housing", "expected"), [(35.0, 10.0), (np.nan, 0.0)])
+def test_housing_moves_the_temperature_of_friction_where_it_is_known(housing, expected):
+    table = small(
+        time=[0.0], motor_temperature=40.0, housing_temperature=housing, temperature_slope=-2.0
+    )
+    assert friction("thermal_lag", table, time_constant=600.0)[0][2] == expected
+
+
+def test_drift_counts_hours_over_all_runs():
+    found = friction("drift", small(clock=[1800.0, 5400.0, 88_200.0], run=[0, 0, 1]))
+    assert found == [[0.0], [1.0], [24.0]]
+
+
+@pytest.mark.parametrize(("carried_over", "second_day"), [(0.0, 0.0), (1.0, 2.0), (0.5, 1.0)])
+def test_run_in_falls_with_the_way_and_may_carry_over(carried_over, second_day):
+    """First day 0 and 20,000 deg, second day from 0 again, with 10,000 deg to run in."""
+    table = small(travel=[0.0, 20_000.0, 0.0], run=[0, 0, 1])
+    found = friction("run_in", table, distance=10_000.0, carried_over=carried_over)
+    assert found == pytest.approx(np.array([[1.0], [np.exp(-2)], [np.exp(-second_day)]]))
+
+
+def test_rest_recovery_needs_a_rest_and_settles_with_the_pairs():
+    """Rest of one rest_time recovers 1 - 1/e; two pairs later 1/e of it is left."""
+    table = small(rest=[0.0, 100.0, 100.0, np.inf, np.nan], order=[0.0, 0.0, 2.0, 0.0, 0.0])
+    found = np.array(friction("rest_recovery", table, pairs=2.0, rest_time=100.0))[:, 0]
+    recovered = 1 - np.exp(-1)
+    assert found == pytest.approx([0.0, recovered, recovered * np.exp(-1), 1.0, 1.0])
+
+
+def test_step_comes_after_its_share_of_the_pairs_whatever_the_gaps_between_days():
+    """Of four pairs two are on each day: 0.5 is the night, 0.6 between the last two pairs."""
+    table = small(
+        clock=[0.0, 100.0, 86_400.0, 86_400.0, 86_500.0],
+        run=[0, 0, 1, 1, 1],
+        pair=[0, 1, 2, 2, 3],
+    )
+    steps = [np.ravel(friction("step_change", table, moment=m)).tolist() for m in (0.5, 0.6)]
+    assert steps == [[0.0, 0.0, 1.0, 1.0, 1.0], [0.0, 0.0, 0.0, 0.0, 1.0]]
+
+
+def test_direction_asymmetry_is_an_offset_and_a_share_of_viscous_friction():
+    found = load("direction_asymmetry", small(speed=[4.0, 100.0], viscous=[3.0, 2.0]))
+    assert found == [[1.0, 6.0], [1.0, 20.0]]
+
+
+def test_torque_constant_scales_both_channels_by_the_same_percentage():
+    """At 65 °C, 0.1 %/°C are 4 % of 50 and of -20."""
+    basis = BY_NAME["torque_constant"].evaluate(
+        small(motor_temperature=[65.0], friction=50.0, load=-20.0), {}
+    )
+    assert 0.1 * basis.friction[0, 0] == pytest.approx(0.04 * 50.0)
+    assert 0.1 * basis.load[0, 0] == pytest.approx(0.04 * -20.0)
+
+
+def test_payload_change_is_gravity_of_any_phase_from_the_moment_on():
+    found = load(
+        "payload_change", small(clock=[0.0, 1.0, 2.0], position=[0.0, 0.0, 90.0]), moment=0.3
+    )
+    assert found == pytest.approx(np.array([[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]]), abs=1e-12)
+
+
+def test_dress_pack_is_slack_in_the_middle_of_the_angles():
+    found = load("dress_pack", small(position=[0.0, 90.0, 180.0]))
+    assert found == pytest.approx(np.array([[-np.pi / 2], [0.0], [np.pi / 2]]))
+
+
+def test_ripple_repeats_with_its_order():
+    """Order 4 has a period of 90 deg: zero at 0, sine at its peak at 22.5 deg."""
+    found = friction("position_ripple", small(position=[0.0, 22.5, 90.0]), order=4.0)
+    assert found == pytest.approx(np.array([[0.0, 1.0], [1.0, 0.0], [0.0, 1.0]]), abs=1e-12)
+
+
+def move(position, start, stop, acceleration):
+    """Return the acceleration at an angle of a move that speeds up and brakes over 10 deg."""
+    forward = 1.0 if stop > start else -1.0
+    if abs(position - start) < 10.0:
+        return forward * acceleration[0]
+    return -forward * acceleration[1] if abs(position - stop) < 10.0 else 0.0
+
+
+@pytest.mark.parametrize("acceleration", [(3.0, 3.0), (5.0, 3.0)], ids=["equal", "unequal"])
+def test_inertia_has_the_parity_of_two_counter_directed_moves(acceleration):
+    """Sum and difference of simulated accelerations show where each column belongs."""
+    position = np.array([5.0, 50.0, 95.0])
+    there = np.array([move(q, 0.0, 100.0, acceleration) for q in position])
+    back = np.array([move(q, 100.0, 0.0, acceleration) for q in position])
+    table = small(position=position, pair=0, speed=200.0)
+    basis = BY_NAME["inertia"].evaluate(table, {"distance": 2.0})
+    mean, half_difference = (there + back) / 2, (there - back) / 2
+    np.testing.assert_allclose(basis.load[:, 0] / 4.0 * mean[0], mean, atol=1e-6)
+    np.testing.assert_allclose(
+        basis.friction[:, 1] / 4.0 * half_difference[0], half_difference, atol=1e-6
+    )
+    assert bool(half_difference.any()) == (acceleration[0] != acceleration[1])
+    assert not basis.load[:, 1].any()
+    assert not basis.friction[:, 0].any()
+
+
+@pytest.mark.parametrize("sign", [1, -1])
+def test_reversal_transient_is_what_separation_makes_of_a_build_up(sign):
+    """Friction 20, of which 8 are lacking at the reversal; torque load plus or less friction."""
+    position = np.array([0.0, 2.0, 5.0, 10.0])
+    forward = 20.0 - 8.0 * np.exp(-position / 2.0)
+    reverse = 20.0 - 8.0 * np.exp(-(10.0 - position) / 2.0)
+    torque_forward, torque_reverse = 30.0 + sign * forward, 30.0 - sign * reverse
+    basis = BY_NAME["reversal_transient"].evaluate(
+        small(position=position, pair=0), {"distance": 2.0}
+    )
+    coefficients = np.array([8.0, sign * 8.0])
+    np.testing.assert_allclose(
+        20.0 + basis.friction @ coefficients, sign * (torque_forward - torque_reverse) / 2
+    )
+    np.testing.assert_allclose(
+        30.0 + basis.load @ coefficients, (torque_forward + torque_reverse) / 2
+    )
