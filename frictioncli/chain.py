@@ -3,6 +3,7 @@
 Every function here is a command of the same name; what it returns prints as that command's output.
 """
 
+import json
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import asdict, dataclass, field
 from pathlib import Path
@@ -13,8 +14,13 @@ import pandas as pd
 from frictioncli import schemas, tables
 from frictioncli.correction import stage as correction
 from frictioncli.correction.settings import CorrectionSettings, EvaluationGrid, ScheduleSettings
+from frictioncli.diagnosis.applied import read_extensions, with_effects, without_effects
+from frictioncli.diagnosis.diagnose import diagnose_joint
+from frictioncli.diagnosis.document import diagnosis_document, extended_document, verdict_text
+from frictioncli.diagnosis.settings import DiagnosisSettings
 from frictioncli.errors import NotEnoughData
-from frictioncli.model.document import FrictionModel, read_models, write_models
+from frictioncli.files import write_text
+from frictioncli.model.document import FrictionModel, by_joint, read_models, write_models
 from frictioncli.model.fitting import fit_joint
 from frictioncli.model.settings import FitSettings
 from frictioncli.motion.pairing import pair_spans
@@ -22,7 +28,8 @@ from frictioncli.motion.phases import add_phases
 from frictioncli.motion.separation import separate as separate_pairs
 from frictioncli.motion.settings import PairingSettings
 from frictioncli.motion.spans import find_spans
-from frictioncli.provenance import Provenance, hashes
+from frictioncli.motion.summary import pairing_text, separation_text
+from frictioncli.provenance import Provenance, hashes, to_json
 from frictioncli.reading.ingest import ingest as ingest_logs
 from frictioncli.reading.settings import IngestSettings
 
@@ -31,6 +38,8 @@ RECORDINGS = "recordings.parquet"
 PAIRS = "pairs.parquet"
 TORQUES = "torques.parquet"
 MODEL = "model.json"
+DIAGNOSIS = "diagnosis.json"
+EXTENDED = "extended-model.json"
 SCHEDULE = "schedule.parquet"
 EVALUATION = "evaluation.parquet"
 
@@ -66,7 +75,7 @@ def pair(work: Path, settings: PairingSettings | None = None) -> Done:
         "bin_width": paired.bin_width,
     }
     _write(work / PAIRS, pairs, schemas.PAIRS, "pair", settings, [source], facts)
-    return Done(work / PAIRS, _pair_text(pairs, facts, settings))
+    return Done(work / PAIRS, pairing_text(pairs, facts, settings.bin_width))
 
 
 def separate(work: Path, sign: int | None = None) -> Done:
@@ -78,17 +87,7 @@ def separate(work: Path, sign: int | None = None) -> Done:
     if torques["load"].notna().any():
         facts["load_unit"] = "N·m"
     _write(work / TORQUES, torques, schemas.TORQUES, "separate", {"sign": sign}, [source], facts)
-    unit = facts.get("torque_unit", "N·m")
-    lines = []
-    for joint, group in torques.groupby("joint"):
-        convention = "load + friction" if signs[joint] > 0 else "load - friction"
-        origin = "inferred" if sign is None else "as told"
-        lines.append(
-            f"joint {joint}: forward torque is {convention} (sign {signs[joint]:+d}, {origin}),"
-            f" friction {_span(group['friction_torque'])} {unit},"
-            f" load {_span(group['load_torque'])} {facts.get('load_unit', unit)}"
-        )
-    return Done(work / TORQUES, "\n".join(lines))
+    return Done(work / TORQUES, separation_text(torques, signs, facts, told=sign is not None))
 
 
 def fit(work: Path, settings: FitSettings | None = None) -> Done:
@@ -97,31 +96,73 @@ def fit(work: Path, settings: FitSettings | None = None) -> Done:
     source = work / TORQUES
     facts = tables.facts(source)
     torques = tables.read(source, schemas.TORQUES)
-    models, faults = _each_joint(torques, lambda group: fit_joint(group, facts, settings))
+    models, faults = [], []
+    for _, group in torques.groupby("joint"):
+        try:
+            models.append(fit_joint(group, facts, settings))
+        except NotEnoughData as fault:
+            faults.append(str(fault))
+    if not models:
+        raise NotEnoughData("; ".join(faults))
     write_models(work / MODEL, models, Provenance("fit", asdict(settings), hashes([source])))
     return Done(work / MODEL, "\n".join([*(model.table() for model in models), *faults]))
+
+
+def diagnose(work: Path, settings: DiagnosisSettings | None = None) -> Done:
+    """Find what the simulated torque gets wrong: ``diagnosis.json``, ``extended-model.json``."""
+    settings = settings or DiagnosisSettings()
+    torques = tables.read(work / TORQUES, schemas.TORQUES)
+    unit = tables.facts(work / TORQUES).get("torque_unit", "N·m")
+    found, faults = [], []
+    for model in read_models(work / MODEL):
+        rows = torques[torques["joint"] == model.joint]
+        try:
+            found.append((model, diagnose_joint(rows, model.temperature, unit, settings)))
+        except NotEnoughData as fault:
+            faults.append(str(fault))
+    if not found:
+        raise NotEnoughData("; ".join(faults))
+    provenance = Provenance("diagnose", asdict(settings), hashes([work / TORQUES, work / MODEL]))
+    chief = max(found, key=lambda pair: pair[0].n_pairs)[0].joint
+    for name, documents in (
+        (DIAGNOSIS, {m.joint: diagnosis_document(d, settings) for m, d in found}),
+        (EXTENDED, {m.joint: extended_document(d, m) for m, d in found}),
+    ):
+        write_text(work / name, to_json(by_joint(documents, chief, provenance)))
+    return Done(work / DIAGNOSIS, "\n".join([*(verdict_text(d) for _, d in found), *faults]))
+
+
+def has_finding(work: Path, *, named_only: bool) -> bool:
+    """Return whether ``diagnosis.json`` holds a cause, or one that has a single name."""
+    whole = json.loads((work / DIAGNOSIS).read_text(encoding="utf-8"))
+    causes = [
+        cause for part in whole.get("joints", {"": whole}).values() for cause in part["causes"]
+    ]
+    return any(len(cause["effects"]) == 1 or not named_only for cause in causes)
 
 
 def simulate(
     work: Path,
     schedule: ScheduleSettings | None = None,
     settings: CorrectionSettings | None = None,
+    *,
+    extended: bool = False,
 ) -> Done:
-    """Simulate Algorithm 3 with one criterion: ``schedule.parquet``."""
+    """Simulate Algorithm 3 with one criterion, on the base or the extended model."""
     schedule = schedule or ScheduleSettings()
     settings = settings or CorrectionSettings()
 
     def simulated(torques: pd.DataFrame, model: FrictionModel) -> pd.DataFrame:
         return correction.simulate(torques, model, settings, schedule)
 
-    rows, faults, facts = _each_model(work, simulated)
+    rows, faults, facts = _each_model(work, simulated, extended)
     _write(
         work / SCHEDULE,
         rows,
         schemas.SCHEDULE,
         "simulate",
-        asdict(schedule) | asdict(settings),
-        [work / TORQUES, work / MODEL],
+        asdict(schedule) | asdict(settings) | {"extended": extended},
+        [work / TORQUES, work / (EXTENDED if extended else MODEL)],
         facts,
     )
     unit = facts.get("torque_unit", "N·m")
@@ -136,23 +177,27 @@ def simulate(
 
 
 def evaluate(
-    work: Path, grid: EvaluationGrid | None = None, settings: CorrectionSettings | None = None
+    work: Path,
+    grid: EvaluationGrid | None = None,
+    settings: CorrectionSettings | None = None,
+    *,
+    extended: bool = False,
 ) -> Done:
-    """Evaluate all criteria over a grid of k and tmax: ``evaluation.parquet``."""
+    """Evaluate all criteria over a grid of k and tmax, on the base or the extended model."""
     grid = grid or EvaluationGrid()
     settings = settings or CorrectionSettings()
 
     def evaluated(torques: pd.DataFrame, model: FrictionModel) -> pd.DataFrame:
         return correction.evaluate(torques, model, settings, grid)
 
-    rows, faults, facts = _each_model(work, evaluated)
+    rows, faults, facts = _each_model(work, evaluated, extended)
     _write(
         work / EVALUATION,
         rows,
         schemas.EVALUATION,
         "evaluate",
-        asdict(grid) | asdict(settings),
-        [work / TORQUES, work / MODEL],
+        asdict(grid) | asdict(settings) | {"extended": extended},
+        [work / TORQUES, work / (EXTENDED if extended else MODEL)],
         facts,
     )
     text = correction.evaluation_text(rows, facts.get("torque_unit", "N·m"))
@@ -202,9 +247,12 @@ def run(
     Notes
     -----
     A log without a thermal cycle has no corrections to simulate; those two stages are then left
-    out, and said so, and the tables of a former run are removed.
+    out, and said so, and the tables of a former run are removed. So is a former diagnosis: it is
+    not of these data. ``diagnose`` is a step of its own.
     """
     chosen = settings or RunSettings()
+    for name in (DIAGNOSIS, EXTENDED):
+        (work / name).unlink(missing_ok=True)
     tell("ingest", ingest(logs, work, chosen.ingest))
     tell("pair", pair(work, chosen.pairing))
     tell("separate", separate(work, chosen.sign))
@@ -247,55 +295,24 @@ def _given_phases(path: Path, pairs: pd.DataFrame) -> pd.Series:
     return pd.Series(given["phase"].reindex(keys).to_numpy(), index=pairs.index, dtype=object)
 
 
-def _each_joint(
-    torques: pd.DataFrame, work_on: Callable[[pd.DataFrame], FrictionModel]
-) -> tuple[list[FrictionModel], list[str]]:
-    """Return the models of the joints that have one, and why the others have none."""
-    models, faults = [], []
-    for _, group in torques.groupby("joint"):
-        try:
-            models.append(work_on(group))
-        except NotEnoughData as fault:
-            faults.append(str(fault))
-    if not models:
-        raise NotEnoughData("; ".join(faults))
-    return models, faults
-
-
 def _each_model(
-    work: Path, work_on: Callable[[pd.DataFrame, FrictionModel], pd.DataFrame]
+    work: Path, work_on: Callable[[pd.DataFrame, FrictionModel], pd.DataFrame], extended: bool
 ) -> tuple[pd.DataFrame, list[str], dict[str, Any]]:
     """Return the rows of the joints that give some, why others give none, and the facts."""
     torques = tables.read(work / TORQUES, schemas.TORQUES)
+    source = work / (EXTENDED if extended else MODEL)
+    extensions = read_extensions(source) if extended else {}
     rows, faults = [], []
-    for model in read_models(work / MODEL):
+    for model in read_models(source):
+        own = torques[torques["joint"] == model.joint]
         try:
-            rows.append(work_on(torques[torques["joint"] == model.joint], model))
+            if extended:
+                bare, base, added = without_effects(own, model, extensions[model.joint])
+                rows.append(with_effects(work_on(bare, base), added))
+            else:
+                rows.append(work_on(own, model))
         except NotEnoughData as fault:
             faults.append(str(fault))
     if not rows:
-        raise NotEnoughData("; ".join(faults) or f"{work / MODEL} has no model of these joints")
+        raise NotEnoughData("; ".join(faults) or f"{source} has no model of these joints")
     return pd.concat(rows, ignore_index=True), faults, tables.facts(work / TORQUES)
-
-
-def _span(values: pd.Series) -> str:
-    return f"{values.min():.3g} to {values.max():.3g}"
-
-
-def _pair_text(pairs: pd.DataFrame, facts: Mapping[str, Any], settings: PairingSettings) -> str:
-    lines = []
-    if facts["bin_width"] > settings.bin_width:
-        lines.append(
-            f"angle bins widened from {settings.bin_width:g} to {facts['bin_width']:g} deg: the"
-            " joint moves that far between samples"
-        )
-    heads = pairs.drop_duplicates(["run", "joint", "pair"])
-    for joint, group in heads.groupby("joint"):
-        speeds = group["speed"].round(1).value_counts().sort_index()
-        told = ", ".join(f"{count} at {speed:g}" for speed, count in speeds.head(12).items())
-        more = f" and {len(speeds) - 12} other speeds" if len(speeds) > 12 else ""
-        lines.append(f"joint {joint}: {len(group)} pairs: {told}{more} deg/s")
-    kept = int(pairs["n_forward"].sum() + pairs["n_reverse"].sum())
-    dropped = "; ".join(f"{reason} {count}" for reason, count in facts["dropped"].items() if count)
-    lines.append(f"samples: {facts['samples']} read, {kept} in pairs; dropped: {dropped or 0}")
-    return "\n".join(lines)

@@ -7,6 +7,7 @@ import typer
 
 from frictioncli.cli import options as o
 from frictioncli.correction.settings import CorrectionSettings, EvaluationGrid, ScheduleSettings
+from frictioncli.diagnosis.settings import DiagnosisSettings
 from frictioncli.errors import OptionError
 from frictioncli.model.settings import FitSettings
 from frictioncli.motion.settings import PairingSettings, SteadySettings
@@ -128,13 +129,14 @@ def simulate(
     criterion: o.Criterion = o.SCHEDULE.criterion,
     correction_speed: o.CorrectionSpeed = None,
     smoothing_degree: o.SmoothingDegree = o.CORRECTION.smoothing_degree,
+    extended: o.Extended = False,
 ) -> None:
     """Simulate the temperature correction of Algorithm 3; tmax in minutes, epsilon in N·m."""
     from frictioncli import chain
 
     schedule = ScheduleSettings(criterion=criterion, k=k, tmax=tmax * 60)
     correction = o.chosen(CorrectionSettings, locals())
-    typer.echo(chain.simulate(work, schedule, correction))
+    typer.echo(chain.simulate(work, schedule, correction, extended=extended))
 
 
 @app.command()
@@ -144,12 +146,30 @@ def evaluate(
     tmax: o.TMaxGrid = None,
     correction_speed: o.CorrectionSpeed = None,
     smoothing_degree: o.SmoothingDegree = o.CORRECTION.smoothing_degree,
+    extended: o.Extended = False,
 ) -> None:
     """Evaluate correction schedules over k and tmax [min]: epsilon [N·m] by corrections."""
     from frictioncli import chain
 
     correction = o.chosen(CorrectionSettings, locals())
-    typer.echo(chain.evaluate(work, _grid(k, tmax), correction))
+    typer.echo(chain.evaluate(work, _grid(k, tmax), correction, extended=extended))
+
+
+@app.command()
+def diagnose(
+    work: o.Work = o.WORK,
+    alpha: o.Alpha = o.DIAGNOSIS.alpha,
+    seed: o.DiagnosisSeed = o.DIAGNOSIS.seed,
+    most: o.Most = o.DIAGNOSIS.most,
+    fail_on: o.FailOn = None,
+) -> None:
+    """Find what the simulated torque [N·m] gets wrong, name the cause, measure the gain."""
+    from frictioncli import chain
+
+    o.check_fail_on(fail_on)
+    typer.echo(chain.diagnose(work, o.chosen(DiagnosisSettings, locals())))
+    if fail_on and chain.has_finding(work, named_only=fail_on == "named"):
+        raise typer.Exit(3)
 
 
 @app.command()
@@ -219,6 +239,12 @@ def synthesize(
     ambient_drift: o.AmbientDrift = None,
     motor_heat_share: o.MotorHeatShare = None,
     noise_scale: o.NoiseScale = o.SYNTHESIS.noise_scale,
+    effects: o.Effects = None,
+    blind: o.Blind = False,
+    joint_kind: o.JointKind = o.SYNTHESIS.joint_kind,
+    noise_kind: o.NoiseKind = o.SYNTHESIS.noise_kind,
+    protocol: o.Protocol = o.SYNTHESIS.protocol,
+    thin: o.Thin = o.SYNTHESIS.thin,
 ) -> None:
     """Simulate a joint (deg, deg/s, N·m, °C, kg) and write its traces with truth.json."""
     from frictioncli.simulator.synthesize import synthesize as make

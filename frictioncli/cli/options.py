@@ -13,9 +13,16 @@ from frictioncli.correction.settings import (
     EvaluationGrid,
     ScheduleSettings,
 )
+from frictioncli.diagnosis.settings import DiagnosisSettings
+from frictioncli.errors import OptionError
 from frictioncli.model.settings import METHODS, TEMPERATURES, FitSettings
 from frictioncli.motion.settings import PairingSettings, SteadySettings
-from frictioncli.simulator.settings import SynthesisSettings
+from frictioncli.simulator.settings import (
+    JOINT_KINDS,
+    NOISE_KINDS,
+    PROTOCOLS,
+    SynthesisSettings,
+)
 
 PAIRING = PairingSettings()
 STEADY = SteadySettings()
@@ -25,6 +32,7 @@ GRID = EvaluationGrid()
 CORRECTION = CorrectionSettings()
 WORK = Path("friction-run")
 
+DIAGNOSIS = DiagnosisSettings()
 SYNTHESIS = SynthesisSettings()
 
 _READ, _PAIR, _FIT, _CORRECT = "Reading", "Pairing", "Model", "Correction"
@@ -137,6 +145,16 @@ SmoothingDegree = Annotated[
     int,
     typer.Option(help="Degree of the polynomial that smooths (21).", rich_help_panel=_CORRECT),
 ]
+Extended = Annotated[
+    bool, typer.Option("--extended", help="Use extended-model.json.", rich_help_panel=_CORRECT)
+]
+Alpha = Annotated[float, typer.Option(help="Chance of finding a cause where there is none.")]
+DiagnosisSeed = Annotated[int, typer.Option("--seed", help="Seed of the simulated noise.")]
+Most = Annotated[int, typer.Option(help="Greatest number of causes, up to 4.")]
+FailOn = Annotated[
+    str | None, typer.Option(help="Exit with 3 if there is such a finding: any, named.")
+]
+
 Seed = Annotated[int, typer.Option(help="Seed; the same one gives the same bytes.")]
 Runs = Annotated[int, typer.Option(help="Number of runs, one per day.")]
 SimulatedJoint = Annotated[int, typer.Option(help="Number of the axis in the channel names.")]
@@ -159,6 +177,37 @@ MotorHeatShare = Annotated[
     typer.Option(help=f"Share of heat entering at the motor. {SYNTHESIS.motor_heat_share}"),
 ]
 NoiseScale = Annotated[float, typer.Option(help="Factor on all noise; 0 is bare physics.")]
+Effects = Annotated[
+    list[str] | None,
+    typer.Option(
+        "--effect",
+        metavar="NAME[:SIZE]",
+        help="Effect to hide, repeatable; SIZE is its RMS at constant speed [N·m], 0.5 to 2 if "
+        "not given. A wrong name lists all.",
+    ),
+]
+Blind = Annotated[
+    bool,
+    typer.Option(
+        "--blind", help="Write the truth to FOLDER-truth.json beside the folder, and tell nothing."
+    ),
+]
+JointKind = Annotated[
+    str,
+    typer.Option(
+        help=f"Friction of the joint: {', '.join(JOINT_KINDS)}; plain is equation (16) of the "
+        "motor temperature [°C]."
+    ),
+]
+NoiseKind = Annotated[str, typer.Option(help=f"Kind of noise [N·m]: {', '.join(NOISE_KINDS)}.")]
+Protocol = Annotated[
+    str,
+    typer.Option(
+        help=f"Motions: {', '.join(PROTOCOLS)}; enriched has 10 speeds [deg/s] in random order, "
+        "two thermal cycles, three payloads [kg], pauses [s]."
+    ),
+]
+Thin = Annotated[int, typer.Option(help="Log every so many-th sample of 0.012 s only.")]
 
 Settings = TypeVar("Settings")
 
@@ -169,3 +218,9 @@ def chosen(kind: type[Settings], given: Mapping[str, Any]) -> Settings:
     named = {name: given[name] for name in names if given.get(name) is not None}
     lists = {name: tuple(value) for name, value in named.items() if isinstance(value, list)}
     return kind(**named | lists)
+
+
+def check_fail_on(value: str | None) -> None:
+    """Raise OptionError if ``--fail-on`` is given something that it does not know."""
+    if value not in (None, "any", "named"):
+        raise OptionError(f"--fail-on {value}: expected any or named")

@@ -128,13 +128,29 @@ def write_models(path: Path, models: list[FrictionModel], provenance: Provenance
     provenance : Provenance
         What made them.
     """
-    documents = {model.joint: _document(model) for model in models}
-    chief = max(models, key=lambda model: (model.n_pairs, -model.joint))
-    whole = dict(documents[chief.joint])
-    if len(models) > 1:
+    chief = max(models, key=lambda model: (model.n_pairs, -model.joint)).joint
+    documents = {model.joint: model_document(model) for model in models}
+    write_text(path, to_json(by_joint(documents, chief, provenance)))
+
+
+def by_joint(
+    documents: Mapping[int, dict[str, Any]], chief: int, provenance: Provenance
+) -> dict[str, Any]:
+    """Return one document for several joints: the chief one on top, all under ``joints``.
+
+    Parameters
+    ----------
+    documents : mapping of int to dict
+        Joint -> its own document.
+    chief : int
+        The joint whose document stands on top.
+    provenance : Provenance
+        What made them.
+    """
+    whole = dict(documents[chief])
+    if len(documents) > 1:
         whole["joints"] = {str(joint): documents[joint] for joint in sorted(documents)}
-    whole["provenance"] = provenance.as_dict()
-    write_text(path, to_json(whole))
+    return whole | {"provenance": provenance.as_dict()}
 
 
 def read_models(path: Path) -> list[FrictionModel]:
@@ -156,7 +172,8 @@ def read_models(path: Path) -> list[FrictionModel]:
         ) from error
 
 
-def _document(model: FrictionModel) -> dict[str, Any]:
+def model_document(model: FrictionModel) -> dict[str, Any]:
+    """Return a model as plain values, in the form of ``model.json``."""
     return {"form": FORM, "speed_unit": "deg/s"} | asdict(model)
 
 

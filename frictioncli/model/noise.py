@@ -104,7 +104,12 @@ class PairCovariance:
 
 
 def pair_covariance(
-    noise: Noise, *, time: Array, run: NDArray[np.intp], bins: Array
+    noise: Noise,
+    *,
+    time: Array,
+    run: NDArray[np.intp],
+    bins: Array,
+    extra: Array | float = 0.0,
 ) -> PairCovariance:
     """Return the covariance of pair means.
 
@@ -118,8 +123,10 @@ def pair_covariance(
         Run of each pair; pairs of a run stand together.
     bins : ndarray, shape (pairs,)
         Number of angle bins averaged in each pair.
+    extra : ndarray, shape (pairs,), optional
+        Further variance of the pair means, as of an uncertain temperature. [(N·m)²]
     """
-    white = noise.pair**2 + noise.point**2 / bins
+    white = noise.pair**2 + noise.point**2 / bins + extra
     # a drift of zero would have an infinite precision: keep it far below everything else
     variance = max(noise.drift**2, 1e-9 * float(np.mean(white)))
     step = np.where(np.diff(run) == 0, np.diff(time), np.inf)
@@ -177,6 +184,7 @@ def plausible_noise(
     run: NDArray[np.intp],
     bins: Array,
     point: float,
+    extra: Array | float = 0.0,
 ) -> list[tuple[Noise, float]]:
     """Return noises that agree with the residuals and how plausible each is, best first.
 
@@ -198,6 +206,8 @@ def plausible_noise(
         Angle bins of each pair.
     point : float
         Standard deviation of one bin, known from within the pairs. [N·m]
+    extra : ndarray, shape (pairs,), optional
+        Further variance of the pair means that is known beforehand. [(N·m)²]
 
     Returns
     -------
@@ -205,7 +215,8 @@ def plausible_noise(
         The weights sum to 1.
     """
     # an orthonormal basis: alpha's column may be a multiple of tau_c's, and units differ widely
-    basis, size, _ = np.linalg.svd(design / np.linalg.norm(design, axis=0), full_matrices=False)
+    length = np.linalg.norm(design, axis=0)
+    basis, size, _ = np.linalg.svd(design / np.where(length > 0, length, 1.0), full_matrices=False)
     basis = basis[:, size > 1e-9 * size[0]]
     scale = max(float(np.std(residual)), 1e-9)
     gaps = np.diff(time)[np.diff(run) == 0]
@@ -218,7 +229,8 @@ def plausible_noise(
         return Noise(point=point, pair=float(pair), drift=float(drift), drift_time=duration)
 
     def cost(logs: Array, duration: float) -> float:
-        covariance = pair_covariance(of(logs, duration), time=time, run=run, bins=bins)
+        noise = of(logs, duration)
+        covariance = pair_covariance(noise, time=time, run=run, bins=bins, extra=extra)
         return -restricted_log_likelihood(covariance, residual, basis)
 
     bounds = [(np.log(scale * 1e-3), np.log(scale * 10))] * 2

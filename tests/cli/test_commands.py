@@ -22,6 +22,7 @@ COMMANDS = (
     "fit",
     "simulate",
     "evaluate",
+    "diagnose",
     "report",
     "run",
     "synthesize",

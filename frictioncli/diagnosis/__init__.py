@@ -1,0 +1,1 @@
+"""What the simulated torque gets wrong: found, named, extended, and the gain measured."""

@@ -1,0 +1,161 @@
+"""The base model with the causes found: refitted together, judged on data that it has not seen."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from frictioncli.diagnosis.candidates import Channels, Score, base_columns, effect_columns
+from frictioncli.diagnosis.problem import Problem
+
+Array = NDArray[np.float64]
+
+_BLOCK = 12
+"""Pairs drawn together when the gain's interval is made: neighbours are not independent."""
+
+_DRAWS = 1000
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Extension:
+    """Changes of the base model, and effects, fitted together.
+
+    The extended friction is the base's, plus its derivatives by the parameters times their changes,
+    plus the effects: linear about the base, as the effects themselves are.
+
+    Attributes
+    ----------
+    names : tuple of str
+        Friction parameters that were fitted.
+    changes : ndarray, shape (names,)
+        Their changes from the base.
+    gravity : ndarray, shape (3,)
+        Coefficients of cos q, sin q and 1. [N·m]
+    effects : tuple of Score
+        Effects with their shapes and coefficients.
+    errors : ndarray
+        Standard errors of the changes, the gravity and the effects' coefficients, in this order.
+    """
+
+    names: tuple[str, ...]
+    changes: Array
+    gravity: Array
+    effects: tuple[Score, ...]
+    errors: Array
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Gain:
+    """What an extension is worth.
+
+    Attributes
+    ----------
+    basis : {"new_run", "within_run"}
+        Whether the data were new to the extension.
+    before, after : float
+        RMS misfit of the simulated torque without and with it. [N·m]
+    reduction : float
+        Share of the misfit that it takes away.
+    interval : (float, float)
+        95 % interval of that share.
+    floor : float
+        RMS of what no model can predict: point and pair noise. [N·m]
+    """
+
+    basis: str
+    before: float
+    after: float
+    reduction: float
+    interval: tuple[float, float]
+    floor: float
+
+
+def extend(problem: Problem, channels: Channels, effects: Sequence[Score]) -> Extension:
+    """Fit the base and the effects together by weighted least squares.
+
+    Parameters
+    ----------
+    problem, channels : Problem, Channels
+        Data with the base model, and the whiteners.
+    effects : sequence of Score
+        Effects with the shapes found.
+    """
+    columns = [effect_columns(one.effect, problem, channels, one.shape) for one in effects]
+    system = base_columns(problem, channels, columns)
+    misfit = channels.whiten(
+        problem.friction_misfit[:, np.newaxis], problem.load_misfit[:, np.newaxis]
+    )[:, 0]
+    size = np.linalg.norm(system, axis=0)
+    size = np.where(size > 0, size, 1.0)
+    scaled = system / size
+    inverse = np.asarray(np.linalg.pinv(scaled.T @ scaled, rcond=1e-10, hermitian=True))
+    step = inverse @ (scaled.T @ misfit) / size
+    friction = len(problem.names)
+    start = friction + len(problem.gravity)
+    fitted = []
+    for one in effects:
+        count = len(one.effect.coefficients)
+        fitted.append(replace(one, coefficients=step[start : start + count]))
+        start += count
+    return Extension(
+        names=problem.names,
+        changes=step[:friction],
+        gravity=problem.gravity + step[friction : friction + len(problem.gravity)],
+        effects=tuple(fitted),
+        errors=np.sqrt(np.maximum(np.diag(inverse), 0.0)) / size,
+    )
+
+
+def misfits(problem: Problem, extension: Extension) -> tuple[Array, Array]:
+    """Return what an extension leaves of both channels, shape (rows,) each. [N·m]."""
+    friction = problem.friction_misfit - problem.friction_base @ extension.changes
+    load = problem.load_misfit - problem.load_base @ (extension.gravity - problem.gravity)
+    for one in extension.effects:
+        basis = problem.basis(one.effect, one.shape)
+        friction = friction - basis.friction @ one.coefficients
+        load = load - basis.load @ one.coefficients
+    return friction, load
+
+
+def measured_gain(
+    problem: Problem, extension: Extension, *, basis: str, floor: float, seed: int
+) -> Gain:
+    """Return what an extension takes away of the misfit of the simulated torque.
+
+    Parameters
+    ----------
+    problem : Problem
+        Rows to be judged on, with the base model of the extension's own problem.
+    extension : Extension
+        The extension.
+    basis : {"new_run", "within_run"}
+        Whether these rows were new to it.
+    floor : float
+        RMS of point and pair noise. [N·m]
+    seed : int
+        Seed of the drawn blocks.
+    """
+    layout = problem.layout
+    # forward torque misses by load + friction, reverse by load - friction: mean square f² + l²
+    before = np.square(problem.friction_misfit) + np.square(problem.load_misfit)
+    friction, load = misfits(problem, extension)
+    after = np.square(friction) + np.square(load)
+    sums = np.column_stack(
+        [np.bincount(layout.row_pair, weights=values) for values in (before, after, 0 * after + 1)]
+    )
+    starts = np.arange(0, len(sums), _BLOCK)
+    blocks = np.add.reduceat(sums, starts, axis=0)
+    generator = np.random.default_rng(seed)
+    drawn = blocks[generator.integers(0, len(blocks), (_DRAWS, len(blocks)))].sum(axis=1)
+    share = 1 - np.sqrt(drawn[:, 1] / np.maximum(drawn[:, 0], 1e-300))
+    low, high = np.quantile(share, [0.025, 0.975])
+    old, new = float(np.sqrt(np.mean(before))), float(np.sqrt(np.mean(after)))
+    return Gain(
+        basis=basis,
+        before=old,
+        after=new,
+        reduction=1 - new / max(old, 1e-300),
+        interval=(float(low), float(high)),
+        floor=floor,
+    )

@@ -1,0 +1,297 @@
+r"""The two channels of one joint with the simulation of its torque: what diagnosis works on.
+
+The simulated torque along the measured motion is the fitted friction (16) plus the fitted gravity
+:math:`l_g = P \cos q + Q \sin q + c`. Its misfit has an even part, the friction channel, and an
+odd part, the load channel. Friction is refitted with the smooth gravity as its load, so that an
+odd effect cannot leak into :math:`\alpha L^2`.
+"""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, fields, replace
+
+import numpy as np
+import pandas as pd
+from numpy.typing import NDArray
+
+from frictioncli.diagnosis.history import clock_of, series, travel_of
+from frictioncli.diagnosis.whitening import PairLayout
+from frictioncli.effects.base import Basis, Effect, EffectTable
+from frictioncli.model.determinacy import determined_fit
+from frictioncli.model.document import PARAMETERS
+from frictioncli.model.friction import FrictionParameters, friction_torque
+from frictioncli.model.observations import observations
+from frictioncli.model.zero_load import PAIR_KEY, temperature_of
+
+Array = NDArray[np.float64]
+
+_REBUILT = 0.05
+_REGISTERED = 0.29
+"""Error of the motor temperature where it was rebuilt between its steps, and where it was not:
+a step of 1 °C has a standard deviation of 1/sqrt(12). [°C]"""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Problem:
+    """One joint's measurements and base model, rows by run, time and angle.
+
+    Attributes
+    ----------
+    table : EffectTable
+        The rows, with the base model.
+    whole : EffectTable
+        The rows of all runs: an effect that remembers is evaluated on them.
+    rows : ndarray of int, shape (rows,)
+        Which of those the problem has.
+    layout : PairLayout
+        Which rows make up which pair.
+    friction, load : ndarray, shape (rows,)
+        Measured friction and load torque. [N·m]
+    friction_base, load_base : ndarray, shape (rows, parameters)
+        Derivatives of the simulated torque by the base parameters.
+    names : tuple of str
+        Friction parameters that the columns of ``friction_base`` belong to.
+    parameters : FrictionParameters
+        Friction refitted to these data.
+    gravity : ndarray, shape (3,)
+        Coefficients of cos q, sin q and 1. [N·m]
+    own_load : bool
+        Whether the log has a load channel of its own; the base's load is then that.
+    temperature_error : float
+        Error of the motor temperature. [°C]
+    runs : tuple of str
+        Names of the runs, in order.
+    """
+
+    table: EffectTable
+    whole: EffectTable
+    rows: NDArray[np.intp]
+    layout: PairLayout
+    friction: Array
+    load: Array
+    friction_base: Array
+    load_base: Array
+    names: tuple[str, ...]
+    parameters: FrictionParameters
+    gravity: Array
+    own_load: bool
+    temperature_error: float
+    runs: tuple[str, ...]
+
+    def basis(self, effect: Effect, shape: Mapping[str, float]) -> Basis:
+        """Return an effect's columns at these rows, with all runs as its history."""
+        friction, load = effect.evaluate(self.whole, shape)
+        return Basis(friction[self.rows], load[self.rows])
+
+    @property
+    def temperature_variance(self) -> Array:
+        """Variance that an uncertain temperature gives to pair means, shape (pairs,)."""
+        slope = self.layout.means(self.table.temperature_slope[:, np.newaxis])[:, 0]
+        return np.square(self.temperature_error * slope)
+
+    @property
+    def friction_misfit(self) -> Array:
+        """Measured minus simulated friction torque, shape (rows,). [N·m]."""
+        return self.friction - self.table.friction
+
+    @property
+    def load_misfit(self) -> Array:
+        """Measured minus simulated load torque, shape (rows,). [N·m]."""
+        return self.load - self.load_base @ self.gravity
+
+
+def gravity_columns(position: Array) -> Array:
+    """Return the columns of the gravity torque of a rotating arm, shape (rows, 3)."""
+    angle = np.radians(position)
+    return np.column_stack([np.cos(angle), np.sin(angle), np.ones_like(angle)])
+
+
+def build_problems(
+    torques: pd.DataFrame, temperature: str, held_out: str | None = None
+) -> tuple[Problem, Problem | None]:
+    """Return the problem of one joint, and that of a run that is kept out of it.
+
+    The base model is fitted to the first one's rows only; the second is simulated with it.
+
+    Parameters
+    ----------
+    torques : DataFrame
+        Rows of :data:`frictioncli.schemas.TORQUES` of a single joint.
+    temperature : {"motor", "housing", "mean"}
+        Temperature that the friction function is given.
+    held_out : str, optional
+        Name of the run that is kept out.
+    """
+    rows = torques.sort_values(["run", "time", "pair", "position"], ignore_index=True)
+    new = (rows["run"] == held_out).to_numpy()
+    columns = gravity_columns(rows["position"].to_numpy(float))
+    load = rows["load_torque"].to_numpy(float)
+    gravity = np.linalg.lstsq(columns[~new], load[~new], rcond=None)[0]
+    smooth = columns @ gravity if rows["load"].isna().all() else load
+    observed = observations(rows.assign(load_torque=smooth)[~new], temperature)
+    estimate, _ = determined_fit(observed)
+    whole = _assembled(rows, temperature, smooth, gravity, estimate.parameters, estimate.names)
+    return _part(whole, ~new), _part(whole, new) if new.any() else None
+
+
+def simulated(
+    torques: pd.DataFrame, temperature: str, parameters: FrictionParameters, gravity: Array
+) -> tuple[pd.Index, Problem]:
+    """Return the problem of given rows under a given base, and the rows' labels in its order.
+
+    Parameters
+    ----------
+    torques : DataFrame
+        Rows of :data:`frictioncli.schemas.TORQUES` of a single joint.
+    temperature : {"motor", "housing", "mean"}
+        Temperature that the friction function is given.
+    parameters : FrictionParameters
+        Its parameters.
+    gravity : ndarray, shape (3,)
+        Coefficients of cos q, sin q and 1. [N·m]
+    """
+    rows = torques.sort_values(["run", "time", "pair", "position"])
+    load = rows["load_torque"].to_numpy(float)
+    if rows["load"].isna().all():
+        load = gravity_columns(rows["position"].to_numpy(float)) @ gravity
+    problem = _assembled(
+        rows.reset_index(drop=True), temperature, load, gravity, parameters, PARAMETERS
+    )
+    return rows.index, problem
+
+
+def _assembled(
+    rows: pd.DataFrame,
+    temperature: str,
+    load: Array,
+    gravity: Array,
+    parameters: FrictionParameters,
+    names: tuple[str, ...],
+) -> Problem:
+    pair = rows.groupby(PAIR_KEY, sort=False, observed=True).ngroup().to_numpy()
+    run, run_names = pd.factorize(rows["run"])
+    speed = rows["speed"].to_numpy(float)
+    warm = np.nan_to_num(temperature_of(rows, temperature).to_numpy(float), nan=0.0)
+    heads = np.flatnonzero(np.diff(pair, prepend=-1))
+    position = rows["position"].to_numpy(float)
+    layout = PairLayout.of(
+        row_pair=pair,
+        run=run[heads],
+        time=rows["time"].to_numpy(float)[heads],
+        speed=speed[heads],
+        position=position,
+    )
+    rest, order = series(layout)
+    table = EffectTable(
+        run=run,
+        pair=pair,
+        time=rows["time"].to_numpy(float),
+        clock=clock_of(layout)[pair],
+        speed=speed,
+        position=position,
+        load=load,
+        temperature=warm,
+        motor_temperature=rows["motor_temperature"].to_numpy(float),
+        housing_temperature=rows["housing_temperature"].to_numpy(float),
+        friction=np.zeros_like(speed),
+        viscous=np.zeros_like(speed),
+        temperature_slope=np.zeros_like(speed),
+        travel=travel_of(rows, layout)[pair],
+        rest=rest[pair],
+        order=order[pair],
+    )
+    reading = rows["motor_temperature_reading"].to_numpy(float)
+    rebuilt = np.nanmax(np.abs(reading - warm), initial=0.0) > 1e-6
+    empty = Problem(
+        table=table,
+        whole=table,
+        rows=np.arange(len(run)),
+        layout=layout,
+        friction=rows["friction_torque"].to_numpy(float),
+        load=rows["load_torque"].to_numpy(float),
+        friction_base=np.empty((len(run), 0)),
+        load_base=gravity_columns(position),
+        names=names,
+        parameters=parameters,
+        gravity=gravity,
+        own_load=bool(rows["load"].notna().any()),
+        temperature_error=_REBUILT if rebuilt else _REGISTERED,
+        runs=tuple(str(name) for name in run_names),
+    )
+    return _with_model(empty, parameters, gravity)
+
+
+def _with_model(problem: Problem, parameters: FrictionParameters, gravity: Array) -> Problem:
+    """Return the problem with its torque simulated by another base model.
+
+    Parameters
+    ----------
+    problem : Problem
+        The rows.
+    parameters : FrictionParameters
+        Friction of the base.
+    gravity : ndarray, shape (3,)
+        Coefficients of cos q, sin q and 1. [N·m]
+    """
+    whole = _modelled(problem.whole, parameters, None if problem.own_load else gravity)
+    table = _modelled(problem.table, parameters, None if problem.own_load else gravity)
+    root_speed = np.sqrt(table.speed)
+    decay = np.exp(-parameters.delta * table.temperature)
+    derivative = {
+        "tau_c": np.ones_like(root_speed),
+        "alpha": np.square(table.load),
+        "beta": root_speed,
+        "gamma": root_speed * decay,
+        "delta": -parameters.gamma * table.temperature * decay * root_speed,
+    }
+    return replace(
+        problem,
+        table=table,
+        whole=whole,
+        friction_base=np.column_stack([derivative[name] for name in problem.names]),
+        parameters=parameters,
+        gravity=gravity,
+    )
+
+
+def _modelled(
+    table: EffectTable, parameters: FrictionParameters, gravity: Array | None
+) -> EffectTable:
+    """Return a table with the columns that depend on the base model."""
+    load = table.load if gravity is None else gravity_columns(table.position) @ gravity
+    decay = np.exp(-parameters.delta * table.temperature)
+    return replace(
+        table,
+        load=load,
+        friction=friction_torque(
+            parameters, load=load, speed=table.speed, temperature=table.temperature
+        ),
+        viscous=parameters.beta + parameters.gamma * decay,
+        temperature_slope=-parameters.delta * parameters.gamma * decay * np.sqrt(table.speed),
+    )
+
+
+def _part(whole: Problem, chosen: NDArray[np.bool_]) -> Problem:
+    """Return the problem of some runs; rows of whole pairs are chosen."""
+    table = EffectTable(
+        **{field.name: getattr(whole.table, field.name)[chosen] for field in fields(EffectTable)}
+    )
+    pairs = np.unique(whole.layout.row_pair[chosen])
+    row_pair = np.searchsorted(pairs, whole.layout.row_pair[chosen])
+    layout = PairLayout.of(
+        row_pair=row_pair,
+        run=whole.layout.run[pairs],
+        time=whole.layout.time[pairs],
+        speed=table.speed[np.flatnonzero(np.diff(row_pair, prepend=-1))],
+        position=table.position,
+    )
+    return replace(
+        whole,
+        table=table,
+        rows=np.flatnonzero(chosen),
+        layout=layout,
+        friction=whole.friction[chosen],
+        load=whole.load[chosen],
+        friction_base=whole.friction_base[chosen],
+        load_base=whole.load_base[chosen],
+        runs=tuple(whole.runs[number] for number in np.unique(layout.run)),
+    )

@@ -1,0 +1,199 @@
+"""Hidden effects are found by name, and nothing is found where nothing is hidden."""
+
+import json
+
+import numpy as np
+import pandas as pd
+import pytest
+
+from frictioncli import chain, schemas, tables
+from frictioncli.diagnosis.diagnose import diagnose_joint
+from frictioncli.diagnosis.document import verdict_text
+from frictioncli.diagnosis.settings import DiagnosisSettings
+from frictioncli.effects import BY_NAME
+from frictioncli.errors import NotEnoughData, OptionError, TableError
+from frictioncli.provenance import Provenance
+from frictioncli.simulator.settings import SynthesisSettings
+from frictioncli.simulator.tabular import simulate_torques
+from tests.model.worlds import cycle_temperatures, torques
+
+
+def days(seed, **columns):
+    """Two days whose friction is exactly the base model, with noise in both channels."""
+    temperature, time, phase = (values[::2] for values in cycle_temperatures())
+    both = [
+        torques(2 * seed + day, temperatures=(temperature, time, phase)).assign(run=f"day{day}")
+        for day in (1, 2)
+    ]
+    rows = pd.concat(both, ignore_index=True).assign(load=np.nan, **columns)
+    generator = np.random.default_rng(seed)
+    pairs = rows.groupby(["run", "pair"]).ngroup().to_numpy()
+    noise = generator.normal(0, 0.1, pairs.max() + 1)[pairs] + generator.normal(0, 0.3, len(rows))
+    return rows.assign(load_torque=rows["load_torque"] + noise)
+
+
+def diagnosed(rows):
+    return diagnose_joint(rows, "motor", "N·m", DiagnosisSettings())
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_nothing_is_found_where_nothing_is_hidden(seed):
+    diagnosis = diagnosed(days(seed))
+    assert diagnosis.verdict == "no_evidence"
+    assert diagnosis.causes == ()
+    assert diagnosis.gain is None
+    assert "no cause found" in verdict_text(diagnosis)
+
+
+def test_a_ripple_is_named_with_its_order():
+    rows = days(5)
+    ripple = 0.8 * np.sin(9.3 * np.radians(rows["position"]) + 0.4)
+    diagnosis = diagnosed(rows.assign(friction_torque=rows["friction_torque"] + ripple))
+    assert diagnosis.verdict == "named"
+    (cause,) = diagnosis.causes
+    assert cause.effects == ("position_ripple",)
+    assert cause.candidate.score.shape["order"] == pytest.approx(9.3, abs=0.15)
+    assert cause.size == pytest.approx(0.8 / np.sqrt(2), rel=0.1)
+
+
+def test_a_spring_shows_in_the_load_and_is_named():
+    rows = days(6)
+    spring = 1.5 * np.radians(rows["position"] - 70)
+    diagnosis = diagnosed(rows.assign(load_torque=rows["load_torque"] + spring))
+    assert [cause.effects for cause in diagnosis.causes] == [("dress_pack",)]
+    (stiffness,) = diagnosis.causes[0].candidate.score.coefficients
+    assert stiffness == pytest.approx(1.5, rel=0.15)
+
+
+def test_torque_constant_is_told_from_coulomb_friction_by_the_load():
+    """Friction and gravity grow by 0.15 %/°C: only the load channel can decide that."""
+    rows = days(7)
+    factor = 1 + 0.0015 * (rows["motor_temperature"] - 25)
+    diagnosis = diagnosed(
+        rows.assign(
+            friction_torque=rows["friction_torque"] * factor,
+            load_torque=rows["load_torque"] * factor,
+        )
+    )
+    assert ("torque_constant",) in [cause.effects for cause in diagnosis.causes]
+
+
+def lagging(rows, minutes=25.0):
+    """Friction obeys a gear that follows the motor with a delay; by plain Euler steps."""
+    parts = []
+    for _, day in rows.groupby("run"):
+        heads = day.drop_duplicates("pair").sort_values("time")
+        clock = np.arange(heads["time"].iloc[0], heads["time"].iloc[-1] + 60, 5.0)
+        motor = np.interp(clock, heads["time"], heads["motor_temperature"])
+        gear = motor.copy()
+        for i in range(1, len(clock)):
+            gear[i] = gear[i - 1] + 5.0 / (60 * minutes) * (motor[i - 1] - gear[i - 1])
+        at = np.interp(day["time"], clock, gear)
+        decay = np.exp(-0.056 * at) - np.exp(-0.056 * day["motor_temperature"])
+        shift = 15.66 * np.sqrt(day["speed"]) * decay
+        parts.append(day.assign(friction_torque=day["friction_torque"] + shift))
+    return pd.concat(parts)
+
+
+def test_a_lagging_gear_is_named_and_pays_on_a_new_day():
+    diagnosis = diagnosed(lagging(days(8)))
+    assert ("thermal_lag",) in [cause.effects for cause in diagnosis.causes]
+    assert diagnosis.gain.basis == "new_run"
+    assert diagnosis.held_out == "day2"
+    assert diagnosis.gain.reduction > 0.3
+    assert diagnosis.gain.interval[0] > 0.2
+
+
+def test_a_lag_does_not_hide_a_ripple():
+    rows = lagging(days(9))
+    ripple = 1.0 * np.sin(6.7 * np.radians(rows["position"]))
+    diagnosis = diagnosed(rows.assign(friction_torque=rows["friction_torque"] + ripple))
+    names = [cause.effects for cause in diagnosis.causes]
+    assert ("thermal_lag",) in names
+    assert ("position_ripple",) in names
+
+
+def test_a_planted_effect_of_the_simulator_is_found_blind():
+    settings = SynthesisSettings(seed=11, joint_kind="plain", effects=("dress_pack:1.0",))
+    diagnosis = diagnosed(simulate_torques(settings))
+    assert any("dress_pack" in cause.effects for cause in diagnosis.causes)
+
+
+def test_one_day_only_says_that_its_gain_flatters():
+    rows = lagging(days(8))
+    diagnosis = diagnosed(rows[rows["run"] == "day1"])
+    assert diagnosis.gain.basis == "within_run"
+    assert "flatters" in verdict_text(diagnosis)
+
+
+def test_detectable_sizes_cover_the_catalogue():
+    diagnosis = diagnosed(days(1))
+    assert set(diagnosis.detectable) == set(BY_NAME)
+    known = [size for size in diagnosis.detectable.values() if size is not None]
+    assert all(size > 0 for size in known)
+    # a ripple is averaged over 160 pairs of 34 bins of 0.3 N·m: about 0.3 * sqrt(2 * 25 / 5440)
+    assert 0.01 < diagnosis.detectable["position_ripple"] < 0.06
+
+
+def test_too_few_pairs_are_named():
+    rows = days(1)
+    with pytest.raises(NotEnoughData, match="8 pairs to learn from"):
+        diagnosed(rows[(rows["run"] == "day1") & (rows["pair"] < 8)])
+
+
+@pytest.mark.parametrize("wrong", [{"alpha": 0.0}, {"most": 5}])
+def test_senseless_settings_are_refused(wrong):
+    with pytest.raises(OptionError, match="expected"):
+        DiagnosisSettings(**wrong)
+
+
+@pytest.fixture(scope="module")
+def work(tmp_path_factory):
+    """A work folder with the torques of a lagging gear, fitted and diagnosed."""
+    folder = tmp_path_factory.mktemp("work")
+    rows = lagging(days(8)).assign(torque_forward=1.0, torque_reverse=1.0, n_forward=1, n_reverse=1)
+    tables.write(
+        folder / chain.TORQUES, rows, schemas.TORQUES, Provenance("test"), {"torque_unit": "N·m"}
+    )
+    chain.fit(folder)
+    chain.diagnose(folder)
+    return folder
+
+
+def test_files_have_the_keys_of_the_contract(work):
+    found = json.loads((work / chain.DIAGNOSIS).read_text(encoding="utf-8"))
+    keys = {"verdict", "causes", "gain", "detectable", "simulation", "settings"}
+    assert keys <= set(found)
+    cause = found["causes"][0]
+    assert {"effects", "probabilities", "channel", "claim", "equation", "parameters"} <= set(cause)
+    assert {"size", "p_value", "seen_in", "figure", "experiment"} <= set(cause)
+    gain = {"basis", "rmse_before", "rmse_after", "reduction", "ci95", "noise_floor"}
+    assert set(found["gain"]) == gain
+    assert {"rmse", "worst"} <= set(found["simulation"])
+    assert found["settings"]["alpha"] == 0.05
+
+
+def test_the_extended_model_needs_fewer_corrections(work):
+    """Uncorrected, it must predict better than the base does uncorrected."""
+    errors = {}
+    for extended in (False, True):
+        chain.evaluate(work, extended=extended)
+        rows = tables.read(work / chain.EVALUATION, schemas.EVALUATION)
+        errors[extended] = rows[rows["criterion"] == "none"]["epsilon"].to_numpy()
+    assert (errors[True] < 0.6 * errors[False]).all()
+
+
+def test_a_schedule_of_the_extended_model_shows_measured_friction(work):
+    plain = chain.simulate(work)
+    rows = tables.read(plain.path, schemas.SCHEDULE)
+    chain.simulate(work, extended=True)
+    extended = tables.read(plain.path, schemas.SCHEDULE)
+    # alpha may differ a little; friction at zero load must be the measured one in both
+    difference = extended["friction_torque"] - rows["friction_torque"]
+    assert np.abs(difference).max() < 0.2
+
+
+def test_a_missing_extended_model_names_the_command(tmp_path, work):
+    (tmp_path / chain.TORQUES).write_bytes((work / chain.TORQUES).read_bytes())
+    with pytest.raises(TableError, match="frictioncli diagnose"):
+        chain.simulate(tmp_path, extended=True)
