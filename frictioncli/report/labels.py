@@ -88,6 +88,18 @@ def number(value: float | None, digits: int = 3) -> str:
     return shown.replace("-", "−")
 
 
+def share_text(share: float) -> str:
+    """Return a probability in per cent, which never reaches 100."""
+    if share >= 0.995:
+        return "over 99 %"
+    return f"{100 * share:.0f} %" if share >= 0.015 else f"{100 * share:.1f} %"
+
+
+def words(name: str) -> str:
+    """Return an identifier, such as an effect's name, in words."""
+    return name.replace("_", " ")
+
+
 def counted(count: int, singular: str, plural: str = "") -> str:
     """Return a count with its noun, thousands set apart.
 

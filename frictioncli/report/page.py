@@ -20,6 +20,7 @@ from frictioncli.report.content import (
     pairs_table,
     parameter_rows,
 )
+from frictioncli.report.diagnosis import DiagnosisSection, diagnosis_sections
 from frictioncli.report.labels import TEMPERATURE_WORDS, listed
 from frictioncli.report.missing import evaluation_missing
 from frictioncli.report.quality import data_quality
@@ -51,6 +52,8 @@ class PageJoint:
     remarks: bool
     epsilon: list[TextTable]
     epsilon_missing: str
+    diagnosis: DiagnosisSection
+    diagnosis_figures: list[PageFigure]
     runs_note: str
     figures: list[PageFigure]
     pairs: TextTable
@@ -79,7 +82,9 @@ def write_report(work: Path) -> Path:
     results = read_results(work)
     quality = data_quality(work, results)
     traces = " ".join(quality.files)
-    joints = [_page_joint(joint, traces, alone=len(results) == 1) for joint in results]
+    sections = diagnosis_sections(work, results)
+    alone = len(results) == 1
+    joints = [_page_joint(own, sections[own.joint], traces, alone=alone) for own in results]
     runs = sorted({run for joint in results for run in joint.runs})
     page = _template().render(
         title=_title(results),
@@ -93,7 +98,8 @@ def write_report(work: Path) -> Path:
     with whole(folder) as draft:
         draft.mkdir()
         (draft / "index.html").write_text(page, encoding="utf-8", newline="\n")
-        for figure in (figure for joint in joints for figure in joint.figures if figure.svg):
+        drawn = [one for own in joints for one in (*own.diagnosis_figures, *own.figures) if one.svg]
+        for figure in drawn:
             (draft / f"{figure.name}.svg").write_text(
                 f'<?xml version="1.0" encoding="utf-8"?>\n{figure.svg}',
                 encoding="utf-8",
@@ -118,7 +124,9 @@ def _title(results: list[JointResults]) -> str:
     return f"Friction of joints {listed(numbers)}"
 
 
-def _page_joint(results: JointResults, traces: str, *, alone: bool) -> PageJoint:
+def _page_joint(
+    results: JointResults, diagnosis: DiagnosisSection, traces: str, *, alone: bool
+) -> PageJoint:
     parameters = parameter_rows(results)
     prefix = "" if alone else f"joint{results.joint}-"
     return PageJoint(
@@ -131,6 +139,8 @@ def _page_joint(results: JointResults, traces: str, *, alone: bool) -> PageJoint
         remarks=any(row.remark for row in parameters),
         epsilon=epsilon_tables(results),
         epsilon_missing=evaluation_missing(results),
+        diagnosis=diagnosis,
+        diagnosis_figures=[page_figure(entry, results, prefix) for entry in diagnosis.entries],
         runs_note=runs_drawn_note(results),
         figures=[page_figure(entry, results, prefix) for entry in FIGURES],
         pairs=pairs_table(results),

@@ -16,6 +16,8 @@ from frictioncli.report.results import JointResults, read_optional
 
 _STORED = ("samples", "recordings", "rejected", "pairs", "torques", "schedule", "evaluation")
 
+_MODELS = ("model.json", "diagnosis.json", "extended-model.json")
+
 _MOST_INPUTS = 200
 
 
@@ -80,8 +82,10 @@ def data_quality(work: Path, results: list[JointResults]) -> Quality:
     used = int(torques["n_forward"].sum() + torques["n_reverse"].sum())
     counts = [_read_table(files), _rejected_table(rejected), _dropped_table(pairing, used)]
     origins = [_origin(file, document) for file, document in documents.items()]
-    model = json.loads((work / "model.json").read_text(encoding="utf-8"))
-    origins.append(_origin("model.json", model.get("provenance") or {}))
+    for name in _MODELS:
+        if (work / name).exists():
+            model = json.loads((work / name).read_text(encoding="utf-8"))
+            origins.append(_origin(name, model.get("provenance") or {}))
     return Quality(
         counts=tuple(table for table in counts if table.rows),
         notes=(*_left_out(torques, results), *_notes(documents, recordings, results)),

@@ -273,6 +273,8 @@ def svg(figure: Figure, name: str, title: str) -> str:
     figure.set_layout_engine("none")
     text = stream.getvalue()
     text = text[text.index("<svg") :]
+    # two pictures of the same content would have one identifier, and nothing refers to them
+    text = re.sub(r' id="image[0-9a-f]+"', "", text)
     text = re.sub(r'\bid="', f'id="{name}-', text)
     text = text.replace("url(#", f"url(#{name}-").replace('href="#', f'href="#{name}-')
     return text.replace("<svg ", f'<svg role="img" aria-label="{title}" ', 1)

@@ -1,0 +1,253 @@
+"""What the page says of a diagnosis: verdict, causes, gain, detectable sizes."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+from frictioncli.effects import BY_NAME
+from frictioncli.report.content import TextTable
+from frictioncli.report.labels import counted, listed, number, share_text, speed_text, words
+from frictioncli.report.results import JointResults
+
+UNDETECTABLE = "cannot be shown by these data"
+
+_AXIS_UNITS = {"temperature": "°C", "angle": "deg"}
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class CauseText:
+    """One cause as the page states it; ``equation`` is empty where no effect explains it."""
+
+    effects: str
+    channel: str
+    size: str
+    chance: str
+    claim: str
+    equation: str
+    parameters: str
+    experiment: str
+
+
+def verdict_sentence(document: Mapping[str, Any], unit: str) -> str:
+    """Return the verdict in words.
+
+    Parameters
+    ----------
+    document : dict
+        The joint's part of ``diagnosis.json``.
+    unit : str
+        Unit of torque.
+    """
+    named = [cause["effects"] for cause in document["causes"] if cause["effects"]]
+    missed = (
+        f"The simulated torque misses the measured one by"
+        f" {number(document['simulation']['rmse'])} {unit} (RMS, {listed(document['runs'])})."
+    )
+    if document["verdict"] == "no_evidence":
+        return (
+            f"{missed} No cause was found in that: no effect of the catalogue and no other"
+            " structure. The table below says how large each effect would have to be to be found."
+        )
+    found = []
+    sure = [words(one[0]) for one in named if len(one) == 1]
+    if sure:
+        found.append(f"The model lacks {listed(sure)}.")
+    found += [
+        f"The model lacks one of {listed([words(name) for name in several])}: these data cannot"
+        " tell them apart."
+        for several in named
+        if len(several) > 1
+    ]
+    if document["verdict"] == "unnamed":
+        start = "Beside that, structure" if named else "Structure"
+        found.append(f"{start} is left that no effect of the catalogue explains.")
+    return " ".join([missed, *found])
+
+
+def cause_texts(document: Mapping[str, Any], unit: str) -> list[CauseText]:
+    """Return the causes that effects of the catalogue stand for, strongest first."""
+    return [_cause(cause, unit) for cause in document["causes"] if cause["effects"]]
+
+
+def unnamed_texts(document: Mapping[str, Any], unit: str) -> list[CauseText]:
+    """Return the structure that no effect explains."""
+    return [_cause(cause, unit) for cause in document["causes"] if not cause["effects"]]
+
+
+def _cause(cause: Mapping[str, Any], unit: str) -> CauseText:
+    probabilities = cause["probabilities"]
+    return CauseText(
+        effects=" or ".join(
+            f"{words(name)} {share_text(probabilities[name])}"
+            if name in probabilities
+            else words(name)
+            for name in cause["effects"]
+        ),
+        channel=cause["channel"],
+        size=f"{number(cause['size'], 2)} {unit}",
+        chance=chance_text(cause["p_value"]),
+        claim=cause["claim"],
+        equation=cause["equation"],
+        parameters="; ".join(
+            _parameter(name, stated) for name, stated in cause["parameters"].items()
+        ),
+        experiment=cause["experiment"],
+    )
+
+
+def chance_text(chance: float) -> str:
+    """Return the probability that noise alone gives as much."""
+    if chance < 1e-300:
+        return "below 1e−300"
+    return f"{chance:.0e}".replace("-", "−") if chance < 1e-3 else number(chance, 2)
+
+
+def _parameter(name: str, stated: Mapping[str, Any]) -> str:
+    unit = "" if stated["unit"] == "1" else f" {stated['unit']}"
+    interval = stated["ci95"]
+    span = f" ({number(interval[0])} to {number(interval[1])})" if interval else ""
+    return f"{words(name)} {number(stated['estimate'])}{unit}{span}"
+
+
+def visible_sentences(document: Mapping[str, Any], unit: str) -> tuple[str, ...]:
+    """Return what stands out of the noise but is too small to be worth modelling."""
+    return tuple(
+        f"{' or '.join(words(name) for name in one['effects'])} stands out of the noise"
+        f" ({number(one['size'], 2)} {unit} RMS, chance {chance_text(one['p_value'])}), but the"
+        " extended model is no better with it: it is not worth modelling."
+        for one in document.get("visible", ())
+    )
+
+
+def gain_sentence(document: Mapping[str, Any], unit: str) -> str:
+    """Return what the extended model is worth, empty where nothing was found.
+
+    Parameters
+    ----------
+    document : dict
+        The joint's part of ``diagnosis.json``.
+    unit : str
+        Unit of torque.
+    """
+    gain = document["gain"]
+    if gain is None:
+        return ""
+    low, high = gain["ci95"]
+    if gain["basis"] == "new_run":
+        where = f"On run {document['held_out']}, which the diagnosis has not seen,"
+    else:
+        where = "On the same data that it was fitted to"
+    changed = (
+        f"{where} the extended model misses the torque by {number(gain['rmse_after'])} {unit} (RMS)"
+        f" instead of {number(gain['rmse_before'])} {unit}: {_less(gain['reduction'])}"
+        f" (95 % interval: {_less(low)} to {_less(high)}). Noise that no model can predict is"
+        f" {number(gain['noise_floor'])} {unit}."
+    )
+    if gain["basis"] != "new_run":
+        changed += " A gain on data already used flatters; log a second run to know it."
+    if high < 0:
+        changed += " The extended model is worse than the base model: do not use it."
+    elif low <= 0:
+        changed += " The interval holds zero: it is not sure that the extended model is better."
+    return changed
+
+
+def _less(share: float) -> str:
+    return f"{100 * share:.0f} % less" if share >= 0 else f"{-100 * share:.0f} % more"
+
+
+def detectable_table(document: Mapping[str, Any], unit: str) -> TextTable:
+    """Return how large each effect must be to be found in these data.
+
+    Parameters
+    ----------
+    document : dict
+        The joint's part of ``diagnosis.json``.
+    unit : str
+        Unit of torque.
+    """
+    sizes = document["detectable"]
+    names = [name for name in BY_NAME if name in sizes]
+    names += sorted(set(sizes) - set(names))
+    return TextTable(
+        title="Smallest size of each effect that would be found four times in five",
+        header=("effect", "what it is", f"RMS [{unit}]"),
+        rows=tuple(
+            (
+                words(name),
+                BY_NAME[name].summary if name in BY_NAME else "",
+                UNDETECTABLE if sizes[name] is None else number(sizes[name], 2),
+            )
+            for name in names
+        ),
+        texts=2,
+    )
+
+
+def worst_table(document: Mapping[str, Any], unit: str) -> TextTable:
+    """Return where the simulated torque misses the measured one most."""
+    return TextTable(
+        title="Where the simulated torque misses most",
+        header=("where", "speed", "channel", f"measured − simulated, mean [{unit}]"),
+        rows=tuple(
+            (
+                f"{place['axis']} {number(place['low'])} to {number(place['high'])}"
+                f" {_AXIS_UNITS.get(place['axis'], '')}".rstrip(),
+                speed_text(place["speed"]),
+                place["channel"],
+                number(place["misfit"]),
+            )
+            for place in document["simulation"].get("worst") or ()
+        ),
+        texts=3,
+    )
+
+
+def evidence_caption(results: JointResults, *, cause: Mapping[str, Any], fitted: str) -> str:
+    """Return what to see in the picture of one cause."""
+    return (
+        f"{cause['claim']} Points: mean misfit of the {cause['channel']} in bins, with twice its"
+        " standard error over pairs; a point without a bar is a single pair. Left: the base model."
+        f" Middle: the extended model without this cause, and the term fitted for it, {fitted};"
+        " it may exceed the misfit on the left, where the base model's parameters make up for it."
+        " Right: the extended model. The cause stands if the middle points lie on the lines and the"
+        " right ones on zero. Bars: which effects could be at work, the credible set in blue."
+    )
+
+
+def simulation_caption(results: JointResults, *, held_out: str | None) -> str:
+    """Return what to see in the picture of measured and simulated torque."""
+    new = f" Run {held_out} was kept out of the fit." if held_out else ""
+    return (
+        "Points: measured torque, forward filled, reverse hollow; lines: simulated along the same"
+        f" motion by the base model. Below: their difference.{new} Left: mean of each pair over its"
+        " angles. Right: means over all pairs of the slowest and the fastest speed shown."
+    )
+
+
+def map_caption(results: JointResults, *, extended: bool) -> str:
+    """Return what to see in the maps."""
+    below = " The lower row of each channel shows the extended model." if extended else ""
+    return (
+        "Mean of measured minus simulated torque per cell, red where more was measured than"
+        " simulated, blue where less; grey: no data. Friction is what opposes the motion, load what"
+        f" does not turn with it; each has its own scale, centred at zero.{below} A trend or a"
+        " patch is structure; a pattern without order is noise."
+    )
+
+
+def gain_caption(results: JointResults, *, document: Mapping[str, Any]) -> str:
+    """Return what to see in the distributions."""
+    run = f"run {document['held_out']}" if document["held_out"] else "the data fitted"
+    return (
+        f"What the simulated torque misses on {run}, both directions, by the base and by the"
+        " extended model. Left: how the misfit is distributed. Right: how many points miss by more"
+        " than a size. Grey: noise of points and pairs, which no model can predict."
+    )
+
+
+def section_title(cause: Mapping[str, Any], number_: int) -> str:
+    """Return the heading of a cause's picture."""
+    return f"Cause {number_}. {' or '.join(words(name) for name in cause['effects'][:3])}" + (
+        f" or {counted(len(cause['effects']) - 3, 'other')}" if len(cause["effects"]) > 3 else ""
+    )

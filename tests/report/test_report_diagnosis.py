@@ -1,0 +1,292 @@
+"""The section on what the simulation gets wrong: its numbers, pictures and words."""
+
+import json
+import re
+from copy import deepcopy
+
+import numpy as np
+import pytest
+
+from frictioncli.diagnosis.problem import build_problems
+from frictioncli.diagnosis.recall import is_current, read_documents, recall
+from frictioncli.errors import TableError
+from frictioncli.report.diagnosis import diagnosis_sections, entries, section
+from frictioncli.report.diagnosis_text import UNDETECTABLE, chance_text, gain_sentence
+from frictioncli.report.page import page_figure, write_report
+from frictioncli.report.results import read_results
+
+HOSTILE = "<script>alert(1)</script>&\"'$\\frac{kr10$"
+TORQUE, VELOCITY, EXPONENT, SHIFT, OFFSET = 3.0, 8.0, 1.5, 0.4, 0.5
+
+
+def cause(number, effects, probabilities, **changed):
+    return {
+        "effects": effects,
+        "probabilities": probabilities,
+        "channel": "friction",
+        "claim": "Friction is above the model at low speed.",
+        "equation": "dtau = ts*exp(-(v/vs)^k)",
+        "parameters": {
+            "velocity": {"estimate": VELOCITY, "ci95": None, "unit": "deg/s"},
+            "boundary_torque": {"estimate": TORQUE, "ci95": [2.5, 3.5], "unit": "N·m"},
+        },
+        "size": 1.25,
+        "p_value": 3e-9,
+        "seen_in": "speed",
+        "figure": f"diagnosis-{number}.svg",
+        "experiment": "Measure more speeds.",
+    } | changed
+
+
+DIAGNOSIS = {
+    "joint": 2,
+    "verdict": "unnamed",
+    "causes": [
+        cause(1, ["stribeck"], {"stribeck": 0.97, "drift": 0.02}),
+        cause(
+            2,
+            ["direction_asymmetry", "dress_pack"],
+            {"direction_asymmetry": 0.6, "dress_pack": 0.4},
+            channel="load",
+        ),
+        cause(
+            3,
+            [],
+            {},
+            seen_in="angle",
+            claim="Residuals have structure along angle.",
+            equation="",
+            parameters={},
+            figure=None,
+        ),
+    ],
+    "visible": [{"effects": ["inertia"], "size": 0.05, "p_value": 0.0}],
+    "gain": {
+        "basis": "new_run",
+        "rmse_before": 2.0,
+        "rmse_after": 1.0,
+        "reduction": 0.5,
+        "ci95": [0.4, 0.6],
+        "noise_floor": 0.7,
+    },
+    "detectable": {"stribeck": 0.4, "run_in": None},
+    "simulation": {
+        "rmse": 2.1,
+        "worst": [
+            {
+                "channel": "friction",
+                "axis": "temperature",
+                "low": 25.0,
+                "high": 31.0,
+                "speed": 67.5,
+                "misfit": -4.5,
+            }
+        ],
+    },
+    "torque_unit": "N·m",
+    "runs": ["day-1"],
+    "held_out": "day-2",
+    "settings": {"alpha": 0.05, "seed": 0},
+}
+
+
+def stated(value, unit="N·m"):
+    return {"estimate": value, "ci95": [value - 0.1, value + 0.1], "unit": unit}
+
+
+def extended(work, torques):
+    """The base model fitted without the last run, with another tau_c and two effects."""
+    model = json.loads((work / "model.json").read_text(encoding="utf-8"))
+    base, _ = build_problems(torques, "motor", "day-2")
+    for name in base.names:
+        model["parameters"][name]["estimate"] = getattr(base.parameters, name)
+    model["parameters"]["tau_c"]["estimate"] += SHIFT
+    model["gravity"] = dict(zip(("cosine", "sine", "offset"), base.gravity.tolist(), strict=True))
+    model["effects"] = [
+        {
+            "name": "stribeck",
+            "shape": {"velocity": VELOCITY, "exponent": EXPONENT},
+            "coefficients": {"boundary_torque": stated(TORQUE)},
+        },
+        {
+            "name": "direction_asymmetry",
+            "shape": {},
+            "coefficients": {"offset": stated(OFFSET), "viscous_asymmetry": stated(0.0)},
+        },
+    ]
+    return model
+
+
+def boundary(speed):
+    """The planted term, written out by hand."""
+    return TORQUE * np.exp(-((speed / VELOCITY) ** EXPONENT))
+
+
+def diagnosed(folder):
+    """Write a diagnosis into a work folder."""
+    torques = read_results(folder)[0].torques
+    (folder / "diagnosis.json").write_text(json.dumps(DIAGNOSIS), encoding="utf-8")
+    model = extended(folder, torques)
+    (folder / "extended-model.json").write_text(json.dumps(model), encoding="utf-8")
+    return folder
+
+
+@pytest.fixture(scope="module")
+def work(tmp_path_factory, write_work):
+    return diagnosed(write_work(tmp_path_factory.mktemp("diagnosed"), schedule=False))
+
+
+@pytest.fixture(scope="module")
+def results(work):
+    return read_results(work)[0]
+
+
+@pytest.fixture(scope="module")
+def recalled(work, results):
+    return recall(results.torques, *read_documents(work)[2])
+
+
+def test_recalled_misfits_are_those_of_the_files(recalled):
+    seen, new = recalled.seen, recalled.new
+    assert seen.problem.runs == ("day-1",)
+    assert new.problem.runs == ("day-2",)
+    for one in (seen, new):
+        speed = one.problem.table.speed
+        np.testing.assert_allclose(one.terms[0].friction, boundary(speed))
+        np.testing.assert_allclose(one.terms[1].load, OFFSET)
+        wanted = one.before["friction"] - SHIFT - boundary(speed)
+        np.testing.assert_allclose(one.after["friction"], wanted, atol=1e-9)
+        np.testing.assert_allclose(one.after["load"], one.before["load"] - OFFSET, atol=1e-9)
+        np.testing.assert_allclose(
+            one.without(0, "friction"), one.before["friction"] - SHIFT, atol=1e-9
+        )
+    both = seen.torque({"friction": np.array([1.0, 2.0]), "load": np.array([10.0, 20.0])})
+    np.testing.assert_allclose(both, [11.0, 22.0, 9.0, 18.0])
+
+
+def test_section_says_what_was_found(results, recalled):
+    told = section(results, recalled)
+    assert "2.10 N·m (RMS, day-1)" in told.verdict
+    assert "The model lacks stribeck." in told.verdict
+    assert "one of direction asymmetry and dress pack" in told.verdict
+    assert "Beside that, structure is left" in told.verdict
+    assert [one.effects for one in told.causes] == [
+        "stribeck 97 %",
+        "direction asymmetry 60 % or dress pack 40 %",
+    ]
+    first = told.causes[0]
+    assert (first.size, first.chance) == ("1.2 N·m", "3e−09")
+    assert first.parameters == "velocity 8.00 deg/s; boundary torque 3.00 N·m (2.50 to 3.50)"
+    assert [one.claim for one in told.unnamed] == ["Residuals have structure along angle."]
+    assert told.visible[0].startswith(
+        "inertia stands out of the noise (0.050 N·m RMS, chance below 1e−300)"
+    )
+    assert "run day-2, which the diagnosis has not seen" in told.gain
+    assert "50 % less (95 % interval: 40 % less to 60 % less)" in told.gain
+    assert told.detectable.rows[0][2] == "0.40"
+    assert told.detectable.rows[1][2] == UNDETECTABLE
+    assert told.worst.rows[0] == ("temperature 25.0 to 31.0 °C", "67.5 deg/s", "friction", "−4.50")
+    names = [entry.name for entry in entries(recalled)]
+    assert names == [
+        "diagnosis-simulation",
+        "diagnosis-maps",
+        "diagnosis-1",
+        "diagnosis-2",
+        "diagnosis-gain",
+    ]
+
+
+def test_a_gain_that_is_none_is_said_to_be_none():
+    document = deepcopy(DIAGNOSIS)
+    document["gain"] |= {"reduction": -0.3, "ci95": [-0.5, -0.1]}
+    assert "30 % more" in gain_sentence(document, "A")
+    assert "worse than the base model" in gain_sentence(document, "A")
+    document["gain"] |= {"ci95": [-0.5, 0.1]}
+    assert "The interval holds zero" in gain_sentence(document, "A")
+    document["gain"] |= {"basis": "within_run"}
+    assert "flatters" in gain_sentence(document, "A")
+    assert " A " in gain_sentence(document, "A")
+    assert "N·m" not in gain_sentence(document, "A")
+    document["gain"] = None
+    assert gain_sentence(document, "A") == ""
+    assert chance_text(0.0) == "below 1e−300"
+    assert chance_text(0.031) == "0.031"
+
+
+def test_silence_is_explained_and_draws_no_gain(results, work):
+    document, model = deepcopy(DIAGNOSIS), json.loads((work / "extended-model.json").read_text())
+    document |= {"verdict": "no_evidence", "causes": [], "gain": None}
+    model["effects"] = []
+    found = recall(results.torques, document, model)
+    assert found.seen.after is found.seen.before
+    told = section(results, found)
+    assert "No cause was found in that" in told.verdict
+    assert [entry.name for entry in told.entries] == ["diagnosis-simulation", "diagnosis-maps"]
+    for entry in told.entries:
+        assert page_figure(entry, results, "joint2-").name == f"joint2-{entry.name}"
+
+
+def test_without_a_diagnosis_the_section_names_the_command(tmp_path, write_work):
+    work = write_work(tmp_path, runs=("day-1",), temperature=False)
+    results = read_results(work)
+    assert "'frictioncli diagnose' does it" in diagnosis_sections(work, results)[2].missing
+    document = deepcopy(DIAGNOSIS) | {"causes": [], "gain": None}
+    (work / "diagnosis.json").write_text(json.dumps(document))
+    (work / "extended-model.json").write_text((work / "model.json").read_text())
+    with pytest.raises(TableError, match="diagnose"):
+        diagnosis_sections(work, results)
+    model = json.loads((work / "model.json").read_text()) | {"effects": []}
+    (work / "extended-model.json").write_text(json.dumps(model))
+    assert not is_current(document, results[0].torques)
+    assert "other runs" in diagnosis_sections(work, results)[2].missing
+    (work / "diagnosis.json").write_text(json.dumps(document | {"joint": 5}))
+    (work / "extended-model.json").write_text(json.dumps(model | {"joint": 5}))
+    assert "no diagnosis" in diagnosis_sections(work, results)[2].missing
+
+
+@pytest.mark.parametrize(
+    "damage",
+    [
+        lambda document, model: document.pop("causes"),
+        lambda document, model: document["causes"][0].pop("claim"),
+        lambda document, model: document["causes"].pop(0),
+        lambda document, model: model.pop("gravity"),
+        lambda document, model: model["effects"][0].update(name="magic"),
+        lambda document, model: model["effects"][0].update(coefficients={}),
+    ],
+)
+def test_damaged_files_are_refused(tmp_path, work, damage):
+    document = json.loads((work / "diagnosis.json").read_text(encoding="utf-8"))
+    model = json.loads((work / "extended-model.json").read_text(encoding="utf-8"))
+    damage(document, model)
+    (tmp_path / "diagnosis.json").write_text(json.dumps(document))
+    (tmp_path / "extended-model.json").write_text(json.dumps(model))
+    with pytest.raises(TableError, match="run 'frictioncli diagnose' again"):
+        read_documents(tmp_path)
+
+
+def test_page_has_the_section_before_the_figures_escaped_and_the_same_twice(work):
+    document = deepcopy(DIAGNOSIS)
+    document["causes"][0] |= {"claim": HOSTILE, "equation": HOSTILE, "experiment": HOSTILE}
+    document["causes"][1]["effects"] = ["direction_asymmetry", HOSTILE]
+    document["detectable"][HOSTILE] = None
+    (work / "diagnosis.json").write_text(json.dumps(document), encoding="utf-8")
+    page = write_report(work)
+    text = page.read_text(encoding="utf-8")
+    start = text.index("<h3>What the simulation gets wrong</h3>")
+    assert start < text.index("<h3>Figures</h3>")
+    assert "<script" not in text
+    assert text.count("&lt;script&gt;alert(1)") > 4
+    names = {path.name for path in page.parent.glob("diagnosis-*")}
+    stems = ("simulation", "maps", "1", "2", "gain")
+    assert names == {f"diagnosis-{stem}.{kind}" for stem in stems for kind in ("svg", "png")}
+    assert UNDETECTABLE in text
+    known = re.findall(r'\bid="([^"]+)"', text)
+    assert len(known) == len(set(known))
+    # the whole page's bytes are compared elsewhere; drawing takes long
+    results = read_results(work)
+    told = diagnosis_sections(work, results)[2]
+    for entry in (told.entries[1], told.entries[2]):
+        again = page_figure(entry, results[0])
+        assert again.svg in text
+        assert again.png == (page.parent / f"{entry.name}.png").read_bytes()
