@@ -4,7 +4,7 @@ VENV := .venv
 BIN := $(VENV)/bin
 RUN ?= friction-run
 
-.PHONY: reproduce test lint coverage clean
+.PHONY: reproduce test lint coverage blind clean
 
 reproduce: $(VENV)/installed
 	$(BIN)/frictioncli run sample_logs/kr10 -w $(RUN)
@@ -15,6 +15,9 @@ test: $(VENV)/tested
 
 coverage: $(VENV)/tested
 	$(BIN)/python -m tests.studies.coverage
+
+blind: $(VENV)/tested
+	OMP_NUM_THREADS=1 $(BIN)/python -m tests.studies.blind
 
 lint: $(VENV)/tested
 	$(BIN)/ruff check .
