@@ -16,7 +16,7 @@ from frictioncli.diagnosis.candidates import Channels, Projector, Score, score
 from frictioncli.diagnosis.problem import Problem
 from frictioncli.diagnosis.settings import DiagnosisSettings
 from frictioncli.diagnosis.significance import credible_set, probabilities
-from frictioncli.diagnosis.step import Candidate, Step, main_channel, physical
+from frictioncli.diagnosis.step import Candidate, Step, physical
 from frictioncli.effects.availability import missing_columns
 from frictioncli.effects.base import Effect
 from frictioncli.model.noise import Noise
@@ -136,11 +136,9 @@ def _cause(
     evidence = {name: rival.evidence for name, rival in rivals.items() if physical(rival.score)}
     share = probabilities(evidence)
     fitted = step.refined(rivals[accepted[number].effect.name].score)
-    basis = problem.basis(fitted.effect, fitted.shape)
-    torque = main_channel(basis, fitted.effect) @ fitted.coefficients
     return Cause(
         candidate=replace(found, score=fitted),
         effects=credible_set(share),
         probabilities={name: value for name, value in share.items() if value >= 1e-3},
-        size=float(np.sqrt(np.mean(np.square(torque)))),
+        size=step.size(fitted),
     )

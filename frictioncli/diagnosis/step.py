@@ -129,6 +129,21 @@ class Step:
         """Return a score with its shape searched off the grid."""
         return refined(found, self.problem, self.channels, self.projector, self.misfit)
 
+    def size(self, found: Score) -> float:
+        """Return the RMS torque of an effect in the channel where it shows most. [N·m].
+
+        Several columns of an effect may cancel each other and leave the rest to the base; of such
+        an effect only the part that the base cannot take has a size.
+        """
+        effect = found.effect
+        if len(found.coefficients) == 1:
+            columns = main_channel(self.problem.basis(effect, found.shape), effect)
+            return float(np.sqrt(np.mean(np.square(columns @ found.coefficients))))
+        white = effect_columns(effect, self.problem, self.channels, found.shape)
+        return self.channels.visible_size(
+            visible(white, self.projector) @ found.coefficients, effect.channel
+        )
+
     def _chance(self, found: Score, freedom: int, count: float) -> float:
         """Return the chance of a score, averaged over the noises that agree with the data."""
         once = chance(found.statistic, freedom, count)
