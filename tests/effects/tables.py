@@ -48,7 +48,7 @@ def two_days(*, bins: int = 9, series: int = 12) -> EffectTable:
                 travel += 360.0
     pairs = {name: np.array([row[name] for row in per_pair]) for name in per_pair[0]}
     rows = {name: np.repeat(values, bins) for name, values in pairs.items()}
-    position = np.tile(np.linspace(5.0, 150.0, bins), len(per_pair))
+    position = np.tile(5.0 + 8.0 * np.arange(bins), len(per_pair))
     load = 60.0 * np.cos(np.radians(position))
     viscous = PUBLISHED.beta + PUBLISHED.gamma * np.exp(-PUBLISHED.delta * rows["temperature"])
     slope = -PUBLISHED.delta * (viscous - PUBLISHED.beta) * np.sqrt(rows["speed"])

@@ -233,3 +233,9 @@ def test_reversal_transient_is_what_separation_makes_of_a_build_up(sign):
     np.testing.assert_allclose(
         30.0 + basis.load @ coefficients, (torque_forward + torque_reverse) / 2
     )
+
+
+def test_ripple_finer_than_the_bins_is_not_judged():
+    """Bins of 20 deg sample at most 9 periods per turn; order 16 would look like order 2."""
+    found = friction("position_ripple", small(position=[0.0, 20.0, 40.0]), order=16.0)
+    np.testing.assert_array_equal(found, np.zeros((3, 2)))
