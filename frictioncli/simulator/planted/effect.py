@@ -1,5 +1,6 @@
 """What every planted effect is: parameters drawn from a seed, a magnitude, and its torque."""
 
+from abc import ABC, abstractmethod
 from dataclasses import dataclass, replace
 from typing import ClassVar, Self
 
@@ -9,7 +10,7 @@ from frictioncli.simulator.planted.state import Extra, State
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Effect:
+class Effect(ABC):
     """A planted effect.
 
     Attributes
@@ -30,17 +31,17 @@ class Effect:
     magnitude: float = 1.0
 
     @classmethod
+    @abstractmethod
     def draw(cls, generator: np.random.Generator) -> Self:
         """Return the effect with random shape parameters."""
-        raise NotImplementedError
 
     def scaled(self, factor: float) -> Self:
         """Return the effect with its magnitude multiplied by ``factor``."""
         return replace(self, magnitude=self.magnitude * factor)
 
+    @abstractmethod
     def torque(self, state: State) -> Extra:
         """Return the torque that the effect adds at each sample [N·m]."""
-        raise NotImplementedError
 
 
 def sign(generator: np.random.Generator) -> float:
