@@ -118,14 +118,15 @@ def page(rows: pd.DataFrame) -> str:
         "# Blind study",
         "",
         f"{len(rows)} simulated joints of two days each, diagnosed blind. The joint is exactly the",
-        'base model ("plain") with one or two effects planted, or none. `make blind` writes this',
-        "page. Sizes are RMS torque before the base model takes its share.",
+        "base model (joint kind `plain`) with one or two effects planted, or none, measured with",
+        "the paper's programme. `make blind` writes this page. Sizes are RMS torque before the",
+        "base model takes its share; much of many effects is taken by it there.",
         "",
         "## Nothing hidden",
         "| noise | joints | any finding |",
         "|---|---|---|",
     ]
-    for noise, part in rows[rows["kind"] == "clean"].groupby("noise", sort=False):
+    for noise, part in rows[rows["kind"] == "clean"].groupby("noise"):
         lines.append(f"| {noise} | {len(part)} | {part['found'].mean():.0%} |")
     lines += [
         "",
@@ -134,9 +135,7 @@ def page(rows: pd.DataFrame) -> str:
         " wrong single name | gain, median |",
         "|---|---|---|---|---|---|---|---|",
     ]
-    for (name, size), group in rows[rows["kind"] == "single"].groupby(
-        ["hidden", "size"], sort=False
-    ):
+    for (name, size), group in rows[rows["kind"] == "single"].groupby(["hidden", "size"]):
         lines.append(_single(str(name), float(size), group))
     lines += [
         "",
@@ -144,7 +143,7 @@ def page(rows: pd.DataFrame) -> str:
         "| also hidden | joints | lag in a set | other in a set | both |",
         "|---|---|---|---|---|",
     ]
-    for name, group in rows[rows["kind"] == "pair"].groupby("hidden", sort=False):
+    for name, group in rows[rows["kind"] == "pair"].groupby("hidden"):
         other = str(name).split("+")[1]
         lag, also = _holds(group, "thermal_lag"), _holds(group, other)
         lines.append(
@@ -157,7 +156,7 @@ def page(rows: pd.DataFrame) -> str:
         "| hidden | joints | unnamed | wrong single name | nothing |",
         "|---|---|---|---|---|",
     ]
-    for name, group in rows[rows["kind"] == "unlisted"].groupby("hidden", sort=False):
+    for name, group in rows[rows["kind"] == "unlisted"].groupby("hidden"):
         lines.append(
             f"| {name} | {len(group)} | {(group['verdict'] == 'unnamed').mean():.0%} |"
             f" {(group['verdict'] == 'named').mean():.0%} |"
