@@ -17,6 +17,7 @@ from frictioncli.correction.settings import CorrectionSettings, EvaluationGrid, 
 from frictioncli.diagnosis.applied import read_extensions, with_effects, without_effects
 from frictioncli.diagnosis.diagnose import diagnose_joint
 from frictioncli.diagnosis.document import diagnosis_document, extended_document, verdict_text
+from frictioncli.diagnosis.recall import DIAGNOSIS, EXTENDED
 from frictioncli.diagnosis.settings import DiagnosisSettings
 from frictioncli.errors import NotEnoughData
 from frictioncli.files import write_text
@@ -38,8 +39,6 @@ RECORDINGS = "recordings.parquet"
 PAIRS = "pairs.parquet"
 TORQUES = "torques.parquet"
 MODEL = "model.json"
-DIAGNOSIS = "diagnosis.json"
-EXTENDED = "extended-model.json"
 SCHEDULE = "schedule.parquet"
 EVALUATION = "evaluation.parquet"
 
@@ -155,17 +154,9 @@ def simulate(
     def simulated(torques: pd.DataFrame, model: FrictionModel) -> pd.DataFrame:
         return correction.simulate(torques, model, settings, schedule)
 
-    rows, faults, facts = _each_model(work, simulated, extended)
-    _write(
-        work / SCHEDULE,
-        rows,
-        schemas.SCHEDULE,
-        "simulate",
-        asdict(schedule) | asdict(settings) | {"extended": extended},
-        [work / TORQUES, work / (EXTENDED if extended else MODEL)],
-        facts,
+    rows, faults, unit = _corrected(
+        work, schemas.SCHEDULE, "simulate", asdict(schedule) | asdict(settings), simulated, extended
     )
-    unit = facts.get("torque_unit", "N·m")
     lines = [
         f"{run}, joint {joint}, {phase}: {int(group['corrected'].sum())} corrections"
         f" ({int(group['failed'].sum())} failed), epsilon"
@@ -190,17 +181,10 @@ def evaluate(
     def evaluated(torques: pd.DataFrame, model: FrictionModel) -> pd.DataFrame:
         return correction.evaluate(torques, model, settings, grid)
 
-    rows, faults, facts = _each_model(work, evaluated, extended)
-    _write(
-        work / EVALUATION,
-        rows,
-        schemas.EVALUATION,
-        "evaluate",
-        asdict(grid) | asdict(settings) | {"extended": extended},
-        [work / TORQUES, work / (EXTENDED if extended else MODEL)],
-        facts,
+    rows, faults, unit = _corrected(
+        work, schemas.EVALUATION, "evaluate", asdict(grid) | asdict(settings), evaluated, extended
     )
-    text = correction.evaluation_text(rows, facts.get("torque_unit", "N·m"))
+    text = correction.evaluation_text(rows, unit)
     return Done(work / EVALUATION, "\n".join([text, *faults]))
 
 
@@ -295,10 +279,15 @@ def _given_phases(path: Path, pairs: pd.DataFrame) -> pd.Series:
     return pd.Series(given["phase"].reindex(keys).to_numpy(), index=pairs.index, dtype=object)
 
 
-def _each_model(
-    work: Path, work_on: Callable[[pd.DataFrame, FrictionModel], pd.DataFrame], extended: bool
-) -> tuple[pd.DataFrame, list[str], dict[str, Any]]:
-    """Return the rows of the joints that give some, why others give none, and the facts."""
+def _corrected(
+    work: Path,
+    table: schemas.Table,
+    stage: str,
+    settings: dict[str, Any],
+    work_on: Callable[[pd.DataFrame, FrictionModel], pd.DataFrame],
+    extended: bool,
+) -> tuple[pd.DataFrame, list[str], str]:
+    """Write what a correction stage gives for each joint; return it, what fails, and the unit."""
     torques = tables.read(work / TORQUES, schemas.TORQUES)
     source = work / (EXTENDED if extended else MODEL)
     extensions = read_extensions(source) if extended else {}
@@ -315,4 +304,15 @@ def _each_model(
             faults.append(str(fault))
     if not rows:
         raise NotEnoughData("; ".join(faults) or f"{source} has no model of these joints")
-    return pd.concat(rows, ignore_index=True), faults, tables.facts(work / TORQUES)
+    whole = pd.concat(rows, ignore_index=True)
+    facts = tables.facts(work / TORQUES)
+    _write(
+        work / f"{table.name}.parquet",
+        whole,
+        table,
+        stage,
+        settings | {"extended": extended},
+        [work / TORQUES, source],
+        facts,
+    )
+    return whole, faults, facts.get("torque_unit", "N·m")

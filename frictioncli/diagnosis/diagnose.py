@@ -146,7 +146,7 @@ def diagnose_joint(
     left = _left(found, causes, settings)
     extension = gain = None
     if causes:
-        extension = extend(problem, found.weighing, _scores(causes))
+        extension = extend(problem, found.step.weighing, _scores(causes))
         gain = measured_gain(
             new or problem,
             extension,
@@ -206,7 +206,7 @@ def worthwhile(found: Found, judged: Problem) -> tuple[tuple[Cause, ...], tuple[
 
 def _misfit(found: Found, causes: Sequence[Cause], judged: Problem) -> dict[str, float]:
     """Return the RMS misfit per channel that the base extended with these causes leaves. [N·m]."""
-    extension = extend(found.problem, found.weighing, _scores(causes))
+    extension = extend(found.step.problem, found.step.weighing, _scores(causes))
     friction, load = misfits(judged, extension)
     return {
         "friction": float(np.sqrt(np.mean(np.square(friction)))),
@@ -220,11 +220,12 @@ def _scores(causes: Sequence[Cause]) -> list[Score]:
 
 def _left(found: Found, causes: Sequence[Cause], settings: DiagnosisSettings) -> Structure | None:
     """Return structure that the causes leave, if it is more than noise and rough edges."""
-    strongest = structures(found.problem, found.channels, found.projector, found.misfit)
+    step = found.step
+    strongest = structures(step.problem, step.channels, step.projector, step.misfit)
     if not strongest:
         return None
     first = strongest[0]
-    slight = _SLIGHT * float(np.mean(np.abs(found.problem.friction)))
+    slight = _SLIGHT * float(np.mean(np.abs(step.problem.friction)))
     if first.size < slight:
         return None
     if not found.causes:
@@ -245,7 +246,7 @@ def _verdict(causes: Sequence[Cause], left: Structure | None) -> str:
 
 def _floor(found: Found) -> float:
     """Return the RMS of point and pair noise of both channels."""
-    return float(np.sqrt(sum(noise.point**2 + noise.pair**2 for noise in found.noise)))
+    return float(np.sqrt(sum(noise.point**2 + noise.pair**2 for noise in found.step.noise)))
 
 
 def detectable(found: Found, effects: Sequence[Effect], alpha: float) -> dict[str, float | None]:

@@ -12,14 +12,13 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from frictioncli.diagnosis.candidates import Channels, Projector, Score, score
+from frictioncli.diagnosis.candidates import Score, score
 from frictioncli.diagnosis.problem import Problem
 from frictioncli.diagnosis.settings import DiagnosisSettings
 from frictioncli.diagnosis.significance import credible_set, probabilities
 from frictioncli.diagnosis.step import Candidate, Step, physical
-from frictioncli.effects.availability import missing_columns
+from frictioncli.effects.availability import judgeable
 from frictioncli.effects.base import Effect
-from frictioncli.model.noise import Noise
 
 Array = NDArray[np.float64]
 
@@ -44,24 +43,13 @@ class Found:
         Strongest first.
     last : dict of str to Candidate
         All effects at the last step: what silence means.
-    noise : (Noise, Noise)
-        Noise of the friction and the load channel at the end. [N·m]
-    problem : Problem
-        The data searched.
-    channels, projector, misfit : Channels, Projector, ndarray
-        Whiteners at the end, what takes out base and causes, and the white misfit off them.
-    weighing : Channels
-        Whiteners that only weigh, for estimates that must predict.
+    step : Step
+        The last step: noise, whiteners and what base and causes leave of the misfit.
     """
 
     causes: tuple[Cause, ...]
     last: dict[str, Candidate]
-    noise: tuple[Noise, Noise]
-    problem: Problem
-    channels: Channels
-    weighing: Channels
-    projector: Projector
-    misfit: Array
+    step: Step
 
 
 def find_causes(problem: Problem, effects: Sequence[Effect], settings: DiagnosisSettings) -> Found:
@@ -76,7 +64,7 @@ def find_causes(problem: Problem, effects: Sequence[Effect], settings: Diagnosis
     settings : DiagnosisSettings
         How sure a finding must be.
     """
-    able = [effect for effect in effects if not missing_columns(effect, problem.table)]
+    able = judgeable(effects, problem.table)
     accepted: list[Score] = []
     p_values: list[Candidate] = []
     while True:
@@ -92,16 +80,8 @@ def find_causes(problem: Problem, effects: Sequence[Effect], settings: Diagnosis
     causes = [
         _cause(problem, accepted, i, able, p_values[i], settings) for i in range(len(accepted))
     ]
-    return Found(
-        causes=tuple(sorted(causes, key=lambda cause: -cause.size)),
-        last=found,
-        noise=step.noise,
-        problem=problem,
-        channels=step.channels,
-        weighing=step.weighing,
-        projector=step.projector,
-        misfit=step.misfit,
-    )
+    strongest_first = tuple(sorted(causes, key=lambda cause: -cause.size))
+    return Found(causes=strongest_first, last=found, step=step)
 
 
 def _refitted(problem: Problem, accepted: list[Score]) -> list[Score]:

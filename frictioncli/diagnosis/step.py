@@ -60,17 +60,38 @@ class Candidate:
     size_scale: float
 
 
+@dataclass(frozen=True, slots=True)
+class View:
+    """The data under one plausible noise: whitened, base and accepted effects taken out."""
+
+    channels: Channels
+    projector: Projector
+    misfit: Array
+    weight: float
+
+
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Step:
-    """Noise, whiteners and projected misfit with some effects accepted."""
+    """The data with some effects accepted, seen under every plausible noise, likeliest first."""
 
     problem: Problem
     noise: tuple[Noise, Noise]
-    channels: Channels
-    alternatives: tuple[tuple[Channels, float], ...]
-    projector: Projector
-    misfit: Array
-    accepted: tuple[Score, ...]
+    views: tuple[View, ...]
+
+    @property
+    def channels(self) -> Channels:
+        """Whiteners under the most plausible noise."""
+        return self.views[0].channels
+
+    @property
+    def projector(self) -> Projector:
+        """What takes out base and accepted effects under the most plausible noise."""
+        return self.views[0].projector
+
+    @property
+    def misfit(self) -> Array:
+        """White misfit off them under the most plausible noise."""
+        return self.views[0].misfit
 
     @classmethod
     def of(cls, problem: Problem, accepted: Sequence[Score]) -> "Step":
@@ -81,24 +102,15 @@ class Step:
         quiet = np.zeros_like(extra)
         load_whitener = Whitener.of(layout, load[0][0], quiet)
         kept = [(noise, weight) for noise, weight in friction if weight >= _PLAUSIBLE]
-        alternatives = tuple(
-            (Channels(Whitener.of(layout, noise, extra), load_whitener), weight)
-            for noise, weight in kept
-        )
-        channels = alternatives[0][0]
-        projector, misfit = _projected(problem, channels, accepted)
-        return cls(
-            problem=problem,
-            noise=(kept[0][0], load[0][0]),
-            channels=channels,
-            alternatives=alternatives,
-            projector=projector,
-            misfit=misfit,
-            accepted=tuple(accepted),
-        )
+        views = []
+        for noise, weight in kept:
+            channels = Channels(Whitener.of(layout, noise, extra), load_whitener)
+            projector, misfit = _projected(problem, channels, accepted)
+            views.append(View(channels, projector, misfit, weight))
+        return cls(problem=problem, noise=(kept[0][0], load[0][0]), views=tuple(views))
 
     def judged(self, effect: Effect, catalogue: int, seed: int) -> Candidate:
-        """Return the candidate that an effect makes at this stage."""
+        """Return the candidate that an effect makes at this step."""
         found, columns = score(effect, self.problem, self.channels, self.projector, self.misfit)
         generator = np.random.default_rng([seed, *effect.name.encode()])
         count, freedom = tries(columns, generator)
@@ -147,15 +159,14 @@ class Step:
     def _chance(self, found: Score, freedom: int, count: float) -> float:
         """Return the chance of a score, averaged over the noises that agree with the data."""
         once = chance(found.statistic, freedom, count)
-        if once > 0.05 or len(self.alternatives) == 1:
+        if once > 0.05 or len(self.views) == 1:
             return once
         total = weight_sum = 0.0
-        for channels, weight in self.alternatives:
-            projector, misfit = _projected(self.problem, channels, self.accepted)
-            columns = effect_columns(found.effect, self.problem, channels, found.shape)
-            statistic = explained(visible(columns, projector), misfit)[0]
-            total += weight * chance(statistic, freedom, count)
-            weight_sum += weight
+        for view in self.views:
+            columns = effect_columns(found.effect, self.problem, view.channels, found.shape)
+            statistic = explained(visible(columns, view.projector), view.misfit)[0]
+            total += view.weight * chance(statistic, freedom, count)
+            weight_sum += view.weight
         return total / weight_sum
 
 
