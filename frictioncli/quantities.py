@@ -36,6 +36,7 @@ MOTOR_TEMPERATURE_READING = Quantity(
 )
 HOUSING_TEMPERATURE = Quantity("housing_temperature", "Tc", "°C", "temperature of the housing")
 LOAD = Quantity("load", "L", "N·m", "load torque from a channel of its own")
+PAYLOAD = Quantity("payload", "m", "kg", "payload given by the manifest")
 FRICTION_TORQUE = Quantity("friction_torque", "τ", TORQUE, "friction torque, opposes the motion")
 LOAD_TORQUE = Quantity("load_torque", "L", TORQUE, "load torque: gravity and external load")
 TEMPERATURE_PARAMETER = Quantity(

@@ -59,6 +59,9 @@ _PAIR_TIME = Column("time", _REAL, "s", "middle of the pair, since the run's fir
 _CRITERION = Column("criterion", _LABEL, "", "rule that decides when to correct")
 _K = Column("k", _REAL, "", "scale of the periodicity criterion (20)", nullable=True)
 _TMAX = Column("tmax", _REAL, "s", "time after which a correction is forced", nullable=True)
+_BOUND = Column(
+    "bound", _REAL, q.TORQUE, "greatest uncertainty of friction that is allowed", nullable=True
+)
 
 SAMPLES = Table(
     "samples",
@@ -89,7 +92,7 @@ RECORDINGS = Table(
         Column("started_at", _TEXT, "", "start, ISO 8601, where the log or manifest says", True),
         Column("start", _REAL, "s", "start since the run's first sample"),
         Column("phase", _LABEL, "", "phase given by the manifest", True),
-        Column("payload", _REAL, "kg", "payload given by the manifest", True),
+        _of(q.PAYLOAD, nullable=True),
         Column("ambient", _REAL, "°C", "ambient temperature given by the manifest", True),
         Column("rows_read", _COUNT, "", "rows read"),
         Column("rows_kept", _COUNT, "", "rows that became samples"),
@@ -127,6 +130,7 @@ _PAIR_COLUMNS = (
     Column("n_reverse", _COUNT, "", "samples of the reverse mean"),
     _of(q.MOTOR_TEMPERATURE_READING, nullable=True),
     _of(q.LOAD, nullable=True),
+    _of(q.PAYLOAD, nullable=True),
 )
 
 PAIRS = Table("pairs", "pair and angle bin", _PAIR_COLUMNS)
@@ -135,6 +139,39 @@ TORQUES = Table(
     "torques",
     "pair and angle bin",
     (*_PAIR_COLUMNS, _of(q.FRICTION_TORQUE), _of(q.LOAD_TORQUE)),
+)
+
+RAMPS = Table(
+    "ramps",
+    "move, part of it and bin of distance from the turning point",
+    (
+        _RUN,
+        _RECORDING,
+        _JOINT_COLUMN,
+        Column("move", _COUNT, "", "number of the move, unique in the table"),
+        Column("part", _LABEL, "", "accelerating after the move began, or braking before its end"),
+        Column("direction", _JOINT, "", "1 while position grows, -1 while it falls"),
+        Column("reversal", _FLAG, "", "the move before went the other way, or is not known"),
+        Column("speed", _REAL, "deg/s", "constant speed of the move, > 0"),
+        Column("bin", _COUNT, "", "bin of distance, from 0"),
+        Column("time", _REAL, "s", "mean time since the run's first sample"),
+        _of(q.MOTOR_TEMPERATURE, nullable=True),
+        _of(q.HOUSING_TEMPERATURE, nullable=True),
+        _of(q.PAYLOAD, nullable=True),
+        _of(q.POSITION),
+        _of(q.VELOCITY),
+        Column("acceleration", _REAL, "deg/s²", "mean slope of the velocity"),
+        Column("acceleration_before", _REAL, "deg/s²", "the same one sample earlier"),
+        Column("acceleration_after", _REAL, "deg/s²", "the same one sample later"),
+        Column("acceleration_2_before", _REAL, "deg/s²", "the same two samples earlier"),
+        Column("acceleration_2_after", _REAL, "deg/s²", "the same two samples later"),
+        Column("distance", _REAL, "deg", "mean angle since the move began, or until it ends"),
+        Column("spread", _REAL, "deg", "standard deviation of the angle in the bin"),
+        Column("elapsed", _REAL, "s", "mean time since the move began, or until it ends"),
+        _of(q.MOTOR_TORQUE),
+        _of(q.LOAD, nullable=True),
+        Column("samples", _COUNT, "", "samples of the means"),
+    ),
 )
 
 SCHEDULE = Table(
@@ -157,6 +194,7 @@ SCHEDULE = Table(
         Column("friction_torque", _REAL, q.TORQUE, "measured friction torque at zero load"),
         Column("friction_smoothed", _REAL, q.TORQUE, "the same, smoothed over motor temperature"),
         Column("friction_predicted", _REAL, q.TORQUE, "friction torque predicted at zero load"),
+        _BOUND,
     ),
 )
 
@@ -174,5 +212,6 @@ EVALUATION = Table(
         Column("failed", _COUNT, "", "of these, those that could not be computed"),
         Column("epsilon", _REAL, q.TORQUE, "error (21) against the smoothed friction torque"),
         Column("epsilon_unsmoothed", _REAL, q.TORQUE, "the same against the unsmoothed one"),
+        _BOUND,
     ),
 )

@@ -4,8 +4,10 @@ from dataclasses import dataclass
 
 import numpy as np
 import pandas as pd
+from numpy.typing import NDArray
 
 from frictioncli.errors import NotEnoughData
+from frictioncli.motion.given import of_recordings
 from frictioncli.motion.matching import (
     Matches,
     SpanArrays,
@@ -14,6 +16,8 @@ from frictioncli.motion.matching import (
 )
 from frictioncli.motion.settings import PairingSettings
 from frictioncli.motion.spans import Spans
+
+_OTHER_PAYLOAD = "the partner has another payload"
 
 
 @dataclass(frozen=True, slots=True)
@@ -29,8 +33,13 @@ class Pairing:
     bin_width: float
 
 
-def pair_spans(found: Spans, settings: PairingSettings) -> Pairing:
+def pair_spans(
+    found: Spans, settings: PairingSettings, payload: pd.Series | None = None
+) -> Pairing:
     """Pair counter-directed spans and put both torques of each angle bin side by side.
+
+    Moves with different payloads are loaded differently and make no pair; nor do a move whose
+    payload is known and one whose is not. Of the latter two are taken to carry the same.
 
     Parameters
     ----------
@@ -38,6 +47,8 @@ def pair_spans(found: Spans, settings: PairingSettings) -> Pairing:
         The constant-velocity spans.
     settings : PairingSettings
         What makes a pair.
+    payload : Series, optional
+        Payload by run and recording, missing where unknown. [kg]
 
     Raises
     ------
@@ -53,27 +64,45 @@ def pair_spans(found: Spans, settings: PairingSettings) -> Pairing:
         )
     visits = found.visits
     spans = found.spans.assign(
-        level=speed_levels(found.spans["speed"].to_numpy(), settings.same_speed)
+        level=speed_levels(found.spans["speed"].to_numpy(), settings.same_speed),
+        payload=np.nan if payload is None else of_recordings(found.spans, payload).astype(float),
     )
-    groups = [
-        group.sort_values("start").index.to_numpy()
-        for _, group in spans.groupby(["run", "joint", "level"], observed=True)
-    ]
-    matches = match_visits(_arrays(spans, visits), groups, settings)
+    matches = match_visits(_arrays(spans, visits), _groups(spans, "payload"), settings)
     used = matches.visit_couple >= 0
+    other = ~used & _matches_another_payload(spans, visits, used, settings)
     if not used.any():
+        mixed = f", {_OTHER_PAYLOAD}" if other.any() else ""
         raise NotEnoughData(
-            f"no pair of counter-directed moves: {_directions(spans)}; expected motion there and"
-            " back over the same angles at the same speed; log both directions, or loosen"
+            f"no pair of counter-directed moves: {_directions(spans)}{mixed}; expected motion there"
+            " and back over the same angles at the same speed; log both directions, or loosen"
             " --same-speed, --same-temperature, --longest-pause"
         )
     alone = ~np.isin(visits["span"], [span for couple in matches.couples for span in couple])
     dropped = found.dropped | {
-        "no counter-directed partner": int(visits.loc[~used & alone, "n"].sum()),
-        "angle not shared with the partner": int(visits.loc[~used & ~alone, "n"].sum()),
+        "no counter-directed partner": int(visits.loc[~used & ~other & alone, "n"].sum()),
+        "angle not shared with the partner": int(visits.loc[~used & ~other & ~alone, "n"].sum()),
+        _OTHER_PAYLOAD: int(visits.loc[other, "n"].sum()),
     }
     rows = _rows(spans, visits, matches, found.bin_width)
     return Pairing(rows, found.samples, dropped, found.bin_width)
+
+
+def _groups(spans: pd.DataFrame, *also: str) -> list[NDArray[np.int64]]:
+    """Return the spans that may pair with each other, in time order."""
+    grouped = spans.groupby(["run", "joint", "level", *also], observed=True, dropna=False)
+    return [group.sort_values("start").index.to_numpy() for _, group in grouped]
+
+
+def _matches_another_payload(
+    spans: pd.DataFrame, visits: pd.DataFrame, used: NDArray[np.bool_], settings: PairingSettings
+) -> NDArray[np.bool_]:
+    """Return which of the visits left over would have a partner if payloads did not matter."""
+    found = np.zeros(len(visits), dtype=bool)
+    if len(spans["payload"].unique()) > 1:
+        # those of one payload have been matched as far as they can be
+        rest = match_visits(_arrays(spans, visits[~used]), _groups(spans), settings)
+        found[~used] = rest.visit_couple >= 0
+    return found
 
 
 def _arrays(spans: pd.DataFrame, visits: pd.DataFrame) -> SpanArrays:
@@ -129,6 +158,7 @@ def _rows(
             "n_reverse": rows["n_reverse"].astype(np.int64),
             "motor_temperature_reading": rows["motor_temperature_reading"],
             "load": (rows["load_forward"] + rows["load_reverse"]) / 2,
+            "payload": rows["payload"],
             "recording": rows["recording"],
         }
     ).sort_values(["run", "joint", "pair", "position"], ignore_index=True)
@@ -138,7 +168,7 @@ def _heads(spans: pd.DataFrame, couples: list[tuple[int, int]]) -> pd.DataFrame:
     """Return one row per pair: what its two spans have in common, and its number."""
     ahead = spans.iloc[[forward for forward, _ in couples]].reset_index(drop=True)
     back = spans.iloc[[reverse for _, reverse in couples]].reset_index(drop=True)
-    heads = ahead[["run", "joint", "recording", "level"]].assign(
+    heads = ahead[["run", "joint", "recording", "level", "payload"]].assign(
         forward=[forward for forward, _ in couples],
         time=(ahead["start"] + ahead["stop"] + back["start"] + back["stop"]) / 4,
         speed=(ahead["speed"] + back["speed"]) / 2,

@@ -12,6 +12,7 @@ import pandas as pd
 import pyarrow as pa
 from numpy.typing import NDArray
 
+from frictioncli.motion.ramps import COLUMNS, PARTS, ramp_rows
 from frictioncli.motion.settings import SteadySettings
 from frictioncli.motion.steady import (
     REASONS,
@@ -55,6 +56,8 @@ class Spans:
     visits : DataFrame
         One row per span and angle bin: span (row number in ``spans``), bin (number), n (samples),
         torque at the bin's centre, load, time [s].
+    ramps : DataFrame
+        Rows of :data:`frictioncli.schemas.RAMPS` (without payload).
     samples : int
         Samples read.
     dropped : dict of str to int
@@ -65,6 +68,7 @@ class Spans:
 
     spans: pd.DataFrame
     visits: pd.DataFrame
+    ramps: pd.DataFrame
     samples: int
     dropped: dict[str, int]
     bin_width: float
@@ -142,6 +146,8 @@ class _Collector:
         self._width = bin_width
         self._spans: list[dict] = []
         self._visits: list[dict[str, Array]] = []
+        self._ramps: list[tuple[tuple, dict[str, Array]]] = []
+        self._ways: dict[tuple, int] = {}
         self._samples = 0
         self._dropped = dict.fromkeys((*REASONS, "angle bin barely crossed"), 0)
 
@@ -151,8 +157,12 @@ class _Collector:
         counts = np.bincount(classes, minlength=STEADY + 1)
         for reason, count in zip(REASONS, counts[STANDING:STEADY], strict=True):
             self._dropped[reason] += int(count)
+        ramps = ramp_rows(channels, parts, self._ways.get(key, 0))
+        self._ramps.append((key, ramps | {"move": ramps["move"] + len(self._spans)}))
         for part in parts:
             self._add_part(key, channels, part)
+        if parts:
+            self._ways[key] = 1 if parts[-1].speed > 0 else -1
 
     def _add_part(self, key: tuple, channels: dict[str, Array], part: SteadyPart) -> None:
         inside = {name: values[part.start : part.stop] for name, values in channels.items()}
@@ -189,10 +199,38 @@ class _Collector:
             visits=pd.DataFrame(
                 {name: np.concatenate([part[name] for part in parts]) for name in names}
             ),
+            ramps=_ramps(self._ramps),
             samples=self._samples,
             dropped=self._dropped,
             bin_width=self._width,
         )
+
+
+def _ramps(parts: list[tuple[tuple, dict[str, Array]]]) -> pd.DataFrame:
+    """Return the ramps of all recordings as one table."""
+    rows = [len(part["move"]) for _, part in parts]
+    columns = {name: [part[name] for _, part in parts] for name in COLUMNS}
+    keys = {
+        name: pd.Categorical.from_codes(*_repeated([key[i] for key, _ in parts], rows))
+        for i, name in enumerate(_KEY)
+    }
+    values = {name: np.concatenate([*found, np.empty(0)]) for name, found in columns.items()}
+    part = pd.Categorical.from_codes(values["part"].astype(np.int8), list(PARTS))
+    counts = {name: values[name].astype(np.int64) for name in ("move", "bin", "samples")}
+    counts["direction"] = values["direction"].astype(np.int16)
+    joint = np.asarray(keys["joint"].astype(np.int16)) if parts else np.empty(0, np.int16)
+    return pd.DataFrame(
+        keys
+        | values
+        | counts
+        | {"joint": joint, "part": part, "reversal": values["reversal"].astype(bool)}
+    )
+
+
+def _repeated(labels: list, counts: list[int]) -> tuple[NDArray[np.intp], list]:
+    """Return each label as often as told, as codes and the labels that differ."""
+    codes, names = pd.factorize(np.array(labels, dtype=object))
+    return np.repeat(codes, counts), list(names)
 
 
 def _mean(values: Array) -> float:

@@ -43,12 +43,15 @@ _GAP = 5.0
 class SteadyPart:
     """One constant-velocity part: samples ``start`` to ``stop`` (excluded) and their speed.
 
-    ``speed`` carries the direction's sign. [deg/s]
+    ``speed`` carries the direction's sign [deg/s]. The move it belongs to, ramps included, has the
+    samples ``first`` to ``last`` (excluded).
     """
 
     start: int
     stop: int
     speed: float
+    first: int
+    last: int
 
 
 def moves(time: Array, velocity: Array, settings: SteadySettings) -> list[tuple[int, int]]:
@@ -118,7 +121,8 @@ def steady_parts(
         classes[first:last] = ACCELERATING
         width = min(_SMOOTHING, _SMOOTHED_SHARE * (time[last - 1] - time[first]))
         speed = np.abs(smoothed(time[first:last], velocity[first:last], width))
-        for start, stop in _between_dips(velocity[first:last], settings):
+        stretches = _between_dips(velocity[first:last], settings)
+        for number, (start, stop) in enumerate(stretches):
             plateau = _plateau(speed[start:stop], settings)
             if plateau is None:
                 continue
@@ -130,7 +134,9 @@ def steady_parts(
             classes[begin:end] = SETTLING
             classes[begin + settled : begin + margin] = STEADY
             mean = float(np.mean(velocity[begin + settled : begin + margin]))
-            parts.append(SteadyPart(begin + settled, begin + margin, mean))
+            low = first if number == 0 else first + start
+            high = last if number == len(stretches) - 1 else first + stop
+            parts.append(SteadyPart(begin + settled, begin + margin, mean, low, high))
     return parts, classes
 
 

@@ -139,6 +139,7 @@ def _table(course: Course, parts: list[Cells], planted: Planted, rebuilt: bool) 
             "n_reverse": count,
             "motor_temperature_reading": reading[trip],
             "load": np.nan,
+            "payload": np.array(run.payloads)[trips.load][trip],
             "friction_torque": sign * (torque[0] - torque[1]) / 2.0,
             "load_torque": (torque[0] + torque[1]) / 2.0,
         }
@@ -146,12 +147,18 @@ def _table(course: Course, parts: list[Cells], planted: Planted, rebuilt: bool) 
 
 
 def _torque(part: Cells, planted: Planted, sign: int) -> NDArray[np.float64]:
-    """Return the mean torque per direction and cell, without noise [N·m]."""
+    """Return the mean torque per direction and cell, without noise [N·m].
+
+    A bin that was passed in part has its mean off its centre; as from traces, the mean is carried
+    there along the slope.
+    """
     state = part.state
     extra = planted.extra(state)
     friction = state.friction + extra.friction
     torque = state.load + extra.load + sign * state.direction * friction
-    return np.asarray(np.mean(torque, axis=0))
+    slope = np.diff(torque, axis=0)[0] / np.diff(state.position, axis=0)[0]
+    away = part.position - np.mean(state.position, axis=0)
+    return np.asarray(np.mean(torque, axis=0) + slope * away)
 
 
 def _middles(course: Course) -> NDArray[np.float64]:

@@ -118,6 +118,22 @@ def test_tables_agree_with_traces(tmp_path, changes):
     assert (both["phase"].astype(str) == both["phase_table"].astype(str)).all()
 
 
+@pytest.mark.parametrize("protocol", ["paper", "enriched"])
+def test_payloads_of_tables_are_those_of_traces(tmp_path, protocol):
+    changes = {"protocol": protocol, "payload": 1.5, "joint_kind": "plain", "noise_scale": 0.0}
+    synthesis(tmp_path / "logs", **changes)
+    traced = torques(tmp_path / "logs", tmp_path / "work")
+    table = simulate_torques(SynthesisSettings(**SHORT, **changes))
+    both = traced.merge(table, on=["pair", "position"], suffixes=("", "_table"))
+    assert len(both) >= 0.98 * max(len(traced), len(table))
+    assert set(both["payload"]) == ({1.5} if protocol == "paper" else {1.5, 3.5, 5.5})
+    assert (both["payload"] == both["payload_table"]).all()
+    # bins at the ends, passed in part, are carried to their centre both ways
+    slow = both[both["speed"] < 150]
+    away = (slow["load_torque"] - slow["load_torque_table"]).groupby(slow["speed"])
+    assert away.std().max() < 0.1
+
+
 def test_noise_of_tables_is_that_of_traces(tmp_path):
     synthesis(tmp_path / "logs")
     traced = torques(tmp_path / "logs", tmp_path / "work")
