@@ -1,11 +1,13 @@
 """Settings of the stages ``simulate`` and ``evaluate``."""
 
+import math
 from dataclasses import dataclass
 
 from frictioncli.errors import OptionError
 
-CRITERIA = ("first_degree", "latest_degree", "none", "equal")
-"""Rules that decide when to correct: two readings of (20), never, and evenly in time."""
+CRITERIA = ("first_degree", "latest_degree", "none", "equal", "uncertainty")
+"""Rules that decide when to correct: two readings of (20), never, evenly in time, and where the
+predicted uncertainty of friction demands it."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -42,11 +44,15 @@ class ScheduleSettings:
         Scale of criterion (20).
     tmax : float
         Time after which a correction is forced. [s]
+    bound : float
+        Greatest standard deviation of predicted friction that ``uncertainty`` allows; the default
+        is the error that the paper reaches. [torque unit]
     """
 
     criterion: str = "first_degree"
     k: float = 5.0
     tmax: float = 3600.0
+    bound: float = 2.0
 
     def __post_init__(self) -> None:
         if self.criterion not in CRITERIA:
@@ -55,15 +61,41 @@ class ScheduleSettings:
             )
         _check_positive("k", (self.k,))
         _check_positive("tmax", (self.tmax,))
+        _check_positive("bound", (self.bound,))
 
-    def told(self) -> str:
-        """Return the schedule in words."""
-        return f"criterion {self.criterion}, k = {self.k:g}, tmax = {self.tmax / 60:g} min"
+    @property
+    def by_time(self) -> bool:
+        """Whether k and tmax decide, not the bound."""
+        return self.criterion not in ("none", "uncertainty")
+
+    def columns(self) -> dict[str, str | float]:
+        """Return what the tables say of the schedule: NaN where one decides nothing."""
+        return {
+            "criterion": self.criterion,
+            "k": self.k if self.by_time else math.nan,
+            "tmax": self.tmax if self.by_time else math.nan,
+            "bound": self.bound if self.criterion == "uncertainty" else math.nan,
+        }
+
+    def told(self, unit: str) -> str:
+        """Return the schedule in words.
+
+        Parameters
+        ----------
+        unit : str
+            Unit of torque.
+        """
+        told = f"criterion {self.criterion}"
+        if self.by_time:
+            told += f", k = {self.k:g}, tmax = {self.tmax / 60:g} min"
+        elif self.criterion == "uncertainty":
+            told += f", bound = {self.bound:g} {unit}"
+        return told
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class EvaluationGrid:
-    """The schedules that ``evaluate`` compares: every k with every tmax.
+    """The schedules that ``evaluate`` compares: every k with every tmax, and every bound.
 
     Attributes
     ----------
@@ -71,14 +103,18 @@ class EvaluationGrid:
         Scales of criterion (20).
     tmax : tuple of float
         Times after which a correction is forced. [s]
+    bound : tuple of float
+        Bounds of criterion ``uncertainty``. [torque unit]
     """
 
     k: tuple[float, ...] = (1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 8.0, 10.0, 15.0, 20.0)
     tmax: tuple[float, ...] = (600.0, 1200.0, 1800.0, 3600.0, 7200.0)
+    bound: tuple[float, ...] = (0.5, 0.75, 1.0, 1.5, 2.0, 3.0, 4.0, 6.0)
 
     def __post_init__(self) -> None:
         _check_positive("k", self.k)
         _check_positive("tmax", self.tmax)
+        _check_positive("bound", self.bound)
 
 
 def _check_positive(name: str, values: tuple[float, ...]) -> None:

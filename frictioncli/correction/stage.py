@@ -1,24 +1,28 @@
 """Stages ``simulate`` and ``evaluate``: torques and model of a joint to schedule and errors."""
 
-from collections.abc import Iterator
-from dataclasses import asdict, dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from typing import NamedTuple
 
 import numpy as np
 import pandas as pd
 
+from frictioncli.correction.deviation import Deviation, estimated_deviation, probes_of
 from frictioncli.correction.replay import PhaseData, Replay, phase_data, replay
 from frictioncli.correction.schedule import equally_spaced, first_degree, latest_degree
 from frictioncli.correction.settings import (
-    CRITERIA,
     CorrectionSettings,
     EvaluationGrid,
     ScheduleSettings,
 )
+from frictioncli.correction.uncertainty import follow
 from frictioncli.errors import NotEnoughData
 from frictioncli.model.document import FrictionModel
 from frictioncli.model.zero_load import friction_at_zero_load
 
 _READINGS = {"first_degree": first_degree, "latest_degree": latest_degree}
+
+_NEVER = ScheduleSettings(criterion="none")
 
 _MIDDLE = 2 / 3
 """The paper corrects at 67.5 deg/s, two thirds of its highest speed."""
@@ -32,6 +36,21 @@ class _Phase:
     name: str
     pairs: pd.DataFrame
     data: PhaseData
+
+
+@dataclass(frozen=True, slots=True)
+class _Cell:
+    """A criterion to evaluate; ``equal`` makes as many corrections as the rule would."""
+
+    criterion: str
+    rule: ScheduleSettings
+
+
+class Evaluation(NamedTuple):
+    """Rows of :data:`frictioncli.schemas.EVALUATION`, and what could not be evaluated and why."""
+
+    rows: pd.DataFrame
+    notes: tuple[str, ...]
 
 
 def simulate(
@@ -56,13 +75,17 @@ def simulate(
     Raises
     ------
     NotEnoughData
-        If the joint has no heat-up or cool-down, or its model does not know temperature.
+        If the joint has no heat-up or cool-down, its model does not know temperature, or the pairs
+        are too few to see how uncertain friction becomes, where the criterion asks for it.
     """
+    phases = _phases(torques, model, settings)
+    highest = float(torques["speed"].max())
+    process = _deviation(phases, model) if schedule.criterion == "uncertainty" else None
     tables = []
-    for phase in _phases(torques, model, settings):
-        result = _replayed(phase.data, model, schedule)
+    for phase in phases:
+        result = _replayed(phase.data, model, _cell(schedule), process, highest)
         table = phase.pairs[["run", "joint", "pair", "speed", "time", "phase"]].assign(
-            **asdict(schedule),
+            **schedule.columns(),
             temperature_parameter=phase.data.temperature + result.correction,
             temperature_correction=result.correction,
             corrected=result.corrected,
@@ -80,40 +103,38 @@ def evaluate(
     model: FrictionModel,
     settings: CorrectionSettings,
     grid: EvaluationGrid,
-) -> pd.DataFrame:
-    """Evaluate all criteria over a grid; return rows of :data:`frictioncli.schemas.EVALUATION`.
+) -> Evaluation:
+    """Evaluate all criteria over a grid.
 
     The rows with criterion ``equal`` have as many corrections, equally spaced in time, as the
-    ``first_degree`` row with the same k and tmax.
+    ``first_degree`` row with the same k and tmax, or the ``uncertainty`` row with the same bound.
+    Where the pairs are too few for that criterion, it is left out and a note says so.
 
     Parameters
     ----------
     torques, model, settings
         As :func:`simulate`.
     grid : EvaluationGrid
-        The values of k and tmax.
+        The values of k, tmax and the bound.
     """
-    cells = [ScheduleSettings(criterion="none")]
-    cells += [
-        ScheduleSettings(criterion=criterion, k=k, tmax=tmax)
-        for criterion in CRITERIA
-        if criterion != "none"
-        for k in grid.k
-        for tmax in grid.tmax
-    ]
+    phases = _phases(torques, model, settings)
+    highest = float(torques["speed"].max())
+    process, notes = None, []
+    try:
+        process = _deviation(phases, model)
+    except NotEnoughData as fault:
+        notes.append(f"left out: {fault}")
+    cells = _cells(grid, bounds=grid.bound if process else ())
     rows = []
-    for phase in _phases(torques, model, settings):
+    for phase in phases:
         for cell in cells:
-            result = _replayed(phase.data, model, cell)
-            never = cell.criterion == "none"
+            result = _replayed(phase.data, model, cell, process, highest)
             rows.append(
                 {
                     "run": phase.run,
                     "joint": model.joint,
                     "phase": phase.name,
-                    "criterion": cell.criterion,
-                    "k": np.nan if never else cell.k,
-                    "tmax": np.nan if never else cell.tmax,
+                    **(cell.rule.columns() | {"criterion": cell.criterion}),
                     "corrections": int(result.corrected.sum()),
                     "failed": int(result.failed.sum()),
                     "pairs": len(phase.pairs),
@@ -121,12 +142,27 @@ def evaluate(
                     "epsilon_unsmoothed": result.epsilon(phase.data.friction),
                 }
             )
-    return _pooled(pd.DataFrame(rows))
+    return Evaluation(_pooled(pd.DataFrame(rows)), tuple(notes))
+
+
+def _cell(schedule: ScheduleSettings) -> _Cell:
+    """Return a schedule as a cell; evenly spaced corrections are as many as the paper's are."""
+    if schedule.criterion == "equal":
+        return _Cell("equal", replace(schedule, criterion="first_degree"))
+    return _Cell(schedule.criterion, schedule)
+
+
+def _cells(grid: EvaluationGrid, bounds: Sequence[float]) -> list[_Cell]:
+    by_time = [ScheduleSettings(k=k, tmax=tmax) for k in grid.k for tmax in grid.tmax]
+    by_bound = [ScheduleSettings(criterion="uncertainty", bound=bound) for bound in bounds]
+    readings = [replace(rule, criterion=name) for name in _READINGS for rule in by_time]
+    cells = [_Cell(rule.criterion, rule) for rule in (_NEVER, *readings, *by_bound)]
+    return cells + [_Cell("equal", rule) for rule in (*by_time, *by_bound)]
 
 
 def _pooled(rows: pd.DataFrame) -> pd.DataFrame:
     """Put several phases of one kind in a run (a second thermal cycle) into one row."""
-    keys = ["run", "joint", "phase", "criterion", "k", "tmax"]
+    keys = ["run", "joint", "phase", "criterion", "k", "tmax", "bound"]
     squares = {
         name: np.square(rows[name]) * rows["pairs"] for name in ("epsilon", "epsilon_unsmoothed")
     }
@@ -139,8 +175,8 @@ def _pooled(rows: pd.DataFrame) -> pd.DataFrame:
 
 def _phases(
     torques: pd.DataFrame, model: FrictionModel, settings: CorrectionSettings
-) -> Iterator[_Phase]:
-    """Yield each stretch of heat-up or cool-down of the joint."""
+) -> list[_Phase]:
+    """Return each stretch of heat-up or cool-down of the joint, ordered by run and time."""
     if not model.knows_temperature:
         raise NotEnoughData(
             f"joint {model.joint}: the model does not know how friction falls with temperature"
@@ -160,20 +196,47 @@ def _phases(
     speed = settings.correction_speed
     if speed is None:
         speed = _MIDDLE * float(pairs.loc[thermal, "speed"].max())
+    found = []
     for _, group in pairs[thermal].groupby(stretch.cumsum()[thermal], sort=True):
         data = phase_data(group, correction_speed=speed, degree=settings.smoothing_degree)
         head = group.iloc[0]
-        yield _Phase(str(head["run"]), str(head["phase"]), group, data)
+        found.append(_Phase(str(head["run"]), str(head["phase"]), group, data))
+    return found
 
 
-def _replayed(data: PhaseData, model: FrictionModel, schedule: ScheduleSettings) -> Replay:
-    if schedule.criterion == "none":
+def _deviation(phases: list[_Phase], model: FrictionModel) -> Deviation:
+    """Return how friction departs from the motor temperature, from all phases of the joint."""
+    numbers = pd.factorize(np.array([phase.run for phase in phases], dtype=object))[0]
+    probes = probes_of(
+        [(int(number), phase.data) for number, phase in zip(numbers, phases, strict=True)],
+        model.friction,
+    )
+    try:
+        return estimated_deviation(probes)
+    except NotEnoughData as fault:
+        raise NotEnoughData(f"joint {model.joint}: {fault}") from None
+
+
+def _replayed(
+    data: PhaseData,
+    model: FrictionModel,
+    cell: _Cell,
+    process: Deviation | None,
+    highest: float,
+) -> Replay:
+    rule = cell.rule
+    if rule.criterion == "none":
         return replay(data, model.friction, [])
-    reading = _READINGS.get(schedule.criterion, first_degree)
-    events = reading(data.time, data.reading, k=schedule.k, tmax=schedule.tmax)
-    if schedule.criterion == "equal":
-        events = equally_spaced(data.time, len(events))
-    return replay(data, model.friction, events)
+    if rule.criterion == "uncertainty":
+        assert process is not None  # estimated wherever the criterion is asked for
+        result = follow(data, model.friction, process, bound=rule.bound, speed=highest)
+    else:
+        events = _READINGS[rule.criterion](data.time, data.reading, k=rule.k, tmax=rule.tmax)
+        result = replay(data, model.friction, events)
+    if cell.criterion == "equal":
+        count = int(result.corrected.sum())
+        return replay(data, model.friction, equally_spaced(data.time, count))
+    return result
 
 
 def epsilon(rows: pd.DataFrame, reference: str) -> float:
@@ -187,8 +250,16 @@ def evaluation_text(rows: pd.DataFrame, unit: str) -> str:
     for (run, joint), group in rows.groupby(["run", "joint"], sort=False):
         never = group[group["criterion"] == "none"].set_index("phase")["epsilon"]
         lines.append(f"{run}, joint {joint}: epsilon [{unit}] by number of corrections")
-        for phase, part in group[group["criterion"] == "first_degree"].groupby("phase", sort=False):
-            median = part.groupby("corrections")["epsilon"].median().head(15)
-            told = "  ".join(f"{count}: {value:.2f}" for count, value in median.items())
-            lines.append(f"  {phase:9s} none: {never[phase]:.2f}  {told}")
+        for phase, part in group.groupby("phase", sort=False):
+            lines.append(
+                f"  {phase:9s} none: {never[phase]:.2f}  {_by_count(part, 'first_degree')}"
+            )
+            if (part["criterion"] == "uncertainty").any():
+                lines.append(f"  {'':9s} by uncertainty  {_by_count(part, 'uncertainty')}")
     return "\n".join(lines)
+
+
+def _by_count(rows: pd.DataFrame, criterion: str) -> str:
+    chosen = rows[rows["criterion"] == criterion]
+    median = chosen.groupby("corrections")["epsilon"].median().head(15)
+    return "  ".join(f"{count}: {value:.2f}" for count, value in median.items())

@@ -80,17 +80,17 @@ def test_rows_follow_the_schema():
     rows = simulated(shifted(0.0))
     assert set(schemas.SCHEDULE.names) == set(rows.columns)
     grid = EvaluationGrid(k=(2.0, 5.0), tmax=(1800.0,))
-    found = evaluate(torques(1), published_model(), CorrectionSettings(), grid)
+    found, _ = evaluate(torques(1), published_model(), CorrectionSettings(), grid)
     assert set(schemas.EVALUATION.names) == set(found.columns)
-    # per phase: none, and two k with three criteria
-    assert len(found) == 2 * (1 + 2 * 3)
+    # per phase: none, two k with three criteria, and every bound with equal spacing beside it
+    assert len(found) == 2 * (1 + 2 * 3 + 2 * len(grid.bound))
 
 
 def test_evaluation_agrees_with_simulation():
     table = torques(2)
     rows = simulated(table, k=3.0, tmax=1800.0)
     grid = EvaluationGrid(k=(3.0,), tmax=(1800.0,))
-    found = evaluate(table, published_model(), CorrectionSettings(), grid)
+    found, _ = evaluate(table, published_model(), CorrectionSettings(), grid)
     for phase, part in rows.groupby("phase"):
         cell = found[(found["phase"] == phase) & (found["criterion"] == "first_degree")].iloc[0]
         assert cell["corrections"] == part["corrected"].sum()
@@ -101,8 +101,8 @@ def test_evaluation_agrees_with_simulation():
 
 def test_equal_spacing_makes_as_many_corrections():
     grid = EvaluationGrid(k=(2.0, 5.0), tmax=(1800.0, 3600.0))
-    found = evaluate(torques(2), published_model(), CorrectionSettings(), grid)
-    keys = ["phase", "k", "tmax"]
+    found, _ = evaluate(torques(2), published_model(), CorrectionSettings(), grid)
+    found, keys = found[found["bound"].isna()], ["phase", "k", "tmax"]
     counts = {
         name: found[found["criterion"] == name].set_index(keys)["corrections"]
         for name in ("first_degree", "equal")
