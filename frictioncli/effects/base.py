@@ -54,6 +54,18 @@ class Parameter:
             return np.geomspace(self.lower, self.upper, self.points)
         return np.linspace(self.lower, self.upper, self.points)
 
+    def at(self, share: float) -> float:
+        """Return the value at a share of the way from bound to bound, by the search's scale."""
+        if self.search == "logarithmic":
+            return float(self.lower * (self.upper / self.lower) ** share)
+        return float(self.lower + share * (self.upper - self.lower))
+
+    def share(self, value: float) -> float:
+        """Return the share of the way from bound to bound at which a value lies."""
+        if self.search == "logarithmic":
+            return float(np.log(value / self.lower) / np.log(self.upper / self.lower))
+        return float((value - self.lower) / (self.upper - self.lower))
+
 
 @dataclass(frozen=True, slots=True)
 class Signature:
@@ -100,6 +112,8 @@ class EffectTable:
         Its viscous factor beta + gamma exp(-delta T). [N·m/(deg/s)^0.5]
     temperature_slope : ndarray, shape (rows,)
         Its derivative by temperature at fixed speed, <= 0. [N·m/°C]
+    load_slope : ndarray, shape (rows,)
+        Its derivative by load torque. [1]
     travel : ndarray, shape (rows,)
         Way travelled in the run up to the pair as far as the log covers it. [deg]
     rest : ndarray, shape (rows,)
@@ -121,6 +135,7 @@ class EffectTable:
     friction: Array
     viscous: Array
     temperature_slope: Array
+    load_slope: Array
     travel: Array
     rest: Array
     order: Array

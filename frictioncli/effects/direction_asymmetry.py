@@ -9,22 +9,40 @@ import numpy as np
 
 from frictioncli.effects.base import Basis, Effect, EffectTable, Parameter, Signature, load_only
 
+_REFERENCE_SPEED = 50.0
+"""Speed at which the viscous part is that of the base model. [deg/s]"""
 
-def basis(table: EffectTable) -> Basis:
-    """Return one, and the viscous friction in units of torque."""
-    return load_only(np.ones_like(table.speed), table.viscous * np.sqrt(table.speed))
+
+def basis(table: EffectTable, *, exponent: float) -> Basis:
+    """Return one, a power of speed, and the same that thins as the base's viscous friction does.
+
+    The latter two are 1 and the base's viscous torque at 50 deg/s.
+    """
+    power = (table.speed / _REFERENCE_SPEED) ** exponent
+    viscous = table.viscous * np.sqrt(_REFERENCE_SPEED)
+    return load_only(np.ones_like(power), power, viscous * power)
 
 
 EFFECT = Effect(
     name="direction_asymmetry",
     summary="Friction is greater in one direction than in the other.",
-    equation="dL = c0 + c1*(beta + gamma*exp(-delta*T))*sqrt(v)",
+    equation="dL = c0 + (c1 + c2*(beta + gamma*exp(-delta*T))*sqrt(50))*(v/50)^p",
     source=(
         "Odd part of equation (8) of Nevmerzhitskiy et al. 2019, doi:10.1155/2019/6931563;"
         " directional friction: model M5 of Rhoban BAM, arXiv:2410.08650"
     ),
     channel="load",
-    shape=(),
+    shape=(
+        Parameter(
+            name="exponent",
+            symbol="p",
+            unit="1",
+            lower=0.2,
+            upper=1.0,
+            description="Power of speed of the viscous part",
+            points=4,
+        ),
+    ),
     coefficients=(
         Parameter(
             name="offset",
@@ -35,8 +53,16 @@ EFFECT = Effect(
             description="Half the difference of Coulomb friction, or an offset of the torque",
         ),
         Parameter(
-            name="viscous_asymmetry",
+            name="speed_asymmetry",
             symbol="c1",
+            unit="torque",
+            lower=-5.0,
+            upper=5.0,
+            description="Half the difference at 50 deg/s that does not change with temperature",
+        ),
+        Parameter(
+            name="viscous_asymmetry",
+            symbol="c2",
             unit="1",
             lower=-0.3,
             upper=0.3,

@@ -1,7 +1,7 @@
 """Cables and hoses along the arm pull like a spring.
 
 A spring acts alike in both directions of motion and so belongs to the load channel. The rest angle
-cannot be told from a constant offset, so the angle counts from the middle of the angles measured.
+of an even spring cannot be told from a constant offset; that of a spring that stiffens can.
 """
 
 import numpy as np
@@ -9,27 +9,47 @@ import numpy as np
 from frictioncli.effects.base import Basis, Effect, EffectTable, Parameter, Signature, load_only
 
 
-def basis(table: EffectTable) -> Basis:
-    """Return the angle from the middle of the angles measured, in rad."""
+def basis(table: EffectTable, *, rest: float, stiffening: float) -> Basis:
+    """Return the angle from the rest angle in rad, with the growth of a stiffening spring."""
     middle = (np.min(table.position) + np.max(table.position)) / 2
-    return load_only(np.radians(table.position - middle))
+    angle = np.radians(table.position - middle - rest)
+    return load_only(angle + stiffening * angle**3)
 
 
 EFFECT = Effect(
     name="dress_pack",
     summary="Cables and hoses pull the joint like a spring.",
-    equation="dL = k*(q - q0), q0 = middle of the angles",
+    equation="dL = k*(x + c*x^3), x = q - (middle of the angles) - q0",
     source="Linear spring in parallel to the joint; size is an engineering estimate",
     channel="load",
-    shape=(),
+    shape=(
+        Parameter(
+            name="rest",
+            symbol="q0",
+            unit="deg",
+            lower=-90.0,
+            upper=90.0,
+            description="Angle at which the spring does not pull, from the middle of the angles",
+            points=5,
+        ),
+        Parameter(
+            name="stiffening",
+            symbol="c",
+            unit="1/rad^2",
+            lower=0.0,
+            upper=1.2,
+            description="How much stiffer the spring becomes with its own bend",
+            points=4,
+        ),
+    ),
     coefficients=(
         Parameter(
             name="stiffness",
             symbol="k",
             unit="torque/rad",
-            lower=-10.0,
-            upper=10.0,
-            description="Spring stiffness; its sign follows that of the logged torque",
+            lower=-15.0,
+            upper=15.0,
+            description="Stiffness at rest; its sign follows that of the logged torque",
         ),
     ),
     basis=basis,

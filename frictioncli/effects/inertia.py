@@ -5,8 +5,12 @@ Forward, the joint accelerates at the low end (:math:`\ddot q > 0`) and brakes a
 (:math:`\ddot q < 0`), and brakes at the low end (:math:`\ddot q > 0`). So :math:`J \ddot q` has the
 same sign in both directions at each end: it adds to the load, plus at the low end and minus at the
 high end, and cancels in friction. Only if the joint accelerates harder than it brakes does half the
-difference remain in friction, with the same sign at both ends. An angle bin of fixed width sees the
-gain of kinetic energy in it, which grows with :math:`v^2`.
+difference remain in friction, with the same sign at both ends.
+
+How far from the end the speed still changes depends on what makes it change. A ramp cut off at a
+fixed angle leaves the same distance at all speeds, and a torque that grows with :math:`v^2`. A
+speed controller settles in a fixed time :math:`\theta`: the distance is :math:`v \theta`, and the
+torque grows with :math:`v`. The shape ``growth`` lies between the two: 0 and 1.
 """
 
 import numpy as np
@@ -15,17 +19,18 @@ from frictioncli.effects.base import Basis, Effect, EffectTable, Parameter, Sign
 from frictioncli.effects.pairs import stroke_ends
 
 
-def basis(table: EffectTable, *, distance: float) -> Basis:
+def basis(table: EffectTable, *, distance: float, growth: float) -> Basis:
     """Return the inertial torque near both ends: equal in both moves, and unequal; 1 at 100 deg/s.
 
     The first column is zero in friction, the second in load.
     """
-    low, high = stroke_ends(table, distance=distance)
-    square = np.square(table.speed / 100.0)
-    none = np.zeros_like(square)
+    speed = table.speed / 100.0
+    low, high = stroke_ends(table, distance=distance * speed**growth)
+    torque = speed ** (2.0 - growth)
+    none = np.zeros_like(torque)
     return Basis(
-        np.column_stack([none, square * (low + high)]),
-        np.column_stack([square * (low - high), none]),
+        np.column_stack([none, torque * (low + high)]),
+        np.column_stack([torque * (low - high), none]),
     )
 
 
@@ -33,20 +38,29 @@ EFFECT = Effect(
     name="inertia",
     summary="Acceleration near the ends of the stroke enters the torques.",
     equation=(
-        "dL = J*(v/100)^2*(exp(-(q - q_lo)/s) - exp(-(q_hi - q)/s)),"
-        " dtau = D*(v/100)^2*(exp(-(q - q_lo)/s) + exp(-(q_hi - q)/s))"
+        "dL = J*(v/100)^(2-g)*(exp(-(q - q_lo)/s) - exp(-(q_hi - q)/s)),"
+        " dtau = D*(v/100)^(2-g)*(exp(-(q - q_lo)/s) + exp(-(q_hi - q)/s)), s = s100*(v/100)^g"
     ),
     source="Inertial term of equation (1) of Nevmerzhitskiy et al. 2019, doi:10.1155/2019/6931563",
     channel="load",
     shape=(
         Parameter(
             name="distance",
-            symbol="s",
+            symbol="s100",
             unit="deg",
             lower=2.0,
-            upper=30.0,
-            description="Distance from the end at which 37 % remain",
+            upper=60.0,
+            description="Distance from the end at which 37 % remain at 100 deg/s",
             search="logarithmic",
+        ),
+        Parameter(
+            name="growth",
+            symbol="g",
+            unit="1",
+            lower=0.0,
+            upper=1.0,
+            description="Power of speed with which the distance grows",
+            points=3,
         ),
     ),
     coefficients=(

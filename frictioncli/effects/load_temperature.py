@@ -13,23 +13,35 @@ from frictioncli.effects.base import (
 )
 
 
-def basis(table: EffectTable) -> Basis:
-    """Return squared load times warming, 1 at load 10 and 35 °C."""
-    warming = (table.temperature - REFERENCE_TEMPERATURE) / 10.0
+def basis(table: EffectTable, *, bend: float) -> Basis:
+    """Return squared load times warming, 1 at load 10 and near 35 °C."""
+    warm = table.temperature - REFERENCE_TEMPERATURE
+    # a bend of 0 is the limit: expm1(-b x) / -b goes to x
+    warming = warm / 10.0 if abs(bend) < 1e-9 else -np.expm1(-bend * warm) / (10.0 * bend)
     return friction_only(np.square(table.load / 10.0) * warming)
 
 
 EFFECT = Effect(
     name="load_temperature",
     summary="The load's part of friction changes with temperature.",
-    equation="dtau = aT*(L/10)^2*(T - 25)/10",
+    equation="dtau = aT*(L/10)^2*(1 - exp(-b*(T - 25)))/(10*b)",
     source=(
         "Product of the load and temperature terms of equation (16) of Nevmerzhitskiy et al. 2019,"
         " doi:10.1155/2019/6931563; load and temperature together: Bittencourt and Gunnarsson 2012,"
         " J. Dyn. Syst. Meas. Control 134(5) 051013"
     ),
     channel="friction",
-    shape=(),
+    shape=(
+        Parameter(
+            name="bend",
+            symbol="b",
+            unit="1/°C",
+            lower=-0.04,
+            upper=0.08,
+            description="How fast the change fades as it warms; 0 where it is even",
+            points=4,
+        ),
+    ),
     coefficients=(
         Parameter(
             name="load_temperature_coefficient",

@@ -11,6 +11,10 @@ _HALF_WINDOW = 300.0
 """How far around a moment pairs tell of its heat and of the motor's warming. [s]"""
 
 
+_CUT_ALIKE = 10.0
+"""What is cut off a stroke at constant speed is alike at both ends within this. [deg]"""
+
+
 @dataclass(frozen=True, slots=True)
 class PairHeads:
     """Where the pairs of a table are.
@@ -181,14 +185,14 @@ def measured_share(table: EffectTable) -> Array:
     return heads.spread(np.searchsorted(np.sort(clock), clock, side="left") / len(clock))
 
 
-def stroke_ends(table: EffectTable, *, distance: float) -> tuple[Array, Array]:
+def stroke_ends(table: EffectTable, *, distance: Array | float) -> tuple[Array, Array]:
     """Return how near each row is to the low and to the high end of its pair's angles.
 
     Parameters
     ----------
     table : EffectTable
         Pairs and angle bins.
-    distance : float
+    distance : float or ndarray, shape (rows,)
         Distance from the end at which nearness has fallen to 37 %. [deg]
 
     Returns
@@ -199,4 +203,37 @@ def stroke_ends(table: EffectTable, *, distance: float) -> tuple[Array, Array]:
     heads = pair_heads(table)
     low = table.position - heads.spread(heads.minimum(table.position))
     high = heads.spread(heads.maximum(table.position)) - table.position
+    return np.exp(-low / distance), np.exp(-high / distance)
+
+
+def turning_points(table: EffectTable, *, distance: float) -> tuple[Array, Array]:
+    """Return how near each row is to the low and to the high angle where its pair turns.
+
+    A fast move reaches its speed later, so its first bin lies further from where it turned, and its
+    last one as far from the other turn. Pairs that lack as much of their run's angles at one end as
+    at the other are taken to turn at the outermost angles; others where they end.
+
+    Parameters
+    ----------
+    table : EffectTable
+        Pairs and angle bins.
+    distance : float
+        Distance from the turn at which nearness has fallen to 37 %. [deg]
+
+    Returns
+    -------
+    low, high : ndarray, shape (rows,)
+        Nearness, 1 in the outermost bin.
+    """
+    heads = pair_heads(table)
+    lowest, highest = heads.minimum(table.position), heads.maximum(table.position)
+    run = table.run[heads.first]
+    for number in np.unique(run):
+        own = run == number
+        least, most = np.min(lowest[own]), np.max(highest[own])
+        cut_low, cut_high = lowest - least, most - highest
+        same = own & (np.abs(cut_low - cut_high) < _CUT_ALIKE)
+        lowest[same], highest[same] = least, most
+    low = table.position - heads.spread(lowest)
+    high = heads.spread(highest) - table.position
     return np.exp(-low / distance), np.exp(-high / distance)

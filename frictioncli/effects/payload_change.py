@@ -1,13 +1,13 @@
 """The arm carries another mass from some moment on.
 
-The load torque gains a gravity term of any phase, since the new mass may sit at any angle. The
-friction that the changed load causes is the base model's alpha L^2 with the new load, and is left
-to that model. The moment counts as in :mod:`frictioncli.effects.step_change`.
+The load torque gains a gravity term of any phase, since the new mass may sit at any angle. Friction
+changes with the load as the base model's alpha L^2 does, to first order. The moment counts as in
+:mod:`frictioncli.effects.step_change`.
 """
 
 import numpy as np
 
-from frictioncli.effects.base import Basis, Effect, EffectTable, Parameter, Signature, load_only
+from frictioncli.effects.base import Basis, Effect, EffectTable, Parameter, Signature
 from frictioncli.effects.pairs import measured_share
 
 
@@ -15,13 +15,14 @@ def basis(table: EffectTable, *, moment: float) -> Basis:
     """Return cosine and sine of the angle from the moment on, 0 before."""
     after = np.where(measured_share(table) >= moment, 1.0, 0.0)
     angle = np.radians(table.position)
-    return load_only(after * np.cos(angle), after * np.sin(angle))
+    load = np.column_stack([after * np.cos(angle), after * np.sin(angle)])
+    return Basis(table.load_slope[:, np.newaxis] * load, load)
 
 
 EFFECT = Effect(
     name="payload_change",
     summary="The payload changed at one moment.",
-    equation="dL = (Pc*cos(q) + Ps*sin(q))*(1 from m on, 0 before)",
+    equation="dL = (Pc*cos(q) + Ps*sin(q))*(1 from m on, 0 before), dtau = 2*alpha*L*dL",
     source="Gravity torque of a point mass; equation (3) of Nevmerzhitskiy et al. 2019, "
     "doi:10.1155/2019/6931563",
     channel="load",
@@ -56,6 +57,7 @@ EFFECT = Effect(
     ),
     basis=basis,
     needs=("clock", "position"),
+    uses=("load_slope",),
     signature=Signature(
         axis="clock",
         claim="From one moment on the load torque has another amplitude over the angle.",

@@ -9,22 +9,31 @@ import numpy as np
 
 from frictioncli.effects.base import Basis, Effect, EffectTable, Parameter, Signature, friction_only
 
+_LEAST_PERIODS = 1.25
+"""Over fewer periods a ripple cannot be told from a load term or a bend at the ends."""
+
 
 def basis(table: EffectTable, *, order: float) -> Basis:
-    """Return sine and cosine of the angle times the order; zeros where the bins are too wide."""
-    phase = order * np.radians(table.position)
+    """Return sine and cosine of the angle times the order and twice the order.
+
+    Columns are zero where the bins are too wide for them, or the stroke is too short to see the
+    ripple come back.
+    """
     angles = np.unique(table.position)
     finest = float(np.min(np.diff(angles))) if len(angles) > 1 else 360.0
-    if order > 180.0 / finest:
-        phase = np.zeros_like(phase)
-        return friction_only(phase, phase)
-    return friction_only(np.sin(phase), np.cos(phase))
+    whole = order * float(np.ptp(angles)) / 360.0 >= _LEAST_PERIODS
+    columns = []
+    for harmonic in (order, 2 * order):
+        phase = harmonic * np.radians(table.position)
+        seen = 1.0 if whole and harmonic <= 180.0 / finest else 0.0
+        columns += [seen * np.sin(phase), seen * np.cos(phase)]
+    return friction_only(*columns)
 
 
 EFFECT = Effect(
     name="position_ripple",
     summary="Friction goes up and down with the angle.",
-    equation="dtau = As*sin(N*q) + Ac*cos(N*q)",
+    equation="dtau = As*sin(N*q) + Ac*cos(N*q) + Bs*sin(2*N*q) + Bc*cos(2*N*q)",
     source="Angle-periodic friction of gears and bearings; size is an engineering estimate",
     channel="friction",
     shape=(
@@ -54,6 +63,22 @@ EFFECT = Effect(
             lower=-5.0,
             upper=5.0,
             description="Amplitude of the cosine",
+        ),
+        Parameter(
+            name="second_sine",
+            symbol="Bs",
+            unit="torque",
+            lower=-5.0,
+            upper=5.0,
+            description="Amplitude of the sine of twice the order",
+        ),
+        Parameter(
+            name="second_cosine",
+            symbol="Bc",
+            unit="torque",
+            lower=-5.0,
+            upper=5.0,
+            description="Amplitude of its cosine",
         ),
     ),
     basis=basis,

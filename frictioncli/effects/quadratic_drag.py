@@ -26,7 +26,7 @@ EFFECT = Effect(
             symbol="kd",
             unit="torque",
             lower=0.0,
-            upper=2.0,
+            upper=10.0,
             description="Drag at 100 deg/s",
         ),
     ),

@@ -2,19 +2,27 @@
 
 import numpy as np
 
-from frictioncli.effects.base import Basis, Effect, EffectTable, Parameter, Signature, friction_only
+from frictioncli.effects.base import Basis, Effect, EffectTable, Parameter, Signature
 
 
-def basis(table: EffectTable, *, pairs: float, rest_time: float) -> Basis:
-    """Return the recovered friction that is left; an unknown rest counts as a long one."""
-    recovered = -np.expm1(-np.nan_to_num(table.rest, nan=np.inf, posinf=np.inf) / rest_time)
-    return friction_only(recovered * np.exp(-table.order / pairs))
+def basis(table: EffectTable, *, pairs: float, rest_time: float, at_start: float) -> Basis:
+    """Return the recovered friction that is left, in friction and, of the first move, in load.
+
+    How long the joint rested before a run's first series the log does not say: ``at_start`` is the
+    share that has recovered then. The move that comes first in a pair has more of it than
+    the one that comes back, and half the difference is seen as load.
+    """
+    known = np.isfinite(table.rest)
+    recovered = np.where(known, -np.expm1(-np.where(known, table.rest, 0.0) / rest_time), at_start)
+    left = recovered * np.exp(-table.order / pairs)
+    none = np.zeros_like(left)
+    return Basis(np.column_stack([left, none]), np.column_stack([none, left]))
 
 
 EFFECT = Effect(
     name="rest_recovery",
     summary="The first pairs after a rest have more friction.",
-    equation="dtau = A*(1 - exp(-r/r0))*exp(-n/n0)",
+    equation="dtau = A*(1 - exp(-r/r0))*exp(-n/n0), dL = B*(1 - exp(-r/r0))*exp(-n/n0)",
     source="Redistribution of grease at rest; size is an engineering estimate",
     channel="friction",
     shape=(
@@ -26,6 +34,7 @@ EFFECT = Effect(
             upper=20.0,
             description="Number of pairs after which 37 % of the excess remain",
             search="logarithmic",
+            points=6,
         ),
         Parameter(
             name="rest_time",
@@ -35,7 +44,16 @@ EFFECT = Effect(
             upper=7_200.0,
             description="Rest in which 63 % of the excess recover",
             search="logarithmic",
-            points=6,
+            points=5,
+        ),
+        Parameter(
+            name="at_start",
+            symbol="r1",
+            unit="1",
+            lower=0.0,
+            upper=1.0,
+            description="Share recovered before the run's first series",
+            points=2,
         ),
     ),
     coefficients=(
@@ -46,6 +64,14 @@ EFFECT = Effect(
             lower=0.0,
             upper=10.0,
             description="Friction above the model in the first pair after a long rest",
+        ),
+        Parameter(
+            name="first_move",
+            symbol="B",
+            unit="torque",
+            lower=-10.0,
+            upper=10.0,
+            description="Half of what the first move has more than the one back, as load torque",
         ),
     ),
     basis=basis,

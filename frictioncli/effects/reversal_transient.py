@@ -3,26 +3,24 @@ r"""After a reversal the contacts have to be bent over before full friction acts
 Friction builds up over some angle from the reversal, :math:`f = f_\infty - b\,e^{-|q - q_r|/s}`.
 Forward moves reverse at the low end, reverse moves at the high end. In friction both lacks add,
 :math:`-b (e_{lo} + e_{hi})/2`; in load they subtract, :math:`\mp b (e_{lo} - e_{hi})/2`, where the
-sign is that with which the log counts friction. It is not known here, hence two coefficients, which
-must be equal but for sign. Unlike inertia it does not grow with speed.
+sign is that with which the log counts friction. It is not known here, so both are tried, as the
+shape ``side``. Unlike inertia it does not grow with speed, and it starts where the joint turns, the
+same angle for slow and fast moves.
 """
 
 import numpy as np
 
 from frictioncli.effects.base import Basis, Effect, EffectTable, Parameter, Signature
-from frictioncli.effects.pairs import stroke_ends
+from frictioncli.effects.pairs import turning_points
 
 
-def basis(table: EffectTable, *, distance: float) -> Basis:
-    """Return the friction that is lacking near the ends, in friction and in load.
-
-    The first column is zero in load, the second in friction.
-    """
-    low, high = stroke_ends(table, distance=distance)
-    none = np.zeros_like(low)
+def basis(table: EffectTable, *, distance: float, side: float) -> Basis:
+    """Return the friction that is lacking after the turn, in friction and in load."""
+    low, high = turning_points(table, distance=distance)
+    sign = 1.0 if side > 0 else -1.0
     return Basis(
-        np.column_stack([-(low + high) / 2, none]),
-        np.column_stack([none, -(low - high) / 2]),
+        (-(low + high) / 2)[:, np.newaxis],
+        (-sign * (low - high) / 2)[:, np.newaxis],
     )
 
 
@@ -31,7 +29,7 @@ EFFECT = Effect(
     summary="Friction is not yet built up just after a reversal.",
     equation=(
         "dtau = -b*(exp(-(q - q_lo)/s) + exp(-(q_hi - q)/s))/2,"
-        " dL = -c*(exp(-(q - q_lo)/s) - exp(-(q_hi - q)/s))/2, c = +b or -b"
+        " dL = -z*b*(exp(-(q - q_lo)/s) - exp(-(q_hi - q)/s))/2, z = +1 or -1"
     ),
     source=(
         "Presliding, first-order build-up after Dahl; survey: Armstrong-Hélouvry et al. 1994,"
@@ -43,28 +41,29 @@ EFFECT = Effect(
             name="distance",
             symbol="s",
             unit="deg",
-            lower=0.1,
-            upper=10.0,
-            description="Angle from the reversal after which 37 % of the lack remain",
+            lower=0.5,
+            upper=30.0,
+            description="Angle from the turn after which 37 % of the lack remain",
             search="logarithmic",
+        ),
+        Parameter(
+            name="side",
+            symbol="z",
+            unit="1",
+            lower=-1.0,
+            upper=1.0,
+            description="Sign with which the log counts friction",
+            points=2,
         ),
     ),
     coefficients=(
         Parameter(
-            name="lack_in_friction",
+            name="lack",
             symbol="b",
             unit="torque",
             lower=0.0,
-            upper=20.0,
-            description="Friction lacking in the outermost bin",
-        ),
-        Parameter(
-            name="lack_in_load",
-            symbol="c",
-            unit="torque",
-            lower=-20.0,
-            upper=20.0,
-            description="The same as seen in the load torque",
+            upper=40.0,
+            description="Friction lacking where the outermost bin is",
         ),
     ),
     basis=basis,

@@ -4,16 +4,20 @@ import numpy as np
 
 from frictioncli.effects.base import Basis, Effect, EffectTable, Parameter, Signature, friction_only
 
+_REFERENCE = 40.0
+"""Temperature at which the Stribeck velocity is stated. [°C]"""
 
-def basis(table: EffectTable, *, velocity: float, exponent: float) -> Basis:
-    """Return the share of full boundary friction at each speed."""
-    return friction_only(np.exp(-((table.speed / velocity) ** exponent)))
+
+def basis(table: EffectTable, *, velocity: float, exponent: float, shift: float) -> Basis:
+    """Return the share of full boundary friction at each speed and temperature."""
+    fall = velocity * np.exp(shift * (table.temperature - _REFERENCE))
+    return friction_only(np.exp(-((table.speed / fall) ** exponent)))
 
 
 EFFECT = Effect(
     name="stribeck",
     summary="Boundary friction adds to the friction at low speed.",
-    equation="dtau = ts*exp(-(v/vs)^k)",
+    equation="dtau = ts*exp(-(v/vs)^k), vs = vs40*exp(c*(T - 40))",
     source=(
         "Equation (6) of Nevmerzhitskiy et al. 2019, doi:10.1155/2019/6931563; form after"
         " Armstrong-Hélouvry et al. 1994, doi:10.1016/0005-1098(94)90209-7"
@@ -22,21 +26,31 @@ EFFECT = Effect(
     shape=(
         Parameter(
             name="velocity",
-            symbol="vs",
+            symbol="vs40",
             unit="deg/s",
             lower=1.0,
             upper=20.0,
-            description="Speed at which boundary friction has fallen to 37 %",
+            description="Speed at which boundary friction has fallen to 37 %, at 40 °C",
             search="logarithmic",
+            points=8,
         ),
         Parameter(
             name="exponent",
             symbol="k",
             unit="1",
-            lower=0.5,
+            lower=0.7,
             upper=2.5,
             description="How abruptly it falls",
-            points=5,
+            points=4,
+        ),
+        Parameter(
+            name="shift",
+            symbol="c",
+            unit="1/°C",
+            lower=0.0,
+            upper=0.03,
+            description="Growth of the Stribeck velocity with temperature, as grease thins",
+            points=2,
         ),
     ),
     coefficients=(
@@ -45,7 +59,7 @@ EFFECT = Effect(
             symbol="ts",
             unit="torque",
             lower=0.0,
-            upper=20.0,
+            upper=40.0,
             description="Boundary friction at standstill, above the Coulomb friction",
         ),
     ),

@@ -1,13 +1,12 @@
 r"""Viscous friction grows with another power of speed than the square root.
 
-The power law :math:`k v^p` is not linear in :math:`p`. Its tangent at :math:`p = 1/2` is:
+Where a share *s* of the viscous friction follows the power *p*, it differs from the base model by
 
-.. math:: k \sqrt v\,(v/v_0)^{p - 1/2} \approx k \sqrt v\,[1 + (p - 1/2) \ln(v/v_0)]
+.. math:: s\,(\beta + \gamma e^{-\delta T})\sqrt v\,[(v/v_0)^{p - 1/2} - 1]
 
-The coefficient is the change of the exponent; :math:`v_0` is the geometric mean speed of the pairs,
-where the refitted base model already holds. The tangent is within a tenth of the effect while
-:math:`|p - 1/2|\,|\ln(v/v_0)| < 0.2`; beyond, the effect is still found but its exponent is
-rough.
+:math:`v_0` is the geometric mean speed of the pairs, where the refitted base model holds. Over a
+few speeds a small share at a far exponent looks like a whole one near 1/2: only the product is
+sharp.
 """
 
 import numpy as np
@@ -16,31 +15,42 @@ from frictioncli.effects.base import Basis, Effect, EffectTable, Parameter, Sign
 from frictioncli.effects.pairs import pair_heads
 
 
-def basis(table: EffectTable) -> Basis:
-    """Return the derivative of viscous friction by its exponent, in units of torque."""
+def basis(table: EffectTable, *, exponent: float) -> Basis:
+    """Return the change of viscous friction if all of it follows the exponent, in torque."""
     logarithm = np.log(table.speed)
     mean = np.mean(logarithm[pair_heads(table).first])
-    return friction_only(table.viscous * np.sqrt(table.speed) * (logarithm - mean))
+    growth = np.expm1((exponent - 0.5) * (logarithm - mean))
+    return friction_only(table.viscous * np.sqrt(table.speed) * growth)
 
 
 EFFECT = Effect(
     name="velocity_exponent",
     summary="Viscous friction grows with another power of speed than 1/2.",
-    equation="dtau = dp*(beta + gamma*exp(-delta*T))*sqrt(v)*ln(v/v0), v0 = geometric mean speed",
+    equation="dtau = s*(beta + gamma*exp(-delta*T))*sqrt(v)*((v/v0)^(p - 1/2) - 1)",
     source=(
         "Equation (13) of Nevmerzhitskiy et al. 2019, doi:10.1155/2019/6931563, where the exponent"
         " is fixed at 1/2"
     ),
     channel="friction",
-    shape=(),
+    shape=(
+        Parameter(
+            name="exponent",
+            symbol="p",
+            unit="1",
+            lower=0.3,
+            upper=1.0,
+            description="Exponent of speed",
+            points=6,
+        ),
+    ),
     coefficients=(
         Parameter(
-            name="exponent_change",
-            symbol="dp",
+            name="share",
+            symbol="s",
             unit="1",
-            lower=-0.2,
-            upper=0.5,
-            description="Exponent of speed less 1/2",
+            lower=0.0,
+            upper=2.0,
+            description="Share of the viscous friction that follows it",
         ),
     ),
     basis=basis,
