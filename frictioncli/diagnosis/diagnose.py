@@ -6,15 +6,15 @@ from dataclasses import dataclass
 import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
-from scipy import stats
-from scipy.optimize import brentq
 
 from frictioncli.diagnosis.adequacy import Structure, structures
-from frictioncli.diagnosis.candidates import Score
-from frictioncli.diagnosis.extension import Extension, Gain, extend, measured_gain, misfits
+from frictioncli.diagnosis.detectable import detectable
+from frictioncli.diagnosis.extension import Extension, Gain, extend, measured_gain
 from frictioncli.diagnosis.problem import Problem, build_problems
-from frictioncli.diagnosis.search import Candidate, Cause, Found, find_causes
+from frictioncli.diagnosis.ramps import RampEvidence, RampLog, ramp_evidence
+from frictioncli.diagnosis.search import Cause, Found, find_causes
 from frictioncli.diagnosis.settings import DiagnosisSettings
+from frictioncli.diagnosis.worth import worthwhile
 from frictioncli.effects import EFFECTS
 from frictioncli.effects.base import Effect
 from frictioncli.errors import NotEnoughData
@@ -24,20 +24,16 @@ Array = NDArray[np.float64]
 LEAST_PAIRS = 12
 """With fewer pairs noise cannot be told from structure."""
 
-WORTHWHILE = 0.03
-"""A cause that takes away less of the misfit than this share is seen, but not worth modelling."""
-
-_SLIGHT = 0.002
-"""And so is a cause smaller than this share of the mean friction."""
-
-_POWER = 0.8
 _WORST = 5
 
 _UNEXPLAINED = 1e-3
-"""Structure that is left beside causes must be this unlikely by chance to count on its own."""
+"""Structure without a name must be this unlikely by chance: fifteen places are looked at."""
 
-_SHARE_LEFT = 0.35
-"""And it must be this large beside the smallest cause: a basis never fits to the last digit."""
+_WORTH_SAYING = 0.003
+"""And as large as this share of the mean friction."""
+
+_SHARE_LEFT = 0.1
+"""And explain this share of what the causes do: no equation is true to the last digit."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -84,6 +80,8 @@ class Diagnosis:
         Where it misses most.
     runs, held_out : tuple of str, str or None
         Runs that the diagnosis has seen, and the one kept for the gain.
+    ramps : RampEvidence or None
+        What the ramps of the moves say, where the log has them.
     """
 
     joint: int
@@ -100,6 +98,7 @@ class Diagnosis:
     worst: tuple[Misfit, ...]
     runs: tuple[str, ...]
     held_out: str | None
+    ramps: RampEvidence | None
 
 
 def diagnose_joint(
@@ -108,6 +107,7 @@ def diagnose_joint(
     torque_unit: str,
     settings: DiagnosisSettings,
     effects: Sequence[Effect] = EFFECTS,
+    ramps: RampLog | None = None,
 ) -> Diagnosis:
     """Diagnose one joint.
 
@@ -124,6 +124,8 @@ def diagnose_joint(
         How sure a finding must be.
     effects : sequence of Effect, optional
         The catalogue.
+    ramps : RampLog, optional
+        What was measured outside the constant-velocity parts.
 
     Raises
     ------
@@ -141,12 +143,16 @@ def diagnose_joint(
             " noise from structure; log more moves there and back"
         )
     problem, new = build_problems(torques, temperature, held_out)
-    found = find_causes(problem, effects, settings)
-    causes, visible = worthwhile(found, new or problem)
-    left = _left(found, causes, settings)
+    said = ramp_evidence(ramps, problem, temperature) if ramps else None
+    found = find_causes(problem, effects, settings, said)
+    worthy, visible = worthwhile(found, new or problem)
+    left = _left(found, worthy, settings)
+    # what explains less than is left may be a part of what has no name
+    causes = tuple(cause for cause in worthy if left is None or _exceeds(cause, left))
+    visible += tuple(cause for cause in worthy if cause not in causes)
     extension = gain = None
     if causes:
-        extension = extend(problem, found.step.weighing, _scores(causes))
+        extension = extend(problem, found.step.weighing(), [cause.score for cause in causes])
         gain = measured_gain(
             new or problem,
             extension,
@@ -170,70 +176,24 @@ def diagnose_joint(
         worst=worst_misfits(problem),
         runs=problem.runs,
         held_out=held_out,
+        ramps=said,
     )
-
-
-def worthwhile(found: Found, judged: Problem) -> tuple[tuple[Cause, ...], tuple[Cause, ...]]:
-    """Return the causes that are worth modelling, and those that are only visible.
-
-    A cause of less than 0.2 % of the friction is not. Then the cause whose loss costs least is
-    dropped, and the others refitted, until each takes away at least 3 % of the misfit that its
-    channel has without it.
-
-    Parameters
-    ----------
-    found : Found
-        Result of the search.
-    judged : Problem
-        Rows on which a cause must prove itself, of a new run where there is one.
-    """
-    slight = _SLIGHT * float(np.mean(np.abs(judged.friction)))
-    kept = [cause for cause in found.causes if cause.size >= slight]
-    dropped = [cause for cause in found.causes if cause.size < slight]
-    while kept:
-        whole = _misfit(found, kept, judged)
-        costs = []
-        for i, cause in enumerate(kept):
-            channel = cause.candidate.score.effect.channel
-            without = _misfit(found, kept[:i] + kept[i + 1 :], judged)
-            costs.append(1 - whole[channel] / without[channel])
-        least = int(np.argmin(costs))
-        if costs[least] >= WORTHWHILE:
-            break
-        dropped.append(kept.pop(least))
-    return tuple(kept), tuple(dropped)
-
-
-def _misfit(found: Found, causes: Sequence[Cause], judged: Problem) -> dict[str, float]:
-    """Return the RMS misfit per channel that the base extended with these causes leaves. [N·m]."""
-    extension = extend(found.step.problem, found.step.weighing, _scores(causes))
-    friction, load = misfits(judged, extension)
-    return {
-        "friction": float(np.sqrt(np.mean(np.square(friction)))),
-        "load": float(np.sqrt(np.mean(np.square(load)))),
-    }
-
-
-def _scores(causes: Sequence[Cause]) -> list[Score]:
-    return [cause.candidate.score for cause in causes]
 
 
 def _left(found: Found, causes: Sequence[Cause], settings: DiagnosisSettings) -> Structure | None:
     """Return structure that the causes leave, if it is more than noise and rough edges."""
     step = found.step
-    strongest = structures(step.problem, step.channels, step.projector, step.misfit)
-    if not strongest:
-        return None
-    first = strongest[0]
-    slight = _SLIGHT * float(np.mean(np.abs(step.problem.friction)))
-    if first.size < slight:
-        return None
-    if not found.causes:
-        return first if first.p_value < settings.alpha else None
-    smallest = min(cause.size for cause in (causes or found.causes))
-    if first.p_value < _UNEXPLAINED and first.size > _SHARE_LEFT * smallest:
-        return first
+    least = _WORTH_SAYING * float(np.mean(np.abs(step.problem.friction)))
+    told = sum(cause.judged.statistic for cause in found.causes) if causes else 0.0
+    for one in structures(step, settings.seed):
+        unlikely = one.p_value < min(_UNEXPLAINED, settings.alpha)
+        if unlikely and one.size >= least and one.statistic - one.freedom > _SHARE_LEFT * told:
+            return one
     return None
+
+
+def _exceeds(cause: Cause, left: Structure) -> bool:
+    return cause.judged.statistic > left.statistic - left.freedom
 
 
 def _verdict(causes: Sequence[Cause], left: Structure | None) -> str:
@@ -246,33 +206,7 @@ def _verdict(causes: Sequence[Cause], left: Structure | None) -> str:
 
 def _floor(found: Found) -> float:
     """Return the RMS of point and pair noise of both channels."""
-    return float(np.sqrt(sum(noise.point**2 + noise.pair**2 for noise in found.step.noise)))
-
-
-def detectable(found: Found, effects: Sequence[Effect], alpha: float) -> dict[str, float | None]:
-    """Return per effect the smallest RMS size that is found four times in five. [N·m].
-
-    The white norm that a noncentral chi-squared score needs to pass the threshold, times the
-    effect's RMS per white norm. None where the data lack what the effect needs.
-    """
-    catalogue = max(len(found.last) + len(found.causes), 1)
-    candidates = found.last | {
-        cause.candidate.score.effect.name: cause.candidate for cause in found.causes
-    }
-    return {
-        effect.name: _smallest(candidates.get(effect.name), alpha / catalogue) for effect in effects
-    }
-
-
-def _smallest(candidate: Candidate | None, level: float) -> float | None:
-    if candidate is None or candidate.freedom == 0:
-        return None
-    once = -np.expm1(np.log1p(-level) / candidate.tries)
-    threshold = float(stats.chi2.isf(once, candidate.freedom))
-    needed = brentq(
-        lambda shift: stats.ncx2.sf(threshold, candidate.freedom, shift) - _POWER, 1e-6, 1e4
-    )
-    return float(np.sqrt(needed) * candidate.size_scale)
+    return float(np.sqrt(sum(noise.point**2 + noise.pair**2 for noise in found.step.noise())))
 
 
 def worst_misfits(problem: Problem) -> tuple[Misfit, ...]:

@@ -4,17 +4,15 @@ from dataclasses import asdict
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from frictioncli.diagnosis.diagnose import Diagnosis
 from frictioncli.diagnosis.extension import Extension
+from frictioncli.diagnosis.gravity import gravity_document
 from frictioncli.diagnosis.search import Cause
 from frictioncli.diagnosis.settings import DiagnosisSettings
 from frictioncli.effects.base import Effect, Parameter
 from frictioncli.model.document import PARAMETERS, FrictionModel, model_document
 from frictioncli.quantities import TORQUE
-
-Array = NDArray[np.float64]
 
 _Z95 = 1.96
 
@@ -33,7 +31,7 @@ def diagnosis_document(diagnosis: Diagnosis, settings: DiagnosisSettings) -> dic
         "verdict": diagnosis.verdict,
         "causes": causes,
         "visible": [
-            {"effects": list(cause.effects), "size": cause.size, "p_value": cause.candidate.p_value}
+            {"effects": list(cause.effects), "size": cause.size, "p_value": cause.judged.p_value}
             for cause in diagnosis.visible
         ],
         "gain": None
@@ -75,8 +73,8 @@ def extended_document(diagnosis: Diagnosis, model: FrictionModel) -> dict[str, A
             "estimate": value,
             "ci95": [value - _Z95 * float(error), value + _Z95 * float(error)],
         }
-    document["gravity_about"] = _gravity(diagnosis.base.gravity)
-    document["gravity"] = _gravity(extension.gravity)
+    document["gravity_about"] = gravity_document(diagnosis.base.gravity)
+    document["gravity"] = gravity_document(extension.gravity)
     document["effects"] = [
         {
             "name": one.effect.name,
@@ -90,10 +88,6 @@ def extended_document(diagnosis: Diagnosis, model: FrictionModel) -> dict[str, A
     return document
 
 
-def _gravity(values: Array) -> dict[str, float]:
-    return dict(zip(("cosine", "sine", "offset"), map(float, values), strict=True))
-
-
 def verdict_text(diagnosis: Diagnosis) -> str:
     """Return what is wrong, where, why we think so, what it is worth, what to measure next."""
     unit = diagnosis.torque_unit
@@ -102,13 +96,13 @@ def verdict_text(diagnosis: Diagnosis) -> str:
         f" one by {diagnosis.rmse:.3g} {unit} (RMS)"
     ]
     for cause in diagnosis.causes:
-        effect = cause.candidate.score.effect
+        effect = cause.score.effect
         shares = ", ".join(
             f"{name} {cause.probabilities.get(name, 0.0):.0%}" for name in cause.effects
         )
         lines.append(
             f"  {' or '.join(cause.effects)} ({shares}): {effect.summary} {cause.size:.2g} {unit}"
-            f" RMS in the {effect.channel}, chance {cause.candidate.p_value:.1g}"
+            f" RMS in the {effect.channel}, chance {cause.judged.p_value:.1g}"
         )
         lines.append(f"    seen: {effect.signature.claim}")
         lines.append(f"    next: {effect.experiment}")
@@ -121,7 +115,7 @@ def verdict_text(diagnosis: Diagnosis) -> str:
     for cause in diagnosis.visible:
         lines.append(
             f"  {' or '.join(cause.effects)}: stands out of the noise ({cause.size:.2g} {unit} RMS,"
-            f" chance {cause.candidate.p_value:.1g}), but is not worth modelling"
+            f" chance {cause.judged.p_value:.1g}), but is not worth modelling"
         )
     if not diagnosis.causes and diagnosis.structure is None:
         lines.append(f"  no cause found; {_silence(diagnosis)}")
@@ -157,7 +151,7 @@ def _silence(diagnosis: Diagnosis) -> str:
 
 
 def _cause_document(diagnosis: Diagnosis, cause: Cause, number: int) -> dict[str, Any]:
-    found = cause.candidate.score
+    found = cause.score
     effect = found.effect
     errors = np.sqrt(np.maximum(np.diag(found.covariance), 0.0))
     return {
@@ -174,7 +168,7 @@ def _cause_document(diagnosis: Diagnosis, cause: Cause, number: int) -> dict[str
             )
         },
         "size": cause.size,
-        "p_value": cause.candidate.p_value,
+        "p_value": cause.judged.p_value,
         "seen_in": effect.signature.axis,
         "figure": f"diagnosis-{number}.svg",
         "experiment": effect.experiment,

@@ -6,8 +6,10 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from frictioncli.diagnosis.candidates import Channels, Score, base_columns, effect_columns
+from frictioncli.diagnosis.columns import base_rows
+from frictioncli.diagnosis.judged import Score
 from frictioncli.diagnosis.problem import Problem
+from frictioncli.diagnosis.whitening import Channels
 
 Array = NDArray[np.float64]
 
@@ -30,8 +32,8 @@ class Extension:
         Friction parameters that were fitted.
     changes : ndarray, shape (names,)
         Their changes from the base.
-    gravity : ndarray, shape (3,)
-        Coefficients of cos q, sin q and 1. [N·m]
+    gravity : ndarray, shape (3,) or (5,)
+        Coefficients of the gravity torque, as of the problem. [N·m], [N·m/kg]
     effects : tuple of Score
         Effects with their shapes and coefficients.
     errors : ndarray
@@ -81,8 +83,7 @@ def extend(problem: Problem, channels: Channels, effects: Sequence[Score]) -> Ex
     effects : sequence of Score
         Effects with the shapes found.
     """
-    columns = [effect_columns(one.effect, problem, channels, one.shape) for one in effects]
-    system = base_columns(problem, channels, columns)
+    system = _system(problem, channels, effects)
     misfit = channels.whiten(
         problem.friction_misfit[:, np.newaxis], problem.load_misfit[:, np.newaxis]
     )[:, 0]
@@ -107,10 +108,22 @@ def extend(problem: Problem, channels: Channels, effects: Sequence[Score]) -> Ex
     )
 
 
+def _system(problem: Problem, channels: Channels, effects: Sequence[Score]) -> Array:
+    """Return the white columns of friction's parameters, of gravity and of the effects."""
+    friction, load = base_rows(problem)
+    bases = [problem.basis(one.effect, one.shape) for one in effects]
+    return channels.whiten(
+        np.hstack([friction, *(basis.friction for basis in bases)]),
+        np.hstack([load, *(basis.load for basis in bases)]),
+    )
+
+
 def misfits(problem: Problem, extension: Extension) -> tuple[Array, Array]:
     """Return what an extension leaves of both channels, shape (rows,) each. [N·m]."""
-    friction = problem.friction_misfit - problem.friction_base @ extension.changes
-    load = problem.load_misfit - problem.load_base @ (extension.gravity - problem.gravity)
+    changes = np.concatenate([extension.changes, extension.gravity - problem.gravity])
+    base_friction, base_load = base_rows(problem)
+    friction = problem.friction_misfit - base_friction @ changes
+    load = problem.load_misfit - base_load @ changes
     for one in extension.effects:
         basis = problem.basis(one.effect, one.shape)
         friction = friction - basis.friction @ one.coefficients
@@ -136,26 +149,43 @@ def measured_gain(
     seed : int
         Seed of the drawn blocks.
     """
-    layout = problem.layout
     # forward torque misses by load + friction, reverse by load - friction: mean square f² + l²
     before = np.square(problem.friction_misfit) + np.square(problem.load_misfit)
     friction, load = misfits(problem, extension)
     after = np.square(friction) + np.square(load)
-    sums = np.column_stack(
-        [np.bincount(layout.row_pair, weights=values) for values in (before, after, 0 * after + 1)]
-    )
-    starts = np.arange(0, len(sums), _BLOCK)
-    blocks = np.add.reduceat(sums, starts, axis=0)
-    generator = np.random.default_rng(seed)
-    drawn = blocks[generator.integers(0, len(blocks), (_DRAWS, len(blocks)))].sum(axis=1)
-    share = 1 - np.sqrt(drawn[:, 1] / np.maximum(drawn[:, 0], 1e-300))
-    low, high = np.quantile(share, [0.025, 0.975])
+    low, high = reduction_interval(problem, before, after, seed)
     old, new = float(np.sqrt(np.mean(before))), float(np.sqrt(np.mean(after)))
     return Gain(
         basis=basis,
         before=old,
         after=new,
         reduction=1 - new / max(old, 1e-300),
-        interval=(float(low), float(high)),
+        interval=(low, high),
         floor=floor,
     )
+
+
+def reduction_interval(
+    problem: Problem, before: Array, after: Array, seed: int
+) -> tuple[float, float]:
+    """Return the 95 % interval of the share of RMS misfit that is taken away.
+
+    Blocks of neighbouring pairs are drawn together, before and after alike.
+
+    Parameters
+    ----------
+    problem : Problem
+        The rows.
+    before, after : ndarray, shape (rows,)
+        Squared misfit without and with what is judged. [(N·m)²]
+    seed : int
+        Seed of the drawn blocks.
+    """
+    pair = problem.layout.row_pair
+    sums = np.column_stack([np.bincount(pair, weights=values) for values in (before, after)])
+    blocks = np.add.reduceat(sums, np.arange(0, len(sums), _BLOCK), axis=0)
+    generator = np.random.default_rng(seed)
+    drawn = blocks[generator.integers(0, len(blocks), (_DRAWS, len(blocks)))].sum(axis=1)
+    share = 1 - np.sqrt(drawn[:, 1] / np.maximum(drawn[:, 0], 1e-300))
+    low, high = np.quantile(share, [0.025, 0.975])
+    return float(low), float(high)

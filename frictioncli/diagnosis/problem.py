@@ -1,8 +1,9 @@
 r"""The two channels of one joint with the simulation of its torque: what diagnosis works on.
 
 The simulated torque along the measured motion is the fitted friction (16) plus the fitted gravity
-:math:`l_g = P \cos q + Q \sin q + c`. Its misfit has an even part, the friction channel, and an
-odd part, the load channel. Friction is refitted with the smooth gravity as its load, so that an
+:math:`l_g = P \cos q + Q \sin q + c + m (p \cos q + r \sin q)`, the latter where payloads *m* are
+known (:mod:`frictioncli.diagnosis.gravity`). Its misfit has an even part, the friction channel, and
+an odd part, the load channel. Friction is refitted with the smooth gravity as its load, so that an
 odd effect cannot leak into :math:`\alpha L^2`.
 """
 
@@ -13,13 +14,20 @@ import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
+from frictioncli.diagnosis.bases import candidate_bases
+from frictioncli.diagnosis.gravity import (
+    NAMES,
+    carried_load,
+    columns_of,
+    differs,
+    known_payload,
+    without_offset,
+)
 from frictioncli.diagnosis.history import clock_of, series, travel_of
 from frictioncli.diagnosis.whitening import PairLayout
 from frictioncli.effects.base import Basis, Effect, EffectTable
-from frictioncli.model.determinacy import determined_fit
 from frictioncli.model.document import PARAMETERS
 from frictioncli.model.friction import FrictionParameters, friction_torque
-from frictioncli.model.observations import observations
 from frictioncli.model.zero_load import PAIR_KEY, temperature_of
 
 Array = NDArray[np.float64]
@@ -52,8 +60,9 @@ class Problem:
         Friction parameters that the columns of ``friction_base`` belong to.
     parameters : FrictionParameters
         Friction refitted to these data.
-    gravity : ndarray, shape (3,)
-        Coefficients of cos q, sin q and 1. [N·m]
+    gravity : ndarray, shape (3,) or (5,)
+        Coefficients of cos q, sin q and 1, and of the first two per mass of the payload where two
+        payloads are known: those of the columns of ``load_base``. [N·m], [N·m/kg]
     own_load : bool
         Whether the log has a load channel of its own; the base's load is then that.
     temperature_error : float
@@ -89,6 +98,18 @@ class Problem:
         return np.square(self.temperature_error * slope)
 
     @property
+    def friction_by_gravity(self) -> Array:
+        """Derivatives of the friction torque by the gravity's coefficients, as of load_base.
+
+        Friction goes with the square of the load: a cause that bends the fitted gravity would
+        else show a second time, in friction.
+        """
+        if self.own_load:
+            return np.zeros_like(self.load_base)
+        slope = 2 * self.parameters.alpha * self.table.load
+        return slope[:, np.newaxis] * without_offset(self.load_base)
+
+    @property
     def friction_misfit(self) -> Array:
         """Measured minus simulated friction torque, shape (rows,). [N·m]."""
         return self.friction - self.table.friction
@@ -99,18 +120,13 @@ class Problem:
         return self.load - self.load_base @ self.gravity
 
 
-def gravity_columns(position: Array) -> Array:
-    """Return the columns of the gravity torque of a rotating arm, shape (rows, 3)."""
-    angle = np.radians(position)
-    return np.column_stack([np.cos(angle), np.sin(angle), np.ones_like(angle)])
-
-
 def build_problems(
     torques: pd.DataFrame, temperature: str, held_out: str | None = None
 ) -> tuple[Problem, Problem | None]:
     """Return the problem of one joint, and that of a run that is kept out of it.
 
-    The base model is fitted to the first one's rows only; the second is simulated with it.
+    The base model is fitted to the first one's rows only; the second is simulated with it. Gravity
+    goes with the payload if the first one's rows have two that are known.
 
     Parameters
     ----------
@@ -123,14 +139,24 @@ def build_problems(
     """
     rows = torques.sort_values(["run", "time", "pair", "position"], ignore_index=True)
     new = (rows["run"] == held_out).to_numpy()
-    columns = gravity_columns(rows["position"].to_numpy(float))
+    columns = columns_of(rows, payloads=differs(known_payload(rows)[~new]))
     load = rows["load_torque"].to_numpy(float)
     gravity = np.linalg.lstsq(columns[~new], load[~new], rcond=None)[0]
-    smooth = columns @ gravity if rows["load"].isna().all() else load
-    observed = observations(rows.assign(load_torque=smooth)[~new], temperature)
-    estimate, _ = determined_fit(observed)
-    whole = _assembled(rows, temperature, smooth, gravity, estimate.parameters, estimate.names)
+    smooth = carried_load(columns, gravity) if rows["load"].isna().all() else load
+    whole = min(
+        (
+            _assembled(rows, temperature, smooth, columns, gravity, base.parameters, base.names)
+            for base in candidate_bases(rows.assign(load_torque=smooth)[~new], temperature)
+        ),
+        key=lambda problem: _typical_misfit(problem, ~new),
+    )
     return _part(whole, ~new), _part(whole, new) if new.any() else None
+
+
+def _typical_misfit(problem: "Problem", seen: NDArray[np.bool_]) -> float:
+    """Return the median misfit of the pairs' mean friction. [N·m]."""
+    misfit = problem.layout.means(problem.friction_misfit[:, np.newaxis])[:, 0]
+    return float(np.median(np.abs(misfit[np.unique(problem.layout.row_pair[seen])])))
 
 
 def simulated(
@@ -146,15 +172,16 @@ def simulated(
         Temperature that the friction function is given.
     parameters : FrictionParameters
         Its parameters.
-    gravity : ndarray, shape (3,)
-        Coefficients of cos q, sin q and 1. [N·m]
+    gravity : ndarray, shape (3,) or (5,)
+        Coefficients of cos q, sin q and 1, and of the first two per mass of the payload. [N·m],
+        [N·m/kg]
     """
     rows = torques.sort_values(["run", "time", "pair", "position"])
-    load = rows["load_torque"].to_numpy(float)
-    if rows["load"].isna().all():
-        load = gravity_columns(rows["position"].to_numpy(float)) @ gravity
+    columns = columns_of(rows, payloads=len(gravity) > len(NAMES))
+    smooth = rows["load"].isna().all()
+    load = carried_load(columns, gravity) if smooth else rows["load_torque"].to_numpy(float)
     problem = _assembled(
-        rows.reset_index(drop=True), temperature, load, gravity, parameters, PARAMETERS
+        rows.reset_index(drop=True), temperature, load, columns, gravity, parameters, PARAMETERS
     )
     return rows.index, problem
 
@@ -163,6 +190,7 @@ def _assembled(
     rows: pd.DataFrame,
     temperature: str,
     load: Array,
+    columns: Array,
     gravity: Array,
     parameters: FrictionParameters,
     names: tuple[str, ...],
@@ -180,7 +208,8 @@ def _assembled(
         speed=speed[heads],
         position=position,
     )
-    rest, order = series(layout)
+    motor = rows["motor_temperature"].to_numpy(float)
+    rest, order = series(layout, motor[heads])
     table = EffectTable(
         run=run,
         pair=pair,
@@ -195,6 +224,7 @@ def _assembled(
         friction=np.zeros_like(speed),
         viscous=np.zeros_like(speed),
         temperature_slope=np.zeros_like(speed),
+        load_slope=np.zeros_like(speed),
         travel=travel_of(rows, layout)[pair],
         rest=rest[pair],
         order=order[pair],
@@ -209,7 +239,7 @@ def _assembled(
         friction=rows["friction_torque"].to_numpy(float),
         load=rows["load_torque"].to_numpy(float),
         friction_base=np.empty((len(run), 0)),
-        load_base=gravity_columns(position),
+        load_base=columns,
         names=names,
         parameters=parameters,
         gravity=gravity,
@@ -217,23 +247,12 @@ def _assembled(
         temperature_error=_REBUILT if rebuilt else _REGISTERED,
         runs=tuple(str(name) for name in run_names),
     )
-    return _with_model(empty, parameters, gravity)
+    return _with_friction(empty)
 
 
-def _with_model(problem: Problem, parameters: FrictionParameters, gravity: Array) -> Problem:
-    """Return the problem with its torque simulated by another base model.
-
-    Parameters
-    ----------
-    problem : Problem
-        The rows.
-    parameters : FrictionParameters
-        Friction of the base.
-    gravity : ndarray, shape (3,)
-        Coefficients of cos q, sin q and 1. [N·m]
-    """
-    whole = _modelled(problem.whole, parameters, None if problem.own_load else gravity)
-    table = _modelled(problem.table, parameters, None if problem.own_load else gravity)
+def _with_friction(problem: Problem) -> Problem:
+    """Return the problem of all runs with its friction simulated by its parameters."""
+    parameters, table = problem.parameters, _modelled(problem.table, problem.parameters)
     root_speed = np.sqrt(table.speed)
     decay = np.exp(-parameters.delta * table.temperature)
     derivative = {
@@ -246,27 +265,22 @@ def _with_model(problem: Problem, parameters: FrictionParameters, gravity: Array
     return replace(
         problem,
         table=table,
-        whole=whole,
+        whole=table,
         friction_base=np.column_stack([derivative[name] for name in problem.names]),
-        parameters=parameters,
-        gravity=gravity,
     )
 
 
-def _modelled(
-    table: EffectTable, parameters: FrictionParameters, gravity: Array | None
-) -> EffectTable:
-    """Return a table with the columns that depend on the base model."""
-    load = table.load if gravity is None else gravity_columns(table.position) @ gravity
+def _modelled(table: EffectTable, parameters: FrictionParameters) -> EffectTable:
+    """Return a table with the columns that depend on the base's friction."""
     decay = np.exp(-parameters.delta * table.temperature)
     return replace(
         table,
-        load=load,
         friction=friction_torque(
-            parameters, load=load, speed=table.speed, temperature=table.temperature
+            parameters, load=table.load, speed=table.speed, temperature=table.temperature
         ),
         viscous=parameters.beta + parameters.gamma * decay,
         temperature_slope=-parameters.delta * parameters.gamma * decay * np.sqrt(table.speed),
+        load_slope=2 * parameters.alpha * table.load,
     )
 
 

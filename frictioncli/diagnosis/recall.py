@@ -1,7 +1,6 @@
 """What a diagnosis has seen, rebuilt from the files of a work folder: misfits and fitted terms."""
 
-import json
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -10,28 +9,19 @@ import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
+from frictioncli.diagnosis.extended import (
+    EXTENDED,
+    ExtendedModel,
+    Term,
+    read_by_joint,
+    read_extended,
+)
 from frictioncli.diagnosis.problem import Problem, build_problems
-from frictioncli.effects import BY_NAME
-from frictioncli.effects.base import Effect
 from frictioncli.errors import TableError
 
 Array = NDArray[np.float64]
 
 DIAGNOSIS = "diagnosis.json"
-EXTENDED = "extended-model.json"
-
-
-@dataclass(frozen=True, slots=True)
-class Term:
-    """What one effect of the extended model adds to both channels, shape (rows,). [N·m]."""
-
-    effect: Effect
-    friction: Array
-    load: Array
-
-    def of(self, channel: str) -> Array:
-        """Return the term in ``friction`` or ``load``."""
-        return self.friction if channel == "friction" else self.load
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -103,8 +93,8 @@ class Recalled:
         return [cause for cause in self.document["causes"] if cause["effects"]]
 
 
-def read_documents(work: Path) -> dict[int, tuple[Mapping[str, Any], Mapping[str, Any]]]:
-    """Return each joint's parts of ``diagnosis.json`` and ``extended-model.json``.
+def read_documents(work: Path) -> dict[int, tuple[Mapping[str, Any], ExtendedModel]]:
+    """Return each joint's part of ``diagnosis.json``, and its extended model.
 
     Without the first there are none.
 
@@ -115,11 +105,11 @@ def read_documents(work: Path) -> dict[int, tuple[Mapping[str, Any], Mapping[str
     """
     if not (work / DIAGNOSIS).exists():
         return {}
-    diagnoses = _by_joint(work / DIAGNOSIS, _looked_through_diagnosis)
-    models = _by_joint(work / EXTENDED, _looked_through_extension)
+    diagnoses = read_by_joint(work / DIAGNOSIS, _looked_through)
+    models = read_extended(work / EXTENDED)
     for joint, document in diagnoses.items():
         named = sum(bool(cause["effects"]) for cause in document["causes"])
-        effects = [entry["name"] for entry in models[joint]["effects"]] if joint in models else []
+        effects = models[joint].effects if joint in models else ()
         if joint not in models or len(effects) != named:
             raise TableError(
                 f"{work / EXTENDED}: has {len(effects)} effects of joint {joint}, {DIAGNOSIS} has"
@@ -128,22 +118,7 @@ def read_documents(work: Path) -> dict[int, tuple[Mapping[str, Any], Mapping[str
     return {joint: (document, models[joint]) for joint, document in diagnoses.items()}
 
 
-def _by_joint(path: Path, look: Callable[[Mapping[str, Any]], None]) -> dict[int, dict[str, Any]]:
-    if not path.exists():
-        raise TableError(f"{path} is missing; run 'frictioncli diagnose' again")
-    try:
-        whole = json.loads(path.read_text(encoding="utf-8"))
-        parts = list(whole.get("joints", {"": whole}).values())
-        for part in parts:
-            look(part)
-        return {int(part["joint"]): part for part in parts}
-    except (ValueError, KeyError, TypeError, AttributeError) as error:
-        raise TableError(
-            f"{path}: is not of this program's form ({error!r}); run 'frictioncli diagnose' again"
-        ) from error
-
-
-def _looked_through_diagnosis(part: Mapping[str, Any]) -> None:
+def _looked_through(part: Mapping[str, Any]) -> Mapping[str, Any]:
     """Touch what every reader relies on, so that a damaged file is found here."""
     for cause in part["causes"]:
         for key in ("effects", "probabilities", "channel", "size", "p_value", "seen_in", "claim"):
@@ -153,18 +128,7 @@ def _looked_through_diagnosis(part: Mapping[str, Any]) -> None:
     for key in ("verdict", "gain", "detectable", "runs", "held_out"):
         part[key]
     float(part["simulation"]["rmse"])
-
-
-def _looked_through_extension(part: Mapping[str, Any]) -> None:
-    for entry in part["effects"]:
-        for parameter in BY_NAME[entry["name"]].coefficients:
-            float(entry["coefficients"][parameter.name]["estimate"])
-        dict(entry["shape"])
-    if part["effects"]:
-        for name in ("cosine", "sine", "offset"):
-            float(part["gravity"][name])
-        for stated in part["parameters"].values():
-            stated["estimate"]
+    return part
 
 
 def is_current(document: Mapping[str, Any], torques: pd.DataFrame) -> bool:
@@ -173,19 +137,19 @@ def is_current(document: Mapping[str, Any], torques: pd.DataFrame) -> bool:
     return known == {str(run) for run in torques["run"].unique()}
 
 
-def recall(
-    torques: pd.DataFrame, document: Mapping[str, Any], extended: Mapping[str, Any]
-) -> Recalled:
+def recall(torques: pd.DataFrame, document: Mapping[str, Any], extended: ExtendedModel) -> Recalled:
     """Rebuild what a diagnosis has seen.
 
     Parameters
     ----------
     torques : DataFrame
         Rows of :data:`frictioncli.schemas.TORQUES` of a single joint.
-    document, extended : dict
-        The joint's parts of ``diagnosis.json`` and ``extended-model.json``.
+    document : dict
+        The joint's part of ``diagnosis.json``.
+    extended : ExtendedModel
+        Its extended model.
     """
-    seen, new = build_problems(torques, extended["temperature"], document["held_out"])
+    seen, new = build_problems(torques, extended.temperature, document["held_out"])
     return Recalled(
         document=document,
         seen=misfits(seen, extended),
@@ -193,38 +157,22 @@ def recall(
     )
 
 
-def misfits(problem: Problem, extended: Mapping[str, Any]) -> Misfits:
+def misfits(problem: Problem, extended: ExtendedModel) -> Misfits:
     """Return what the base and the extended model miss of a problem's rows.
 
     Parameters
     ----------
     problem : Problem
         Rows with the base model that the extension started from.
-    extended : dict
-        The joint's part of ``extended-model.json``.
+    extended : ExtendedModel
+        The joint's extended model.
     """
     before = {"friction": problem.friction_misfit, "load": problem.load_misfit}
-    if not extended["effects"]:
+    if not extended.effects:
         return Misfits(problem=problem, before=before, after=before, terms=())
-    terms = tuple(_term(problem, entry) for entry in extended["effects"])
-    fitted = [extended["parameters"][name]["estimate"] for name in problem.names]
-    base = np.array([getattr(problem.parameters, name) for name in problem.names])
-    gravity = np.array([extended["gravity"][name] for name in ("cosine", "sine", "offset")])
+    beyond = extended.beyond(problem)
     after = {
-        "friction": before["friction"] - problem.friction_base @ (np.array(fitted) - base),
-        "load": before["load"] - problem.load_base @ (gravity - problem.gravity),
+        "friction": before["friction"] - beyond.friction,
+        "load": before["load"] - beyond.load,
     }
-    after = {
-        channel: rows - sum((term.of(channel) for term in terms), np.zeros_like(rows))
-        for channel, rows in after.items()
-    }
-    return Misfits(problem=problem, before=before, after=after, terms=terms)
-
-
-def _term(problem: Problem, entry: Mapping[str, Any]) -> Term:
-    effect = BY_NAME[entry["name"]]
-    coefficients = np.array(
-        [entry["coefficients"][parameter.name]["estimate"] for parameter in effect.coefficients]
-    )
-    basis = problem.basis(effect, entry["shape"])
-    return Term(effect, basis.friction @ coefficients, basis.load @ coefficients)
+    return Misfits(problem=problem, before=before, after=after, terms=beyond.terms)

@@ -1,7 +1,7 @@
 """How likely a score is by chance, and which effects it may stand for.
 
-Searching a shape parameter gives chance more than one try. How many tries it is worth follows from
-the columns themselves: scores of pure noise are drawn with the columns' own correlations.
+Searching a shape parameter, and the noise that suits a rival best, gives chance more than one try.
+What it makes of them is drawn: noise alone goes through the same search.
 
 References
 ----------
@@ -13,6 +13,7 @@ References
 """
 
 from collections.abc import Mapping
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
@@ -20,58 +21,40 @@ from scipy import stats
 
 Array = NDArray[np.float64]
 
-_DRAWS = 2000
 _PRIOR_VARIANCE = 100.0
 """Variance of a coefficient before the data, in units of its sampling variance."""
 
 
-def tries(columns: Array, generator: np.random.Generator) -> tuple[float, int]:
-    """Return how many independent tries a search over shapes is worth, and its freedom.
+@dataclass(frozen=True, slots=True)
+class Chance:
+    """What noise alone gives a hypothesis over all its shapes: a gamma distribution.
 
-    Parameters
-    ----------
-    columns : ndarray, shape (white rows, shapes, coefficients)
-        Projected columns of an effect over the grid of its shapes.
-    generator : Generator
-        Source of the noise.
-
-    Returns
-    -------
-    float, int
-        Number of tries, at least 1; coefficients that the columns can tell.
+    One coefficient without a shape gives a chi-squared score of one degree of freedom, which is a
+    gamma distribution; the greatest of many such is nearly one.
     """
-    rows, shapes, coefficients = columns.shape
-    flat = columns.reshape(rows, shapes * coefficients)
-    size = np.linalg.norm(flat, axis=0)
-    size = np.where(size > 0, size, 1.0)
-    gram = (flat / size).T @ (flat / size)
-    strength, vectors = np.linalg.eigh(gram)
-    kept = strength > 1e-9 * strength[-1]
-    if not kept.any():
-        return 1.0, 0
-    root = vectors[:, kept] * np.sqrt(strength[kept])
-    noise = generator.standard_normal((_DRAWS, int(kept.sum()))) @ root.T
-    scores = np.zeros(_DRAWS)
-    freedom = 0
-    for i in range(shapes):
-        part = slice(i * coefficients, (i + 1) * coefficients)
-        block = gram[part, part]
-        inverse = np.linalg.pinv(block, rcond=1e-9, hermitian=True)
-        freedom = max(freedom, int(np.linalg.matrix_rank(block, tol=1e-9, hermitian=True)))
-        drawn = noise[:, part]
-        scores = np.maximum(scores, np.einsum("ij,jk,ik->i", drawn, inverse, drawn))
-    if freedom == 0:
-        return 1.0, 0
-    limit = float(np.quantile(scores, 0.95))
-    return max(0.05 / float(stats.chi2.sf(limit, freedom)), 1.0), freedom
+
+    shape: float
+    scale: float
+
+    def beyond(self, statistic: float) -> float:
+        """Return the probability that noise gives more."""
+        if self.scale == 0.0:
+            return 1.0
+        return float(stats.gamma.sf(statistic, self.shape, scale=self.scale))
+
+    def limit(self, probability: float) -> float:
+        """Return what noise exceeds with this probability."""
+        if self.scale == 0.0:
+            return float("inf")
+        return float(stats.gamma.isf(probability, self.shape, scale=self.scale))
 
 
-def chance(statistic: float, freedom: int, count: float) -> float:
-    """Return the probability that noise alone gives such a score in so many tries."""
-    if freedom == 0:
-        return 1.0
-    once = float(stats.chi2.sf(statistic, freedom))
-    return float(-np.expm1(count * np.log1p(-min(once, 1 - 1e-16))))
+def chance_of(drawn: Array) -> Chance:
+    """Return the chance that draws of noise show, shape (draws,)."""
+    if len(drawn) < 2 or not np.var(drawn) > 0:
+        return Chance(1.0, 0.0)
+    mean, variance = float(np.mean(drawn)), float(np.var(drawn))
+    return Chance(mean**2 / variance, variance / mean)
 
 
 def log_evidence(grid: Array, freedom: int) -> float:

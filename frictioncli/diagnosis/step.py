@@ -1,235 +1,310 @@
-"""One step of the search: noise, whiteners and misfit with some effects accepted."""
+"""One step of the search: base and accepted effects against every rival, in both channels."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.optimize import minimize
 
-from frictioncli.diagnosis.candidates import (
-    Channels,
-    Projector,
-    Score,
-    base_columns,
-    effect_columns,
-    explained,
-    refined,
-    score,
-    visible,
+from frictioncli.diagnosis.bench import Bench, Catalogue, Modes, modes_of, point_noise
+from frictioncli.diagnosis.columns import (
+    Columns,
+    Hypothesis,
+    basis_columns,
+    hypothesis_of,
+    joined,
+    left_of_base,
+    main_channel,
 )
+from frictioncli.diagnosis.joint import Fitted, Side, noise_of, solved
+from frictioncli.diagnosis.judged import Judged, Score
 from frictioncli.diagnosis.problem import Problem
-from frictioncli.diagnosis.significance import chance, log_evidence, tries
-from frictioncli.diagnosis.whitening import Whitener
-from frictioncli.effects.base import Basis, Effect
-from frictioncli.model.noise import Noise, plausible_noise
+from frictioncli.diagnosis.scan import (
+    Null,
+    Scan,
+    Setting,
+    drawn_inside,
+    null_of,
+    scan,
+    weighted_gram,
+)
+from frictioncli.diagnosis.significance import Chance, chance_of, log_evidence
+from frictioncli.diagnosis.whitening import Channels, Whitener
+from frictioncli.effects.base import Effect
+from frictioncli.model.noise import Noise
 
 Array = NDArray[np.float64]
+Settings = tuple[Setting, Setting]
 
-_PLAUSIBLE = 0.05
-"""Noises less plausible than this are not asked."""
-
-_TOLERANCE = 2.0
-"""A coefficient may miss its physical bound by as many standard errors."""
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Candidate:
-    """An effect as it stands at one step of the search.
-
-    Attributes
-    ----------
-    score : Score
-        What it explains.
-    p_value : float
-        Probability that noise explains as much, corrected for shapes and for the catalogue.
-    evidence : float
-        Logarithm of its Bayes factor.
-    tries : float
-        Independent tries that its shapes are worth.
-    freedom : int
-        Coefficients that the data can tell.
-    size_scale : float
-        RMS of the effect in its channel for a white norm of 1. [N·m]
-    """
-
-    score: Score
-    p_value: float
-    evidence: float
-    tries: float
-    freedom: int
-    size_scale: float
-
-
-@dataclass(frozen=True, slots=True)
-class View:
-    """The data under one plausible noise: whitened, base and accepted effects taken out."""
-
-    channels: Channels
-    projector: Projector
-    misfit: Array
-    weight: float
+DRAWS = 200
+"""Draws of noise from which it is learned what chance gives."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Step:
-    """The data with some effects accepted, seen under every plausible noise, likeliest first."""
+    """Base and accepted effects under the noise that suits them.
 
-    problem: Problem
-    noise: tuple[Noise, Noise]
-    views: tuple[View, ...]
+    Attributes
+    ----------
+    bench : Bench
+        The data and their noises.
+    accepted : tuple of Score
+        Effects accepted so far.
+    base : Columns
+        Columns of the base and of those effects.
+    point : (float, float)
+        Noise of a row about its pair in friction and load. [N·m]
+    null : (Null, Null)
+        The base with those effects alone, in friction and load.
+    known : (Modes, Modes)
+        Modes of the base's columns and the misfit, at each correlation time.
+    fit : Fitted
+        The same in both channels together.
+    """
 
-    @property
-    def channels(self) -> Channels:
-        """Whiteners under the most plausible noise."""
-        return self.views[0].channels
-
-    @property
-    def projector(self) -> Projector:
-        """What takes out base and accepted effects under the most plausible noise."""
-        return self.views[0].projector
-
-    @property
-    def misfit(self) -> Array:
-        """White misfit off them under the most plausible noise."""
-        return self.views[0].misfit
+    bench: Bench
+    accepted: tuple[Score, ...]
+    base: Columns
+    point: tuple[float, float]
+    null: tuple[Null, Null]
+    known: tuple[Modes, Modes]
+    fit: Fitted
 
     @classmethod
-    def of(cls, problem: Problem, accepted: Sequence[Score]) -> "Step":
-        """Return the step with these effects accepted: noise estimated, base projected out."""
+    def of(cls, bench: Bench, accepted: Sequence[Score]) -> "Step":
+        """Return the step with these effects accepted."""
+        problem = bench.problem
         bases = [problem.basis(score.effect, score.shape) for score in accepted]
-        friction, load = _noises(problem, bases)
-        layout, extra = problem.layout, problem.temperature_variance
-        quiet = np.zeros_like(extra)
-        load_whitener = Whitener.of(layout, load[0][0], quiet)
-        kept = [(noise, weight) for noise, weight in friction if weight >= _PLAUSIBLE]
-        views = []
-        for noise, weight in kept:
-            channels = Channels(Whitener.of(layout, noise, extra), load_whitener)
-            projector, misfit = _projected(problem, channels, accepted)
-            views.append(View(channels, projector, misfit, weight))
-        return cls(problem=problem, noise=(kept[0][0], load[0][0]), views=tuple(views))
-
-    def judged(self, effect: Effect, catalogue: int, seed: int) -> Candidate:
-        """Return the candidate that an effect makes at this step."""
-        found, columns = score(effect, self.problem, self.channels, self.projector, self.misfit)
-        generator = np.random.default_rng([seed, *effect.name.encode()])
-        count, freedom = tries(columns, generator)
-        p_value = min(1.0, catalogue * self._chance(found, freedom, count))
-        basis = self.problem.basis(effect, found.shape)
-        raw = np.sqrt(np.mean(np.square(main_channel(basis, effect)), axis=0))
-        size = np.linalg.norm(columns[:, _index(found)], axis=0)
-        return Candidate(
-            score=found,
-            p_value=p_value,
-            evidence=log_evidence(found.grid, freedom),
-            tries=count,
-            freedom=freedom,
-            size_scale=float(np.sqrt(np.sum(raw**2)) / max(np.sqrt(np.sum(size**2)), 1e-300)),
+        base = joined([bench.base, *(basis_columns(problem, basis) for basis in bases)])
+        point = (
+            point_noise(problem, problem.friction_misfit, [b.friction for b in bases], "friction"),
+            point_noise(problem, problem.load_misfit, [b.load for b in bases], "load"),
+        )
+        friction, load = (
+            null_of(spectra, part.means, misfit.means)
+            for spectra, part, misfit in zip(
+                bench.spectra, base.channels, bench.misfit.channels, strict=True
+            )
+        )
+        known = modes_of(bench, joined([base, bench.misfit]))
+        null = (friction, load)
+        settings = (friction.best, load.best)
+        nothing = base.take(slice(0, 0))
+        none = tuple(part.means[:, :0] for part in base.channels)
+        fit = _solved(bench, point, null, settings, base, known, nothing, (none[0], none[1]))
+        return cls(
+            bench=bench,
+            accepted=tuple(accepted),
+            base=base,
+            point=point,
+            null=null,
+            known=known,
+            fit=fit,
         )
 
     @property
+    def problem(self) -> Problem:
+        """The data."""
+        return self.bench.problem
+
+    def judged(self, catalogue: Catalogue, seed: int, draws: int) -> dict[str, Judged]:
+        """Return every hypothesis as it stands beside the base, by name.
+
+        Parameters
+        ----------
+        catalogue : Catalogue
+            Hypotheses.
+        seed : int
+            Seed of the draws.
+        draws : int
+            Number of draws of noise; without any all p-values are 1.
+        """
+        generator = np.random.default_rng(seed)
+        scans = tuple(
+            scan(spectra, null, modes, catalogue.groups, draws, generator)
+            for spectra, null, modes in zip(
+                self.bench.spectra, self.null, catalogue.modes, strict=True
+            )
+        )
+        drawn = sum(one.drawn for one in scans)
+        if draws:
+            for part, rivals in zip(self.base.channels, catalogue.columns.channels, strict=True):
+                drawn = drawn + drawn_inside(
+                    part.inside, rivals.inside, catalogue.groups, draws, generator
+                )
+        found, first = {}, 0
+        for hypothesis in catalogue.hypotheses:
+            last = first + len(hypothesis.shapes)
+            fits = []
+            for group in range(first, last):
+                chosen = catalogue.groups.columns(group)
+                settings = _setting(scans[0], group), _setting(scans[1], group)
+                modes = tuple(
+                    part[setting[0]][:, chosen]
+                    for part, setting in zip(catalogue.modes, settings, strict=True)
+                )
+                fits.append(
+                    self._fitted(catalogue.columns.take(chosen), (modes[0], modes[1]), settings)
+                )
+            chance = chance_of(np.asarray(drawn)[first:last].max(axis=0, initial=0.0))
+            found[hypothesis.name] = self._judged(
+                hypothesis, fits, chance, len(catalogue.hypotheses)
+            )
+            first = last
+        return found
+
+    def noise(self) -> tuple[Noise, Noise]:
+        """Return the noise of friction and load that suits base and accepted effects."""
+        friction, load = (
+            noise_of(spectra, null.best, scale, point)
+            for spectra, null, scale, point in zip(
+                self.bench.spectra, self.null, self.fit.scales, self.point, strict=True
+            )
+        )
+        return friction, load
+
     def weighing(self) -> Channels:
-        """Whiteners that only weigh, for estimates that must predict."""
+        """Return whiteners that only weigh, for estimates that must predict."""
         layout, extra = self.problem.layout, self.problem.temperature_variance
-        friction, load = self.noise
+        friction, load = self.noise()
         return Channels(
             Whitener.weighing(layout, friction, extra),
             Whitener.weighing(layout, load, np.zeros_like(extra)),
         )
 
     def refined(self, found: Score) -> Score:
-        """Return a score with its shape searched off the grid."""
-        return refined(found, self.problem, self.channels, self.projector, self.misfit)
+        """Return a score with its shape searched off the grid, under the noise that suits it."""
+        effect, axes = found.effect, found.effect.shape
+        if not axes:
+            return self._scored(effect, {}, self._suited(effect, {}))
+        settings = self._suited(effect, found.shape)
+        start = np.array([axis.share(found.shape[axis.name]) for axis in axes])
+        step = np.array([0.5 / axis.points for axis in axes])
 
-    def size(self, found: Score) -> float:
+        def shape_at(unit: Array) -> dict[str, float]:
+            return {axis.name: axis.at(float(u)) for axis, u in zip(axes, unit, strict=True)}
+
+        search = minimize(
+            lambda unit: -self._scored(effect, shape_at(unit), settings).statistic,
+            start,
+            method="Nelder-Mead",
+            bounds=[(0.0, 1.0)] * len(axes),
+            options={
+                "initial_simplex": np.vstack(
+                    [start, start + np.diag(np.where(start > 0.5, -step, step))]
+                ),
+                "maxfev": 25 * len(axes),
+                "xatol": 2e-3,
+                "fatol": 2e-2,
+            },
+        )
+        shape = shape_at(search.x)
+        return self._scored(effect, shape, self._suited(effect, shape))
+
+    def _suited(self, effect: Effect, shape: dict[str, float]) -> Settings:
+        """Return the noise that suits an effect at one shape."""
+        alone = Catalogue.of(self.bench, [hypothesis_of(effect, self.problem, [shape])])
+        scans = [
+            scan(spectra, null, modes, alone.groups, 0, np.random.default_rng(0))
+            for spectra, null, modes in zip(self.bench.spectra, self.null, alone.modes, strict=True)
+        ]
+        return _setting(scans[0], 0), _setting(scans[1], 0)
+
+    def _scored(self, effect: Effect, shape: dict[str, float], settings: Settings) -> Score:
+        """Return an effect's score at one shape; its statistic is 0 if it is not physical."""
+        hypothesis = hypothesis_of(effect, self.problem, [shape])
+        modes = tuple(
+            spectra.modes(spectra.spectra[setting[0]], spectra.scaled(part.means))
+            for spectra, setting, part in zip(
+                self.bench.spectra, settings, hypothesis.columns.channels, strict=True
+            )
+        )
+        fit = self._fitted(hypothesis.columns, (modes[0], modes[1]), settings)
+        base = self.base.count
+        coefficients, covariance = fit.coefficients[base:], fit.covariance[base:, base:]
+        allowed = hypothesis.allows(coefficients, covariance)
+        statistic = 2 * (fit.likelihood - self.fit.likelihood) if allowed else 0.0
+        return Score(effect, shape, coefficients, covariance, statistic)
+
+    def _judged(
+        self, hypothesis: Hypothesis, fits: Sequence[Fitted], chance: Chance, rivals: int
+    ) -> Judged:
+        base = self.base.count
+        grid = np.array([2 * (fit.likelihood - self.fit.likelihood) for fit in fits])
+        able = [
+            fit.freedom > 0
+            and hypothesis.allows(fit.coefficients[base:], fit.covariance[base:, base:])
+            for fit in fits
+        ]
+        grid = np.where(able, np.maximum(grid, 0.0), 0.0)
+        best = int(np.argmax(grid))
+        fit = fits[best]
+        return Judged(
+            name=hypothesis.name,
+            shape=hypothesis.shapes[best],
+            coefficients=fit.coefficients[base:],
+            covariance=fit.covariance[base:, base:],
+            statistic=float(grid[best]),
+            p_value=min(1.0, rivals * chance.beyond(float(grid[best]))),
+            evidence=log_evidence(grid, fit.freedom),
+            freedom=fit.freedom,
+            chance=chance,
+            size_scale=float(
+                np.linalg.norm(hypothesis.raw[best])
+                / max(float(np.linalg.norm(fit.visible)), 1e-300)
+            ),
+        )
+
+    def _fitted(self, columns: Columns, modes: tuple[Array, Array], settings: Settings) -> Fitted:
+        return _solved(
+            self.bench, self.point, self.null, settings, self.base, self.known, columns, modes
+        )
+
+    def size(self, score: Score) -> float:
         """Return the RMS torque of an effect in the channel where it shows most. [N·m].
 
-        Several columns of an effect may cancel each other and leave the rest to the base; of such
-        an effect only the part that the base cannot take has a size.
+        Several columns of an effect may cancel each other and leave the rest to the base; so only
+        the part that the base cannot take has a size, unless it is the effect's only column.
         """
-        effect = found.effect
-        if len(found.coefficients) == 1:
-            columns = main_channel(self.problem.basis(effect, found.shape), effect)
-            return float(np.sqrt(np.mean(np.square(columns @ found.coefficients))))
-        white = effect_columns(effect, self.problem, self.channels, found.shape)
-        return self.channels.visible_size(
-            visible(white, self.projector) @ found.coefficients, effect.channel
-        )
+        if len(score.coefficients) > 1:
+            return self.visible(score)
+        basis = self.problem.basis(score.effect, score.shape)
+        torque = main_channel(basis, score.effect) @ score.coefficients
+        return float(np.sqrt(np.mean(np.square(torque))))
 
-    def _chance(self, found: Score, freedom: int, count: float) -> float:
-        """Return the chance of a score, averaged over the noises that agree with the data."""
-        once = chance(found.statistic, freedom, count)
-        if once > 0.05 or len(self.views) == 1:
-            return once
-        total = weight_sum = 0.0
-        for view in self.views:
-            columns = effect_columns(found.effect, self.problem, view.channels, found.shape)
-            statistic = explained(visible(columns, view.projector), view.misfit)[0]
-            total += view.weight * chance(statistic, freedom, count)
-            weight_sum += view.weight
-        return total / weight_sum
+    def visible(self, score: Score) -> float:
+        """Return the RMS torque of an effect that the base model cannot take. [N·m]."""
+        basis = self.problem.basis(score.effect, score.shape)
+        torque = main_channel(basis, score.effect) @ score.coefficients
+        left = left_of_base(self.problem, torque, score.effect.channel)
+        return float(np.sqrt(np.mean(np.square(left))))
 
 
-def _index(found: Score) -> int:
-    return int(np.argmax(found.grid))
+def _solved(
+    bench: Bench,
+    point: tuple[float, float],
+    null: tuple[Null, Null],
+    settings: Settings,
+    base: Columns,
+    known: tuple[Modes, Modes],
+    rival: Columns,
+    modes: tuple[Array, Array],
+) -> Fitted:
+    """Fit base and a rival under given noises of friction and load."""
+    inside, between, sides = [], [], []
+    for number, (time, strength) in enumerate(settings):
+        own, other, misfit = (part.channels[number].inside for part in (base, rival, bench.misfit))
+        rows = np.hstack([own, other, misfit])
+        inside.append(np.asarray(rows.T @ rows) / point[number] ** 2)
+        first = known[number][time]
+        whole = np.hstack([first[:, :-1], modes[number], first[:, -1:]])
+        spectra, setting = bench.spectra[number], (time, strength)
+        between.append(weighted_gram(spectra, setting, whole))
+        determinant = float(null[number].determinant[setting])
+        sides.append(Side(determinant, null[number].freedom))
+    return solved((sides[0], sides[1]), inside, between, base.count)
 
 
-def main_channel(basis: Basis, effect: Effect) -> Array:
-    """Return an effect's columns in the channel where it shows most."""
-    return basis.friction if effect.channel == "friction" else basis.load
-
-
-def physical(found: Score) -> bool:
-    """Return whether the coefficients lie within their physical bounds, but for their error."""
-    errors = np.sqrt(np.maximum(np.diag(found.covariance), 0.0))
-    return all(
-        parameter.lower - _TOLERANCE * error <= value <= parameter.upper + _TOLERANCE * error
-        for parameter, value, error in zip(
-            found.effect.coefficients, found.coefficients, errors, strict=True
-        )
-    )
-
-
-def _projected(
-    problem: Problem, channels: Channels, accepted: Sequence[Score]
-) -> tuple[Projector, Array]:
-    columns = [effect_columns(s.effect, problem, channels, s.shape) for s in accepted]
-    projector = Projector.of(base_columns(problem, channels, columns))
-    raw = channels.whiten(
-        problem.friction_misfit[:, np.newaxis], problem.load_misfit[:, np.newaxis]
-    )
-    return projector, projector.off(raw)[:, 0]
-
-
-def _noises(
-    problem: Problem, bases: Sequence[Basis]
-) -> tuple[list[tuple[Noise, float]], list[tuple[Noise, float]]]:
-    """Return the plausible noises of both channels, with the accepted effects taken out."""
-    friction = np.hstack([problem.friction_base, *(basis.friction for basis in bases)])
-    load = np.hstack([problem.load_base, *(basis.load for basis in bases)])
-    return (
-        _noise(problem, problem.friction_misfit, friction, problem.temperature_variance),
-        _noise(problem, problem.load_misfit, load, np.zeros_like(problem.temperature_variance)),
-    )
-
-
-def _noise(
-    problem: Problem, misfit: Array, design: Array, extra: Array
-) -> list[tuple[Noise, float]]:
-    layout = problem.layout
-    design = design[:, np.linalg.norm(design, axis=0) > 0]
-    design = design / np.linalg.norm(design, axis=0)
-    residual = misfit - design @ np.linalg.lstsq(design, misfit, rcond=1e-9)[0]
-    means = layout.means(residual[:, np.newaxis])[:, 0]
-    inside = residual - means[layout.row_pair]
-    freedom = max(len(inside) - len(means), 1)
-    point = max(float(np.sqrt(inside @ inside / freedom)), 1e-9)
-    return plausible_noise(
-        residual=means,
-        design=layout.means(design),
-        time=layout.time,
-        run=layout.run,
-        bins=layout.bins,
-        point=point,
-        extra=extra,
-    )
+def _setting(found: Scan, group: int) -> Setting:
+    return int(found.of_group[group, 0]), int(found.of_group[group, 1])

@@ -42,6 +42,8 @@ class PairLayout:
         Run of each pair.
     time : ndarray, shape (pairs,)
         Middle of each pair. [s]
+    level : ndarray of int, shape (pairs,)
+        Speed of each pair as a level; pairs of one speed have the same.
     pooling : sparse matrix, shape (groups, rows)
         Adds up the rows of a group of neighbouring pairs at one speed and angle; its rows are
         orthonormal, so white deviations stay white.
@@ -51,6 +53,7 @@ class PairLayout:
     bins: Array
     run: NDArray[np.intp]
     time: Array
+    level: NDArray[np.intp]
     pooling: csr_array
 
     @classmethod
@@ -88,6 +91,7 @@ class PairLayout:
             bins=np.bincount(row_pair).astype(float),
             run=run,
             time=time,
+            level=level,
             pooling=pooling,
         )
 
@@ -177,6 +181,18 @@ class Whitener:
         """
         inside = self.layout.contrasts(rows) / self.point
         return np.concatenate([inside, self.between @ self.layout.means(rows)])
+
+
+@dataclass(frozen=True, slots=True)
+class Channels:
+    """Both channels' whiteners; rows of both become one tall white matrix."""
+
+    friction: Whitener
+    load: Whitener
+
+    def whiten(self, friction: Array, load: Array) -> Array:
+        """Return the white columns of rows of both channels, friction above load."""
+        return np.concatenate([self.friction.whiten(friction), self.load.whiten(load)])
 
 
 def innovations(layout: PairLayout, noise: Noise, extra: Array) -> Array:

@@ -1,0 +1,39 @@
+"""Base models about which a diagnosis may be linear."""
+
+import numpy as np
+import pandas as pd
+
+from frictioncli.model.determinacy import determined_fit
+from frictioncli.model.identification import Estimate
+from frictioncli.model.observations import observations
+from frictioncli.model.zero_load import PAIR_KEY
+
+_COMMON = 0.05
+"""Speeds of a smaller share of the pairs are rare."""
+
+_SAME_SPEED = 0.02
+"""Speeds closer than this share are one."""
+
+
+def candidate_bases(rows: pd.DataFrame, temperature: str) -> list[Estimate]:
+    """Return base models: of all pairs, and of the speeds that hold most of them.
+
+    A few pairs at rare speeds that obey another law would bend the parameters so far that a model
+    linear about them explains nothing any more.
+
+    Parameters
+    ----------
+    rows : DataFrame
+        Rows of :data:`frictioncli.schemas.TORQUES` of a single joint, with its smooth load.
+    temperature : {"motor", "housing", "mean"}
+        Temperature that the friction function is given.
+    """
+    heads = rows.drop_duplicates(PAIR_KEY)
+    level = np.round(np.log(heads["speed"].to_numpy(float)) / _SAME_SPEED)
+    _, place, count = np.unique(level, return_inverse=True, return_counts=True)
+    common = count >= _COMMON * len(heads)
+    chosen = [rows]
+    if not common.all() and common.sum() >= 3:
+        kept = heads.loc[common[place], PAIR_KEY]
+        chosen.append(rows.merge(kept, on=PAIR_KEY))
+    return [determined_fit(observations(part, temperature))[0] for part in chosen]

@@ -1,0 +1,188 @@
+"""Columns of a model, reduced to what noise tells apart: inside pairs and between them.
+
+A channel's rows split exactly into deviations from their pair's mean, whose noise is white, and
+the pair means, whose noise is correlated. Inference needs nothing else of an effect's columns.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from itertools import product
+
+import numpy as np
+from numpy.typing import NDArray
+
+from frictioncli.diagnosis.problem import Problem
+from frictioncli.diagnosis.whitening import PairLayout
+from frictioncli.effects.base import Basis, Effect
+
+Array = NDArray[np.float64]
+
+_TOLERANCE = 2.0
+"""A coefficient may miss its physical bound by as many standard errors."""
+
+
+@dataclass(frozen=True, slots=True)
+class Channel:
+    """Columns in one channel.
+
+    Attributes
+    ----------
+    inside : ndarray, shape (contrasts, columns)
+        Pooled deviations from the pair means. [N·m]
+    means : ndarray, shape (pairs, columns)
+        Pair means. [N·m]
+    """
+
+    inside: Array
+    means: Array
+
+
+@dataclass(frozen=True, slots=True)
+class Columns:
+    """The same columns in both channels."""
+
+    friction: Channel
+    load: Channel
+
+    @property
+    def channels(self) -> tuple[Channel, Channel]:
+        """Friction and load."""
+        return self.friction, self.load
+
+    @property
+    def count(self) -> int:
+        """Number of columns."""
+        return self.friction.means.shape[1]
+
+    def take(self, chosen: slice | Sequence[int]) -> "Columns":
+        """Return some of the columns."""
+        return Columns(
+            *(Channel(part.inside[:, chosen], part.means[:, chosen]) for part in self.channels)
+        )
+
+
+def reduced(layout: PairLayout, friction: Array, load: Array) -> Columns:
+    """Return the columns of rows of both channels, shape (rows, columns) each."""
+    return Columns(
+        *(Channel(layout.contrasts(rows), layout.means(rows)) for rows in (friction, load))
+    )
+
+
+def joined(parts: Sequence[Columns]) -> Columns:
+    """Return the columns of several, side by side."""
+    return Columns(
+        *(
+            Channel(
+                np.hstack([getattr(part, name).inside for part in parts]),
+                np.hstack([getattr(part, name).means for part in parts]),
+            )
+            for name in ("friction", "load")
+        )
+    )
+
+
+def base_columns(problem: Problem) -> Columns:
+    """Return the columns of the base model: friction's parameters, then gravity's."""
+    friction, load = base_rows(problem)
+    return reduced(problem.layout, friction, load)
+
+
+def base_rows(problem: Problem) -> tuple[Array, Array]:
+    """Return the base's columns in friction and load, shape (rows, parameters) each."""
+    nothing = np.zeros_like(problem.friction_base)
+    return (
+        np.hstack([problem.friction_base, problem.friction_by_gravity]),
+        np.hstack([nothing, problem.load_base]),
+    )
+
+
+def misfit_column(problem: Problem) -> Columns:
+    """Return the misfit of the simulated torque as one column."""
+    return reduced(
+        problem.layout, problem.friction_misfit[:, np.newaxis], problem.load_misfit[:, np.newaxis]
+    )
+
+
+def basis_columns(problem: Problem, basis: Basis) -> Columns:
+    """Return the columns of an effect's basis."""
+    return reduced(problem.layout, basis.friction, basis.load)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Hypothesis:
+    """Something that may explain the misfit: columns, perhaps over a grid of shapes.
+
+    Attributes
+    ----------
+    name : str
+        Its name.
+    shapes : tuple of dict
+        Shape parameters of each group of columns.
+    width : int
+        Columns of each group.
+    columns : Columns
+        The groups side by side, ``len(shapes) * width`` columns.
+    raw : ndarray, shape (shapes, width)
+        RMS of each column in the channel where the hypothesis shows most. [N·m]
+    lower, upper : ndarray, shape (width,)
+        Physical bounds of the coefficients.
+    """
+
+    name: str
+    shapes: tuple[dict[str, float], ...]
+    width: int
+    columns: Columns
+    raw: Array
+    lower: Array
+    upper: Array
+
+    def allows(self, coefficients: Array, covariance: Array) -> bool:
+        """Return whether coefficients lie within their physical bounds, but for their error."""
+        margin = _TOLERANCE * np.sqrt(np.maximum(np.diag(covariance), 0.0))
+        above = coefficients >= self.lower - margin
+        return bool(np.all(above & (coefficients <= self.upper + margin)))
+
+
+def shapes_of(effect: Effect) -> list[dict[str, float]]:
+    """Return the grid of shape parameters over which an effect is searched first."""
+    axes = [
+        [(parameter.name, float(value)) for value in parameter.grid()] for parameter in effect.shape
+    ]
+    return [dict(values) for values in product(*axes)]
+
+
+def hypothesis_of(
+    effect: Effect, problem: Problem, shapes: Sequence[dict[str, float]] | None = None
+) -> Hypothesis:
+    """Return an effect as a hypothesis over its grid of shapes, or over given ones."""
+    tried = shapes_of(effect) if shapes is None else list(shapes)
+    bases = [problem.basis(effect, shape) for shape in tried]
+    raw = [np.sqrt(np.mean(np.square(main_channel(basis, effect)), axis=0)) for basis in bases]
+    columns = reduced(
+        problem.layout,
+        np.hstack([basis.friction for basis in bases]),
+        np.hstack([basis.load for basis in bases]),
+    )
+    width = len(effect.coefficients)
+    return Hypothesis(
+        name=effect.name,
+        shapes=tuple(tried),
+        width=width,
+        columns=columns,
+        raw=np.array(raw),
+        lower=np.array([parameter.lower for parameter in effect.coefficients]),
+        upper=np.array([parameter.upper for parameter in effect.coefficients]),
+    )
+
+
+def main_channel(basis: Basis, effect: Effect) -> Array:
+    """Return an effect's columns in the channel where it shows most."""
+    return basis.friction if effect.channel == "friction" else basis.load
+
+
+def left_of_base(problem: Problem, torque: Array, channel: str) -> Array:
+    """Return what the base model cannot take of a torque in one channel, shape (rows,). [N·m]."""
+    base = base_rows(problem)[channel == "load"]
+    base = base[:, np.linalg.norm(base, axis=0) > 0]
+    base = base / np.linalg.norm(base, axis=0)
+    return torque - base @ np.asarray(np.linalg.lstsq(base, torque, rcond=1e-9)[0])

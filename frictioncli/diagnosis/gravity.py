@@ -1,0 +1,124 @@
+r"""Gravity torque of a rotating arm, with one payload or with several that are known.
+
+With one payload it is :math:`P \cos q + Q \sin q + c`. A payload of mass *m* adds
+:math:`m (p \cos q + r \sin q)`, the same *p* and *r* whatever the mass, as long as it sits at the
+same place: five coefficients however many payloads. A free sine for each payload would fit as well,
+and would hide what is to be found: a mass that the manifest gets wrong, or a tool that sits
+elsewhere, fits every such sine. Against five coefficients it is misfit, and can be diagnosed.
+
+Where no two payloads are known, *p* and *r* cannot be told from *P* and *Q* and are left out. Where
+some rows have a payload and others none, those are taken as moved without payload, 0 kg: that is
+what is left empty beside filled cells. If it is wrong, it shows as misfit too.
+"""
+
+from collections.abc import Mapping
+
+import numpy as np
+import pandas as pd
+from numpy.typing import NDArray
+
+from frictioncli.errors import TableError
+
+Array = NDArray[np.float64]
+
+NAMES = ("cosine", "sine", "offset")
+PER_MASS = ("cosine_per_kg", "sine_per_kg")
+"""Names of the coefficients in files; the latter only where two payloads are known."""
+
+_APART = 0.001
+"""Masses that differ by less are one payload. [kg]"""
+
+
+def known_payload(torques: pd.DataFrame) -> Array:
+    """Return the payload of each row, NaN where unknown, shape (rows,). [kg]."""
+    if "payload" not in torques:
+        return np.full(len(torques), np.nan)
+    return torques["payload"].to_numpy(float)
+
+
+def differs(payload: Array) -> bool:
+    """Return whether at least two payloads are known."""
+    known = payload[np.isfinite(payload)]
+    return known.size > 0 and bool(np.ptp(known) > _APART)
+
+
+def gravity_columns(position: Array, payload: Array | None = None) -> Array:
+    """Return the columns of the gravity torque, shape (rows, 3), or (rows, 5) with payloads.
+
+    Parameters
+    ----------
+    position : ndarray, shape (rows,)
+        Joint angle. [deg]
+    payload : ndarray, shape (rows,), optional
+        Payload, NaN where unknown: then 0. Without it gravity has one payload. [kg]
+    """
+    angle = np.radians(position)
+    columns = [np.cos(angle), np.sin(angle), np.ones_like(angle)]
+    if payload is not None:
+        mass = np.nan_to_num(payload, nan=0.0)
+        columns += [mass * np.cos(angle), mass * np.sin(angle)]
+    return np.column_stack(columns)
+
+
+def columns_of(torques: pd.DataFrame, *, payloads: bool) -> Array:
+    """Return the columns of the gravity torque of rows of a table of torques.
+
+    Parameters
+    ----------
+    torques : DataFrame
+        Rows of :data:`frictioncli.schemas.TORQUES`.
+    payloads : bool
+        Whether gravity goes with the payload: five columns instead of three.
+    """
+    position = torques["position"].to_numpy(float)
+    return gravity_columns(position, known_payload(torques) if payloads else None)
+
+
+def without_offset(columns: Array) -> Array:
+    """Return the columns of gravity with zeros in place of the offset's."""
+    weightless = columns.copy()
+    weightless[:, NAMES.index("offset")] = 0.0
+    return weightless
+
+
+def carried_load(columns: Array, gravity: Array) -> Array:
+    """Return the load torque that the gear carries, shape (rows,). [N·m].
+
+    No gravity is the same at all angles: the offset is the torque sensor's, or an asymmetry of
+    friction, and loads nothing.
+    """
+    return np.asarray(without_offset(columns) @ gravity)
+
+
+def gravity_document(gravity: Array) -> dict[str, float]:
+    """Return three or five coefficients by name."""
+    names = (*NAMES, *PER_MASS)[: len(gravity)]
+    return dict(zip(names, map(float, gravity), strict=True))
+
+
+def stated_gravity(document: Mapping[str, float], count: int | None = None) -> Array:
+    """Return the coefficients that a document states.
+
+    Parameters
+    ----------
+    document : mapping of str to float
+        As from :func:`gravity_document`.
+    count : int, optional
+        How many are wanted; a document without payloads then changes nothing per mass. Else as many
+        as are stated.
+
+    Raises
+    ------
+    TableError
+        If the document states coefficients of payloads and the rows have none.
+    """
+    names = NAMES + PER_MASS if PER_MASS[0] in document else NAMES
+    found = np.array([float(document[name]) for name in names])
+    if count is None or count == len(found):
+        return found
+    if count < len(found):
+        raise TableError(
+            "the extended model's gravity goes with the payload, and these torques have no two"
+            " payloads; run 'frictioncli diagnose' again"
+        )
+    return np.append(found, np.zeros(count - len(found)))

@@ -1,0 +1,272 @@
+"""One channel's pair means under every noise: which noise fits the base, and which each rival.
+
+A cause that changes slowly looks like drift. Estimating the noise with the base alone therefore
+hides such causes, and estimating it with each rival in place finds them everywhere. Here every
+rival is set against the base with the noise that suits either best, and what chance makes of that
+is drawn from the base's own noise.
+
+References
+----------
+.. [1] D. A. Harville, "Maximum likelihood approaches to variance component estimation and to
+   related problems," J. Am. Stat. Assoc. 72(358), 1977, doi:10.1080/01621459.1977.10480998.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from frictioncli.diagnosis.spectra import STRENGTHS, Spectra
+
+Array = NDArray[np.float64]
+Setting = tuple[int, int]
+"""Place of a noise: of its correlation time and of its strength."""
+
+_VISIBLE = 1e-3
+"""A column of which the base leaves less than this share says nothing of its own."""
+
+
+@dataclass(frozen=True, slots=True)
+class Groups:
+    """How columns are grouped: group *i* has ``width[i]`` columns from ``start[i]``."""
+
+    start: NDArray[np.intp]
+    width: NDArray[np.intp]
+
+    @classmethod
+    def of(cls, widths: Sequence[int]) -> "Groups":
+        """Return groups that follow each other."""
+        width = np.array(widths, dtype=np.intp)
+        return cls(np.concatenate([[0], np.cumsum(width)[:-1]]).astype(np.intp), width)
+
+    def columns(self, group: int) -> slice:
+        """Return the columns of a group."""
+        return slice(int(self.start[group]), int(self.start[group] + self.width[group]))
+
+    def orthonormal(self, whole: Array, left: Array) -> Array:
+        """Return the columns orthonormal within each group; what is not visible becomes zero.
+
+        Parameters
+        ----------
+        whole, left : ndarray, shape (rows, columns)
+            Columns before and after the base has taken its share.
+        """
+        before = np.linalg.norm(whole, axis=0)
+        size = np.linalg.norm(left, axis=0)
+        seen = (size > _VISIBLE * before) & (size > 1e-12)
+        unit = np.where(seen, left / np.where(seen, size, 1.0), 0.0)
+        for wide in np.unique(self.width[self.width > 1]):
+            first = self.start[self.width == wide]
+            for later in range(1, int(wide)):
+                own = unit[:, first + later]
+                for earlier in range(later):
+                    other = unit[:, first + earlier]
+                    own = own - other * np.einsum("ij,ij->j", other, own)
+                rest = np.sqrt(np.einsum("ij,ij->j", own, own))
+                unit[:, first + later] = np.where(rest > 1e-4, own / np.maximum(rest, 1e-4), 0.0)
+        return unit
+
+    def sums(self, values: Array) -> Array:
+        """Return sums over the columns of each group, shape (groups, ...)."""
+        if not len(self.start):
+            return np.zeros((0, values.shape[1]))
+        return np.asarray(np.add.reduceat(values, self.start, axis=0))
+
+
+@dataclass(frozen=True, slots=True)
+class Scan:
+    """What one channel's pair means say of rivals.
+
+    Attributes
+    ----------
+    of_group : ndarray of int, shape (groups, 2)
+        Noise that suits each group best.
+    drawn : ndarray, shape (groups, draws)
+        Twice the log likelihood ratio of each group in noise drawn from the base's.
+    """
+
+    of_group: NDArray[np.intp]
+    drawn: Array
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Null:
+    """The base alone under every noise.
+
+    Attributes
+    ----------
+    freedom : int
+        Pairs less what the base fits of their means.
+    known : ndarray, shape (pairs, rank)
+        Orthonormal columns that span the base's scaled means.
+    data : ndarray, shape (pairs, 1)
+        Scaled means of the misfit.
+    likelihood, scale, determinant : ndarray, shape (times, strengths)
+        Restricted log likelihood, the scale of each noise, and its restricted log determinant at
+        scale 1. [-], [(N·m)²], [-]
+    best : (int, int)
+        The noise that suits best.
+    """
+
+    freedom: int
+    known: Array
+    data: Array
+    likelihood: Array
+    scale: Array
+    determinant: Array
+    best: Setting
+
+
+def null_of(spectra: Spectra, base: Array, misfit: Array) -> Null:
+    """Fit the base alone under every noise.
+
+    Parameters
+    ----------
+    spectra : Spectra
+        The channel's noises.
+    base : ndarray, shape (pairs, parameters)
+        Pair means of the base's columns.
+    misfit : ndarray, shape (pairs, 1)
+        Pair means of the misfit.
+    """
+    known, data = span(spectra.scaled(base)), spectra.scaled(misfit)
+    freedom = len(data) - known.shape[1]
+    likelihood = np.full((len(spectra.spectra), len(STRENGTHS)), -np.inf)
+    scale, determinant = np.ones_like(likelihood), np.zeros_like(likelihood)
+    for t, spectrum in enumerate(spectra.spectra):
+        turned, part = spectra.modes(spectrum, known), spectra.modes(spectrum, data)
+        for s in _strengths(t):
+            fit = _Fit.of(spectrum.values, float(STRENGTHS[s]), turned)
+            square = max(float(np.sum(np.square(fit.off(part)))), 1e-300)
+            likelihood[t, s] = -0.5 * (freedom * np.log(square) + fit.determinant)
+            scale[t, s], determinant[t, s] = square / freedom, fit.determinant
+    at = np.unravel_index(int(np.argmax(likelihood)), likelihood.shape)
+    return Null(
+        freedom=freedom,
+        known=known,
+        data=data,
+        likelihood=likelihood,
+        scale=scale,
+        determinant=determinant,
+        best=(int(at[0]), int(at[1])),
+    )
+
+
+def _strengths(time: int) -> range:
+    """Return the strengths to ask at a correlation time; without drift all times are one."""
+    return range(0 if time == 0 else 1, len(STRENGTHS))
+
+
+def scan(
+    spectra: Spectra,
+    null: Null,
+    rivals: Sequence[Array],
+    groups: Groups,
+    draws: int,
+    generator: np.random.Generator,
+) -> Scan:
+    """Set every group of columns against the base under every noise.
+
+    Parameters
+    ----------
+    spectra : Spectra
+        The channel's noises.
+    null : Null
+        The base alone.
+    rivals : sequence of ndarray, shape (pairs, columns)
+        Modes of the rivals' columns at each correlation time.
+    groups : Groups
+        Which columns make up which rival.
+    draws : int
+        Number of draws of noise; none where nothing is to be judged.
+    generator : Generator
+        Their source.
+    """
+    both = np.hstack([null.data, _drawn(spectra, null, draws, generator)])
+    found = np.full((len(groups.start), both.shape[1]), -np.inf)
+    without = np.full(both.shape[1], -np.inf)
+    of_group = np.zeros((len(groups.start), 2), dtype=np.intp)
+    for t, spectrum in enumerate(spectra.spectra):
+        turned, part = spectra.modes(spectrum, null.known), spectra.modes(spectrum, both)
+        for s in _strengths(t):
+            fit = _Fit.of(spectrum.values, float(STRENGTHS[s]), turned)
+            left = fit.off(part)
+            square = np.maximum(np.einsum("ij,ij->j", left, left), 1e-300)
+            unit = groups.orthonormal(fit.weighted(rivals[t]), fit.off(rivals[t]))
+            taken = groups.sums(np.square(unit.T @ left))
+            rest = np.maximum(square - taken, 1e-12 * square)
+            chance = -0.5 * (null.freedom * np.log(rest) + fit.determinant)
+            of_group[chance[:, 0] > found[:, 0]] = (t, s)
+            np.maximum(found, chance, out=found)
+            alone = -0.5 * (null.freedom * np.log(square) + fit.determinant)
+            np.maximum(without, alone, out=without)
+    ratio = 2 * (found - without)
+    return Scan(of_group, np.maximum(ratio[:, 1:], 0.0))
+
+
+def _drawn(spectra: Spectra, null: Null, draws: int, generator: np.random.Generator) -> Array:
+    """Return draws of scaled noise, its setting drawn by the likelihood."""
+    weight = np.exp(null.likelihood - np.max(null.likelihood)).ravel()
+    which = generator.choice(len(weight), size=draws, p=weight / weight.sum())
+    pairs = len(spectra.profile)
+    noise = np.empty((pairs, draws))
+    for setting in np.unique(which):
+        t, s = np.unravel_index(int(setting), null.likelihood.shape)
+        spectrum = spectra.spectra[t]
+        chosen = which == setting
+        deviation = np.sqrt(null.scale[t, s] * (1 + STRENGTHS[s] * spectrum.values))
+        white = generator.standard_normal((pairs, int(chosen.sum())))
+        noise[:, chosen] = spectra.unmoded(spectrum, deviation[:, np.newaxis] * white)
+    return noise
+
+
+@dataclass(frozen=True, slots=True)
+class _Fit:
+    """The base fitted under one noise, in its modes."""
+
+    weight: Array
+    basis: Array
+    determinant: float
+
+    @classmethod
+    def of(cls, values: Array, strength: float, base: Array) -> "_Fit":
+        variance = 1 + strength * values
+        weight = 1 / np.sqrt(variance)
+        basis, triangle = np.linalg.qr(weight[:, np.newaxis] * base)
+        within = 2 * np.sum(np.log(np.abs(np.diag(triangle)))) if base.shape[1] else 0.0
+        return cls(weight, basis, float(np.sum(np.log(variance)) + within))
+
+    def weighted(self, columns: Array) -> Array:
+        return self.weight[:, np.newaxis] * columns
+
+    def off(self, columns: Array) -> Array:
+        weighted = self.weighted(columns)
+        return weighted - self.basis @ (self.basis.T @ weighted)
+
+
+def span(columns: Array) -> Array:
+    """Return an orthonormal basis of the span of columns, shape (rows, rank)."""
+    size = np.linalg.norm(columns, axis=0)
+    kept = columns[:, size > 1e-12] / size[size > 1e-12]
+    if not kept.shape[1]:
+        return np.empty((len(columns), 0))
+    left, strength, _ = np.linalg.svd(kept, full_matrices=False)
+    return np.asarray(left[:, strength > 1e-7 * strength[0]])
+
+
+def weighted_gram(spectra: Spectra, setting: Setting, modes: Array) -> Array:
+    """Return inner products of modes under a noise of scale 1."""
+    variance = 1 + STRENGTHS[setting[1]] * spectra.spectra[setting[0]].values
+    return np.asarray(modes.T @ (modes / variance[:, np.newaxis]))
+
+
+def drawn_inside(
+    base: Array, rivals: Array, groups: Groups, draws: int, generator: np.random.Generator
+) -> Array:
+    """Return what each group takes of noise inside pairs, shape (groups, draws)."""
+    known = span(base)
+    left = rivals - known @ (known.T @ rivals)
+    unit = groups.orthonormal(rivals, left)
+    noise = generator.standard_normal((len(unit), draws))
+    return groups.sums(np.square(unit.T @ noise))
