@@ -1,11 +1,12 @@
 """The stages on a work folder: each reads the tables of the one before and writes its own.
 
 Every function here is a command of the same name; what it returns prints as that command's output.
+All of them one after the other: :mod:`frictioncli.pipeline`.
 """
 
 import json
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import asdict, dataclass, field
+from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
 
@@ -14,16 +15,19 @@ import pandas as pd
 from frictioncli import schemas, tables
 from frictioncli.correction import stage as correction
 from frictioncli.correction.settings import CorrectionSettings, EvaluationGrid, ScheduleSettings
-from frictioncli.diagnosis.applied import read_extensions, with_effects, without_effects
+from frictioncli.diagnosis.applied import with_effects, without_effects
 from frictioncli.diagnosis.diagnose import diagnose_joint
 from frictioncli.diagnosis.document import diagnosis_document, extended_document, verdict_text
-from frictioncli.diagnosis.recall import DIAGNOSIS, EXTENDED
+from frictioncli.diagnosis.extended import EXTENDED, read_extended
+from frictioncli.diagnosis.ramps import ramp_logs
+from frictioncli.diagnosis.recall import DIAGNOSIS
 from frictioncli.diagnosis.settings import DiagnosisSettings
 from frictioncli.errors import NotEnoughData
 from frictioncli.files import write_text
 from frictioncli.model.document import FrictionModel, by_joint, read_models, write_models
 from frictioncli.model.fitting import fit_joint
 from frictioncli.model.settings import FitSettings
+from frictioncli.motion.given import given, of_recordings
 from frictioncli.motion.pairing import pair_spans
 from frictioncli.motion.phases import add_phases
 from frictioncli.motion.separation import separate as separate_pairs
@@ -37,6 +41,7 @@ from frictioncli.reading.settings import IngestSettings
 SAMPLES = "samples.parquet"
 RECORDINGS = "recordings.parquet"
 PAIRS = "pairs.parquet"
+RAMPS = "ramps.parquet"
 TORQUES = "torques.parquet"
 MODEL = "model.json"
 SCHEDULE = "schedule.parquet"
@@ -61,18 +66,21 @@ def ingest(logs: Sequence[Path], work: Path, settings: IngestSettings | None = N
 
 
 def pair(work: Path, settings: PairingSettings | None = None) -> Done:
-    """Find constant-velocity parts and match counter-directed ones: ``pairs.parquet``."""
+    """Match counter-directed constant velocity: ``pairs.parquet``; the rest: ``ramps.parquet``."""
     settings = settings or PairingSettings()
     source = work / SAMPLES
     facts = tables.facts(source)
     found = find_spans(tables.batches(source, schemas.SAMPLES), settings.steady, settings.bin_width)
-    paired = pair_spans(found, settings)
-    pairs = add_phases(paired.pairs, _given_phases(work / RECORDINGS, paired.pairs))
+    said = given(work / RECORDINGS)
+    paired = pair_spans(found, settings, said["payload"])
+    pairs = add_phases(paired.pairs, of_recordings(paired.pairs, said["phase"]))
     facts |= {
         "samples": paired.samples,
         "dropped": paired.dropped,
         "bin_width": paired.bin_width,
     }
+    ramps = found.ramps.assign(payload=of_recordings(found.ramps, said["payload"]).astype(float))
+    _write(work / RAMPS, ramps, schemas.RAMPS, "pair", settings, [source], facts)
     _write(work / PAIRS, pairs, schemas.PAIRS, "pair", settings, [source], facts)
     return Done(work / PAIRS, pairing_text(pairs, facts, settings.bin_width))
 
@@ -111,12 +119,16 @@ def diagnose(work: Path, settings: DiagnosisSettings | None = None) -> Done:
     """Find what the simulated torque gets wrong: ``diagnosis.json``, ``extended-model.json``."""
     settings = settings or DiagnosisSettings()
     torques = tables.read(work / TORQUES, schemas.TORQUES)
-    unit = tables.facts(work / TORQUES).get("torque_unit", "N·m")
+    facts = tables.facts(work / TORQUES)
+    unit = facts.get("torque_unit", "N·m")
+    ramps = ramp_logs(work / RAMPS, facts.get("sign", {}))
     found, faults = [], []
     for model in read_models(work / MODEL):
         rows = torques[torques["joint"] == model.joint]
+        own = ramps.get(model.joint)
         try:
-            found.append((model, diagnose_joint(rows, model.temperature, unit, settings)))
+            diagnosis = diagnose_joint(rows, model.temperature, unit, settings, ramps=own)
+            found.append((model, diagnosis))
         except NotEnoughData as fault:
             faults.append(str(fault))
     if not found:
@@ -164,7 +176,7 @@ def simulate(
         f" ({correction.epsilon(group, 'friction_torque'):.3g} unsmoothed)"
         for (run, joint, phase), group in rows.groupby(["run", "joint", "phase"], sort=False)
     ]
-    return Done(work / SCHEDULE, "\n".join([schedule.told(), *lines, *faults]))
+    return Done(work / SCHEDULE, "\n".join([schedule.told(unit), *lines, *faults]))
 
 
 def evaluate(
@@ -174,18 +186,21 @@ def evaluate(
     *,
     extended: bool = False,
 ) -> Done:
-    """Evaluate all criteria over a grid of k and tmax, on the base or the extended model."""
+    """Evaluate all criteria over a grid of settings, on the base or the extended model."""
     grid = grid or EvaluationGrid()
     settings = settings or CorrectionSettings()
+    notes: list[str] = []
 
     def evaluated(torques: pd.DataFrame, model: FrictionModel) -> pd.DataFrame:
-        return correction.evaluate(torques, model, settings, grid)
+        found = correction.evaluate(torques, model, settings, grid)
+        notes.extend(found.notes)
+        return found.rows
 
     rows, faults, unit = _corrected(
         work, schemas.EVALUATION, "evaluate", asdict(grid) | asdict(settings), evaluated, extended
     )
     text = correction.evaluation_text(rows, unit)
-    return Done(work / EVALUATION, "\n".join([text, *faults]))
+    return Done(work / EVALUATION, "\n".join([text, *notes, *faults]))
 
 
 def report(work: Path) -> Done:
@@ -194,66 +209,6 @@ def report(work: Path) -> Done:
 
     page = write_report(work)
     return Done(page, str(page))
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class RunSettings:
-    """The settings of every stage of a run."""
-
-    ingest: IngestSettings = field(default_factory=IngestSettings)
-    pairing: PairingSettings = field(default_factory=PairingSettings)
-    sign: int | None = None
-    fit: FitSettings = field(default_factory=FitSettings)
-    schedule: ScheduleSettings = field(default_factory=ScheduleSettings)
-    grid: EvaluationGrid = field(default_factory=EvaluationGrid)
-    correction: CorrectionSettings = field(default_factory=CorrectionSettings)
-
-
-def run(
-    logs: Sequence[Path],
-    work: Path,
-    settings: RunSettings | None = None,
-    tell: Callable[[str, Done], None] = lambda stage, done: None,
-) -> Path:
-    """Run the whole chain and return the report's path.
-
-    Parameters
-    ----------
-    logs : sequence of Path
-        Log files or folders; each folder is one run.
-    work : Path
-        Work folder; its tables are replaced.
-    settings : RunSettings, optional
-        Settings of every stage.
-    tell : callable, optional
-        Called with each stage's name and what it made.
-
-    Notes
-    -----
-    A log without a thermal cycle has no corrections to simulate; those two stages are then left
-    out, and said so, and the tables of a former run are removed. So is a former diagnosis: it is
-    not of these data. ``diagnose`` is a step of its own.
-    """
-    chosen = settings or RunSettings()
-    for name in (DIAGNOSIS, EXTENDED):
-        (work / name).unlink(missing_ok=True)
-    tell("ingest", ingest(logs, work, chosen.ingest))
-    tell("pair", pair(work, chosen.pairing))
-    tell("separate", separate(work, chosen.sign))
-    tell("fit", fit(work, chosen.fit))
-    optional: Mapping[str, Callable[[], Done]] = {
-        "simulate": lambda: simulate(work, chosen.schedule, chosen.correction),
-        "evaluate": lambda: evaluate(work, chosen.grid, chosen.correction),
-    }
-    for stage, path in (("simulate", work / SCHEDULE), ("evaluate", work / EVALUATION)):
-        try:
-            tell(stage, optional[stage]())
-        except NotEnoughData as fault:
-            path.unlink(missing_ok=True)
-            tell(stage, Done(path, f"left out: {fault}"))
-    done = report(work)
-    tell("report", done)
-    return done.path
 
 
 def _write(
@@ -269,16 +224,6 @@ def _write(
     tables.write(path, rows, table, Provenance(stage, values, hashes(inputs)), facts)
 
 
-def _given_phases(path: Path, pairs: pd.DataFrame) -> pd.Series:
-    """Return the phase that the manifest gives for each pair's recording; missing where none."""
-    if not path.exists():
-        return pd.Series([None] * len(pairs), index=pairs.index, dtype=object)
-    recordings = tables.read(path, schemas.RECORDINGS)
-    given = recordings.drop_duplicates(["run", "recording"]).set_index(["run", "recording"])
-    keys = pd.MultiIndex.from_frame(pairs[["run", "recording"]])
-    return pd.Series(given["phase"].reindex(keys).to_numpy(), index=pairs.index, dtype=object)
-
-
 def _corrected(
     work: Path,
     table: schemas.Table,
@@ -290,7 +235,7 @@ def _corrected(
     """Write what a correction stage gives for each joint; return it, what fails, and the unit."""
     torques = tables.read(work / TORQUES, schemas.TORQUES)
     source = work / (EXTENDED if extended else MODEL)
-    extensions = read_extensions(source) if extended else {}
+    extensions = read_extended(source) if extended else {}
     rows, faults = [], []
     for model in read_models(source):
         own = torques[torques["joint"] == model.joint]

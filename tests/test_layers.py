@@ -10,6 +10,7 @@ PACKAGE = Path(__file__).parents[1] / "frictioncli"
 LAYERS = [
     {"__main__"},
     {"cli"},
+    {"pipeline"},
     {"chain"},
     {"report"},
     {"correction", "diagnosis"},

@@ -127,6 +127,7 @@ def simulate(
     k: o.K = o.SCHEDULE.k,
     tmax: o.TMax = o.SCHEDULE.tmax / 60,
     criterion: o.Criterion = o.SCHEDULE.criterion,
+    bound: o.Bound = o.SCHEDULE.bound,
     correction_speed: o.CorrectionSpeed = None,
     smoothing_degree: o.SmoothingDegree = o.CORRECTION.smoothing_degree,
     extended: o.Extended = False,
@@ -134,7 +135,7 @@ def simulate(
     """Simulate the temperature correction of Algorithm 3; tmax in minutes, epsilon in N·m."""
     from frictioncli import chain
 
-    schedule = ScheduleSettings(criterion=criterion, k=k, tmax=tmax * 60)
+    schedule = ScheduleSettings(criterion=criterion, k=k, tmax=tmax * 60, bound=bound)
     correction = o.chosen(CorrectionSettings, locals())
     typer.echo(chain.simulate(work, schedule, correction, extended=extended))
 
@@ -144,15 +145,16 @@ def evaluate(
     work: o.Work = o.WORK,
     k: o.KGrid = None,
     tmax: o.TMaxGrid = None,
+    bound: o.BoundGrid = None,
     correction_speed: o.CorrectionSpeed = None,
     smoothing_degree: o.SmoothingDegree = o.CORRECTION.smoothing_degree,
     extended: o.Extended = False,
 ) -> None:
-    """Evaluate correction schedules over k and tmax [min]: epsilon [N·m] by corrections."""
+    """Evaluate schedules over k, tmax [min] and bound [N·m]: epsilon [N·m] by corrections."""
     from frictioncli import chain
 
     correction = o.chosen(CorrectionSettings, locals())
-    typer.echo(chain.evaluate(work, _grid(k, tmax), correction, extended=extended))
+    typer.echo(chain.evaluate(work, _grid(k, tmax, bound), correction, extended=extended))
 
 
 @app.command()
@@ -206,23 +208,24 @@ def run(
     criterion: o.Criterion = o.SCHEDULE.criterion,
     k: o.K = o.SCHEDULE.k,
     tmax: o.TMax = o.SCHEDULE.tmax / 60,
+    bound: o.Bound = o.SCHEDULE.bound,
     correction_speed: o.CorrectionSpeed = None,
     smoothing_degree: o.SmoothingDegree = o.CORRECTION.smoothing_degree,
 ) -> None:
     """Run the whole chain, from logs to the report. Units: deg, deg/s, s, N·m, °C."""
-    from frictioncli import chain
+    from frictioncli import pipeline
     from frictioncli.reading.settings import IngestSettings
 
     steady = o.chosen(SteadySettings, locals())
-    settings = chain.RunSettings(
+    settings = pipeline.RunSettings(
         ingest=o.chosen(IngestSettings, locals()),
         pairing=o.chosen(PairingSettings, locals()),
         sign=_sign(sign),
         fit=o.chosen(FitSettings, locals()),
-        schedule=ScheduleSettings(criterion=criterion, k=k, tmax=tmax * 60),
+        schedule=ScheduleSettings(criterion=criterion, k=k, tmax=tmax * 60, bound=bound),
         correction=o.chosen(CorrectionSettings, locals()),
     )
-    chain.run(logs, work, settings, tell=_tell)
+    pipeline.run(logs, work, settings, tell=_tell)
 
 
 @app.command()
@@ -266,10 +269,11 @@ def _sign(text: str) -> int | None:
     return signs[text]
 
 
-def _grid(k: list[str] | None, tmax: list[str] | None) -> EvaluationGrid:
+def _grid(k: list[str] | None, tmax: list[str] | None, bound: list[str] | None) -> EvaluationGrid:
     return EvaluationGrid(
         k=_numbers("k", k) if k else o.GRID.k,
         tmax=tuple(60 * minutes for minutes in _numbers("tmax", tmax)) if tmax else o.GRID.tmax,
+        bound=_numbers("bound", bound) if bound else o.GRID.bound,
     )
 
 

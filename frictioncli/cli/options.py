@@ -135,6 +135,22 @@ TMaxGrid = Annotated[
         "--tmax", help="Forcing times to evaluate [min], as --k.", rich_help_panel=_CORRECT
     ),
 ]
+Bound = Annotated[
+    float,
+    typer.Option(
+        help="Criterion uncertainty: greatest standard deviation (1 sigma, as epsilon is an RMS) of"
+        " friction predicted for the highest speed [torque unit].",
+        rich_help_panel=_CORRECT,
+    ),
+]
+BoundGrid = Annotated[
+    list[str] | None,
+    typer.Option(
+        "--bound",
+        help="Bounds of criterion uncertainty to evaluate [torque unit], as --k.",
+        rich_help_panel=_CORRECT,
+    ),
+]
 CorrectionSpeed = Annotated[
     float | None,
     typer.Option(

@@ -10,8 +10,8 @@ import pandas as pd
 import pytest
 
 from frictioncli import schemas, tables
-from frictioncli.chain import RunSettings
 from frictioncli.cli.commands import app
+from frictioncli.pipeline import RunSettings
 from tests.moves import journey
 
 COMMANDS = (
@@ -84,9 +84,11 @@ def test_run_recovers_the_joint_that_made_the_log(finished):
 
 def test_run_says_one_line_per_stage_and_what_it_left_out(finished):
     _, output = finished
-    for stage in ("ingest", "pair", "separate", "fit", "simulate", "evaluate", "report"):
-        assert any(line.startswith(stage) for line in output.splitlines())
-    assert "left out" in output
+    stages = ("ingest", "pair", "separate", "fit", "diagnose", "simulate", "evaluate", "report")
+    told = [line for line in output.splitlines() if line.startswith(stages)]
+    assert [line.split()[0] for line in told] == list(stages)
+    for stage in ("diagnose", "simulate", "evaluate"):
+        assert told[stages.index(stage)].split()[1:3] == ["left", "out:"]
 
 
 def test_every_output_says_where_it_comes_from(finished):
@@ -120,7 +122,12 @@ def test_each_stage_works_alone(finished):
 
 def test_a_second_run_gives_the_same_bytes(finished, tmp_path):
     folder, _ = finished
+    (tmp_path / "again").mkdir()
+    former = [tmp_path / "again" / name for name in ("diagnosis.json", "extended-model.json")]
+    for path in former:
+        path.write_text("of other data", encoding="utf-8")
     assert frictioncli("run", folder / "logs", "-w", tmp_path / "again").returncode == 0
+    assert not any(path.exists() for path in former)
     for path in sorted((tmp_path / "again").rglob("*")):
         if path.is_file():
             first = folder / "work" / path.relative_to(tmp_path / "again")
@@ -245,6 +252,8 @@ def test_a_damaged_table_is_named(tmp_path, name):
         (("fit", "--method", "magic"), "joint, paper"),
         (("pair", "--bin-width", "0"), "bin width"),
         (("simulate", "--tmax", "soon"), "--tmax"),
+        (("simulate", "--criterion", "uncertainty", "--bound", "0"), "--bound: found 0"),
+        (("evaluate", "--bound", "1,x"), "expected numbers"),
     ],
 )
 def test_bad_options_name_what_is_allowed(tmp_path, arguments, told):
@@ -289,6 +298,7 @@ def test_option_defaults_are_the_settings_defaults():
         "same-speed": pairing.same_speed,
         "k": settings.schedule.k,
         "tmax": settings.schedule.tmax / 60,
+        "bound": settings.schedule.bound,
         "method": settings.fit.method,
         "criterion": settings.schedule.criterion,
     }.items():
@@ -308,6 +318,8 @@ def test_synthesize_makes_what_run_reads(tmp_path):
     assert (tmp_path / "made" / "truth.json").exists()
     result = frictioncli("run", tmp_path / "made", "-w", tmp_path / "work")
     assert result.returncode == 0, result.stderr
+    for name in ("diagnosis.json", "extended-model.json", "schedule.parquet"):
+        assert (tmp_path / "work" / name).exists()
     assert Path(result.stdout.split()[-1]).exists()
     assert "heat-up" in result.stdout
     assert "cool-down" in result.stdout

@@ -1,0 +1,81 @@
+"""The whole chain in one call, from logs to the report."""
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from frictioncli import chain
+from frictioncli.correction.settings import CorrectionSettings, EvaluationGrid, ScheduleSettings
+from frictioncli.diagnosis.settings import DiagnosisSettings
+from frictioncli.errors import NotEnoughData
+from frictioncli.model.settings import FitSettings
+from frictioncli.motion.settings import PairingSettings
+from frictioncli.reading.settings import IngestSettings
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class RunSettings:
+    """The settings of every stage of a run."""
+
+    ingest: IngestSettings = field(default_factory=IngestSettings)
+    pairing: PairingSettings = field(default_factory=PairingSettings)
+    sign: int | None = None
+    fit: FitSettings = field(default_factory=FitSettings)
+    diagnosis: DiagnosisSettings = field(default_factory=DiagnosisSettings)
+    schedule: ScheduleSettings = field(default_factory=ScheduleSettings)
+    grid: EvaluationGrid = field(default_factory=EvaluationGrid)
+    correction: CorrectionSettings = field(default_factory=CorrectionSettings)
+
+
+def run(
+    logs: Sequence[Path],
+    work: Path,
+    settings: RunSettings | None = None,
+    tell: Callable[[str, chain.Done], None] = lambda stage, done: None,
+) -> Path:
+    """Run the whole chain and return the report's path.
+
+    Parameters
+    ----------
+    logs : sequence of Path
+        Log files or folders; each folder is one run.
+    work : Path
+        Work folder; its tables are replaced.
+    settings : RunSettings, optional
+        Settings of every stage.
+    tell : callable, optional
+        Called with each stage's name and what it made.
+
+    Notes
+    -----
+    A log without a thermal cycle has no corrections to simulate; those two stages are then left
+    out, and said so, and the tables of a former run are removed. So is the diagnosis where the data
+    are too few for one. A former one is removed at the start in any case: it is of other data.
+    """
+    chosen = settings or RunSettings()
+    for name in (chain.DIAGNOSIS, chain.EXTENDED):
+        (work / name).unlink(missing_ok=True)
+    tell("ingest", chain.ingest(logs, work, chosen.ingest))
+    tell("pair", chain.pair(work, chosen.pairing))
+    tell("separate", chain.separate(work, chosen.sign))
+    tell("fit", chain.fit(work, chosen.fit))
+    optional: Mapping[str, tuple[str, Callable[[], chain.Done]]] = {
+        "diagnose": (chain.DIAGNOSIS, lambda: chain.diagnose(work, chosen.diagnosis)),
+        "simulate": (
+            chain.SCHEDULE,
+            lambda: chain.simulate(work, chosen.schedule, chosen.correction),
+        ),
+        "evaluate": (
+            chain.EVALUATION,
+            lambda: chain.evaluate(work, chosen.grid, chosen.correction),
+        ),
+    }
+    for stage, (name, make) in optional.items():
+        try:
+            tell(stage, make())
+        except NotEnoughData as fault:
+            (work / name).unlink(missing_ok=True)
+            tell(stage, chain.Done(work / name, f"left out: {fault}"))
+    done = chain.report(work)
+    tell("report", done)
+    return done.path
