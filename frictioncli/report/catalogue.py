@@ -7,7 +7,7 @@ from functools import partial
 from matplotlib.figure import Figure
 
 from frictioncli.report.corrections import corrected_estimates
-from frictioncli.report.epsilon import error_against_corrections, setting_text
+from frictioncli.report.epsilon import error_against_corrections, setting_text, uncertainty_text
 from frictioncli.report.labels import (
     TEMPERATURE_WORDS,
     counted,
@@ -154,12 +154,15 @@ def _schedule_caption(results: JointResults, phase: str) -> str:
 
 
 def _evaluation_caption(results: JointResults) -> str:
-    return (
+    sentences = [
         "Error ε of equation (21) against the number of corrections in a phase. Where several"
         " settings give the same number, the bar is their mean. Diamonds: the same number of"
-        " corrections, equally spaced. Dashed lines: no correction at all. Few corrections suffice"
-        " where the bars fall quickly and then stay level."
-    )
+        " corrections, equally spaced.",
+        uncertainty_text(results),
+        "Dashed lines: no correction at all. Few corrections suffice where the bars fall quickly"
+        " and then stay level.",
+    ]
+    return " ".join(sentence for sentence in sentences if sentence)
 
 
 def _residual_caption(results: JointResults) -> str:

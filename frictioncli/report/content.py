@@ -1,5 +1,6 @@
 """The tables of the page, as text: parameters, errors of the corrections, pairs."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import pandas as pd
@@ -22,6 +23,9 @@ _MEANINGS = {
 }
 
 _NEIGHBOURS = 3
+
+_Row = tuple[tuple[str, ...], pd.DataFrame]
+"""A setting as its cells, and its rows of the evaluation."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -111,36 +115,58 @@ def is_published_joint(results: JointResults, traces: str) -> bool:
 
 
 def epsilon_tables(results: JointResults) -> list[TextTable]:
-    """Return the errors of the simulated setting and its neighbours, one table per run.
+    """Return the errors of the simulated setting and its neighbours, and those by bound, per run.
 
     Parameters
     ----------
     results : JointResults
         One joint's results; without an evaluation there is no table.
     """
-    evaluation = results.evaluation
-    criterion = compared_criterion(results)
-    simulated = _simulated_setting(results)
-    settings = _neighbours(evaluation[evaluation["criterion"] == criterion], simulated)
-    shown = [c for c in CRITERION_WORDS if c != "none" and (evaluation["criterion"] == c).any()]
+    bounded = results.evaluation["bound"].notna()
+    never = results.evaluation["criterion"] == "none"
+    criterion = compared_criterion(results, bounded=False)
+    simulated, bound = _simulated_setting(results), _simulated_bound(results)
+    settings = _neighbours(
+        results.evaluation[(results.evaluation["criterion"] == criterion) & ~bounded], simulated
+    )
+    bounds = sorted(float(value) for value in results.evaluation.loc[bounded, "bound"].unique())
     tables = []
-    for run, own in evaluation.groupby("run"):
-        without = _cells(own[own["criterion"] == "none"], ["none"])
-        blank = [""] * (len(shown) - 1)
-        rows = [("no correction", "", without[0], *blank, without[1], *blank)]
-        for k, tmax in settings:
-            at = own[(own["k"] == k) & (own["tmax"] == tmax)]
-            rows.append((f"k = {k:g}", f"{tmax / 60.0:g}", *_cells(at, shown)))
-        tables.append(
-            TextTable(
-                title=f"{run}: error ε of equation (21) [{results.unit}] (number of corrections)",
-                groups=(("", 2), *((PHASE_WORDS[phase], len(shown)) for phase in PHASES)),
-                header=("setting", "tmax [min]", *(CRITERION_WORDS[c] for c in shown * 2)),
-                rows=tuple(rows),
-                marked=tuple(n + 1 for n, setting in enumerate(settings) if setting == simulated),
-            )
-        )
+    for run, own in results.evaluation[~bounded].groupby("run"):
+        title = f"{run}: error ε of equation (21) [{results.unit}] (number of corrections)"
+        rows: list[_Row] = [
+            ((f"k = {k:g}", f"{tmax / 60.0:g}"), own[(own["k"] == k) & (own["tmax"] == tmax)])
+            for k, tmax in settings
+        ]
+        marked = [setting == simulated for setting in settings]
+        tables.append(_table(title, ("setting", "tmax [min]"), own, rows, marked))
+    for run, own in results.evaluation[bounded | never].groupby("run"):
+        title = f"{run}: the same where the predicted uncertainty of friction decides"
+        rows = [((f"{value:g}",), own[own["bound"] == value]) for value in bounds]
+        marked = [value == bound for value in bounds]
+        if bounds:
+            tables.append(_table(title, (f"bound [{results.unit}]",), own, rows, marked))
     return tables
+
+
+def _table(
+    title: str,
+    settings: tuple[str, ...],
+    own: pd.DataFrame,
+    rows: Sequence[_Row],
+    marked: Sequence[bool],
+) -> TextTable:
+    """Return the errors of some settings by phase and criterion, below those without correction."""
+    shown = [c for c in CRITERION_WORDS if c != "none" and (own["criterion"] == c).any()]
+    without = _cells(own[own["criterion"] == "none"], ["none"])
+    blank = [""] * (len(shown) - 1)
+    first = ("no correction", *[""] * (len(settings) - 1), without[0], *blank, without[1], *blank)
+    return TextTable(
+        title=title,
+        groups=(("", len(settings)), *((PHASE_WORDS[phase], len(shown)) for phase in PHASES)),
+        header=(*settings, *(CRITERION_WORDS[c] for c in shown * 2)),
+        rows=(first, *((*setting, *_cells(at, shown)) for setting, at in rows)),
+        marked=tuple(number + 1 for number, mark in enumerate(marked) if mark),
+    )
 
 
 def _cells(rows: pd.DataFrame, criteria: list[str]) -> list[str]:
@@ -156,6 +182,13 @@ def _simulated_setting(results: JointResults) -> tuple[float, float] | None:
         return None
     first = results.schedule.iloc[0]
     return (float(first["k"]), float(first["tmax"])) if pd.notna(first["k"]) else None
+
+
+def _simulated_bound(results: JointResults) -> float | None:
+    if results.schedule.empty:
+        return None
+    first = results.schedule.iloc[0]
+    return float(first["bound"]) if pd.notna(first["bound"]) else None
 
 
 def _neighbours(

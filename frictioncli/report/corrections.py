@@ -112,4 +112,5 @@ def _mark_corrections(friction: Axes, temperature: Axes, own: pd.DataFrame) -> N
 
 def signed(correction: float) -> str:
     """Return a temperature correction with its sign and unit."""
-    return f"{correction:+.1f} °C".replace("-", "−")
+    # adding zero makes -0.0 positive
+    return f"{round(correction, 1) + 0.0:+.1f} °C".replace("-", "−")

@@ -140,3 +140,15 @@ def listed(names: Sequence[str]) -> str:
     if len(names) > _MOST_NAMES:
         shown.append(f"{len(names) - _MOST_NAMES} more")
     return shown[0] if len(shown) == 1 else f"{', '.join(shown[:-1])} and {shown[-1]}"
+
+
+def span(ascending: Sequence[str]) -> str:
+    """Return the first and the last of ascending values as text, or one where they read the same.
+
+    Parameters
+    ----------
+    ascending : sequence of str
+        At least one value.
+    """
+    first, last = ascending[0], ascending[-1]
+    return first if first == last else f"{first} to {last}"

@@ -4,7 +4,14 @@ import numpy as np
 
 from frictioncli.model.document import PARAMETERS
 from frictioncli.report.epsilon import setting_text
-from frictioncli.report.labels import TEMPERATURE_WORDS, counted, listed, number, speed_text
+from frictioncli.report.labels import (
+    TEMPERATURE_WORDS,
+    counted,
+    listed,
+    number,
+    span,
+    speed_text,
+)
 from frictioncli.report.results import JointResults
 from frictioncli.report.style import PHASE_WORDS, PHASES
 
@@ -78,8 +85,8 @@ def _gained(results: JointResults) -> str:
         errors = [_error(results, run, phase) for run, _ in runs]
         tried = [int((own["corrected"].astype(bool) | own["failed"]).sum()) for _, own in runs]
         told.append(
-            f"{_span([number(error) for error in sorted(errors)])} {results.unit} in"
-            f" {PHASE_WORDS[phase]} ({_span([str(count) for count in sorted(tried)])}"
+            f"{span([number(error) for error in sorted(errors)])} {results.unit} in"
+            f" {PHASE_WORDS[phase]} ({span([str(count) for count in sorted(tried)])}"
             f" {'correction' if tried == [1] else 'corrections'})"
         )
     if not told:
@@ -88,11 +95,6 @@ def _gained(results: JointResults) -> str:
         f"With the temperature parameter corrected on the way ({setting_text(results)}), the error"
         f" ε of the predicted friction is {' and '.join(told)}."
     )
-
-
-def _span(ascending: list[str]) -> str:
-    first, last = ascending[0], ascending[-1]
-    return first if first == last else f"{first} to {last}"
 
 
 def _error(results: JointResults, run: str, phase: str) -> float:

@@ -123,7 +123,12 @@ def make_evaluation(runs: tuple[str, ...], joint: int) -> pd.DataFrame:
                 rows.append((*key, "first_degree", k, 3600.0, count, count // 10, error, error))
                 rows.append((*key, "latest_degree", k, 3600.0, count + 1, 0, error * 1.1, error))
                 rows.append((*key, "equal", k, 3600.0, count, 0, error * 1.3, error * 1.4))
-    return pd.DataFrame(rows, columns=list(schemas.EVALUATION.names))
+            for bound, count in ((1.0, 14), (2.0, 6), (6.0, 0)):
+                error = 0.9 * base / max(count, 1)
+                key = (run, joint, phase, "uncertainty", None, None)
+                rows.append((*key, count, 0, error, error, bound))
+    names = list(schemas.EVALUATION.names)
+    return pd.DataFrame([dict(zip(names, row, strict=False)) for row in rows], columns=names)
 
 
 def make_model(joint: int, unit: str = "N·m", *, temperature: bool = True) -> dict[str, object]:

@@ -3,10 +3,12 @@
 import json
 import re
 from copy import deepcopy
+from dataclasses import asdict
 
 import numpy as np
 import pytest
 
+from frictioncli.diagnosis.extended import extended_model
 from frictioncli.diagnosis.problem import build_problems
 from frictioncli.diagnosis.recall import is_current, read_documents, recall
 from frictioncli.errors import TableError
@@ -98,10 +100,12 @@ def extended(work, torques):
     """The base model fitted without the last run, with another tau_c and two effects."""
     model = json.loads((work / "model.json").read_text(encoding="utf-8"))
     base, _ = build_problems(torques, "motor", "day-2")
+    model["linear_about"] = asdict(base.parameters)
     for name in base.names:
         model["parameters"][name]["estimate"] = getattr(base.parameters, name)
     model["parameters"]["tau_c"]["estimate"] += SHIFT
     model["gravity"] = dict(zip(("cosine", "sine", "offset"), base.gravity.tolist(), strict=True))
+    model["gravity_about"] = model["gravity"]
     model["effects"] = [
         {
             "name": "stribeck",
@@ -217,7 +221,7 @@ def test_silence_is_explained_and_draws_no_gain(results, work):
     document, model = deepcopy(DIAGNOSIS), json.loads((work / "extended-model.json").read_text())
     document |= {"verdict": "no_evidence", "causes": [], "gain": None}
     model["effects"] = []
-    found = recall(results.torques, document, model)
+    found = recall(results.torques, document, extended_model(model))
     assert found.seen.after is found.seen.before
     told = section(results, found)
     assert "No cause was found in that" in told.verdict
