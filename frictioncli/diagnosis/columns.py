@@ -11,8 +11,8 @@ from itertools import product
 import numpy as np
 from numpy.typing import NDArray
 
+from frictioncli.diagnosis.layout import PairLayout
 from frictioncli.diagnosis.problem import Problem
-from frictioncli.diagnosis.whitening import PairLayout
 from frictioncli.effects.base import Basis, Effect
 
 Array = NDArray[np.float64]

@@ -145,7 +145,7 @@ def diagnose_joint(
     problem, new = build_problems(torques, temperature, held_out)
     said = ramp_evidence(ramps, problem, temperature) if ramps else None
     found = find_causes(problem, effects, settings, said)
-    worthy, visible = worthwhile(found, new or problem)
+    worthy, visible = worthwhile(found, new or problem, settings.seed)
     left = _left(found, worthy, settings)
     # what explains less than is left may be a part of what has no name
     causes = tuple(cause for cause in worthy if left is None or _exceeds(cause, left))

@@ -10,7 +10,7 @@ from frictioncli.diagnosis.extension import Extension
 from frictioncli.diagnosis.gravity import gravity_document
 from frictioncli.diagnosis.search import Cause
 from frictioncli.diagnosis.settings import DiagnosisSettings
-from frictioncli.effects.base import Effect, Parameter
+from frictioncli.effects.base import Parameter
 from frictioncli.model.document import PARAMETERS, FrictionModel, model_document
 from frictioncli.quantities import TORQUE
 
@@ -153,20 +153,16 @@ def _silence(diagnosis: Diagnosis) -> str:
 def _cause_document(diagnosis: Diagnosis, cause: Cause, number: int) -> dict[str, Any]:
     found = cause.score
     effect = found.effect
-    errors = np.sqrt(np.maximum(np.diag(found.covariance), 0.0))
+    extension = diagnosis.extension
+    assert extension is not None  # there is one wherever there is a cause
     return {
         "effects": list(cause.effects),
         "probabilities": cause.probabilities,
         "channel": effect.channel,
         "claim": effect.signature.claim,
         "equation": effect.equation,
-        "parameters": _shape_entries(effect, found.shape)
-        | {
-            parameter.name: _entry(parameter, value, error, diagnosis.torque_unit)
-            for parameter, value, error in zip(
-                effect.coefficients, found.coefficients, errors, strict=True
-            )
-        },
+        "parameters": _shapes(extension, number - 1)
+        | _coefficients(extension, number - 1, diagnosis.torque_unit),
         "size": cause.size,
         "p_value": cause.judged.p_value,
         "seen_in": effect.signature.axis,
@@ -214,8 +210,15 @@ def _entry(parameter: Parameter, value: float, error: float, unit: str) -> dict[
     }
 
 
-def _shape_entries(effect: Effect, shape: dict[str, float]) -> dict[str, dict[str, Any]]:
-    return {
-        parameter.name: {"estimate": shape[parameter.name], "ci95": None, "unit": parameter.unit}
-        for parameter in effect.shape
-    }
+def _shapes(extension: Extension, number: int) -> dict[str, dict[str, Any]]:
+    """Return an effect's shape parameters; what the data cannot tell spans its whole range."""
+    start = sum(len(one.effect.shape) for one in extension.effects[:number])
+    found = {}
+    for axis, error in zip(
+        extension.effects[number].effect.shape, extension.shape_errors[start:], strict=False
+    ):
+        value = extension.effects[number].shape[axis.name]
+        reach = _Z95 * float(error) if error > 0 else np.inf
+        interval = [max(value - reach, axis.lower), min(value + reach, axis.upper)]
+        found[axis.name] = {"estimate": value, "ci95": interval, "unit": axis.unit}
+    return found

@@ -9,7 +9,8 @@ from numpy.typing import NDArray
 from frictioncli.diagnosis.columns import base_rows
 from frictioncli.diagnosis.judged import Score
 from frictioncli.diagnosis.problem import Problem
-from frictioncli.diagnosis.whitening import Channels
+from frictioncli.diagnosis.weighing import Weighing
+from frictioncli.effects.base import Basis, Parameter
 
 Array = NDArray[np.float64]
 
@@ -17,6 +18,9 @@ _BLOCK = 12
 """Pairs drawn together when the gain's interval is made: neighbours are not independent."""
 
 _DRAWS = 1000
+
+_NUDGE = 0.01
+"""Share of a shape parameter's range over which its derivative is taken."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -38,6 +42,9 @@ class Extension:
         Effects with their shapes and coefficients.
     errors : ndarray
         Standard errors of the changes, the gravity and the effects' coefficients, in this order.
+    shape_errors : ndarray
+        Standard errors of the effects' shape parameters, effect after effect; 0 where the data
+        cannot tell it.
     """
 
     names: tuple[str, ...]
@@ -45,6 +52,7 @@ class Extension:
     gravity: Array
     effects: tuple[Score, ...]
     errors: Array
+    shape_errors: Array
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -73,48 +81,57 @@ class Gain:
     floor: float
 
 
-def extend(problem: Problem, channels: Channels, effects: Sequence[Score]) -> Extension:
+def extend(problem: Problem, weighing: Weighing, effects: Sequence[Score]) -> Extension:
     """Fit the base and the effects together by weighted least squares.
+
+    Shapes stay as they were found; that they are uncertain too widens the errors of everything
+    that depends on them, by the derivatives of the effects by their shapes.
 
     Parameters
     ----------
-    problem, channels : Problem, Channels
-        Data with the base model, and the whiteners.
+    problem : Problem
+        Data with the base model.
+    weighing : Weighing
+        Weights of both channels.
     effects : sequence of Score
         Effects with the shapes found.
     """
-    system = _system(problem, channels, effects)
-    misfit = channels.whiten(
-        problem.friction_misfit[:, np.newaxis], problem.load_misfit[:, np.newaxis]
-    )[:, 0]
-    size = np.linalg.norm(system, axis=0)
-    size = np.where(size > 0, size, 1.0)
-    scaled = system / size
-    inverse = np.asarray(np.linalg.pinv(scaled.T @ scaled, rcond=1e-10, hermitian=True))
-    step = inverse @ (scaled.T @ misfit) / size
-    friction = len(problem.names)
-    start = friction + len(problem.gravity)
+    targets = (problem.friction_misfit, problem.load_misfit)
+    bases = [base_rows(problem), *(problem.basis(one.effect, one.shape) for one in effects)]
+    friction, load = (np.hstack([basis[channel] for basis in bases]) for channel in (0, 1))
+    step, _ = weighing.solve(friction, load, targets)
+    count, start = len(problem.names), len(problem.names) + len(problem.gravity)
     fitted = []
     for one in effects:
-        count = len(one.effect.coefficients)
-        fitted.append(replace(one, coefficients=step[start : start + count]))
-        start += count
+        stop = start + len(one.effect.coefficients)
+        fitted.append(replace(one, coefficients=step[start:stop]))
+        start = stop
+    slopes = [_slope(problem, one, axis) for one in fitted for axis in one.effect.shape]
+    _, covariance = weighing.solve(
+        np.column_stack([friction, *(slope.friction for slope in slopes)]),
+        np.column_stack([load, *(slope.load for slope in slopes)]),
+        targets,
+    )
+    errors = np.sqrt(np.maximum(np.diag(covariance), 0.0))
     return Extension(
         names=problem.names,
-        changes=step[:friction],
-        gravity=problem.gravity + step[friction : friction + len(problem.gravity)],
+        changes=step[:count],
+        gravity=problem.gravity + step[count : count + len(problem.gravity)],
         effects=tuple(fitted),
-        errors=np.sqrt(np.maximum(np.diag(inverse), 0.0)) / size,
+        errors=errors[:start],
+        shape_errors=errors[start:],
     )
 
 
-def _system(problem: Problem, channels: Channels, effects: Sequence[Score]) -> Array:
-    """Return the white columns of friction's parameters, of gravity and of the effects."""
-    friction, load = base_rows(problem)
-    bases = [problem.basis(one.effect, one.shape) for one in effects]
-    return channels.whiten(
-        np.hstack([friction, *(basis.friction for basis in bases)]),
-        np.hstack([load, *(basis.load for basis in bases)]),
+def _slope(problem: Problem, one: Score, axis: Parameter) -> Basis:
+    """Return what an effect changes by per unit of a shape parameter, shape (rows,) each."""
+    place = axis.share(one.shape[axis.name])
+    ends = [axis.at(min(max(place + step, 0.0), 1.0)) for step in (-_NUDGE, _NUDGE)]
+    low, high = (problem.basis(one.effect, one.shape | {axis.name: value}) for value in ends)
+    width = ends[1] - ends[0]
+    return Basis(
+        (high.friction - low.friction) @ one.coefficients / width,
+        (high.load - low.load) @ one.coefficients / width,
     )
 
 

@@ -4,7 +4,7 @@ import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
-from frictioncli.diagnosis.whitening import PairLayout
+from frictioncli.diagnosis.layout import PairLayout
 from frictioncli.model.zero_load import PAIR_KEY
 
 Array = NDArray[np.float64]

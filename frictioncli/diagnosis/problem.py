@@ -24,7 +24,7 @@ from frictioncli.diagnosis.gravity import (
     without_offset,
 )
 from frictioncli.diagnosis.history import clock_of, series, travel_of
-from frictioncli.diagnosis.whitening import PairLayout
+from frictioncli.diagnosis.layout import PairLayout
 from frictioncli.effects.base import Basis, Effect, EffectTable
 from frictioncli.model.document import PARAMETERS
 from frictioncli.model.friction import FrictionParameters, friction_torque

@@ -16,7 +16,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from frictioncli.diagnosis.whitening import PairLayout
+from frictioncli.diagnosis.layout import PairLayout
 
 Array = NDArray[np.float64]
 

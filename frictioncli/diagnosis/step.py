@@ -30,7 +30,7 @@ from frictioncli.diagnosis.scan import (
     weighted_gram,
 )
 from frictioncli.diagnosis.significance import Chance, chance_of, log_evidence
-from frictioncli.diagnosis.whitening import Channels, Whitener
+from frictioncli.diagnosis.weighing import Weighing, Weights
 from frictioncli.effects.base import Effect
 from frictioncli.model.noise import Noise
 
@@ -164,13 +164,12 @@ class Step:
         )
         return friction, load
 
-    def weighing(self) -> Channels:
-        """Return whiteners that only weigh, for estimates that must predict."""
+    def weighing(self) -> Weighing:
+        """Return the weights of estimates that must predict."""
         layout, extra = self.problem.layout, self.problem.temperature_variance
         friction, load = self.noise()
-        return Channels(
-            Whitener.weighing(layout, friction, extra),
-            Whitener.weighing(layout, load, np.zeros_like(extra)),
+        return Weighing(
+            Weights.of(layout, friction, extra), Weights.of(layout, load, np.zeros_like(extra))
         )
 
     def refined(self, found: Score) -> Score:

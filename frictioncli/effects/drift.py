@@ -5,18 +5,30 @@ import numpy as np
 from frictioncli.effects.base import Basis, Effect, EffectTable, Parameter, Signature, friction_only
 
 
-def basis(table: EffectTable) -> Basis:
-    """Return the time since the first pair of all runs, in hours."""
-    return friction_only((table.clock - np.min(table.clock)) / 3600.0)
+def basis(table: EffectTable, *, time_constant: float) -> Basis:
+    """Return the time since the first pair of all runs, in hours, slowing down as it goes on."""
+    hours = (table.clock - np.min(table.clock)) / 3600.0
+    return friction_only(-time_constant * np.expm1(-hours / time_constant))
 
 
 EFFECT = Effect(
     name="drift",
     summary="Friction changes steadily with time over all runs.",
-    equation="dtau = kw*(t - t0)/3600",
+    equation="dtau = kw*th*(1 - exp(-(t - t0)/th))",
     source="Linear wear or ageing term; size is an engineering estimate",
     channel="friction",
-    shape=(),
+    shape=(
+        Parameter(
+            name="time_constant",
+            symbol="th",
+            unit="h",
+            lower=2.0,
+            upper=200.0,
+            description="Time after which 37 % of the first rate remain; long where it is steady",
+            search="logarithmic",
+            points=5,
+        ),
+    ),
     coefficients=(
         Parameter(
             name="rate",
@@ -24,7 +36,7 @@ EFFECT = Effect(
             unit="torque/h",
             lower=-2.0,
             upper=2.0,
-            description="Change of friction per hour",
+            description="Change of friction per hour at the start",
         ),
     ),
     basis=basis,
