@@ -6,7 +6,6 @@ the pair means, whose noise is correlated. Inference needs nothing else of an ef
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from itertools import product
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,6 +13,7 @@ from numpy.typing import NDArray
 from frictioncli.diagnosis.layout import PairLayout
 from frictioncli.diagnosis.problem import Problem
 from frictioncli.effects.base import Basis, Effect
+from frictioncli.effects.pairs import measured_share
 
 Array = NDArray[np.float64]
 
@@ -143,19 +143,11 @@ class Hypothesis:
         return bool(np.all(above & (coefficients <= self.upper + margin)))
 
 
-def shapes_of(effect: Effect) -> list[dict[str, float]]:
-    """Return the grid of shape parameters over which an effect is searched first."""
-    axes = [
-        [(parameter.name, float(value)) for value in parameter.grid()] for parameter in effect.shape
-    ]
-    return [dict(values) for values in product(*axes)]
-
-
 def hypothesis_of(
     effect: Effect, problem: Problem, shapes: Sequence[dict[str, float]] | None = None
 ) -> Hypothesis:
     """Return an effect as a hypothesis over its grid of shapes, or over given ones."""
-    tried = shapes_of(effect) if shapes is None else list(shapes)
+    tried = _telling(effect, problem) if shapes is None else list(shapes)
     bases = [problem.basis(effect, shape) for shape in tried]
     raw = [np.sqrt(np.mean(np.square(main_channel(basis, effect)), axis=0)) for basis in bases]
     columns = reduced(
@@ -173,6 +165,15 @@ def hypothesis_of(
         lower=np.array([parameter.lower for parameter in effect.coefficients]),
         upper=np.array([parameter.upper for parameter in effect.coefficients]),
     )
+
+
+def _telling(effect: Effect, problem: Problem) -> list[dict[str, float]]:
+    """Return the shapes to try first; moments that leave all rows on one side say nothing."""
+    tried = effect.shapes(problem.whole)
+    if effect.moments is None:
+        return tried
+    share = measured_share(problem.whole)[problem.rows]
+    return [one for one in tried if share.min() < one["moment"] <= share.max()] or tried[:1]
 
 
 def main_channel(basis: Basis, effect: Effect) -> Array:

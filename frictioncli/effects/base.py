@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from itertools import product
 from typing import Literal, NamedTuple
 
 import numpy as np
@@ -176,6 +177,8 @@ class Effect:
         Linear parameters; their bounds are the physical gate.
     basis : callable
         ``basis(table, **shape) -> Basis``.
+    moments : callable or None
+        Of an effect with a shape parameter ``moment``: the moments worth trying, from the table.
     needs : tuple of str
         Columns of the table that must be known and vary, or the effect cannot be judged.
     uses : tuple of str
@@ -204,6 +207,14 @@ class Effect:
     experiment: str
     mirror: str = ""
     uses: tuple[str, ...] = ()
+    moments: Callable[[EffectTable], Array] | None = None
+
+    def shapes(self, table: EffectTable) -> list[dict[str, float]]:
+        """Return the shapes to try first: a grid from bound to bound, or the table's moments."""
+        if self.moments is not None:
+            return [{"moment": float(moment)} for moment in self.moments(table)]
+        axes = [[(axis.name, float(value)) for value in axis.grid()] for axis in self.shape]
+        return [dict(values) for values in product(*axes)]
 
     def evaluate(self, table: EffectTable, shape: Mapping[str, float]) -> Basis:
         """Return the basis for given values of the shape parameters."""

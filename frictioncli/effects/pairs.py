@@ -11,6 +11,11 @@ _HALF_WINDOW = 300.0
 """How far around a moment pairs tell of its heat and of the motor's warming. [s]"""
 
 
+_FEW_SERIES = 5
+"""With fewer series a change may come before any pair."""
+
+_MOST_MOMENTS = 160
+
 _CUT_ALIKE = 10.0
 """What is cut off a stroke at constant speed is alike at both ends within this. [deg]"""
 
@@ -183,6 +188,21 @@ def measured_share(table: EffectTable) -> Array:
     heads = pair_heads(table)
     clock = table.clock[heads.first]
     return heads.spread(np.searchsorted(np.sort(clock), clock, side="left") / len(clock))
+
+
+def series_starts(table: EffectTable) -> Array:
+    """Return the shares of all pairs measured before each measuring series, shape (moments,).
+
+    What is done to a joint is done between two series. If a table has more than eighty of them,
+    every second is returned, or every third.
+    """
+    heads = pair_heads(table)
+    clock = table.clock[heads.first]
+    share = np.searchsorted(np.sort(clock), clock, side="left") / len(clock)
+    begins = np.unique(share[(table.order[heads.first] == 0) & (share > 0)])
+    if len(begins) < _FEW_SERIES:
+        begins = np.unique(share)[1:]
+    return np.asarray(begins[:: max(1, -(-len(begins) // _MOST_MOMENTS))])
 
 
 def stroke_ends(table: EffectTable, *, distance: Array | float) -> tuple[Array, Array]:

@@ -8,7 +8,7 @@ changes with the load as the base model's alpha L^2 does, to first order. The mo
 import numpy as np
 
 from frictioncli.effects.base import Basis, Effect, EffectTable, Parameter, Signature
-from frictioncli.effects.pairs import measured_share
+from frictioncli.effects.pairs import measured_share, series_starts
 
 
 def basis(table: EffectTable, *, moment: float) -> Basis:
@@ -34,7 +34,6 @@ EFFECT = Effect(
             lower=0.02,
             upper=0.98,
             description="Share of all pairs measured before the change",
-            points=49,
         ),
     ),
     coefficients=(
@@ -56,6 +55,7 @@ EFFECT = Effect(
         ),
     ),
     basis=basis,
+    moments=series_starts,
     needs=("clock", "position"),
     uses=("load_slope",),
     signature=Signature(

@@ -7,7 +7,7 @@ is then found as easily as one between two runs, however long the joint stood st
 import numpy as np
 
 from frictioncli.effects.base import Basis, Effect, EffectTable, Parameter, Signature, friction_only
-from frictioncli.effects.pairs import measured_share
+from frictioncli.effects.pairs import measured_share, series_starts
 
 
 def basis(table: EffectTable, *, moment: float) -> Basis:
@@ -29,7 +29,6 @@ EFFECT = Effect(
             lower=0.02,
             upper=0.98,
             description="Share of all pairs measured before the change",
-            points=49,
         ),
     ),
     coefficients=(
@@ -43,6 +42,7 @@ EFFECT = Effect(
         ),
     ),
     basis=basis,
+    moments=series_starts,
     needs=("clock",),
     signature=Signature(
         axis="clock",
