@@ -19,6 +19,9 @@ from frictioncli.motion.spans import Spans
 
 _OTHER_PAYLOAD = "the partner has another payload"
 
+_ALIKE = 0.01
+"""Speeds this close to the middle one of their level are one commanded speed."""
+
 
 @dataclass(frozen=True, slots=True)
 class Pairing:
@@ -175,12 +178,12 @@ def _heads(spans: pd.DataFrame, couples: list[tuple[int, int]]) -> pd.DataFrame:
     )
     for name in ("motor_temperature", "housing_temperature", "motor_temperature_reading"):
         heads[name] = (ahead[name] + back[name]) / 2
-    by_level = heads.groupby(["joint", "level"])["speed"]
-    alike = by_level.transform("max") - by_level.transform("min") < 0.01 * by_level.transform(
-        "mean"
-    )
     # one commanded speed gets one number, so that results can be grouped by it
-    heads["speed"] = heads["speed"].where(~alike, by_level.transform("mean"))
+    level = [heads["joint"], heads["level"]]
+    middle = heads.groupby(level)["speed"].transform("median")
+    alike = (heads["speed"] - middle).abs() < _ALIKE * middle
+    common = heads["speed"].where(alike).groupby(level).transform("mean")
+    heads["speed"] = common.where(alike, heads["speed"])
     order = heads.sort_values(["run", "joint", "time", "forward"], kind="stable")
     numbers = order.groupby(["run", "joint"], observed=True).cumcount()
     return heads.assign(pair=numbers.reindex(heads.index))

@@ -81,10 +81,10 @@ def map_figure(results: JointResults, *, recalled: Recalled) -> Figure:
             for panel, (across, up), (mean, _) in zip(row, columns, drawn, strict=True)
         ]
         for row, (name, _) in zip(panels, sets, strict=True):
-            row[0].set_title(f"{channel}, {name}")
+            row[0].set_title(f"{channel}, {name}: measured − simulated")
         unit = results.unit if channel == "friction" else results.load_unit
         bar = figure.colorbar(meshes[0], ax=list(panels.flat), extend="both", aspect=30, pad=0.01)
-        bar.set_label(f"{channel}: measured − simulated [{unit}]")
+        bar.set_label(f"misfit [{unit}]")
         bar.outline.set_visible(False)
     return figure
 

@@ -109,13 +109,17 @@ def extended(work, torques):
     model["effects"] = [
         {
             "name": "stribeck",
-            "shape": {"velocity": VELOCITY, "exponent": EXPONENT},
+            "shape": {"velocity": VELOCITY, "exponent": EXPONENT, "shift": 0.0},
             "coefficients": {"boundary_torque": stated(TORQUE)},
         },
         {
             "name": "direction_asymmetry",
-            "shape": {},
-            "coefficients": {"offset": stated(OFFSET), "viscous_asymmetry": stated(0.0)},
+            "shape": {"exponent": 0.5},
+            "coefficients": {
+                "offset": stated(OFFSET),
+                "speed_asymmetry": stated(0.0),
+                "viscous_asymmetry": stated(0.0),
+            },
         },
     ]
     return model

@@ -137,8 +137,8 @@ def test_maps_hold_cell_means_about_zero(results, recalled):
             wanted = missed[chosen].mean() if chosen.any() else np.nan
             np.testing.assert_allclose(shown[row, column], wanted)
     said = texts(figure)
-    assert "friction: measured − simulated [N·m]" in said
-    assert "load: measured − simulated [N·m]" in said
+    assert "friction, base model: measured − simulated" in said
+    assert "load, base model: measured − simulated" in said
     assert {"speed [deg/s]", "temperature Tm [°C]", "joint angle φ [deg]", "time [h]"} <= set(said)
 
 
