@@ -87,7 +87,8 @@ class Catalogue:
     @classmethod
     def of(cls, bench: Bench, hypotheses: Sequence[Hypothesis]) -> "Catalogue":
         """Return the catalogue of these hypotheses."""
-        columns = joined([one.columns for one in hypotheses])
+        nothing = bench.base.take(slice(0, 0))
+        columns = joined([nothing, *(one.columns for one in hypotheses)])
         return cls(
             hypotheses=tuple(hypotheses),
             columns=columns,

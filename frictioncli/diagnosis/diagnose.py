@@ -160,7 +160,7 @@ def diagnose_joint(
             floor=_floor(found),
             seed=settings.seed,
         )
-    whole = np.square(problem.friction_misfit) + np.square(problem.load_misfit)
+    whole = problem.squared(problem.friction_misfit, problem.load_misfit)
     return Diagnosis(
         joint=joint,
         torque_unit=torque_unit,
@@ -205,8 +205,9 @@ def _verdict(causes: Sequence[Cause], left: Structure | None) -> str:
 
 
 def _floor(found: Found) -> float:
-    """Return the RMS of point and pair noise of both channels."""
-    return float(np.sqrt(sum(noise.point**2 + noise.pair**2 for noise in found.step.noise())))
+    """Return the RMS of point and pair noise of the channels that are simulated."""
+    channels = found.step.noise()[: 1 if found.step.problem.own_load else 2]
+    return float(np.sqrt(sum(noise.point**2 + noise.pair**2 for noise in channels)))
 
 
 def worst_misfits(problem: Problem) -> tuple[Misfit, ...]:

@@ -49,10 +49,29 @@ def diagnosis_document(diagnosis: Diagnosis, settings: DiagnosisSettings) -> dic
             "rmse": diagnosis.rmse,
             "worst": [asdict(place) for place in diagnosis.worst],
         },
+        "ramps": _ramps_document(diagnosis),
         "torque_unit": diagnosis.torque_unit,
         "runs": list(diagnosis.runs),
         "held_out": diagnosis.held_out,
         "settings": asdict(settings),
+    }
+
+
+def _ramps_document(diagnosis: Diagnosis) -> dict[str, Any] | None:
+    """Return what was measured outside the constant-velocity parts, if the log tells."""
+    said = diagnosis.ramps
+    if said is None:
+        return None
+    return {
+        "inertia": {
+            "estimate": said.inertia.value,
+            "ci95": [said.inertia.low, said.inertia.high],
+            "unit": f"{diagnosis.torque_unit}/(deg/s²)",
+        },
+        "rmse_before": said.rms_before,
+        "rmse_after": said.rms_after,
+        "log_odds_reversal_transient": said.log_odds,
+        "moves": said.moves,
     }
 
 

@@ -166,10 +166,8 @@ def measured_gain(
     seed : int
         Seed of the drawn blocks.
     """
-    # forward torque misses by load + friction, reverse by load - friction: mean square f² + l²
-    before = np.square(problem.friction_misfit) + np.square(problem.load_misfit)
-    friction, load = misfits(problem, extension)
-    after = np.square(friction) + np.square(load)
+    before = problem.squared(problem.friction_misfit, problem.load_misfit)
+    after = problem.squared(*misfits(problem, extension))
     low, high = reduction_interval(problem, before, after, seed)
     old, new = float(np.sqrt(np.mean(before))), float(np.sqrt(np.mean(after)))
     return Gain(

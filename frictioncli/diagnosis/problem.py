@@ -109,6 +109,15 @@ class Problem:
         slope = 2 * self.parameters.alpha * self.table.load
         return slope[:, np.newaxis] * without_offset(self.load_base)
 
+    def squared(self, friction: Array, load: Array) -> Array:
+        """Return the squared misfit of the simulated torque, shape (rows,). [(N·m)²].
+
+        Forward, torque misses by load plus friction, in reverse by load less friction: the mean
+        square is the sum of both. Where the log has a load of its own, perhaps in another unit
+        than a motor current, the load is not simulated and only friction counts.
+        """
+        return np.square(friction) + (0.0 if self.own_load else np.square(load))
+
     @property
     def friction_misfit(self) -> Array:
         """Measured minus simulated friction torque, shape (rows,). [N·m]."""

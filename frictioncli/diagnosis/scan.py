@@ -38,7 +38,7 @@ class Groups:
     def of(cls, widths: Sequence[int]) -> "Groups":
         """Return groups that follow each other."""
         width = np.array(widths, dtype=np.intp)
-        return cls(np.concatenate([[0], np.cumsum(width)[:-1]]).astype(np.intp), width)
+        return cls((np.cumsum(width) - width).astype(np.intp), width)
 
     def columns(self, group: int) -> slice:
         """Return the columns of a group."""

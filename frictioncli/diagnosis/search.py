@@ -26,8 +26,8 @@ _CONVINCING = 3.0
 What stands out less is also not to be told from most others."""
 
 _FORM = 0.02
-"""What explains less than this share of an effect found before may only mend that one's form:
-no equation of the catalogue is true to the last digit."""
+"""What has less than this share of the statistic of an effect found before may only mend that
+one's form: no equation of the catalogue is true to the last digit."""
 
 _FORM_ALIKE = 0.05
 """The same share where both show along the stroke, or both from pair to pair."""

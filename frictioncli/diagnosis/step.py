@@ -129,10 +129,16 @@ class Step:
         )
         drawn = sum(one.drawn for one in scans)
         if draws:
-            for part, rivals in zip(self.base.channels, catalogue.columns.channels, strict=True):
-                drawn = drawn + drawn_inside(
-                    part.inside, rivals.inside, catalogue.groups, draws, generator
+            base, rivals = (
+                np.vstack(
+                    [
+                        part.inside / point
+                        for part, point in zip(columns.channels, self.point, strict=True)
+                    ]
                 )
+                for columns in (self.base, catalogue.columns)
+            )
+            drawn = drawn + drawn_inside(base, rivals, catalogue.groups, draws, generator)
         found, first = {}, 0
         for hypothesis in catalogue.hypotheses:
             last = first + len(hypothesis.shapes)
@@ -175,8 +181,9 @@ class Step:
     def refined(self, found: Score) -> Score:
         """Return a score with its shape searched off the grid, under the noise that suits it."""
         effect, axes = found.effect, found.effect.shape
-        if not axes:
-            return self._scored(effect, {}, self._suited(effect, {}))
+        if not axes or effect.moments is not None:
+            # every moment worth trying has been tried
+            return self._scored(effect, found.shape, self._suited(effect, found.shape))
         settings = self._suited(effect, found.shape)
         start = np.array([axis.share(found.shape[axis.name]) for axis in axes])
         step = np.array([0.5 / axis.points for axis in axes])

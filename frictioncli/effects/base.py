@@ -64,8 +64,10 @@ class Parameter:
     def share(self, value: float) -> float:
         """Return the share of the way from bound to bound at which a value lies."""
         if self.search == "logarithmic":
-            return float(np.log(value / self.lower) / np.log(self.upper / self.lower))
-        return float((value - self.lower) / (self.upper - self.lower))
+            place = np.log(value / self.lower) / np.log(self.upper / self.lower)
+        else:
+            place = (value - self.lower) / (self.upper - self.lower)
+        return float(np.clip(place, 0.0, 1.0))
 
 
 @dataclass(frozen=True, slots=True)

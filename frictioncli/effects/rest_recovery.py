@@ -22,7 +22,10 @@ def basis(table: EffectTable, *, pairs: float, rest_time: float, at_start: float
 EFFECT = Effect(
     name="rest_recovery",
     summary="The first pairs after a rest have more friction.",
-    equation="dtau = A*(1 - exp(-r/r0))*exp(-n/n0), dL = B*(1 - exp(-r/r0))*exp(-n/n0)",
+    equation=(
+        "dtau = A*R*exp(-n/n0), dL = B*R*exp(-n/n0),"
+        " R = 1 - exp(-r/r0) after a rest r, r1 at the start of a run"
+    ),
     source="Redistribution of grease at rest; size is an engineering estimate",
     channel="friction",
     shape=(

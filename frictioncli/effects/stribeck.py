@@ -65,6 +65,7 @@ EFFECT = Effect(
     ),
     basis=basis,
     needs=("speed",),
+    uses=("temperature",),
     signature=Signature(
         axis="speed",
         claim="Friction is above the model only at the lowest speeds, and the more the slower.",
