@@ -1,78 +1,118 @@
-"""Chance is what it says, however many shapes were tried."""
+"""Chance is what noise makes of the same search, and evidence what Bayes' theorem says."""
 
 import numpy as np
 import pytest
-from scipy import stats
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from scipy import integrate, stats
 
 from frictioncli.diagnosis.significance import (
-    chance,
+    Chance,
+    chance_of,
     credible_set,
     log_evidence,
     probabilities,
-    tries,
 )
 
 
-def test_one_shape_is_one_try():
-    columns = np.random.default_rng(0).normal(size=(500, 1, 2))
-    count, freedom = tries(columns, np.random.default_rng(1))
-    assert freedom == 2
-    assert count == pytest.approx(1.0, abs=0.25)
+@pytest.mark.parametrize("freedom", [1, 2, 4])
+def test_chance_of_one_try_is_the_chi_squared_tail(freedom):
+    drawn = stats.chi2.rvs(freedom, size=40_000, random_state=1)
+    chance = chance_of(drawn)
+    for probability in (0.5, 0.1, 0.05, 0.01):
+        statistic = stats.chi2.isf(probability, freedom)
+        assert chance.beyond(statistic) == pytest.approx(probability, rel=0.06)
+        assert chance.limit(probability) == pytest.approx(statistic, rel=0.04)
 
 
-def test_orthogonal_shapes_count_one_by_one():
-    """Of ten independent scores the greatest passes the 5 % limit of one with 1 - 0.95^10."""
-    columns = np.eye(500)[:, :10].reshape(500, 10, 1)
-    count, freedom = tries(columns, np.random.default_rng(1))
-    assert freedom == 1
-    assert count == pytest.approx(10.0, rel=0.3)
+def test_exact_moments_give_the_exact_tail():
+    """A mean of n and a variance of 2 n are those of chi squared."""
+    drawn = 3.0 + np.sqrt(6.0) * np.array([1.0, -1.0])
+    assert chance_of(drawn).beyond(11.0) == pytest.approx(stats.chi2.sf(11.0, 3), rel=1e-12)
 
 
-def test_equal_shapes_count_once():
-    column = np.random.default_rng(0).normal(size=(500, 1))
-    count, _ = tries(np.repeat(column, 20, axis=1).reshape(500, 20, 1), np.random.default_rng(1))
-    assert count == pytest.approx(1.0, abs=0.25)
-
-
-def test_columns_of_zeros_say_nothing():
-    assert tries(np.zeros((50, 3, 1)), np.random.default_rng(1)) == (1.0, 0)
-    assert chance(100.0, 0, 1.0) == 1.0
-
-
-def test_chance_of_one_try_is_the_chi_squared_tail():
-    assert chance(9.0, 1, 1.0) == pytest.approx(0.0026998, rel=1e-4)
-    assert chance(9.0, 1, 20.0) == pytest.approx(1 - (1 - 0.0026998) ** 20, rel=1e-4)
-
-
-def test_noise_passes_as_often_as_its_chance_says():
+@pytest.mark.parametrize("tries", [1, 5, 20])
+def test_the_greatest_of_many_passes_as_often_as_its_chance_says(tries):
+    """200 draws tell what 20,000 further ones do: 5 % are found in 3 to 7.5 %."""
     generator = np.random.default_rng(3)
-    columns = generator.normal(size=(200, 8, 1))
-    count, freedom = tries(columns, np.random.default_rng(1))
-    size = np.linalg.norm(columns[:, :, 0], axis=0)
-    passed = 0
-    for _ in range(2000):
-        noise = generator.normal(size=200)
-        best = np.max(np.square(columns[:, :, 0].T @ noise / size))
-        passed += chance(best, freedom, count) < 0.05
-    # 2,000 tries of 5 %: 100, with a standard deviation of 10
-    assert 65 <= passed <= 135
+    shares = []
+    for _ in range(20):
+        drawn = np.square(generator.normal(size=(200, tries))).max(axis=1)
+        new = np.square(generator.normal(size=(1000, tries))).max(axis=1)
+        shares.append(np.mean(new > chance_of(drawn).limit(0.05)))
+    assert 0.03 < np.mean(shares) < 0.075
+
+
+@given(st.floats(0.3, 20.0), st.floats(0.1, 10.0), st.floats(1e-9, 0.9))
+@settings(max_examples=60, deadline=None, derandomize=True)
+def test_limit_and_beyond_are_inverse(shape, scale, probability):
+    chance = Chance(shape, scale)
+    assert chance.beyond(chance.limit(probability)) == pytest.approx(probability, rel=1e-6)
+
+
+@pytest.mark.parametrize("drawn", [[], [3.0], [0.0] * 50, [2.0] * 50])
+def test_noise_that_says_nothing_is_no_measure_of_chance(drawn):
+    chance = chance_of(np.array(drawn))
+    assert chance.beyond(100.0) == 1.0
+    assert chance.limit(0.01) == np.inf
+
+
+def test_far_tails_do_not_vanish():
+    """By the integral of the density of chi squared with two degrees, exp(-x/2)."""
+    assert Chance(1.0, 2.0).beyond(600.0) == pytest.approx(np.exp(-300.0), rel=1e-9)
+    assert Chance(1.0, 2.0).limit(np.exp(-300.0)) == pytest.approx(600.0)
+
+
+@pytest.mark.parametrize("estimate", [0.0, 1.0, 4.0])
+def test_evidence_is_an_integral_over_the_coefficient(estimate):
+    """A coefficient known to 1, before the data normal with variance 100: Bayes by quadrature."""
+    product = integrate.quad(
+        lambda b: stats.norm.pdf(estimate, b, 1.0) * stats.norm.pdf(b, 0.0, 10.0),
+        -80,
+        80,
+        limit=200,
+    )[0]
+    expected = np.log(product / stats.norm.pdf(estimate, 0.0, 1.0))
+    assert log_evidence(np.array([estimate**2]), 1) == pytest.approx(expected, abs=1e-6)
+
+
+def test_evidence_of_many_shapes_is_the_mean_of_their_factors():
+    grid = np.array([30.0, 12.0, 0.0])
+    factors = [np.exp(log_evidence(np.array([one]), 2)) for one in grid]
+    assert log_evidence(grid, 2) == pytest.approx(np.log(np.mean(factors)))
 
 
 def test_evidence_prefers_the_better_and_the_simpler():
     assert log_evidence(np.array([40.0]), 1) > log_evidence(np.array([20.0]), 1)
     assert log_evidence(np.array([40.0]), 1) > log_evidence(np.array([40.0]), 3)
     assert log_evidence(np.array([40.0]), 1) > log_evidence(np.array([40.0, 0, 0, 0]), 1)
+    assert log_evidence(np.zeros(5), 1) < 0
+
+
+def test_evidence_of_much_data_does_not_overflow():
+    assert log_evidence(np.array([1e6, 0.0]), 1) == pytest.approx(
+        100 / 101 * 5e5 - np.log(101) / 2 - np.log(2), rel=1e-12
+    )
 
 
 def test_credible_set_is_the_least_that_reaches_its_level():
     share = probabilities({"a": 0.0, "b": np.log(3.0), "c": np.log(6.0)})
     assert share == pytest.approx({"c": 0.6, "b": 0.3, "a": 0.1})
+    assert list(share) == ["c", "b", "a"]
     assert credible_set(share) == ("c", "b", "a")
     assert credible_set(share, 0.85) == ("c", "b")
     assert credible_set({"a": 0.99, "b": 0.01}) == ("a",)
+    assert probabilities({}) == {}
+    assert credible_set({}) == ()
 
 
-def test_far_tails_do_not_vanish():
-    assert 0 < chance(600.0, 1, 10.0) < 1e-100 or chance(600.0, 1, 10.0) < 10 * stats.chi2.sf(
-        600, 1
-    )
+@given(st.dictionaries(st.sampled_from("abcdefgh"), st.floats(-1e4, 1e4), min_size=1))
+@settings(max_examples=60, deadline=None, derandomize=True)
+def test_probabilities_add_up_and_the_credible_set_cannot_be_smaller(evidence):
+    share = probabilities(evidence)
+    assert set(share) == set(evidence)
+    assert sum(share.values()) == pytest.approx(1.0)
+    assert list(share.values()) == sorted(share.values(), reverse=True)
+    chosen = credible_set(share, 0.9)
+    assert sum(share[name] for name in chosen) >= 0.9 - 1e-9
+    assert sum(share[name] for name in chosen[:-1]) < 0.9

@@ -17,7 +17,7 @@ def small(**columns) -> EffectTable:
     return EffectTable(**filled)
 
 
-def two_days(*, bins: int = 9, series: int = 12) -> EffectTable:
+def two_days(*, bins: int = 13, series: int = 12) -> EffectTable:
     """Return two runs of heating and cooling: series of four speeds in changing order."""
     random = np.random.default_rng(7)
     per_pair = []
@@ -40,7 +40,7 @@ def two_days(*, bins: int = 9, series: int = 12) -> EffectTable:
                         "motor_temperature": motor,
                         "housing_temperature": 23.0 + 0.6 * (motor - 23.0),
                         "travel": travel,
-                        "rest": rest,
+                        "rest": rest if number else np.inf,
                         "order": float(order),
                     }
                 )
@@ -48,7 +48,7 @@ def two_days(*, bins: int = 9, series: int = 12) -> EffectTable:
                 travel += 360.0
     pairs = {name: np.array([row[name] for row in per_pair]) for name in per_pair[0]}
     rows = {name: np.repeat(values, bins) for name, values in pairs.items()}
-    position = np.tile(5.0 + 8.0 * np.arange(bins), len(per_pair))
+    position = np.tile(5.0 + 5.0 * np.arange(bins), len(per_pair))
     load = 60.0 * np.cos(np.radians(position))
     viscous = PUBLISHED.beta + PUBLISHED.gamma * np.exp(-PUBLISHED.delta * rows["temperature"])
     slope = -PUBLISHED.delta * (viscous - PUBLISHED.beta) * np.sqrt(rows["speed"])
@@ -63,6 +63,7 @@ def two_days(*, bins: int = 9, series: int = 12) -> EffectTable:
         friction=friction,
         viscous=viscous,
         temperature_slope=slope,
+        load_slope=2 * PUBLISHED.alpha * load,
     )
 
 

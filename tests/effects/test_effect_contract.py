@@ -9,7 +9,7 @@ import pytest
 from frictioncli.effects import BY_NAME, EFFECTS, NEEDS
 from frictioncli.effects.availability import judgeable, missing_columns
 from frictioncli.effects.base import Parameter
-from tests.effects.tables import COLUMNS, selected, two_days
+from tests.effects.tables import COLUMNS, selected, small, two_days
 
 CONTRACT = [
     "stribeck",
@@ -34,8 +34,11 @@ CONTRACT = [
     "reversal_transient",
 ]
 
-LOAD_ONLY = {"direction_asymmetry", "payload_change", "dress_pack"}
-BOTH = {"torque_constant", "inertia", "reversal_transient"}
+LOAD_ONLY = {"direction_asymmetry", "dress_pack"}
+BOTH = {"torque_constant", "payload_change", "inertia", "reversal_transient", "rest_recovery"}
+FREE_IN_LOAD = {"rest_recovery"}
+"""Of these one channel says nothing of the other."""
+
 FRICTION_ONLY = set(CONTRACT) - LOAD_ONLY - BOTH
 
 ANGLE_DEPENDENT = {
@@ -58,6 +61,12 @@ def table():
     return two_days()
 
 
+def long_log():
+    """Return a table of 300 measuring series of 4 pairs each."""
+    pair = np.arange(1200)
+    return small(clock=60.0 * pair, order=pair % 4.0, pair=pair)
+
+
 def middle(effect):
     """Return the middle of each shape parameter's grid."""
     return {
@@ -70,6 +79,30 @@ def corners(effect):
     names = [parameter.name for parameter in effect.shape]
     values = [(p.lower, middle(effect)[p.name], p.upper) for p in effect.shape]
     return [dict(zip(names, shape, strict=True)) for shape in product(*values)]
+
+
+@every_effect
+def test_shapes_to_try_first_are_a_grid_or_the_moments_between_series(effect, table):
+    shapes = effect.shapes(table)
+    names = {axis.name for axis in effect.shape}
+    assert all(set(shape) == names for shape in shapes)
+    assert len({tuple(shape.values()) for shape in shapes}) == len(shapes)
+    if effect.moments is None:
+        assert len(shapes) == np.prod([axis.points for axis in effect.shape])
+        for axis in effect.shape:
+            assert {shape[axis.name] for shape in shapes} == set(axis.grid().tolist())
+    else:
+        # 24 series of 4 pairs each: between the first and the last
+        moments = [shape["moment"] for shape in shapes]
+        assert moments == pytest.approx(np.arange(1, 24) / 24)
+
+
+@every_effect
+def test_moments_lie_within_the_bounds_of_their_search(effect):
+    """Of a long log too: 300 series of 4 pairs."""
+    for axis in effect.shape:
+        for shape in effect.shapes(long_log()):
+            assert axis.lower <= shape[axis.name] <= axis.upper
 
 
 def test_catalogue_holds_the_names_of_the_contract_in_order():
@@ -158,9 +191,13 @@ def test_what_integrates_restarts_with_each_run(name, table):
     effect = BY_NAME[name]
     shape = middle(effect) | ({"carried_over": 0.0} if name == "run_in" else {})
     second = table.run == 1
-    alone = effect.evaluate(selected(table, second), shape).friction[:, 0]
-    after = effect.evaluate(table, shape).friction[second, 0]
-    np.testing.assert_allclose(alone, after, rtol=1e-12, atol=1e-12)
+    alone = effect.evaluate(selected(table, second), shape)
+    after = effect.evaluate(table, shape)
+    for own, late in zip(alone, after, strict=True):
+        # friction heat, the lag's second column, is stated by the mean friction of all runs
+        np.testing.assert_allclose(own[:, ::2], late[second, ::2], rtol=1e-12, atol=1e-12)
+        if name != "thermal_lag":
+            np.testing.assert_allclose(own, late[second], rtol=1e-12, atol=1e-12)
 
 
 @every_effect
@@ -169,6 +206,19 @@ def test_bounds_hold_zero_so_that_the_effect_can_be_absent(effect):
     for parameter in effect.coefficients:
         assert parameter.lower <= 0.0 <= parameter.upper
         assert np.isfinite([parameter.lower, parameter.upper]).all()
+
+
+@pytest.mark.parametrize(
+    "name", ["stribeck", "velocity_exponent", "linear_viscous", "quadratic_drag", "load_linear"]
+)
+def test_what_only_adds_friction_cannot_take_any(name):
+    (parameter,) = BY_NAME[name].coefficients
+    assert parameter.lower == 0.0 < parameter.upper
+
+
+@pytest.mark.parametrize("name", ["run_in", "rest_recovery", "reversal_transient"])
+def test_an_excess_and_a_lack_have_the_sign_of_their_name(name):
+    assert BY_NAME[name].coefficients[0].lower == 0.0
 
 
 @every_effect
@@ -201,7 +251,7 @@ def test_references_to_columns_and_effects_exist(effect):
     assert not set(effect.needs) & set(effect.uses)
     assert effect.confounders
     assert set(effect.confounders) <= set(CONTRACT) - {effect.name}
-    assert bool(effect.mirror) or effect.name not in BOTH
+    assert bool(effect.mirror) or effect.name not in BOTH - FREE_IN_LOAD
 
 
 @every_effect

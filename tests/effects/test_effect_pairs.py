@@ -9,7 +9,9 @@ from frictioncli.effects.pairs import (
     first_order_response,
     measured_share,
     pair_heads,
+    series_starts,
     stroke_ends,
+    turning_points,
 )
 from tests.effects.tables import small
 
@@ -82,8 +84,64 @@ def test_share_measured_before_goes_by_the_clock_of_all_runs():
     assert measured_share(table).tolist() == [0.5, 0.75, 0.0, 0.25]
 
 
+def test_changes_come_between_two_series():
+    """Series of three pairs, two rows each: after 3, 6, ... of 18 pairs."""
+    pair = np.repeat(np.arange(18), 2)
+    table = small(clock=10.0 * pair, pair=pair, order=pair % 3.0)
+    assert series_starts(table) == pytest.approx(np.arange(3, 18, 3) / 18)
+
+
+def test_where_series_are_few_a_change_may_come_before_any_pair():
+    pair = np.arange(8)
+    table = small(clock=10.0 * pair, pair=pair, order=pair % 4.0)
+    assert series_starts(table) == pytest.approx(np.arange(1, 8) / 8)
+
+
+def test_of_many_series_some_are_left_out_evenly():
+    """1,000 series: at most 160 moments, each as far from the next."""
+    pair = np.arange(2000)
+    found = series_starts(small(clock=10.0 * pair, pair=pair, order=pair % 2.0))
+    assert 80 <= len(found) <= 160
+    np.testing.assert_allclose(np.diff(found), found[1] - found[0])
+
+
 def test_ends_are_those_of_the_own_pair():
     table = small(position=[0.0, 10.0, 50.0, 55.0], pair=[0, 0, 1, 1])
     low, high = stroke_ends(table, distance=5.0)
     assert low.tolist() == pytest.approx([1.0, np.exp(-2), 1.0, np.exp(-1)])
     assert high.tolist() == pytest.approx([np.exp(-2), 1.0, np.exp(-1), 1.0])
+
+
+def turned(*strokes, run=0, distance=10.0):
+    """Return low and high nearness of pairs of three angles each, shape (pairs, 3)."""
+    position = np.array([[low, (low + high) / 2, high] for low, high in strokes]).ravel()
+    pair = np.repeat(np.arange(len(strokes)), 3)
+    table = small(
+        position=position, pair=pair, run=np.repeat(np.broadcast_to(run, len(strokes)), 3)
+    )
+    return tuple(values.reshape(-1, 3) for values in turning_points(table, distance=distance))
+
+
+def test_a_fast_move_turns_where_a_slow_one_does():
+    """Both cut 10 deg off each end: the first bin is 10 deg from the turn at 0, and at 100."""
+    low, high = turned((0.0, 100.0), (10.0, 90.0))
+    assert low[0] == pytest.approx([1.0, np.exp(-5), np.exp(-10)])
+    assert low[1] == pytest.approx([np.exp(-1), np.exp(-5), np.exp(-9)])
+    assert high[1] == pytest.approx([np.exp(-9), np.exp(-5), np.exp(-1)])
+
+
+def test_a_move_over_part_of_the_angles_turns_where_it_ends():
+    """50 deg are lacking at one end only; 5 and 15 deg differ by as much as is too much."""
+    low, high = turned((0.0, 100.0), (0.0, 50.0), (5.0, 85.0))
+    for pair in (1, 2):
+        assert low[pair, 0] == high[pair, 2] == 1.0
+    assert high[1, 0] == pytest.approx(np.exp(-5))
+    low, high = turned((0.0, 100.0), (5.0, 85.1))
+    assert low[1, 0] == pytest.approx(np.exp(-0.5))
+    assert high[1, 2] == pytest.approx(np.exp(-1.49))
+
+
+def test_each_run_has_its_own_turns():
+    low, high = turned((0.0, 100.0), (20.0, 80.0), (30.0, 70.0), run=[0, 1, 1])
+    assert low[1, 0] == high[1, 2] == 1.0
+    assert low[2, 0] == high[2, 2] == pytest.approx(np.exp(-1))

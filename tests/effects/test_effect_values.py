@@ -18,28 +18,39 @@ def load(name, table, **shape):
 
 
 def test_stribeck_falls_to_a_share_of_1_by_e_at_its_velocity():
-    found = friction("stribeck", small(speed=[5.0, 10.0]), velocity=5.0, exponent=2.0)
+    found = friction("stribeck", small(speed=[5.0, 10.0]), velocity=5.0, exponent=2.0, shift=0.0)
     assert found == pytest.approx(np.array([[np.exp(-1)], [np.exp(-4)]]))
 
 
+def test_stribeck_velocity_grows_by_the_shift_from_40_degrees_on():
+    """At 0.02 1/°C and 90 °C it is e times as great; at 40 °C it is what it is called."""
+    table = small(speed=[5.0, 5.0 * np.e, 5.0], temperature=[40.0, 90.0, 90.0])
+    found = friction("stribeck", table, velocity=5.0, exponent=1.0, shift=0.02)
+    assert found == pytest.approx(np.array([[np.exp(-1)], [np.exp(-1)], [np.exp(-np.exp(-1))]]))
+
+
 def test_velocity_exponent_is_zero_at_the_geometric_mean_speed():
-    """Mean of 4, 16, 64 is 16; at 64: 0.5 * 8 * ln 4, at 4: 0.5 * 2 * ln(1/4)."""
-    found = friction("velocity_exponent", small(speed=[4.0, 16.0, 64.0], viscous=0.5))
-    assert found == pytest.approx(np.array([[-np.log(4)], [0.0], [4 * np.log(4)]]))
+    """Mean of 4, 16, 64 is 16; at exponent 1: 0.5 * 8 * (2 - 1) and 0.5 * 2 * (1/2 - 1)."""
+    table = small(speed=[4.0, 16.0, 64.0], viscous=0.5)
+    found = friction("velocity_exponent", table, exponent=1.0)
+    assert found == pytest.approx(np.array([[-0.5], [0.0], [4.0]]))
 
 
-def test_velocity_exponent_is_the_tangent_of_the_power_law():
-    """k v^0.52 less k v^0.5, both equal at the mean speed, is 0.02 times the column to 4 %."""
+@pytest.mark.parametrize("exponent", [0.3, 0.5, 0.72, 1.0])
+def test_all_of_the_viscous_friction_can_follow_the_exponent(exponent):
+    """3 sqrt(v) with the whole column is c v^p, with c such that both agree at the mean speed."""
     speed = np.array([4.0, 16.0, 64.0])
-    column = np.array(friction("velocity_exponent", small(speed=speed)))[:, 0]
-    exact = np.sqrt(speed) * ((speed / 16.0) ** 0.02 - 1)
-    np.testing.assert_allclose(0.02 * column, exact, rtol=0.04)
+    column = friction("velocity_exponent", small(speed=speed, viscous=3.0), exponent=exponent)
+    law = 3.0 * 16.0 ** (0.5 - exponent) * speed**exponent
+    np.testing.assert_allclose(3.0 * np.sqrt(speed) + np.ravel(column), law, rtol=1e-12)
 
 
 def test_velocity_exponent_counts_pairs_and_not_angle_bins():
     """Two bins at 4 deg/s and one at 16 deg/s: the mean stays at 8 deg/s."""
-    found = friction("velocity_exponent", small(speed=[4.0, 4.0, 16.0], pair=[0, 0, 1]))
-    assert found == pytest.approx(np.array([[-2 * np.log(2)]] * 2 + [[4 * np.log(2)]]))
+    table = small(speed=[4.0, 4.0, 16.0], pair=[0, 0, 1])
+    found = friction("velocity_exponent", table, exponent=1.0)
+    root = np.sqrt(2)
+    assert found == pytest.approx(np.array([[2 * (1 / root - 1)]] * 2 + [[4 * (root - 1)]]))
 
 
 def test_linear_viscous_is_the_speed():
@@ -66,7 +77,20 @@ def test_load_velocity_by_hand():
 
 def test_load_temperature_by_hand():
     """(20/10)^2 (45 - 25)/10 = 8."""
-    assert friction("load_temperature", small(load=-20.0, temperature=[45.0])) == [[8.0]]
+    table = small(load=-20.0, temperature=[45.0])
+    assert friction("load_temperature", table, bend=0.0) == [[8.0]]
+    assert friction("load_temperature", table, bend=1e-8)[0][0] == pytest.approx(8.0)
+
+
+@pytest.mark.parametrize("bend", [-0.04, 0.02, 0.08])
+def test_load_temperature_fades_by_its_bend(bend):
+    """The change per degree, 0.4 at load 20 and 25 °C, falls by exp(-bend) with each degree."""
+    warm = np.linspace(25.0, 65.0, 4001)
+    table = small(load=20.0, temperature=warm)
+    rate = 0.4 * np.exp(-bend * (warm - 25.0))
+    summed = np.concatenate([[0.0], np.cumsum((rate[1:] + rate[:-1]) / 2 * 0.01)])
+    found = np.ravel(friction("load_temperature", table, bend=bend))
+    np.testing.assert_allclose(found, summed, atol=1e-6)
 
 
 def test_thermal_lag_follows_a_step():
@@ -127,8 +151,16 @@ def test_housing_moves_the_temperature_of_friction_where_it_is_known(housing, ex
 
 
 def test_drift_counts_hours_over_all_runs():
-    found = friction("drift", small(clock=[1800.0, 5400.0, 88_200.0], run=[0, 0, 1]))
-    assert found == [[0.0], [1.0], [24.0]]
+    table = small(clock=[1800.0, 5400.0, 88_200.0], run=[0, 0, 1])
+    steady = friction("drift", table, time_constant=1e6)
+    np.testing.assert_allclose(steady, [[0.0], [1.0], [24.0]], rtol=1e-4)
+
+
+def test_drift_slows_down_with_its_time_constant():
+    """A rate that falls by exp(-t/th) sums to th (1 - 1/e) after th, here 24 h."""
+    table = small(clock=[0.0, 60.0, 86_400.0, 1e9])
+    found = np.ravel(friction("drift", table, time_constant=24.0))
+    assert found == pytest.approx([0.0, 1 / 60, 24.0 * (1 - np.exp(-1)), 24.0], rel=1e-3)
 
 
 @pytest.mark.parametrize(("carried_over", "second_day"), [(0.0, 0.0), (1.0, 2.0), (0.5, 1.0)])
@@ -142,9 +174,24 @@ def test_run_in_falls_with_the_way_and_may_carry_over(carried_over, second_day):
 def test_rest_recovery_needs_a_rest_and_settles_with_the_pairs():
     """Rest of one rest_time recovers 1 - 1/e; two pairs later 1/e of it is left."""
     table = small(rest=[0.0, 100.0, 100.0, np.inf, np.nan], order=[0.0, 0.0, 2.0, 0.0, 0.0])
-    found = np.array(friction("rest_recovery", table, pairs=2.0, rest_time=100.0))[:, 0]
+    found = friction("rest_recovery", table, pairs=2.0, rest_time=100.0, at_start=0.3)
     recovered = 1 - np.exp(-1)
-    assert found == pytest.approx([0.0, recovered, recovered * np.exp(-1), 1.0, 1.0])
+    expected = [0.0, recovered, recovered * np.exp(-1), 0.3, 0.3]
+    assert [row[0] for row in found] == pytest.approx(expected)
+    assert [row[1] for row in found] == [0.0] * 5
+
+
+@pytest.mark.parametrize("sign", [1, -1])
+def test_rest_recovery_is_what_separation_makes_of_a_stiffer_first_move(sign):
+    """The first move has 5 more friction after a long rest, the one back 3 more."""
+    first, back = 20.0 + 5.0, 20.0 + 3.0
+    torque_first, torque_back = 30.0 + sign * first, 30.0 - sign * back
+    basis = BY_NAME["rest_recovery"].evaluate(
+        small(rest=[1e9], order=0.0), {"pairs": 3.0, "rest_time": 60.0, "at_start": 0.0}
+    )
+    coefficients = np.array([4.0, sign * 1.0])
+    assert 20.0 + basis.friction @ coefficients == sign * (torque_first - torque_back) / 2
+    assert 30.0 + basis.load @ coefficients == (torque_first + torque_back) / 2
 
 
 def test_step_comes_after_its_share_of_the_pairs_whatever_the_gaps_between_days():
@@ -159,8 +206,19 @@ def test_step_comes_after_its_share_of_the_pairs_whatever_the_gaps_between_days(
 
 
 def test_direction_asymmetry_is_an_offset_and_a_share_of_viscous_friction():
-    found = load("direction_asymmetry", small(speed=[4.0, 100.0], viscous=[3.0, 2.0]))
-    assert found == [[1.0, 6.0], [1.0, 20.0]]
+    table = small(speed=[4.0, 100.0], viscous=[3.0, 2.0])
+    found = load("direction_asymmetry", table, exponent=0.5)
+    power = np.sqrt([4.0 / 50.0, 100.0 / 50.0])
+    expected = [[1.0, power[0], 6.0], [1.0, power[1], 20.0]]
+    np.testing.assert_allclose(found, expected, rtol=1e-12)
+
+
+@pytest.mark.parametrize("exponent", [0.2, 0.5, 1.0])
+def test_direction_asymmetry_is_the_base_s_viscous_friction_at_50_deg_per_s(exponent):
+    """2 sqrt(50) there, and four times the speed has 4^p times as much."""
+    found = load("direction_asymmetry", small(speed=[50.0, 200.0], viscous=2.0), exponent=exponent)
+    assert found[0] == pytest.approx([1.0, 1.0, 2.0 * np.sqrt(50.0)])
+    assert np.divide(found[1], found[0]) == pytest.approx([1.0, 4.0**exponent, 4.0**exponent])
 
 
 def test_torque_constant_scales_both_channels_by_the_same_percentage():
@@ -173,21 +231,63 @@ def test_torque_constant_scales_both_channels_by_the_same_percentage():
 
 
 def test_payload_change_is_gravity_of_any_phase_from_the_moment_on():
-    found = load(
-        "payload_change", small(clock=[0.0, 1.0, 2.0], position=[0.0, 0.0, 90.0]), moment=0.3
-    )
+    table = small(clock=[0.0, 1.0, 2.0], position=[0.0, 0.0, 90.0])
+    found = load("payload_change", table, moment=0.3)
     assert found == pytest.approx(np.array([[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]]), abs=1e-12)
 
 
-def test_dress_pack_is_slack_in_the_middle_of_the_angles():
-    found = load("dress_pack", small(position=[0.0, 90.0, 180.0]))
-    assert found == pytest.approx(np.array([[-np.pi / 2], [0.0], [np.pi / 2]]))
+def test_payload_change_raises_friction_as_the_base_s_load_term_does():
+    """alpha ((L + l)^2 - L^2) is 2 alpha L l, but for alpha l^2: here 0.0014 * 0.01."""
+    angle = np.radians([0.0, 40.0, 90.0, 150.0])
+    before = 60.0 * np.cos(angle)
+    more = 0.1 * np.cos(angle - 0.5)
+    table = small(
+        clock=[1.0, 1.0, 1.0, 1.0],
+        position=np.degrees(angle),
+        load_slope=2 * 0.0014 * before,
+    )
+    change = friction("payload_change", table, moment=0.0) @ (
+        0.1 * np.array([np.cos(0.5), np.sin(0.5)])
+    )
+    exact = 0.0014 * (np.square(before + more) - np.square(before))
+    np.testing.assert_allclose(change, exact, atol=0.0014 * 0.01 + 1e-12)
+
+
+def test_dress_pack_is_slack_at_its_rest_angle_from_the_middle():
+    table = small(position=[0.0, 90.0, 180.0])
+    quarter = np.pi / 2
+    even = load("dress_pack", table, rest=0.0, stiffening=0.0)
+    assert even == pytest.approx(np.array([[-quarter], [0.0], [quarter]]))
+    moved = load("dress_pack", table, rest=90.0, stiffening=0.0)
+    assert moved == pytest.approx(np.array([[-np.pi], [-quarter], [0.0]]))
+
+
+def test_dress_pack_stiffens_on_both_sides_of_its_rest():
+    """1 rad away it pulls 1 + 0.5, 2 rad away 2 + 0.5 * 8."""
+    table = small(position=90.0 + np.degrees([-1.0, 0.0, 1.0, 2.0, -2.0]))
+    found = load("dress_pack", table, rest=0.0, stiffening=0.5)
+    assert np.ravel(found) == pytest.approx([-1.5, 0.0, 1.5, 6.0, -6.0])
 
 
 def test_ripple_repeats_with_its_order():
-    """Order 4 has a period of 90 deg: zero at 0, sine at its peak at 22.5 deg."""
-    found = friction("position_ripple", small(position=[0.0, 22.5, 90.0]), order=4.0)
-    assert found == pytest.approx(np.array([[0.0, 1.0], [1.0, 0.0], [0.0, 1.0]]), abs=1e-12)
+    """Order 4 has a period of 90 deg, its second harmonic one of 45 deg."""
+    found = friction("position_ripple", small(position=22.5 * np.arange(6)), order=4.0)
+    period = [[0, 1, 0, 1], [1, 0, 0, -1], [0, -1, 0, 1], [-1, 0, 0, -1]]
+    assert found == pytest.approx(np.array([*period, *period[:2]], dtype=float), abs=1e-12)
+
+
+def test_ripple_that_does_not_come_back_is_not_judged():
+    """Order 4 over 112.5 deg is 1.25 periods; over 111 deg it is less."""
+    assert np.any(friction("position_ripple", small(position=np.linspace(0, 112.5, 60)), order=4.0))
+    short = friction("position_ripple", small(position=np.linspace(0, 111.0, 60)), order=4.0)
+    np.testing.assert_array_equal(short, np.zeros((60, 4)))
+
+
+def test_a_second_harmonic_finer_than_the_bins_is_left_out():
+    """Bins of 30 deg sample at most 6 periods per turn: order 4, not its double."""
+    found = np.array(friction("position_ripple", small(position=30.0 * np.arange(5)), order=4.0))
+    assert found[:, :2].any(axis=0).all()
+    np.testing.assert_array_equal(found[:, 2:], np.zeros((5, 2)))
 
 
 def move(position, start, stop, acceleration):
@@ -205,7 +305,7 @@ def test_inertia_has_the_parity_of_two_counter_directed_moves(acceleration):
     there = np.array([move(q, 0.0, 100.0, acceleration) for q in position])
     back = np.array([move(q, 100.0, 0.0, acceleration) for q in position])
     table = small(position=position, pair=0, speed=200.0)
-    basis = BY_NAME["inertia"].evaluate(table, {"distance": 2.0})
+    basis = BY_NAME["inertia"].evaluate(table, {"distance": 2.0, "growth": 0.0})
     mean, half_difference = (there + back) / 2, (there - back) / 2
     np.testing.assert_allclose(basis.load[:, 0] / 4.0 * mean[0], mean, atol=1e-6)
     np.testing.assert_allclose(
@@ -216,6 +316,26 @@ def test_inertia_has_the_parity_of_two_counter_directed_moves(acceleration):
     assert not basis.friction[:, 0].any()
 
 
+@pytest.mark.parametrize(("growth", "torque", "distance"), [(0.0, 4.0, 5.0), (1.0, 2.0, 10.0)])
+def test_inertia_of_a_faster_move_is_greater_or_reaches_further(growth, torque, distance):
+    """At 200 deg/s: four times at the same distance, or twice at twice the distance."""
+    position = np.array([0.0, 10.0, 1000.0])
+    shape = {"distance": 5.0, "growth": growth}
+    basis = BY_NAME["inertia"].evaluate(small(position=position, pair=0, speed=200.0), shape)
+    near = np.exp(-10.0 / distance)
+    np.testing.assert_allclose(basis.load[:, 0], torque * np.array([1.0, near, -1.0]), atol=1e-12)
+    np.testing.assert_allclose(
+        basis.friction[:, 1], torque * np.array([1.0, near, 1.0]), atol=1e-12
+    )
+
+
+@pytest.mark.parametrize("growth", [0.0, 0.5, 1.0])
+def test_inertia_is_stated_at_100_deg_per_s(growth):
+    table = small(position=[0.0, 5.0, 1000.0], pair=0, speed=100.0)
+    basis = BY_NAME["inertia"].evaluate(table, {"distance": 5.0, "growth": growth})
+    np.testing.assert_allclose(basis.load[:, 0], [1.0, np.exp(-1), -1.0], atol=1e-12)
+
+
 @pytest.mark.parametrize("sign", [1, -1])
 def test_reversal_transient_is_what_separation_makes_of_a_build_up(sign):
     """Friction 20, of which 8 are lacking at the reversal; torque load plus or less friction."""
@@ -224,9 +344,9 @@ def test_reversal_transient_is_what_separation_makes_of_a_build_up(sign):
     reverse = 20.0 - 8.0 * np.exp(-(10.0 - position) / 2.0)
     torque_forward, torque_reverse = 30.0 + sign * forward, 30.0 - sign * reverse
     basis = BY_NAME["reversal_transient"].evaluate(
-        small(position=position, pair=0), {"distance": 2.0}
+        small(position=position, pair=0), {"distance": 2.0, "side": float(sign)}
     )
-    coefficients = np.array([8.0, sign * 8.0])
+    coefficients = np.array([8.0])
     np.testing.assert_allclose(
         20.0 + basis.friction @ coefficients, sign * (torque_forward - torque_reverse) / 2
     )
@@ -238,4 +358,4 @@ def test_reversal_transient_is_what_separation_makes_of_a_build_up(sign):
 def test_ripple_finer_than_the_bins_is_not_judged():
     """Bins of 20 deg sample at most 9 periods per turn; order 16 would look like order 2."""
     found = friction("position_ripple", small(position=[0.0, 20.0, 40.0]), order=16.0)
-    np.testing.assert_array_equal(found, np.zeros((3, 2)))
+    np.testing.assert_array_equal(found, np.zeros((3, 4)))

@@ -1,0 +1,147 @@
+"""Gravity goes with the payload where payloads are known, and is what it was where they are not."""
+
+import json
+
+import numpy as np
+import pandas as pd
+import pytest
+
+from frictioncli import chain, schemas, tables
+from frictioncli.diagnosis.applied import without_effects
+from frictioncli.diagnosis.diagnose import diagnose_joint
+from frictioncli.diagnosis.extended import read_extended
+from frictioncli.diagnosis.gravity import gravity_columns, gravity_document, stated_gravity
+from frictioncli.diagnosis.problem import build_problems, simulated
+from frictioncli.diagnosis.recall import read_documents, recall
+from frictioncli.diagnosis.settings import DiagnosisSettings
+from frictioncli.errors import TableError
+from frictioncli.model.document import read_models
+from frictioncli.provenance import Provenance
+from tests.model.worlds import cycle_temperatures, torques
+
+P, Q, C, PER_KG, ASIDE = 70.0, 5.0, -2.0, 8.3, 0.6
+GRAVITY = [P, Q, C, PER_KG, ASIDE]
+
+
+def carried(payloads=(0.0, 3.0, 5.0), *, noise=0.0, undeclared=0.0):
+    """Two days, payloads in turn from pair to pair; a mass that nobody tells on the second half."""
+    temperature, time, phase = (values[::4] for values in cycle_temperatures())
+    rows = pd.concat(
+        [
+            torques(day, temperatures=(temperature, time, phase)).assign(run=f"day{day}")
+            for day in (1, 2)
+        ],
+        ignore_index=True,
+    )
+    payload = np.array(payloads)[rows["pair"] % len(payloads)]
+    late = (rows["run"] == "day2") | (rows["pair"] > rows["pair"].max() / 2)
+    angle = np.radians(rows["position"])
+    mass = payload + undeclared * late
+    load = (P + PER_KG * mass) * np.cos(angle) + (Q + ASIDE * mass) * np.sin(angle)
+    friction = rows["friction_torque"] + 0.0014 * (np.square(load) - np.square(rows["load_torque"]))
+    # the sensor's offset weighs nothing: friction does not feel it
+    noisy = load + C + noise * np.random.default_rng(3).normal(size=len(rows))
+    return rows.assign(load=np.nan, load_torque=noisy, friction_torque=friction, payload=payload)
+
+
+def test_gravity_of_known_payloads_is_recovered():
+    seen, new = build_problems(carried(), "motor", "day2")
+    np.testing.assert_allclose(seen.gravity, GRAVITY, atol=1e-6)
+    np.testing.assert_array_equal(new.gravity, seen.gravity)
+    assert seen.load_base.shape[1] == new.load_base.shape[1] == 5
+    assert np.abs(new.load_misfit).max() < 1e-6
+    assert seen.parameters.alpha == pytest.approx(0.0014, rel=0.02)
+
+
+def test_the_load_that_effects_see_goes_with_the_payload():
+    rows = carried()
+    seen, _ = build_problems(rows, "motor", "day2")
+    ordered = rows[rows["run"] == "day1"].sort_values(["time", "pair", "position"])
+    np.testing.assert_allclose(seen.table.load, ordered["load_torque"] - C, atol=1e-6)
+    np.testing.assert_allclose(seen.whole.load[seen.rows], seen.table.load)
+
+
+@pytest.mark.parametrize(
+    "payload", [np.nan, 2.0, [2.0, np.nan]], ids=["unknown", "one", "one and unknown"]
+)
+def test_one_payload_is_a_single_sine(payload):
+    rows = carried(payloads=(2.0,), noise=0.1)
+    mass = np.resize(payload, rows["pair"].max() + 1)[rows["pair"]]
+    bare, _ = build_problems(rows.drop(columns="payload"), "motor", "day2")
+    problem, _ = build_problems(rows.assign(payload=mass), "motor", "day2")
+    assert problem.load_base.shape[1] == 3
+    np.testing.assert_array_equal(problem.gravity, bare.gravity)
+    np.testing.assert_array_equal(problem.friction_base, bare.friction_base)
+    assert set(gravity_document(problem.gravity)) == {"cosine", "sine", "offset"}
+
+
+def test_a_payload_left_empty_beside_others_is_none():
+    rows = carried()
+    empty = rows.assign(payload=rows["payload"].where(rows["payload"] > 0))
+    seen, _ = build_problems(empty, "motor", "day2")
+    np.testing.assert_allclose(seen.gravity, GRAVITY, atol=1e-6)
+
+
+def test_only_the_runs_seen_decide_whether_gravity_goes_with_the_payload():
+    rows = carried()
+    one = rows[(rows["run"] == "day2") | (rows["payload"] == 3.0)]
+    seen, new = build_problems(one, "motor", "day2")
+    assert len(seen.gravity) == 3
+    assert new.load_base.shape[1] == 3
+
+
+def test_rows_are_simulated_with_as_many_coefficients_as_are_given():
+    rows = carried().sample(frac=1.0, random_state=1)
+    seen, _ = build_problems(rows, "motor", None)
+    order, problem = simulated(rows, "motor", seen.parameters, np.array(GRAVITY))
+    np.testing.assert_allclose(problem.table.load, rows.loc[order, "load_torque"] - C, atol=1e-6)
+    _, plain = simulated(rows, "motor", seen.parameters, np.array([P, Q, C]))
+    angle = np.radians(plain.table.position)
+    np.testing.assert_allclose(plain.table.load, P * np.cos(angle) + Q * np.sin(angle))
+
+
+def test_columns_are_per_degree_and_kilogram():
+    columns = gravity_columns(np.array([0.0, 90.0]), np.array([2.0, np.nan]))
+    np.testing.assert_allclose(columns, [[1, 0, 1, 2, 0], [0, 1, 1, 0, 0]], atol=1e-12)
+
+
+def test_files_state_gravity_as_they_did_and_payloads_beside():
+    three = gravity_document(np.array([1.0, 2.0, 3.0]))
+    assert three == {"cosine": 1.0, "sine": 2.0, "offset": 3.0}
+    five = gravity_document(np.arange(5.0))
+    assert list(five)[3:] == ["cosine_per_kg", "sine_per_kg"]
+    np.testing.assert_array_equal(stated_gravity(five), np.arange(5.0))
+    np.testing.assert_array_equal(stated_gravity(three), [1, 2, 3])
+    np.testing.assert_array_equal(stated_gravity(three, 5), [1, 2, 3, 0, 0])
+    with pytest.raises(TableError, match="frictioncli diagnose"):
+        stated_gravity(five, 3)
+
+
+def test_payloads_in_turn_are_no_finding_and_an_undeclared_mass_is():
+    clean, hidden = (
+        diagnose_joint(carried(noise=0.3, undeclared=mass), "motor", "N·m", DiagnosisSettings())
+        for mass in (0.0, 0.2)
+    )
+    assert clean.verdict == "no_evidence"
+    assert ("payload_change",) in [cause.effects for cause in hidden.causes]
+
+
+def test_an_extended_model_with_payloads_is_read_back(tmp_path):
+    rows = carried(noise=0.3, undeclared=0.2).assign(
+        torque_forward=1.0, torque_reverse=1.0, n_forward=1, n_reverse=1
+    )
+    path = tmp_path / chain.TORQUES
+    tables.write(path, rows, schemas.TORQUES, Provenance("test"), {"torque_unit": "N·m"})
+    chain.fit(tmp_path)
+    chain.diagnose(tmp_path)
+    written = json.loads((tmp_path / chain.EXTENDED).read_text(encoding="utf-8"))
+    assert written["gravity"]["cosine_per_kg"] == pytest.approx(PER_KG, abs=0.1)
+    assert set(written["gravity_about"]) == set(written["gravity"])
+    stored = tables.read(path, schemas.TORQUES)
+    (document, extended), *_ = read_documents(tmp_path).values()
+    found = recall(stored, document, extended)
+    before, after = (np.std(rows["load"]) for rows in (found.new.before, found.new.after))
+    assert after < 0.5 < before
+    (model,) = read_models(tmp_path / chain.EXTENDED)
+    added = without_effects(stored, model, read_extended(tmp_path / chain.EXTENDED)[2])[2]
+    assert added.abs().max() < 1.0  # the effect is of the load: friction hardly changes

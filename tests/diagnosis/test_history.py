@@ -1,0 +1,95 @@
+"""What a joint has been through, by hand."""
+
+import numpy as np
+import pandas as pd
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from frictioncli.diagnosis.history import clock_of, series, travel_of
+from frictioncli.diagnosis.layout import PairLayout
+
+INF = np.inf
+
+
+def pairs(time, run=0):
+    """Return the layout of pairs of a row each."""
+    count = len(time)
+    return PairLayout.of(
+        row_pair=np.arange(count),
+        run=np.broadcast_to(run, count).copy(),
+        time=np.array(time, dtype=float),
+        speed=np.full(count, 20.0),
+        position=np.zeros(count),
+    )
+
+
+def told(time, warm=40.0, run=0):
+    rest, order = series(pairs(time, run), np.broadcast_to(warm, len(time)).astype(float))
+    return rest.tolist(), order.tolist()
+
+
+def test_a_pause_of_more_than_two_minutes_is_a_rest():
+    rest, order = told([0, 60, 180, 301, 401, 1001])
+    assert rest == [INF, INF, INF, 121, 121, 600]
+    assert order == [0, 1, 2, 0, 1, 0]
+
+
+@pytest.mark.parametrize(
+    ("after", "rest"), [(30.0, 500.0), (40.0, 500.0), (40.1, 500.0), (40.3, 0.0), (np.nan, 500.0)]
+)
+def test_a_pause_in_which_the_motor_warmed_is_no_rest(after, rest):
+    """It begins a new series all the same."""
+    found = told([0, 60, 560, 620], [40.0, 40.0, after, after])
+    assert found == ([INF, INF, rest, rest], [0, 1, 0, 1])
+
+
+def test_a_motor_that_warms_from_pair_to_pair_changes_nothing_in_a_series():
+    assert told([0, 60, 120], [40.0, 45.0, 50.0]) == ([INF] * 3, [0, 1, 2])
+
+
+def test_a_run_begins_after_a_rest_of_unknown_length():
+    """Whatever its clock and its motor's temperature."""
+    found = told([0, 60, 5000, 5060, 10], [40.0, 40.0, 20.0, 20.0, 60.0], [0, 0, 1, 1, 2])
+    assert found == ([INF] * 5, [0, 1, 0, 1, 0])
+
+
+@given(
+    st.lists(st.tuples(st.floats(1, 1000), st.floats(-5, 5)), min_size=1, max_size=30),
+    st.integers(1, 3),
+)
+@settings(max_examples=60, deadline=None, derandomize=True)
+def test_rests_are_alike_within_a_series_and_places_count_up(steps, runs):
+    time = np.cumsum([step for step, _ in steps])
+    warm = 40 + np.cumsum([change for _, change in steps])
+    run = np.sort(np.arange(len(steps)) % runs)
+    rest, order = series(pairs(time, run), warm)
+    for i in range(1, len(time)):
+        if order[i] > 0:
+            assert (rest[i], order[i]) == (rest[i - 1], order[i - 1] + 1)
+    heads = order == 0
+    assert heads[0]
+    known = np.isfinite(rest)
+    assert ((rest[known] == 0) | (rest[known] > 120)).all()
+    for number in np.unique(run):
+        assert rest[run == number][0] == INF
+
+
+def test_runs_follow_each_other_on_the_clock():
+    layout = pairs([10, 50, 5, 30, 7], [0, 0, 1, 1, 2])
+    assert clock_of(layout).tolist() == [10, 50, 55, 80, 87]
+    assert layout.time.tolist() == [10, 50, 5, 30, 7]
+
+
+def test_a_pair_travels_its_angles_twice():
+    """Before the third pair of a run: there and back over 30 and over 10 deg."""
+    rows = pd.DataFrame(
+        {
+            "run": ["a"] * 6 + ["b"] * 3,
+            "joint": 2,
+            "pair": [0, 0, 0, 1, 1, 2, 0, 0, 1],
+            "position": [10.0, 40.0, 25.0, 20.0, 30.0, 5.0, 0.0, 90.0, 0.0],
+        }
+    )
+    layout = pairs([0, 1, 2, 0, 1], [0, 0, 0, 1, 1])
+    assert travel_of(rows, layout).tolist() == [0, 60, 80, 0, 180]

@@ -1,0 +1,129 @@
+"""Pooling keeps what effects can show, and weighted estimates know how far they can be off."""
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from frictioncli.diagnosis.layout import PairLayout
+from frictioncli.diagnosis.weighing import Weighing, Weights
+from frictioncli.model.noise import Noise
+from tests.diagnosis import noises
+
+NOISE = Noise(point=0.3, pair=0.2, drift=0.5, drift_time=100.0)
+QUIET = Noise(point=0.2, pair=0.1, drift=0.1, drift_time=40.0)
+PAIRS = noises.layout(9, 7, bins=4)
+EXTRA = np.linspace(0.0, 0.1, 16)
+ROWS = 64
+
+
+def dense(pairs, noise, extra):
+    """Covariance of the pair means, from its definition."""
+    white = noise.pair**2 + noise.point**2 / 4 + extra
+    return noise.drift**2 * noises.alike(pairs, noise.drift_time) + np.diag(white)
+
+
+def test_pooled_contrasts_are_orthonormal_sums():
+    pooling = PAIRS.pooling.toarray()
+    np.testing.assert_allclose(pooling @ pooling.T, np.eye(len(pooling)), atol=1e-12)
+
+
+def test_what_is_alike_in_neighbouring_pairs_survives_pooling():
+    """A ripple with one phase everywhere keeps its whole norm."""
+    ripple = np.tile([1.0, -1.0, 1.0, -1.0], 16)
+    assert np.linalg.norm(PAIRS.contrasts(ripple[:, None])) == pytest.approx(np.sqrt(64.0))
+
+
+def test_only_neighbours_of_one_speed_and_run_are_pooled():
+    """Six pairs at 20 deg/s, one at 40, and one of another run: 5 + 1, 1 and 1 by each bin."""
+    pairs = PairLayout.of(
+        row_pair=np.repeat(np.arange(8), 2),
+        run=np.array([0, 0, 0, 0, 0, 0, 0, 1]),
+        time=np.arange(8.0),
+        speed=np.array([20.0, 20.1, 20.0, 40.0, 20.0, 20.0, 20.0, 20.0]),
+        position=np.tile([0.0, 5.0], 8),
+    )
+    counts = sorted(np.count_nonzero(pairs.pooling.toarray(), axis=1))
+    assert counts == [1, 1, 1, 1, 1, 1, 5, 5]
+
+
+def test_white_deviations_stay_white():
+    """Of four bins one is lost to the pair's mean."""
+    noise = 0.3 * np.random.default_rng(0).normal(size=(ROWS, 2000))
+    inside = PAIRS.contrasts(noise) / 0.3
+    assert np.mean(np.var(inside, axis=1)) == pytest.approx(0.75, abs=0.03)
+
+
+def test_weights_hold_deviation_and_correlation_of_the_pair_means():
+    weights = Weights.of(PAIRS, NOISE, EXTRA)
+    expected = dense(PAIRS, NOISE, EXTRA)
+    np.testing.assert_allclose(weights.deviation, np.sqrt(np.diag(expected)))
+    size = np.outer(weights.deviation, weights.deviation)
+    np.testing.assert_allclose(weights.correlation * size, expected, atol=1e-12)
+
+
+def weighing():
+    return Weighing(Weights.of(PAIRS, NOISE, EXTRA), Weights.of(PAIRS, QUIET, 0 * EXTRA))
+
+
+def columns(seed):
+    """Functions of the angle and of the pair, alike where they are pooled."""
+    generator = np.random.default_rng(seed)
+    angle = np.tile(generator.normal(size=(4, 3)), (16, 1))
+    return angle + np.repeat(generator.normal(size=(16, 3)), 4, axis=0)
+
+
+@given(st.integers(0, 10_000))
+@settings(max_examples=25, deadline=None, derandomize=True)
+def test_coefficients_are_those_of_weighted_rows(seed):
+    """Rows in units of point noise about their pair, and each pair's mean once."""
+    friction, load = columns(seed), columns(seed + 1)
+    generator = np.random.default_rng(seed)
+    targets = generator.normal(size=ROWS), generator.normal(size=ROWS)
+    rows, data = [], []
+    for part, target, weights in zip(
+        (friction, load), targets, (weighing().friction, weighing().load), strict=True
+    ):
+        for values, into in ((part, rows), (target[:, None], data)):
+            means = values.reshape(16, 4, -1).mean(axis=1)
+            into.append((values - np.repeat(means, 4, axis=0)) / weights.point)
+            into.append(means / np.sqrt(np.diag(dense_of(weights)))[:, None])
+    expected = np.linalg.lstsq(np.vstack(rows), np.vstack(data)[:, 0], rcond=None)[0]
+    found, _ = weighing().solve(friction, load, targets)
+    np.testing.assert_allclose(found, expected, rtol=1e-7, atol=1e-9)
+
+
+def dense_of(weights):
+    return weights.correlation * np.outer(weights.deviation, weights.deviation)
+
+
+def test_covariance_is_what_repeated_noise_makes_of_the_estimates():
+    """4,000 draws of drift, pair and point noise in both channels: errors are within 5 %."""
+    draws = 4000
+    generator = np.random.default_rng(2)
+    friction, load = columns(5), columns(6)
+    tool = weighing()
+    drawn = []
+    for noise, extra in ((NOISE, EXTRA), (QUIET, 0 * EXTRA)):
+        common = dense(PAIRS, noise, extra) - noise.point**2 / 4 * np.eye(16)
+        means = np.linalg.cholesky(common) @ generator.normal(size=(16, draws))
+        drawn.append(np.repeat(means, 4, axis=0) + noise.point * generator.normal(size=(64, draws)))
+    _, covariance = tool.solve(friction, load, (drawn[0][:, 0], drawn[1][:, 0]))
+    estimates = np.array(
+        [tool.solve(friction, load, (drawn[0][:, i], drawn[1][:, i]))[0] for i in range(draws)]
+    )
+    size = np.sqrt(np.diag(covariance))
+    np.testing.assert_allclose(estimates.std(axis=0), size, rtol=0.06)
+    np.testing.assert_allclose(
+        np.corrcoef(estimates.T), covariance / np.outer(size, size), atol=0.06
+    )
+    assert np.abs(estimates.mean(axis=0) / size).max() < 4 / np.sqrt(draws)
+
+
+def test_a_column_of_zeros_has_a_coefficient_of_zero():
+    friction, load = columns(7), columns(8)
+    friction[:, 1] = load[:, 1] = 0.0
+    found, covariance = weighing().solve(friction, load, (friction @ [1.0, 5.0, 2.0], load[:, 0]))
+    assert found[1] == pytest.approx(0.0, abs=1e-12)
+    assert covariance[1, 1] == pytest.approx(0.0, abs=1e-12)
+    assert np.isfinite(found).all()
