@@ -4,7 +4,7 @@ VENV := .venv
 BIN := $(VENV)/bin
 RUN ?= friction-run
 
-.PHONY: reproduce test lint coverage blind clean
+.PHONY: reproduce test lint coverage blind comparison clean
 
 reproduce: $(VENV)/installed
 	$(BIN)/frictioncli run sample_logs/kr10 -w $(RUN)
@@ -19,6 +19,9 @@ coverage: $(VENV)/tested
 blind: $(VENV)/tested
 	OMP_NUM_THREADS=1 $(BIN)/python -m tests.studies.blind
 
+comparison: $(VENV)/studied
+	OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1 $(BIN)/python -m tests.studies.comparison
+
 lint: $(VENV)/tested
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
@@ -31,6 +34,10 @@ $(VENV)/installed: pyproject.toml
 
 $(VENV)/tested: $(VENV)/installed
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable '.[dev]'
+	touch $@
+
+$(VENV)/studied: $(VENV)/tested
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable '.[dev,study]'
 	touch $@
 
 clean:
