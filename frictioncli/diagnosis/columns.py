@@ -14,8 +14,13 @@ from frictioncli.diagnosis.layout import PairLayout
 from frictioncli.diagnosis.problem import Problem
 from frictioncli.effects.base import Basis, Effect
 from frictioncli.effects.pairs import measured_share
+from frictioncli.quantities import TORQUE
 
 Array = NDArray[np.float64]
+
+_USUAL_FRICTION = 20.0
+"""Mean friction torque up to which the catalogue's bounds in units of torque hold; those of a
+stronger joint grow with it. [N·m]"""
 
 _TOLERANCE = 2.0
 """A coefficient may miss its physical bound by as many standard errors."""
@@ -156,14 +161,16 @@ def hypothesis_of(
         np.hstack([basis.load for basis in bases]),
     )
     width = len(effect.coefficients)
+    strength = max(float(np.mean(np.abs(problem.friction))) / _USUAL_FRICTION, 1.0)
+    reach = np.array([strength if TORQUE in one.unit else 1.0 for one in effect.coefficients])
     return Hypothesis(
         name=effect.name,
         shapes=tuple(tried),
         width=width,
         columns=columns,
         raw=np.array(raw),
-        lower=np.array([parameter.lower for parameter in effect.coefficients]),
-        upper=np.array([parameter.upper for parameter in effect.coefficients]),
+        lower=np.array([parameter.lower for parameter in effect.coefficients]) * reach,
+        upper=np.array([parameter.upper for parameter in effect.coefficients]) * reach,
     )
 
 

@@ -52,7 +52,7 @@ EFFECT = Effect(
             symbol="A",
             unit="torque",
             lower=0.0,
-            upper=15.0,
+            upper=30.0,
             description="Friction above the settled one at the start",
         ),
     ),
