@@ -43,7 +43,7 @@ class Structure:
     evidence : float
         Logarithm of its Bayes factor.
     size : float
-        RMS of what the base leaves of the structure, without what noise gives. [N·m]
+        RMS of what base and effects leave of the structure, without what noise gives. [N·m]
     """
 
     axis: str
@@ -66,6 +66,7 @@ def structures(step: Step, seed: int) -> list[Structure]:
         Seed of the noise that tells what chance gives.
     """
     problem = step.problem
+    accepted = [problem.basis(score.effect, score.shape) for score in step.accepted]
     axes = {place: _even(raw) for place, raw in _axes(problem).items()}
     hypotheses = [_hypothesis(problem, axis, channel, raw) for (axis, channel), raw in axes.items()]
     judged = step.judged(Catalogue.of(step.bench, hypotheses), seed, DRAWS)
@@ -73,7 +74,7 @@ def structures(step: Step, seed: int) -> list[Structure]:
     for (axis, channel), raw in axes.items():
         one = judged[f"{axis}, {channel}"]
         excess = max(one.statistic - one.freedom, 0.0) / max(one.statistic, 1e-300)
-        shown = left_of_base(problem, raw @ one.coefficients, channel)
+        shown = left_of_base(problem, raw @ one.coefficients, channel, accepted)
         found.append(
             Structure(
                 axis=axis,

@@ -188,9 +188,24 @@ def main_channel(basis: Basis, effect: Effect) -> Array:
     return basis.friction if effect.channel == "friction" else basis.load
 
 
-def left_of_base(problem: Problem, torque: Array, channel: str) -> Array:
-    """Return what the base model cannot take of a torque in one channel, shape (rows,). [N·m]."""
-    base = base_rows(problem)[channel == "load"]
+def left_of_base(
+    problem: Problem, torque: Array, channel: str, accepted: Sequence[Basis] = ()
+) -> Array:
+    """Return what the base, and effects beside it, cannot take of a torque. [N·m].
+
+    Parameters
+    ----------
+    problem : Problem
+        The rows with their base.
+    torque : ndarray, shape (rows,)
+        A torque in one channel. [N·m]
+    channel : {"friction", "load"}
+        Which channel.
+    accepted : sequence of Basis
+        Columns of effects beside the base.
+    """
+    number = ("friction", "load").index(channel)
+    base = np.hstack([base_rows(problem)[number], *(basis[number] for basis in accepted)])
     base = base[:, np.linalg.norm(base, axis=0) > 0]
     base = base / np.linalg.norm(base, axis=0)
     return torque - base @ np.asarray(np.linalg.lstsq(base, torque, rcond=1e-9)[0])

@@ -14,7 +14,7 @@ from frictioncli.diagnosis.problem import Problem, build_problems
 from frictioncli.diagnosis.ramps import RampEvidence, RampLog, ramp_evidence
 from frictioncli.diagnosis.search import Cause, Found, find_causes
 from frictioncli.diagnosis.settings import DiagnosisSettings
-from frictioncli.diagnosis.worth import worthwhile
+from frictioncli.diagnosis.worth import SLIGHT, worthwhile
 from frictioncli.effects import EFFECTS
 from frictioncli.effects.base import Effect
 from frictioncli.errors import NotEnoughData
@@ -30,10 +30,13 @@ _UNEXPLAINED = 1e-3
 """Structure without a name must be this unlikely by chance: fifteen places are looked at."""
 
 _WORTH_SAYING = 0.003
-"""And as large as this share of the mean friction."""
+"""And, alone, as large as this share of the mean friction."""
+
+_SIZE_LEFT = 0.3
+"""Beside causes it must have this share of the torque that the largest one shows,"""
 
 _SHARE_LEFT = 0.1
-"""And explain this share of what the causes do: no equation is true to the last digit."""
+"""and explain this share of what they do: no equation is true to the last digit."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -183,7 +186,9 @@ def diagnose_joint(
 def _left(found: Found, causes: Sequence[Cause], settings: DiagnosisSettings) -> Structure | None:
     """Return structure that the causes leave, if it is more than noise and rough edges."""
     step = found.step
-    least = _WORTH_SAYING * float(np.mean(np.abs(step.problem.friction)))
+    shown = max((cause.visible for cause in causes), default=0.0)
+    friction = float(np.mean(np.abs(step.problem.friction)))
+    least = max(SLIGHT * friction, _SIZE_LEFT * shown) if causes else _WORTH_SAYING * friction
     told = sum(cause.judged.statistic for cause in found.causes) if causes else 0.0
     for one in structures(step, settings.seed):
         unlikely = one.p_value < min(_UNEXPLAINED, settings.alpha)

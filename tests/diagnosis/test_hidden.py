@@ -19,7 +19,7 @@ from frictioncli.simulator.tabular import simulate_torques
 SIZES = {
     "linear_viscous": 2.0,
     "coulomb_temperature": 2.0,
-    "drift": 4.0,
+    "drift": 6.0,
     "run_in": 3.0,
     "step_change": 4.0,
     "payload_change": 2.0,

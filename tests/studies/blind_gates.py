@@ -36,7 +36,7 @@ def gates(rows: pd.DataFrame) -> str:
         ),
         ("wrong single name, among `named`", "<= 3%", _wrong),
         ("most probable is the truth, separable, at the 80% size", ">= 90%", _first),
-        (f"found at {SMALL:g} N·m, all effects", "", _small),
+        (f"found at {SMALL:g} N·m, all effects", ">= 80% of what shows", _small),
         (f"effects with an 80% size of {SMALL:g} N·m or less", "", _small_effects),
         ("names per set", "<= 2 paper, <= 1.5 enriched", _names),
         (
