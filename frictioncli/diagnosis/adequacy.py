@@ -40,8 +40,6 @@ class Structure:
         Twice the log likelihood ratio to the base and the effects accepted.
     freedom : int
         Columns that the data can tell.
-    evidence : float
-        Logarithm of its Bayes factor.
     size : float
         RMS of what base and effects leave of the structure, without what noise gives. [N·m]
     """
@@ -51,7 +49,6 @@ class Structure:
     p_value: float
     statistic: float
     freedom: int
-    evidence: float
     size: float
 
 
@@ -82,7 +79,6 @@ def structures(step: Step, seed: int) -> list[Structure]:
                 p_value=one.p_value,
                 statistic=one.statistic,
                 freedom=one.freedom,
-                evidence=one.evidence,
                 size=float(np.sqrt(excess * np.mean(np.square(shown)))),
             )
         )

@@ -3,6 +3,7 @@
 import numpy as np
 import pandas as pd
 
+from frictioncli.diagnosis.layout import speed_level
 from frictioncli.model.determinacy import determined_fit
 from frictioncli.model.identification import Estimate
 from frictioncli.model.observations import observations
@@ -10,9 +11,6 @@ from frictioncli.model.zero_load import PAIR_KEY
 
 _COMMON = 0.05
 """Speeds of a smaller share of the pairs are rare."""
-
-_SAME_SPEED = 0.02
-"""Speeds closer than this share are one."""
 
 
 def candidate_bases(rows: pd.DataFrame, temperature: str) -> list[Estimate]:
@@ -29,7 +27,7 @@ def candidate_bases(rows: pd.DataFrame, temperature: str) -> list[Estimate]:
         Temperature that the friction function is given.
     """
     heads = rows.drop_duplicates(PAIR_KEY)
-    level = np.round(np.log(heads["speed"].to_numpy(float)) / _SAME_SPEED)
+    level = speed_level(heads["speed"].to_numpy(float))
     _, place, count = np.unique(level, return_inverse=True, return_counts=True)
     common = count >= _COMMON * len(heads)
     chosen = [rows]

@@ -10,17 +10,18 @@ from frictioncli.diagnosis.columns import (
     Columns,
     Hypothesis,
     base_columns,
-    base_rows,
     joined,
+    left_of,
+    left_of_base,
     misfit_column,
 )
+from frictioncli.diagnosis.layout import PairLayout
 from frictioncli.diagnosis.problem import Problem
 from frictioncli.diagnosis.scan import Groups
-from frictioncli.diagnosis.spectra import Spectra, spectra_of
+from frictioncli.diagnosis.spectra import Modes, Spectra, spectra_of
+from frictioncli.effects.base import Basis
 
 Array = NDArray[np.float64]
-Modes = tuple[Array, ...]
-"""Pair means in the eigenvectors of each correlation time."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -50,14 +51,10 @@ class Bench:
         layout = problem.layout
         base, misfit = base_columns(problem), misfit_column(problem)
         extra = (problem.temperature_variance, np.zeros_like(layout.time))
-        points = (
-            point_noise(problem, problem.friction_misfit, [], "friction"),
-            point_noise(problem, problem.load_misfit, [], "load"),
-        )
         friction, load = (
-            spectra_of(layout, point, known, _left(part.means, own.means))
+            spectra_of(layout, point, known, left_of(part.means, own.means[:, 0]))
             for point, known, part, own in zip(
-                points, extra, base.channels, misfit.channels, strict=True
+                point_noise(problem), extra, base.channels, misfit.channels, strict=True
             )
         )
         return cls(problem=problem, base=base, misfit=misfit, spectra=(friction, load))
@@ -89,55 +86,56 @@ class Catalogue:
         """Return the catalogue of these hypotheses."""
         nothing = bench.base.take(slice(0, 0))
         columns = joined([nothing, *(one.columns for one in hypotheses)])
+        friction, load = (
+            spectra.all_modes(part.means)
+            for spectra, part in zip(bench.spectra, columns.channels, strict=True)
+        )
         return cls(
             hypotheses=tuple(hypotheses),
             columns=columns,
-            groups=Groups.of([one.width for one in hypotheses for _ in one.shapes]),
-            modes=modes_of(bench, columns),
+            groups=_groups(hypotheses),
+            modes=(friction, load),
         )
 
-    def without(self, bench: Bench, names: set[str]) -> "Catalogue":
+    def without(self, names: set[str]) -> "Catalogue":
         """Return the catalogue without some of its hypotheses."""
-        if not names:
+        stays = [one.name not in names for one in self.hypotheses]
+        if all(stays):
             return self
-        return Catalogue.of(bench, [one for one in self.hypotheses if one.name not in names])
+        chosen = np.flatnonzero(np.repeat(stays, [one.columns.count for one in self.hypotheses]))
+        kept = [one for one, wanted in zip(self.hypotheses, stays, strict=True) if wanted]
+        friction, load = (
+            tuple(np.take(part, chosen, axis=1) for part in channel) for channel in self.modes
+        )
+        return Catalogue(
+            hypotheses=tuple(kept),
+            columns=self.columns.take(chosen),
+            groups=_groups(kept),
+            modes=(friction, load),
+        )
 
 
-def modes_of(bench: Bench, columns: Columns) -> tuple[Modes, Modes]:
-    """Return the modes of columns in friction and load."""
-    friction, load = (
-        tuple(spectra.modes(one, spectra.scaled(part.means)) for one in spectra.spectra)
-        for spectra, part in zip(bench.spectra, columns.channels, strict=True)
-    )
-    return friction, load
+def _groups(hypotheses: Sequence[Hypothesis]) -> Groups:
+    return Groups.of([one.width for one in hypotheses for _ in one.shapes])
 
 
-def point_noise(problem: Problem, misfit: Array, added: Sequence[Array], channel: str) -> float:
-    """Return the noise of a row about its pair, base and added columns taken out. [N·m].
+def point_noise(problem: Problem, accepted: Sequence[Basis] = ()) -> tuple[float, float]:
+    """Return the noise of a row about its pair in friction and load. [N·m].
 
     Parameters
     ----------
     problem : Problem
-        The data.
-    misfit : ndarray, shape (rows,)
-        Misfit of the channel. [N·m]
-    added : sequence of ndarray, shape (rows, columns)
-        Columns of accepted effects in the channel.
-    channel : {"friction", "load"}
-        Which channel.
+        The data; their base is taken out.
+    accepted : sequence of Basis
+        Columns of accepted effects, taken out too.
     """
-    layout = problem.layout
-    base = base_rows(problem)[channel == "load"]
-    design = np.hstack([base, *added])
-    design = design[:, np.linalg.norm(design, axis=0) > 0]
-    residual = _left(design, misfit[:, np.newaxis])
+    friction = left_of_base(problem, problem.friction_misfit, "friction", accepted)
+    load = left_of_base(problem, problem.load_misfit, "load", accepted)
+    return _about_pair(problem.layout, friction), _about_pair(problem.layout, load)
+
+
+def _about_pair(layout: PairLayout, residual: Array) -> float:
+    """Return the standard deviation of rows about their pair's mean. [N·m]."""
     inside = residual - layout.means(residual[:, np.newaxis])[:, 0][layout.row_pair]
     freedom = max(len(inside) - len(layout.bins), 1)
     return max(float(np.sqrt(inside @ inside / freedom)), 1e-9)
-
-
-def _left(base: Array, misfit: Array) -> Array:
-    """Return what columns leave of a single one, shape (rows,)."""
-    size = np.linalg.norm(base, axis=0)
-    unit = base[:, size > 0] / size[size > 0]
-    return np.asarray(misfit[:, 0] - unit @ np.linalg.lstsq(unit, misfit[:, 0], rcond=1e-9)[0])

@@ -41,6 +41,11 @@ class Channel:
     inside: Array
     means: Array
 
+    @property
+    def count(self) -> int:
+        """Number of columns."""
+        return self.means.shape[1]
+
 
 @dataclass(frozen=True, slots=True)
 class Columns:
@@ -57,9 +62,9 @@ class Columns:
     @property
     def count(self) -> int:
         """Number of columns."""
-        return self.friction.means.shape[1]
+        return self.friction.count
 
-    def take(self, chosen: slice | Sequence[int]) -> "Columns":
+    def take(self, chosen: slice | Sequence[int] | NDArray[np.intp]) -> "Columns":
         """Return some of the columns."""
         return Columns(
             *(Channel(part.inside[:, chosen], part.means[:, chosen]) for part in self.channels)
@@ -205,7 +210,21 @@ def left_of_base(
         Columns of effects beside the base.
     """
     number = ("friction", "load").index(channel)
-    base = np.hstack([base_rows(problem)[number], *(basis[number] for basis in accepted)])
-    base = base[:, np.linalg.norm(base, axis=0) > 0]
-    base = base / np.linalg.norm(base, axis=0)
-    return torque - base @ np.asarray(np.linalg.lstsq(base, torque, rcond=1e-9)[0])
+    base = [base_rows(problem)[number], *(basis[number] for basis in accepted)]
+    # column after column in memory, as least squares works
+    return left_of(np.asfortranarray(np.hstack(base)), torque)
+
+
+def left_of(columns: Array, torque: Array) -> Array:
+    """Return what columns leave of a torque by least squares, shape (rows,). [N·m].
+
+    Parameters
+    ----------
+    columns : ndarray, shape (rows, columns)
+        The columns, in any units; those of zeros take nothing.
+    torque : ndarray, shape (rows,)
+        A torque. [N·m]
+    """
+    size = np.linalg.norm(columns, axis=0)
+    unit = columns[:, size > 0] / size[size > 0]
+    return np.asarray(torque - unit @ np.linalg.lstsq(unit, torque, rcond=1e-9)[0])

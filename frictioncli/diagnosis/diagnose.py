@@ -148,14 +148,15 @@ def diagnose_joint(
     problem, new = build_problems(torques, temperature, held_out)
     said = ramp_evidence(ramps, problem, temperature) if ramps else None
     found = find_causes(problem, effects, settings, said)
-    worthy, visible = worthwhile(found, new or problem, settings.seed)
+    weighing = found.step.weighing()
+    worthy, visible = worthwhile(found, weighing, new or problem, settings.seed)
     left = _left(found, worthy, settings)
     # what explains less than is left may be a part of what has no name
     causes = tuple(cause for cause in worthy if left is None or _exceeds(cause, left))
     visible += tuple(cause for cause in worthy if cause not in causes)
     extension = gain = None
     if causes:
-        extension = extend(problem, found.step.weighing(), [cause.score for cause in causes])
+        extension = extend(problem, weighing, [cause.score for cause in causes])
         gain = measured_gain(
             new or problem,
             extension,

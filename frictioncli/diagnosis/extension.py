@@ -24,7 +24,7 @@ _NUDGE = 0.01
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Extension:
+class Refit:
     """Changes of the base model, and effects, fitted together.
 
     The extended friction is the base's, plus its derivatives by the parameters times their changes,
@@ -40,6 +40,20 @@ class Extension:
         Coefficients of the gravity torque, as of the problem. [N·m], [N·m/kg]
     effects : tuple of Score
         Effects with their shapes and coefficients.
+    """
+
+    names: tuple[str, ...]
+    changes: Array
+    gravity: Array
+    effects: tuple[Score, ...]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Extension(Refit):
+    """A refit with its errors.
+
+    Attributes
+    ----------
     errors : ndarray
         Standard errors of the changes, the gravity and the effects' coefficients, in this order.
     shape_errors : ndarray
@@ -47,10 +61,6 @@ class Extension:
         cannot tell it.
     """
 
-    names: tuple[str, ...]
-    changes: Array
-    gravity: Array
-    effects: tuple[Score, ...]
     errors: Array
     shape_errors: Array
 
@@ -81,11 +91,8 @@ class Gain:
     floor: float
 
 
-def extend(problem: Problem, weighing: Weighing, effects: Sequence[Score]) -> Extension:
-    """Fit the base and the effects together by weighted least squares.
-
-    Shapes stay as they were found; that they are uncertain too widens the errors of everything
-    that depends on them, by the derivatives of the effects by their shapes.
+def refit(problem: Problem, weighing: Weighing, effects: Sequence[Score]) -> Refit:
+    """Fit the base and effects together by weighted least squares; shapes stay as they were found.
 
     Parameters
     ----------
@@ -96,31 +103,51 @@ def extend(problem: Problem, weighing: Weighing, effects: Sequence[Score]) -> Ex
     effects : sequence of Score
         Effects with the shapes found.
     """
-    targets = (problem.friction_misfit, problem.load_misfit)
+    friction, load = _columns(problem, effects)
+    step = weighing.coefficients(friction, load, (problem.friction_misfit, problem.load_misfit))
+    widths = [len(one.effect.coefficients) for one in effects]
+    ends = np.cumsum([len(problem.names), len(problem.gravity), *widths])
+    changes, gravity, *own, _ = np.split(step, ends)
+    return Refit(
+        names=problem.names,
+        changes=changes,
+        gravity=problem.gravity + gravity,
+        effects=tuple(
+            replace(one, coefficients=values) for one, values in zip(effects, own, strict=True)
+        ),
+    )
+
+
+def extend(problem: Problem, weighing: Weighing, effects: Sequence[Score]) -> Extension:
+    """Fit the base and effects together, with errors; parameters as :func:`refit`.
+
+    That shapes are uncertain too widens the errors of everything that depends on them, by the
+    derivatives of the effects by their shapes.
+    """
+    fitted = refit(problem, weighing, effects)
+    columns = _columns(problem, fitted.effects)
+    slopes = [_slope(problem, one, axis) for one in fitted.effects for axis in one.effect.shape]
+    friction, load = (
+        np.column_stack([columns[channel], *(slope[channel] for slope in slopes)])
+        for channel in (0, 1)
+    )
+    errors = np.sqrt(np.maximum(np.diag(weighing.error_covariance(friction, load)), 0.0))
+    count = columns[0].shape[1]
+    return Extension(
+        names=fitted.names,
+        changes=fitted.changes,
+        gravity=fitted.gravity,
+        effects=fitted.effects,
+        errors=errors[:count],
+        shape_errors=errors[count:],
+    )
+
+
+def _columns(problem: Problem, effects: Sequence[Score]) -> tuple[Array, Array]:
+    """Return the columns of base and effects in friction and load, shape (rows, columns) each."""
     bases = [base_rows(problem), *(problem.basis(one.effect, one.shape) for one in effects)]
     friction, load = (np.hstack([basis[channel] for basis in bases]) for channel in (0, 1))
-    step, _ = weighing.solve(friction, load, targets)
-    count, start = len(problem.names), len(problem.names) + len(problem.gravity)
-    fitted = []
-    for one in effects:
-        stop = start + len(one.effect.coefficients)
-        fitted.append(replace(one, coefficients=step[start:stop]))
-        start = stop
-    slopes = [_slope(problem, one, axis) for one in fitted for axis in one.effect.shape]
-    _, covariance = weighing.solve(
-        np.column_stack([friction, *(slope.friction for slope in slopes)]),
-        np.column_stack([load, *(slope.load for slope in slopes)]),
-        targets,
-    )
-    errors = np.sqrt(np.maximum(np.diag(covariance), 0.0))
-    return Extension(
-        names=problem.names,
-        changes=step[:count],
-        gravity=problem.gravity + step[count : count + len(problem.gravity)],
-        effects=tuple(fitted),
-        errors=errors[:start],
-        shape_errors=errors[start:],
-    )
+    return friction, load
 
 
 def _slope(problem: Problem, one: Score, axis: Parameter) -> Basis:
@@ -135,13 +162,13 @@ def _slope(problem: Problem, one: Score, axis: Parameter) -> Basis:
     )
 
 
-def misfits(problem: Problem, extension: Extension) -> tuple[Array, Array]:
-    """Return what an extension leaves of both channels, shape (rows,) each. [N·m]."""
-    changes = np.concatenate([extension.changes, extension.gravity - problem.gravity])
+def misfits(problem: Problem, fitted: Refit) -> tuple[Array, Array]:
+    """Return what base and effects leave of both channels, shape (rows,) each. [N·m]."""
+    changes = np.concatenate([fitted.changes, fitted.gravity - problem.gravity])
     base_friction, base_load = base_rows(problem)
     friction = problem.friction_misfit - base_friction @ changes
     load = problem.load_misfit - base_load @ changes
-    for one in extension.effects:
+    for one in fitted.effects:
         basis = problem.basis(one.effect, one.shape)
         friction = friction - basis.friction @ one.coefficients
         load = load - basis.load @ one.coefficients

@@ -43,51 +43,58 @@ class Fitted:
     freedom: int
 
 
-@dataclass(frozen=True, slots=True)
-class Side:
-    """Noise of one channel's pair means: its determinant at scale 1, and pairs less parameters."""
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Equations:
+    """One channel's inner products of all columns; the last column is the misfit.
 
+    Attributes
+    ----------
+    inside : ndarray, shape (columns, columns)
+        Of the columns' deviations inside pairs, in units of their noise. Columns are the base's,
+        the rival's, and the misfit.
+    between : ndarray, shape (columns, columns)
+        Of their pair means, under a noise of scale 1.
+    determinant : float
+        Restricted log determinant of that noise.
+    freedom : int
+        Pairs less what the base fits of their means.
+    """
+
+    inside: Array
+    between: Array
     determinant: float
     freedom: int
 
 
-def solved(
-    sides: tuple[Side, Side], inside: list[Array], between: list[Array], base: int
-) -> Fitted:
+def solved(channels: tuple[Equations, Equations], base: int) -> Fitted:
     """Fit all columns but the last, which is the misfit, to both channels together.
 
     Parameters
     ----------
-    sides : (Side, Side)
-        Noise of friction and load.
-    inside : list of ndarray
-        Per channel, inner products of the columns' deviations inside pairs, in units of their
-        noise. Columns are the base's, the rival's, and the misfit.
-    between : list of ndarray
-        Per channel, inner products of their pair means under a noise of scale 1.
+    channels : (Equations, Equations)
+        Of friction and load.
     base : int
         Number of the base's columns.
     """
-    scales = [
-        max(float(gram[-1, -1]), 1e-12) / max(side.freedom, 1)
-        for side, gram in zip(sides, between, strict=True)
-    ]
-    count = len(between[0]) - 1
+    friction, load = channels
+    inside = friction.inside + load.inside
+    scales = [max(float(one.between[-1, -1]), 1e-12) / max(one.freedom, 1) for one in channels]
+    count = len(inside) - 1
     for _ in range(_ROUNDS):
-        gram = inside[0] + inside[1] + between[0] / scales[0] + between[1] / scales[1]
+        gram = inside + friction.between / scales[0] + load.between / scales[1]
         size = np.sqrt(np.maximum(np.diag(gram)[:count], 1e-300))
         scaled = gram[:count, :count] / np.outer(size, size)
         inverse = np.linalg.pinv(scaled, rcond=1e-11, hermitian=True) / np.outer(size, size)
         coefficients = inverse @ gram[:count, count]
         rest = np.append(-coefficients, 1.0)
-        squares = [max(float(rest @ one @ rest), 1e-300) for one in between]
+        squares = [max(float(rest @ one.between @ rest), 1e-300) for one in channels]
         scales = [
-            max(square / max(side.freedom, 1), 1e-12)
-            for side, square in zip(sides, squares, strict=True)
+            max(square / max(one.freedom, 1), 1e-12)
+            for one, square in zip(channels, squares, strict=True)
         ]
-    likelihood = -0.5 * float(rest @ (inside[0] + inside[1]) @ rest)
-    for side, square, scale in zip(sides, squares, scales, strict=True):
-        likelihood -= 0.5 * (side.freedom * np.log(scale) + square / scale + side.determinant)
+    likelihood = -0.5 * float(rest @ inside @ rest)
+    for one, square, scale in zip(channels, squares, scales, strict=True):
+        likelihood -= 0.5 * (one.freedom * np.log(scale) + square / scale + one.determinant)
     left, rank = _left(gram[:count, :count], base)
     return Fitted(
         likelihood=likelihood,

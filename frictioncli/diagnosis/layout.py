@@ -16,6 +16,11 @@ _SAME_SPEED = 0.02
 """Speeds closer than this share are one level."""
 
 
+def speed_level(speed: Array) -> NDArray[np.intp]:
+    """Return the level of each speed [deg/s]; speeds of one level differ by 2 % at the most."""
+    return np.round(np.log(np.maximum(speed, 1e-9)) / _SAME_SPEED).astype(np.intp)
+
+
 @dataclass(frozen=True, slots=True, kw_only=True)
 class PairLayout:
     """Which rows make up which pair, and when.
@@ -65,7 +70,7 @@ class PairLayout:
         position : ndarray, shape (rows,)
             Centre of each row's angle bin. [deg]
         """
-        level = np.round(np.log(np.maximum(speed, 1e-9)) / _SAME_SPEED).astype(np.int64)
+        level = speed_level(speed)
         pairs = pd.DataFrame({"run": run, "level": level})
         pairs["block"] = pairs.groupby(["run", "level"]).cumcount() // _POOLED
         keys = pairs.iloc[row_pair].assign(position=position)

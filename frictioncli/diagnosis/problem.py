@@ -228,7 +228,7 @@ def _assembled(
         position=position,
         load=load,
         temperature=warm,
-        motor_temperature=rows["motor_temperature"].to_numpy(float),
+        motor_temperature=motor,
         housing_temperature=rows["housing_temperature"].to_numpy(float),
         friction=np.zeros_like(speed),
         viscous=np.zeros_like(speed),

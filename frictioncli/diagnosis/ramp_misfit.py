@@ -11,6 +11,7 @@ from frictioncli.diagnosis.problem import Problem
 from frictioncli.diagnosis.ramp_fit import Labels, Projection
 from frictioncli.model.friction import friction_torque
 from frictioncli.model.zero_load import temperature_of
+from frictioncli.motion.ramps import LAGS
 
 Array = NDArray[np.float64]
 
@@ -20,15 +21,6 @@ _CORRELATED = 10.0
 _SAME_SPEED = 0.03
 _SLOW_SCALES = (3.0, 10.0)
 """Speeds over which a misfit of friction at low speed may fade. [deg/s]"""
-
-ACCELERATIONS = {
-    "acceleration_2_before": -2,
-    "acceleration_before": -1,
-    "acceleration": 0,
-    "acceleration_after": 1,
-    "acceleration_2_after": 2,
-}
-"""Columns of acceleration and how much later than torque it is. [samples]"""
 
 _SLOWEST = 0.5
 """Below this speed friction has no direction to speak of. [deg/s]"""
@@ -55,7 +47,7 @@ def resolved(rows: pd.DataFrame) -> pd.DataFrame:
     """
     moving = rows["velocity"] * rows["direction"] > _SLOWEST
     rows = rows[moving].sort_values("move", kind="stable", ignore_index=True)
-    most = rows[list(ACCELERATIONS)].abs().max(axis=1)
+    most = rows[list(LAGS)].abs().max(axis=1)
     accelerates = most > _STEADY * most.max()
     slower = rows["velocity"].abs() < _REACHED * rows["speed"]
     samples = (
@@ -76,8 +68,9 @@ class RampMisfit:
     sign : int
         Sign convention of the log.
     inertial : ndarray, shape (rows, columns)
-        :data:`ACCELERATIONS` counted as friction [deg/s²], and the one without
-        lag times the mass above the mean where payloads differ [kg·deg/s²].
+        Acceleration at each of :data:`frictioncli.motion.ramps.LAGS` counted as friction
+        [deg/s²], and the one without lag times the mass above the mean where payloads differ
+        [kg·deg/s²].
     misfit : ndarray, shape (rows,)
         Measured minus simulated friction without inertia. [N·m]
     projection : Projection
@@ -118,7 +111,7 @@ class RampMisfit:
         # a load channel may have another unit: what it does in the torque is then left free
         held = 0.0 * held if problem.own_load else held
         misfit = frame[:, 0] * (rows["torque"].to_numpy(float) - held) - friction
-        inertial = frame * rows[list(ACCELERATIONS)].to_numpy(float)
+        inertial = frame * rows[list(LAGS)].to_numpy(float)
         if payloads:
             mass = np.nan_to_num(known_payload(rows))
             now = frame[:, 0] * rows["acceleration"].to_numpy(float)

@@ -32,8 +32,9 @@ from scipy.optimize import minimize_scalar
 from frictioncli import schemas, tables
 from frictioncli.diagnosis.problem import Problem
 from frictioncli.diagnosis.ramp_fit import Fit, Projection, fitted
-from frictioncli.diagnosis.ramp_misfit import ACCELERATIONS, RampMisfit, resolved
+from frictioncli.diagnosis.ramp_misfit import RampMisfit, resolved
 from frictioncli.diagnosis.significance import log_evidence
+from frictioncli.motion.ramps import LAGS
 
 Array = NDArray[np.float64]
 
@@ -206,7 +207,7 @@ def _told(seen: RampMisfit, moves: int) -> RampEvidence:
     with_lack = whole.fitted(seen.inertial, *([settling] if settles else []), lack)
     with_settling = whole.fitted(seen.inertial, *([lack] if lacks else []), settling)
     last = with_lack if lacks else with_settling if settles else whole.fitted(seen.inertial)
-    lags = np.array(list(ACCELERATIONS.values()), float)
+    lags = np.array(list(LAGS.values()), float)
     inertia = _estimate(last, range(len(lags)))
     missing = _estimate(with_lack, [-2])
     moment = float(lags @ last.coefficients[: len(lags)])

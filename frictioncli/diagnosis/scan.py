@@ -89,6 +89,11 @@ class Scan:
     of_group: NDArray[np.intp]
     drawn: Array
 
+    @property
+    def settings(self) -> list[Setting]:
+        """The noise that suits each group."""
+        return [(int(time), int(strength)) for time, strength in self.of_group]
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Null:

@@ -178,7 +178,7 @@ class _Hunt:
     def judged(self, accepted: Sequence[Score], draws: int = 0) -> tuple[Step, dict[str, Judged]]:
         """Return the step with these effects, and how all others stand there."""
         step = Step.of(self.bench, accepted)
-        rivals = self.catalogue.without(self.bench, _names(accepted))
+        rivals = self.catalogue.without(_names(accepted))
         found = step.judged(rivals, self.settings.seed, draws)
         evidence = arbitrated({name: one.evidence for name, one in found.items()}, self.ramps)
         return step, {name: replace(one, evidence=evidence[name]) for name, one in found.items()}

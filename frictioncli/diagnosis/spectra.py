@@ -19,6 +19,8 @@ from numpy.typing import NDArray
 from frictioncli.diagnosis.layout import PairLayout
 
 Array = NDArray[np.float64]
+Modes = tuple[Array, ...]
+"""Pair means in the eigenvectors of each correlation time."""
 
 _TIMES = 6
 """Number of correlation times, from the pairs' distance to the run's length."""
@@ -79,6 +81,14 @@ class Spectra:
                 for part, vectors in zip(self.runs, spectrum.vectors, strict=True)
             ]
         )
+
+    def modes_at(self, time: int, means: Array) -> Array:
+        """Return pair means in the eigenvectors of one correlation time, shape (pairs, ...)."""
+        return self.modes(self.spectra[time], self.scaled(means))
+
+    def all_modes(self, means: Array) -> Modes:
+        """Return pair means in the eigenvectors of each correlation time."""
+        return tuple(self.modes_at(time, means) for time in range(len(self.spectra)))
 
     def unmoded(self, spectrum: Spectrum, modes: Array) -> Array:
         """Return scaled pair means from their modes."""

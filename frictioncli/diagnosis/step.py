@@ -7,8 +7,9 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import minimize
 
-from frictioncli.diagnosis.bench import Bench, Catalogue, Modes, modes_of, point_noise
+from frictioncli.diagnosis.bench import Bench, Catalogue, point_noise
 from frictioncli.diagnosis.columns import (
+    Channel,
     Columns,
     Hypothesis,
     basis_columns,
@@ -17,18 +18,11 @@ from frictioncli.diagnosis.columns import (
     left_of_base,
     main_channel,
 )
-from frictioncli.diagnosis.joint import Fitted, Side, noise_of, solved
+from frictioncli.diagnosis.joint import Fitted, solved
 from frictioncli.diagnosis.judged import Judged, Score
 from frictioncli.diagnosis.problem import Problem
-from frictioncli.diagnosis.scan import (
-    Null,
-    Scan,
-    Setting,
-    drawn_inside,
-    null_of,
-    scan,
-    weighted_gram,
-)
+from frictioncli.diagnosis.scan import Setting, drawn_inside
+from frictioncli.diagnosis.side import Side
 from frictioncli.diagnosis.significance import Chance, chance_of, log_evidence
 from frictioncli.diagnosis.weighing import Weighing, Weights
 from frictioncli.effects.base import Effect
@@ -36,6 +30,7 @@ from frictioncli.model.noise import Noise
 
 Array = NDArray[np.float64]
 Settings = tuple[Setting, Setting]
+"""Places of the noises of friction and load."""
 
 DRAWS = 200
 """Draws of noise from which it is learned what chance gives."""
@@ -51,24 +46,15 @@ class Step:
         The data and their noises.
     accepted : tuple of Score
         Effects accepted so far.
-    base : Columns
-        Columns of the base and of those effects.
-    point : (float, float)
-        Noise of a row about its pair in friction and load. [N·m]
-    null : (Null, Null)
-        The base with those effects alone, in friction and load.
-    known : (Modes, Modes)
-        Modes of the base's columns and the misfit, at each correlation time.
+    sides : (Side, Side)
+        Base and those effects in friction and load.
     fit : Fitted
         The same in both channels together.
     """
 
     bench: Bench
     accepted: tuple[Score, ...]
-    base: Columns
-    point: tuple[float, float]
-    null: tuple[Null, Null]
-    known: tuple[Modes, Modes]
+    sides: tuple[Side, Side]
     fit: Fitted
 
     @classmethod
@@ -77,36 +63,30 @@ class Step:
         problem = bench.problem
         bases = [problem.basis(score.effect, score.shape) for score in accepted]
         base = joined([bench.base, *(basis_columns(problem, basis) for basis in bases)])
-        point = (
-            point_noise(problem, problem.friction_misfit, [b.friction for b in bases], "friction"),
-            point_noise(problem, problem.load_misfit, [b.load for b in bases], "load"),
-        )
         friction, load = (
-            null_of(spectra, part.means, misfit.means)
-            for spectra, part, misfit in zip(
-                bench.spectra, base.channels, bench.misfit.channels, strict=True
+            Side.of(spectra, point, part, misfit)
+            for spectra, point, part, misfit in zip(
+                bench.spectra,
+                point_noise(problem, bases),
+                base.channels,
+                bench.misfit.channels,
+                strict=True,
             )
         )
-        known = modes_of(bench, joined([base, bench.misfit]))
-        null = (friction, load)
-        settings = (friction.best, load.best)
+        sides, best = (friction, load), (friction.null.best, load.null.best)
         nothing = base.take(slice(0, 0))
-        none = tuple(part.means[:, :0] for part in base.channels)
-        fit = _solved(bench, point, null, settings, base, known, nothing, (none[0], none[1]))
-        return cls(
-            bench=bench,
-            accepted=tuple(accepted),
-            base=base,
-            point=point,
-            null=null,
-            known=known,
-            fit=fit,
-        )
+        fit = _fitted(sides, nothing, _modes(sides, nothing, best), best)
+        return cls(bench=bench, accepted=tuple(accepted), sides=sides, fit=fit)
 
     @property
     def problem(self) -> Problem:
         """The data."""
         return self.bench.problem
+
+    @property
+    def base_count(self) -> int:
+        """Number of columns of the base and the accepted effects."""
+        return self.sides[0].base.count
 
     def judged(self, catalogue: Catalogue, seed: int, draws: int) -> dict[str, Judged]:
         """Return every hypothesis as it stands beside the base, by name.
@@ -120,53 +100,54 @@ class Step:
         draws : int
             Number of draws of noise; without any all p-values are 1.
         """
-        generator = np.random.default_rng(seed)
-        scans = tuple(
-            scan(spectra, null, modes, catalogue.groups, draws, generator)
-            for spectra, null, modes in zip(
-                self.bench.spectra, self.null, catalogue.modes, strict=True
-            )
-        )
-        drawn = sum(one.drawn for one in scans)
-        if draws:
-            base, rivals = (
-                np.vstack(
-                    [
-                        part.inside / point
-                        for part, point in zip(columns.channels, self.point, strict=True)
-                    ]
-                )
-                for columns in (self.base, catalogue.columns)
-            )
-            drawn = drawn + drawn_inside(base, rivals, catalogue.groups, draws, generator)
+        suited, drawn = self._scanned(catalogue, seed, draws)
+        fits = [self._of_group(catalogue, group, noise) for group, noise in enumerate(suited)]
         found, first = {}, 0
         for hypothesis in catalogue.hypotheses:
-            last = first + len(hypothesis.shapes)
-            fits = []
-            for group in range(first, last):
-                chosen = catalogue.groups.columns(group)
-                settings = _setting(scans[0], group), _setting(scans[1], group)
-                modes = tuple(
-                    part[setting[0]][:, chosen]
-                    for part, setting in zip(catalogue.modes, settings, strict=True)
-                )
-                fits.append(
-                    self._fitted(catalogue.columns.take(chosen), (modes[0], modes[1]), settings)
-                )
-            chance = chance_of(np.asarray(drawn)[first:last].max(axis=0, initial=0.0))
+            own = slice(first, first + len(hypothesis.shapes))
+            chance = chance_of(drawn[own].max(axis=0, initial=0.0))
             found[hypothesis.name] = self._judged(
-                hypothesis, fits, chance, len(catalogue.hypotheses)
+                hypothesis, fits[own], chance, len(catalogue.hypotheses)
             )
-            first = last
+            first = own.stop
         return found
+
+    def _scanned(self, catalogue: Catalogue, seed: int, draws: int) -> tuple[list[Settings], Array]:
+        """Return the noises that suit each group best, and what chance gives the groups.
+
+        The latter has shape (groups, draws).
+        """
+        generator = np.random.default_rng(seed)
+        friction, load = (
+            side.scan(modes, catalogue.groups, draws, generator)
+            for side, modes in zip(self.sides, catalogue.modes, strict=True)
+        )
+        drawn = friction.drawn + load.drawn
+        if draws:
+            base = self._white_inside([side.base for side in self.sides])
+            rivals = self._white_inside(catalogue.columns.channels)
+            drawn = drawn + drawn_inside(base, rivals, catalogue.groups, draws, generator)
+        return list(zip(friction.settings, load.settings, strict=True)), drawn
+
+    def _white_inside(self, channels: Sequence[Channel]) -> Array:
+        """Return deviations inside pairs in units of their noise, load's below friction's."""
+        return np.vstack(
+            [part.inside / side.point for part, side in zip(channels, self.sides, strict=True)]
+        )
+
+    def _of_group(self, catalogue: Catalogue, group: int, settings: Settings) -> Fitted:
+        """Return the fit of base and one group of a catalogue's columns."""
+        chosen = catalogue.groups.columns(group)
+        friction, load = (
+            modes[time][:, chosen]
+            for modes, (time, _) in zip(catalogue.modes, settings, strict=True)
+        )
+        return _fitted(self.sides, catalogue.columns.take(chosen), (friction, load), settings)
 
     def noise(self) -> tuple[Noise, Noise]:
         """Return the noise of friction and load that suits base and accepted effects."""
         friction, load = (
-            noise_of(spectra, null.best, scale, point)
-            for spectra, null, scale, point in zip(
-                self.bench.spectra, self.null, self.fit.scales, self.point, strict=True
-            )
+            side.noise(scale) for side, scale in zip(self.sides, self.fit.scales, strict=True)
         )
         return friction, load
 
@@ -181,10 +162,10 @@ class Step:
     def refined(self, found: Score) -> Score:
         """Return a score with its shape searched off the grid, under the noise that suits it."""
         effect, axes = found.effect, found.effect.shape
+        settings = self._suited(effect, found.shape)
         if not axes or effect.moments is not None:
             # every moment worth trying has been tried
-            return self._scored(effect, found.shape, self._suited(effect, found.shape))
-        settings = self._suited(effect, found.shape)
+            return self._scored(effect, found.shape, settings)
         start = np.array([axis.share(found.shape[axis.name]) for axis in axes])
         step = np.array([0.5 / axis.points for axis in axes])
 
@@ -211,23 +192,13 @@ class Step:
     def _suited(self, effect: Effect, shape: dict[str, float]) -> Settings:
         """Return the noise that suits an effect at one shape."""
         alone = Catalogue.of(self.bench, [hypothesis_of(effect, self.problem, [shape])])
-        scans = [
-            scan(spectra, null, modes, alone.groups, 0, np.random.default_rng(0))
-            for spectra, null, modes in zip(self.bench.spectra, self.null, alone.modes, strict=True)
-        ]
-        return _setting(scans[0], 0), _setting(scans[1], 0)
+        return self._scanned(alone, 0, 0)[0][0]
 
     def _scored(self, effect: Effect, shape: dict[str, float], settings: Settings) -> Score:
         """Return an effect's score at one shape; its statistic is 0 if it is not physical."""
         hypothesis = hypothesis_of(effect, self.problem, [shape])
-        modes = tuple(
-            spectra.modes(spectra.spectra[setting[0]], spectra.scaled(part.means))
-            for spectra, setting, part in zip(
-                self.bench.spectra, settings, hypothesis.columns.channels, strict=True
-            )
-        )
-        fit = self._fitted(hypothesis.columns, (modes[0], modes[1]), settings)
-        base = self.base.count
+        columns, base = hypothesis.columns, self.base_count
+        fit = _fitted(self.sides, columns, _modes(self.sides, columns, settings), settings)
         coefficients, covariance = fit.coefficients[base:], fit.covariance[base:, base:]
         allowed = hypothesis.allows(coefficients, covariance)
         statistic = 2 * (fit.likelihood - self.fit.likelihood) if allowed else 0.0
@@ -236,7 +207,7 @@ class Step:
     def _judged(
         self, hypothesis: Hypothesis, fits: Sequence[Fitted], chance: Chance, rivals: int
     ) -> Judged:
-        base = self.base.count
+        base = self.base_count
         grid = np.array([2 * (fit.likelihood - self.fit.likelihood) for fit in fits])
         able = [
             fit.freedom > 0
@@ -262,11 +233,6 @@ class Step:
             ),
         )
 
-    def _fitted(self, columns: Columns, modes: tuple[Array, Array], settings: Settings) -> Fitted:
-        return _solved(
-            self.bench, self.point, self.null, settings, self.base, self.known, columns, modes
-        )
-
     def size(self, score: Score) -> float:
         """Return the RMS torque of an effect in the channel where it shows most. [N·m].
 
@@ -275,42 +241,34 @@ class Step:
         """
         if len(score.coefficients) > 1:
             return self.visible(score)
-        basis = self.problem.basis(score.effect, score.shape)
-        torque = main_channel(basis, score.effect) @ score.coefficients
-        return float(np.sqrt(np.mean(np.square(torque))))
+        return float(np.sqrt(np.mean(np.square(self._torque(score)))))
 
     def visible(self, score: Score) -> float:
         """Return the RMS torque of an effect that the base model cannot take. [N·m]."""
-        basis = self.problem.basis(score.effect, score.shape)
-        torque = main_channel(basis, score.effect) @ score.coefficients
-        left = left_of_base(self.problem, torque, score.effect.channel)
+        left = left_of_base(self.problem, self._torque(score), score.effect.channel)
         return float(np.sqrt(np.mean(np.square(left))))
 
+    def _torque(self, score: Score) -> Array:
+        """Return the torque of an effect in the channel where it shows most, shape (rows,)."""
+        basis = self.problem.basis(score.effect, score.shape)
+        return np.asarray(main_channel(basis, score.effect) @ score.coefficients)
 
-def _solved(
-    bench: Bench,
-    point: tuple[float, float],
-    null: tuple[Null, Null],
-    settings: Settings,
-    base: Columns,
-    known: tuple[Modes, Modes],
-    rival: Columns,
-    modes: tuple[Array, Array],
+
+def _modes(sides: tuple[Side, Side], columns: Columns, settings: Settings) -> tuple[Array, Array]:
+    """Return the modes of columns in friction and load, each at its noise's correlation time."""
+    friction, load = (
+        side.spectra.modes_at(time, part.means)
+        for side, part, (time, _) in zip(sides, columns.channels, settings, strict=True)
+    )
+    return friction, load
+
+
+def _fitted(
+    sides: tuple[Side, Side], rival: Columns, modes: tuple[Array, Array], settings: Settings
 ) -> Fitted:
-    """Fit base and a rival under given noises of friction and load."""
-    inside, between, sides = [], [], []
-    for number, (time, strength) in enumerate(settings):
-        own, other, misfit = (part.channels[number].inside for part in (base, rival, bench.misfit))
-        rows = np.hstack([own, other, misfit])
-        inside.append(np.asarray(rows.T @ rows) / point[number] ** 2)
-        first = known[number][time]
-        whole = np.hstack([first[:, :-1], modes[number], first[:, -1:]])
-        spectra, setting = bench.spectra[number], (time, strength)
-        between.append(weighted_gram(spectra, setting, whole))
-        determinant = float(null[number].determinant[setting])
-        sides.append(Side(determinant, null[number].freedom))
-    return solved((sides[0], sides[1]), inside, between, base.count)
-
-
-def _setting(found: Scan, group: int) -> Setting:
-    return int(found.of_group[group, 0]), int(found.of_group[group, 1])
+    """Return the fit of base and rival under given noises of friction and load."""
+    friction, load = (
+        side.equations(part, own, setting)
+        for side, part, own, setting in zip(sides, rival.channels, modes, settings, strict=True)
+    )
+    return solved((friction, load), sides[0].base.count)

@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from frictioncli.diagnosis.layout import PairLayout
-from frictioncli.model.noise import Noise
+from frictioncli.model.noise import Noise, PairCovariance, pair_covariance
 
 Array = NDArray[np.float64]
 
@@ -31,14 +31,14 @@ class Weights:
         Standard deviation of a row about its pair. [N·m]
     deviation : ndarray, shape (pairs,)
         Standard deviation of each pair's mean. [N·m]
-    correlation : ndarray, shape (pairs, pairs)
-        Correlation of the pair means' noise.
+    covariance : PairCovariance
+        Covariance of the pair means' noise.
     """
 
     layout: PairLayout
     point: float
     deviation: Array
-    correlation: Array
+    covariance: PairCovariance
 
     @classmethod
     def of(cls, layout: PairLayout, noise: Noise, extra: Array) -> "Weights":
@@ -53,21 +53,28 @@ class Weights:
         extra : ndarray, shape (pairs,)
             Further variance of the pair means, as of an uncertain temperature. [(N·m)²]
         """
-        white = noise.pair**2 + noise.point**2 / layout.bins + extra
-        deviation = np.sqrt(white + noise.drift**2)
-        apart = np.abs(layout.time[:, np.newaxis] - layout.time[np.newaxis, :])
-        alike = np.exp(-np.minimum(apart / noise.drift_time, 50.0))
-        same = layout.run[:, np.newaxis] == layout.run[np.newaxis, :]
-        covariance = noise.drift**2 * np.where(same, alike, 0.0) + np.diag(white)
-        return cls(layout, noise.point, deviation, covariance / np.outer(deviation, deviation))
+        covariance = pair_covariance(
+            noise, time=layout.time, run=layout.run, bins=layout.bins, extra=extra
+        )
+        deviation = np.sqrt(covariance.white + noise.drift**2)
+        return cls(layout, noise.point, deviation, covariance)
 
-    def inside(self, rows: Array) -> Array:
-        """Return weighted deviations from the pair means."""
-        return self.layout.contrasts(rows) / self.point
+    def rows(self, columns: Array) -> Array:
+        """Return weighted deviations from the pair means and, below them, weighted pair means.
 
-    def between(self, rows: Array) -> Array:
-        """Return weighted pair means."""
-        return np.asarray((self.layout.means(rows).T / self.deviation).T)
+        Parameters
+        ----------
+        columns : ndarray, shape (rows, columns)
+            Columns in the channel. [N·m]
+        """
+        inside = self.layout.contrasts(columns) / self.point
+        return np.vstack([inside, (self.layout.means(columns).T / self.deviation).T])
+
+    def correlated(self, weighted: Array) -> Array:
+        """Return the correlation of the weighted rows' noise times such rows."""
+        inside, between = np.split(weighted, [-len(self.deviation)])
+        size = self.deviation[:, np.newaxis]
+        return np.vstack([inside, self.covariance.times(between / size) / size])
 
 
 @dataclass(frozen=True, slots=True)
@@ -77,19 +84,8 @@ class Weighing:
     friction: Weights
     load: Weights
 
-    def rows(self, friction: Array, load: Array) -> list[tuple[Array, Array | None]]:
-        """Return weighted rows by part, each with the correlation of its noise, if it has one."""
-        return [
-            (self.friction.inside(friction), None),
-            (self.friction.between(friction), self.friction.correlation),
-            (self.load.inside(load), None),
-            (self.load.between(load), self.load.correlation),
-        ]
-
-    def solve(
-        self, friction: Array, load: Array, targets: tuple[Array, Array]
-    ) -> tuple[Array, Array]:
-        """Return least-squares coefficients of columns, and their covariance.
+    def coefficients(self, friction: Array, load: Array, targets: tuple[Array, Array]) -> Array:
+        """Return least-squares coefficients of columns, shape (columns,).
 
         Parameters
         ----------
@@ -98,18 +94,21 @@ class Weighing:
         targets : (ndarray, ndarray), shape (rows,)
             What they are to explain. [N·m]
         """
-        system = self.rows(friction, load)
-        wanted = self.rows(targets[0][:, np.newaxis], targets[1][:, np.newaxis])
-        gram = sum((part.T @ part for part, _ in system), np.zeros((friction.shape[1],) * 2))
-        size = np.sqrt(np.where(np.diag(gram) > 0, np.diag(gram), 1.0))
-        bread = np.linalg.pinv(gram / np.outer(size, size), rcond=1e-10, hermitian=True)
-        bread = np.asarray(bread) / np.outer(size, size)
-        right = sum(
-            (part.T @ aim for (part, _), (aim, _) in zip(system, wanted, strict=True)),
-            np.zeros((len(size), 1)),
-        )
-        meat = sum(
-            (part.T @ (part if noise is None else noise @ part) for part, noise in system),
-            np.zeros_like(gram),
-        )
-        return np.asarray(bread @ right)[:, 0], bread @ meat @ bread
+        own, other = self.friction.rows(friction), self.load.rows(load)
+        right = own.T @ self.friction.rows(targets[0][:, np.newaxis])
+        right += other.T @ self.load.rows(targets[1][:, np.newaxis])
+        return (_inverse(own.T @ own + other.T @ other) @ right)[:, 0]
+
+    def error_covariance(self, friction: Array, load: Array) -> Array:
+        """Return the covariance of such coefficients, shape (columns, columns)."""
+        own, other = self.friction.rows(friction), self.load.rows(load)
+        bread = _inverse(own.T @ own + other.T @ other)
+        meat = own.T @ self.friction.correlated(own) + other.T @ self.load.correlated(other)
+        return np.asarray(bread @ meat @ bread)
+
+
+def _inverse(gram: Array) -> Array:
+    """Return the inverse of inner products in any units; what says nothing has 0 there."""
+    size = np.sqrt(np.where(np.diag(gram) > 0, np.diag(gram), 1.0))
+    scaled = np.linalg.pinv(gram / np.outer(size, size), rcond=1e-10, hermitian=True)
+    return np.asarray(scaled / np.outer(size, size))

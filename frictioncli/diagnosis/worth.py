@@ -5,12 +5,13 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from frictioncli.diagnosis.extension import extend, misfits, reduction_interval
+from frictioncli.diagnosis.extension import misfits, reduction_interval, refit
 from frictioncli.diagnosis.problem import Problem
 from frictioncli.diagnosis.search import Cause, Found
 from frictioncli.diagnosis.weighing import Weighing
 
 Array = NDArray[np.float64]
+_Squares = dict[str, Array]
 
 WORTHWHILE = 0.03
 """A cause that takes away less of the misfit than this share is seen, but not worth modelling."""
@@ -23,7 +24,7 @@ SLIGHT = 0.001
 
 
 def worthwhile(
-    found: Found, judged: Problem, seed: int
+    found: Found, weighing: Weighing, judged: Problem, seed: int
 ) -> tuple[tuple[Cause, ...], tuple[Cause, ...]]:
     """Return the causes that are worth modelling, and those that are only visible.
 
@@ -37,6 +38,8 @@ def worthwhile(
     ----------
     found : Found
         Result of the search.
+    weighing : Weighing
+        Weights of both channels.
     judged : Problem
         Rows on which a cause must prove itself, of a new run where there is one.
     seed : int
@@ -45,28 +48,37 @@ def worthwhile(
     slight = SLIGHT * float(np.mean(np.abs(judged.friction)))
     kept = [cause for cause in found.causes if cause.visible >= slight]
     dropped = [cause for cause in found.causes if cause.visible < slight]
-    weighing = found.step.weighing()
+    whole = _squares(found, weighing, kept, judged)
     while kept:
-        whole = _squares(found, weighing, kept, judged)
-        worth = []
-        for i, cause in enumerate(kept):
-            channel = cause.score.effect.channel
-            without = _squares(found, weighing, kept[:i] + kept[i + 1 :], judged)[channel]
-            gain = 1 - float(np.sqrt(np.mean(whole[channel]) / np.mean(without)))
-            _, high = reduction_interval(judged, without, whole[channel], seed)
-            sure = cause.judged.p_value < BEYOND_DOUBT and high > 0
-            worth.append((gain >= WORTHWHILE or sure, gain))
-        least = min(range(len(kept)), key=lambda i: worth[i])
+        fewer = [kept[:i] + kept[i + 1 :] for i in range(len(kept))]
+        without = [_squares(found, weighing, causes, judged) for causes in fewer]
+        worth = [
+            _worth(cause, judged, less, whole, seed)
+            for cause, less in zip(kept, without, strict=True)
+        ]
+        least = worth.index(min(worth))
         if worth[least][0]:
             break
-        dropped.append(kept.pop(least))
+        dropped.append(kept[least])
+        kept, whole = fewer[least], without[least]
     return tuple(kept), tuple(dropped)
+
+
+def _worth(
+    cause: Cause, judged: Problem, without: _Squares, whole: _Squares, seed: int
+) -> tuple[bool, float]:
+    """Return whether a cause is worth modelling, and the share of the misfit that it takes away."""
+    before, after = (one[cause.score.effect.channel] for one in (without, whole))
+    gain = 1 - float(np.sqrt(np.mean(after) / np.mean(before)))
+    _, high = reduction_interval(judged, before, after, seed)
+    sure = cause.judged.p_value < BEYOND_DOUBT and high > 0
+    return gain >= WORTHWHILE or sure, gain
 
 
 def _squares(
     found: Found, weighing: Weighing, causes: Sequence[Cause], judged: Problem
-) -> dict[str, Array]:
+) -> _Squares:
     """Return the squared misfit per channel that the base with these causes leaves."""
-    extension = extend(found.step.problem, weighing, [cause.score for cause in causes])
-    friction, load = misfits(judged, extension)
+    fitted = refit(found.step.problem, weighing, [cause.score for cause in causes])
+    friction, load = misfits(judged, fitted)
     return {"friction": np.square(friction), "load": np.square(load)}

@@ -10,11 +10,11 @@ from frictioncli.effects.base import Array, EffectTable
 _HALF_WINDOW = 300.0
 """How far around a moment pairs tell of its heat and of the motor's warming. [s]"""
 
-
 _FEW_SERIES = 5
 """With fewer series a change may come before any pair."""
 
 _MOST_MOMENTS = 160
+"""Moments that a change is looked for at, at most."""
 
 _CUT_ALIKE = 10.0
 """What is cut off a stroke at constant speed is alike at both ends within this. [deg]"""
@@ -193,8 +193,8 @@ def measured_share(table: EffectTable) -> Array:
 def series_starts(table: EffectTable) -> Array:
     """Return the shares of all pairs measured before each measuring series, shape (moments,).
 
-    What is done to a joint is done between two series. If a table has more than eighty of them,
-    every second is returned, or every third.
+    What is done to a joint is done between two series. If a table has more than 160 of them, only
+    every second is returned, or every third, and so on.
     """
     heads = pair_heads(table)
     clock = table.clock[heads.first]
@@ -221,9 +221,8 @@ def stroke_ends(table: EffectTable, *, distance: Array | float) -> tuple[Array, 
         Nearness, 1 in the outermost bin.
     """
     heads = pair_heads(table)
-    low = table.position - heads.spread(heads.minimum(table.position))
-    high = heads.spread(heads.maximum(table.position)) - table.position
-    return np.exp(-low / distance), np.exp(-high / distance)
+    ends = heads.minimum(table.position), heads.maximum(table.position)
+    return _nearness(table, heads, ends, distance)
 
 
 def turning_points(table: EffectTable, *, distance: float) -> tuple[Array, Array]:
@@ -254,6 +253,13 @@ def turning_points(table: EffectTable, *, distance: float) -> tuple[Array, Array
         cut_low, cut_high = lowest - least, most - highest
         same = own & (np.abs(cut_low - cut_high) < _CUT_ALIKE)
         lowest[same], highest[same] = least, most
-    low = table.position - heads.spread(lowest)
-    high = heads.spread(highest) - table.position
+    return _nearness(table, heads, (lowest, highest), distance)
+
+
+def _nearness(
+    table: EffectTable, heads: PairHeads, ends: tuple[Array, Array], distance: Array | float
+) -> tuple[Array, Array]:
+    """Return how near each row is to the low and to the high of its pair's two angles."""
+    low = table.position - heads.spread(ends[0])
+    high = heads.spread(ends[1]) - table.position
     return np.exp(-low / distance), np.exp(-high / distance)

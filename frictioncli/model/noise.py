@@ -127,7 +127,7 @@ def pair_covariance(
         Further variance of the pair means, as of an uncertain temperature. [(N·m)²]
     """
     white = noise.pair**2 + noise.point**2 / bins + extra
-    # a drift of zero would have an infinite precision: keep it far below everything else
+    # a drift of zero would have an infinite precision: the factor takes one far below all else
     variance = max(noise.drift**2, 1e-9 * float(np.mean(white)))
     step = np.where(np.diff(run) == 0, np.diff(time), np.inf)
     decay = np.exp(-np.maximum(step, 1e-3) / noise.drift_time)
@@ -150,7 +150,7 @@ def pair_covariance(
         factor=factor,
         log_determinant=float(log_determinant),
         correlation=np.concatenate([[0.0], decay]),
-        drift=float(np.sqrt(variance)),
+        drift=noise.drift,
     )
 
 

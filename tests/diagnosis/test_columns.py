@@ -19,6 +19,7 @@ from frictioncli.diagnosis.columns import (
 )
 from frictioncli.diagnosis.gravity import carried_load
 from frictioncli.effects import BY_NAME, EFFECTS
+from frictioncli.effects.base import Basis
 from frictioncli.model.friction import FrictionParameters, friction_torque
 from tests.diagnosis import noises
 from tests.diagnosis.noises import problem
@@ -206,12 +207,16 @@ def test_the_misfit_is_measured_less_simulated(joint):
 @pytest.mark.parametrize("channel", ["friction", "load"])
 def test_point_noise_is_that_of_a_row_about_its_pair(joint, channel):
     """0.3 in both channels; a ripple hides it until its columns are taken out."""
-    misfit = getattr(joint, f"{channel}_misfit")
-    assert point_noise(joint, misfit, [], channel) == pytest.approx(0.3, rel=0.05)
+    assert point_noise(joint) == pytest.approx((0.3, 0.3), rel=0.05)
     ripple = np.sin(9 * np.radians(joint.table.position))
-    assert point_noise(joint, misfit + ripple, [], channel) > 0.6
-    added = point_noise(joint, misfit + ripple, [ripple[:, None]], channel)
-    assert added == pytest.approx(0.3, rel=0.05)
+    rippled = replace(joint, **{channel: getattr(joint, channel) + ripple})
+    before = dict(zip(("friction", "load"), point_noise(rippled), strict=True))
+    assert before.pop(channel) > 0.6
+    assert list(before.values()) == pytest.approx([0.3], rel=0.05)
+    nothing = np.zeros_like(ripple)
+    columns = (ripple, nothing) if channel == "friction" else (nothing, ripple)
+    found = Basis(*(column[:, np.newaxis] for column in columns))
+    assert point_noise(rippled, [found]) == pytest.approx((0.3, 0.3), rel=0.05)
 
 
 def test_a_catalogue_keeps_order_and_can_do_without(joint):
@@ -221,17 +226,21 @@ def test_a_catalogue_keeps_order_and_can_do_without(joint):
     shapes = len(BY_NAME["inertia"].shapes(joint.whole))
     assert whole.groups.width.tolist() == [1, *[2] * shapes, 1]
     assert whole.columns.count == 2 + 2 * shapes
-    fewer = whole.without(bench, {"inertia", "stribeck"})
+    fewer = whole.without({"inertia", "stribeck"})
     assert [one.name for one in fewer.hypotheses] == ["linear_viscous", "load_linear"]
-    np.testing.assert_array_equal(
-        fewer.columns.friction.means, whole.columns.take([0, -1]).friction.means
-    )
-    assert whole.without(bench, set()) is whole
+    assert fewer.groups.width.tolist() == [1, 1]
+    made = Catalogue.of(bench, fewer.hypotheses)
+    for part, expected in zip(fewer.columns.channels, made.columns.channels, strict=True):
+        np.testing.assert_array_equal(part.means, expected.means)
+        np.testing.assert_array_equal(part.inside, expected.inside)
+    for modes, expected in zip(fewer.modes, made.modes, strict=True):
+        np.testing.assert_allclose(np.array(modes), np.array(expected), rtol=1e-12, atol=1e-12)
+    assert whole.without(set()) is whole
 
 
 def test_a_catalogue_can_be_empty(joint):
     bench = Bench.of(joint)
-    empty = Catalogue.of(bench, [hypothesis_of(BY_NAME["drift"], joint)]).without(bench, {"drift"})
+    empty = Catalogue.of(bench, [hypothesis_of(BY_NAME["drift"], joint)]).without({"drift"})
     assert empty.columns.count == 0
     assert empty.hypotheses == ()
 

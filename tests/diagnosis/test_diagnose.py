@@ -1,5 +1,6 @@
 """Hidden effects are found by name, and nothing is found where nothing is hidden."""
 
+import hashlib
 import json
 
 import numpy as np
@@ -9,6 +10,7 @@ import pytest
 from frictioncli import chain, schemas, tables
 from frictioncli.diagnosis.diagnose import diagnose_joint
 from frictioncli.diagnosis.document import verdict_text
+from frictioncli.diagnosis.extended import EXTENDED
 from frictioncli.diagnosis.settings import DiagnosisSettings
 from frictioncli.effects import BY_NAME
 from frictioncli.errors import NotEnoughData, OptionError, TableError
@@ -149,12 +151,14 @@ def test_senseless_settings_are_refused(wrong):
 
 @pytest.fixture(scope="module")
 def work(tmp_path_factory):
-    """A work folder with the torques of a lagging gear, fitted and diagnosed."""
+    """A work folder with the torques of a lagging gear and no ramps, fitted and diagnosed."""
     folder = tmp_path_factory.mktemp("work")
     rows = lagging(days(8)).assign(torque_forward=1.0, torque_reverse=1.0, n_forward=1, n_reverse=1)
     tables.write(
         folder / chain.TORQUES, rows, schemas.TORQUES, Provenance("test"), {"torque_unit": "N·m"}
     )
+    none = pd.DataFrame(columns=[column.name for column in schemas.RAMPS.columns])
+    tables.write(folder / chain.RAMPS, none, schemas.RAMPS, Provenance("test"))
     chain.fit(folder)
     chain.diagnose(folder)
     return folder
@@ -171,6 +175,15 @@ def test_files_have_the_keys_of_the_contract(work):
     assert set(found["gain"]) == gain
     assert {"rmse", "worst"} <= set(found["simulation"])
     assert found["settings"]["alpha"] == 0.05
+
+
+@pytest.mark.parametrize("file", [chain.DIAGNOSIS, EXTENDED])
+def test_files_name_all_that_they_were_made_from(work, file):
+    found = json.loads((work / file).read_text(encoding="utf-8"))
+    assert found["provenance"]["inputs"] == {
+        name: hashlib.sha256((work / name).read_bytes()).hexdigest()
+        for name in ("torques.parquet", "model.json", "ramps.parquet")
+    }
 
 
 def test_the_extended_model_needs_fewer_corrections(work):

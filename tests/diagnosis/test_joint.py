@@ -7,7 +7,7 @@ import pytest
 from scipy import stats
 from scipy.linalg import block_diag, null_space
 
-from frictioncli.diagnosis.joint import Side, noise_of, solved
+from frictioncli.diagnosis.joint import Equations, noise_of, solved
 from frictioncli.diagnosis.scan import null_of, weighted_gram
 from frictioncli.diagnosis.spectra import STRENGTHS, spectra_of
 from tests.diagnosis import noises
@@ -45,12 +45,16 @@ def both(seed=0, contrasts=50):
 
 
 def fitted(channels, inside, means, base=2):
-    between = [
-        inner(spectrum, setting, columns)
-        for (spectrum, setting), columns in zip(channels, means, strict=True)
-    ]
-    sides = tuple(Side(0.0, COUNT - base) for _ in channels)
-    return solved(sides, [rows.T @ rows for rows in inside], between, base)
+    friction, load = (
+        Equations(
+            inside=rows.T @ rows,
+            between=inner(spectrum, setting, columns),
+            determinant=0.0,
+            freedom=COUNT - base,
+        )
+        for (spectrum, setting), rows, columns in zip(channels, inside, means, strict=True)
+    )
+    return solved((friction, load), base)
 
 
 def dense(channels, inside, means, scales):
@@ -130,13 +134,17 @@ def test_likelihood_is_that_of_the_contrasts():
         zero = np.zeros((COUNT, 1))
         first = np.hstack([base, zero, *rivals, friction])
         second = np.hstack([zero, zero, offset, *(0 * one for one in rivals), load])
-        sides = (
-            Side(float(null[0].determinant[setting]), null[0].freedom),
-            Side(float(null[1].determinant[2, 3]), null[1].freedom),
+        places = [(null[0], own, setting, first), (null[1], other, (2, 3), second)]
+        channels = (
+            Equations(
+                inside=np.zeros((columns.shape[1],) * 2),
+                between=inner(noises_of, place, columns),
+                determinant=float(alone.determinant[place]),
+                freedom=alone.freedom,
+            )
+            for alone, noises_of, place, columns in places
         )
-        between = [inner(own, setting, first), inner(other, (2, 3), second)]
-        nothing = [np.zeros_like(one) for one in between]
-        return solved(sides, nothing, between, known).likelihood
+        return solved(tuple(channels), known).likelihood
 
     def direct(setting, *rivals):
         contrasts = null_space(base.T)

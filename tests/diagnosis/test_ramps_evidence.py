@@ -8,10 +8,9 @@ import pytest
 from frictioncli import schemas, tables
 from frictioncli.diagnosis.ramps import MOST_SAID, RampLog, arbitrated, ramp_evidence, ramp_logs
 from frictioncli.model.friction import PUBLISHED, friction_torque
-from frictioncli.motion.settings import SteadySettings
-from frictioncli.motion.spans import find_spans
 from frictioncli.provenance import Provenance
-from tests.moves import batches, journey, samples
+from tests import found
+from tests.moves import journey, samples
 
 SPEEDS = [15.0, 15.0, 30.0, 30.0, 60.0, 60.0, 100.0, 100.0] * 4
 GRAVITY = np.array([90.0, -5.0, 1.0])
@@ -57,8 +56,7 @@ def log(*, lack=0.0, distance=6.0, settling=0.0, sign=1, late=0, noise=0.3, seed
     torque += (INERTIA * motion["acceleration"] + settling * unseen).shift(late, fill_value=0.0)
     torque += np.random.default_rng(seed).normal(0, noise, len(motion))
     frame = samples(motion, friction=0.0, torque=torque)
-    found = find_spans(batches(frame, 100_000), SteadySettings(), 5.0)
-    return RampLog(found.ramps.assign(payload=np.nan), sign)
+    return RampLog(found.ramps(frame), sign)
 
 
 def said(ramps, **base):

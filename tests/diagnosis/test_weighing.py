@@ -1,5 +1,7 @@
 """Pooling keeps what effects can show, and weighted estimates know how far they can be off."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -54,12 +56,23 @@ def test_white_deviations_stay_white():
     assert np.mean(np.var(inside, axis=1)) == pytest.approx(0.75, abs=0.03)
 
 
-def test_weights_hold_deviation_and_correlation_of_the_pair_means():
-    weights = Weights.of(PAIRS, NOISE, EXTRA)
-    expected = dense(PAIRS, NOISE, EXTRA)
+@pytest.mark.parametrize("noise", [NOISE, replace(NOISE, drift=0.0)], ids=["drift", "no drift"])
+def test_weights_hold_deviation_and_correlation_of_the_pair_means(noise):
+    weights = Weights.of(PAIRS, noise, EXTRA)
+    expected = dense(PAIRS, noise, EXTRA)
     np.testing.assert_allclose(weights.deviation, np.sqrt(np.diag(expected)))
     size = np.outer(weights.deviation, weights.deviation)
-    np.testing.assert_allclose(weights.correlation * size, expected, atol=1e-12)
+    np.testing.assert_allclose(correlation(weights) * size, expected, atol=1e-12)
+
+
+def correlation(weights):
+    """Correlation of the pair means' noise; that of deviations inside pairs must be none."""
+    count = len(weights.rows(np.zeros((ROWS, 1))))
+    whole = weights.correlated(np.eye(count))
+    inside, between = count - 16, slice(count - 16, count)
+    np.testing.assert_array_equal(whole[:inside], np.eye(count)[:inside])
+    assert not whole[between, :inside].any()
+    return whole[between, between]
 
 
 def weighing():
@@ -87,14 +100,10 @@ def test_coefficients_are_those_of_weighted_rows(seed):
         for values, into in ((part, rows), (target[:, None], data)):
             means = values.reshape(16, 4, -1).mean(axis=1)
             into.append((values - np.repeat(means, 4, axis=0)) / weights.point)
-            into.append(means / np.sqrt(np.diag(dense_of(weights)))[:, None])
+            into.append(means / weights.deviation[:, None])
     expected = np.linalg.lstsq(np.vstack(rows), np.vstack(data)[:, 0], rcond=None)[0]
-    found, _ = weighing().solve(friction, load, targets)
+    found = weighing().coefficients(friction, load, targets)
     np.testing.assert_allclose(found, expected, rtol=1e-7, atol=1e-9)
-
-
-def dense_of(weights):
-    return weights.correlation * np.outer(weights.deviation, weights.deviation)
 
 
 def test_covariance_is_what_repeated_noise_makes_of_the_estimates():
@@ -108,9 +117,9 @@ def test_covariance_is_what_repeated_noise_makes_of_the_estimates():
         common = dense(PAIRS, noise, extra) - noise.point**2 / 4 * np.eye(16)
         means = np.linalg.cholesky(common) @ generator.normal(size=(16, draws))
         drawn.append(np.repeat(means, 4, axis=0) + noise.point * generator.normal(size=(64, draws)))
-    _, covariance = tool.solve(friction, load, (drawn[0][:, 0], drawn[1][:, 0]))
+    covariance = tool.error_covariance(friction, load)
     estimates = np.array(
-        [tool.solve(friction, load, (drawn[0][:, i], drawn[1][:, i]))[0] for i in range(draws)]
+        [tool.coefficients(friction, load, (drawn[0][:, i], drawn[1][:, i])) for i in range(draws)]
     )
     size = np.sqrt(np.diag(covariance))
     np.testing.assert_allclose(estimates.std(axis=0), size, rtol=0.06)
@@ -123,7 +132,8 @@ def test_covariance_is_what_repeated_noise_makes_of_the_estimates():
 def test_a_column_of_zeros_has_a_coefficient_of_zero():
     friction, load = columns(7), columns(8)
     friction[:, 1] = load[:, 1] = 0.0
-    found, covariance = weighing().solve(friction, load, (friction @ [1.0, 5.0, 2.0], load[:, 0]))
+    found = weighing().coefficients(friction, load, (friction @ [1.0, 5.0, 2.0], load[:, 0]))
+    covariance = weighing().error_covariance(friction, load)
     assert found[1] == pytest.approx(0.0, abs=1e-12)
     assert covariance[1, 1] == pytest.approx(0.0, abs=1e-12)
     assert np.isfinite(found).all()

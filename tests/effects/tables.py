@@ -2,6 +2,7 @@
 
 import numpy as np
 
+from frictioncli.effects import BY_NAME
 from frictioncli.effects.base import EffectTable
 from frictioncli.model.friction import PUBLISHED, friction_torque
 
@@ -70,3 +71,13 @@ def two_days(*, bins: int = 13, series: int = 12) -> EffectTable:
 def selected(table: EffectTable, rows) -> EffectTable:
     """Return some rows of a table."""
     return EffectTable(**{name: getattr(table, name)[rows] for name in COLUMNS})
+
+
+def friction(name: str, table: EffectTable, **shape: float) -> list[list[float]]:
+    """Return the friction columns of an effect, one list per row."""
+    return BY_NAME[name].evaluate(table, shape).friction.tolist()
+
+
+def load(name: str, table: EffectTable, **shape: float) -> list[list[float]]:
+    """Return the load columns of an effect, one list per row."""
+    return BY_NAME[name].evaluate(table, shape).load.tolist()

@@ -80,12 +80,12 @@ def _prepare_store() -> None:
         STORE.write_text(header + "\n", encoding="utf-8")
 
 
-def write(rows: pd.DataFrame, folder: Path) -> None:
-    """Write the page and its pictures."""
+def write(rows: pd.DataFrame, digest: str, folder: Path) -> None:
+    """Write the page, which says what other sources than these have made, and its pictures."""
     rows = told(rows)
     confusion_picture(rows, folder / "blind-confusion.png")
     power_picture(rows, folder / "blind-power.png")
-    (folder / "blind.md").write_text(page(rows), encoding="utf-8")
+    (folder / "blind.md").write_text(page(rows, digest), encoding="utf-8")
 
 
 def main(arguments: argparse.Namespace) -> None:
@@ -100,7 +100,7 @@ def main(arguments: argparse.Namespace) -> None:
     rows = stored(digest, keep=arguments.keep)
     if rows.empty:
         raise SystemExit(f"{STORE} has no rows of the present sources; nothing written")
-    write(rows, DOCS)
+    write(rows, digest, DOCS)
 
 
 def _arguments() -> argparse.Namespace:

@@ -19,8 +19,23 @@ from tests.studies.blind_worlds import LAG, SIZES, UNLISTED
 TEXT = Path(__file__).with_name("blind.txt")
 
 
-def page(rows: pd.DataFrame) -> str:
-    """Return the page: the text with the tables in their places."""
+CHANGED = (
+    "the bounds of coefficients in units of torque, the size of structure that is left without a"
+    " name, and the draws of chance in both channels at once"
+)
+"""What the program does otherwise since the oldest rows that are still shown."""
+
+
+def page(rows: pd.DataFrame, digest: str) -> str:
+    """Return the page: the text with the tables in their places.
+
+    Parameters
+    ----------
+    rows : DataFrame
+        The worlds' rows.
+    digest : str
+        The present sources': rows of others are said to be older.
+    """
     counts = rows["kind"].value_counts()
     return TEXT.read_text(encoding="utf-8").format(
         worlds=len(rows),
@@ -29,7 +44,7 @@ def page(rows: pd.DataFrame) -> str:
         pair=counts.get("pair", 0),
         unlisted=counts.get("unlisted", 0),
         repetitions=_repetitions(rows),
-        stale=_stale(rows),
+        stale=_stale(rows, digest),
         worth=WORTH,
         gates=gates(rows),
         alarms=_alarms(rows),
@@ -50,12 +65,16 @@ def _repetitions(rows: pd.DataFrame) -> str:
     return str(most) if least == most else f"{least} to {most}"
 
 
-def _stale(rows: pd.DataFrame) -> str:
-    versions = rows["sources"].value_counts()
-    if len(versions) < 2:
+def _stale(rows: pd.DataFrame, digest: str) -> str:
+    """Return a paragraph on the rows that other sources made; none where there are none."""
+    old = int((rows["sources"] != digest).sum())
+    if not old:
         return ""
-    old = len(rows) - int(versions.max())
-    return f" {old} of the joints were diagnosed by other versions of the program than the rest."
+    text = (
+        f"**Older rows.** {old} of the joints were diagnosed before the last changes of the"
+        f" program: {CHANGED}. What the present one says of them may differ."
+    )
+    return textwrap.fill(text, 90) + "\n\n"
 
 
 def _table(titles: Sequence[str], lines: Sequence[Sequence[str]]) -> str:
