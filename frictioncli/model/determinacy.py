@@ -8,9 +8,10 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from frictioncli.model.equations import COEFFICIENTS
 from frictioncli.model.identification import Estimate, fit_terms
 from frictioncli.model.observations import Observations
-from frictioncli.model.projection import COEFFICIENTS, DELTA_BOUNDS
+from frictioncli.model.projection import DELTA_BOUNDS
 
 MIN_TEMPERATURE_SPAN = 10.0
 """Least span of temperature that tells how friction falls with it. [°C]"""

@@ -13,7 +13,8 @@ from frictioncli.model.observations import observations
 from frictioncli.model.paper_method import consecutive_fit
 from frictioncli.model.settings import FitSettings
 
-_LEAST_PAIRS = 3
+LEAST_PAIRS = 3
+"""Fewest pairs that a fit is tried with."""
 
 
 def fit_joint(torques: pd.DataFrame, facts: dict[str, Any], settings: FitSettings) -> FrictionModel:
@@ -46,10 +47,10 @@ def fit_joint(torques: pd.DataFrame, facts: dict[str, Any], settings: FitSetting
     known, notes = _with_temperature(torques, temperature, joint)
     observed = observations(known, temperature)
     n_pairs = len(observed.friction)
-    if n_pairs < _LEAST_PAIRS:
+    if n_pairs < LEAST_PAIRS:
         raise NotEnoughData(
             f"joint {joint}: {n_pairs} pair(s) of counter-directed moves found, expected at least"
-            f" {_LEAST_PAIRS}; log more moves, or loosen the options of 'frictioncli pair'"
+            f" {LEAST_PAIRS}; log more moves, or loosen the options of 'frictioncli pair'"
         )
     if settings.method == "paper":
         estimate, determination = consecutive_fit(known, observed, temperature)

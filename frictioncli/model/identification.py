@@ -11,10 +11,11 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import stats
 
+from frictioncli.model.equations import Equations, jacobian
 from frictioncli.model.friction import FrictionParameters, friction_torque
 from frictioncli.model.noise import Noise, pair_covariance, plausible_noise
 from frictioncli.model.observations import Observations
-from frictioncli.model.projection import Equations, jacobian, minimise
+from frictioncli.model.projection import minimise
 
 Array = NDArray[np.float64]
 
@@ -68,7 +69,7 @@ def fit_terms(observed: Observations, terms: tuple[str, ...]) -> Estimate:
     observed : Observations
         Friction of one joint.
     terms : tuple of str
-        Those of :data:`frictioncli.model.projection.COEFFICIENTS` to fit.
+        Those of :data:`frictioncli.model.equations.COEFFICIENTS` to fit.
     """
     names = (*terms, "delta") if "gamma" in terms else terms
     noise = _first_noise(observed, terms)

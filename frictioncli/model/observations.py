@@ -64,13 +64,21 @@ def observations(torques: pd.DataFrame, temperature: str) -> Observations:
     temperature : {"motor", "housing", "mean"}
         Temperature that the friction function is given.
     """
-    ordered = torques.assign(
-        squared_load=np.square(torques["load_torque"]),
-        temperature=temperature_of(torques, temperature),
-    ).sort_values(["run", "time", "pair", "position"])
+    columns = [*PAIR_KEY, "time", "speed", "position", "friction_torque"]
+    ordered = (
+        torques[columns]
+        .assign(
+            squared_load=np.square(torques["load_torque"]),
+            temperature=temperature_of(torques, temperature),
+        )
+        .sort_values(["run", "time", "pair", "position"])
+    )
     grouped = ordered.groupby(PAIR_KEY, sort=False, observed=True)
-    columns = ["time", "speed", "temperature", "friction_torque", "squared_load"]
-    means = grouped[columns].mean().reset_index()
+    means = (
+        grouped[["time", "speed", "temperature", "friction_torque", "squared_load"]]
+        .mean()
+        .reset_index()
+    )
     row_pair = grouped.ngroup().to_numpy()
     return Observations(
         run=pd.factorize(means["run"])[0],

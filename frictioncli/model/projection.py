@@ -2,7 +2,8 @@
 
 For a given delta the best non-negative coefficients follow from a small linear problem, so the fit
 is a search over one number. It is scanned over its whole range first: the global minimum is found
-from the data alone, without a starting value.
+from the data alone, without a starting value. Many equations are searched in a summary of few, and
+settled on all of them.
 
 References
 ----------
@@ -11,55 +12,23 @@ References
    doi:10.1137/0710036.
 """
 
-from dataclasses import dataclass
-
 import numpy as np
-from numpy.typing import NDArray
-from scipy.optimize import minimize_scalar, nnls
+from scipy.optimize import brentq, nnls
 
+from frictioncli.model.equations import COEFFICIENTS, Array, Equations, jacobian, summarised
 from frictioncli.model.friction import FrictionParameters
-
-Array = NDArray[np.float64]
-
-COEFFICIENTS = ("tau_c", "alpha", "beta", "gamma")
-"""The parameters in which equation (16) is linear, in the order used throughout."""
+from frictioncli.model.settling import settled
 
 DELTA_BOUNDS = (1e-3, 0.3)
 """Range searched for delta: friction halves in 700 °C at one end, in 2.3 °C at the other. [1/°C]"""
 
 _SCAN = np.geomspace(*DELTA_BOUNDS, 64)
 
+_MANY = 2_000
+"""More equations than this are searched in their summary."""
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Equations:
-    """Weighted equations of a fit; each row is already divided by its standard deviation.
-
-    Attributes
-    ----------
-    constant, squared_load, root_speed : ndarray, shape (rows,)
-        What tau_c, alpha and beta multiply; gamma multiplies
-        ``root_speed * exp(-delta * temperature)``.
-    temperature : ndarray, shape (rows,)
-        Temperature; any finite number where ``root_speed`` is zero. [°C]
-    friction : ndarray, shape (rows,)
-        Right-hand side.
-    """
-
-    constant: Array
-    squared_load: Array
-    root_speed: Array
-    temperature: Array
-    friction: Array
-
-    def columns(self, terms: tuple[str, ...], delta: float) -> Array:
-        """Return the columns of the linear problem for a given delta, shape (rows, terms)."""
-        column = {
-            "tau_c": self.constant,
-            "alpha": self.squared_load,
-            "beta": self.root_speed,
-            "gamma": self.root_speed * np.exp(-delta * self.temperature),
-        }
-        return np.column_stack([column[term] for term in terms])
+_SUMMARY_ERROR = 1e-4
+"""Valleys that differ less than so much in the summary are told apart on all equations."""
 
 
 def project(
@@ -81,12 +50,9 @@ def project(
     FrictionParameters, float
         The coefficients with this delta, and the sum of squared weighted residuals.
     """
-    system = np.column_stack([equations.columns(terms, delta), equations.friction])
-    triangle = np.asarray(np.linalg.qr(system, mode="r"))
-    size = np.maximum(np.linalg.norm(triangle[:, :-1], axis=0), 1e-300)
-    coefficients, norm = nnls(triangle[:, :-1] / size, triangle[:, -1])
-    found = dict.fromkeys(COEFFICIENTS, 0.0) | dict(zip(terms, coefficients / size, strict=True))
-    return FrictionParameters(**found, delta=delta), float(norm) ** 2
+    coefficients, misfit = _non_negative(_triangles(equations, terms, np.array([delta]))[0])
+    found = dict.fromkeys(COEFFICIENTS, 0.0) | dict(zip(terms, coefficients, strict=True))
+    return FrictionParameters(**found, delta=delta), misfit
 
 
 def minimise(equations: Equations, terms: tuple[str, ...]) -> FrictionParameters:
@@ -101,29 +67,75 @@ def minimise(equations: Equations, terms: tuple[str, ...]) -> FrictionParameters
     """
     if "gamma" not in terms:
         return project(equations, terms, 0.0)[0]
-    costs = np.array([project(equations, terms, delta)[1] for delta in _SCAN])
-    padded = np.concatenate([[np.inf], costs, [np.inf]])
-    basins = np.flatnonzero((costs <= padded[:-2]) & (costs <= padded[2:]))
-    best: tuple[FrictionParameters, float] | None = None
-    for i in basins.tolist():
-        low, high = _SCAN[max(i - 1, 0)], _SCAN[min(i + 1, len(_SCAN) - 1)]
-        search = minimize_scalar(
-            lambda delta: project(equations, terms, delta)[1],
-            bounds=(low, high),
-            method="bounded",
-            options={"xatol": 1e-9},
-        )
-        candidate = project(equations, terms, float(search.x))
-        if best is None or candidate[1] < best[1]:
-            best = candidate
-    assert best is not None  # a finite scan has a lowest point
-    return best[0]
+    if len(equations) <= _MANY:
+        lows = [_lowest(equations, terms, *valley) for valley in _valleys(equations, terms)]
+    else:
+        lows = _lowest_of_many(equations, terms)
+    return min(lows, key=lambda low: low[1])[0]
 
 
-def jacobian(equations: Equations, terms: tuple[str, ...], parameters: FrictionParameters) -> Array:
-    """Return the derivatives of the weighted model by ``terms`` and, with gamma, by delta."""
-    columns = equations.columns(terms, parameters.delta)
-    if "gamma" not in terms:
-        return columns
-    by_delta = -parameters.gamma * equations.temperature * columns[:, terms.index("gamma")]
-    return np.column_stack([columns, by_delta])
+def _lowest_of_many(
+    equations: Equations, terms: tuple[str, ...]
+) -> list[tuple[FrictionParameters, float]]:
+    """Return the minima, and their misfits, in the valleys that their summary shows as deepest."""
+    summary = summarised(equations)
+    valleys = _valleys(summary, terms)
+    lows = [_lowest(summary, terms, *valley) for valley in valleys]
+    deep = min(misfit for _, misfit in lows) * (1 + _SUMMARY_ERROR)
+    found = []
+    for (low, misfit), (start, end) in zip(lows, valleys, strict=True):
+        if misfit <= deep:
+            near = settled(equations, summary, terms, low)
+            if near is None or not start <= near[0].delta <= end:
+                near = _lowest(equations, terms, start, end)
+            found.append(near)
+    return found
+
+
+def _valleys(equations: Equations, terms: tuple[str, ...]) -> list[tuple[float, float]]:
+    """Return the ranges of delta in which the misfit has a local minimum."""
+    triangles = _triangles(equations, terms, _SCAN)
+    misfits = np.array([_non_negative(triangle)[1] for triangle in triangles])
+    padded = np.concatenate([[np.inf], misfits, [np.inf]])
+    lows = np.flatnonzero((misfits < padded[:-2]) & (misfits <= padded[2:]))
+    last = len(_SCAN) - 1
+    return [(float(_SCAN[max(i - 1, 0)]), float(_SCAN[min(i + 1, last)])) for i in lows.tolist()]
+
+
+def _lowest(
+    equations: Equations, terms: tuple[str, ...], low: float, high: float
+) -> tuple[FrictionParameters, float]:
+    """Return the minimum in a valley, and its misfit.
+
+    It is where the slope over delta crosses zero: a search by the misfit itself would be blind
+    within the square root of its rounding.
+    """
+
+    def slope(delta: float) -> float:
+        parameters, _ = project(equations, terms, delta)
+        derivatives = jacobian(equations, terms, parameters).T
+        coefficients = np.array([getattr(parameters, term) for term in terms])
+        # the coefficients are the best ones, so that only delta's own effect remains
+        return -float(derivatives[-1] @ (equations.friction - coefficients @ derivatives[:-1]))
+
+    if slope(low) >= 0:
+        return project(equations, terms, low)
+    if slope(high) <= 0:
+        return project(equations, terms, high)
+    return project(equations, terms, brentq(slope, low, high, xtol=1e-15, rtol=1e-14))
+
+
+def _triangles(equations: Equations, terms: tuple[str, ...], deltas: Array) -> Array:
+    """Return the QR triangles of coefficients' columns and right-hand side for several deltas."""
+    system = np.empty((len(deltas), len(terms) + 1, len(equations)))
+    for rows, delta in zip(system, deltas.tolist(), strict=True):
+        rows[:-1] = equations.columns(terms, delta)
+        rows[-1] = equations.friction
+    return np.asarray(np.linalg.qr(np.swapaxes(system, 1, 2), mode="r"))
+
+
+def _non_negative(triangle: Array) -> tuple[Array, float]:
+    """Return the non-negative solution of ``triangle[:, :-1] x = triangle[:, -1]``, its misfit."""
+    size = np.maximum(np.linalg.norm(triangle[:, :-1], axis=0), 1e-300)
+    coefficients, norm = nnls(triangle[:, :-1] / size, triangle[:, -1])
+    return coefficients / size, float(norm) ** 2

@@ -5,7 +5,6 @@ import pytest
 
 from frictioncli.errors import NotEnoughData, OptionError
 from frictioncli.model.fitting import fit_joint
-from frictioncli.model.projection import Equations, minimise
 from frictioncli.model.settings import FitSettings
 from tests.model.worlds import SPEEDS, TRUTH, cycle_temperatures, torques
 
@@ -37,37 +36,6 @@ def test_known_parameters_come_back_within_their_intervals(method):
             assert entry.determined
             assert high - low < value
     assert held >= 17
-
-
-def test_the_fit_needs_no_start_and_finds_the_global_minimum():
-    """Against a dense scan of delta with the linear problem solved anew, on 40 random joints."""
-    generator = np.random.default_rng(7)
-    for _ in range(40):
-        temperature = generator.uniform(15, 70, 60)
-        root_speed = np.sqrt(generator.uniform(2, 200, 60))
-        delta = generator.uniform(0.005, 0.2)
-        gamma, beta, tau_c = generator.uniform(1, 30), generator.uniform(0, 5), 5.0
-        friction = tau_c + (beta + gamma * np.exp(-delta * temperature)) * root_speed
-        friction = friction + generator.normal(0, 0.2, 60)
-        found = minimise(
-            Equations(
-                constant=np.ones(60),
-                squared_load=np.zeros(60),
-                root_speed=root_speed,
-                temperature=temperature,
-                friction=friction,
-            ),
-            ("tau_c", "beta", "gamma"),
-        )
-        law = found.beta + found.gamma * np.exp(-found.delta * temperature)
-        reached = np.sum(np.square(friction - found.tau_c - law * root_speed))
-        for trial in np.linspace(0.001, 0.3, 600):
-            columns = np.column_stack(
-                [np.ones(60), root_speed, root_speed * np.exp(-trial * temperature)]
-            )
-            solution, *_ = np.linalg.lstsq(columns, friction, rcond=None)
-            if (solution >= 0).all():
-                assert reached <= np.sum(np.square(friction - columns @ solution)) + 1e-9
 
 
 def test_order_of_rows_does_not_matter():
