@@ -1,11 +1,10 @@
 """Algorithm 3 replayed on measured pairs: temperature parameter, prediction and its error."""
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 import pandas as pd
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from frictioncli.model.friction import (
     FrictionParameters,
@@ -119,7 +118,7 @@ def smoothed_friction(*, temperature: Array, speed: Array, friction: Array, degr
     return smooth
 
 
-def replay(data: PhaseData, parameters: FrictionParameters, corrections: Sequence[int]) -> Replay:
+def replay(data: PhaseData, parameters: FrictionParameters, corrections: ArrayLike) -> Replay:
     """Predict the friction of a phase with corrections at the given instants.
 
     Parameters
@@ -128,7 +127,7 @@ def replay(data: PhaseData, parameters: FrictionParameters, corrections: Sequenc
         The phase.
     parameters : FrictionParameters
         Parameters of (16); gamma and delta must be positive.
-    corrections : sequence of int
+    corrections : array_like of int
         Pairs at which a correction is made, growing. Before the first one there is none.
 
     Notes

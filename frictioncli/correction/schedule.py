@@ -12,6 +12,9 @@ latest_degree
 
 Before any change since :math:`t_a` it is unknown and :math:`t_{max}` alone decides.
 
+Schedules of many k and :math:`t_{max}` are followed side by side: when the temperature next changes
+by 1 °C is found once for all instants, and each step takes every schedule to its next event.
+
 References
 ----------
 .. [1] M. N. Nevmerzhitskiy, B. S. Notkin, A. V. Vara, and K. V. Zmeu, "Friction model of industrial
@@ -19,21 +22,21 @@ References
    doi:10.1155/2019/6931563.
 """
 
-from collections.abc import Callable
+from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
+
+from frictioncli.correction.degrees import next_changes
 
 Array = NDArray[np.float64]
-
-DEGREE = 1.0
-"""Change of the motor temperature that the criterion waits for. [°C]"""
-
-_ROUNDING = 1e-9
-"""Readings are whole degrees; converting from Kelvin must not turn 1 °C into less. [°C]"""
+Indices = NDArray[np.intp]
 
 
-def first_degree(time: Array, temperature: Array, *, k: float, tmax: float) -> list[int]:
+def first_degree(
+    time: Array, temperature: Array, *, k: ArrayLike, tmax: ArrayLike
+) -> list[Indices]:
     """Return the instants of correction with the first-degree reading of (20).
 
     Parameters
@@ -42,28 +45,62 @@ def first_degree(time: Array, temperature: Array, *, k: float, tmax: float) -> l
         Growing times at which the criterion is looked at; the first one is a correction. [s]
     temperature : ndarray, shape (instants,)
         Registered motor temperature. [°C]
-    k : float
-        Scale of the criterion.
-    tmax : float
+    k : array_like, shape (schedules,)
+        Scale of the criterion in each schedule.
+    tmax : array_like, shape (schedules,)
         Time after which a correction is forced. [s]
 
     Returns
     -------
-    list of int
-        Indices into ``time``, growing, beginning with 0.
+    list of ndarray of int
+        For each schedule the indices into ``time``, growing, beginning with 0.
     """
-    return _events(time, tmax, lambda last, limit: _first_due(time, temperature, last, limit, k))
+    clock, k, tmax = _Clock.of(time), np.atleast_1d(k), np.atleast_1d(tmax)
+    changes = np.append(next_changes(temperature), len(time))
+    schedule = np.arange(len(k))
+    last = np.zeros_like(schedule)
+    events = [(schedule, last)]
+    while len(schedule):
+        change = changes[last]
+        forced = clock.first_after(last, tmax[schedule])
+        due = clock.first_after(last, k[schedule] * clock.between(last, change))
+        # the change itself must have been seen before it can count
+        last = np.minimum(forced, np.maximum(change, due))
+        schedule, last = schedule[last < len(time)], last[last < len(time)]
+        events.append((schedule, last))
+    return _by_schedule(events, len(k))
 
 
-def latest_degree(time: Array, temperature: Array, *, k: float, tmax: float) -> list[int]:
+def latest_degree(
+    time: Array, temperature: Array, *, k: ArrayLike, tmax: ArrayLike
+) -> list[Indices]:
     """Return the instants of correction with the latest-degree reading of (20).
 
     Parameters and return value are those of :func:`first_degree`.
     """
-    return _events(time, tmax, lambda last, limit: _latest_due(time, temperature, last, limit, k))
+    clock, k, tmax = _Clock.of(time), np.atleast_1d(k), np.atleast_1d(tmax)
+    changes = np.append(next_changes(temperature), len(time))
+    schedule = np.arange(len(k))
+    last = np.zeros_like(schedule)
+    # a change by a degree is under way since ``reference``; what was seen before it lets ``due``
+    reference, forced = last, clock.first_after(last, tmax)
+    due = forced
+    events = [(schedule, last)]
+    while len(schedule):
+        change = changes[reference]
+        corrects = (due < change) | (forced <= change)
+        patience = k[schedule] * clock.between(reference, change)
+        patient = np.maximum(change, clock.first_after(last, patience))
+        last, reference = np.where(corrects, (due, due), (last, change))
+        going = last < len(time)
+        events.append((schedule[corrects & going], last[corrects & going]))
+        schedule, last, reference = schedule[going], last[going], reference[going]
+        forced = clock.first_after(last, tmax[schedule])
+        due = np.where(corrects[going], forced, np.minimum(forced, patient[going]))
+    return _by_schedule(events, len(k))
 
 
-def equally_spaced(time: Array, count: int) -> list[int]:
+def equally_spaced(time: Array, count: int) -> Indices:
     """Return the given number of instants, spread evenly over the time.
 
     Parameters
@@ -73,54 +110,38 @@ def equally_spaced(time: Array, count: int) -> list[int]:
     count : int
         Number of corrections; the first one is at the first instant.
     """
-    if count <= 0:
-        return []
-    wanted = time[0] + (time[-1] - time[0]) * np.arange(count) / count
-    return sorted({int(index) for index in np.searchsorted(time, wanted - 1e-9)})
+    wanted = time[0] + (time[-1] - time[0]) * np.arange(count) / max(count, 1)
+    return np.unique(np.searchsorted(time, wanted - 1e-9))
 
 
-def _events(time: Array, tmax: float, due: Callable[[int, int], int]) -> list[int]:
-    """Return correction after correction; ``due`` finds the next before the forced one."""
-    found = [0]
-    while True:
-        last = found[-1]
-        forced = int(np.searchsorted(time, time[last] + tmax, side="right"))
-        following = due(last, forced)
-        if following >= len(time):
-            return found
-        found.append(following)
+@dataclass(frozen=True, slots=True)
+class _Clock:
+    """The instants, and after them one that never comes."""
+
+    time: Array
+
+    @classmethod
+    def of(cls, time: Array) -> "_Clock":
+        return cls(np.append(time, np.inf))
+
+    def between(self, start: Indices, end: Indices) -> Array:
+        """Return the times from one to another instant; infinite if the latter never comes. [s]."""
+        return self.time[end] - self.time[start]
+
+    def first_after(self, start: Indices, wait: Array) -> Indices:
+        """Return the first instants from which on more than ``wait`` [s] has passed."""
+        never = len(self.time) - 1
+        found = np.searchsorted(self.time, self.time[start] + wait, side="right")
+        found = np.minimum(found, never)
+        # the sum is rounded otherwise than the difference that (20) compares
+        found -= self.between(start, found - 1) > wait
+        found += self.between(start, found) <= wait
+        return np.minimum(found, never)
 
 
-def _first_change(temperature: Array, start: int, limit: int) -> int:
-    """Return the first instant after ``start`` with 1 °C of change; ``limit`` if there is none."""
-    block = 64
-    begin = start + 1
-    while begin < limit:
-        end = min(begin + block, limit)
-        changed = np.abs(temperature[begin:end] - temperature[start]) >= DEGREE - _ROUNDING
-        if changed.any():
-            return begin + int(np.argmax(changed))
-        begin, block = end, 2 * block
-    return limit
-
-
-def _first_due(time: Array, temperature: Array, last: int, limit: int, k: float) -> int:
-    change = _first_change(temperature, last, min(limit, len(time)))
-    if change >= min(limit, len(time)):
-        return limit
-    patience = time[last] + k * (time[change] - time[last])
-    # the change itself must have been seen before it can count
-    return min(limit, max(change, int(np.searchsorted(time, patience, side="right"))))
-
-
-def _latest_due(time: Array, temperature: Array, last: int, limit: int, k: float) -> int:
-    end = min(limit, len(time))
-    reference, change = last, _first_change(temperature, last, end)
-    while change < end:
-        patience = time[last] + k * (time[change] - time[reference])
-        reference, change = change, _first_change(temperature, change, end)
-        # this patience holds until the next change by a degree is seen
-        due = max(reference, int(np.searchsorted(time, patience, side="right")))
-        if due < change:
-            return due
-    return limit
+def _by_schedule(events: list[tuple[Indices, Indices]], schedules: int) -> list[Indices]:
+    """Return the instants of each schedule from pairs of schedules and instants, step by step."""
+    schedule, instant = (np.concatenate(part) for part in zip(*events, strict=True))
+    order = np.argsort(schedule, kind="stable")
+    borders = np.searchsorted(schedule[order], np.arange(schedules + 1))
+    return [instant[order[begin:end]] for begin, end in pairwise(borders)]

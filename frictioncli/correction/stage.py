@@ -9,7 +9,12 @@ import pandas as pd
 
 from frictioncli.correction.deviation import Deviation, estimated_deviation, probes_of
 from frictioncli.correction.replay import PhaseData, Replay, phase_data, replay
-from frictioncli.correction.schedule import equally_spaced, first_degree, latest_degree
+from frictioncli.correction.schedule import (
+    Indices,
+    equally_spaced,
+    first_degree,
+    latest_degree,
+)
 from frictioncli.correction.settings import (
     CorrectionSettings,
     EvaluationGrid,
@@ -21,8 +26,6 @@ from frictioncli.model.document import FrictionModel
 from frictioncli.model.zero_load import friction_at_zero_load
 
 _READINGS = {"first_degree": first_degree, "latest_degree": latest_degree}
-
-_NEVER = ScheduleSettings(criterion="none")
 
 _MIDDLE = 2 / 3
 """The paper corrects at 67.5 deg/s, two thirds of its highest speed."""
@@ -36,14 +39,6 @@ class _Phase:
     name: str
     pairs: pd.DataFrame
     data: PhaseData
-
-
-@dataclass(frozen=True, slots=True)
-class _Cell:
-    """A criterion to evaluate; ``equal`` makes as many corrections as the rule would."""
-
-    criterion: str
-    rule: ScheduleSettings
 
 
 class Evaluation(NamedTuple):
@@ -83,7 +78,7 @@ def simulate(
     process = _deviation(phases, model) if schedule.criterion == "uncertainty" else None
     tables = []
     for phase in phases:
-        result = _replayed(phase.data, model, _cell(schedule), process, highest)
+        result = _simulated(phase.data, model, schedule, process, highest)
         table = phase.pairs[["run", "joint", "pair", "speed", "time", "phase"]].assign(
             **schedule.columns(),
             temperature_parameter=phase.data.temperature + result.correction,
@@ -124,40 +119,46 @@ def evaluate(
         process = _deviation(phases, model)
     except NotEnoughData as fault:
         notes.append(f"left out: {fault}")
-    cells = _cells(grid, bounds=grid.bound if process else ())
+    rules = _rules(grid, bounds=grid.bound if process else ())
     rows = []
     for phase in phases:
-        for cell in cells:
-            result = _replayed(phase.data, model, cell, process, highest)
-            rows.append(
-                {
-                    "run": phase.run,
-                    "joint": model.joint,
-                    "phase": phase.name,
-                    **(cell.rule.columns() | {"criterion": cell.criterion}),
-                    "corrections": int(result.corrected.sum()),
-                    "failed": int(result.failed.sum()),
-                    "pairs": len(phase.pairs),
-                    "epsilon": result.epsilon(phase.data.smoothed),
-                    "epsilon_unsmoothed": result.epsilon(phase.data.friction),
-                }
-            )
+        results = list(
+            zip(rules, _replays(phase.data, model, rules, process, highest), strict=True)
+        )
+        rows += [_row(phase, model, rule.criterion, rule, result) for rule, result in results]
+        rows += [
+            _row(phase, model, "equal", rule, _evenly(phase.data, model, result))
+            for rule, result in results
+            if rule.criterion in ("first_degree", "uncertainty")
+        ]
     return Evaluation(_pooled(pd.DataFrame(rows)), tuple(notes))
 
 
-def _cell(schedule: ScheduleSettings) -> _Cell:
-    """Return a schedule as a cell; evenly spaced corrections are as many as the paper's are."""
-    if schedule.criterion == "equal":
-        return _Cell("equal", replace(schedule, criterion="first_degree"))
-    return _Cell(schedule.criterion, schedule)
-
-
-def _cells(grid: EvaluationGrid, bounds: Sequence[float]) -> list[_Cell]:
-    by_time = [ScheduleSettings(k=k, tmax=tmax) for k in grid.k for tmax in grid.tmax]
+def _rules(grid: EvaluationGrid, bounds: Sequence[float]) -> list[ScheduleSettings]:
+    by_time = [
+        ScheduleSettings(criterion=reading, k=k, tmax=tmax)
+        for reading in _READINGS
+        for k in grid.k
+        for tmax in grid.tmax
+    ]
     by_bound = [ScheduleSettings(criterion="uncertainty", bound=bound) for bound in bounds]
-    readings = [replace(rule, criterion=name) for name in _READINGS for rule in by_time]
-    cells = [_Cell(rule.criterion, rule) for rule in (_NEVER, *readings, *by_bound)]
-    return cells + [_Cell("equal", rule) for rule in (*by_time, *by_bound)]
+    return [ScheduleSettings(criterion="none"), *by_time, *by_bound]
+
+
+def _row(
+    phase: _Phase, model: FrictionModel, criterion: str, rule: ScheduleSettings, result: Replay
+) -> dict[str, object]:
+    return {
+        "run": phase.run,
+        "joint": model.joint,
+        "phase": phase.name,
+        **(rule.columns() | {"criterion": criterion}),
+        "corrections": int(result.corrected.sum()),
+        "failed": int(result.failed.sum()),
+        "pairs": len(phase.pairs),
+        "epsilon": result.epsilon(phase.data.smoothed),
+        "epsilon_unsmoothed": result.epsilon(phase.data.friction),
+    }
 
 
 def _pooled(rows: pd.DataFrame) -> pd.DataFrame:
@@ -217,26 +218,49 @@ def _deviation(phases: list[_Phase], model: FrictionModel) -> Deviation:
         raise NotEnoughData(f"joint {model.joint}: {fault}") from None
 
 
-def _replayed(
+def _simulated(
     data: PhaseData,
     model: FrictionModel,
-    cell: _Cell,
+    schedule: ScheduleSettings,
     process: Deviation | None,
     highest: float,
 ) -> Replay:
-    rule = cell.rule
-    if rule.criterion == "none":
-        return replay(data, model.friction, [])
-    if rule.criterion == "uncertainty":
-        assert process is not None  # estimated wherever the criterion is asked for
-        result = follow(data, model.friction, process, bound=rule.bound, speed=highest)
-    else:
-        events = _READINGS[rule.criterion](data.time, data.reading, k=rule.k, tmax=rule.tmax)
-        result = replay(data, model.friction, events)
-    if cell.criterion == "equal":
-        count = int(result.corrected.sum())
-        return replay(data, model.friction, equally_spaced(data.time, count))
-    return result
+    """Return what one schedule does; evenly spaced corrections are as many as the paper's are."""
+    if schedule.criterion != "equal":
+        return _replays(data, model, [schedule], process, highest)[0]
+    paper = replace(schedule, criterion="first_degree")
+    return _evenly(data, model, _replays(data, model, [paper], process, highest)[0])
+
+
+def _replays(
+    data: PhaseData,
+    model: FrictionModel,
+    rules: Sequence[ScheduleSettings],
+    process: Deviation | None,
+    highest: float,
+) -> list[Replay]:
+    """Return what each of the rules does in a phase."""
+    instants: dict[ScheduleSettings, Indices] = {}
+    for criterion, reading in _READINGS.items():
+        own = [rule for rule in rules if rule.criterion == criterion]
+        k, tmax = np.array([rule.k for rule in own]), np.array([rule.tmax for rule in own])
+        found = reading(data.time, data.reading, k=k, tmax=tmax)
+        instants |= dict(zip(own, found, strict=True))
+    results = []
+    for rule in rules:
+        if rule.criterion == "uncertainty":
+            assert process is not None  # estimated wherever the criterion is asked for
+            result = follow(data, model.friction, process, bound=rule.bound, speed=highest)
+        else:
+            result = replay(data, model.friction, instants.get(rule, ()))
+        results.append(result)
+    return results
+
+
+def _evenly(data: PhaseData, model: FrictionModel, like: Replay) -> Replay:
+    """Return what as many corrections do when they are equally spaced in time."""
+    count = int(like.corrected.sum())
+    return replay(data, model.friction, equally_spaced(data.time, count))
 
 
 def epsilon(rows: pd.DataFrame, reference: str) -> float:
