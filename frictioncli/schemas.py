@@ -215,3 +215,67 @@ EVALUATION = Table(
         _BOUND,
     ),
 )
+
+REFERENCE_TEMPERATURES = (20, 40, 60)
+"""Temperatures at which the fleet's table states friction. [°C]"""
+
+_ESTIMATED = ("tau_c", "alpha", "beta", "gamma", "delta")
+_IN_UNIT = "torque unit"
+
+
+def _maybe(name: str, kind: pa.DataType, unit: str, description: str) -> Column:
+    return Column(name, kind, unit, description, nullable=True)
+
+
+def _interval(name: str, unit: str, description: str) -> tuple[Column, ...]:
+    return (
+        _maybe(name, _REAL, unit, description),
+        _maybe(f"{name}_low", _REAL, unit, f"{name}: lower end of its 95 % interval"),
+        _maybe(f"{name}_high", _REAL, unit, f"{name}: upper end of its 95 % interval"),
+    )
+
+
+def _estimated(name: str) -> tuple[Column, ...]:
+    return (
+        *_interval(name, f"{name}_unit", f"parameter {name} of equation (16)"),
+        _maybe(f"{name}_unit", _LABEL, "", f"unit of {name}"),
+        _maybe(f"{name}_determined", _FLAG, "", f"the data tell {name}"),
+    )
+
+
+FLEET = Table(
+    "fleet",
+    "joint",
+    (
+        Column("robot", _TEXT, "", "name of the robot"),
+        _JOINT_COLUMN,
+        _maybe("runs", _COUNT, "", "runs read"),
+        Column("status", _LABEL, "", "done or failed"),
+        Column("message", _TEXT, "", "why it failed, or what was left out"),
+        _maybe("torque_unit", _LABEL, "", "unit of everything torque-like in this row"),
+        *(column for name in _ESTIMATED for column in _estimated(name)),
+        _maybe("temperature", _LABEL, "", "temperature that the model is given"),
+        _maybe("rmse", _REAL, _IN_UNIT, "error of the model over all pairs and angle bins"),
+        _maybe("n_pairs", _COUNT, "", "pairs used"),
+        _maybe("epsilon_heating", _REAL, _IN_UNIT, "error (21) with corrections, heat-up"),
+        _maybe("epsilon_cooling", _REAL, _IN_UNIT, "error (21) with corrections, cool-down"),
+        _maybe("corrections_heating", _REAL, "", "corrections per run, heat-up"),
+        _maybe("corrections_cooling", _REAL, "", "corrections per run, cool-down"),
+        _maybe("verdict", _LABEL, "", "verdict of the diagnosis"),
+        _maybe("causes", _TEXT, "", "its causes, strongest first"),
+        *_interval("gain", "", "share of the misfit that the extended model takes"),
+        _maybe("gain_basis", _LABEL, "", "new_run, or within_run where the gain flatters"),
+        _maybe("reference_speed", _REAL, "deg/s", "middle of the speeds of the data"),
+        *(
+            _maybe(
+                f"friction_{temperature}",
+                _REAL,
+                _IN_UNIT,
+                f"friction at {temperature} °C and the reference speed, without load",
+            )
+            for temperature in REFERENCE_TEMPERATURES
+        ),
+        *_interval("change", _IN_UNIT, "friction of the last run less the mean of the earlier"),
+        _maybe("inputs_sha256", _TEXT, "", "digest of all files that were read"),
+    ),
+)
