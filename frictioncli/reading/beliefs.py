@@ -8,9 +8,8 @@ import numpy as np
 from frictioncli.reading import aliases as names
 from frictioncli.reading import evidence, units
 from frictioncli.reading.channels import Channel, JointChannels
-from frictioncli.reading.evidence import MotionUnits
 from frictioncli.reading.formats.base import Refusal
-from frictioncli.reading.motion import Remarks, motion_units, motions_of
+from frictioncli.reading.motion import JointMotion, Remarks, joint_motion
 from frictioncli.reading.survey import Survey
 from frictioncli.reading.units import Belief
 
@@ -83,33 +82,33 @@ def plan_joint(
     if isinstance(torque_unit, Refusal):
         return torque_unit
     channels = _with_moving_velocity(channels, survey, remarks)
-    found, furthest = motion_units(channels, survey, forced, remarks)
-    on_motor = channels.position.meaning.side == names.MOTOR_SIDE
-    ratio = gear_ratio
-    if ratio is None and channels.motor_position is not None:
-        ratio = _ratio_from_positions(channels, survey, found, remarks)
-    if on_motor and ratio is None:
-        return Refusal(
-            "no_gear_ratio",
-            f"{channels.position.name} is the motor's position and nothing tells the gear ratio;"
-            " give it with --gear-ratio or [joint] gear_ratio in --map",
-        )
-    through_gear = ratio if on_motor and ratio is not None else 1.0
+    motion = joint_motion(channels, survey, forced, remarks)
+    gear = _gear(channels, survey, motion, gear_ratio, remarks)
+    if gear is None:
+        seen = _without_gear(channels, motion, remarks)
+        if seen is None:
+            return Refusal(
+                "no_gear_ratio",
+                f"{channels.position.name} is the motor's position and nothing tells the gear"
+                " ratio; give it with --gear-ratio or [joint] gear_ratio in --map",
+            )
+        channels, motion = seen
+    found = motion.units
     beliefs = {
         names.TIME: units.plain(found.time, names.TIME),
-        names.POSITION: _scaled(units.plain(found.position, names.POSITION), 1 / through_gear),
+        names.POSITION: _at_joint(found.position, channels.position, gear),
     }
     if channels.velocity is not None and found.velocity is not None:
-        sign = -1.0 if found.reversed_velocity else 1.0
-        velocity = units.plain(found.velocity, names.VELOCITY)
-        beliefs[names.VELOCITY] = _scaled(velocity, sign / through_gear)
-    side, factor = _torque_side(channels, torque_unit, on_motor, ratio, remarks)
+        velocity = _at_joint(found.velocity, channels.velocity, gear)
+        beliefs[names.VELOCITY] = _scaled(velocity, -1.0 if found.reversed_velocity else 1.0)
+    side, factor = _torque_side(channels, torque_unit, gear, remarks)
     beliefs[names.TORQUE] = _scaled(units.plain(torque_unit, names.TORQUE), factor)
     _add_temperatures(channels, survey, forced, beliefs, remarks)
     if channels.load is not None:
         written = units.canonical(channels.load.unit, names.LOAD)
         beliefs[names.LOAD] = units.plain(forced.get(names.LOAD) or written or "N·m", names.LOAD)
-    limited = found.position == "rad" and not on_motor and furthest <= evidence.RADIAN_LIMIT
+    at_joint = channels.position.meaning.side != names.MOTOR_SIDE
+    limited = found.position == "rad" and at_joint and motion.furthest <= evidence.RADIAN_LIMIT
     return JointPlan(
         channels=channels,
         beliefs=beliefs,
@@ -154,63 +153,114 @@ def _torque_unit(channel: Channel, forced: Mapping[str, str], remarks: Remarks) 
     return unit
 
 
-def _ratio_from_positions(
-    channels: JointChannels, survey: Survey, found: MotionUnits, remarks: Remarks
-) -> float | None:
-    motor = channels.motor_position
-    if motor is None:
-        return None
-    motions = motions_of(survey, channels.time, motor, None)
-    furthest, span = evidence.position_range(motions)
-    possible, _ = evidence.possible_position_units(
-        furthest=furthest, span=span, on_motor=True, way_per_turn=None
-    )
-    unit = units.canonical(motor.unit, names.POSITION)
-    unit = unit if unit in possible else sorted(possible)[0]
-    factor = units.FACTORS[names.POSITION]
-    ratios = []
-    for head in survey.heads:
-        at_motor, at_joint = head[motor.column], head[channels.position.column]
-        good = np.isfinite(at_motor) & np.isfinite(at_joint)
-        ratio = evidence.gear_ratio(
-            at_motor[good] * factor[unit], at_joint[good] * factor[found.position]
+@dataclass(frozen=True, slots=True)
+class _Gear:
+    """What is known of a joint's gear.
+
+    Attributes
+    ----------
+    ratio : float
+        Motor turn per joint turn, negative where they turn against each other. [-]
+    offset : float
+        The joint's position where the motor's is 0; 0 where nothing tells it. [deg]
+    of_torque : bool
+        Whether torque at the motor is brought to the joint too.
+    """
+
+    ratio: float
+    offset: float
+    of_torque: bool
+
+
+def _gear(
+    channels: JointChannels,
+    survey: Survey,
+    motion: JointMotion,
+    told: float | None,
+    remarks: Remarks,
+) -> _Gear | None:
+    """Return the gear by what the user says, else by the positions on both sides."""
+    position, across = channels.position, channels.across
+    if across is None or motion.across is None:
+        return None if told is None else _Gear(told, 0.0, True)
+    joint = (position, units.FACTORS[names.POSITION][motion.units.position])
+    motor = (across, units.FACTORS[names.POSITION][motion.across])
+    if position.meaning.side == names.MOTOR_SIDE:
+        joint, motor = motor, joint
+    pairs = [
+        (head[motor[0].column] * motor[1], head[joint[0].column] * joint[1])
+        for head in survey.heads
+    ]
+    ratio = told
+    if ratio is None:
+        found = [r for one in pairs if (r := evidence.gear_ratio(*one)) is not None]
+        if not found:
+            return None
+        ratio = float(np.median(found))
+        remarks.notes.append(
+            f"gear ratio of joint {channels.joint} found from {motor[0].name} and"
+            f" {joint[0].name}: {ratio:.4g}"
         )
-        if ratio is not None:
-            ratios.append(ratio)
-    if not ratios:
-        return None
-    ratio = float(np.median(ratios))
-    remarks.notes.append(
-        f"gear ratio of joint {channels.joint} found from {motor.name} and"
-        f" {channels.position.name}: {ratio:.4g}"
-    )
-    return ratio
+    offset = evidence.gear_offset(pairs, ratio)
+    # another trace may lack the drive's file, and its torque would stay at the motor
+    return _Gear(ratio, offset, told is not None or not across.borrowed)
+
+
+def _without_gear(
+    channels: JointChannels, motion: JointMotion, remarks: Remarks
+) -> tuple[JointChannels, JointMotion] | None:
+    """Return the channels that do without a gear ratio; None where the position needs it."""
+    position, velocity, across = channels.position, channels.velocity, channels.across
+    if position.meaning.side == names.MOTOR_SIDE:
+        if across is None or motion.across is None:
+            return None
+        remarks.notes.append(
+            f"joint {channels.joint} does not move, which would tell the gear ratio: its position"
+            f" is {across.name}"
+        )
+        channels = replace(channels, position=across, across=position)
+        own = replace(motion.units, position=motion.across)
+        motion = JointMotion(own, np.inf, motion.units.position)
+    if velocity is not None and velocity.meaning.side == names.MOTOR_SIDE:
+        remarks.notes.append(
+            f"{velocity.name} is not used, as nothing tells the gear ratio: velocity is"
+            " differentiated from position"
+        )
+        channels = replace(channels, velocity=None)
+    return channels, motion
+
+
+def _at_joint(unit: str, channel: Channel, gear: _Gear | None) -> Belief:
+    """Return the belief of a position or velocity, through the gear if it is the motor's."""
+    belief = units.plain(unit, channel.quantity)
+    if gear is None or channel.meaning.side != names.MOTOR_SIDE:
+        return belief
+    offset = gear.offset if channel.quantity == names.POSITION else 0.0
+    return replace(_scaled(belief, 1 / gear.ratio), offset=offset)
 
 
 def _torque_side(
-    channels: JointChannels,
-    unit: str,
-    on_motor: bool,
-    ratio: float | None,
-    remarks: Remarks,
+    channels: JointChannels, unit: str, gear: _Gear | None, remarks: Remarks
 ) -> tuple[str, float]:
     """Return the side on which the torque then is, and the factor that brings it there."""
     name, side = channels.torque.name, channels.torque.meaning.side
     if unit in ("A", "mA"):
         return names.MOTOR_SIDE, 1.0
     if not side:
-        side = names.MOTOR_SIDE if on_motor else names.JOINT_SIDE
+        of_drive = channels.across is not None
+        at_motor = channels.position.meaning.side == names.MOTOR_SIDE or of_drive
+        side = names.MOTOR_SIDE if at_motor else names.JOINT_SIDE
         remarks.notes.append(f"{name} does not say its side of the gear: taken as {side} side")
     if side == names.JOINT_SIDE:
         return names.JOINT_SIDE, 1.0
-    if ratio is None:
+    if gear is None or not gear.of_torque:
         remarks.notes.append(
             f"{name} is torque at the motor and stays so; with --gear-ratio it is brought to the"
             " joint"
         )
         return names.MOTOR_SIDE, 1.0
-    remarks.notes.append(f"{name} is brought to the joint by the gear ratio {ratio:.4g}")
-    return names.JOINT_SIDE, ratio
+    remarks.notes.append(f"{name} is brought to the joint by the gear ratio {gear.ratio:.4g}")
+    return names.JOINT_SIDE, gear.ratio
 
 
 def _add_temperatures(

@@ -6,7 +6,6 @@ from dataclasses import dataclass, replace
 
 from frictioncli.reading.aliases import (
     HOUSING_TEMPERATURE,
-    JOINT_SIDE,
     LOAD,
     MEANINGS,
     MOTOR_SIDE,
@@ -49,6 +48,8 @@ class Channel:
         Unit as written, "" where none.
     family : str
         The name without number and unit: columns of one family share their unit.
+    borrowed : bool
+        Taken from another file of the same trace, at this file's times: second choice.
     """
 
     column: int
@@ -57,6 +58,7 @@ class Channel:
     joint: int | None
     unit: str
     family: str
+    borrowed: bool = False
 
     @property
     def quantity(self) -> str:
@@ -66,14 +68,18 @@ class Channel:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class JointChannels:
-    """The columns used for one joint of a file."""
+    """The columns used for one joint of a file.
+
+    ``across`` is the position on the other side of the gear: the two tell its ratio. The velocity
+    is on the side of either of them.
+    """
 
     joint: int
     time: Channel
     position: Channel
     torque: Channel
     velocity: Channel | None = None
-    motor_position: Channel | None = None
+    across: Channel | None = None
     motor_temperature: Channel | None = None
     housing_temperature: Channel | None = None
     load: Channel | None = None
@@ -91,11 +97,18 @@ def split_unit(column: str) -> tuple[str, str]:
     return found["name"], unit
 
 
-def recognise(columns: Sequence[str]) -> tuple[Channel, ...]:
+def recognise(columns: Sequence[str], borrowed_from: int | None = None) -> tuple[Channel, ...]:
     """Return the columns whose names tell what they are, in file order.
 
     Where a family has a column numbered 0 the file counts joints from 0 and all of its joint
     numbers are raised by one. Of columns of the same name the first is taken.
+
+    Parameters
+    ----------
+    columns : sequence of str
+        Column names.
+    borrowed_from : int, optional
+        The first column that another file lends.
     """
     found: list[Channel] = []
     seen: set[str] = set()
@@ -105,7 +118,8 @@ def recognise(columns: Sequence[str]) -> tuple[Channel, ...]:
         seen.add(column)
         channel = _recognised(index, column)
         if channel is not None:
-            found.append(channel)
+            borrowed = borrowed_from is not None and index >= borrowed_from
+            found.append(replace(channel, borrowed=borrowed))
     from_zero = any(channel.joint == 0 for channel in found)
     if not from_zero:
         return tuple(found)
@@ -114,15 +128,25 @@ def recognise(columns: Sequence[str]) -> tuple[Channel, ...]:
 
 def _recognised(index: int, column: str) -> Channel | None:
     name, unit = split_unit(column)
-    plain = MEANINGS.get(_key(name))
-    if plain is not None:
-        return Channel(index, column, plain, None, unit, _key(name))
-    for pattern in (_FRONT, _TAIL):
-        parts = pattern.match(name)
-        meaning = MEANINGS.get(_key(parts["name"])) if parts else None
-        if parts and meaning and meaning.quantity not in (TIME, TOOL):
-            return Channel(index, column, meaning, int(parts["joint"]), unit, _key(parts["name"]))
+    for text in _readings(name):
+        plain = MEANINGS.get(_key(text))
+        if plain is not None:
+            return Channel(index, column, plain, None, unit, _key(text))
+        for pattern in (_FRONT, _TAIL):
+            parts = pattern.match(text)
+            meaning = MEANINGS.get(_key(parts["name"])) if parts else None
+            if parts and meaning and meaning.quantity not in (TIME, TOOL):
+                joint = int(parts["joint"])
+                return Channel(index, column, meaning, joint, unit, _key(parts["name"]))
     return None
+
+
+def _readings(name: str) -> tuple[str, ...]:
+    """Return how a name may be read: a ROS topic, /joints/joint_2/position, from its end."""
+    if not name.startswith("/"):
+        return (name,)
+    parts = name.split("/")
+    return "_".join(parts[-2:]), parts[-1]
 
 
 def _key(name: str) -> str:
@@ -194,10 +218,10 @@ def _joint_channels(
     shared: Sequence[Channel],
 ) -> JointChannels:
     torques = _of(own, TORQUE)
-    at_joint = [c for c in positions if c.meaning.side == JOINT_SIDE]
-    at_motor = [c for c in positions if c.meaning.side == MOTOR_SIDE]
-    position = (at_joint or at_motor)[0]
-    same_side = [c for c in _of(own, VELOCITY) if c.meaning.side == position.meaning.side]
+    position = min(positions, key=lambda c: (c.borrowed, c.meaning.side == MOTOR_SIDE))
+    across = _first([c for c in positions if c.meaning.side != position.meaning.side])
+    velocities = _of(own, VELOCITY)
+    same_side = [c for c in velocities if c.meaning.side == position.meaning.side]
     notes = []
     if len(torques) > 1:
         others = ", ".join(c.name for c in torques[1:])
@@ -207,8 +231,8 @@ def _joint_channels(
         time=time,
         position=position,
         torque=torques[0],
-        velocity=same_side[0] if same_side else None,
-        motor_position=at_motor[0] if at_joint and at_motor else None,
+        velocity=_first(same_side or (velocities if across else [])),
+        across=across,
         motor_temperature=_first(_of(shared, MOTOR_TEMPERATURE)),
         housing_temperature=_first(_of(shared, HOUSING_TEMPERATURE)),
         load=_first(_of(own, LOAD)),
@@ -219,7 +243,8 @@ def _joint_channels(
 def _of(channels: Iterable[Channel], quantity: str) -> list[Channel]:
     """Return the channels of a quantity, preferred ones first."""
     return sorted(
-        (c for c in channels if c.quantity == quantity), key=lambda c: (c.meaning.rank, c.column)
+        (c for c in channels if c.quantity == quantity),
+        key=lambda c: (c.borrowed, c.meaning.rank, c.column),
     )
 
 

@@ -1,37 +1,63 @@
-"""Start times that stand not in a log but in the file recorded with it."""
+"""What files beside a log tell of it: when it began, and the payload."""
 
-import re
-from datetime import UTC, datetime, timedelta
+from dataclasses import dataclass
+from datetime import datetime
 from pathlib import Path
 
-_HEADER_BYTES = 4096
-_MAGIC = b"DIAEXTENDED"
-_DATE = re.compile(r"^\s*104,\s*(\d\d)\.(\d\d)\.(\d{4})\s*$", re.M)
-_CLOCK = re.compile(r"^\s*105,\s*(\d\d):(\d\d):(\d\d)\s*$", re.M)
-_NANOSECONDS = re.compile(r"^\s*106,\s*(\d+)\s*$", re.M)
+from frictioncli.reading.formats.compression import UnreadableLog
+from frictioncli.reading.formats.diadem_header import read_header
+from frictioncli.reading.program import read_program
+from frictioncli.reading.trace_names import PROGRAM, trace_of
+
+_PROGRAM_ENDINGS = (".TXT", ".txt")
 
 
-def started_at(log: Path) -> datetime | None:
-    """Return the start that the DIAdem header (``.dat``) beside a KUKA trace CSV tells.
+@dataclass(frozen=True, slots=True)
+class Beside:
+    """What the files beside a log tell.
 
-    The header names no time zone; the time is taken as UTC, as in a manifest. None where there is
-    no such file or it tells no valid date.
+    Attributes
+    ----------
+    started_at : datetime or None
+        Start of the recording, by the DIAdem header or else the programme's file; UTC.
+    payload : float or None
+        Mass at the tool, by the programme's file. [kg]
+    notes : tuple of str
+        What was taken from where.
     """
-    header = log.with_suffix(".dat")
-    if header == log or not header.is_file():
-        return None
-    with header.open("rb") as stream:
-        content = stream.read(_HEADER_BYTES)
-    if not content.lstrip().startswith(_MAGIC):
-        return None
-    text = content.decode("cp1252", "replace").replace("\r\n", "\n")
-    date, clock, part = _DATE.search(text), _CLOCK.search(text), _NANOSECONDS.search(text)
-    if date is None or clock is None:
-        return None
-    day, month, year = (int(number) for number in date.groups())
-    hour, minute, second = (int(number) for number in clock.groups())
+
+    started_at: datetime | None = None
+    payload: float | None = None
+    notes: tuple[str, ...] = ()
+
+
+def beside(log: Path) -> Beside:
+    """Return what the DIAdem header and the programme's file beside a log tell.
+
+    The log may be the header itself. The programme's file is called ``<trace>_PROG.TXT``.
+    """
+    trace = trace_of(log.stem)
+    start = _start_by_header(log.with_suffix(".dat"))
+    files = (log.with_name(f"{trace}{PROGRAM}{ending}") for ending in _PROGRAM_ENDINGS)
+    file = next((file for file in files if file.is_file()), None)
+    if file is None:
+        return Beside(start, None, () if start is None else ("started as its .dat header tells",))
+    program = read_program(file)
+    if program is None:
+        said = "started as its .dat header tells", "its _PROG.TXT cannot be understood: not used"
+        return Beside(start, None, said[start is None :])
+    if start is not None:
+        told = "started as its .dat header tells"
+    elif program.started_at is not None:
+        told = "started as its _PROG.TXT tells"
+    else:
+        told = "its _PROG.TXT has no valid date"
+    return Beside(start or program.started_at, program.payload, (told, f"its _PROG.TXT {program}"))
+
+
+def _start_by_header(header: Path) -> datetime | None:
     try:
-        start = datetime(year, month, day, hour, minute, second, tzinfo=UTC)
-    except ValueError:
+        found = read_header(header) if header.is_file() else None
+    except UnreadableLog:
         return None
-    return start + timedelta(microseconds=int(part[1]) // 1000 if part else 0)
+    return None if found is None else found.started_at

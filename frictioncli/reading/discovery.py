@@ -2,14 +2,18 @@
 
 import re
 from collections import Counter
-from collections.abc import Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
 from frictioncli.errors import LogError
 from frictioncli.reading import manifest
+from frictioncli.reading.formats.compression import ENDINGS
 
-_SILENT = frozenset({manifest.NAME, "truth.json", "thumbs.db", "desktop.ini"})
+Logs = Sequence[Path] | Mapping[str, Path]
+"""Log files and folders, where each folder is a run; or, by name, what each run consists of."""
+
+_SILENT = frozenset({manifest.NAME, "truth.json", "metadata.yaml", "thumbs.db", "desktop.ini"})
 
 
 @dataclass(frozen=True, slots=True)
@@ -21,10 +25,8 @@ class LogFile:
     @property
     def stem(self) -> str:
         """The name without its ending, ``.csv.gz`` counting as one."""
-        name = self.path.name
-        if name.lower().endswith(".gz"):
-            name = name[:-3]
-        return Path(name).stem
+        packed = self.path.suffix.lower() in ENDINGS
+        return Path(self.path.stem).stem if packed else self.path.stem
 
 
 @dataclass(frozen=True, slots=True)
@@ -52,42 +54,58 @@ def natural_key(name: str) -> list[tuple[int, int, str]]:
     return [(0, int(part), "") if part.isdecimal() else (1, 0, part) for part in parts if part]
 
 
-def discover(logs: Sequence[Path], besides: Path | None = None) -> tuple[Run, ...]:
+def discover(logs: Logs, besides: Path | None = None) -> tuple[Run, ...]:
     """Return the runs in the named files and folders, in the order of first mention.
 
     Parameters
     ----------
-    logs : sequence of Path
-        Files and folders.
+    logs : Logs
+        Files and folders, or run name -> its file, or folder with all that lies below.
     besides : Path, optional
         A folder whose files are no logs: the work folder may lie among them.
 
     Raises
     ------
     LogError
-        If a path does not exist or no file is found.
+        If a path does not exist, is no text, or no file is found.
     """
+    paths = list(logs.values()) if isinstance(logs, Mapping) else logs
+    found = {path: _files_of(path, besides) for path in paths}
     folders: dict[Path, dict[Path, None]] = {}
-    for path in logs:
-        if path.is_dir():
-            for file in _files_below(path, besides):
-                folders.setdefault(file.parent, {})[file] = None
-        elif path.is_file():
-            folders.setdefault(path.parent, {})[path] = None
-        else:
-            raise LogError(f"{path}: no such file or folder; expected a log or a folder of logs")
+    for files in found.values():
+        for file in files:
+            _check_name(file)
+            folders.setdefault(file.parent, {})[file] = None
     if not folders:
-        named = ", ".join(str(path) for path in logs) or "nothing named"
+        named = ", ".join(str(path) for path in paths) or "nothing named"
         raise LogError(f"{named}: no log files found; expected text logs of a joint's motion")
-    names = _unique_names(list(folders))
-    return tuple(
-        Run(
-            names[folder],
-            folder,
-            tuple(LogFile(p) for p in sorted(files, key=lambda p: natural_key(p.name))),
+    if isinstance(logs, Mapping):
+        return tuple(
+            Run(name, path if path.is_dir() else path.parent, _in_order(found[path]))
+            for name, path in logs.items()
         )
-        for folder, files in folders.items()
-    )
+    names = _unique_names(list(folders))
+    return tuple(Run(names[folder], folder, _in_order(own)) for folder, own in folders.items())
+
+
+def _check_name(path: Path) -> None:
+    """Refuse a name whose bytes are no text: tables could not hold it."""
+    try:
+        str(path).encode()
+    except UnicodeEncodeError:
+        raise LogError(f"{path}: its name is no text in UTF-8; rename it") from None
+
+
+def _in_order(files: Iterable[Path]) -> tuple[LogFile, ...]:
+    return tuple(LogFile(path) for path in sorted(files, key=lambda path: natural_key(path.name)))
+
+
+def _files_of(path: Path, besides: Path | None) -> list[Path]:
+    if path.is_dir():
+        return _files_below(path, besides)
+    if path.is_file():
+        return [path]
+    raise LogError(f"{path}: no such file or folder; expected a log or a folder of logs")
 
 
 def _files_below(folder: Path, besides: Path | None) -> list[Path]:

@@ -4,6 +4,7 @@ Positions, velocities and times are checked against each other and against what 
 each function returns what it believes and the evidence for it.
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -16,7 +17,12 @@ _LIMIT = 2 * np.pi
 _MARGIN = 1.1
 RADIAN_LIMIT = _LIMIT * _MARGIN
 """A joint with end stops does not turn further than this. [rad]"""
+_COUPLED = 0.02
+"""Positions whose ratio varies by more than this share are not those of one gear."""
+_RAW = 0.5
+"""Velocities are rather in a usual unit and time in ms than raw values without their scale."""
 _LEVER = (0.02, 5.0)  # [m]
+_WILD = 1e6
 
 
 @dataclass(frozen=True, slots=True)
@@ -65,15 +71,19 @@ def _window_ratios(motion: Motion) -> NDArray[np.float64]:
 def position_range(motions: list[Motion]) -> tuple[float, float]:
     """Return the greatest distance from zero and the greatest span within a file, in raw units.
 
-    A thousandth of the samples on either side does not count, so that damaged cells do not.
+    A thousandth of the samples on either side does not count, so that damaged cells do not, nor
+    does what lies a million times further from zero than most.
     """
     furthest = span = 0.0
     for motion in motions:
-        n = len(motion.position)
-        if not n:
+        if not len(motion.position):
             continue
+        distance = np.abs(motion.position)
+        most = float(np.quantile(distance, 0.95)) or np.inf
+        position = motion.position[distance <= _WILD * most]
+        n = len(position)
         damaged = int(np.ceil(n / 1000)) if n >= 50 else 0
-        ordered = np.sort(motion.position)[damaged : n - damaged]
+        ordered = np.sort(position)[damaged : n - damaged]
         furthest = max(furthest, float(np.max(np.abs(ordered))))
         span = max(span, float(ordered[-1] - ordered[0]))
     return furthest, span
@@ -185,6 +195,7 @@ def motion_units(
                     2.0 * _differs(time_unit, time, "s")
                     + _differs(position_unit, position, "deg")
                     + _differs(velocity_unit, velocity, "deg/s")
+                    + _RAW * (velocity_unit == "mdeg/s" and velocity != "mdeg/s")
                 )
                 found = MotionUnits(
                     time_unit,
@@ -213,18 +224,40 @@ def _differs(unit: str, declared: str | None, usual: str) -> float:
 
 
 def gear_ratio(motor: NDArray[np.float64], joint: NDArray[np.float64]) -> float | None:
-    """Return motor turn per joint turn from both positions; None when too little moves.
+    """Return motor turn per joint turn from both positions.
+
+    None when too little moves, or the two do not move together.
 
     Parameters
     ----------
     motor, joint : ndarray, shape (n,)
-        Positions in the same unit.
+        Positions in the same unit; rows where one is NaN are left out.
     """
-    if len(joint) < 20:
+    good = np.isfinite(motor) & np.isfinite(joint)
+    motor, joint = motor[good], joint[good]
+    if len(joint) < 20 or np.ptp(joint) < 1.0:
         return None
     width = max(1, len(joint) // 200)
     by_motor, by_joint = motor[width:] - motor[:-width], joint[width:] - joint[:-width]
     moving = np.abs(by_joint) > 0.3 * np.max(np.abs(by_joint))
-    if np.ptp(joint) < 1.0 or not np.any(moving):
-        return None
-    return float(np.median(by_motor[moving] / by_joint[moving]))
+    ratios = by_motor[moving] / by_joint[moving]
+    ratio = float(np.median(ratios))
+    spread = float(np.median(np.abs(ratios - ratio)))
+    return ratio if spread < _COUPLED * abs(ratio) else None
+
+
+def gear_offset(
+    pairs: Sequence[tuple[NDArray[np.float64], NDArray[np.float64]]], ratio: float
+) -> float:
+    """Return the joint's position where the motor's is 0 [deg], median over all samples.
+
+    Parameters
+    ----------
+    pairs : sequence of (ndarray, ndarray)
+        Positions of the motor and of the joint, per log. [deg]
+    ratio : float
+        Motor turn per joint turn.
+    """
+    left = np.concatenate([joint - motor / ratio for motor, joint in pairs])
+    left = left[np.isfinite(left)]
+    return float(np.median(left)) if len(left) else 0.0

@@ -11,14 +11,15 @@ from frictioncli.reading.timeline import Timeline
 
 
 def known_temperatures(timeline: Timeline, joint: int) -> tuple[Knots | None, ...]:
-    """Return, for each recording of a run, the known temperatures to interpolate between.
+    """Return, for each recording of a joint, the known temperatures to interpolate between.
 
     Where start times are known the whole run serves every recording; where they were invented each
     recording stands alone. None where a joint's register shows no staircase or too few changes.
     """
     shown = [
-        (placed.start, placed.recorded.registers.get(joint, Register()))
+        (placed.start, placed.recorded.registers[joint])
         for placed in timeline.placed
+        if joint in placed.recorded.registers
     ]
     levels = {level for _, register in shown for level in register.levels}
     step = staircase.find_step(np.array(sorted(levels)))

@@ -1,46 +1,51 @@
 """Logs to ``samples``: the first stage, and the only one that converts units."""
 
+import os
 import tempfile
 from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
+from concurrent.futures import Future, ThreadPoolExecutor
+from contextlib import ExitStack
 from dataclasses import dataclass, field
-from datetime import datetime
 from pathlib import Path
 from typing import Any
 
+from frictioncli import schemas
 from frictioncli.errors import FrictionError, LogError, MappingError
+from frictioncli.files import whole
 from frictioncli.provenance import Provenance, sha256
 from frictioncli.reading import manifest
-from frictioncli.reading.companion import started_at
-from frictioncli.reading.discovery import Run, discover
+from frictioncli.reading.discovery import Logs, Run, discover
+from frictioncli.reading.drafts import Drafts
 from frictioncli.reading.formats.base import Refusal
 from frictioncli.reading.history import known_temperatures
 from frictioncli.reading.mapping import ChannelMap, read_map
 from frictioncli.reading.opening import RefusedLog, open_run
+from frictioncli.reading.parts import first_look, parts_of
 from frictioncli.reading.planning import planned
-from frictioncli.reading.recording import Recorded, read_recording
-from frictioncli.reading.rows import REASONS
+from frictioncli.reading.recording import Recorded, record
+from frictioncli.reading.rows import Faults
 from frictioncli.reading.settings import IngestSettings
 from frictioncli.reading.staircase import Knots
 from frictioncli.reading.summary import IngestSummary, RejectedFile, grouped
-from frictioncli.reading.timeline import Timeline, place
-from frictioncli.reading.writing import write_tables
+from frictioncli.reading.timeline import Clock, Dated, Timeline, in_time_order
+from frictioncli.reading.writing import recording_rows, rejected_files, rejected_rows
+from frictioncli.tables import TableWriter
 
 __all__ = ["IngestSettings", "IngestSummary", "ingest"]
 
+SAMPLES = "samples.parquet"
 _FEW = 4
 _MISSING_CHANNEL = "mapped_column_missing"
 
 
-def ingest(
-    logs: Sequence[Path], work: Path, settings: IngestSettings | None = None
-) -> IngestSummary:
+def ingest(logs: Logs, work: Path, settings: IngestSettings | None = None) -> IngestSummary:
     """Read logs and write ``samples``, ``recordings`` and ``rejected`` to the work folder.
 
     Parameters
     ----------
-    logs : sequence of Path
-        Log files, or folders of them; each folder is a run.
+    logs : Logs
+        Log files, or folders of them, each folder a run; or the runs by name.
     work : Path
         The work folder.
     settings : IngestSettings, optional
@@ -61,34 +66,43 @@ def ingest(
     settings = settings or IngestSettings()
     chart = read_map(settings.map_file) if settings.map_file is not None else ChannelMap()
     runs = discover(logs, besides=work)
-    with _spool_folder(work) as folder:
+    with _spool_folder(work) as name, ExitStack() as stack:
+        desk = _Desk(
+            settings,
+            chart,
+            stack.enter_context(Drafts(Path(name))),
+            stack.enter_context(_writer(Path(name), schemas.REJECTED)),
+            stack.enter_context(ThreadPoolExecutor(1)),
+        )
         harvest = _Harvest()
         for run in runs:
-            _read_run(run, settings, chart, Path(folder), harvest)
+            _read_run(run, desk, harvest)
         if not harvest.recordings:
             raise _nothing_left(harvest.refused)
         facts = _facts(harvest)
-        provenance = Provenance(
-            "ingest", settings.as_dict(), _inputs(harvest.recordings, settings.map_file)
-        )
-        write_tables(
-            work,
-            harvest.timelines,
-            harvest.temperatures,
-            harvest.refused,
-            provenance,
-            facts,
-            batch_bytes=settings.batch_bytes,
-        )
+        provenance = Provenance("ingest", settings.as_dict(), _inputs(harvest, settings.map_file))
+        _finish(Path(name), work, desk, harvest, provenance, facts)
     return _summary(harvest, facts)
+
+
+@dataclass(frozen=True, slots=True)
+class _Desk:
+    """What reading works with: settings, and where samples, rejected rows and hashes go."""
+
+    settings: IngestSettings
+    chart: ChannelMap
+    drafts: Drafts
+    rejected: TableWriter
+    hashing: ThreadPoolExecutor
 
 
 @dataclass(slots=True)
 class _Harvest:
-    """What has been read so far; samples themselves lie in spool files."""
+    """What has been read so far; samples themselves lie in drafts."""
 
     timelines: dict[str, Timeline] = field(default_factory=dict)
     temperatures: dict[tuple[str, int], tuple[Knots | None, ...]] = field(default_factory=dict)
+    hashes: dict[Path, Future[str]] = field(default_factory=dict)
     refused: list[RefusedLog] = field(default_factory=list)
     notes: list[str] = field(default_factory=list)
     warnings: list[str] = field(default_factory=list)
@@ -97,6 +111,32 @@ class _Harvest:
     def recordings(self) -> list[Recorded]:
         """All recordings, run by run, in order of time."""
         return [placed.recorded for line in self.timelines.values() for placed in line.placed]
+
+
+def _writer(folder: Path, table: schemas.Table) -> TableWriter:
+    return TableWriter(folder / f"{table.name}.parquet", table, Provenance("ingest"))
+
+
+def _finish(
+    folder: Path,
+    work: Path,
+    desk: _Desk,
+    harvest: _Harvest,
+    provenance: Provenance,
+    facts: Mapping[str, Any],
+) -> None:
+    """Write what is left to write and put the three tables into the work folder."""
+    desk.rejected.write(rejected_files(harvest.refused))
+    desk.rejected.provenance, desk.rejected.facts = provenance, facts
+    desk.rejected.close()
+    with _writer(folder, schemas.RECORDINGS) as recordings:
+        recordings.provenance, recordings.facts = provenance, facts
+        for run, timeline in harvest.timelines.items():
+            recordings.write(recording_rows(run, timeline.placed))
+    desk.drafts.finish(folder / SAMPLES, harvest.temperatures, provenance, facts)
+    for table in (schemas.REJECTED, schemas.RECORDINGS, schemas.SAMPLES):
+        with whole(work / f"{table.name}.parquet") as place:
+            os.replace(folder / place.name, place)
 
 
 def _spool_folder(work: Path) -> tempfile.TemporaryDirectory[str]:
@@ -131,28 +171,22 @@ def _manifest(run: Run) -> tuple[dict[str, manifest.Entry], bool, list[str]]:
     return matched, True, warnings
 
 
-def _headers(recordings: Sequence[Recorded]) -> dict[str, datetime]:
-    """Return file name -> start, of logs beside which a header tells it."""
-    found = {r.log.file.path.name: started_at(r.log.file.path) for r in recordings}
-    return {name: start for name, start in found.items() if start is not None}
-
-
-def _read_run(
-    run: Run, settings: IngestSettings, chart: ChannelMap, folder: Path, harvest: _Harvest
-) -> None:
-    """Read all logs of a run into spool files and put them in order of time."""
+def _read_run(run: Run, desk: _Desk, harvest: _Harvest) -> None:
+    """Read all logs of a run in order of time."""
     entries, has_manifest, said = _manifest(run)
     harvest.warnings += said
-    spools = Path(tempfile.mkdtemp(dir=folder))
-    recorded = _read_logs(run, settings, chart, spools, harvest.refused)
-    if not recorded:
+    opened, closed = open_run(run, desk.settings, desk.chart)
+    harvest.refused += closed
+    readings = []
+    for log, plans in planned(opened, desk.settings, desk.chart):
+        if isinstance(plans, Refusal):
+            harvest.refused.append(RefusedLog(run, log.file, log.recording, plans))
+        else:
+            readings.append(first_look(log, plans))
+    clock = _read_logs(run, in_time_order(readings, entries), desk, harvest)
+    timeline = clock.timeline(has_manifest=has_manifest)
+    if not timeline.placed:
         return
-    headers = _headers(recorded)
-    if headers:
-        harvest.notes.append(
-            f"run {run.name}: start times of {len(headers)} logs from the .dat headers beside them"
-        )
-    timeline = place(run.name, recorded, entries, headers, has_manifest)
     harvest.timelines[run.name] = timeline
     harvest.warnings += timeline.warnings
     for joint in timeline.joints:
@@ -167,25 +201,26 @@ def _read_run(
             )
 
 
-def _read_logs(
-    run: Run, settings: IngestSettings, chart: ChannelMap, folder: Path, refused: list[RefusedLog]
-) -> list[Recorded]:
-    """Read the logs of a run; those that cannot be used join ``refused``."""
-    opened, closed = open_run(run, settings, chart)
-    refused += closed
-    recorded: list[Recorded] = []
-    for log, plans in planned(opened, settings, chart):
-        stem = folder / str(len(refused) + len(recorded))
-        result = (
-            plans
-            if isinstance(plans, Refusal)
-            else read_recording(log, plans, stem, settings.batch_bytes)
-        )
+def _read_logs(run: Run, queue: Sequence[Dated], desk: _Desk, harvest: _Harvest) -> Clock:
+    """Read logs one after the other; those that cannot be used join the refused."""
+    clock = Clock(run.name)
+    size = desk.settings.batch_bytes
+    in_turn = parts_of([dated.reading for dated in queue], size)
+    for dated, (reading, parts) in zip(queue, in_turn, strict=True):
+        log, joints = reading.log, [plan.channels.joint for plan in reading.plans]
+        for file in log.source.files:
+            harvest.hashes[file] = desk.hashing.submit(sha256, file)
+        desk.drafts.begin(run.name, log.recording, joints, clock.start_of(dated))
+        faults = Faults()
+        result = record(reading, parts, faults, desk.drafts.add)
         if isinstance(result, Refusal):
-            refused.append(RefusedLog(run, log.file, log.recording, result))
-        else:
-            recorded.append(result)
-    return recorded
+            desk.drafts.forget(joints)
+            harvest.refused.append(RefusedLog(run, log.file, log.recording, result))
+            continue
+        clock.place(dated, result)
+        for rows in rejected_rows(log, faults, size):
+            desk.rejected.write(rows)
+    return clock
 
 
 def _common(what: str, values: Iterable[tuple[str, str]]) -> str:
@@ -207,7 +242,7 @@ def _facts(harvest: _Harvest) -> dict[str, Any]:
     plans = [
         (f"{r.log.run.name}/{r.log.file.path.name}", plan)
         for r in harvest.recordings
-        for plan in r.plans
+        for plan in r.reading.plans
     ]
     total = len(harvest.recordings)
     notes = grouped(((name, text) for name, plan in plans for text in plan.notes), total)
@@ -221,11 +256,14 @@ def _facts(harvest: _Harvest) -> dict[str, Any]:
     }
 
 
-def _inputs(recordings: Sequence[Recorded], map_file: Path | None) -> dict[str, str]:
-    inputs = {f"{r.log.run.name}/{r.log.file.path.name}": r.log.file.path for r in recordings}
-    if map_file is not None:
-        inputs[map_file.name] = map_file
-    return {name: sha256(path) for name, path in inputs.items()}
+def _inputs(harvest: _Harvest, map_file: Path | None) -> dict[str, str]:
+    """Return run and file name -> SHA-256 of all files that samples come from."""
+    inputs = {
+        f"{r.log.run.name}/{file.name}": harvest.hashes[file].result()
+        for r in harvest.recordings
+        for file in r.log.source.files
+    }
+    return inputs if map_file is None else inputs | {map_file.name: sha256(map_file)}
 
 
 def _nothing_left(refused: Sequence[RefusedLog]) -> FrictionError:
@@ -248,8 +286,8 @@ def _summary(harvest: _Harvest, facts: Mapping[str, Any]) -> IngestSummary:
     samples: Counter[int] = Counter()
     recordings = harvest.recordings
     for recorded in recordings:
-        rejected.update(REASONS[code] for code in recorded.rejected[1])
-        samples.update({joint: recorded.rows_kept for joint in recorded.spools})
+        rejected.update(recorded.rejected)
+        samples.update(dict.fromkeys(recorded.joints, recorded.rows_kept))
     return IngestSummary(
         runs=tuple(harvest.timelines),
         files_read=len(recordings),

@@ -8,6 +8,7 @@ from datetime import UTC, datetime
 from pathlib import Path
 
 from frictioncli.errors import MappingError
+from frictioncli.reading.trace_names import is_module, trace_of
 
 NAME = "manifest.csv"
 PHASES = ("heat-up", "cool-down", "sweep")
@@ -140,11 +141,19 @@ def _number(path: Path, row: int, name: str, text: str) -> float | None:
 
 
 def match(entries: tuple[Entry, ...], names: list[str]) -> dict[str, Entry]:
-    """Return file name -> entry; a manifest may leave the ending of a name out."""
+    """Return file name -> entry.
+
+    A manifest may leave the ending of a name out, name another form of the same recording, or a
+    trace instead of its files.
+    """
     by_name = {entry.file: entry for entry in entries}
+    by_stem = {Path(entry.file).stem: entry for entry in entries}
+    by_trace = {trace_of(stem): entry for stem, entry in by_stem.items()}
     found: dict[str, Entry] = {}
     for name in names:
-        entry = by_name.get(name) or by_name.get(Path(name).stem)
+        stem = Path(name).stem
+        trace = by_trace.get(trace_of(stem)) if is_module(stem) else None
+        entry = by_name.get(name) or by_name.get(stem) or by_stem.get(stem) or trace
         if entry is not None:
             found[name] = entry
     return found

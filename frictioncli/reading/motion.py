@@ -1,7 +1,7 @@
 """Units of a joint's motion: what the header says, held against what the survey shows."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -20,14 +20,68 @@ class Remarks:
     warnings: list[str] = field(default_factory=list)
 
 
-def motion_units(
+@dataclass(frozen=True, slots=True)
+class JointMotion:
+    """Units of a joint's motion channels.
+
+    Attributes
+    ----------
+    units : MotionUnits
+        Of time, position and velocity.
+    furthest : float
+        Greatest distance of the position from zero. [raw]
+    across : str or None
+        Unit of the position on the other side of the gear.
+    """
+
+    units: MotionUnits
+    furthest: float
+    across: str | None
+
+
+@dataclass(frozen=True, slots=True)
+class _Axis:
+    """Position and velocity on one side of the gear; ``hint`` is how to force the former's unit."""
+
+    time: Channel
+    position: Channel
+    velocity: Channel | None
+    hint: str
+
+
+def joint_motion(
     channels: JointChannels, survey: Survey, forced: Mapping[str, str], remarks: Remarks
+) -> JointMotion:
+    """Find the units of time, of both positions, and of the velocity on whichever side it is."""
+    time, position, velocity = channels.time, channels.position, channels.velocity
+    across = channels.across
+    beside = velocity is None or velocity.meaning.side == position.meaning.side
+    axis = _Axis(time, position, velocity if beside else None, "; force with --position-unit {}")
+    found, furthest = _axis_units(axis, survey, forced, remarks)
+    elsewhere = None
+    if across is not None:
+        # a forced position unit is the other channel's
+        others = {name: unit for name, unit in forced.items() if name != names.POSITION}
+        axis = _Axis(time, across, None if beside else velocity, "")
+        beyond, _ = _axis_units(axis, survey, others, remarks)
+        elsewhere = beyond.position
+        if not beside:
+            found = replace(beyond, position=found.position)
+    if velocity is None:
+        remarks.notes.append("no velocity channel: differentiated from position")
+    if found.time != (units.canonical(time.unit, names.TIME) or "s") and names.TIME not in forced:
+        remarks.notes.append(f"{time.name} is read as {found.time}")
+    return JointMotion(found, furthest, elsewhere)
+
+
+def _axis_units(
+    axis: _Axis, survey: Survey, forced: Mapping[str, str], remarks: Remarks
 ) -> tuple[MotionUnits, float]:
     """Return the units of time, position and velocity, and the furthest raw position."""
-    position = channels.position
+    position = axis.position
     family = survey.family(position)
     everything = [
-        motion for member in family for motion in motions_of(survey, channels.time, member, None)
+        motion for member in family for motion in motions_of(survey, axis.time, member, None)
     ]
     furthest, span = evidence.position_range(everything)
     possible, why = evidence.possible_position_units(
@@ -43,18 +97,16 @@ def motion_units(
             remarks.warnings.append(
                 f"{position.name} is read as {forced[names.POSITION]} as told, but {why}"
             )
-    times = [head[channels.time.column] for head in survey.heads]
-    written_time = units.canonical(channels.time.unit or channels.time.meaning.unit, names.TIME)
+    times = [head[axis.time.column] for head in survey.heads]
+    written_time = units.canonical(axis.time.unit or axis.time.meaning.unit, names.TIME)
     declared_time = forced.get(names.TIME) or units.time_unit(times, written_time)
     declared_position = forced.get(names.POSITION) or units.canonical(position.unit, names.POSITION)
     declared_velocity = forced.get(names.VELOCITY)
     ratio = None
-    if channels.velocity is not None:
-        written = units.canonical(channels.velocity.unit, names.VELOCITY)
+    if axis.velocity is not None:
+        written = units.canonical(axis.velocity.unit, names.VELOCITY)
         declared_velocity = declared_velocity or written
-        ratio = evidence.motion_ratio(
-            motions_of(survey, channels.time, position, channels.velocity)
-        )
+        ratio = evidence.motion_ratio(motions_of(survey, axis.time, position, axis.velocity))
     time_is_told = written_time is not None or names.TIME in forced or declared_time != "s"
     found = evidence.motion_units(
         declared=(
@@ -66,7 +118,9 @@ def motion_units(
         ratio=ratio,
     )
     found = _held_to(found, forced, remarks)
-    _remark_motion(channels, found, why, forced, remarks)
+    _remark_position(axis, found, why, forced, remarks)
+    if axis.velocity is not None:
+        _remark_velocity(axis.velocity, found, forced, remarks)
     return found, furthest
 
 
@@ -82,27 +136,30 @@ def _held_to(found: MotionUnits, forced: Mapping[str, str], remarks: Remarks) ->
     return MotionUnits(time, found.position, velocity, found.reversed_velocity, found.evidence)
 
 
-def _remark_motion(
-    channels: JointChannels,
+def _remark_position(
+    axis: _Axis,
     found: MotionUnits,
     why: str,
     forced: Mapping[str, str],
     remarks: Remarks,
 ) -> None:
-    position, velocity = channels.position, channels.velocity
+    position = axis.position
     written = units.canonical(position.unit, names.POSITION)
-    if names.POSITION not in forced and written != found.position:
-        says = f"says {position.unit}" if position.unit else "has no unit"
-        other = "rad" if found.position == "deg" else "deg"
-        reason = "; ".join(text for text in (why, found.evidence) if text)
-        if written is not None or found.position != "deg":
-            remarks.notes.append(
-                f"{position.name} {says}, {reason}: read as {found.position};"
-                f" force with --position-unit {other}"
-            )
-    if velocity is None:
-        remarks.notes.append("no velocity channel: differentiated from position")
+    if names.POSITION in forced or written == found.position:
         return
+    if written is None and found.position == "deg":
+        return
+    says = f"says {position.unit}" if position.unit else "has no unit"
+    other = "rad" if found.position == "deg" else "deg"
+    reason = "; ".join(text for text in (why, found.evidence) if text)
+    remarks.notes.append(
+        f"{position.name} {says}, {reason}: read as {found.position}{axis.hint.format(other)}"
+    )
+
+
+def _remark_velocity(
+    velocity: Channel, found: MotionUnits, forced: Mapping[str, str], remarks: Remarks
+) -> None:
     written = units.canonical(velocity.unit, names.VELOCITY)
     if found.velocity is None:
         remarks.warnings.append(
@@ -116,9 +173,6 @@ def _remark_motion(
         remarks.warnings.append(
             f"{velocity.name} has the sign opposite to the change of position: turned round"
         )
-    told = units.canonical(channels.time.unit, names.TIME)
-    if found.time != (told or "s") and names.TIME not in forced:
-        remarks.notes.append(f"{channels.time.name} is read as {found.time}")
 
 
 def motions_of(

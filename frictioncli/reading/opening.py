@@ -1,22 +1,42 @@
-"""From a file to an opened log with its channels chosen, or the reason why not."""
+"""From files to opened logs with their channels chosen, or the reason why not."""
 
-from collections import Counter
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
 
 from frictioncli.reading.channels import Channel, JointChannels, assign, joint_in_name, recognise
+from frictioncli.reading.companion import Beside, beside
 from frictioncli.reading.discovery import LogFile, Run
-from frictioncli.reading.formats import open_log
+from frictioncli.reading.formats import open_logs
 from frictioncli.reading.formats.base import Refusal, Source
 from frictioncli.reading.mapping import ChannelMap, mapped_channels
+from frictioncli.reading.scaling import scaled
 from frictioncli.reading.settings import IngestSettings
+from frictioncli.reading.trace_names import is_module, is_program, trace_of
+from frictioncli.reading.traces import merged, told_twice
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, kw_only=True)
 class OpenedLog:
     """A log whose channels are known.
 
-    ``channels`` are all recognised columns, ``joints`` the ones chosen per joint.
+    Attributes
+    ----------
+    run : Run
+        Where it belongs.
+    file : LogFile
+        The file whose rows are its samples.
+    recording : str
+        Name of the recording, unique in the run; logs of one trace that hold different joints
+        share it.
+    source : Source
+        Its raw columns, which may come from several files.
+    channels : tuple of Channel
+        All recognised columns.
+    joints : tuple of JointChannels
+        The ones chosen per joint.
+    beside : Beside
+        What files beside it tell.
     """
 
     run: Run
@@ -25,11 +45,12 @@ class OpenedLog:
     source: Source
     channels: tuple[Channel, ...]
     joints: tuple[JointChannels, ...]
+    beside: Beside
 
     @property
     def layout(self) -> tuple[str, ...]:
-        """What logs of one run must share to share their units: the run and the header."""
-        return (self.run.name, *self.source.columns)
+        """What logs of one run must share to share their units: run, form and header."""
+        return (self.run.name, self.source.form, *self.source.columns)
 
 
 @dataclass(frozen=True, slots=True)
@@ -45,27 +66,141 @@ class RefusedLog:
 def open_run(
     run: Run, settings: IngestSettings, chart: ChannelMap
 ) -> tuple[list[OpenedLog], list[RefusedLog]]:
-    """Open all files of a run; those that cannot be used come back with the reason."""
-    found = [(file, open_log(file.path, chart.hints)) for file in run.files]
-    stems = Counter(file.stem for file, source in found if not isinstance(source, Refusal))
-    opened: list[OpenedLog] = []
-    refused: list[RefusedLog] = []
-    for file, source in found:
-        if isinstance(source, Refusal):
-            refused.append(RefusedLog(run, file, file.path.name, source))
-            continue
-        recording = file.stem if stems[file.stem] == 1 else file.path.name
-        joint = _file_joint(file, settings, chart)
-        channels = _channels(source.columns, chart, joint)
-        if isinstance(channels, Refusal):
-            refused.append(RefusedLog(run, file, recording, channels))
-            continue
-        joints = assign(channels, source.columns, joints=settings.joints, file_joint=joint)
-        if isinstance(joints, Refusal):
-            refused.append(RefusedLog(run, file, recording, joints))
-            continue
-        opened.append(OpenedLog(run, file, recording, source, channels, joints))
+    """Open all files of a run; those that cannot be used come back with the reason.
+
+    Files that belong to others are not among either: samples of a native header, motion
+    information of a trace, and what was merged. With columns named by a map nothing is merged.
+    """
+    paths = [file.path for file in run.files]
+    found = dict(zip(run.files, open_logs(paths, chart.hints), strict=True))
+    sources = {file: one for file, one in found.items() if not isinstance(one, Refusal)}
+    refusals = {file: one for file, one in found.items() if isinstance(one, Refusal)}
+    for file, native in told_twice(sources).items():
+        del sources[file]
+        refusals[file] = Refusal(
+            "same_recording",
+            f"the {native.path.suffix} of the same name holds the same recording and is read",
+        )
+    sources = {file: scaled(source) for file, source in sources.items()}
+    choices = _choices(sources, settings, chart)
+    refusals |= {file: one for file, one in choices.items() if isinstance(one, Refusal)}
+    usable = {file: one for file, one in choices.items() if not isinstance(one, Refusal)}
+    labels = _labels(run, usable)
+    opened = [
+        OpenedLog(
+            run=run,
+            file=file,
+            recording=labels[file],
+            source=choice.source,
+            channels=choice.channels,
+            joints=choice.joints,
+            beside=beside(file.path),
+        )
+        for file, choice in usable.items()
+    ]
+    parts = {path for source in sources.values() for path in source.files[1:]}
+    traces = {_trace(file) for file in sources if is_module(file.stem)}
+    refused = [
+        RefusedLog(run, file, file.path.name, refusals[file])
+        for file in run.files
+        if file in refusals
+        and file.path not in parts
+        and not (is_program(file.stem) and _trace(file) in traces)
+    ]
     return opened, refused
+
+
+@dataclass(frozen=True, slots=True)
+class _Choice:
+    """What is read of a file: the columns of its own and others' files, chosen per joint."""
+
+    source: Source
+    channels: tuple[Channel, ...]
+    joints: tuple[JointChannels, ...]
+
+
+def _choices(
+    sources: Mapping[LogFile, Source], settings: IngestSettings, chart: ChannelMap
+) -> dict[LogFile, _Choice | Refusal]:
+    """Return what is read of each file, files of a trace merged, or why nothing can be."""
+    traces = _traces(sources) if not chart.channels else []
+    together = {one.file: one for files in traces for one in merged(files, settings.joints)}
+    used = {path for one in together.values() for path in one.source.files}
+    found: dict[LogFile, _Choice | Refusal] = {}
+    alike: dict[tuple[tuple[str, ...], int], _Choice | Refusal] = {}
+    for file, source in sources.items():
+        joint = _file_joint(file, settings, chart)
+        if file in together:
+            one = together[file]
+            found[file] = _chosen(one.source, one.channels, one.joints, file_joint=joint)
+        elif file.path not in used:
+            # logs of a folder mostly have the same columns
+            key = source.columns, joint
+            if key not in alike:
+                channels = _channels(source.columns, chart, joint)
+                alike[key] = _chosen(source, channels, settings.joints, file_joint=joint)
+            choice = alike[key]
+            found[file] = choice if isinstance(choice, Refusal) else replace(choice, source=source)
+    return found
+
+
+def _chosen(
+    source: Source,
+    channels: tuple[Channel, ...] | Refusal,
+    joints: tuple[int, ...] | None,
+    *,
+    file_joint: int,
+) -> _Choice | Refusal:
+    if isinstance(channels, Refusal):
+        return channels
+    chosen = assign(channels, source.columns, joints=joints, file_joint=file_joint)
+    return chosen if isinstance(chosen, Refusal) else _Choice(source, channels, chosen)
+
+
+def _trace(file: LogFile) -> tuple[Path, str]:
+    """Return what the files of a trace have in common."""
+    return file.path.parent, trace_of(file.stem)
+
+
+def _traces(sources: Mapping[LogFile, Source]) -> list[list[tuple[LogFile, Source]]]:
+    """Return the files of each trace, one per module."""
+    traces: dict[tuple[Path, str], dict[str, tuple[LogFile, Source]]] = {}
+    for file, source in sources.items():
+        if is_module(file.stem):
+            traces.setdefault(_trace(file), {}).setdefault(file.stem, (file, source))
+    return [list(modules.values()) for modules in traces.values() if len(modules) > 1]
+
+
+def _labels(run: Run, choices: Mapping[LogFile, _Choice]) -> dict[LogFile, str]:
+    """Return the name of each recording: the trace's, else the file's, else with its folder.
+
+    Files of one trace share their name where they hold different joints.
+    """
+    naming: tuple[Callable[[LogFile], str], ...] = (
+        lambda file: trace_of(file.stem),
+        lambda file: file.path.name,
+        lambda file: file.path.relative_to(run.folder).as_posix(),
+    )
+    labels: dict[LogFile, str] = {}
+    taken: set[str] = set()
+    left = list(choices)
+    for name_of in naming:
+        same: dict[str, list[LogFile]] = {}
+        for file in left:
+            same.setdefault(name_of(file), []).append(file)
+        for name, files in same.items():
+            if name not in taken and _distinct(files, choices):
+                labels |= dict.fromkeys(files, name)
+                taken.add(name)
+        left = [file for file in left if file not in labels]
+    return labels
+
+
+def _distinct(files: Sequence[LogFile], choices: Mapping[LogFile, _Choice]) -> bool:
+    """Return whether files may share a name: one, or parts of one trace without common joints."""
+    joints = [own.joint for file in files for own in choices[file].joints]
+    one_trace = len({_trace(file) for file in files}) == 1 and is_module(files[0].stem)
+    return len(files) == 1 or (one_trace and len(set(joints)) == len(joints))
 
 
 def _file_joint(file: LogFile, settings: IngestSettings, chart: ChannelMap) -> int:

@@ -28,7 +28,12 @@ def planned(
     for same in layouts.values():
         plans = _plans(same, settings, chart)
         for log in same:
-            yield log, plans
+            yield log, plans if isinstance(plans, Refusal) else _with_notes(plans, log)
+
+
+def _with_notes(plans: list[JointPlan], log: OpenedLog) -> list[JointPlan]:
+    """Return the plans with what only this log has to say."""
+    return [replace(plans[0], notes=(*plans[0].notes, *log.beside.notes)), *plans[1:]]
 
 
 def _plans(

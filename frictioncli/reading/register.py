@@ -7,34 +7,65 @@ from numpy.typing import NDArray
 
 from frictioncli.reading import staircase
 
-_MAX_LEVELS = 1000
-
 
 @dataclass(slots=True)
 class Register:
     """What a joint's motor temperature register showed in one recording.
 
-    ``first`` is the time of the first reading, ``last`` time and value of the last one; times count
-    from the recording's first sample. [s, °C]
+    Attributes
+    ----------
+    changes : list of Changes
+        Moments of change, in order; none where the readings rule a register of steps out.
+    levels : set of float
+        Distinct readings, as far as they were needed to rule it out. [°C]
+    first : float or None
+        Time of the first reading from the recording's first sample. [s]
+    last : tuple of float, or None
+        Time and value of the last reading. [s, °C]
+    smooth : bool
+        The readings rule a register of steps out.
     """
 
     changes: list[staircase.Changes] = field(default_factory=list)
     levels: set[float] = field(default_factory=set)
     first: float | None = None
     last: tuple[float, float] | None = None
+    smooth: bool = False
 
     def see(self, time: NDArray[np.float64], reading: NDArray[np.float64], wait: float) -> None:
         """Take in the next samples."""
-        present = np.isfinite(reading)
-        time, reading = time[present], reading[present]
-        if not len(time):
+        if not len(reading):
             return
-        if self.last is not None:
-            time = np.concatenate(([self.last[0]], time))
-            reading = np.concatenate(([self.last[1]], reading))
+        if not (np.isfinite(reading.min()) and np.isfinite(reading.max())):
+            present = np.isfinite(reading)
+            time, reading = time[present], reading[present]
+            if not len(time):
+                return
+        if not self.smooth:
+            self._see_steps(time, reading, wait)
         if self.first is None:
             self.first = float(time[0])
         self.last = (float(time[-1]), float(reading[-1]))
-        if len(self.levels) < _MAX_LEVELS:
-            self.levels.update(np.unique(reading).tolist())
-            self.changes.append(staircase.find_changes(time, reading, wait=wait))
+
+    def _see_steps(
+        self, time: NDArray[np.float64], reading: NDArray[np.float64], wait: float
+    ) -> None:
+        changed = np.flatnonzero(reading[1:] != reading[:-1]) + 1
+        levels = np.append(reading[changed], [reading[0], *self.levels])
+        levels = np.unique(np.round(levels, 6))
+        if staircase.too_fine(levels):
+            self.smooth = True
+            # two of them are enough to rule it out for the whole run
+            close = int(np.argmin(np.diff(levels)))
+            self.levels = set(levels[close : close + 2].tolist())
+            self.changes.clear()
+            return
+        self.levels = set(levels.tolist())
+        if self.last is not None:
+            border = np.array([[self.last[0], time[0]], [self.last[1], reading[0]]])
+            self._note(staircase.find_changes(*border, wait=wait))
+        self._note(staircase.find_changes(time, reading, wait=wait))
+
+    def _note(self, found: staircase.Changes) -> None:
+        if len(found.time):
+            self.changes.append(found)

@@ -10,6 +10,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
+from frictioncli.reading.aliases import POSITION, TIME, TORQUE, VELOCITY
 from frictioncli.reading.derivative import local_slope
 
 LOOK_AHEAD = 8
@@ -19,6 +20,8 @@ _STALE_FACTOR = 20.0
 _STALE_JUMP = 0.2  # [deg]
 _STALE_PERIOD = 0.1  # [s]
 
+EMPTY = "no_values"
+"""A row of other signals: loggers that join topics by time write one at each of their stamps."""
 REASONS = (
     "not_a_number",
     "missing_value",
@@ -28,7 +31,12 @@ REASONS = (
     "implausible_position",
     "stale_first_rows",
     "no_neighbours",
+    "outside_other_file",
+    "implausible_value",
+    EMPTY,
 )
+LIMITS = {TIME: 1e11, POSITION: 1e6, VELOCITY: 1e6, TORQUE: 1e6}
+"""Beyond these no number was measured: a damaged cell. [s], [deg], [deg/s], [N·m or A]"""
 
 
 @dataclass(frozen=True, slots=True)
@@ -64,6 +72,24 @@ class Faults:
             self.lines.append(lines)
             self.codes.append(np.full(len(lines), REASONS.index(reason), np.int8))
 
+    def take_over(self, others: "Faults") -> None:
+        """Note what was noted elsewhere too."""
+        self.lines += others.lines
+        self.codes += others.codes
+
+    def counts(self) -> dict[str, int]:
+        """Return reason -> lines, for the reasons that occurred."""
+        numbers = np.zeros(len(REASONS), int)
+        for codes in self.codes:
+            numbers += np.bincount(codes, minlength=len(REASONS))
+        return {reason: int(n) for reason, n in zip(REASONS, numbers, strict=True) if n}
+
+    def first(self, reason: str) -> NDArray[np.int64]:
+        """Return the first line rejected for a reason, shape (1,)."""
+        code = REASONS.index(reason)
+        found = [lines[codes == code] for lines, codes in zip(self.lines, self.codes, strict=True)]
+        return np.array([min(int(lines.min()) for lines in found if len(lines))])
+
     def ascending(self) -> tuple[NDArray[np.int64], NDArray[np.int8]]:
         """Return all lines in ascending order, and their codes."""
         if not self.lines:
@@ -85,43 +111,68 @@ def joined(first: Block, second: Block) -> Block:
     )
 
 
-def with_values(
-    blocks: Iterable[Block], required: Iterable[tuple[int, str]], faults: Faults
-) -> Iterator[Block]:
-    """Yield rows whose time and required columns are finite numbers."""
-    names = list(required)
-    for block in blocks:
-        needed = [block.time, *(block.columns[name] for name in names)]
-        missing = np.any([np.isnan(values) for values in needed], axis=0)
-        infinite = np.any([np.isinf(values) for values in needed], axis=0) & ~missing
-        faults.add(block.lines[missing], "missing_value")
-        faults.add(block.lines[infinite], "not_a_number")
-        yield block.take(~missing & ~infinite)
+def with_values(block: Block, required: Iterable[tuple[int, str]], faults: Faults) -> Block:
+    """Return the rows whose time and required columns are numbers that a joint can have."""
+    names = [TIME, *(name for _, name in required)]
+    needed = [block.time, *(block.columns[column] for column in required)]
+    if all(_all_within(values, LIMITS[name]) for name, values in zip(names, needed, strict=True)):
+        return block
+    absent = np.array([np.isnan(values) for values in needed])
+    missing = absent.any(axis=0)
+    empty = absent[1:].all(axis=0) & ~absent[0]
+    infinite = np.any([np.isinf(values) for values in needed], axis=0)
+    beyond = np.zeros(len(block), bool)
+    for name, values in zip(names, needed, strict=True):
+        beyond |= np.abs(values) > LIMITS[name]
+    good = ~missing & ~beyond
+    faults.add(block.lines[empty], EMPTY)
+    faults.add(block.lines[missing & ~empty], "missing_value")
+    faults.add(block.lines[~missing & infinite], "not_a_number")
+    faults.add(block.lines[~missing & ~infinite & ~good], "implausible_value")
+    return block.take(good)
+
+
+def _all_within(values: NDArray[np.float64], limit: float) -> bool:
+    """Return whether all are numbers within ±limit; the extremes tell it fast, NaN is neither."""
+    return not len(values) or bool(-limit <= values.min() and values.max() <= limit)
 
 
 def ascending(blocks: Iterable[Block], faults: Faults) -> Iterator[Block]:
     """Yield rows whose time grows; a few wild time stamps cost their own rows only."""
     last = -np.inf
     held: Block | None = None
-    for incoming in blocks:
-        block = incoming if held is None else joined(held, incoming)
-        ready = max(len(block) - LOOK_AHEAD, 0)
-        kept, last = _growing(block, ready, last, faults)
-        held = block.take(slice(ready, None))
-        yield kept
+    for block in _of_some_length(blocks):
+        if held is not None:
+            kept, last = _growing(held, block.time[:LOOK_AHEAD], last, faults)
+            yield kept
+        held = block
     if held is not None:
-        yield _growing(held, len(held), last, faults)[0]
+        yield _growing(held, np.empty(0), last, faults)[0]
 
 
-def _growing(block: Block, ready: int, last: float, faults: Faults) -> tuple[Block, float]:
-    """Judge the first ``ready`` rows after time ``last``; the rows after them help to judge."""
-    time = block.time
-    steps = np.diff(np.concatenate(([last], time)))
-    if np.all(steps > 0):
-        return block.take(slice(0, ready)), float(time[ready - 1]) if ready else last
-    keep = np.zeros(len(time), bool)
-    equal = np.zeros(len(time), bool)
-    for i in range(ready):
+def _of_some_length(blocks: Iterable[Block]) -> Iterator[Block]:
+    """Yield the rows in blocks long enough to judge the one before."""
+    held: Block | None = None
+    for block in blocks:
+        held = block if held is None else joined(held, block)
+        if len(held) >= LOOK_AHEAD:
+            yield held
+            held = None
+    if held is not None:
+        yield held
+
+
+def _growing(
+    block: Block, following: NDArray[np.float64], last: float, faults: Faults
+) -> tuple[Block, float]:
+    """Judge a block's rows after time ``last``; the times ``following`` it help to judge."""
+    n = len(block)
+    time = np.concatenate((block.time, following))
+    if n and time[0] > last and np.all(time[1:] > time[:-1]):
+        return block, float(time[n - 1])
+    keep = np.zeros(n, bool)
+    equal = np.zeros(n, bool)
+    for i in range(n):
         if time[i] <= last:
             equal[i] = time[i] == last
             continue
@@ -132,11 +183,9 @@ def _growing(block: Block, ready: int, last: float, faults: Faults) -> tuple[Blo
             continue
         keep[i] = True
         last = float(time[i])
-    head = block.take(slice(0, ready))
-    keep, equal = keep[:ready], equal[:ready]
-    faults.add(head.lines[~keep & ~equal], "time_not_increasing")
-    faults.add(head.lines[equal], "duplicate_time")
-    return head.take(keep), last
+    faults.add(block.lines[~keep & ~equal], "time_not_increasing")
+    faults.add(block.lines[equal], "duplicate_time")
+    return block.take(keep), last
 
 
 def without_stale_start(

@@ -22,7 +22,7 @@ class IngestSettings:
         Motor turns per joint turn, negative where they turn against each other. [-]
     time_unit, position_unit, velocity_unit, torque_unit, temperature_unit : str or None
         Unit in which the logs hold that quantity, whatever they say: s, ms, us; deg, rad, udeg;
-        deg/s, rad/s, rpm; N·m, mN·m, A, mA; °C, K, °F.
+        deg/s, rad/s, rpm, mdeg/s; N·m, mN·m, A, mA; °C, K, °F, m°C, mK.
     batch_bytes : int
         How much of a log is held in memory at a time. [byte]
     """

@@ -63,13 +63,12 @@ def find_changes(
     time : ndarray, shape (n,)
         Ascending. [s]
     reading : ndarray, shape (n,)
-        NaN where there is none. [°C]
+        What it showed. [°C]
     wait : float
         Samples further apart do not tell when the change was. [s]
     """
-    present = np.isfinite(reading)
-    time, reading = time[present], reading[present]
-    at = np.flatnonzero((np.diff(reading) != 0) & (np.diff(time) <= wait))
+    at = np.flatnonzero(reading[1:] != reading[:-1])
+    at = at[time[at + 1] - time[at] <= wait]
     return Changes((time[at] + time[at + 1]) / 2, reading[at], reading[at + 1])
 
 
@@ -84,12 +83,24 @@ def find_step(levels: NDArray[np.float64]) -> float | None:
         Distinct readings. [°C]
     """
     levels = np.unique(np.round(levels, 6))
-    if not 2 <= len(levels) <= _MAX_LEVELS:
+    if len(levels) < 2 or too_fine(levels):
         return None
     step = float(np.min(np.diff(levels)))
     steps = (levels - levels[0]) / step
     on_grid = np.all(np.abs(steps - np.round(steps)) < _GRID_TOLERANCE)
-    return step if step >= _MIN_STEP and on_grid else None
+    return step if on_grid else None
+
+
+def too_fine(levels: NDArray[np.float64]) -> bool:
+    """Tell whether some readings, whatever others follow, rule a register of steps out.
+
+    Parameters
+    ----------
+    levels : ndarray, shape (n,)
+        Distinct readings. [°C]
+    """
+    levels = np.unique(np.round(levels, 6))
+    return len(levels) > _MAX_LEVELS or bool(np.min(np.diff(levels), initial=np.inf) < _MIN_STEP)
 
 
 def knots(changes: Changes, *, step: float, span: tuple[float, float]) -> Knots | None:

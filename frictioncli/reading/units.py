@@ -3,23 +3,27 @@
 A unit in a header is a claim; :mod:`frictioncli.reading.evidence` checks those of motion.
 """
 
+import math
 import re
 from collections.abc import Mapping
 from dataclasses import dataclass
 from types import MappingProxyType
+from typing import TYPE_CHECKING
 
-import numpy as np
-from numpy.typing import NDArray
+if TYPE_CHECKING:
+    # settings ask for names of units before there is work: numpy is imported where it is needed
+    import numpy as np
+    from numpy.typing import NDArray
 
-_TURN = 180.0 / np.pi
-_TEMPERATURE_FACTORS = {"°C": 1.0, "K": 1.0, "°F": 5.0 / 9.0}
-_OFFSETS = {"K": -273.15, "°F": -32.0 * 5.0 / 9.0}
+_TURN = 180.0 / math.pi
+_TEMPERATURE_FACTORS = {"°C": 1.0, "K": 1.0, "°F": 5.0 / 9.0, "m°C": 1e-3, "mK": 1e-3}
+_OFFSETS = {"K": -273.15, "°F": -32.0 * 5.0 / 9.0, "mK": -273.15}
 
 FACTORS: Mapping[str, Mapping[str, float]] = MappingProxyType(
     {
         "time": {"s": 1.0, "ms": 1e-3, "us": 1e-6, "ns": 1e-9, "min": 60.0},
         "position": {"deg": 1.0, "rad": _TURN, "udeg": 1e-6},
-        "velocity": {"deg/s": 1.0, "rad/s": _TURN, "rpm": 6.0},
+        "velocity": {"deg/s": 1.0, "rad/s": _TURN, "rpm": 6.0, "mdeg/s": 1e-3},
         "torque": {"N·m": 1.0, "mN·m": 1e-3, "A": 1.0, "mA": 1e-3},
         "motor_temperature": _TEMPERATURE_FACTORS,
         "housing_temperature": _TEMPERATURE_FACTORS,
@@ -39,6 +43,7 @@ _SPELLINGS = {
     "udeg": "udeg µdeg μdeg µ° μ° u° microdeg microdegree microdegrees 1e-6deg",
     "deg/s": "deg/s °/s degree/s degrees/s grad/s deg/sec °/sec deg*s^-1 dps",
     "rad/s": "rad/s rad/sec rad*s^-1 radian/s",
+    "mdeg/s": "mdeg/s m°/s millideg/s",
     "rpm": "rpm 1/min u/min min^-1 /min r/min",
     "N·m": "nm n·m n*m newtonmeter newtonmetre n.m",
     "mN·m": "mnm mn·m mn*m",
@@ -47,6 +52,8 @@ _SPELLINGS = {
     "%": "% percent prozent",
     "°C": "°c degc c celsius deg_c grad_c gradc degcelsius",
     "K": "k kelvin",
+    "m°C": "m°c mdegc",
+    "mK": "mk millikelvin",
     "°F": "°f degf f fahrenheit",
 }
 _CANONICAL = {text: unit for unit, texts in _SPELLINGS.items() for text in texts.split()}
@@ -87,8 +94,10 @@ def plain(unit: str, quantity: str, note: str = "") -> Belief:
     return Belief(unit, FACTORS[quantity][unit], _OFFSETS.get(unit, 0.0), note)
 
 
-def time_unit(times: list[NDArray[np.float64]], declared: str | None) -> str:
+def time_unit(times: "list[NDArray[np.float64]]", declared: str | None) -> str:
     """Return the unit of a time column: the header's, else from the size of epoch times, else s."""
+    import numpy as np
+
     if declared is not None:
         return declared
     starts = [abs(float(t[0])) for t in times if len(t)]
@@ -100,7 +109,7 @@ def time_unit(times: list[NDArray[np.float64]], declared: str | None) -> str:
 
 
 def temperature(
-    values: NDArray[np.float64], declared: str | None, forced: str | None, quantity: str
+    values: "NDArray[np.float64]", declared: str | None, forced: str | None, quantity: str
 ) -> Belief | None:
     """Find the unit of a temperature channel.
 
@@ -118,12 +127,18 @@ def temperature(
     Belief or None
         None where the channel cannot be a temperature: empty, always 0, or outside -30..150 °C.
     """
+    import numpy as np
+
     if not len(values) or not np.any(values):
         return None
     middle = float(np.median(values))
     unit = forced or declared or "°C"
     note = ""
-    if forced is None and unit != "K" and middle > 200:
+    if forced is None and unit not in ("m°C", "mK") and middle > 1000:
+        # raw values that lack the scale of their native header
+        unit = "mK" if middle > 1000 * _HOTTEST else "m°C"
+        note = f"values of {middle:.0f} are read as {unit}"
+    elif forced is None and unit in ("°C", "°F") and middle > 200:
         unit, note = "K", f"values of {middle:.0f} are read as K"
     elif forced is None and unit == "K" and middle < _HOTTEST:
         unit, note = "°C", f"values of {middle:.0f} cannot be K: read as °C"
@@ -132,6 +147,8 @@ def temperature(
     return belief if _COLDEST <= inside <= _HOTTEST else None
 
 
-def plausible_temperature(values: NDArray[np.float64]) -> NDArray[np.float64]:
+def plausible_temperature(values: "NDArray[np.float64]") -> "NDArray[np.float64]":
     """Return temperatures [°C] with those outside -30..150 °C replaced by NaN."""
+    import numpy as np
+
     return np.where((values >= _COLDEST) & (values <= _HOTTEST), values, np.nan)

@@ -6,7 +6,6 @@ import pytest
 from frictioncli import schemas, tables
 from frictioncli.errors import LogError
 from frictioncli.reading.ingest import IngestSettings, ingest
-from frictioncli.reading.inspection import inspect
 
 from .logs import back_and_forth, kuka_columns, text_of, write
 
@@ -169,27 +168,6 @@ def test_a_gap_is_not_differentiated_across(tmp_path):
     table = samples(tmp_path / "work")
     middle = (table["time"] > 0.5) & (table["time"] < 2.5)
     np.testing.assert_allclose(table["velocity"][middle], 40.0, rtol=1e-6)
-    (report,) = inspect([log])
-    assert report.gaps == 1
-    assert report.longest_gap == pytest.approx(0.612, abs=0.02)
-
-
-def test_inspect_tells_form_channels_and_faults(tmp_path):
-    columns = kuka_columns()
-    columns["AxisPos_Act2[°]"] = np.radians(columns["AxisPos_Act2[°]"])
-    text = text_of(columns, decimal=",").replace("\n", "\nfaulty\n", 1)
-    (tmp_path / "run").mkdir()
-    (tmp_path / "run" / "a.csv").write_text(text, encoding="cp1252")
-    (tmp_path / "run" / "b.csv").write_text("")
-    first, second = inspect([tmp_path / "run"])
-    assert first.faults == {"wrong_field_count": 1}
-    assert first.rows == len(TIME) + 1
-    position = next(c for c in first.channels if c.quantity == "position")
-    assert (position.unit_found, position.unit_believed) == ("°", "rad")
-    assert "83.33 Hz" in str(first)
-    assert "decimal comma, CP1252" in str(first)
-    assert "not usable: empty file" in str(second)
-    assert sorted(path.name for path in tmp_path.iterdir()) == ["run"]
 
 
 @pytest.mark.parametrize("value", [0.0, np.nan])

@@ -25,13 +25,24 @@ def test_kuka_kr3_is_in_radians_and_on_the_motor(tmp_path):
     assert (summary.torque_unit, summary.torque_side) == ("N·m", "motor")
     assert table["position"].min() == pytest.approx(55, abs=0.1)
     assert table["position"].max() == pytest.approx(145, abs=0.1)
-    reasons = {file.file.rsplit(".", 1)[1]: file.reason for file in summary.files_rejected}
-    assert reasons == {
-        "csv": "no_torque_channel",
-        "dat": "format_not_read",
-        "r64": "format_not_read",
-        "TXT": "not_a_log",
+    assert {(file.file.rsplit(".", 1)[1], file.reason) for file in summary.files_rejected} == {
+        ("csv", "same_recording")
     }
+    assert len(summary.files_rejected) == 8
+    rows = tables.read(tmp_path / "recordings.parquet", schemas.RECORDINGS)
+    assert rows["payload"].tolist() == [0.661] * 4
+    assert rows["started_at"].tolist() == [
+        f"2021-05-19T{clock}+00:00"
+        for clock in ("15:03:52.944500", "15:04:49.716500", "15:05:17.592500", "15:05:43.344500")
+    ]
+
+
+def test_kuka_kr3_velocity_of_the_drive_adds_up_to_the_way_of_the_joint(tmp_path):
+    """True deg/s, as the drive says, through a gear of 89.25."""
+    ingest([REAL / "kuka-kr3" / "PTP_Vel"], tmp_path, IngestSettings(joints=(3,)))
+    for _, part in samples(tmp_path).groupby("recording"):
+        way = np.sum(np.abs(np.diff(part["position"])))
+        assert np.trapezoid(part["velocity"].abs(), part["time"]) == pytest.approx(way, rel=1e-3)
 
 
 def test_kuka_kr3_half_difference(tmp_path):

@@ -1,24 +1,65 @@
 """File formats that can be read. A new one is a module beside these and a line in ``READERS``."""
 
+from collections.abc import Iterable
+from dataclasses import replace
 from pathlib import Path
 
+from frictioncli.reading.formats.arrow_tables import read_arrow
 from frictioncli.reading.formats.base import CsvHints, Reader, Refusal, Source
-from frictioncli.reading.formats.delimited import read_delimited
-from frictioncli.reading.formats.encoding import UnreadableLog, head_of
+from frictioncli.reading.formats.compression import UnreadableLog
+from frictioncli.reading.formats.delimited import DelimitedText, read_delimited
+from frictioncli.reading.formats.diadem import read_diadem
+from frictioncli.reading.formats.encoding import head_of
 from frictioncli.reading.formats.foreign import read_foreign
+from frictioncli.reading.formats.hdf5 import read_hdf5
+from frictioncli.reading.formats.mdf import read_mdf
+from frictioncli.reading.formats.ros import read_ros
+from frictioncli.reading.formats.rtde import read_rtde
+from frictioncli.reading.formats.split_time import with_joined_time
+from frictioncli.reading.formats.struct_cells import read_struct_cells
 
-READERS: tuple[Reader, ...] = (read_foreign, read_delimited)
+READERS: tuple[Reader, ...] = (
+    read_diadem,
+    read_arrow,
+    read_hdf5,
+    read_mdf,
+    read_ros,
+    read_rtde,
+    read_foreign,
+    read_struct_cells,
+    read_delimited,
+)
 """Asked in this order; the first that knows the file's beginning decides."""
 
 
-def open_log(path: Path, hints: CsvHints) -> Source | Refusal:
-    """Open a file by its content, whatever its name ends in."""
+def open_logs(paths: Iterable[Path], hints: CsvHints) -> list[Source | Refusal]:
+    """Open files by their content; logs of a folder mostly look like the one before."""
+    found: list[Source | Refusal] = []
+    for path in paths:
+        found.append(open_log(path, hints, found[-1] if found else None))
+    return found
+
+
+def open_log(path: Path, hints: CsvHints, like: Source | Refusal | None = None) -> Source | Refusal:
+    """Open a file by its content, whatever its name ends in.
+
+    Parameters
+    ----------
+    path : Path
+        The file.
+    hints : CsvHints
+        What the user says of a text's form.
+    like : Source or Refusal, optional
+        What another file was found to be; a text of just that form needs no search.
+    """
     try:
         head = head_of(path)
+        if isinstance(like, DelimitedText) and like.has_form(head):
+            return replace(like, path=path)
+        for reader in READERS:
+            found = reader(path, head, hints)
+            if found is not None:
+                return found if isinstance(found, Refusal) else with_joined_time(found)
     except UnreadableLog as error:
         return Refusal("unreadable_file", str(error))
-    for reader in READERS:
-        found = reader(path, head, hints)
-        if found is not None:
-            return found
     return Refusal("not_a_log", "no known format")

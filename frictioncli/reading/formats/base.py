@@ -1,7 +1,8 @@
 """What a reader of one file format gives: named raw columns in batches, or why it cannot."""
 
-from collections.abc import Collection, Iterator
+from collections.abc import Callable, Collection, Iterator
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 from typing import Protocol
 
@@ -67,6 +68,11 @@ class Source(Protocol):
         ...
 
     @property
+    def files(self) -> tuple[Path, ...]:
+        """All files that its samples come from."""
+        ...
+
+    @property
     def columns(self) -> tuple[str, ...]:
         """Column names as they stand in the file, units in brackets where given."""
         ...
@@ -80,9 +86,33 @@ class Source(Protocol):
         """Yield the rows in order, about ``size`` bytes of the file at a time."""
         ...
 
+    def tasks(self, columns: Collection[int], size: int) -> Iterator[Callable[[], RawBatch]]:
+        """Yield in order what makes the batches; each may be called in a thread of its own."""
+        ...
+
     def texts(self, lines: NDArray[np.int64], size: int) -> Iterator[tuple[int, str]]:
         """Yield (line, text) for the asked lines, which must be ascending."""
         ...
+
+
+class OneStream:
+    """What is the same for all sources of one file whose batches come one after the other."""
+
+    @property
+    def files(self: Source) -> tuple[Path, ...]:
+        """All files that its samples come from."""
+        return (self.path,)
+
+    def tasks(
+        self: Source, columns: Collection[int], size: int
+    ) -> Iterator[Callable[[], RawBatch]]:
+        """Yield in order what makes the batches; they are ready already."""
+        for batch in self.batches(columns, size):
+            yield partial(_ready, batch)
+
+
+def _ready(batch: RawBatch) -> RawBatch:
+    return batch
 
 
 class Reader(Protocol):

@@ -1,8 +1,9 @@
 """Delimited text logs: CSV in all its dialects, streamed with pyarrow."""
 
 import re
-from collections.abc import Collection, Iterator
+from collections.abc import Callable, Collection, Iterator
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -18,6 +19,7 @@ from frictioncli.reading.formats.encoding import Piece, decode_head, encoding_of
 
 _TEXT_LIMIT = 200
 _NULLS = ["", *NOT_NUMBERS]
+_NUMBER = b"0123456789+-eE\r\n"
 _NO_VALUE = 9e34
 """DIAdem writes 9.9e34 where it has no value. [any unit]"""
 
@@ -42,16 +44,23 @@ def read_delimited(path: Path, head: bytes, hints: CsvHints) -> "DelimitedText |
     dialect = detect(lines, hints)
     if isinstance(dialect, Refusal):
         return dialect
-    return DelimitedText(path, encoding, dialect)
+    above = head.split(b"\n", dialect.data_line - 1)[: dialect.data_line - 1]
+    return DelimitedText(path, encoding, dialect, b"".join(line + b"\n" for line in above))
 
 
 @dataclass(frozen=True, slots=True)
 class DelimitedText:
-    """A text log whose form is known."""
+    """A text log whose form is known; ``above`` are the bytes before its first row."""
 
     path: Path
     encoding: str
     dialect: Dialect
+    above: bytes
+
+    @property
+    def files(self) -> tuple[Path, ...]:
+        """All files that its samples come from."""
+        return (self.path,)
 
     @property
     def columns(self) -> tuple[str, ...]:
@@ -63,13 +72,28 @@ class DelimitedText:
         """The file's form in words."""
         return f"{self.dialect.text}, {self.encoding.upper()}"
 
+    def has_form(self, head: bytes) -> bool:
+        """Tell whether a file's beginning is one of the same header over nothing but numbers."""
+        if self.dialect.dates or not head.startswith(self.above):
+            return False
+        rows = head[len(self.above) :]
+        delimiter = self.dialect.delimiter.encode()
+        if rows.translate(None, _NUMBER + delimiter + self.dialect.decimal.encode()):
+            return False
+        return rows.split(b"\n", 1)[0].count(delimiter) + 1 == len(self.columns)
+
     def batches(self, columns: Collection[int], size: int) -> Iterator[RawBatch]:
         """Yield the rows in order, about ``size`` bytes of the file at a time."""
-        wanted = sorted(columns)
-        for piece in self._rows(size):
-            batch = self._parse(piece, wanted)
+        for task in self.tasks(columns, size):
+            batch = task()
             if len(batch.lines) or len(batch.bad_lines):
                 yield batch
+
+    def tasks(self, columns: Collection[int], size: int) -> Iterator[Callable[[], RawBatch]]:
+        """Yield in order what makes the batches; each may be called in a thread of its own."""
+        wanted = sorted(columns)
+        for piece in self._rows(size):
+            yield partial(self._parse, piece, wanted)
 
     def texts(self, lines: NDArray[np.int64], size: int) -> Iterator[tuple[int, str]]:
         """Yield (line, text) for the asked lines, which must be ascending."""
@@ -96,14 +120,13 @@ class DelimitedText:
                 continue
             parts = piece.content.split(b"\n", skip)
             if len(parts) > skip and parts[skip]:
-                yield Piece(self.dialect.data_line, parts[skip])
+                yield Piece(self.dialect.data_line, piece.n_lines - skip, parts[skip])
 
     def _parse(self, piece: Piece, wanted: list[int]) -> RawBatch:
         content = self._blanks_joined(piece.content)
-        n_lines = content.count(b"\n") + (not content.endswith(b"\n"))
         table = self._table(content, self._types(wanted))
-        if table is not None and table.num_rows == n_lines:
-            lines = np.arange(piece.first_line, piece.first_line + n_lines, dtype=np.int64)
+        if table is not None and table.num_rows == piece.n_lines:
+            lines = np.arange(piece.first_line, piece.first_line + piece.n_lines, dtype=np.int64)
             return _batch(table, lines, wanted, np.empty(0, np.int64), ())
         return self._parse_carefully(content, piece.first_line, wanted)
 
@@ -117,11 +140,33 @@ class DelimitedText:
         right = np.array([self._has_width(text) for text in texts], bool)
         whole = [text for text, ok in zip(texts, right, strict=True) if ok]
         readable = right.copy()
-        readable[right] = self._are_numbers(whole, wanted)
+        readable[right] = self._look_like_numbers(whole, wanted)
         rows = [text for text, ok in zip(texts, readable, strict=True) if ok]
-        table = self._table(b"\n".join(rows), self._types(wanted)) if rows else None
+        tables, parsed = self._halved(rows, self._types(wanted))
+        readable[readable] = parsed
+        table = pa.concat_tables(tables) if tables else None
         reasons = tuple("not_a_number" if ok else "wrong_field_count" for ok in right[~readable])
         return _batch(table, lines[readable], wanted, lines[~readable], reasons)
+
+    def _halved(
+        self, rows: list[bytes], types: dict[str, pa.DataType]
+    ) -> tuple[list[pa.Table], NDArray[np.bool_]]:
+        """Parse rows, halving them where some cannot be; return tables, and which rows they hold.
+
+        An open quote joins lines, or a cell only looks like a number.
+        """
+        if not rows:
+            return [], np.zeros(0, bool)
+        # a byte order mark at the very beginning would be passed over
+        table = self._table(b"\n" + b"\n".join(rows), types)
+        if table is not None and table.num_rows == len(rows):
+            return [table], np.ones(len(rows), bool)
+        if len(rows) == 1:
+            return [], np.zeros(1, bool)
+        middle = len(rows) // 2
+        first, good = self._halved(rows[:middle], types)
+        second, also = self._halved(rows[middle:], types)
+        return first + second, np.concatenate((good, also))
 
     def _has_width(self, text: bytes) -> bool:
         if b'"' not in text:
@@ -132,22 +177,13 @@ class DelimitedText:
         fields = split(text.decode("utf-8", "replace").strip("\r"), self.dialect.delimiter)
         return len(fields) == len(self.columns)
 
-    def _are_numbers(self, rows: list[bytes], wanted: list[int]) -> NDArray[np.bool_]:
-        """Tell for each row whether all wanted cells are numbers, dates or empty."""
+    def _look_like_numbers(self, rows: list[bytes], wanted: list[int]) -> NDArray[np.bool_]:
+        """Tell for each row whether all wanted cells look like numbers or dates or are empty."""
         good = np.ones(len(rows), bool)
-        if not rows:
-            return good
         texts = self._table(b"\n".join(rows), {str(i): pa.string() for i in wanted})
         if texts is not None and texts.num_rows == len(rows):
             for column in set(wanted) - self.dialect.dates:
                 good &= self._number_cells(texts.column(str(column)))
-        numbers = self._table(
-            b"\n".join(row for row, ok in zip(rows, good, strict=True) if ok), self._types(wanted)
-        )
-        if numbers is None or numbers.num_rows != good.sum():
-            # an open quote joins lines, or a cell only looks like a number: judge line by line
-            alone = (self._table(row, self._types(wanted)) for row in rows)
-            good &= np.array([row is not None and row.num_rows == 1 for row in alone])
         return good
 
     def _number_cells(self, cells: pa.ChunkedArray) -> NDArray[np.bool_]:
@@ -169,7 +205,10 @@ class DelimitedText:
             return pcsv.read_csv(
                 pa.BufferReader(content),
                 read_options=pcsv.ReadOptions(
-                    column_names=[str(i) for i in range(len(self.columns))]
+                    column_names=[str(i) for i in range(len(self.columns))],
+                    # one block, so that columns are in one part; tasks run in threads already
+                    block_size=len(content) + 1,
+                    use_threads=False,
                 ),
                 parse_options=pcsv.ParseOptions(delimiter=self.dialect.delimiter),
                 convert_options=pcsv.ConvertOptions(
@@ -205,12 +244,18 @@ def _batch(
         if pa.types.is_string(cells.type):
             values[column] = _seconds(cells.to_pylist())
             continue
-        array = np.array(cells.to_numpy(), float)
-        array[np.abs(array) > _NO_VALUE] = np.where(
-            np.isinf(array[np.abs(array) > _NO_VALUE]), np.inf, np.nan
-        )
-        values[column] = array
+        values[column] = _numbers(cells)
     return RawBatch(lines, values, bad_lines, reasons)
+
+
+def _numbers(cells: pa.ChunkedArray) -> NDArray[np.float64]:
+    """Return a column's numbers, NaN where there is none."""
+    numbers = cells.to_numpy()
+    # where one is NaN the extremes are too, and tell nothing
+    if not len(numbers) or -_NO_VALUE <= numbers.min() <= numbers.max() <= _NO_VALUE:
+        return numbers
+    beyond = np.isfinite(numbers) & (np.abs(numbers) > _NO_VALUE)
+    return np.where(beyond, np.nan, numbers)
 
 
 def _seconds(texts: list[str]) -> NDArray[np.float64]:

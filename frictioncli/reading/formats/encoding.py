@@ -1,16 +1,12 @@
 """Bytes of a text log: encoding found, then streamed as UTF-8 in pieces of whole lines."""
 
 import codecs
-import gzip
-import zlib
 from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
-from typing import BinaryIO, cast
 
-from frictioncli.errors import LogError
+from frictioncli.reading.formats.compression import DAMAGED, UnreadableLog, open_bytes
 
-_GZIP = b"\x1f\x8b"
 _BOMS = (
     (codecs.BOM_UTF8, "utf-8-sig"),
     (codecs.BOM_UTF32_LE, "utf-32"),
@@ -20,27 +16,23 @@ _BOMS = (
 )
 _ASCII_BASED = ("utf-8", "cp1252")
 _HEAD_BYTES = 1 << 16
+_LONGEST_LINE = 1 << 25
+"""Text without line ends must not fill the memory. [byte]"""
+
 # bytes that no text log holds; tab, line feed, form feed, carriage return and Ctrl-Z are fine
 _CONTROL = bytes(set(range(32)) - {9, 10, 12, 13, 26})
 
 
-class UnreadableLog(LogError):
-    """A file that cannot be opened, or not be read to its end."""
-
-
 @dataclass(frozen=True, slots=True)
 class Piece:
-    """Whole lines of a log as UTF-8 (or an ASCII-based code page) and the first one's number."""
+    """Whole lines of a log as UTF-8 (or an ASCII-based code page), and where they stand.
+
+    ``first_line`` counts from 1; the end of ``n_lines`` lines may lack its line feed.
+    """
 
     first_line: int
+    n_lines: int
     content: bytes
-
-
-def open_bytes(path: Path) -> BinaryIO:
-    """Open a file for reading, unpacking gzip on the way."""
-    with path.open("rb") as stream:
-        packed = stream.read(2) == _GZIP
-    return cast(BinaryIO, gzip.open(path, "rb")) if packed else path.open("rb")
 
 
 def head_of(path: Path) -> bytes:
@@ -49,12 +41,12 @@ def head_of(path: Path) -> bytes:
     Raises
     ------
     UnreadableLog
-        If the file cannot be opened or its gzip stream is damaged.
+        If the file cannot be opened or its packed stream is damaged.
     """
     try:
         with open_bytes(path) as stream:
             return stream.read(_HEAD_BYTES)
-    except (OSError, EOFError, zlib.error) as error:
+    except DAMAGED as error:
         raise UnreadableLog(f"cannot be opened ({error}); expected a readable file") from error
 
 
@@ -109,15 +101,21 @@ def pieces(path: Path, encoding: str, size: int) -> Iterator[Piece]:
             block = rest + block
             cut = block.rfind(b"\n") + 1
             if cut:
-                yield Piece(line, block[:cut])
-                line += block.count(b"\n", 0, cut)
+                n_lines = block.count(b"\n", 0, cut)
+                yield Piece(line, n_lines, block[:cut])
+                line += n_lines
             rest = block[cut:]
-    except (OSError, EOFError, zlib.error) as error:
+            if len(rest) > _LONGEST_LINE:
+                raise UnreadableLog(
+                    f"line {line} is longer than {_LONGEST_LINE >> 20} MiB; expected rows of"
+                    " numbers"
+                )
+    except DAMAGED as error:
         raise UnreadableLog(
             f"cannot be read beyond line {line} ({error}); expected a whole file: copy it again"
         ) from error
     if rest:
-        yield Piece(line, rest)
+        yield Piece(line, 1, rest)
 
 
 def _blocks(path: Path, encoding: str, size: int) -> Iterator[bytes]:

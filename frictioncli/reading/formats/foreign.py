@@ -9,14 +9,6 @@ _NOT_READ = "format_not_read"
 _NOT_A_LOG = "not_a_log"
 # beginning of the file, reason, what it is
 _MAGIC: tuple[tuple[bytes, str, str], ...] = (
-    (b"DIAEXTENDED", _NOT_READ, "DIAdem recording (header); of KUKA traces the CSV is read"),
-    (b"DIAdem", _NOT_READ, "DIAdem recording (header); of KUKA traces the CSV is read"),
-    (b"PAR1", _NOT_READ, "Parquet table; logs are read as delimited text"),
-    (b"\x89HDF", _NOT_READ, "HDF5 file; export the log as CSV"),
-    (b"\x89MCAP", _NOT_READ, "MCAP recording; export the joint states as CSV"),
-    (b"#ROSBAG", _NOT_READ, "ROS bag; export the joint states as CSV"),
-    (b"SQLite format 3", _NOT_READ, "SQLite file or ROS 2 bag; export the joint states as CSV"),
-    (b"MDF     ", _NOT_READ, "MDF measurement; export the log as CSV"),
     (b"TDSm", _NOT_READ, "TDMS measurement; export the log as CSV"),
     (b"PK\x03\x04", _NOT_READ, "Excel workbook or zip archive; save the log as CSV"),
     (b"\xd0\xcf\x11\xe0", _NOT_READ, "old Excel workbook; save the log as CSV"),
@@ -44,7 +36,9 @@ def read_foreign(path: Path, head: bytes, hints: CsvHints) -> Refusal | None:
     if hints.encoding is None and encoding_of(head) is None:
         if path.suffix.lower() == ".r64":
             return Refusal(
-                _NOT_READ, "DIAdem recording (binary samples); of KUKA traces the CSV is read"
+                _NOT_READ,
+                f"samples of a DIAdem recording; its header {path.stem}.dat is missing or cannot"
+                " be read: give both",
             )
         return Refusal(_NOT_A_LOG, "binary file, no text")
     return None

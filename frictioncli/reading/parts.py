@@ -1,0 +1,204 @@
+"""Logs in parts: consecutive rows, converted and judged one by one, parsed ahead in threads."""
+
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from contextlib import suppress
+from dataclasses import dataclass
+from functools import partial
+from itertools import groupby
+
+import numpy as np
+from numpy.typing import NDArray
+
+from frictioncli.errors import LogError
+from frictioncli.reading import aliases as names
+from frictioncli.reading.ahead import in_order
+from frictioncli.reading.beliefs import JointPlan
+from frictioncli.reading.channels import Channel
+from frictioncli.reading.formats.base import RawBatch
+from frictioncli.reading.formats.compression import UnreadableLog
+from frictioncli.reading.opening import OpenedLog
+from frictioncli.reading.rows import Block, Faults, with_values
+from frictioncli.reading.units import plausible_temperature
+
+_FIRST_BYTES = 1 << 14
+_BEYOND = 3
+_BEYOND_SHARE = 0.01
+
+
+@dataclass(frozen=True, slots=True)
+class Reading:
+    """A log about to be read.
+
+    Attributes
+    ----------
+    log : OpenedLog
+        Which.
+    plans : tuple of JointPlan
+        How.
+    begin : float
+        The file's own time at its first row; NaN where it tells none. [s]
+    period : float
+        Median time between the first samples; 1 where they do not tell. [s]
+    """
+
+    log: OpenedLog
+    plans: tuple[JointPlan, ...]
+    begin: float
+    period: float
+
+
+@dataclass(frozen=True, slots=True)
+class Part:
+    """Consecutive rows of a log: converted usable ones, faults of the others, rows in all."""
+
+    block: Block
+    faults: Faults
+    rows: int
+
+
+def first_look(log: OpenedLog, plans: Iterable[JointPlan]) -> Reading:
+    """Return how a log will be read, with what its first rows tell of time."""
+    plans = tuple(plans)
+    belief = plans[0].beliefs[names.TIME]
+    at, where = _column(plans[0], names.TIME), _column(plans[0], names.POSITION)
+    known = time = np.empty(0)
+    with suppress(UnreadableLog):  # reading it will tell
+        first = next(iter(log.source.batches([at, where], _FIRST_BYTES)), None)
+        if first is not None:
+            known = first.values[at][np.isfinite(first.values[at])]
+            time = first.values[at][np.isfinite(first.values[where])]
+    steps = np.diff(time)
+    steps = steps[steps > 0]
+    return Reading(
+        log,
+        plans,
+        begin=float(known[0]) * belief.factor if len(known) else np.nan,
+        period=float(np.median(steps)) * belief.factor if len(steps) else 1.0,
+    )
+
+
+def parts_of(
+    readings: Sequence[Reading], batch_bytes: int
+) -> Iterator[tuple[Reading, Iterator[Part]]]:
+    """Yield each log with its rows in order; parsing goes ahead in threads, across logs too.
+
+    Taking the parts of a log that cannot be read to its end raises ``UnreadableLog``.
+
+    Parameters
+    ----------
+    readings : sequence of Reading
+        The logs.
+    batch_bytes : int
+        How much of a log makes a part. [byte]
+    """
+    results = in_order(_tasks(readings, batch_bytes))
+    for number, group in groupby(results, key=lambda result: result.number):
+        yield readings[number], _parts(group)
+
+
+@dataclass(frozen=True, slots=True)
+class _Result:
+    """A part of the log with this number, or why it cannot be read further."""
+
+    number: int
+    part: Part | UnreadableLog
+
+
+def _tasks(readings: Iterable[Reading], batch_bytes: int) -> Iterator[Callable[[], _Result]]:
+    """Yield the tasks of all logs one after the other; each log has at least one, its end."""
+    for number, reading in enumerate(readings):
+        end: Part | UnreadableLog = Part(_no_rows(reading.plans), Faults(), 0)
+        columns = {reading.plans[0].channels.time.column}
+        for plan in reading.plans:
+            columns.update(_column(plan, name) for name in plan.beliefs)
+        try:
+            for task in reading.log.source.tasks(columns, batch_bytes):
+                yield partial(_done, number, reading, task)
+        except UnreadableLog as error:
+            end = error
+        yield partial(_Result, number, end)
+
+
+def _done(number: int, reading: Reading, task: Callable[[], RawBatch]) -> _Result:
+    try:
+        return _Result(number, _part(task(), reading))
+    except UnreadableLog as error:
+        return _Result(number, error)
+
+
+def _parts(results: Iterable[_Result]) -> Iterator[Part]:
+    for result in results:
+        if isinstance(result.part, UnreadableLog):
+            raise result.part
+        yield result.part
+
+
+def _part(batch: RawBatch, reading: Reading) -> Part:
+    """Return converted rows; unreadable ones and those without the required values go out."""
+    faults = Faults()
+    for reason in sorted(set(batch.bad_reasons)):
+        faults.add(batch.bad_lines[np.array(batch.bad_reasons) == reason], reason)
+    block = _within_limits(_converted(batch, reading.plans), batch, reading, faults)
+    required = [
+        (plan.channels.joint, name)
+        for plan in reading.plans
+        for name in (names.POSITION, names.TORQUE, names.VELOCITY)
+        if name in plan.beliefs
+    ]
+    block = with_values(block, required, faults)
+    return Part(block, faults, len(batch.lines) + len(batch.bad_lines))
+
+
+def _no_rows(plans: Iterable[JointPlan]) -> Block:
+    columns = {(plan.channels.joint, name): np.empty(0) for plan in plans for name in plan.beliefs}
+    return Block(np.empty(0, np.int64), np.empty(0), columns)
+
+
+def _within_limits(block: Block, batch: RawBatch, reading: Reading, faults: Faults) -> Block:
+    """Return the rows without positions that contradict the belief in radians."""
+    outside = np.zeros(len(block), bool)
+    for plan in reading.plans:
+        if plan.position_limit is None or not len(block):
+            continue
+        raw = batch.values[plan.channels.position.column]
+        if -plan.position_limit <= raw.min() <= raw.max() <= plan.position_limit:
+            continue
+        out = np.isfinite(raw) & (np.abs(raw) > plan.position_limit)
+        if out.sum() > max(_BEYOND, _BEYOND_SHARE * len(out)):
+            _contradicted(reading.log, plan, batch, out)
+        outside |= out
+    if not outside.any():
+        return block
+    faults.add(block.lines[outside], "implausible_position")
+    return block.take(~outside)
+
+
+def _contradicted(log: OpenedLog, plan: JointPlan, batch: RawBatch, out: NDArray[np.bool_]) -> None:
+    where = int(np.flatnonzero(out)[0])
+    name = plan.channels.position.name
+    value = batch.values[plan.channels.position.column][where]
+    raise LogError(
+        f"{log.file.path} line {batch.lines[where]}: {name} is {value:.4g}, but the beginnings of"
+        f" the logs of run {log.run.name} looked like rad, which end at ±6.9; say which it is with"
+        " --position-unit deg or rad"
+    )
+
+
+def _column(plan: JointPlan, name: str) -> int:
+    channel: Channel = getattr(plan.channels, name)
+    return channel.column
+
+
+def _converted(batch: RawBatch, plans: Iterable[JointPlan]) -> Block:
+    columns: dict[tuple[int, str], NDArray[np.float64]] = {}
+    for plan in plans:
+        for name, belief in plan.beliefs.items():
+            values = batch.values[_column(plan, name)]
+            if (belief.factor, belief.offset) != (1.0, 0.0):
+                with np.errstate(over="ignore"):  # infinite ones are rejected
+                    values = values * belief.factor + belief.offset
+            if name in (names.MOTOR_TEMPERATURE, names.HOUSING_TEMPERATURE):
+                values = plausible_temperature(values)
+            columns[plan.channels.joint, name] = values
+    time = next(values for (_, name), values in columns.items() if name == names.TIME)
+    return Block(batch.lines, time, columns)
