@@ -67,4 +67,5 @@ def samples(motion, friction, *, load=lambda q: 90 * np.cos(np.radians(q)), sign
 def batches(frame, rows):
     """Yield the frame as record batches of at most ``rows`` rows."""
     for begin in range(0, len(frame), rows):
-        yield pa.RecordBatch.from_pandas(frame.iloc[begin : begin + rows], preserve_index=False)
+        part = pa.Table.from_pandas(frame.iloc[begin : begin + rows], preserve_index=False)
+        yield from part.combine_chunks().to_batches()

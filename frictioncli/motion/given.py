@@ -22,17 +22,3 @@ def given(path: Path) -> pd.DataFrame:
         return pd.DataFrame(columns=[*_KEY, *_SAID]).set_index(_KEY)
     recordings = tables.read(path, schemas.RECORDINGS)
     return recordings.drop_duplicates(_KEY).set_index(_KEY)[_SAID]
-
-
-def of_recordings(rows: pd.DataFrame, said: pd.Series) -> pd.Series:
-    """Return what is said of each row's recording, with the rows' labels.
-
-    Parameters
-    ----------
-    rows : DataFrame
-        Rows with run and recording.
-    said : Series
-        A column of :func:`given`.
-    """
-    keys = pd.MultiIndex.from_frame(rows[_KEY])
-    return pd.Series(said.reindex(keys).to_numpy(), index=rows.index, dtype=said.dtype)

@@ -1,22 +1,26 @@
 """Stage ``pair``: counter-directed motion at the same speed, joint, temperature and angle."""
 
-from dataclasses import dataclass
+import math
+from dataclasses import dataclass, field
 
 import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
 from frictioncli.errors import NotEnoughData
-from frictioncli.motion.given import of_recordings
-from frictioncli.motion.matching import (
-    Matches,
-    SpanArrays,
-    match_visits,
-    speed_levels,
-)
+from frictioncli.motion.levels import SpeedCounts, speed_levels, steps_of
+from frictioncli.motion.matching import Matches, SpanArrays, match_visits
+from frictioncli.motion.pages import Columns, Pages
+from frictioncli.motion.sections import Section, sections
 from frictioncli.motion.settings import PairingSettings
-from frictioncli.motion.spans import Spans
+from frictioncli.motion.spans import TEMPERATURES, Joint, Spans
 
+Array = NDArray[np.float64]
+Numbers = NDArray[np.int64]
+Level = tuple[int, int]
+
+_ALONE = "no counter-directed partner"
+_NOT_SHARED = "angle not shared with the partner"
 _OTHER_PAYLOAD = "the partner has another payload"
 
 _ALIKE = 0.01
@@ -25,19 +29,41 @@ _ALIKE = 0.01
 
 @dataclass(frozen=True, slots=True)
 class Pairing:
-    """Rows of :data:`frictioncli.schemas.PAIRS` (without phase) and what was left over.
+    """Pairs, and what was left over.
 
-    ``dropped`` counts samples by reason; with the samples of the pairs they make ``samples``.
+    Attributes
+    ----------
+    pages : Pages
+        Pages by run and joint, of two tables. ``heads``, one row per pair in time order: pair (its
+        number), level, recording (its number), speed, time, the temperatures, payload. ``rows``,
+        one row per pair and angle bin: pair, bin, torques and samples of both directions, load.
+    speeds : dict of (int, int) to float
+        The number that stands for a commanded speed, by joint and level. [deg/s]
+    middles : dict of (int, int) to float
+        Median speed of the pairs, by joint and level. [deg/s]
+    dropped : dict of str to int
+        Samples by reason; with the samples of the pairs they are all samples.
     """
 
-    pairs: pd.DataFrame
-    samples: int
+    pages: Pages[Joint]
+    speeds: dict[Level, float]
+    middles: dict[Level, float]
     dropped: dict[str, int]
-    bin_width: float
+
+    def speed_of(self, joint: int, heads: Columns) -> Array:
+        """Return the speed of pairs: one commanded speed gets one number [deg/s]."""
+        common, middle = (
+            np.array([by_level[joint, level] for level in heads["level"].tolist()])
+            for by_level in (self.speeds, self.middles)
+        )
+        return np.where(_alike(heads["speed"], middle), common, heads["speed"])
 
 
 def pair_spans(
-    found: Spans, settings: PairingSettings, payload: pd.Series | None = None
+    found: Spans,
+    settings: PairingSettings,
+    pages: Pages[Joint],
+    payload: pd.Series | None = None,
 ) -> Pairing:
     """Pair counter-directed spans and put both torques of each angle bin side by side.
 
@@ -50,6 +76,8 @@ def pair_spans(
         The constant-velocity spans.
     settings : PairingSettings
         What makes a pair.
+    pages : Pages
+        Where the pairs go.
     payload : Series, optional
         Payload by run and recording, missing where unknown. [kg]
 
@@ -58,132 +86,189 @@ def pair_spans(
     NotEnoughData
         If nothing moves at constant velocity, or nothing has a counter-directed partner.
     """
-    if found.spans.empty:
+    if not found.counts:
         raise NotEnoughData(
             f"no constant-velocity motion in {found.samples} samples"
             f" ({_told(found.dropped)}); expected moves that hold a speed above"
             f" {settings.steady.min_speed:g} deg/s; look at the velocity, or loosen --min-speed,"
             " --speed-tolerance, --settling"
         )
-    visits = found.visits
-    spans = found.spans.assign(
-        level=speed_levels(found.spans["speed"].to_numpy(), settings.same_speed),
-        payload=np.nan if payload is None else of_recordings(found.spans, payload).astype(float),
+    work = _Matching(
+        settings,
+        _steps_and_levels(found, settings),
+        _payloads(found, payload),
+        pages,
+        dict.fromkeys((_ALONE, _NOT_SHARED, _OTHER_PAYLOAD), 0),
     )
-    matches = match_visits(_arrays(spans, visits), _groups(spans, "payload"), settings)
-    used = matches.visit_couple >= 0
-    other = ~used & _matches_another_payload(spans, visits, used, settings)
-    if not used.any():
-        mixed = f", {_OTHER_PAYLOAD}" if other.any() else ""
+    for joint in sorted(found.counts):
+        count = 0
+        for section in sections(found.pages, joint):
+            count += work.add(joint, section, count)
+    if not work.middles:
+        mixed = f", {_OTHER_PAYLOAD}" if work.dropped[_OTHER_PAYLOAD] else ""
         raise NotEnoughData(
-            f"no pair of counter-directed moves: {_directions(spans)}{mixed}; expected motion there"
+            f"no pair of counter-directed moves: {_directions(found)}{mixed}; expected motion there"
             " and back over the same angles at the same speed; log both directions, or loosen"
             " --same-speed, --same-temperature, --longest-pause"
         )
-    alone = ~np.isin(visits["span"], [span for couple in matches.couples for span in couple])
-    dropped = found.dropped | {
-        "no counter-directed partner": int(visits.loc[~used & ~other & alone, "n"].sum()),
-        "angle not shared with the partner": int(visits.loc[~used & ~other & ~alone, "n"].sum()),
-        _OTHER_PAYLOAD: int(visits.loc[other, "n"].sum()),
-    }
-    rows = _rows(spans, visits, matches, found.bin_width)
-    return Pairing(rows, found.samples, dropped, found.bin_width)
+    middles = {level: counts.median for level, counts in work.middles.items()}
+    return Pairing(pages, _common(pages, middles), middles, found.dropped | work.dropped)
 
 
-def _groups(spans: pd.DataFrame, *also: str) -> list[NDArray[np.int64]]:
+@dataclass(slots=True)
+class _Matching:
+    """Pairs section by section, and counts."""
+
+    settings: PairingSettings
+    levels: tuple[Numbers, Numbers]
+    payloads: Array
+    pages: Pages[Joint]
+    dropped: dict[str, int]
+    middles: dict[Level, SpeedCounts] = field(default_factory=dict)
+
+    def add(self, joint: Joint, section: Section, count: int) -> int:
+        """Pair the spans of a section, numbered from ``count``; return how many pairs they make."""
+        spans, visits = section.spans, section.visits
+        level = self.levels[1][np.searchsorted(self.levels[0], steps_of(spans["speed"]))]
+        payload = self.payloads[spans["recording"]]
+        arrays = _arrays(spans, visits)
+        matches = match_visits(arrays, _groups(spans["start"], level, payload), self.settings)
+        used = matches.visit_couple >= 0
+        other = ~used
+        if len(np.unique(payload)) > 1:
+            # those of one payload have been matched as far as they can be
+            rest = _arrays(spans, {name: values[~used] for name, values in visits.items()})
+            again = match_visits(rest, _groups(spans["start"], level), self.settings)
+            other[~used] = again.visit_couple >= 0
+        else:
+            other[:] = False
+        coupled = np.concatenate([matches.forward, matches.reverse])
+        alone = ~np.isin(visits["span"], coupled)
+        for reason, rows in (
+            (_ALONE, ~used & ~other & alone),
+            (_NOT_SHARED, ~used & ~other & ~alone),
+            (_OTHER_PAYLOAD, other),
+        ):
+            self.dropped[reason] += int(visits["n"][rows].sum())
+        if not len(coupled):
+            return 0
+        heads, number = _heads(spans, matches, level, payload, count)
+        for one in np.unique(heads["level"]).tolist():
+            counts = self.middles.setdefault((joint[1], one), SpeedCounts())
+            counts.add(heads["speed"][heads["level"] == one])
+        self.pages.add(joint, {"heads": heads, "rows": _rows(visits, matches, number)})
+        return len(heads["pair"])
+
+
+def _steps_and_levels(found: Spans, settings: PairingSettings) -> tuple[Numbers, Numbers]:
+    """Return the steps of speed that occur, growing, and the speed level of each."""
+    counts = SpeedCounts()
+    for part in found.speeds.values():
+        counts.add(part.speeds)
+    return counts.steps, speed_levels(counts.speeds, settings.same_speed)
+
+
+def _payloads(found: Spans, payload: pd.Series | None) -> Array:
+    """Return the payload of each recording, NaN where unknown [kg]."""
+    if payload is None:
+        return np.full(len(found.recordings), np.nan)
+    return payload.reindex(pd.MultiIndex.from_tuples(found.recordings)).to_numpy(float)
+
+
+def _groups(start: Array, level: Numbers, payload: Array | None = None) -> list[Numbers]:
     """Return the spans that may pair with each other, in time order."""
-    grouped = spans.groupby(["run", "joint", "level", *also], observed=True, dropna=False)
-    return [group.sort_values("start").index.to_numpy() for _, group in grouped]
+    kind = np.zeros(len(level)) if payload is None else payload
+    order = np.lexsort((start, kind, level))
+    # an unknown payload is equal to another unknown one
+    _, code = np.unique(kind[order], return_inverse=True)
+    new = (np.diff(level[order]) != 0) | (np.diff(code) != 0)
+    return np.split(order, np.flatnonzero(new) + 1)
 
 
-def _matches_another_payload(
-    spans: pd.DataFrame, visits: pd.DataFrame, used: NDArray[np.bool_], settings: PairingSettings
-) -> NDArray[np.bool_]:
-    """Return which of the visits left over would have a partner if payloads did not matter."""
-    found = np.zeros(len(visits), dtype=bool)
-    if len(spans["payload"].unique()) > 1:
-        # those of one payload have been matched as far as they can be
-        rest = match_visits(_arrays(spans, visits[~used]), _groups(spans), settings)
-        found[~used] = rest.visit_couple >= 0
-    return found
-
-
-def _arrays(spans: pd.DataFrame, visits: pd.DataFrame) -> SpanArrays:
+def _arrays(spans: Columns, visits: Columns) -> SpanArrays:
     return SpanArrays(
-        direction=spans["direction"].to_numpy(),
-        start=spans["start"].to_numpy(),
-        stop=spans["stop"].to_numpy(),
-        temperature=spans["motor_temperature"].to_numpy(float),
-        visit_span=visits["span"].to_numpy(np.int64),
-        visit_bin=visits["bin"].to_numpy(np.int64),
-        visit_time=visits["time"].to_numpy(float),
+        direction=spans["direction"],
+        start=spans["start"],
+        stop=spans["stop"],
+        temperature=spans["motor_temperature"],
+        visit_span=visits["span"],
+        visit_bin=visits["bin"],
+        visit_time=visits["time"],
     )
+
+
+def _heads(
+    spans: Columns, matches: Matches, level: Numbers, payload: Array, count: int
+) -> tuple[Columns, Numbers]:
+    """Return what the two spans of each pair have in common, in time order; and their numbers."""
+    one, other = matches.forward, matches.reverse
+    start, stop = spans["start"], spans["stop"]
+    time = (start[one] + stop[one] + start[other] + stop[other]) / 4
+    order = np.lexsort((one, time))
+    number = np.empty(len(order), dtype=np.int64)
+    number[order] = np.arange(count, count + len(order))
+    heads = {
+        "level": level[one],
+        "recording": spans["recording"][one],
+        "time": time,
+        "payload": payload[one],
+    }
+    for name in ("speed", *TEMPERATURES):
+        heads[name] = (spans[name][one] + spans[name][other]) / 2
+    heads = {name: values[order] for name, values in heads.items()}
+    return {"pair": number[order]} | heads, number
+
+
+def _rows(visits: Columns, matches: Matches, number: Numbers) -> Columns:
+    """Return one row per pair and bin, in the order of pairs and angles."""
+    used = np.flatnonzero(matches.visit_couple >= 0)
+    couple = matches.visit_couple[used]
+    ahead = visits["span"][used] == matches.forward[couple]
+    sides = []
+    for side in (used[ahead], used[~ahead]):
+        pair = number[matches.visit_couple[side]]
+        sides.append(side[np.lexsort((visits["bin"][side], pair))])
+    forward, reverse = sides
+    return {
+        "pair": number[matches.visit_couple[forward]],
+        "bin": visits["bin"][forward],
+        "torque_forward": visits["torque"][forward],
+        "torque_reverse": visits["torque"][reverse],
+        "n_forward": visits["n"][forward],
+        "n_reverse": visits["n"][reverse],
+        "load": (visits["load"][forward] + visits["load"][reverse]) / 2,
+    }
+
+
+def _alike(speed: Array, middle: Array | float) -> NDArray[np.bool_]:
+    return np.abs(speed - middle) < _ALIKE * middle
+
+
+def _common(pages: Pages[Joint], middles: dict[Level, float]) -> dict[Level, float]:
+    """Return the mean of the speeds that are alike, by joint and level [deg/s]."""
+    sums: dict[Level, list[float]] = {level: [] for level in middles}
+    counts = dict.fromkeys(middles, 0)
+    for joint in pages.keys:
+        for (heads,) in pages.of(joint, "heads"):
+            for one in np.unique(heads["level"]).tolist():
+                level = joint[1], one
+                speed = heads["speed"][heads["level"] == one]
+                alike = speed[_alike(speed, middles[level])]
+                sums[level].append(math.fsum(alike))
+                counts[level] += len(alike)
+    return {level: math.fsum(sums[level]) / max(counts[level], 1) for level in middles}
 
 
 def _told(dropped: dict[str, int]) -> str:
     return ", ".join(f"{reason}: {count}" for reason, count in dropped.items() if count)
 
 
-def _directions(spans: pd.DataFrame) -> str:
+def _directions(found: Spans) -> str:
     told = []
     for name, sign in (("forward", 1), ("reverse", -1)):
-        speeds = spans.loc[spans["direction"] == sign, "speed"]
-        reach = f" at {speeds.min():.3g} to {speeds.max():.3g} deg/s" if len(speeds) else ""
-        told.append(f"{len(speeds)} constant-velocity parts {name}{reach}")
+        counts = found.speeds[sign]
+        reach = (
+            f" at {counts.speeds[0]:.3g} to {counts.speeds[-1]:.3g} deg/s" if counts.total else ""
+        )
+        told.append(f"{counts.total} constant-velocity parts {name}{reach}")
     return ", ".join(told)
-
-
-def _rows(
-    spans: pd.DataFrame,
-    visits: pd.DataFrame,
-    matches: Matches,
-    bin_width: float,
-) -> pd.DataFrame:
-    """Return one row per pair and bin, pairs numbered in time order within run and joint."""
-    heads = _heads(spans, matches.couples)
-    used = visits.assign(couple=matches.visit_couple)[matches.visit_couple >= 0]
-    ahead = used["span"].to_numpy(int) == heads["forward"].to_numpy()[used["couple"]]
-    both = used[ahead].merge(used[~ahead], on=["couple", "bin"], suffixes=("_forward", "_reverse"))
-    rows = both.join(heads, on="couple")
-    return pd.DataFrame(
-        {
-            "run": rows["run"],
-            "joint": rows["joint"],
-            "pair": rows["pair"],
-            "speed": rows["speed"],
-            "time": rows["time"],
-            "motor_temperature": rows["motor_temperature"],
-            "housing_temperature": rows["housing_temperature"],
-            "position": (rows["bin"] + 0.5) * bin_width,
-            "torque_forward": rows["torque_forward"],
-            "torque_reverse": rows["torque_reverse"],
-            "n_forward": rows["n_forward"].astype(np.int64),
-            "n_reverse": rows["n_reverse"].astype(np.int64),
-            "motor_temperature_reading": rows["motor_temperature_reading"],
-            "load": (rows["load_forward"] + rows["load_reverse"]) / 2,
-            "payload": rows["payload"],
-            "recording": rows["recording"],
-        }
-    ).sort_values(["run", "joint", "pair", "position"], ignore_index=True)
-
-
-def _heads(spans: pd.DataFrame, couples: list[tuple[int, int]]) -> pd.DataFrame:
-    """Return one row per pair: what its two spans have in common, and its number."""
-    ahead = spans.iloc[[forward for forward, _ in couples]].reset_index(drop=True)
-    back = spans.iloc[[reverse for _, reverse in couples]].reset_index(drop=True)
-    heads = ahead[["run", "joint", "recording", "level", "payload"]].assign(
-        forward=[forward for forward, _ in couples],
-        time=(ahead["start"] + ahead["stop"] + back["start"] + back["stop"]) / 4,
-        speed=(ahead["speed"] + back["speed"]) / 2,
-    )
-    for name in ("motor_temperature", "housing_temperature", "motor_temperature_reading"):
-        heads[name] = (ahead[name] + back[name]) / 2
-    # one commanded speed gets one number, so that results can be grouped by it
-    level = [heads["joint"], heads["level"]]
-    middle = heads.groupby(level)["speed"].transform("median")
-    alike = (heads["speed"] - middle).abs() < _ALIKE * middle
-    common = heads["speed"].where(alike).groupby(level).transform("mean")
-    heads["speed"] = common.where(alike, heads["speed"])
-    order = heads.sort_values(["run", "joint", "time", "forward"], kind="stable")
-    numbers = order.groupby(["run", "joint"], observed=True).cumcount()
-    return heads.assign(pair=numbers.reindex(heads.index))

@@ -1,9 +1,11 @@
 """Heat-up and cool-down: phases found from the trend of the motor temperature."""
 
+import math
+from collections.abc import Iterable
 from itertools import pairwise
+from typing import NamedTuple
 
 import numpy as np
-import pandas as pd
 from numpy.typing import NDArray
 
 HEAT_UP, COOL_DOWN, SWEEP = "heat-up", "cool-down", "sweep"
@@ -15,74 +17,80 @@ _LEAST_SWING = 5.0
 """A phase that changes the temperature by less is neither heating nor cooling. [°C]"""
 
 
-def add_phases(pairs: pd.DataFrame, given: pd.Series) -> pd.DataFrame:
-    """Return the pairs with their ``phase``: as given, else from the trend of the temperature.
+class _Point(NamedTuple):
+    pair: int
+    value: float
+
+
+class Phase(NamedTuple):
+    """Pairs ``begin`` to ``end`` (excluded) of a run and joint heat up or cool down."""
+
+    begin: int
+    end: int
+    name: str
+
+
+def phases(temperature: Iterable[float]) -> list[Phase]:
+    """Return the phases of a run in time order; what lies between them is a sweep.
 
     Parameters
     ----------
-    pairs : DataFrame
-        Rows with run, joint, pair, time and motor_temperature.
-    given : Series
-        Phase of each row as the manifest says; missing where it does not.
-    """
-    phase = pd.Series(given.to_numpy(dtype=object), index=pairs.index)
-    for _, group in pairs.groupby(["run", "joint"], observed=True):
-        unknown = phase.loc[group.index].isna()
-        if not unknown.any():
-            continue
-        heads = group.drop_duplicates("pair").sort_values("time")
-        found = pd.Series(
-            phases_of(heads["motor_temperature"].to_numpy(float)), index=heads["pair"]
-        )
-        rows = group.index[unknown]
-        phase.loc[rows] = pairs.loc[rows, "pair"].map(found).to_numpy()
-    return pairs.assign(phase=phase)
-
-
-def phases_of(temperature: NDArray[np.float64]) -> NDArray[np.str_]:
-    """Return the phase at each of a run's temperatures in time order.
-
-    Parameters
-    ----------
-    temperature : ndarray, shape (pairs,)
-        Motor temperature, NaN where unknown. [°C]
+    temperature : iterable of float
+        Motor temperature of each pair in time order, NaN where unknown; looked at once. [°C]
 
     Notes
     -----
     The temperatures are cut where they turn by more than 3 °C. A stretch that rises by 5 °C or more
     is heat-up, one that falls as much is cool-down, anything else is a sweep.
     """
-    phases = np.full(len(temperature), SWEEP, dtype="<U9")
-    known = np.flatnonzero(np.isfinite(temperature))
-    turns = _turning_points(temperature[known])
+    known = (_Point(pair, value) for pair, value in enumerate(temperature) if math.isfinite(value))
+    turns = _turning_points(known)
+    found = []
     for first, last in pairwise(turns):
-        swing = temperature[known[last]] - temperature[known[first]]
+        swing = last.value - first.value
         if abs(swing) >= _LEAST_SWING:
-            begin = known[first] + (first > 0)
-            phases[begin : known[last] + 1] = HEAT_UP if swing > 0 else COOL_DOWN
-    return phases
+            begin = first.pair + (first is not turns[0])
+            found.append(Phase(begin, last.pair + 1, HEAT_UP if swing > 0 else COOL_DOWN))
+    return found
 
 
-def _turning_points(values: NDArray[np.float64]) -> list[int]:
+def phases_of(pair: NDArray[np.int64], found: list[Phase]) -> NDArray[np.object_]:
+    """Return the name of each pair's phase.
+
+    Parameters
+    ----------
+    pair : ndarray of int, shape (pairs,)
+        Numbers of the pairs, as :func:`phases` counted them.
+    found : list of Phase
+        The phases of their run and joint.
+    """
+    names = np.array([*(phase.name for phase in found), SWEEP], dtype=object)
+    begin, end = (np.array([phase[i] for phase in found], dtype=np.int64) for i in (0, 1))
+    number = np.searchsorted(begin, pair, side="right") - 1
+    inside = number >= 0
+    inside[inside] = pair[inside] < end[number[inside]]
+    return names[np.where(inside, number, len(found))]
+
+
+def _turning_points(points: Iterable[_Point]) -> list[_Point]:
     """Return first, last and turning points of a sequence, small reversals ignored."""
-    if len(values) < 2:
+    points = iter(points)
+    first = next(points, None)
+    if first is None:
         return []
-    turns = [0]
-    low = high = 0
+    turns = [first]
+    low = high = last = first
     rising: bool | None = None
-    for i, value in enumerate(values):
-        if value > values[high]:
-            high = i
-        if value < values[low]:
-            low = i
-        if rising is not False and value < values[high] - _TURN:
-            if abs(values[high] - values[turns[-1]]) > _TURN:
+    for point in points:
+        last = point
+        high = point if point.value > high.value else high
+        low = point if point.value < low.value else low
+        if rising is not False and point.value < high.value - _TURN:
+            if abs(high.value - turns[-1].value) > _TURN:
                 turns.append(high)
-            rising, low = False, i
-            high = i
-        elif rising is not True and value > values[low] + _TURN:
-            if abs(values[low] - values[turns[-1]]) > _TURN:
+            rising, low, high = False, point, point
+        elif rising is not True and point.value > low.value + _TURN:
+            if abs(low.value - turns[-1].value) > _TURN:
                 turns.append(low)
-            rising, high = True, i
-            low = i
-    return [*turns, len(values) - 1]
+            rising, low, high = True, point, point
+    return [*turns, last]

@@ -6,14 +6,18 @@ yet built up. A ramp takes a few tenths of a second, so it is reduced by the ang
 point in geometric steps, and follows the first stretch at constant velocity too.
 """
 
-from collections.abc import Sequence
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from frictioncli.motion.steady import SteadyPart
+from frictioncli.motion.moves import samples_in
+from frictioncli.motion.segments import members, reduced
+from frictioncli.motion.steady import SteadyParts
+from frictioncli.motion.stretches import BEHIND
 
 Array = NDArray[np.float64]
+Numbers = NDArray[np.int64]
 
 EDGES = np.geomspace(0.1, 30.0, 13)
 """Edges of the bins of distance from the turning point. [deg]"""
@@ -44,6 +48,15 @@ _MOTION = (*LAGS, "distance", "spread", "elapsed")
 COLUMNS = ("move", "part", "direction", "reversal", "speed", "bin", *MEANS, *_MOTION, "samples")
 """Columns of the rows; ``move`` counts from 0 in the parts given, ``part`` in :data:`PARTS`."""
 
+_KINDS = dict.fromkeys(COLUMNS, np.float64) | {
+    "move": np.int64,
+    "part": np.int64,
+    "direction": np.int64,
+    "reversal": np.bool_,
+    "bin": np.int64,
+    "samples": np.int64,
+}
+
 _HALF_SPAN = 0.015
 """Half of the time over which velocity is differentiated. [s]"""
 
@@ -54,8 +67,18 @@ _AWAY = 1.0
 """A joint that rings about its turning point stays nearer to it. [deg]"""
 
 
+class ComingFrom(NamedTuple):
+    """The last move before some samples: its direction, 0 where not known, and where it ended.
+
+    ``since`` counts in those samples, and is below 0 where the move ended before them.
+    """
+
+    way: int = 0
+    since: int = 0
+
+
 def ramp_rows(
-    channels: dict[str, Array], parts: Sequence[SteadyPart], came_from: int = 0
+    channels: dict[str, Array], parts: SteadyParts, period: float, came_from: ComingFrom
 ) -> dict[str, Array]:
     """Return the ramps of moves as means per bin of distance from the turning point.
 
@@ -64,10 +87,12 @@ def ramp_rows(
     channels : dict of str to ndarray, shape (samples,)
         time, position, velocity, torque, load, motor_temperature, housing_temperature of one
         recording and joint. [s], [deg], [deg/s], [N·m], [N·m], [°C], [°C]
-    parts : sequence of SteadyPart
+    parts : SteadyParts
         The constant-velocity parts, with the bounds of their moves.
-    came_from : int
-        Direction of the last move before these samples; 0 where it is not known.
+    period : float
+        Time between samples. [s]
+    came_from : ComingFrom
+        The last move before these parts.
 
     Returns
     -------
@@ -76,26 +101,25 @@ def ramp_rows(
         deviation of the angle [deg], ``elapsed`` the time since the move began, or until it
         ends [s].
     """
-    if not parts:
-        return {name: np.empty(0) for name in COLUMNS}
-    halves = _halves(channels, parts)
-    index = np.concatenate([np.arange(low, high) for low, high, _, _ in halves])
-    owner = np.repeat(np.arange(len(halves)), [high - low for low, high, _, _ in halves])
-    origin, clock = (np.array([half[i] for half in halves]) for i in (2, 3))
+    low, high, origin, clock = _halves(channels, parts)
+    index = members(low, high)
+    owner = np.repeat(np.arange(len(low)), high - low)
     distance = np.abs(channels["position"][index] - origin[owner])
-    number = np.searchsorted(EDGES, distance, side="right") - 1
-    inside = (number >= 0) & (number < len(EDGES) - 1)
-    index, owner, number = index[inside], owner[inside], number[inside]
+    inside = (distance >= EDGES[0]) & (distance < EDGES[-1])
+    index, owner, distance = index[inside], owner[inside], distance[inside]
     if not index.size:
-        return {name: np.empty(0) for name in COLUMNS}
+        return {name: np.empty(0, kind) for name, kind in _KINDS.items()}
+    number = np.searchsorted(EDGES, distance, side="right") - 1
     values = {name: channels[name][index] for name in MEANS}
     time = channels["time"]
+    half = max(samples_in(_HALF_SPAN, period), 1)
+    acceleration = slope(time, channels["velocity"], half)
     for name, shift in LAGS.items():
-        values[name] = slope(time, channels["velocity"], index + shift)
+        values[name] = acceleration[np.clip(index + shift, 0, len(time) - 1)]
     # torque as an average over the same window as the acceleration it goes with
-    values["torque"] = slope(time, _integral(time, channels["torque"]), index)
-    values["distance"] = distance[inside]
-    values["spread"] = np.square(distance[inside])
+    values["torque"] = window_mean(time, channels["torque"], half)[index]
+    values["distance"] = distance
+    values["spread"] = np.square(distance)
     values["elapsed"] = np.abs(values["time"] - clock[owner])
     key = owner * (len(EDGES) - 1) + number
     count = np.bincount(key)
@@ -103,86 +127,103 @@ def ramp_rows(
     means = {name: np.bincount(key, value)[hit] / count[hit] for name, value in values.items()}
     means["spread"] = np.sqrt(np.maximum(means["spread"] - np.square(means["distance"]), 0.0))
     owner, number = np.divmod(hit, len(EDGES) - 1)
-    speed = np.array([part.speed for part in parts])[owner // 2]
-    return means | {
+    speed = parts.speed[owner // 2]
+    rows = means | {
         "move": owner // 2,
         "part": owner % 2,
-        "direction": np.sign(speed),
+        "direction": np.sign(speed).astype(np.int64),
         "reversal": _turned(channels["position"], parts, came_from)[owner // 2],
         "speed": np.abs(speed),
         "bin": number,
         "samples": count[hit],
     }
+    return {name: rows[name] for name in COLUMNS}
 
 
-def _integral(time: Array, values: Array) -> Array:
-    return np.concatenate([[0.0], np.cumsum(np.diff(time) * (values[1:] + values[:-1]) / 2)])
-
-
-def slope(time: Array, values: Array, index: NDArray[np.intp]) -> Array:
-    """Return the local slope of a channel around some samples; exact for ramps at any spacing.
+def slope(time: Array, values: Array, half: int) -> Array:
+    """Return the local slope of a channel; exact for ramps at any spacing.
 
     Parameters
     ----------
     time, values : ndarray, shape (samples,)
         Growing times and the channel. [s], any
-    index : ndarray of int
-        Samples wanted; beyond the ends stands the last one.
+    half : int
+        Neighbours on either side; beyond the ends stands the last sample.
 
     Returns
     -------
-    ndarray
+    ndarray, shape (samples,)
         Slope. [1/s] of the channel's unit
     """
-    last = len(time) - 1
-    period = float(np.median(np.diff(time))) if last > 0 else _HALF_SPAN
-    half = max(int(_HALF_SPAN / max(period, 1e-9)), 1)
-    middle = np.clip(index, 0, last)
-    rise, run = np.zeros(len(index)), np.zeros(len(index))
+    rise, run = (np.zeros(len(time)) for _ in range(2))
     for step in range(1, half + 1):
-        low, high = np.maximum(middle - step, 0), np.minimum(middle + step, last)
-        rise += step * (values[high] - values[low])
-        run += step * (time[high] - time[low])
+        rise += step * _across(values, step)
+        run += step * _across(time, step)
     return np.divide(rise, run, out=np.zeros_like(rise), where=run > 0)
 
 
+def window_mean(time: Array, values: Array, half: int) -> Array:
+    """Return the mean of a channel over the window of :func:`slope`: the slope of its integral.
+
+    Parameters
+    ----------
+    time, values : ndarray, shape (samples,)
+        Growing times and the channel. [s], any
+    half : int
+        Neighbours on either side.
+    """
+    area = np.diff(time) * (values[1:] + values[:-1]) / 2
+    padded = np.concatenate([np.zeros(half), area, np.zeros(half)])
+    window, rise, run = (np.zeros(len(time)) for _ in range(3))
+    for step in range(1, half + 1):
+        window += padded[half + step - 1 :][: len(time)] + padded[half - step :][: len(time)]
+        rise += step * window
+        run += step * _across(time, step)
+    return np.divide(rise, run, out=np.zeros_like(rise), where=run > 0)
+
+
+def _across(values: Array, step: int) -> Array:
+    """Return the difference between the samples so many steps later and earlier."""
+    padded = np.pad(values, step, mode="edge")
+    return padded[2 * step :] - padded[: -2 * step]
+
+
 def _halves(
-    channels: dict[str, Array], parts: Sequence[SteadyPart]
-) -> list[tuple[int, int, float, float]]:
+    channels: dict[str, Array], parts: SteadyParts
+) -> tuple[Numbers, Numbers, Array, Array]:
     """Return first and past-the-end sample, turning angle and its time of both halves of moves.
 
     A half whose end is cut off by the recording has no samples.
     """
     time, position, velocity = (channels[name] for name in ("time", "position", "velocity"))
-    halves = []
-    for part in parts:
-        middle = (part.first + part.last) // 2
-        rolling = _ROLLING * abs(part.speed)
-        forward = part.speed > 0
-        for low, high, end, lowest in (
-            (part.first, middle, part.first, forward),
-            (middle, part.last, part.last - 1, not forward),
-        ):
-            if abs(velocity[end]) > rolling or low >= high:
-                halves.append((low, low, 0.0, 0.0))
-                continue
-            turn = position[low:high].min() if lowest else position[low:high].max()
-            halves.append((low, high, float(turn), float(time[end])))
-    return halves
+    middle = (parts.first + parts.last) // 2
+    low = np.column_stack([parts.first, middle]).ravel()
+    high = np.column_stack([middle, parts.last]).ravel()
+    end = np.column_stack([parts.first, parts.last - 1]).ravel()
+    forward = parts.speed > 0
+    lowest = np.column_stack([forward, ~forward]).ravel()
+    turn = np.where(
+        lowest, reduced(np.minimum, position, low, high), reduced(np.maximum, position, low, high)
+    )
+    cut_off = np.abs(velocity[end]) > _ROLLING * np.repeat(np.abs(parts.speed), 2)
+    return low, np.where(cut_off, low, high), turn, time[end]
 
 
-def _turned(position: Array, parts: Sequence[SteadyPart], came_from: int) -> NDArray[np.bool_]:
+def _turned(position: Array, parts: SteadyParts, came_from: ComingFrom) -> NDArray[np.bool_]:
     """Return whether each move goes the other way than the joint came; so does one after nothing.
 
     The way it came is that of the last angle further away than :data:`_AWAY`, or else that of the
     move before. Standing is looked through: friction remembers the way, not the rest.
     """
-    turned = []
-    since = 0
-    for part in parts:
-        behind = position[since : part.first] - position[part.first]
-        away = np.flatnonzero(np.abs(behind) > _AWAY)
-        way = -np.sign(behind[away[-1]]) if away.size else came_from
-        came_from, since = (1 if part.speed > 0 else -1), part.stop
-        turned.append(way != came_from)
-    return np.array(turned)
+    way = np.sign(parts.speed).astype(np.int64)
+    since = np.append(came_from.since, parts.stop[:-1])
+    since = np.clip(since, parts.first - BEHIND, parts.first).clip(min=0)
+    length = parts.first - since
+    behind = position[members(since, parts.first)] - np.repeat(position[parts.first], length)
+    away = np.flatnonzero(np.abs(behind) > _AWAY)
+    end = np.cumsum(length)
+    last = np.searchsorted(away, end) - 1
+    seen = last >= np.searchsorted(away, end - length)
+    came = np.append(came_from.way, way[:-1])
+    came[seen] = -np.sign(behind[away[last[seen]]])
+    return way != came

@@ -1,12 +1,16 @@
 """Stage ``separate``: friction torque and load torque of each pair and angle bin."""
 
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
-import pandas as pd
+import pyarrow as pa
+import pyarrow.compute as pc
 from numpy.typing import ArrayLike, NDArray
 
 from frictioncli.errors import NotEnoughData, OptionError
+from frictioncli.motion.segments import means
 
 
 class SeparatedTorques(NamedTuple):
@@ -71,14 +75,115 @@ def separate_torques(
     return SeparatedTorques(friction=sign * (forward - reverse) / 2, load=(forward + reverse) / 2)
 
 
-def separate(pairs: pd.DataFrame, sign: int | None = None) -> tuple[pd.DataFrame, dict[int, int]]:
-    """Return the torques of all pairs, and the sign convention of each joint.
+@dataclass(slots=True)
+class Tally:
+    """Number, mean and scatter of values that go by.
+
+    Attributes
+    ----------
+    count : int
+        Values so far.
+    mean : float
+        Their mean.
+    squares : float
+        Sum of the squares of their deviations from it.
+    """
+
+    count: int = 0
+    mean: float = 0.0
+    squares: float = 0.0
+
+    def add(self, values: NDArray[np.float64]) -> None:
+        """Take in more values."""
+        if not len(values):
+            return
+        own = float(np.mean(values))
+        together = self.count + len(values)
+        apart = own - self.mean
+        self.squares += float(np.sum(np.square(values - own)))
+        self.squares += apart**2 * self.count * len(values) / together
+        self.mean += apart * len(values) / together
+        self.count = together
+
+    @property
+    def clear(self) -> bool:
+        """Whether the mean stands out of the scatter."""
+        deviation = np.sqrt(self.squares / (self.count - 1)) if self.count > 1 else 0.0
+        return bool(abs(self.mean) > 3 * deviation)
+
+
+def half_differences(batches: Iterable[pa.RecordBatch]) -> dict[int, dict[str, Tally]]:
+    """Return what the half differences of the torques are like, by joint and run.
 
     Parameters
     ----------
-    pairs : DataFrame
-        Rows of :data:`frictioncli.schemas.PAIRS`. A ``load`` channel takes the place of the load
-        that the separation gives.
+    batches : iterable of RecordBatch
+        Rows of :data:`frictioncli.schemas.PAIRS`; those of a pair stand together, and count as one.
+    """
+    found: dict[int, dict[str, Tally]] = {}
+    names = ["run", "joint", "pair", "torque_forward", "torque_reverse"]
+    waiting: pa.Table | None = None
+    for batch in batches:
+        rows = pa.Table.from_batches([batch.select(names)])
+        if waiting is not None:
+            rows = pa.concat_tables([waiting, rows]).unify_dictionaries()
+        waiting = _tally(found, rows, ended=False)
+    if waiting is not None:
+        _tally(found, waiting, ended=True)
+    return found
+
+
+def _tally(found: dict[int, dict[str, Tally]], rows: pa.Table, *, ended: bool) -> pa.Table:
+    """Take in whole pairs; return the rows of the last one, which may go on."""
+    run = rows["run"].combine_chunks()
+    run = run if pa.types.is_dictionary(run.type) else run.dictionary_encode()
+    code, joint, pair = run.indices.to_numpy(), rows["joint"].to_numpy(), rows["pair"].to_numpy()
+    half = (rows["torque_forward"].to_numpy() - rows["torque_reverse"].to_numpy()) / 2
+    new = (np.diff(code) != 0) | (np.diff(joint) != 0) | (np.diff(pair) != 0)
+    start = np.append(0, np.flatnonzero(new) + 1)[: len(half)]
+    stop = np.append(start[1:], len(half))[: len(start)]
+    whole = slice(None if ended else -1)
+    mean = means(half, start, stop)[whole]
+    head = start[whole]
+    for number, one in sorted({*zip(joint[head].tolist(), code[head].tolist(), strict=True)}):
+        tally = found.setdefault(number, {}).setdefault(run.dictionary[one].as_py(), Tally())
+        tally.add(mean[(joint[head] == number) & (code[head] == one)])
+    return rows.slice(start[-1] if len(start) else 0)
+
+
+def inferred_sign(joint: int, runs: Mapping[str, Tally]) -> int:
+    """Return the sign convention of one joint's log: that which makes mean friction positive.
+
+    Parameters
+    ----------
+    joint : int
+        Joint number.
+    runs : mapping of str to Tally
+        Its half differences by run, as :func:`half_differences` gives them.
+
+    Raises
+    ------
+    NotEnoughData
+        If one run clearly says +1 and another clearly says -1.
+    """
+    clear = {run: tally.mean for run, tally in runs.items() if tally.clear}
+    if clear and min(clear.values()) < 0 < max(clear.values()):
+        opposite = ", ".join(f"{run}: {mean:+.3g}" for run, mean in clear.items())
+        raise NotEnoughData(
+            f"joint {joint}: runs contradict each other in the sign of friction"
+            f" (mean half difference of the torques {opposite}); give them separate work folders,"
+            " or force one with --sign"
+        )
+    return 1 if sum(tally.mean * tally.count for tally in runs.values()) >= 0 else -1
+
+
+def sign_conventions(batches: Iterable[pa.RecordBatch], sign: int | None = None) -> dict[int, int]:
+    """Return the sign convention of each joint.
+
+    Parameters
+    ----------
+    batches : iterable of RecordBatch
+        Rows of :data:`frictioncli.schemas.PAIRS`.
     sign : {+1, -1}, optional
         Sign convention; inferred per joint where not given: friction opposes motion, so its mean
         is positive.
@@ -90,34 +195,31 @@ def separate(pairs: pd.DataFrame, sign: int | None = None) -> tuple[pd.DataFrame
     """
     if sign not in (None, 1, -1):
         raise OptionError(f"sign {sign}: expected +1 or -1")
-    signs = {int(joint): sign or inferred_sign(group) for joint, group in pairs.groupby("joint")}
-    torques = separate_torques(
-        torque_forward=pairs["torque_forward"], torque_reverse=pairs["torque_reverse"]
-    )
-    load = pairs["load"].where(pairs["load"].notna(), torques.load)
-    separated = pairs.assign(
-        friction_torque=pairs["joint"].map(signs) * torques.friction, load_torque=load
-    )
-    return separated, signs
+    found = half_differences(batches)
+    return {joint: sign or inferred_sign(joint, found[joint]) for joint in sorted(found)}
 
 
-def inferred_sign(pairs: pd.DataFrame) -> int:
-    """Return the sign convention of one joint's log: that which makes mean friction positive.
+def separate(pairs: pa.RecordBatch, signs: Mapping[int, int]) -> pa.RecordBatch:
+    """Return pairs with their friction and load torque.
 
-    Raises
-    ------
-    NotEnoughData
-        If one run clearly says +1 and another clearly says -1.
+    Parameters
+    ----------
+    pairs : RecordBatch
+        Rows of :data:`frictioncli.schemas.PAIRS`. A ``load`` channel takes the place of the load
+        that the separation gives.
+    signs : mapping of int to int
+        Sign convention of each joint.
     """
-    half = (pairs["torque_forward"] - pairs["torque_reverse"]) / 2
-    by_pair = half.groupby([pairs["run"], pairs["pair"]], observed=True).mean()
-    by_run = by_pair.groupby(level=0, observed=True).agg(["mean", "std", "count"])
-    clear = by_run[by_run["mean"].abs() > 3 * by_run["std"].fillna(0.0)]
-    if clear["mean"].gt(0).any() and clear["mean"].lt(0).any():
-        opposite = ", ".join(f"{run}: {mean:+.3g}" for run, mean in clear["mean"].items())
-        raise NotEnoughData(
-            f"joint {pairs['joint'].iloc[0]}: runs contradict each other in the sign of friction"
-            f" (mean half difference of the torques {opposite}); give them separate work folders,"
-            " or force one with --sign"
-        )
-    return 1 if by_pair.mean() >= 0 else -1
+    joint = pairs.column("joint").to_numpy()
+    sign = np.select([joint == number for number in signs], list(signs.values()))
+    torques = separate_torques(
+        torque_forward=pairs.column("torque_forward").to_numpy(),
+        torque_reverse=pairs.column("torque_reverse").to_numpy(),
+    )
+    load = torques.load
+    if "load" in pairs.schema.names:
+        own = pc.cast(pairs.column("load"), pa.float64()).to_numpy(zero_copy_only=False)
+        load = np.where(np.isnan(own), torques.load, own)
+    return pairs.append_column("friction_torque", pa.array(sign * torques.friction)).append_column(
+        "load_torque", pa.array(load)
+    )

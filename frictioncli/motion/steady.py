@@ -1,30 +1,27 @@
 """The constant-velocity parts of a joint's motion.
 
 Only they may enter the separation (8): acceleration adds inertial torque, and so does the
-oscillation that follows it.
+oscillation that follows it. All moves of a stretch of samples are looked at together, as a log has
+millions of them.
 """
 
 from dataclasses import dataclass
-from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
 
+from frictioncli.motion.moves import SMOOTHING, half_window
+from frictioncli.motion.segments import means, members, offsets, reduced, runs
 from frictioncli.motion.settings import SteadySettings
 
 Array = NDArray[np.float64]
-
-STANDING, ACCELERATING, SETTLING, TOO_SHORT, STEADY = range(5)
-"""What each sample is; the first four are dropped."""
+Numbers = NDArray[np.int64]
 
 REASONS = ("standing", "accelerating", "settling", "constant speed too short")
-"""Names of the classes that are dropped, in their order."""
-
-_SMOOTHING = 0.05
-"""Half width of the velocity's moving mean, at most. [s]"""
+"""Why samples are in no constant-velocity part."""
 
 _SMOOTHED_SHARE = 0.02
-"""The same as a share of the move's duration: short moves must not be smeared."""
+"""Half width of the moving mean as a share of the move's duration: short moves stay sharp."""
 
 _CORE = 0.15
 """Share of a move's samples whose speeds stand closest together: they are its plateau."""
@@ -35,69 +32,43 @@ _GAUSSIAN_CORE = 0.189
 _DIP = 0.1
 """A joint that slows down below this share of its peak speed begins another move."""
 
-_GAP = 5.0
-"""A pause longer than this many sampling periods ends a move."""
+_LONG_CORE = 7
+"""Stretches of one core above this differ by fewer samples than it: 1 / 0.15 at most. [samples]"""
 
 
 @dataclass(frozen=True, slots=True)
-class SteadyPart:
-    """One constant-velocity part: samples ``start`` to ``stop`` (excluded) and their speed.
+class SteadyParts:
+    """Constant-velocity parts in time order, and what became of the samples of moves.
 
-    ``speed`` carries the direction's sign [deg/s]. The move it belongs to, ramps included, has the
-    samples ``first`` to ``last`` (excluded).
-    """
-
-    start: int
-    stop: int
-    speed: float
-    first: int
-    last: int
-
-
-def moves(time: Array, velocity: Array, settings: SteadySettings) -> list[tuple[int, int]]:
-    """Return first and past-the-end sample of each move: one direction, no stop, no gap.
-
-    Parameters
+    Attributes
     ----------
-    time : ndarray, shape (samples,)
-        Growing times. [s]
-    velocity : ndarray, shape (samples,)
-        Smoothed joint velocity. [deg/s]
-    settings : SteadySettings
-        ``min_speed`` decides what is standing.
+    start, stop : ndarray of int, shape (parts,)
+        First and past-the-end sample of each part.
+    speed : ndarray, shape (parts,)
+        Mean velocity, with the direction's sign. [deg/s]
+    first, last : ndarray of int, shape (parts,)
+        First and past-the-end sample of the move it belongs to, ramps included.
+    dropped : dict of str to int
+        Samples of the moves that are in no part, by reason.
     """
-    if len(time) < 2:
-        return []
-    direction = np.where(np.abs(velocity) < settings.min_speed, 0, np.sign(velocity))
-    step = np.diff(time)
-    breaks = (np.diff(direction) != 0) | (step > _GAP * np.median(step))
-    edges = np.concatenate([[0], np.flatnonzero(breaks) + 1, [len(time)]])
-    return [(int(start), int(stop)) for start, stop in pairwise(edges) if direction[start] != 0]
 
-
-def smoothed(time: Array, velocity: Array, half_width: float = _SMOOTHING) -> Array:
-    """Return the centred moving mean of velocity; as it is where sampled slower than that.
-
-    Parameters
-    ----------
-    time, velocity : ndarray, shape (samples,)
-        Times and joint velocity. [s], [deg/s]
-    half_width : float
-        Half of the mean's width. [s]
-    """
-    half = _half_window(time, half_width)
-    if half == 0:
-        return velocity
-    total = np.concatenate([[0.0], np.cumsum(velocity)])
-    low = np.maximum(np.arange(len(velocity)) - half, 0)
-    high = np.minimum(np.arange(len(velocity)) + half + 1, len(velocity))
-    return (total[high] - total[low]) / (high - low)
+    start: Numbers
+    stop: Numbers
+    speed: Array
+    first: Numbers
+    last: Numbers
+    dropped: dict[str, int]
 
 
 def steady_parts(
-    time: Array, velocity: Array, settings: SteadySettings
-) -> tuple[list[SteadyPart], NDArray[np.int8]]:
-    """Find the constant-velocity part of every move.
+    time: Array,
+    velocity: Array,
+    total: Array,
+    first: Numbers,
+    last: Numbers,
+    settings: SteadySettings,
+) -> SteadyParts:
+    """Find the constant-velocity part of every move; of one that dips, those between its dips.
 
     Parameters
     ----------
@@ -105,87 +76,134 @@ def steady_parts(
         Growing times of one recording and joint. [s]
     velocity : ndarray, shape (samples,)
         Joint velocity. [deg/s]
+    total : ndarray, shape (samples + 1,)
+        Its :func:`~frictioncli.motion.moves.running_sum`. [deg/s]
+    first, last : ndarray of int, shape (moves,)
+        First and past-the-end sample of each move, in time order.
     settings : SteadySettings
         What counts as constant.
-
-    Returns
-    -------
-    list of SteadyPart
-        At most one per move, in time order.
-    ndarray of int8, shape (samples,)
-        Class of every sample, from :data:`STANDING` to :data:`STEADY`.
     """
-    classes = np.full(len(time), STANDING, dtype=np.int8)
-    parts = []
-    for first, last in moves(time, smoothed(time, velocity), settings):
-        classes[first:last] = ACCELERATING
-        width = min(_SMOOTHING, _SMOOTHED_SHARE * (time[last - 1] - time[first]))
-        speed = np.abs(smoothed(time[first:last], velocity[first:last], width))
-        stretches = _between_dips(velocity[first:last], settings)
-        for number, (start, stop) in enumerate(stretches):
-            plateau = _plateau(speed[start:stop], settings)
-            if plateau is None:
-                continue
-            begin, end = first + start + plateau[0], first + start + plateau[1]
-            settled, margin = _trimmed(time[begin:end], width, settings)
-            if margin - settled < settings.min_samples:
-                classes[begin:end] = TOO_SHORT
-                continue
-            classes[begin:end] = SETTLING
-            classes[begin + settled : begin + margin] = STEADY
-            mean = float(np.mean(velocity[begin + settled : begin + margin]))
-            low = first if number == 0 else first + start
-            high = last if number == len(stretches) - 1 else first + stop
-            parts.append(SteadyPart(begin + settled, begin + margin, mean, low, high))
-    return parts, classes
+    length = last - first
+    width = np.minimum(SMOOTHING, _SMOOTHED_SHARE * (time[last - 1] - time[first]))
+    start, stop, move = _between_dips(velocity, first, last, settings)
+    speed = _smoothed_speed(time, total, first, last, width)
+    begin, end, stretch = _plateaus(speed, start, stop, settings)
+    # from samples of moves end to end to samples of the recording
+    shift = (first - offsets(length))[move]
+    low, high = _bounds(start + shift, stop + shift, move, first, last)
+    begin, end, move = begin + shift[stretch], end + shift[stretch], move[stretch]
+    settled, margin = _trimmed(time, begin, end, width[move], settings)
+    long_enough = margin - settled >= settings.min_samples
+    held = int(np.sum(end - begin))
+    too_short = int(np.sum((end - begin)[~long_enough]))
+    settled, margin, stretch = (x[long_enough] for x in (settled, margin, stretch))
+    steady = int(np.sum(margin - settled))
+    lost = (0, int(length.sum()) - held, held - too_short - steady, too_short)
+    return SteadyParts(
+        start=settled,
+        stop=margin,
+        speed=means(velocity, settled, margin),
+        first=low[stretch],
+        last=high[stretch],
+        dropped=dict(zip(REASONS, lost, strict=True)),
+    )
 
 
-def _half_window(time: Array, half_width: float) -> int:
-    if len(time) < 3:
-        return 0
-    half = int(half_width / max(float(np.median(np.diff(time))), 1e-9))
-    return min(half, (len(time) - 1) // 2)
+def _smoothed_speed(
+    time: Array, total: Array, first: Numbers, last: Numbers, width: Array
+) -> Array:
+    """Return the moving mean of speed of all moves end to end, each within its own bounds."""
+    length = last - first
+    half = np.repeat(half_window(time, first, last, width), length)
+    sample = members(first, last)
+    low = np.maximum(sample - half, np.repeat(first, length))
+    high = np.minimum(sample + half + 1, np.repeat(last, length))
+    return np.abs(total[high] - total[low]) / (high - low)
 
 
-def _between_dips(velocity: Array, settings: SteadySettings) -> list[tuple[int, int]]:
-    """Return the stretches of a move between its slow places, long enough to hold a plateau."""
+def _between_dips(
+    velocity: Array, first: Numbers, last: Numbers, settings: SteadySettings
+) -> tuple[Numbers, Numbers, Numbers]:
+    """Return start, stop and move of the stretches between slow places that can hold a plateau.
+
+    They count in samples of the moves end to end.
+    """
+    offset = offsets(last - first)
+    speed = np.abs(velocity[members(first, last)])
     # of three neighbours the median: one bad sample is no dip
-    padded = np.pad(np.abs(velocity), 1, mode="edge")
-    speed = np.median(np.stack([padded[:-2], padded[1:-1], padded[2:]]), axis=0)
-    fast = speed >= _DIP * float(np.max(speed))
-    edges = np.flatnonzero(np.diff(np.concatenate([[False], fast, [False]]).astype(np.int8)))
-    return [
-        (int(start), int(stop))
-        for start, stop in zip(edges[::2], edges[1::2], strict=True)
-        if stop - start >= settings.min_samples
-    ]
+    middle = speed.copy()
+    before, here, after = speed[:-2], speed[1:-1], speed[2:]
+    middle[1:-1] = np.maximum(np.minimum(before, here), np.minimum(np.maximum(before, here), after))
+    for end in (offset, offset + (last - first) - 1):
+        middle[end] = speed[end]
+    peak = reduced(np.maximum, middle, offset, offset + (last - first))
+    start, stop, move = runs(middle >= np.repeat(_DIP * peak, last - first), offset)
+    kept = stop - start >= settings.min_samples
+    return start[kept], stop[kept], move[kept]
 
 
-def _plateau(speed: Array, settings: SteadySettings) -> tuple[int, int] | None:
-    """Return the longest stretch at the speed that the move holds most; none if it holds none."""
-    core = min(max(int(np.ceil(_CORE * len(speed))), 2), len(speed) - 1)
-    ordered = np.sort(speed)
-    widths = ordered[core:] - ordered[: len(ordered) - core]
-    densest = int(np.argmin(widths))
-    level = float(np.median(ordered[densest : densest + core + 1]))
-    noise = float(widths[densest]) / 2 / _GAUSSIAN_CORE
-    tolerance = max(3 * noise, settings.speed_tolerance * level)
-    if tolerance > 4 * settings.speed_tolerance * level:
-        return None
-    within = np.abs(speed - level) <= tolerance
-    edges = np.flatnonzero(np.diff(np.concatenate([[False], within, [False]]).astype(np.int8)))
-    starts, stops = edges[::2], edges[1::2]
+def _bounds(
+    start: Numbers, stop: Numbers, move: Numbers, first: Numbers, last: Numbers
+) -> tuple[Numbers, Numbers]:
+    """Return the bounds of stretches; the outer ones of a move have those of the move."""
+    opens = np.diff(move, prepend=-1) != 0
+    closes = np.diff(move, append=-1) != 0
+    return np.where(opens, first[move], start), np.where(closes, last[move], stop)
+
+
+def _plateaus(
+    speed: Array, start: Numbers, stop: Numbers, settings: SteadySettings
+) -> tuple[Numbers, Numbers, Numbers]:
+    """Return the longest part at the speed that each stretch holds most, where it holds one."""
+    level, spread = _densest(speed, start, stop)
+    noise = spread / 2 / _GAUSSIAN_CORE
+    tolerance = np.maximum(3 * noise, settings.speed_tolerance * level)
+    held = (tolerance <= 4 * settings.speed_tolerance * level) & (level >= settings.min_speed)
+    stretch = np.flatnonzero(held)
+    start, stop = start[stretch], stop[stretch]
+    length = stop - start
+    away = np.abs(speed[members(start, stop)] - np.repeat(level[stretch], length))
+    offset = offsets(length)
+    begin, end, owner = runs(away <= np.repeat(tolerance[stretch], length), offset)
     # a few noisy samples inside a plateau do not end it
-    apart = starts[1:] - stops[:-1] > max(3, len(speed) // 50)
-    starts = starts[np.concatenate([[True], apart])]
-    stops = stops[np.concatenate([apart, [True]])]
-    longest = int(np.argmax(stops - starts))
-    return int(starts[longest]), int(stops[longest])
+    gap = begin[1:] - end[:-1] > np.maximum(3, length[owner[1:]] // 50)
+    apart = gap | (owner[1:] != owner[:-1])
+    begin = begin[np.append(True, apart)] if len(begin) else begin
+    end = end[np.append(apart, True)] if len(end) else end
+    owner = np.searchsorted(offset, begin, side="right") - 1
+    # the first of the longest ones of each stretch
+    order = np.lexsort((begin - end, owner))
+    chosen = order[np.diff(owner[order], prepend=-1) != 0]
+    shift = (start - offset)[owner[chosen]]
+    return begin[chosen] + shift, end[chosen] + shift, stretch[owner[chosen]]
 
 
-def _trimmed(time: Array, half_width: float, settings: SteadySettings) -> tuple[int, int]:
-    """Return the part of a plateau behind the settling and before the smeared edge at its end."""
-    quarter = (time[-1] - time[0]) / 4
-    settled = int(np.searchsorted(time, time[0] + min(settings.settling, quarter)))
-    margin = min(_half_window(time, half_width), len(time) // 4)
-    return settled, len(time) - margin
+def _densest(speed: Array, start: Numbers, stop: Numbers) -> tuple[Array, Array]:
+    """Return median and width of the narrowest range that holds the core of each stretch."""
+    length = stop - start
+    cores = np.minimum(np.maximum(np.ceil(_CORE * length).astype(np.int64), 2), length - 1)
+    level, spread = np.empty(len(start)), np.empty(len(start))
+    # sorted together: of long ones those with the same core, whose lengths hardly differ
+    kind = np.where(cores > _LONG_CORE, cores, -length)
+    for one in np.unique(kind):
+        rows = np.flatnonzero(kind == one)
+        core, column = int(cores[rows[0]]), np.arange(length[rows].max())
+        ordered = speed.take(start[rows, None] + column, mode="clip")
+        np.copyto(ordered, np.inf, where=column >= length[rows, None])
+        ordered.sort(axis=1)
+        width = ordered[:, core:] - ordered[:, :-core]
+        row, densest = np.arange(len(rows)), width.argmin(axis=1)
+        spread[rows] = width[row, densest]
+        middle = ordered[row, densest + core // 2] + ordered[row, densest + (core + 1) // 2]
+        level[rows] = middle / 2
+    return level, spread
+
+
+def _trimmed(
+    time: Array, begin: Numbers, end: Numbers, width: Array, settings: SteadySettings
+) -> tuple[Numbers, Numbers]:
+    """Return plateaus without the settling at their start and the smeared edge at their end."""
+    quarter = (time[end - 1] - time[begin]) / 4
+    settled = np.searchsorted(time, time[begin] + np.minimum(settings.settling, quarter))
+    margin = np.minimum(half_window(time, begin, end, width), (end - begin) // 4)
+    return np.minimum(settled, end), end - margin

@@ -1,20 +1,45 @@
 """What ``pair`` and ``separate`` have to say, in a few lines."""
 
-from collections.abc import Mapping
+from collections import Counter
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass, field
 from typing import Any
 
-import pandas as pd
+import numpy as np
+import pyarrow as pa
 
 _SPEEDS = 12
 
 
-def pairing_text(pairs: pd.DataFrame, facts: Mapping[str, Any], asked_width: float) -> str:
+@dataclass(slots=True)
+class PairTally:
+    """Counts pairs by joint and speed, and their samples, while they go by."""
+
+    speeds: dict[int, Counter[float]] = field(default_factory=dict)
+    samples: int = 0
+
+    def counted(self, tables: Iterable[pa.Table]) -> Iterator[pa.Table]:
+        """Yield rows of :data:`frictioncli.schemas.PAIRS` as they are; those of a pair together.
+
+        A table holds whole pairs of one run and joint.
+        """
+        for rows in tables:
+            joint = int(rows["joint"][0].as_py())
+            _, first = np.unique(rows["pair"].to_numpy(), return_index=True)
+            speed = np.round(rows["speed"].to_numpy()[first], 1)
+            self.speeds.setdefault(joint, Counter()).update(speed.tolist())
+            for name in ("n_forward", "n_reverse"):
+                self.samples += int(rows[name].to_numpy().sum())
+            yield rows
+
+
+def pairing_text(tally: PairTally, facts: Mapping[str, Any], asked_width: float) -> str:
     """Return pairs per speed, and the samples dropped per reason.
 
     Parameters
     ----------
-    pairs : DataFrame
-        Rows of :data:`frictioncli.schemas.PAIRS`.
+    tally : PairTally
+        What was counted.
     facts : mapping
         ``samples``, ``dropped`` and ``bin_width`` of the pairing.
     asked_width : float
@@ -26,27 +51,48 @@ def pairing_text(pairs: pd.DataFrame, facts: Mapping[str, Any], asked_width: flo
             f"angle bins widened from {asked_width:g} to {facts['bin_width']:g} deg: the joint"
             " moves that far between samples"
         )
-    heads = pairs.drop_duplicates(["run", "joint", "pair"])
-    for joint, group in heads.groupby("joint"):
-        speeds = group["speed"].round(1).value_counts().sort_index()
-        told = ", ".join(f"{count} at {speed:g}" for speed, count in speeds.head(_SPEEDS).items())
+    for joint, speeds in sorted(tally.speeds.items()):
+        told = ", ".join(f"{speeds[speed]} at {speed:g}" for speed in sorted(speeds)[:_SPEEDS])
         more = f" and {len(speeds) - _SPEEDS} other speeds" if len(speeds) > _SPEEDS else ""
-        lines.append(f"joint {joint}: {len(group)} pairs: {told}{more} deg/s")
-    kept = int(pairs["n_forward"].sum() + pairs["n_reverse"].sum())
+        lines.append(f"joint {joint}: {speeds.total()} pairs: {told}{more} deg/s")
     dropped = "; ".join(f"{reason} {count}" for reason, count in facts["dropped"].items() if count)
-    lines.append(f"samples: {facts['samples']} read, {kept} in pairs; dropped: {dropped or 0}")
+    lines.append(
+        f"samples: {facts['samples']} read, {tally.samples} in pairs; dropped: {dropped or 0}"
+    )
     return "\n".join(lines)
 
 
+@dataclass(slots=True)
+class TorqueRanges:
+    """Least and greatest friction and load torque by joint, while they go by."""
+
+    friction: dict[int, tuple[float, float]] = field(default_factory=dict)
+    load: dict[int, tuple[float, float]] = field(default_factory=dict)
+    own_load: bool = False
+
+    def seen(self, batches: Iterable[pa.RecordBatch]) -> Iterator[pa.RecordBatch]:
+        """Yield rows of :data:`frictioncli.schemas.TORQUES` as they are."""
+        for rows in batches:
+            joints = rows.column("joint").to_numpy()
+            for joint in np.unique(joints).tolist():
+                for ranges, name in ((self.friction, "friction"), (self.load, "load")):
+                    own = rows.column(f"{name}_torque").to_numpy()[joints == joint]
+                    low, high = ranges.get(joint, (np.inf, -np.inf))
+                    ranges[joint] = min(low, float(own.min())), max(high, float(own.max()))
+            if "load" in rows.schema.names:
+                self.own_load |= rows.column("load").null_count < rows.num_rows
+            yield rows
+
+
 def separation_text(
-    torques: pd.DataFrame, signs: Mapping[int, int], facts: Mapping[str, Any], *, told: bool
+    ranges: TorqueRanges, signs: Mapping[int, int], facts: Mapping[str, Any], *, told: bool
 ) -> str:
     """Return the sign convention and the range of both torques, per joint.
 
     Parameters
     ----------
-    torques : DataFrame
-        Rows of :data:`frictioncli.schemas.TORQUES`.
+    ranges : TorqueRanges
+        What was seen.
     signs : mapping of int to int
         Sign convention of each joint.
     facts : mapping
@@ -56,15 +102,14 @@ def separation_text(
     """
     unit = facts.get("torque_unit", "N·m")
     lines = []
-    for joint, group in torques.groupby("joint"):
-        convention = "load + friction" if signs[joint] > 0 else "load - friction"
+    for joint, sign in signs.items():
+        convention = "load + friction" if sign > 0 else "load - friction"
+        friction, load = (
+            f"{low:.3g} to {high:.3g}" for low, high in (ranges.friction[joint], ranges.load[joint])
+        )
         lines.append(
-            f"joint {joint}: forward torque is {convention} (sign {signs[joint]:+d},"
-            f" {'as told' if told else 'inferred'}), friction {_span(group['friction_torque'])}"
-            f" {unit}, load {_span(group['load_torque'])} {facts.get('load_unit', unit)}"
+            f"joint {joint}: forward torque is {convention} (sign {sign:+d},"
+            f" {'as told' if told else 'inferred'}), friction {friction}"
+            f" {unit}, load {load} {facts.get('load_unit', unit)}"
         )
     return "\n".join(lines)
-
-
-def _span(values: pd.Series) -> str:
-    return f"{values.min():.3g} to {values.max():.3g}"

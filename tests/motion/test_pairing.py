@@ -1,24 +1,16 @@
 """Counter-directed motion is matched by speed, temperature and angle, and nothing gets lost."""
 
 import numpy as np
-import pandas as pd
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from frictioncli.errors import NotEnoughData, OptionError
-from frictioncli.motion.pairing import pair_spans
 from frictioncli.motion.settings import PairingSettings
-from frictioncli.motion.spans import bin_means, find_spans
-from tests.moves import batches, journey, samples
+from tests.found import pairs as paired
+from tests.moves import journey, samples
 
 GRAVITY = 90.0
-
-
-def paired(frame, rows=100_000, **settings):
-    chosen = PairingSettings(**settings)
-    found = find_spans(batches(frame, rows), chosen.steady, chosen.bin_width)
-    return pair_spans(found, chosen)
 
 
 def halves(pairs):
@@ -61,19 +53,6 @@ def test_strokes_that_creep_forward_find_partners_on_the_way_back():
     frame = samples(journey(turns, [30.0] * 6), friction=8.0)
     covered = set(paired(frame).pairs["position"])
     assert {22.5, 32.5, 72.5, 82.5, 132.5, 152.5} <= covered
-
-
-@settings(max_examples=25, deadline=None)
-@given(rows=st.integers(50, 3000), seed=st.integers(0, 5))
-def test_pairs_do_not_depend_on_how_the_log_was_cut(rows, seed):
-    generator = np.random.default_rng(seed)
-    turns = np.concatenate([[0.0], generator.uniform(-120, 120, 6)])
-    frame = samples(journey(turns, generator.choice([20.0, 60.0], 6)), friction=8.0)
-    found = [
-        find_spans(batches(frame, size), PairingSettings().steady, 5.0) for size in (rows, 10**6)
-    ]
-    pd.testing.assert_frame_equal(found[0].spans, found[1].spans)
-    pd.testing.assert_frame_equal(found[0].visits, found[1].visits)
 
 
 @settings(max_examples=20, deadline=None)
@@ -122,19 +101,6 @@ def test_one_direction_only_says_so():
 def test_no_constant_speed_says_so():
     with pytest.raises(NotEnoughData, match="no constant-velocity motion"):
         paired(samples(journey([0, 50, 0], [1000, 1000]), friction=5.0))
-
-
-def test_partly_crossed_bins_are_carried_to_their_centre():
-    """Torque grows by 2 N·m/deg; the last bin holds samples only up to 12 of 15 deg."""
-    position = np.arange(0.0, 12.0, 0.05)
-    means = bin_means(
-        position=position,
-        torque=2 * position,
-        load=np.full_like(position, np.nan),
-        time=position,
-        width=5.0,
-    )
-    np.testing.assert_allclose(means["torque"], 2 * np.array([2.5, 7.5, 12.5]), atol=1e-9)
 
 
 def test_slow_logs_get_wider_bins():

@@ -8,10 +8,8 @@ import pytest
 
 from frictioncli import chain, schemas, tables
 from frictioncli.errors import NotEnoughData
-from frictioncli.motion.pairing import pair_spans
-from frictioncli.motion.settings import PairingSettings
-from frictioncli.motion.spans import find_spans
-from tests.moves import batches, journey, samples
+from tests.found import pairs as found_pairs
+from tests.moves import journey, samples
 
 OTHER = "the partner has another payload"
 
@@ -25,19 +23,18 @@ def moves(turns, names, speed=40.0):
 
 
 def paired(frame, payloads):
-    chosen = PairingSettings()
-    said = pd.Series({("day1", name): mass for name, mass in payloads.items()}, dtype=float)
-    return pair_spans(
-        find_spans(batches(frame, 10**6), chosen.steady, chosen.bin_width), chosen, said
-    )
+    index = pd.MultiIndex.from_tuples([("day1", name) for name in payloads] or [("", "")])
+    return found_pairs(frame, payload=pd.Series(list(payloads.values()) or [np.nan], index))
 
 
 def test_a_move_passes_by_neighbours_that_carry_something_else():
     frame = moves([0, 170, 0, 170, 0], ["a", "b", "c", "d"])
     result = paired(frame, {"a": 2.0, "b": 4.0, "c": 4.0, "d": 2.0})
-    heads = result.pairs.drop_duplicates("pair")
-    assert sorted(heads["payload"]) == [2.0, 4.0]
-    assert heads.set_index("payload")["recording"].to_dict() == {2.0: "a", 4.0: "c"}
+    heads = result.pairs.drop_duplicates("pair").set_index("payload")
+    # 5.4 s a move: the second and third, then the first and fourth
+    assert sorted(heads.index) == [2.0, 4.0]
+    end = len(frame) * 0.012
+    np.testing.assert_allclose(heads["time"], end / 2, rtol=0.01)
     assert result.dropped[OTHER] == 0
 
 
@@ -102,6 +99,14 @@ def test_the_manifest_gives_pairs_and_torques_their_payload(tmp_path):
     held = rows[(rows["position"] - 90).abs() > 20].index
     per_payload = gravity[held].groupby(rows["payload"].fillna(0.0)).median()
     np.testing.assert_allclose(per_payload, [60, 80, 100], atol=0.3)
+
+
+def test_pairs_and_ramps_name_the_recordings_that_gave_their_payload(tmp_path):
+    write_folder(tmp_path / "day1", manifest=True)
+    list(separated(tmp_path / "day1", tmp_path / "work"))
+    for name in (chain.PAIRS, chain.RAMPS):
+        inputs = tables.document(tmp_path / "work" / name)["inputs"]
+        assert set(inputs) == {"samples.parquet", "recordings.parquet"}
 
 
 def test_without_a_manifest_the_payload_is_not_known(tmp_path):

@@ -3,7 +3,14 @@
 import numpy as np
 import pandas as pd
 
-from frictioncli.motion.phases import add_phases, phases_of
+from frictioncli.motion import phases as motion_phases
+from tests.found import pairs
+from tests.moves import journey, samples
+
+
+def phases_of(temperature):
+    found = motion_phases.phases(temperature)
+    return motion_phases.phases_of(np.arange(len(temperature)), found)
 
 
 def test_a_thermal_cycle_is_heat_up_then_cool_down():
@@ -33,14 +40,17 @@ def test_steady_and_unknown_temperature_are_sweeps():
 
 
 def test_a_given_phase_wins():
-    pairs = pd.DataFrame(
-        {
-            "run": "a",
-            "joint": 1,
-            "pair": range(4),
-            "time": range(4),
-            "motor_temperature": [20.0, 30.0, 40.0, 50.0],
-        }
+    """Four recordings of a joint that warms up by 10 °C each; the manifest speaks of the first."""
+    motion = journey([0, 170] * 6, [40] * 11)
+    number = np.minimum(4 * np.arange(len(motion)) // len(motion), 3)
+    frame = samples(
+        motion,
+        friction=5.0,
+        recording=np.array(["a", "b", "c", "d"], dtype=object)[number],
+        motor_temperature=20.0 + 10 * number,
     )
-    given = pd.Series(["sweep", None, None, None], dtype=object)
-    assert add_phases(pairs, given)["phase"].tolist() == ["sweep", "heat-up", "heat-up", "heat-up"]
+    said = pd.Series({("day1", "a"): "sweep"}, dtype=object)
+    heads = pairs(frame, phase=said).pairs.drop_duplicates("pair")
+    assert (heads["motor_temperature"] == 20).any()
+    expected = np.where(heads["motor_temperature"] == 20, "sweep", "heat-up")
+    assert heads["phase"].tolist() == expected.tolist()

@@ -2,12 +2,20 @@
 
 import numpy as np
 import pandas as pd
+import pyarrow as pa
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
 from frictioncli.errors import NotEnoughData, OptionError
-from frictioncli.motion.separation import inferred_sign, separate, separate_torques
+from frictioncli.motion.separation import (
+    half_differences,
+    inferred_sign,
+    separate_torques,
+    sign_conventions,
+)
+from frictioncli.motion.separation import separate as separate_batch
+from tests.moves import batches
 
 torque = st.floats(-1e4, 1e4)
 
@@ -32,6 +40,13 @@ def test_shapes_must_agree():
         separate_torques(torque_forward=[1.0], torque_reverse=[1.0, 2.0])
 
 
+def separate(pairs, sign=None, rows=7):
+    """Separate pairs that come so many rows at a time."""
+    signs = sign_conventions(batches(pairs, rows), sign)
+    parts = [separate_batch(batch, signs) for batch in batches(pairs, rows)]
+    return pa.Table.from_batches(parts).to_pandas(), signs
+
+
 def pairs(friction, run="a", joint=2):
     load = np.linspace(-50, 50, len(friction))
     return pd.DataFrame(
@@ -43,7 +58,7 @@ def pairs(friction, run="a", joint=2):
             "torque_reverse": load - friction,
             "load": np.nan,
         }
-    )
+    ).astype({"joint": np.int16})
 
 
 @pytest.mark.parametrize("sign", [1, -1])
@@ -61,9 +76,9 @@ def test_a_forced_sign_is_obeyed():
 
 
 def test_contradicting_runs_are_refused():
-    both = pd.concat([pairs(np.full(5, 10.0), "a"), pairs(np.full(5, -10.0), "b")])
+    both = pairs(np.repeat([10.0, -10.0], 5)).assign(run=np.repeat(["a", "b"], 5))
     with pytest.raises(NotEnoughData, match="contradict"):
-        inferred_sign(both)
+        inferred_sign(2, half_differences(batches(both, 3))[2])
 
 
 def test_a_load_channel_takes_the_place_of_the_half_sum():
@@ -74,3 +89,20 @@ def test_a_load_channel_takes_the_place_of_the_half_sum():
 def test_other_signs_are_refused():
     with pytest.raises(OptionError):
         separate(pairs(np.full(4, 3.0)), sign=2)
+
+
+@given(rows=st.integers(1, 60), seed=st.integers(0, 100))
+def test_half_differences_are_means_of_pairs_however_the_rows_come(rows, seed):
+    generator = np.random.default_rng(seed)
+    bins = generator.integers(1, 6, 12)
+    table = pairs(generator.normal(10, 3, bins.sum()))
+    table["pair"] = np.repeat(np.arange(12), bins)
+    table["run"] = np.repeat(["a", "a", "b"], [bins[:4].sum(), bins[4:8].sum(), bins[8:].sum()])
+    half = (table["torque_forward"] - table["torque_reverse"]) / 2
+    expected = half.groupby([table["run"], table["pair"]]).mean().groupby(level=0)
+    found = half_differences(batches(table, rows))[2]
+    assert {run: tally.count for run, tally in found.items()} == {"a": 8, "b": 4}
+    for run, tally in found.items():
+        assert tally.mean == pytest.approx(expected.mean()[run])
+        deviation = np.sqrt(tally.squares / (tally.count - 1))
+        assert deviation == pytest.approx(expected.std()[run])

@@ -1,17 +1,34 @@
 """Only the part at constant velocity is kept."""
 
+from typing import NamedTuple
+
 import numpy as np
 import pytest
 
 from frictioncli.errors import OptionError
+from frictioncli.motion.moves import SMOOTHING, directions, moves, running_sum, samples_in
 from frictioncli.motion.settings import SteadySettings
-from frictioncli.motion.steady import STEADY, steady_parts
+from frictioncli.motion.steady import steady_parts
 from tests.moves import journey, trapezoid
 
 
+class Part(NamedTuple):
+    start: int
+    stop: int
+    speed: float
+
+
 def parts_of(motion, **settings):
+    """Parts of a whole recording, and samples dropped from its moves by reason."""
+    chosen = SteadySettings(**settings)
     time, velocity = motion["time"].to_numpy(), motion["velocity"].to_numpy()
-    return steady_parts(time, velocity, SteadySettings(**settings))
+    period = float(np.median(np.diff(time)))
+    total = running_sum(velocity)
+    direction = directions(total, samples_in(SMOOTHING, period), chosen)
+    first, last = moves(direction, time, period)
+    found = steady_parts(time, velocity, total, first, last, chosen)
+    dropped = found.dropped | {"standing": len(time) - int(np.sum(last - first))}
+    return list(map(Part, found.start, found.stop, found.speed)), dropped
 
 
 @pytest.mark.parametrize("speed", [2.3, 19.1, 67.5, 101.2, 290.0])
@@ -40,9 +57,9 @@ def test_settling_is_dropped():
 
 def test_a_move_that_never_holds_its_speed_is_dropped():
     motion = trapezoid(0, 60, 1000.0)
-    parts, classes = parts_of(motion)
+    parts, dropped = parts_of(motion)
     assert parts == []
-    assert not (classes == STEADY).any()
+    assert sum(dropped.values()) == len(motion)
 
 
 def test_stop_and_go_without_rest_gives_two_parts():
@@ -73,10 +90,12 @@ def test_slow_sampling_keeps_a_plateau_of_a_few_samples():
     assert part.speed == pytest.approx(50.0)
 
 
-def test_every_sample_has_one_class():
+def test_every_sample_is_in_a_part_or_counted():
     motion = journey([0, 180, 20, 150], [19.1, 67.5, 400.0])
-    parts, classes = parts_of(motion)
-    assert (classes == STEADY).sum() == sum(part.stop - part.start for part in parts)
+    parts, dropped = parts_of(motion)
+    assert sum(part.stop - part.start for part in parts) + sum(dropped.values()) == len(motion)
+    # 0.3 s before and behind each move, less half of the moving mean
+    assert dropped["standing"] == pytest.approx(3 * (0.6 - 2 * SMOOTHING) / 0.012, abs=12)
 
 
 @pytest.mark.parametrize(
