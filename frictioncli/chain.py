@@ -4,11 +4,13 @@ Every function here is a command of the same name; what it returns prints as tha
 All of them one after the other: :mod:`frictioncli.pipeline`.
 """
 
+import functools
+import inspect
 import json
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Mapping
 from dataclasses import asdict, dataclass
 from pathlib import Path
-from typing import Any
+from typing import Any, ParamSpec
 
 import pandas as pd
 
@@ -27,16 +29,20 @@ from frictioncli.files import write_text
 from frictioncli.model.document import FrictionModel, by_joint, read_models, write_models
 from frictioncli.model.fitting import fit_joint
 from frictioncli.model.settings import FitSettings
-from frictioncli.motion.given import given, of_recordings
+from frictioncli.motion.given import given
+from frictioncli.motion.pages import Pages
 from frictioncli.motion.pairing import pair_spans
-from frictioncli.motion.phases import add_phases
+from frictioncli.motion.results import pair_rows, ramp_rows
 from frictioncli.motion.separation import separate as separate_pairs
+from frictioncli.motion.separation import sign_conventions
 from frictioncli.motion.settings import PairingSettings
-from frictioncli.motion.spans import find_spans
-from frictioncli.motion.summary import pairing_text, separation_text
+from frictioncli.motion.spans import Joint, find_spans
+from frictioncli.motion.summary import PairTally, TorqueRanges, pairing_text, separation_text
 from frictioncli.provenance import Provenance, hashes, to_json
+from frictioncli.reading.discovery import Logs
 from frictioncli.reading.ingest import ingest as ingest_logs
 from frictioncli.reading.settings import IngestSettings
+from frictioncli.workfolder import alone, outdated
 
 SAMPLES = "samples.parquet"
 RECORDINGS = "recordings.parquet"
@@ -59,44 +65,83 @@ class Done:
         return self.text
 
 
-def ingest(logs: Sequence[Path], work: Path, settings: IngestSettings | None = None) -> Done:
+_Arguments = ParamSpec("_Arguments")
+
+
+def _stage(work_on: Callable[_Arguments, Done]) -> Callable[_Arguments, Done]:
+    """Let a stage have its work folder to itself, and say which of its inputs are out of date."""
+    signature = inspect.signature(work_on)
+
+    @functools.wraps(work_on)
+    def stage(*args: _Arguments.args, **kwargs: _Arguments.kwargs) -> Done:
+        work: Path = signature.bind(*args, **kwargs).arguments["work"]
+        with alone(work):
+            done = work_on(*args, **kwargs)
+            # a page shows all tables of its folder
+            used = [done.path] if done.path.parent == work else sorted(work.iterdir())
+            warnings = [f"warning: {text}" for text in outdated(used)]
+        return Done(done.path, "\n".join([*warnings, done.text]))
+
+    return stage
+
+
+@_stage
+def ingest(logs: Logs, work: Path, settings: IngestSettings | None = None) -> Done:
     """Read logs into ``samples.parquet``; what cannot be used goes to ``rejected.parquet``."""
     summary = ingest_logs(logs, work, settings or IngestSettings())
     return Done(work / SAMPLES, str(summary))
 
 
+@_stage
 def pair(work: Path, settings: PairingSettings | None = None) -> Done:
     """Match counter-directed constant velocity: ``pairs.parquet``; the rest: ``ramps.parquet``."""
     settings = settings or PairingSettings()
     source = work / SAMPLES
     facts = tables.facts(source)
-    found = find_spans(tables.batches(source, schemas.SAMPLES), settings.steady, settings.bin_width)
+    provenance = Provenance("pair", asdict(settings), hashes(_present(source, work / RECORDINGS)))
     said = given(work / RECORDINGS)
-    paired = pair_spans(found, settings, said["payload"])
-    pairs = add_phases(paired.pairs, of_recordings(paired.pairs, said["phase"]))
-    facts |= {
-        "samples": paired.samples,
-        "dropped": paired.dropped,
-        "bin_width": paired.bin_width,
-    }
-    ramps = found.ramps.assign(payload=of_recordings(found.ramps, said["payload"]).astype(float))
-    _write(work / RAMPS, ramps, schemas.RAMPS, "pair", settings, [source], facts)
-    _write(work / PAIRS, pairs, schemas.PAIRS, "pair", settings, [source], facts)
-    return Done(work / PAIRS, pairing_text(pairs, facts, settings.bin_width))
+    tally = PairTally()
+    with (
+        Pages[Joint](work) as moving,
+        Pages[Joint](work) as paired,
+        tables.TableWriter(work / RAMPS, schemas.RAMPS, provenance) as ramps,
+        tables.TableWriter(work / PAIRS, schemas.PAIRS, provenance) as pairs,
+    ):
+        samples = tables.ahead(tables.batches(source, schemas.SAMPLES))
+        found = find_spans(samples, settings.steady, settings.bin_width, moving)
+        pairing = pair_spans(found, settings, paired, said["payload"])
+        facts |= {
+            "samples": found.samples,
+            "dropped": pairing.dropped,
+            "bin_width": found.bin_width,
+        }
+        ramps.facts = pairs.facts = facts
+        for rows in ramp_rows(found, said["payload"]):
+            ramps.write(rows)
+        for rows in tally.counted(pair_rows(found, pairing, said["phase"])):
+            pairs.write(rows)
+    return Done(work / PAIRS, pairing_text(tally, facts, settings.bin_width))
 
 
+@_stage
 def separate(work: Path, sign: int | None = None) -> Done:
     """Separate friction torque from load torque by equation (8): ``torques.parquet``."""
     source = work / PAIRS
     facts = tables.facts(source)
-    torques, signs = separate_pairs(tables.read(source, schemas.PAIRS), sign)
+    signs = sign_conventions(tables.batches(source, schemas.PAIRS), sign)
     facts["sign"] = {str(joint): value for joint, value in signs.items()}
-    if torques["load"].notna().any():
-        facts["load_unit"] = "N·m"
-    _write(work / TORQUES, torques, schemas.TORQUES, "separate", {"sign": sign}, [source], facts)
-    return Done(work / TORQUES, separation_text(torques, signs, facts, told=sign is not None))
+    provenance = Provenance("separate", {"sign": sign}, hashes([source]))
+    ranges = TorqueRanges()
+    with tables.TableWriter(work / TORQUES, schemas.TORQUES, provenance) as torques:
+        pairs = tables.ahead(tables.batches(source, schemas.PAIRS))
+        for rows in ranges.seen(separate_pairs(batch, signs) for batch in pairs):
+            torques.write(rows)
+        facts |= {"load_unit": "N·m"} if ranges.own_load else {}
+        torques.facts = facts
+    return Done(work / TORQUES, separation_text(ranges, signs, facts, told=sign is not None))
 
 
+@_stage
 def fit(work: Path, settings: FitSettings | None = None) -> Done:
     """Identify equation (16) for every joint: ``model.json``."""
     settings = settings or FitSettings()
@@ -115,6 +160,7 @@ def fit(work: Path, settings: FitSettings | None = None) -> Done:
     return Done(work / MODEL, "\n".join([*(model.table() for model in models), *faults]))
 
 
+@_stage
 def diagnose(work: Path, settings: DiagnosisSettings | None = None) -> Done:
     """Find what the simulated torque gets wrong: ``diagnosis.json``, ``extended-model.json``."""
     settings = settings or DiagnosisSettings()
@@ -122,6 +168,7 @@ def diagnose(work: Path, settings: DiagnosisSettings | None = None) -> Done:
     facts = tables.facts(work / TORQUES)
     unit = facts.get("torque_unit", "N·m")
     ramps = ramp_logs(work / RAMPS, facts.get("sign", {}))
+    inputs = _present(work / TORQUES, work / MODEL, work / RAMPS)
     found, faults = [], []
     for model in read_models(work / MODEL):
         rows = torques[torques["joint"] == model.joint]
@@ -133,7 +180,7 @@ def diagnose(work: Path, settings: DiagnosisSettings | None = None) -> Done:
             faults.append(str(fault))
     if not found:
         raise NotEnoughData("; ".join(faults))
-    provenance = Provenance("diagnose", asdict(settings), hashes([work / TORQUES, work / MODEL]))
+    provenance = Provenance("diagnose", asdict(settings), hashes(inputs))
     chief = max(found, key=lambda pair: pair[0].n_pairs)[0].joint
     for name, documents in (
         (DIAGNOSIS, {m.joint: diagnosis_document(d, settings) for m, d in found}),
@@ -152,6 +199,7 @@ def has_finding(work: Path, *, named_only: bool) -> bool:
     return any(len(cause["effects"]) == 1 or not named_only for cause in causes)
 
 
+@_stage
 def simulate(
     work: Path,
     schedule: ScheduleSettings | None = None,
@@ -179,6 +227,7 @@ def simulate(
     return Done(work / SCHEDULE, "\n".join([schedule.told(unit), *lines, *faults]))
 
 
+@_stage
 def evaluate(
     work: Path,
     grid: EvaluationGrid | None = None,
@@ -203,6 +252,7 @@ def evaluate(
     return Done(work / EVALUATION, "\n".join([text, *notes, *faults]))
 
 
+@_stage
 def report(work: Path) -> Done:
     """Draw the figures and write the page: ``report/index.html``."""
     from frictioncli.report.page import write_report
@@ -222,6 +272,11 @@ def _write(
 ) -> None:
     values = settings if isinstance(settings, dict) else asdict(settings)
     tables.write(path, rows, table, Provenance(stage, values, hashes(inputs)), facts)
+
+
+def _present(*paths: Path) -> list[Path]:
+    """Return the inputs that a work folder has; those of older versions lack some."""
+    return [path for path in paths if path.exists()]
 
 
 def _corrected(

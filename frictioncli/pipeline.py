@@ -1,6 +1,6 @@
 """The whole chain in one call, from logs to the report."""
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -10,35 +10,40 @@ from frictioncli.diagnosis.settings import DiagnosisSettings
 from frictioncli.errors import NotEnoughData
 from frictioncli.model.settings import FitSettings
 from frictioncli.motion.settings import PairingSettings
+from frictioncli.reading.discovery import Logs
 from frictioncli.reading.settings import IngestSettings
+from frictioncli.workfolder import alone
+
+Tell = Callable[[str, chain.Done], None]
+"""Is told each stage's name and what it made."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class RunSettings:
-    """The settings of every stage of a run."""
+    """The settings of every stage of a run; without any for the diagnosis there is none."""
 
     ingest: IngestSettings = field(default_factory=IngestSettings)
     pairing: PairingSettings = field(default_factory=PairingSettings)
     sign: int | None = None
     fit: FitSettings = field(default_factory=FitSettings)
-    diagnosis: DiagnosisSettings = field(default_factory=DiagnosisSettings)
+    diagnosis: DiagnosisSettings | None = field(default_factory=DiagnosisSettings)
     schedule: ScheduleSettings = field(default_factory=ScheduleSettings)
     grid: EvaluationGrid = field(default_factory=EvaluationGrid)
     correction: CorrectionSettings = field(default_factory=CorrectionSettings)
 
 
 def run(
-    logs: Sequence[Path],
+    logs: Logs,
     work: Path,
     settings: RunSettings | None = None,
-    tell: Callable[[str, chain.Done], None] = lambda stage, done: None,
+    tell: Tell = lambda stage, done: None,
 ) -> Path:
     """Run the whole chain and return the report's path.
 
     Parameters
     ----------
-    logs : sequence of Path
-        Log files or folders; each folder is one run.
+    logs : Logs
+        Log files or folders, each folder one run; or the runs by name.
     work : Path
         Work folder; its tables are replaced.
     settings : RunSettings, optional
@@ -52,15 +57,36 @@ def run(
     out, and said so, and the tables of a former run are removed. So is the diagnosis where the data
     are too few for one. A former one is removed at the start in any case: it is of other data.
     """
+    with alone(work):
+        analyse(logs, work, settings, tell)
+        done = chain.report(work)
+    tell("report", done)
+    return done.path
+
+
+def analyse(
+    logs: Logs,
+    work: Path,
+    settings: RunSettings | None = None,
+    tell: Tell = lambda stage, done: None,
+) -> None:
+    """Run the chain but for the report; see :func:`run`."""
     chosen = settings or RunSettings()
+    with alone(work):
+        _analyse(logs, work, chosen, tell)
+
+
+def _analyse(logs: Logs, work: Path, chosen: RunSettings, tell: Tell) -> None:
     for name in (chain.DIAGNOSIS, chain.EXTENDED):
         (work / name).unlink(missing_ok=True)
     tell("ingest", chain.ingest(logs, work, chosen.ingest))
     tell("pair", chain.pair(work, chosen.pairing))
     tell("separate", chain.separate(work, chosen.sign))
     tell("fit", chain.fit(work, chosen.fit))
-    optional: Mapping[str, tuple[str, Callable[[], chain.Done]]] = {
-        "diagnose": (chain.DIAGNOSIS, lambda: chain.diagnose(work, chosen.diagnosis)),
+    optional: dict[str, tuple[str, Callable[[], chain.Done]]] = {}
+    if chosen.diagnosis is not None:
+        optional["diagnose"] = (chain.DIAGNOSIS, lambda: chain.diagnose(work, chosen.diagnosis))
+    optional |= {
         "simulate": (
             chain.SCHEDULE,
             lambda: chain.simulate(work, chosen.schedule, chosen.correction),
@@ -76,6 +102,3 @@ def run(
         except NotEnoughData as fault:
             (work / name).unlink(missing_ok=True)
             tell(stage, chain.Done(work / name, f"left out: {fault}"))
-    done = chain.report(work)
-    tell("report", done)
-    return done.path

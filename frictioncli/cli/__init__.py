@@ -3,17 +3,25 @@
 Heavy libraries are imported inside the commands, so that ``--help`` answers at once.
 """
 
-import sys
+import os
 
 from frictioncli.errors import FrictionError
 
 
 def main() -> None:
     """Run the command line; a fault of the input ends it with one message and status 2."""
+    # matrices here are small: more threads cost more than they give, and change last digits
+    os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
     from frictioncli.cli.commands import app
+    from frictioncli.cli.terminal import say
 
     try:
         app()
     except FrictionError as fault:
-        print(f"frictioncli: {fault}", file=sys.stderr)
+        say(f"frictioncli: {fault}", fault=True)
+        raise SystemExit(2) from None
+    except OSError as fault:
+        # the system refuses something outside the work folder: a log's name, the temporary folder
+        where = f"{fault.filename}: " if fault.filename else ""
+        say(f"frictioncli: {where}cannot be used ({fault.strerror or fault})", fault=True)
         raise SystemExit(2) from None

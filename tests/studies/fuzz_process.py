@@ -1,0 +1,160 @@
+"""Processes that examine damaged logs under a limit of memory and time."""
+
+import multiprocessing
+import resource
+import shutil
+import tempfile
+import traceback
+import warnings
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from multiprocessing.connection import Connection, wait
+from pathlib import Path
+
+from tests.studies.fuzz_damage import Case, case
+from tests.studies.fuzz_layouts import layouts
+from tests.studies.fuzz_truth import contradiction
+
+GOOD = ("read", "refused")
+"""Outcomes that are as they should be; every other one is a finding."""
+
+MEMORY = 500
+"""What the process may take at most. [MB]"""
+
+_INSPECTED = 4  # one in so many is inspected too, which takes longer than reading
+_ADDRESSES = 4 << 30
+_SECONDS = 30.0
+_PROCESSES = multiprocessing.get_context("forkserver")
+_LAYOUTS = layouts()
+# in memory where there is such a folder: waiting for a disk is not what is tried here
+_DISK = "/dev/shm" if Path("/dev/shm").is_dir() else None
+
+
+@dataclass(frozen=True, slots=True)
+class Finding:
+    """What became of an input, and what there is to say of it."""
+
+    number: int
+    layout: str
+    damage: str
+    outcome: str
+    text: str = ""
+
+
+def examined(numbers: Sequence[int], processes: int) -> Iterator[Finding]:
+    """Yield what became of each input, as they come.
+
+    A process that takes too long over an input is killed, and so is one that took too much memory.
+    """
+    waiting = iter(numbers)
+    workers = [_Worker(waiting) for _ in range(min(processes, len(numbers)))]
+    while workers:
+        ready = wait([worker.results for worker in workers], timeout=_SECONDS)
+        for worker in list(workers):
+            found = worker.take() if worker.results in ready else worker.late(stuck=not ready)
+            if found is not None:
+                yield found
+                if not worker.next():
+                    workers.remove(worker)
+
+
+class _Worker:
+    """One process and the input that it is at."""
+
+    def __init__(self, numbers: Iterator[int]) -> None:
+        self._numbers = numbers
+        self._start()
+        self.next()
+
+    def _start(self) -> None:
+        self.results, theirs = _PROCESSES.Pipe()
+        self._process = _PROCESSES.Process(target=_work, args=(theirs,), daemon=True)
+        self._process.start()
+        theirs.close()
+
+    def next(self) -> bool:
+        """Hand out the next input; end the process when there is none."""
+        number = next(self._numbers, None)
+        self.results.send(number)
+        if number is None:
+            self._process.join()
+            return False
+        self._number = number
+        return True
+
+    def take(self) -> Finding:
+        """Return the result that is there; a process that died says so by its end."""
+        try:
+            found: Finding = self.results.recv()
+        except EOFError:
+            self._process.join()
+            return self._again(f"died, exit code {self._process.exitcode}")
+        return self._again(found.outcome, found) if found.outcome == "memory" else found
+
+    def late(self, *, stuck: bool) -> Finding | None:
+        """Kill the process if nothing came from any for too long."""
+        if not stuck:
+            return None
+        self._process.kill()
+        self._process.join()
+        return self._again(f"not done in {_SECONDS:.0f} s")
+
+    def _again(self, outcome: str, found: Finding | None = None) -> Finding:
+        if self._process.is_alive():
+            self._process.kill()
+        self._start()
+        one = case(self._number, _LAYOUTS)
+        return found or Finding(self._number, one.layout.name, one.damage, outcome)
+
+
+def _work(connection: Connection) -> None:
+    resource.setrlimit(resource.RLIMIT_AS, (_ADDRESSES, _ADDRESSES))
+    while (number := connection.recv()) is not None:
+        connection.send(examine_here(number))
+
+
+def examine_here(number: int) -> Finding:
+    """Examine one input in this process."""
+    one = case(number, _LAYOUTS)
+    with tempfile.TemporaryDirectory(prefix="fuzz-", dir=_DISK) as folder:
+        outcome, text = _outcome(one, Path(folder), inspected=number % _INSPECTED == 0)
+    peak = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1000
+    if outcome in GOOD and peak > MEMORY:
+        outcome, text = "memory", f"{peak:.0f} MB"
+    return Finding(number, one.layout.name, one.damage, outcome, text)
+
+
+def _outcome(one: Case, folder: Path, *, inspected: bool) -> tuple[str, str]:
+    from frictioncli.errors import FrictionError
+    from frictioncli.inspecting.document import document
+    from frictioncli.inspecting.inspection import inspect
+    from frictioncli.inspecting.text import text
+    from frictioncli.provenance import to_json
+    from frictioncli.reading.ingest import IngestSettings, ingest
+
+    run, work = folder / "run", folder / "work"
+    run.mkdir()
+    for name, content in one.files.items():
+        (run / name).write_bytes(content)
+    settings = IngestSettings(
+        map_file=run / one.layout.map_file if one.layout.map_file else None,
+        gear_ratio=one.layout.gear_ratio,
+    )
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("error")
+            if inspected:
+                found = inspect([run], settings)
+                to_json(document(found))
+                text(found)
+            ingest([run], work, settings)
+    except FrictionError:
+        left = [*work.rglob("*")] if work.exists() else []
+        return ("half-written", str(left)) if left else ("refused", "")
+    except MemoryError:
+        return "memory", traceback.format_exc()[-1500:]
+    except Exception:
+        return "traceback", traceback.format_exc()[-1500:]
+    wrong = contradiction(one, work)
+    shutil.rmtree(work)
+    return ("wrong", wrong) if wrong else ("read", "")
