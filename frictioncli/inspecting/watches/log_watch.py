@@ -1,0 +1,140 @@
+"""All rows of a log go by once; what they show is collected on the way."""
+
+from collections.abc import Collection, Iterable, Iterator
+from dataclasses import dataclass, field
+
+from frictioncli.inspecting.believed import evidence, gear_ratio
+from frictioncli.inspecting.found import ChannelFound, JointFound, Spikes
+from frictioncli.inspecting.watches.agreement import AgreementWatch
+from frictioncli.inspecting.watches.frozen import TorqueWatch
+from frictioncli.inspecting.watches.grid import ChannelWatch
+from frictioncli.inspecting.watches.held import HeldWatch, changes
+from frictioncli.inspecting.watches.joint_rows import Flags, JointRows, joint_rows
+from frictioncli.inspecting.watches.sampling import Sampling, SamplingWatch
+from frictioncli.inspecting.watches.spikes import SpikeWatch
+from frictioncli.inspecting.watches.windows import Window, Windows
+from frictioncli.reading import aliases as names
+from frictioncli.reading.beliefs import JointPlan
+from frictioncli.reading.channels import Channel
+from frictioncli.reading.parts import Part, Reading
+
+_SPIKY = (names.POSITION, names.VELOCITY, names.TORQUE)
+
+
+@dataclass(slots=True)
+class _JointWatch:
+    """Watches the rows of one joint."""
+
+    channels: dict[str, ChannelWatch] = field(default_factory=dict)
+    held: HeldWatch = field(default_factory=HeldWatch)
+    torque: TorqueWatch = field(default_factory=TorqueWatch)
+    agreement: AgreementWatch = field(default_factory=AgreementWatch)
+    spikes: dict[str, SpikeWatch] = field(default_factory=dict)
+
+    def see(self, rows: JointRows, changed: Flags) -> None:
+        for name in names.CHANNELS[1:]:
+            values = rows.channel(name)
+            if values is None:
+                continue
+            watch = self.channels.setdefault(name, ChannelWatch())
+            watch.see(values[rows.new])
+            if name in _SPIKY:
+                spiky = self.spikes.setdefault(name, SpikeWatch())
+                spiky.see(rows, values, _step(watch))
+        self.held.see(rows, changed)
+        self.torque.see(rows)
+        self.agreement.see(rows)
+
+    def result(self, plan: JointPlan, told: Collection[str]) -> JointFound:
+        position = self.channels.get(names.POSITION)
+        held, line = self.held.result(0.0 if position is None else _step(position))
+        frozen_spans, frozen_s = self.torque.frozen()
+        return JointFound(
+            joint=plan.channels.joint,
+            torque_unit=plan.torque_unit,
+            torque_side=plan.torque_side,
+            gear_ratio=gear_ratio(plan),
+            channels=tuple(
+                self._channel(plan, name, told) for name in plan.beliefs if name != names.TIME
+            ),
+            velocity_agreement=self.agreement.result(),
+            held_samples=held,
+            held_line=line,
+            limits=self.torque.limits(),
+            spikes=tuple(
+                Spikes(name, watch.count, watch.line, watch.farthest)
+                for name, watch in self.spikes.items()
+                if watch.line is not None
+            ),
+            frozen_spans=frozen_spans,
+            frozen_s=frozen_s,
+        )
+
+    def _channel(self, plan: JointPlan, name: str, told: Collection[str]) -> ChannelFound:
+        channel: Channel = getattr(plan.channels, name)
+        watch = self.channels.get(name, ChannelWatch())
+        return ChannelFound(
+            quantity=name,
+            column=channel.name,
+            side=channel.meaning.side if name in _SPIKY else "",
+            unit_found=channel.unit,
+            unit_believed=plan.beliefs[name].unit,
+            evidence=evidence(plan, name, told, max(abs(watch.lowest), abs(watch.highest))),
+            lowest=watch.lowest,
+            highest=watch.highest,
+            grid=watch.grid(),
+        )
+
+
+def _step(watch: ChannelWatch) -> float:
+    grid = watch.grid()
+    return 0.0 if grid is None else grid.step
+
+
+class LogWatch:
+    """Watches one log while it is read.
+
+    Parameters
+    ----------
+    reading : Reading
+        The log about to be read.
+    """
+
+    def __init__(self, reading: Reading) -> None:
+        self._reading = reading
+        self._windows = Windows()
+        self._sampling = SamplingWatch()
+        self._joints = {plan.channels.joint: _JointWatch() for plan in reading.plans}
+        self.rows = 0
+
+    def over(self, parts: Iterable[Part]) -> Iterator[Part]:
+        """Yield the parts of the log as they come, having looked at them."""
+        for part in parts:
+            self.rows += part.rows
+            for window in self._windows.see(part.block):
+                self._see(window)
+            yield part
+        for window in self._windows.rest():
+            self._see(window)
+
+    def _see(self, window: Window) -> None:
+        self._sampling.see(window)
+        changed = changes(window)
+        for joint, watch in self._joints.items():
+            watch.see(joint_rows(window, joint, self._reading.period), changed)
+
+    def sampling(self) -> Sampling | None:
+        """Return how the log was sampled; None where it has no usable row."""
+        return self._sampling.result()
+
+    def joints(self, told: Collection[str]) -> tuple[JointFound, ...]:
+        """Return what the log holds of each joint.
+
+        Parameters
+        ----------
+        told : collection of str
+            Quantities whose unit the user gives.
+        """
+        return tuple(
+            self._joints[plan.channels.joint].result(plan, told) for plan in self._reading.plans
+        )
