@@ -1,11 +1,17 @@
-"""One function per command."""
+"""One function per command.
+
+A command makes its settings first and imports what works with them last: a wrong option is told at
+once.
+"""
 
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Any
 
 import typer
 
 from frictioncli.cli import options as o
+from frictioncli.cli.fleet import fleet
+from frictioncli.cli.terminal import say
 from frictioncli.correction.settings import CorrectionSettings, EvaluationGrid, ScheduleSettings
 from frictioncli.diagnosis.settings import DiagnosisSettings
 from frictioncli.errors import OptionError
@@ -27,7 +33,7 @@ def _show_version(wanted: bool) -> None:
     if wanted:
         from frictioncli import __version__
 
-        typer.echo(f"frictioncli {__version__}")
+        say(f"frictioncli {__version__}")
         raise typer.Exit
 
 
@@ -51,13 +57,32 @@ def inspect(
     velocity_unit: o.VelocityUnit = None,
     torque_unit: o.TorqueUnit = None,
     temperature_unit: o.TemperatureUnit = None,
+    json: o.Json = False,
+    suggest_map: o.SuggestMap = False,
 ) -> None:
-    """Show what logs hold: channels, units (deg, deg/s, s, N·m, °C) found and believed, gaps."""
-    from frictioncli.reading.inspection import inspect as look
+    """Show what logs hold (deg, deg/s, s, N·m, °C), how good they are and what they suffice for."""
     from frictioncli.reading.settings import IngestSettings
 
-    for found in look(logs, o.chosen(IngestSettings, locals())):
-        typer.echo(found)
+    settings = o.chosen(IngestSettings, locals())
+    if json and suggest_map:
+        raise OptionError("--json and --suggest-map: expected one of them")
+    if suggest_map:
+        from frictioncli.inspecting.suggesting.suggested import suggested_map
+
+        say(suggested_map(logs, settings))
+        return
+    from frictioncli.inspecting.inspection import inspect as look
+
+    found = look(logs, settings)
+    if json:
+        from frictioncli.inspecting.document import document
+        from frictioncli.provenance import to_json
+
+        say(to_json(document(found)).rstrip())
+        return
+    from frictioncli.inspecting.text import text
+
+    say(text(found))
 
 
 @app.command()
@@ -74,11 +99,12 @@ def ingest(
     temperature_unit: o.TemperatureUnit = None,
 ) -> None:
     """Read logs into samples: deg, deg/s, s, N·m (or A), °C."""
-    from frictioncli import chain
     from frictioncli.reading.settings import IngestSettings
 
     settings = o.chosen(IngestSettings, locals())
-    typer.echo(chain.ingest(logs, work, settings))
+    from frictioncli import chain
+
+    say(chain.ingest(logs, work, settings))
 
 
 @app.command()
@@ -94,19 +120,20 @@ def pair(
     longest_pause: o.LongestPause = o.PAIRING.longest_pause,
 ) -> None:
     """Match counter-directed constant-speed motion by speed [deg/s] and angle bin [deg]."""
-    from frictioncli import chain
-
     steady = o.chosen(SteadySettings, locals())
     settings = o.chosen(PairingSettings, locals())
-    typer.echo(chain.pair(work, settings))
+    from frictioncli import chain
+
+    say(chain.pair(work, settings))
 
 
 @app.command()
 def separate(work: o.Work = o.WORK, sign: o.Sign = "auto") -> None:
     """Separate friction torque from load torque [N·m] by equation (8)."""
+    number = o.sign_number(sign)
     from frictioncli import chain
 
-    typer.echo(chain.separate(work, _sign(sign)))
+    say(chain.separate(work, number))
 
 
 @app.command()
@@ -116,9 +143,10 @@ def fit(
     temperature: o.Temperature = o.FIT.temperature,
 ) -> None:
     """Identify the friction model (16): load [N·m], speed [deg/s], temperature [°C]."""
+    settings = FitSettings(method=method, temperature=temperature)
     from frictioncli import chain
 
-    typer.echo(chain.fit(work, FitSettings(method=method, temperature=temperature)))
+    say(chain.fit(work, settings))
 
 
 @app.command()
@@ -133,11 +161,11 @@ def simulate(
     extended: o.Extended = False,
 ) -> None:
     """Simulate the temperature correction of Algorithm 3; tmax in minutes, epsilon in N·m."""
-    from frictioncli import chain
-
     schedule = ScheduleSettings(criterion=criterion, k=k, tmax=tmax * 60, bound=bound)
     correction = o.chosen(CorrectionSettings, locals())
-    typer.echo(chain.simulate(work, schedule, correction, extended=extended))
+    from frictioncli import chain
+
+    say(chain.simulate(work, schedule, correction, extended=extended))
 
 
 @app.command()
@@ -151,10 +179,10 @@ def evaluate(
     extended: o.Extended = False,
 ) -> None:
     """Evaluate schedules over k, tmax [min] and bound [N·m]: epsilon [N·m] by corrections."""
+    grid, correction = _grid(k, tmax, bound), o.chosen(CorrectionSettings, locals())
     from frictioncli import chain
 
-    correction = o.chosen(CorrectionSettings, locals())
-    typer.echo(chain.evaluate(work, _grid(k, tmax, bound), correction, extended=extended))
+    say(chain.evaluate(work, grid, correction, extended=extended))
 
 
 @app.command()
@@ -166,10 +194,11 @@ def diagnose(
     fail_on: o.FailOn = None,
 ) -> None:
     """Find what the simulated torque [N·m] gets wrong, name the cause, measure the gain."""
+    o.check_fail_on(fail_on)
+    settings = o.chosen(DiagnosisSettings, locals())
     from frictioncli import chain
 
-    o.check_fail_on(fail_on)
-    typer.echo(chain.diagnose(work, o.chosen(DiagnosisSettings, locals())))
+    say(chain.diagnose(work, settings))
     if fail_on and chain.has_finding(work, named_only=fail_on == "named"):
         raise typer.Exit(3)
 
@@ -179,7 +208,7 @@ def report(work: o.Work = o.WORK) -> None:
     """Draw the figures (deg, deg/s, s, N·m, °C) and write report/index.html."""
     from frictioncli import chain
 
-    typer.echo(chain.report(work))
+    say(chain.report(work))
 
 
 @app.command()
@@ -213,19 +242,20 @@ def run(
     smoothing_degree: o.SmoothingDegree = o.CORRECTION.smoothing_degree,
 ) -> None:
     """Run the whole chain, from logs to the report. Units: deg, deg/s, s, N·m, °C."""
-    from frictioncli import pipeline
     from frictioncli.reading.settings import IngestSettings
 
     steady = o.chosen(SteadySettings, locals())
-    settings = pipeline.RunSettings(
-        ingest=o.chosen(IngestSettings, locals()),
-        pairing=o.chosen(PairingSettings, locals()),
-        sign=_sign(sign),
-        fit=o.chosen(FitSettings, locals()),
-        schedule=ScheduleSettings(criterion=criterion, k=k, tmax=tmax * 60, bound=bound),
-        correction=o.chosen(CorrectionSettings, locals()),
-    )
-    pipeline.run(logs, work, settings, tell=_tell)
+    parts: dict[str, Any] = {
+        "ingest": o.chosen(IngestSettings, locals()),
+        "pairing": o.chosen(PairingSettings, locals()),
+        "sign": o.sign_number(sign),
+        "fit": o.chosen(FitSettings, locals()),
+        "schedule": ScheduleSettings(criterion=criterion, k=k, tmax=tmax * 60, bound=bound),
+        "correction": o.chosen(CorrectionSettings, locals()),
+    }
+    from frictioncli import pipeline
+
+    pipeline.run(logs, work, pipeline.RunSettings(**parts), tell=_tell)
 
 
 @app.command()
@@ -250,23 +280,20 @@ def synthesize(
     thin: o.Thin = o.SYNTHESIS.thin,
 ) -> None:
     """Simulate a joint (deg, deg/s, N·m, °C, kg) and write its traces with truth.json."""
+    settings = o.chosen(SynthesisSettings, locals())
     from frictioncli.simulator.synthesize import synthesize as make
 
-    typer.echo(make(folder, o.chosen(SynthesisSettings, locals())))
+    say(make(folder, settings))
+
+
+app.command()(fleet)
 
 
 def _tell(stage: str, text: object) -> None:
     first, *others = str(text).splitlines() or [""]
-    typer.echo(f"{stage:9s} {first}")
+    say(f"{stage:9s} {first}")
     for line in others:
-        typer.echo(f"{'':9s} {line}")
-
-
-def _sign(text: str) -> int | None:
-    signs = {"auto": None, "+1": 1, "1": 1, "+": 1, "-1": -1, "-": -1}
-    if text not in signs:
-        raise OptionError(f"--sign {text}: expected auto, +1 or -1")
-    return signs[text]
+        say(f"{'':9s} {line}")
 
 
 def _grid(k: list[str] | None, tmax: list[str] | None, bound: list[str] | None) -> EvaluationGrid:

@@ -74,6 +74,15 @@ TorqueUnit = Annotated[
 TemperatureUnit = Annotated[
     str | None, typer.Option(help="Force the unit: degC, K, degF.", rich_help_panel=_READ)
 ]
+Json = Annotated[
+    bool, typer.Option("--json", help="Print one JSON document; units are in its key names.")
+]
+SuggestMap = Annotated[
+    bool,
+    typer.Option(
+        "--suggest-map", help="Print a first mapping file (TOML) for --map, with its reasons."
+    ),
+]
 BinWidth = Annotated[
     float, typer.Option(help="Width of the angle bins [deg].", rich_help_panel=_PAIR)
 ]
@@ -240,3 +249,17 @@ def check_fail_on(value: str | None) -> None:
     """Raise OptionError if ``--fail-on`` is given something that it does not know."""
     if value not in (None, "any", "named"):
         raise OptionError(f"--fail-on {value}: expected any or named")
+
+
+def sign_number(text: str) -> int | None:
+    """Return the sign that ``--sign`` names, none for ``auto``.
+
+    Raises
+    ------
+    OptionError
+        If it is none of these.
+    """
+    signs = {"auto": None, "+1": 1, "1": 1, "+": 1, "-1": -1, "-": -1}
+    if text not in signs:
+        raise OptionError(f"--sign {text}: expected auto, +1 or -1")
+    return signs[text]

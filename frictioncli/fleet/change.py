@@ -1,0 +1,146 @@
+r"""How far the friction of the last run is from that of the runs before.
+
+Equation (16) is fitted to all runs at once. About that fit, each run gets an offset of its own, the
+same at all speeds, loads and temperatures. The change is the offset of the last run less the mean
+of the earlier ones, by generalised least squares: runs over other temperatures or speeds are
+compared as far as the fitted parameters allow. Its interval knows the noise of points and pairs and
+slow drift within runs, and with two earlier runs or more how much these differ among themselves.
+
+References
+----------
+.. [1] F. E. Satterthwaite, "An approximate distribution of estimates of variance components,"
+   Biometrics Bulletin 2(6), 1946, doi:10.2307/3002019.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+import pandas as pd
+from numpy.typing import NDArray
+from scipy import stats
+
+from frictioncli.model.document import FrictionModel
+from frictioncli.model.equations import COEFFICIENTS, jacobian
+from frictioncli.model.identification import freedom, pair_equations, pair_residual, point_noise
+from frictioncli.model.noise import pair_covariance, plausible_noise
+from frictioncli.model.observations import Observations, observations
+from frictioncli.model.zero_load import temperature_of
+from frictioncli.reading.discovery import natural_key
+
+Array = NDArray[np.float64]
+
+_RANK = 1e-5
+"""Share of a design of unit columns below which a direction counts as absent."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Change:
+    """The friction of the last run less the mean of the runs before.
+
+    Attributes
+    ----------
+    estimate : float
+        The difference, at any speed, load and temperature. [torque unit]
+    ci95 : (float, float)
+        Its 95 % confidence interval. [torque unit]
+    """
+
+    estimate: float
+    ci95: tuple[float, float]
+
+
+def change_of_last_run(torques: pd.DataFrame, model: FrictionModel) -> Change | None:
+    """Return how far the last run is from the runs before; none where that cannot be told.
+
+    Parameters
+    ----------
+    torques : DataFrame
+        Rows of :data:`frictioncli.schemas.TORQUES` of the model's joint.
+    model : FrictionModel
+        Fitted to all runs.
+    """
+    known = temperature_of(torques, model.temperature).notna()
+    rows = torques[known] if known.any() else torques
+    # observations() orders the runs by their plain names
+    runs = sorted(rows["run"].unique())
+    if len(runs) < 2:
+        return None
+    last = max(range(len(runs)), key=lambda number: natural_key(runs[number]))
+    observed = observations(rows, model.temperature)
+    design = _design(observed, model)
+    earlier = np.delete(np.arange(len(runs)), last)
+    contrast = np.full(len(runs), -1.0 / len(earlier))
+    contrast[last] = 1.0
+    if not _can_tell(design, contrast):
+        return None
+    offsets, covariance, steps = _offsets(observed, model, design, len(runs))
+    estimate = float(contrast @ offsets)
+    within = float(contrast @ covariance @ contrast)
+    between = _variance_between(offsets[earlier], covariance[np.ix_(earlier, earlier)])
+    between *= 1 + 1 / len(earlier)
+    # Satterthwaite: the freedom of a sum of two variances
+    squares = within**2 / steps + (between**2 / (len(earlier) - 1) if between else 0.0)
+    reach = stats.t.ppf(0.975, (within + between) ** 2 / squares) * np.sqrt(within + between)
+    return Change(estimate=estimate, ci95=(float(estimate - reach), float(estimate + reach)))
+
+
+def _design(observed: Observations, model: FrictionModel) -> Array:
+    """Return one column per run, and the derivatives by the fitted parameters but tau_c.
+
+    Only differences between runs have a meaning: what they have in common is tau_c.
+    """
+    terms = tuple(name for name in COEFFICIENTS if model.parameters[name].ci95 is not None)
+    shape = jacobian(pair_equations(observed), terms, model.friction)
+    if "tau_c" in terms:
+        shape = np.delete(shape, terms.index("tau_c"), axis=1)
+    run = (observed.run[:, np.newaxis] == np.unique(observed.run)).astype(float)
+    design = np.column_stack([run, shape])
+    return np.asarray(design / np.maximum(np.linalg.norm(design, axis=0), 1e-300))
+
+
+def _can_tell(design: Array, contrast: Array) -> bool:
+    """Tell whether the runs can be compared: not if each was, say, at a temperature of its own."""
+    runs = np.sqrt(np.count_nonzero(design[:, : len(contrast)], axis=0))
+    asked = np.zeros(design.shape[1])
+    asked[: len(contrast)] = contrast / runs
+    asked /= np.linalg.norm(asked)
+    rank = np.linalg.matrix_rank(design, tol=_RANK)
+    return bool(np.linalg.matrix_rank(np.vstack([design, asked]), tol=_RANK) == rank)
+
+
+def _offsets(
+    observed: Observations, model: FrictionModel, design: Array, runs: int
+) -> tuple[Array, Array, float]:
+    """Return each run's offset, their covariance, and the freedom of the noise estimate."""
+    residual = pair_residual(observed, model.friction)
+    plausible = plausible_noise(
+        residual=residual,
+        design=design,
+        time=observed.time,
+        run=observed.run,
+        bins=observed.bins,
+        point=point_noise(observed, model.friction.alpha),
+    )
+    # columns of the design have length 1
+    size = np.sqrt(np.bincount(observed.run))
+    found, spread = [], []
+    for noise, _ in plausible:
+        truth = pair_covariance(noise, time=observed.time, run=observed.run, bins=observed.bins)
+        inverse = np.linalg.pinv(design.T @ truth.solve(design), rcond=_RANK**2, hermitian=True)
+        found.append((inverse @ (design.T @ truth.solve(residual)))[:runs] / size)
+        spread.append(inverse[:runs, :runs] / np.outer(size, size))
+    weights = np.array([weight for _, weight in plausible])
+    mean = weights @ np.array(found)
+    away = np.array(found) - mean
+    covariance = np.tensordot(weights, np.array(spread), axes=1) + (away.T * weights) @ away
+    return mean, covariance, freedom(observed, plausible[0][0], design.shape[1])
+
+
+def _variance_between(offsets: Array, covariance: Array) -> float:
+    """Return by how much earlier runs vary beyond what their noise explains; 0 for one run."""
+    count = len(offsets)
+    if count < 2:
+        return 0.0
+    together = float(covariance.sum()) / count
+    expected = (float(np.trace(covariance)) - together) / (count - 1)
+    return max(float(np.var(offsets, ddof=1)) - expected, 0.0)

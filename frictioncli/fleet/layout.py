@@ -1,0 +1,263 @@
+"""Where a fleet's logs lie: folders ``robot=R/joint=J/run=D``, or a table of contents."""
+
+import csv
+import io
+import os
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from itertools import pairwise
+from pathlib import Path
+from typing import Any
+
+from frictioncli.errors import LogError, MappingError
+from frictioncli.reading.discovery import natural_key
+
+REQUIRED = ("robot", "joint", "run", "path")
+"""Columns that a table of contents must have."""
+
+OPTIONAL = ("map", "gear_ratio")
+"""Columns that it may have."""
+
+_PARQUET = b"PAR1"
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class JointLogs:
+    """One joint of a fleet, and where its logs are.
+
+    Attributes
+    ----------
+    robot : str
+        Name of the robot.
+    joint : int
+        Number of the joint, from 1.
+    folder : Path or None
+        The joint's folder, which holds one folder per run.
+    listed : tuple of (str, Path)
+        Else the runs by name.
+    map_file : Path or None
+        Mapping file of its logs.
+    gear_ratio : float or None
+        Motor turns per joint turn.
+    """
+
+    robot: str
+    joint: int
+    folder: Path | None = None
+    listed: tuple[tuple[str, Path], ...] = ()
+    map_file: Path | None = None
+    gear_ratio: float | None = None
+
+    @property
+    def place(self) -> Path:
+        """Its folder relative to the fleet's."""
+        return Path(f"robot={self.robot}", f"joint={self.joint}")
+
+    def runs(self) -> dict[str, Path]:
+        """Return run name -> folder or file, in natural order of the names.
+
+        The folders are looked through only here, by whoever works on the joint.
+
+        Raises
+        ------
+        LogError
+            If there is no run.
+        """
+        found = dict(self.listed) if self.folder is None else _labelled(self.folder, "run")
+        if not found:
+            raise LogError(f"{self.folder}: no folders of runs; expected run=D, with logs inside")
+        return dict(sorted(found.items(), key=lambda item: natural_key(item[0])))
+
+
+def joints_of(fleet: Path) -> list[JointLogs]:
+    """Return the joints of a fleet, in natural order of robot and joint.
+
+    Parameters
+    ----------
+    fleet : Path
+        A folder of ``robot=R/joint=J/run=D`` folders, or a table of contents, CSV or Parquet, with
+        the columns of :data:`REQUIRED`.
+
+    Raises
+    ------
+    LogError
+        If it does not exist or holds no joints.
+    MappingError
+        If a folder's name or a row cannot be followed.
+    """
+    if fleet.is_dir():
+        joints = _folders(fleet)
+    elif fleet.is_file():
+        joints = _contents(fleet)
+    else:
+        raise LogError(
+            f"{fleet}: no such file or folder; expected a folder with robot=R/joint=J/run=D, or a"
+            f" table of contents with the columns {', '.join(REQUIRED)}"
+        )
+    if not joints:
+        raise LogError(f"{fleet}: no joints found; expected robot=R/joint=J/run=D, or rows")
+    ordered = sorted(joints, key=lambda joint: (natural_key(joint.robot), joint.robot, joint.joint))
+    for one, other in pairwise(ordered):
+        if one.place == other.place:
+            raise MappingError(
+                f"{fleet}: robot {one.robot}, joint {one.joint} is there twice: {one.folder},"
+                f" {other.folder}; expected one folder per joint"
+            )
+    return ordered
+
+
+def _labelled(folder: Path, key: str) -> dict[str, Path]:
+    """Return value -> path of the sub-folders ``key=value``."""
+    if not folder.is_dir():
+        raise LogError(f"{folder}: no such folder")
+    start = f"{key}="
+    return {
+        path.name.removeprefix(start): path
+        for path in folder.iterdir()
+        if path.name.startswith(start) and path.is_dir()
+    }
+
+
+def _folders(fleet: Path) -> list[JointLogs]:
+    return [
+        JointLogs(robot=_robot(robot, f"{path}"), joint=_joint(joint, f"{folder}"), folder=folder)
+        for robot, path in _labelled(fleet, "robot").items()
+        for joint, folder in _labelled(path, "joint").items()
+    ]
+
+
+def _contents(path: Path) -> list[JointLogs]:
+    rows = _rows(path)
+    found: dict[tuple[str, int], _Listing] = {}
+    for where, row in rows:
+        key = (_robot(row["robot"], where), _joint(row["joint"], where))
+        listing = found.setdefault(key, _Listing({}, row.get("map", ""), row.get("gear_ratio", "")))
+        if (row.get("map", ""), row.get("gear_ratio", "")) != (listing.map, listing.gear_ratio):
+            raise MappingError(
+                f"{where}: map or gear_ratio differs from an earlier row of robot {key[0]}, joint"
+                f" {key[1]}; expected the same in all rows of a joint"
+            )
+        place = _place(path.parent, row["path"], where)
+        for what, known in ((row["run"], listing.runs), (place, listing.runs.values())):
+            if what in known:
+                raise MappingError(
+                    f"{where}: robot {key[0]}, joint {key[1]} has {what} in an earlier row already;"
+                    " expected each run and each path of a joint once"
+                )
+        listing.runs[row["run"]] = place
+    return [
+        JointLogs(
+            robot=robot,
+            joint=joint,
+            listed=tuple(listing.runs.items()),
+            map_file=_place(path.parent, listing.map, f"{path}") if listing.map else None,
+            gear_ratio=_ratio(listing.gear_ratio, f"{path}: robot {robot}, joint {joint}"),
+        )
+        for (robot, joint), listing in found.items()
+    ]
+
+
+@dataclass(slots=True)
+class _Listing:
+    """What a table of contents says of a joint, as text."""
+
+    runs: dict[str, Path]
+    map: str
+    gear_ratio: str
+
+
+def _rows(path: Path) -> Iterable[tuple[str, dict[str, str]]]:
+    """Yield where each row stands, and its texts."""
+    with path.open("rb") as stream:
+        parquet = stream.read(len(_PARQUET)) == _PARQUET
+    names, rows = _parquet_rows(path) if parquet else _csv_rows(path)
+    missing = [name for name in REQUIRED if name not in names]
+    if missing:
+        raise MappingError(
+            f"{path}: columns {', '.join(missing)} are missing; found {', '.join(names)}; expected"
+            f" {', '.join(REQUIRED)} and, if wanted, {', '.join(OPTIONAL)}"
+        )
+    for number, row in rows:
+        where = f"{path} row {number}"
+        texts = {name: _text(row[name]) for name in (*REQUIRED, *OPTIONAL) if name in row}
+        empty = [name for name in REQUIRED if not texts.get(name)]
+        if empty:
+            raise MappingError(f"{where}: {', '.join(empty)} is empty; expected a value")
+        yield where, texts
+
+
+def _parquet_rows(path: Path) -> tuple[list[str], Iterable[tuple[int, Mapping[str, Any]]]]:
+    import pyarrow as pa
+    import pyarrow.parquet as pq
+
+    try:
+        table = pq.read_table(path, partitioning=None)
+    except (OSError, pa.ArrowInvalid) as error:
+        raise MappingError(f"{path}: cannot be read as Parquet ({error})") from error
+    return table.column_names, enumerate(table.to_pylist(), start=1)
+
+
+def _csv_rows(path: Path) -> tuple[list[str], Iterable[tuple[int, Mapping[str, Any]]]]:
+    try:
+        text = path.read_text(encoding="utf-8-sig")
+    except (OSError, UnicodeDecodeError) as error:
+        raise MappingError(f"{path}: cannot be read as UTF-8 text ({error})") from error
+    delimiter = ";" if ";" in text.partition("\n")[0] else ","
+    reader = csv.reader(io.StringIO(text, newline=""), delimiter=delimiter)
+    try:
+        lines = [(reader.line_num, cells) for cells in reader if cells]
+    except csv.Error as error:
+        raise MappingError(f"{path} row {reader.line_num}: {error}") from error
+    names = [name.strip() for name in lines[0][1]] if lines else []
+    for number, cells in lines[1:]:
+        if len(cells) != len(names):
+            raise MappingError(
+                f"{path} row {number}: {len(cells)} cells, expected {len(names)} as in the header"
+            )
+    return names, [(number, dict(zip(names, cells, strict=True))) for number, cells in lines[1:]]
+
+
+def _text(value: Any) -> str:
+    if value is None or value != value:  # an empty cell of a Parquet file may be NaN
+        return ""
+    if isinstance(value, float) and value.is_integer():
+        return str(int(value))
+    return str(value).strip()
+
+
+def _robot(name: str, where: str) -> str:
+    if not name or len(name.encode()) > 200 or any(c in "/\\" or not c.isprintable() for c in name):
+        raise MappingError(
+            f"{where}: robot {name!r} cannot be part of a folder's name; expected printable"
+            " characters without / and \\, 200 at most"
+        )
+    return name
+
+
+def _joint(text: str, where: str) -> int:
+    if not text.isascii() or not text.isdecimal() or not 1 <= int(text) <= 32767:
+        raise MappingError(f"{where}: joint {text!r}; expected a joint number from 1")
+    return int(text)
+
+
+def _ratio(text: str, where: str) -> float | None:
+    if not text:
+        return None
+    try:
+        return float(text)
+    except ValueError:
+        raise MappingError(
+            f"{where}: gear_ratio {text!r}; expected motor turns per joint turn"
+        ) from None
+
+
+def _place(base: Path, text: str, where: str) -> Path:
+    """Return a path of a table of contents; a relative one may not lead out of its folder."""
+    if "\0" in text:
+        raise MappingError(f"{where}: path {text!r} holds a NUL character")
+    if not os.path.isabs(text) and os.path.normpath(text).split(os.sep)[0] == os.pardir:
+        raise MappingError(
+            f"{where}: path {text} leads out of the folder of the table; expected one inside it, or"
+            " an absolute path"
+        )
+    return Path(os.path.normpath(base / text))

@@ -1,0 +1,20 @@
+"""One fleet, and what one worker makes of it, for all tests."""
+
+import pytest
+
+from tests.fleet.fleets import fleet, write_fleet
+
+
+@pytest.fixture(scope="session")
+def logs(tmp_path_factory):
+    """The logs of the small fleet."""
+    return write_fleet(tmp_path_factory.mktemp("fleet") / "logs")
+
+
+@pytest.fixture(scope="session")
+def alone(logs, tmp_path_factory):
+    """The small fleet by one worker: its folder, and what the command has said."""
+    out = tmp_path_factory.mktemp("alone") / "out"
+    result = fleet(logs, "-w", out, "--workers", 1, "--no-report")
+    assert result.returncode == 0, result.stderr
+    return out, result.stdout

@@ -1,0 +1,112 @@
+"""A small fleet with good and bad joints, and the command on it as a user would call it."""
+
+import os
+import signal
+import subprocess
+import sys
+import time
+from dataclasses import dataclass
+from pathlib import Path
+
+from frictioncli.fleet.layout import JointLogs
+from frictioncli.fleet.note import read_note
+from tests.fleet.joints import Joint, write_joint
+
+ROOT = Path(__file__).parents[2]
+SMALL = {"runs": 2, "cycle": 6}
+ENVIRONMENT = os.environ | {"PYTHONPATH": str(ROOT), "OMP_NUM_THREADS": "1"}
+PROGRAM = "from frictioncli.cli import main; main()"
+
+
+def write_fleet(folder):
+    """Write four good joints, one whose only log is empty, and one without runs."""
+    write_joint(folder / "robot=A" / "joint=2", Joint(seed=1, **SMALL))
+    write_joint(folder / "robot=A" / "joint=3", Joint(seed=2, wear=2.0, **SMALL), axis=3)
+    write_joint(folder / "robot=B" / "joint=2", Joint(seed=3, **SMALL))
+    write_joint(folder / "robot=B" / "joint=4", Joint(seed=4, **SMALL), axis=4)
+    bad = folder / "robot=B" / "joint=5" / "run=2024-01-08"
+    bad.mkdir(parents=True)
+    (bad / "000.csv").write_bytes(b"")
+    (folder / "robot=C" / "joint=1").mkdir(parents=True)
+    return folder
+
+
+def started(*arguments):
+    """Start the command in a process group of its own."""
+    return subprocess.Popen(
+        [sys.executable, "-c", PROGRAM, "fleet", *map(str, arguments)],
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+        encoding="utf-8",
+        env=ENVIRONMENT,
+        start_new_session=True,
+    )
+
+
+def fleet(*arguments):
+    """Run the command to its end."""
+    process = started(*arguments)
+    output, errors = process.communicate(timeout=300)
+    return subprocess.CompletedProcess(process.args, process.returncode, output, errors)
+
+
+def children(pid):
+    """Return the numbers of a process's children, from the system's list."""
+    found = []
+    for entry in Path("/proc").iterdir():
+        if entry.name.isdecimal():
+            try:
+                state = (entry / "stat").read_text(encoding="utf-8")
+            except OSError:
+                continue
+            if int(state.rpartition(")")[2].split()[1]) == pid:
+                found.append(int(entry.name))
+    return found
+
+
+def begun(out):
+    """Return the work folders that a joint was begun in and is not done."""
+    notes = {path.parent: read_note(path.parent) for path in out.glob("robot=*/joint=*/fleet.json")}
+    return [work for work, note in notes.items() if note and note.key is None]
+
+
+def done(out):
+    """Return the work folders of joints that are done."""
+    notes = {path.parent: read_note(path.parent) for path in out.glob("robot=*/joint=*/fleet.json")}
+    return [work for work, note in notes.items() if note and note.key is not None]
+
+
+def until(condition, seconds=300):
+    """Wait until the condition gives something, and return it."""
+    end = time.monotonic() + seconds
+    while time.monotonic() < end:
+        if found := condition():
+            return found
+        time.sleep(0.02)
+    raise TimeoutError(f"{condition} gave nothing for {seconds} s")
+
+
+def contents(out):
+    """Return file name -> bytes of everything below a folder."""
+    return {
+        str(path.relative_to(out)): path.read_bytes()
+        for path in sorted(out.rglob("*"))
+        if path.is_file()
+    }
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Deadly(JointLogs):
+    """Logs that take down the process which reads them, so many times."""
+
+    counter: Path
+    deaths: int
+
+    def runs(self):
+        """Die like a process that the system kills."""
+        with self.counter.open("a") as stream:
+            stream.write("x")
+        if self.counter.stat().st_size <= self.deaths:
+            os.kill(os.getpid(), signal.SIGKILL)
+        return JointLogs.runs(self)

@@ -1,0 +1,107 @@
+"""A fleet on a real Dask scheduler with real worker processes, on this machine's loopback."""
+
+import os
+import signal
+import sys
+
+import pytest
+
+from frictioncli.errors import FrictionError, OptionError
+from frictioncli.fleet.cluster import run_on_cluster
+from frictioncli.fleet.joint import JointTask
+from frictioncli.fleet.layout import joints_of
+from frictioncli.pipeline import RunSettings
+from tests.fleet.clusters import free_port, scheduler, worker
+from tests.fleet.fleets import Deadly, begun, contents, done, fleet, started, until
+from tests.fleet.joints import Joint, write_joint
+
+pytest.importorskip("distributed", reason="needs the extra 'cluster'")
+
+QUICK = RunSettings(diagnosis=None)
+
+
+def test_two_workers_one_of_them_killed_give_the_same_bytes(alone, logs, tmp_path):
+    out = tmp_path / "out"
+    with (
+        scheduler() as (address, _),
+        worker(address, tmp_path / "one") as victim,
+        worker(address, tmp_path / "two"),
+    ):
+        process = started(logs, "-w", out, "--scheduler", address, "--no-report")
+        # both workers are at a joint after one is done
+        until(lambda: done(out) and len(begun(out)) == 2)
+        os.kill(victim.pid, signal.SIGKILL)
+        output, errors = process.communicate(timeout=300)
+    assert process.returncode == 0, errors
+    assert "4 done" in output
+    assert "2 failed" in output
+    assert contents(out) == contents(alone[0])
+
+
+def test_a_joint_that_takes_down_workers_fails_alone(tmp_path):
+    for number in (1, 2):
+        folder = tmp_path / "logs" / "robot=A" / f"joint={number}"
+        write_joint(folder, Joint(seed=number, runs=1, cycle=4), axis=number)
+    good, bad = (
+        JointTask(logs=logs, work=tmp_path / "out" / logs.place, settings=QUICK, report=False)
+        for logs in joints_of(tmp_path / "logs")
+    )
+    deadly = Deadly(
+        robot="A", joint=2, folder=bad.logs.folder, counter=tmp_path / "counter", deaths=99
+    )
+    tasks = [good, JointTask(logs=deadly, work=bad.work, settings=QUICK, report=False)]
+    patience = {"DASK_DISTRIBUTED__SCHEDULER__ALLOWED_FAILURES": "1"}
+    with scheduler(**patience) as (address, _), worker(address, tmp_path / "one", nanny=True):
+        outcomes = {outcome.joint: outcome for outcome in run_on_cluster(tasks, address)}
+    assert {joint: outcome.status for joint, outcome in outcomes.items()} == {
+        1: "done",
+        2: "failed",
+    }
+    assert "the process that worked on it died" in outcomes[2].message
+
+
+def test_workers_with_several_threads_are_refused(logs, tmp_path):
+    with scheduler() as (address, _), worker(address, tmp_path / "one", threads=2):
+        result = fleet(logs, "-w", tmp_path / "out", "--scheduler", address)
+    assert result.returncode == 2
+    assert "has 2 threads; expected one" in result.stderr
+    assert "Traceback" not in result.stderr
+
+
+def test_workers_of_another_version_are_refused(logs, tmp_path):
+    (joint, *_) = joints_of(logs)
+    task = JointTask(logs=joint, work=tmp_path / "out", settings=QUICK, version="0.0.1")
+    with (
+        scheduler() as (address, _),
+        worker(address, tmp_path / "one"),
+        pytest.raises(OptionError, match=r"expected 0\.0\.1, as the one who asks"),
+    ):
+        list(run_on_cluster([task], address))
+
+
+def test_a_scheduler_that_goes_is_one_message_and_the_next_call_goes_on(alone, logs, tmp_path):
+    out = tmp_path / "out"
+    with scheduler() as (address, process), worker(address, tmp_path / "one"):
+        running = started(logs, "-w", out, "--scheduler", address, "--no-report")
+        until(lambda: done(out) and begun(out))
+        process.kill()
+        _, errors = running.communicate(timeout=300)
+    assert running.returncode == 2
+    assert "the scheduler is gone; joints that were done stay done" in errors
+    assert "Traceback" not in errors
+    again = fleet(logs, "-w", out, "--workers", 1, "--no-report")
+    assert "of them before, unchanged" in again.stdout
+    assert contents(out) == contents(alone[0])
+
+
+def test_no_scheduler_at_the_address(tmp_path, monkeypatch):
+    monkeypatch.setattr("frictioncli.fleet.cluster._PATIENCE", 1)
+    address = f"tcp://127.0.0.1:{free_port()}"
+    with pytest.raises(OptionError, match="no Dask scheduler answers"):
+        list(run_on_cluster([], address))
+
+
+def test_no_dask(monkeypatch):
+    monkeypatch.setitem(sys.modules, "distributed", None)
+    with pytest.raises(FrictionError, match=r"pip install 'frictioncli\[cluster\]'"):
+        list(run_on_cluster([], "tcp://127.0.0.1:1"))
