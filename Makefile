@@ -3,8 +3,9 @@ PYTHON ?= python3
 VENV := .venv
 BIN := $(VENV)/bin
 RUN ?= friction-run
+LARGEST ?= 1e8
 
-.PHONY: reproduce test lint coverage blind comparison clean
+.PHONY: reproduce test lint coverage blind comparison fleet bench fuzz kill clean
 
 reproduce: $(VENV)/installed
 	$(BIN)/frictioncli run sample_logs/kr10 -w $(RUN)
@@ -21,6 +22,20 @@ blind: $(VENV)/tested
 
 comparison: $(VENV)/studied
 	OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1 $(BIN)/python -m tests.studies.comparison
+
+fleet: $(VENV)/tested
+	OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1 $(BIN)/python -m tests.studies.fleet
+
+bench: $(VENV)/studied
+	OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1 $(BIN)/python -m tests.studies.minimum
+	OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1 $(BIN)/python -m tests.studies.bench_growth --largest $(LARGEST)
+	OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1 $(BIN)/python -m tests.studies.bench
+
+fuzz: $(VENV)/tested
+	OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1 $(BIN)/python -m tests.studies.fuzz $(FUZZ)
+
+kill: $(VENV)/tested
+	OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1 $(BIN)/python -m tests.studies.kill
 
 lint: $(VENV)/tested
 	$(BIN)/ruff check .
