@@ -10,9 +10,11 @@ PACKAGE = Path(__file__).parents[1] / "frictioncli"
 LAYERS = [
     {"__main__"},
     {"cli"},
+    {"fleet"},
     {"pipeline"},
     {"chain"},
-    {"report"},
+    {"workfolder"},
+    {"report", "inspecting"},
     {"correction", "diagnosis"},
     {"model", "effects"},
     {"motion", "reading", "simulator"},
