@@ -81,8 +81,7 @@ class SynthesisSettings:
     protocol: str = "paper"
     thin: int = 1
 
-    def check(self) -> None:
-        """Raise OptionError for a value that makes no sense."""
+    def __post_init__(self) -> None:
         demands = (
             (self.seed >= 0, f"seed is {self.seed}, expected 0 or more"),
             (self.runs >= 1, f"runs is {self.runs}, expected 1 or more"),

@@ -82,11 +82,10 @@ def synthesize(folder: Path, settings: SynthesisSettings | None = None) -> Synth
     Raises
     ------
     OptionError
-        If a setting makes no sense, an effect is unknown or cannot be planted, or the folder holds
-        anything but a former synthesis.
+        If an effect is unknown or cannot be planted, or the folder holds anything but a former
+        synthesis.
     """
     settings = SynthesisSettings() if settings is None else settings
-    settings.check()
     effects = asked(settings.effects)
     beside = folder.absolute().with_name(f"{folder.absolute().name}-{TRUTH}")
     _refuse_foreign(folder, beside)

@@ -62,9 +62,8 @@ def simulate_world(settings: SynthesisSettings, *, rebuilt: bool = True) -> Worl
     Raises
     ------
     OptionError
-        If a setting makes no sense, or an effect is unknown or cannot be planted.
+        If an effect is unknown or cannot be planted.
     """
-    settings.check()
     effects = asked(settings.effects)
     seeds = np.random.SeedSequence(settings.seed).spawn(settings.runs)
     runs = [prepare(settings, number, seed) for number, seed in enumerate(seeds)]
