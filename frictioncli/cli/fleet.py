@@ -4,7 +4,7 @@ import sys
 from collections.abc import Iterable, Iterator
 from contextlib import AbstractContextManager, nullcontext
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
@@ -75,18 +75,20 @@ def fleet(
     tmax: o.TMax = o.SCHEDULE.tmax / 60,
 ) -> None:
     """Run the chain for many joints; one row each in fleet.parquet. N·m (or A), °C, deg/s."""
-    from frictioncli.fleet.fleet import run_fleet
-    from frictioncli.pipeline import RunSettings
     from frictioncli.reading.settings import IngestSettings
 
     options = o.chosen(FleetSettings, locals())
-    settings = RunSettings(
-        ingest=o.chosen(IngestSettings, locals()),
-        sign=o.sign_number(sign),
-        fit=o.chosen(FitSettings, locals()),
-        diagnosis=o.DIAGNOSIS if diagnosis else None,
-        schedule=ScheduleSettings(k=k, tmax=tmax * 60),
-    )
+    parts: dict[str, Any] = {
+        "ingest": o.chosen(IngestSettings, locals()),
+        "sign": o.sign_number(sign),
+        "fit": o.chosen(FitSettings, locals()),
+        "diagnosis": o.DIAGNOSIS if diagnosis else None,
+        "schedule": ScheduleSettings(k=k, tmax=tmax * 60),
+    }
+    from frictioncli.fleet.fleet import run_fleet
+    from frictioncli.pipeline import RunSettings
+
+    settings = RunSettings(**parts)
     try:
         done = run_fleet(logs, out, settings, options, _bar)
     except KeyboardInterrupt:

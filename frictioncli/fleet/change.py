@@ -1,15 +1,14 @@
-r"""How far the friction of the last run is from that of the runs before.
+"""How far the friction of the last run is from that of the runs before.
 
 Equation (16) is fitted to all runs at once. About that fit, each run gets an offset of its own, the
 same at all speeds, loads and temperatures. The change is the offset of the last run less the mean
 of the earlier ones, by generalised least squares: runs over other temperatures or speeds are
-compared as far as the fitted parameters allow. Its interval knows the noise of points and pairs and
-slow drift within runs, and with two earlier runs or more how much these differ among themselves.
+compared as far as the fitted parameters allow.
 
-References
-----------
-.. [1] F. E. Satterthwaite, "An approximate distribution of estimates of variance components,"
-   Biometrics Bulletin 2(6), 1946, doi:10.2307/3002019.
+How far a run can be off by chance, the earlier runs tell by how they differ among themselves: the
+interval is Student's for one more run of the same kind, wider where the last one was measured under
+conditions that tell its offset less well. With a single earlier run only the noise within the two
+is known, of points, pairs and slow drift.
 """
 
 from dataclasses import dataclass
@@ -75,13 +74,13 @@ def change_of_last_run(torques: pd.DataFrame, model: FrictionModel) -> Change | 
         return None
     offsets, covariance, steps = _offsets(observed, model, design, len(runs))
     estimate = float(contrast @ offsets)
-    within = float(contrast @ covariance @ contrast)
-    between = _variance_between(offsets[earlier], covariance[np.ix_(earlier, earlier)])
-    between *= 1 + 1 / len(earlier)
-    # Satterthwaite: the freedom of a sum of two variances
-    squares = within**2 / steps + (between**2 / (len(earlier) - 1) if between else 0.0)
-    reach = stats.t.ppf(0.975, (within + between) ** 2 / squares) * np.sqrt(within + between)
-    return Change(estimate=estimate, ci95=(float(estimate - reach), float(estimate + reach)))
+    variance = float(contrast @ covariance @ contrast)
+    if len(earlier) > 1:
+        own = covariance[np.ix_(earlier, earlier)]
+        variance = _variance_of_one_more(offsets[earlier], own, variance)
+        steps = len(earlier) - 1
+    reach = float(stats.t.ppf(0.975, steps) * np.sqrt(variance))
+    return Change(estimate=estimate, ci95=(estimate - reach, estimate + reach))
 
 
 def _design(observed: Observations, model: FrictionModel) -> Array:
@@ -136,11 +135,21 @@ def _offsets(
     return mean, covariance, freedom(observed, plausible[0][0], design.shape[1])
 
 
-def _variance_between(offsets: Array, covariance: Array) -> float:
-    """Return by how much earlier runs vary beyond what their noise explains; 0 for one run."""
+def _variance_of_one_more(offsets: Array, covariance: Array, noise: float) -> float:
+    """Return the variance of one more run about the mean of some, as these differ. [(N·m)²].
+
+    Parameters
+    ----------
+    offsets : ndarray, shape (runs,)
+        Offsets of two runs or more. [N·m]
+    covariance : ndarray, shape (runs, runs)
+        Of the offsets, by noise within the runs. [(N·m)²]
+    noise : float
+        Variance of the difference by noise within the runs. [(N·m)²]
+    """
     count = len(offsets)
-    if count < 2:
-        return 0.0
-    together = float(covariance.sum()) / count
-    expected = (float(np.trace(covariance)) - together) / (count - 1)
-    return max(float(np.var(offsets, ddof=1)) - expected, 0.0)
+    share = 1 + 1 / count
+    seen = float(np.var(offsets, ddof=1))
+    explained = (float(np.trace(covariance)) - float(covariance.sum()) / count) / (count - 1)
+    # a run under other conditions may tell its offset less well than the earlier ones do theirs
+    return share * seen * max(1.0, noise / (share * explained))

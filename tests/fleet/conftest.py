@@ -1,8 +1,16 @@
 """One fleet, and what one worker makes of it, for all tests."""
 
 import pytest
+from threadpoolctl import threadpool_limits
 
 from tests.fleet.fleets import fleet, write_fleet
+
+
+@pytest.fixture(autouse=True, scope="session")
+def one_thread():
+    """Keep linear algebra to one thread, as the workers of a fleet do."""
+    with threadpool_limits(1):
+        yield
 
 
 @pytest.fixture(scope="session")

@@ -89,7 +89,7 @@ def _results(measures: Measures) -> str:
     kinds = rows["kind"].value_counts().reindex(KINDS, fill_value=0)
     lines = [
         "## 200 joints, here and on Dask" if len(rows) == 200 else f"## {len(rows)} joints",
-        f"{len(rows)} simulated joints of three short runs each: {kinds['sound']} sound,"
+        f"{len(rows)} simulated joints of six short runs each: {kinds['sound']} sound,"
         f" {kinds['worn']} whose last run has {WEAR:g} N·m more friction, {kinds['lagging']} whose"
         f" friction is an hour behind the motor's temperature, {kinds['bad']} with logs of no use."
         f" Every run of every joint also has an offset of its own, {DAY_TO_DAY:g} N·m (1 sigma).",

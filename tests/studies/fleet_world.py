@@ -50,7 +50,7 @@ def write_world(folder: Path, joints: int) -> list[Member]:
         place = folder / f"robot={member.robot}" / f"joint={member.joint}"
         joint = Joint(
             seed=number,
-            runs=3,
+            runs=6,
             cycle=6,
             wear=WEAR if member.kind == "worn" else 0.0,
             lags=member.kind == "lagging",
