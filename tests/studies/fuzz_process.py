@@ -7,7 +7,7 @@ import tempfile
 import traceback
 import warnings
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from multiprocessing.connection import Connection, wait
 from pathlib import Path
 
@@ -110,7 +110,12 @@ class _Worker:
 def _work(connection: Connection) -> None:
     resource.setrlimit(resource.RLIMIT_AS, (_ADDRESSES, _ADDRESSES))
     while (number := connection.recv()) is not None:
-        connection.send(examine_here(number))
+        found = examine_here(number)
+        # this process has done nothing else, so what it took at most is of these inputs
+        peak = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1000
+        if found.outcome in GOOD and peak > MEMORY:
+            found = replace(found, outcome="memory", text=f"{peak:.0f} MB")
+        connection.send(found)
 
 
 def examine_here(number: int) -> Finding:
@@ -118,9 +123,6 @@ def examine_here(number: int) -> Finding:
     one = case(number, _LAYOUTS)
     with tempfile.TemporaryDirectory(prefix="fuzz-", dir=_DISK) as folder:
         outcome, text = _outcome(one, Path(folder), inspected=number % _INSPECTED == 0)
-    peak = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1000
-    if outcome in GOOD and peak > MEMORY:
-        outcome, text = "memory", f"{peak:.0f} MB"
     return Finding(number, one.layout.name, one.damage, outcome, text)
 
 
