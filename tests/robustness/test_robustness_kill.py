@@ -10,7 +10,7 @@ from frictioncli.files import whole
 from tests.robustness.kills import Worlds, killed_before_change, killed_run
 from tests.robustness.runs import digests
 
-KILLS = 6
+KILLS = 3
 STAGES = {
     "ingest": lambda logs, work: partial(chain.ingest, [logs], work),
     "pair": lambda logs, work: partial(chain.pair, work),
