@@ -12,7 +12,7 @@ reproduce: $(VENV)/installed
 	$(BIN)/python docs/compare_with_paper.py $(RUN)
 
 test: $(VENV)/tested
-	$(BIN)/pytest -n 2
+	$(BIN)/pytest -n 2 --dist worksteal
 
 coverage: $(VENV)/tested
 	$(BIN)/python -m tests.studies.coverage
