@@ -23,9 +23,8 @@ from frictioncli.reading import manifest
 from frictioncli.reading.discovery import Run, discover
 from frictioncli.reading.formats.base import Refusal
 from frictioncli.reading.mapping import ChannelMap, read_map
-from frictioncli.reading.opening import open_run
-from frictioncli.reading.parts import Part, Reading, first_look, parts_of
-from frictioncli.reading.planning import planned
+from frictioncli.reading.parts import Part, Reading, parts_of
+from frictioncli.reading.planning import readings
 from frictioncli.reading.recording import Recorded, record
 from frictioncli.reading.rows import Faults
 from frictioncli.reading.settings import IngestSettings
@@ -147,17 +146,11 @@ def _samples(
     """Yield the samples of all logs, run by run in order of time; what is seen goes to harvest."""
     for run in runs:
         found: dict[Path, FileFound] = {}
-        opened, refused = open_run(run, settings, chart)
+        usable, refused = readings(run, settings, chart)
         for log in refused:
             found[log.file.path] = raw_look(run, log.file.path, log.refusal, chart, settings)
-        readings = []
-        for own, plans in planned(opened, settings, chart):
-            if isinstance(plans, Refusal):
-                found[own.file.path] = raw_look(run, own.file.path, plans, chart, settings)
-            else:
-                readings.append(first_look(own, plans))
         clock = Clock(run.name)
-        queue = _in_time_order(run, readings, harvest)
+        queue = _in_time_order(run, usable, harvest)
         in_turn = parts_of([dated.reading for dated in queue], settings.batch_bytes)
         for dated, (_, parts) in zip(queue, in_turn, strict=True):
             samples = Spool(spool, run.name, dated.reading.log.recording, clock.start_of(dated))
@@ -173,7 +166,7 @@ def _samples(
         harvest.files += [found[file.path] for file in run.files if file.path in found]
 
 
-def _in_time_order(run: Run, readings: Sequence[Reading], harvest: _Harvest) -> list[Dated]:
+def _in_time_order(run: Run, usable: Sequence[Reading], harvest: _Harvest) -> list[Dated]:
     """Return the logs of a run in the order of their starts."""
     entries: Mapping[str, manifest.Entry] = {}
     path = run.folder / manifest.NAME
@@ -183,7 +176,7 @@ def _in_time_order(run: Run, readings: Sequence[Reading], harvest: _Harvest) -> 
             entries = manifest.match(rows, [file.path.name for file in run.files])
         except MappingError as error:
             harvest.remarks.append(f"the manifest cannot be used: {error}")
-    return in_time_order(readings, entries)
+    return in_time_order(usable, entries)
 
 
 def _look(

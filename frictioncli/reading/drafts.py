@@ -19,7 +19,6 @@ import pyarrow as pa
 from numpy.typing import NDArray
 
 from frictioncli import schemas, tables
-from frictioncli.files import whole
 from frictioncli.provenance import Provenance
 from frictioncli.reading import aliases as names
 from frictioncli.reading import staircase
@@ -136,7 +135,7 @@ class Drafts:
         Parameters
         ----------
         target : Path
-            The table's path.
+            The table's path, on the disk of the drafts.
         temperatures : Temperatures
             Known motor temperatures; runs and joints that are not there have no samples.
         provenance, facts
@@ -146,8 +145,7 @@ class Drafts:
             draft.writer.provenance, draft.writer.facts = provenance, facts
         self._stack.close()
         if self._is_final(temperatures):
-            with whole(target) as place:
-                os.replace(self._path(next(iter(self._drafts))), place)
+            os.replace(self._path(next(iter(self._drafts))), target)
             return
         rows = {joint: _Rows(self._path(joint)) for joint in self._drafts}
         with TableWriter(target, schemas.SAMPLES, provenance, facts) as writer:

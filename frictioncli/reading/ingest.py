@@ -20,9 +20,9 @@ from frictioncli.reading.drafts import Drafts
 from frictioncli.reading.formats.base import Refusal
 from frictioncli.reading.history import known_temperatures
 from frictioncli.reading.mapping import ChannelMap, read_map
-from frictioncli.reading.opening import RefusedLog, open_run
-from frictioncli.reading.parts import first_look, parts_of
-from frictioncli.reading.planning import planned
+from frictioncli.reading.opening import RefusedLog
+from frictioncli.reading.parts import parts_of
+from frictioncli.reading.planning import readings
 from frictioncli.reading.recording import Recorded, record
 from frictioncli.reading.rows import Faults
 from frictioncli.reading.settings import IngestSettings
@@ -175,15 +175,9 @@ def _read_run(run: Run, desk: _Desk, harvest: _Harvest) -> None:
     """Read all logs of a run in order of time."""
     entries, has_manifest, said = _manifest(run)
     harvest.warnings += said
-    opened, closed = open_run(run, desk.settings, desk.chart)
-    harvest.refused += closed
-    readings = []
-    for log, plans in planned(opened, desk.settings, desk.chart):
-        if isinstance(plans, Refusal):
-            harvest.refused.append(RefusedLog(run, log.file, log.recording, plans))
-        else:
-            readings.append(first_look(log, plans))
-    clock = _read_logs(run, in_time_order(readings, entries), desk, harvest)
+    found, refused = readings(run, desk.settings, desk.chart)
+    harvest.refused += refused
+    clock = _read_logs(run, in_time_order(found, entries), desk, harvest)
     timeline = clock.timeline(has_manifest=has_manifest)
     if not timeline.placed:
         return

@@ -74,6 +74,7 @@ def block(first, n, joints):
 
 def finished(drafts, folder, temperatures):
     target = folder / "table" / "samples.parquet"
+    target.parent.mkdir(exist_ok=True)
     drafts.finish(target, temperatures, Provenance("ingest"), {"torque_unit": "A"})
     assert tables.facts(target) == {"torque_unit": "A"}
     return tables.read(target, schemas.SAMPLES)

@@ -1,0 +1,78 @@
+"""From torques to models: ``fit``, ``diagnose``."""
+
+import json
+from dataclasses import asdict
+from pathlib import Path
+
+from frictioncli import schemas, tables
+from frictioncli.chain.stage import MODEL, RAMPS, TORQUES, Done, present, stage
+from frictioncli.diagnosis.diagnose import diagnose_joint
+from frictioncli.diagnosis.document import diagnosis_document, extended_document, verdict_text
+from frictioncli.diagnosis.extended import EXTENDED
+from frictioncli.diagnosis.ramps import ramp_logs
+from frictioncli.diagnosis.recall import DIAGNOSIS
+from frictioncli.diagnosis.settings import DiagnosisSettings
+from frictioncli.errors import NotEnoughData
+from frictioncli.files import write_text
+from frictioncli.model.document import by_joint, read_models, write_models
+from frictioncli.model.fitting import fit_joint
+from frictioncli.model.settings import FitSettings
+from frictioncli.provenance import Provenance, hashes, to_json
+
+
+@stage
+def fit(work: Path, settings: FitSettings | None = None) -> Done:
+    """Identify equation (16) for every joint: ``model.json``."""
+    settings = settings or FitSettings()
+    source = work / TORQUES
+    facts = tables.facts(source)
+    torques = tables.read(source, schemas.TORQUES)
+    models, faults = [], []
+    for _, group in torques.groupby("joint"):
+        try:
+            models.append(fit_joint(group, facts, settings))
+        except NotEnoughData as fault:
+            faults.append(str(fault))
+    if not models:
+        raise NotEnoughData("; ".join(faults))
+    write_models(work / MODEL, models, Provenance("fit", asdict(settings), hashes([source])))
+    return Done(work / MODEL, "\n".join([*(model.table() for model in models), *faults]))
+
+
+@stage
+def diagnose(work: Path, settings: DiagnosisSettings | None = None) -> Done:
+    """Find what the simulated torque gets wrong: ``diagnosis.json``, ``extended-model.json``."""
+    settings = settings or DiagnosisSettings()
+    torques = tables.read(work / TORQUES, schemas.TORQUES)
+    facts = tables.facts(work / TORQUES)
+    unit = facts.get("torque_unit", "N·m")
+    ramps = ramp_logs(work / RAMPS, facts.get("sign", {}))
+    inputs = present(work / TORQUES, work / MODEL, work / RAMPS)
+    found, faults = [], []
+    for model in read_models(work / MODEL):
+        rows = torques[torques["joint"] == model.joint]
+        own = ramps.get(model.joint)
+        try:
+            diagnosis = diagnose_joint(rows, model.temperature, unit, settings, ramps=own)
+            found.append((model, diagnosis))
+        except NotEnoughData as fault:
+            faults.append(str(fault))
+    if not found:
+        raise NotEnoughData("; ".join(faults))
+    provenance = Provenance("diagnose", asdict(settings), hashes(inputs))
+    chief = max(found, key=lambda pair: pair[0].n_pairs)[0].joint
+    for name, documents in (
+        (DIAGNOSIS, {m.joint: diagnosis_document(d, settings) for m, d in found}),
+        (EXTENDED, {m.joint: extended_document(d, m) for m, d in found}),
+    ):
+        write_text(work / name, to_json(by_joint(documents, chief, provenance)))
+    return Done(work / DIAGNOSIS, "\n".join([*(verdict_text(d) for _, d in found), *faults]))
+
+
+def has_finding(work: Path, *, named_only: bool) -> bool:
+    """Return whether ``diagnosis.json`` holds a cause, or one that has a single name."""
+    whole = json.loads((work / DIAGNOSIS).read_text(encoding="utf-8"))
+    causes = [
+        cause for part in whole.get("joints", {"": whole}).values() for cause in part["causes"]
+    ]
+    return any(len(cause["effects"]) == 1 or not named_only for cause in causes)

@@ -1,0 +1,55 @@
+"""What all stages share: the files of a work folder, and what a stage does before and after."""
+
+import functools
+import inspect
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+from typing import ParamSpec
+
+from frictioncli.workfolder import alone, outdated
+
+SAMPLES = "samples.parquet"
+RECORDINGS = "recordings.parquet"
+PAIRS = "pairs.parquet"
+RAMPS = "ramps.parquet"
+TORQUES = "torques.parquet"
+MODEL = "model.json"
+SCHEDULE = "schedule.parquet"
+EVALUATION = "evaluation.parquet"
+
+
+@dataclass(frozen=True, slots=True)
+class Done:
+    """What a stage made, and what it has to say about it."""
+
+    path: Path
+    text: str
+
+    def __str__(self) -> str:
+        return self.text
+
+
+_Arguments = ParamSpec("_Arguments")
+
+
+def stage(work_on: Callable[_Arguments, Done]) -> Callable[_Arguments, Done]:
+    """Let a stage have its work folder to itself, and say which of its inputs are out of date."""
+    signature = inspect.signature(work_on)
+
+    @functools.wraps(work_on)
+    def alone_with_its_folder(*args: _Arguments.args, **kwargs: _Arguments.kwargs) -> Done:
+        work: Path = signature.bind(*args, **kwargs).arguments["work"]
+        with alone(work):
+            done = work_on(*args, **kwargs)
+            # a page shows all tables of its folder
+            used = [done.path] if done.path.parent == work else sorted(work.iterdir())
+            warnings = [f"warning: {text}" for text in outdated(used)]
+        return Done(done.path, "\n".join([*warnings, done.text]))
+
+    return alone_with_its_folder
+
+
+def present(*paths: Path) -> list[Path]:
+    """Return the inputs that a work folder has; those of older versions lack some."""
+    return [path for path in paths if path.exists()]
