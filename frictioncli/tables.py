@@ -31,6 +31,9 @@ _Item = TypeVar("_Item")
 _GROUP_BYTES = 1 << 24
 """Rows are written this many bytes at a time: small groups make a file slow to read."""
 
+_WRITTEN_ROWS = 1 << 16
+"""Rows that are encoded at once: pyarrow's default, 1024, takes a third longer."""
+
 
 class TableWriter:
     """Write a table batch by batch; the file takes its place when the block ends without error.
@@ -65,7 +68,7 @@ class TableWriter:
         self.provenance = provenance
         self.facts = facts or {}
         self._table = table
-        self._schema = pa.schema([pa.field(c.name, c.type) for c in table.columns])
+        self._schema = bare_schema(table)
         self._path = path
         self._stack = ExitStack()
         self._held: list[pa.Table] = []
@@ -74,15 +77,16 @@ class TableWriter:
 
     def __enter__(self) -> Self:
         draft = self._stack.enter_context(whole(self._path))
-        labels = [f.name for f in self._schema if pa.types.is_dictionary(f.type)]
         numbers = [f.name for f in self._schema if pa.types.is_floating(f.type)]
+        labels = [name for name in self._schema.names if name not in numbers]
         self._writer = pq.ParquetWriter(
             draft,
             self._schema,
             compression="lz4",
             use_dictionary=labels,
             use_byte_stream_split=numbers,
-            write_statistics=[n for n in self._schema.names if n not in numbers or n == "time"],
+            write_statistics=[*labels, "time"],
+            write_batch_size=_WRITTEN_ROWS,
             # the schema with its metadata is stored at the end
             store_schema=False,
         )
@@ -146,7 +150,7 @@ def arrow_schema(table: Table, provenance: Provenance, facts: Mapping[str, Any])
         pa.field(
             column.name,
             column.type,
-            nullable=True,
+            nullable=column.nullable,
             metadata={
                 "unit": torque_unit if column.unit == TORQUE else column.unit,
                 "description": column.description,
@@ -156,6 +160,14 @@ def arrow_schema(table: Table, provenance: Provenance, facts: Mapping[str, Any])
     ]
     document = provenance.as_dict() | {"table": table.name, "row": table.row, "facts": dict(facts)}
     return pa.schema(fields, metadata={_KEY: json.dumps(document, ensure_ascii=False).encode()})
+
+
+def bare_schema(table: Table) -> pa.Schema:
+    """Return the Arrow schema of a table without metadata.
+
+    What must be there is declared so: pages without marks of absence take half the time.
+    """
+    return pa.schema([pa.field(c.name, c.type, c.nullable) for c in table.columns])
 
 
 def conform(rows: pa.RecordBatch | pa.Table, table: Table, schema: pa.Schema) -> pa.Table:
@@ -257,9 +269,8 @@ def _sound(batch: pa.RecordBatch, table: Table) -> bool:
 
 
 def _mended(batch: pa.RecordBatch, table: Table, path: Path) -> pa.RecordBatch:
-    schema = pa.schema([pa.field(column.name, column.type) for column in table.columns])
     try:
-        return conform(batch, table, schema).combine_chunks().to_batches()[0]
+        return conform(batch, table, bare_schema(table)).combine_chunks().to_batches()[0]
     except TableError as error:
         raise TableError(f"{path}: {error}") from error
 

@@ -19,7 +19,7 @@ LAYERS = [
     {"model", "effects"},
     {"motion", "reading", "simulator"},
     {"tables"},
-    {"schemas", "files", "provenance"},
+    {"schemas", "files", "provenance", "workfiles"},
     {"quantities", "errors", "__init__"},
 ]
 """Top to bottom; parts of one layer do not know each other."""

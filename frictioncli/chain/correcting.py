@@ -8,14 +8,15 @@ from typing import Any
 import pandas as pd
 
 from frictioncli import schemas, tables
-from frictioncli.chain.stage import EVALUATION, MODEL, SCHEDULE, TORQUES, Done, stage
+from frictioncli.chain.stage import Done, stage
 from frictioncli.correction import stage as correction
 from frictioncli.correction.settings import CorrectionSettings, EvaluationGrid, ScheduleSettings
 from frictioncli.diagnosis.applied import with_effects, without_effects
-from frictioncli.diagnosis.extended import EXTENDED, read_extended
+from frictioncli.diagnosis.extended import read_extended
 from frictioncli.errors import NotEnoughData
 from frictioncli.model.document import FrictionModel, read_models
 from frictioncli.provenance import Provenance, hashes
+from frictioncli.workfiles import EVALUATION, EXTENDED, MODEL, SCHEDULE, TORQUES
 
 
 @stage

@@ -5,12 +5,10 @@ from dataclasses import asdict
 from pathlib import Path
 
 from frictioncli import schemas, tables
-from frictioncli.chain.stage import MODEL, RAMPS, TORQUES, Done, present, stage
+from frictioncli.chain.stage import Done, present, stage
 from frictioncli.diagnosis.diagnose import diagnose_joint
 from frictioncli.diagnosis.document import diagnosis_document, extended_document, verdict_text
-from frictioncli.diagnosis.extended import EXTENDED
 from frictioncli.diagnosis.ramps import ramp_logs
-from frictioncli.diagnosis.recall import DIAGNOSIS
 from frictioncli.diagnosis.settings import DiagnosisSettings
 from frictioncli.errors import NotEnoughData
 from frictioncli.files import write_text
@@ -18,6 +16,7 @@ from frictioncli.model.document import by_joint, read_models, write_models
 from frictioncli.model.fitting import fit_joint
 from frictioncli.model.settings import FitSettings
 from frictioncli.provenance import Provenance, hashes, to_json
+from frictioncli.workfiles import DIAGNOSIS, EXTENDED, MODEL, RAMPS, TORQUES
 
 
 @stage

@@ -4,7 +4,7 @@ from dataclasses import asdict
 from pathlib import Path
 
 from frictioncli import schemas, tables
-from frictioncli.chain.stage import PAIRS, RAMPS, RECORDINGS, SAMPLES, TORQUES, Done, present, stage
+from frictioncli.chain.stage import Done, present, stage
 from frictioncli.motion.given import given
 from frictioncli.motion.pages import Pages
 from frictioncli.motion.pairing import pair_spans
@@ -18,6 +18,7 @@ from frictioncli.provenance import Provenance, hashes
 from frictioncli.reading.discovery import Logs
 from frictioncli.reading.ingest import ingest as ingest_logs
 from frictioncli.reading.settings import IngestSettings
+from frictioncli.workfiles import PAIRS, RAMPS, RECORDINGS, SAMPLES, TORQUES
 
 
 @stage

@@ -1,4 +1,4 @@
-"""What all stages share: the files of a work folder, and what a stage does before and after."""
+"""What all stages share: what is done before and after, and what comes out."""
 
 import functools
 import inspect
@@ -8,15 +8,6 @@ from pathlib import Path
 from typing import ParamSpec
 
 from frictioncli.workfolder import alone, outdated
-
-SAMPLES = "samples.parquet"
-RECORDINGS = "recordings.parquet"
-PAIRS = "pairs.parquet"
-RAMPS = "ramps.parquet"
-TORQUES = "torques.parquet"
-MODEL = "model.json"
-SCHEDULE = "schedule.parquet"
-EVALUATION = "evaluation.parquet"
 
 
 @dataclass(frozen=True, slots=True)

@@ -20,8 +20,6 @@ from frictioncli.model.friction import FrictionParameters
 Array = NDArray[np.float64]
 Part = TypeVar("Part")
 
-EXTENDED = "extended-model.json"
-
 
 @dataclass(frozen=True, slots=True)
 class Term:

@@ -10,7 +10,6 @@ import pandas as pd
 from numpy.typing import NDArray
 
 from frictioncli.diagnosis.extended import (
-    EXTENDED,
     ExtendedModel,
     Term,
     read_by_joint,
@@ -18,10 +17,9 @@ from frictioncli.diagnosis.extended import (
 )
 from frictioncli.diagnosis.problem import Problem, build_problems
 from frictioncli.errors import TableError
+from frictioncli.workfiles import DIAGNOSIS, EXTENDED
 
 Array = NDArray[np.float64]
-
-DIAGNOSIS = "diagnosis.json"
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

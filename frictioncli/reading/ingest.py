@@ -31,10 +31,10 @@ from frictioncli.reading.summary import IngestSummary, RejectedFile, grouped
 from frictioncli.reading.timeline import Clock, Dated, Timeline, in_time_order
 from frictioncli.reading.writing import recording_rows, rejected_files, rejected_rows
 from frictioncli.tables import TableWriter
+from frictioncli.workfiles import SAMPLES
 
 __all__ = ["IngestSettings", "IngestSummary", "ingest"]
 
-SAMPLES = "samples.parquet"
 _FEW = 4
 _MISSING_CHANNEL = "mapped_column_missing"
 

@@ -20,7 +20,7 @@ from frictioncli.reading.opening import OpenedLog
 from frictioncli.reading.rows import Block, Faults, with_values
 from frictioncli.reading.units import plausible_temperature
 
-_FIRST_BYTES = 1 << 14
+_FIRST_BYTES = 1 << 12
 _BEYOND = 3
 _BEYOND_SHARE = 0.01
 

@@ -66,3 +66,17 @@ def test_work_would_be_seen(tmp_path):
     status, imported = answered("fit", "-w", str(tmp_path))
     assert status == 2
     assert "pandas" in imported
+
+
+LAZY = """
+import sys
+from frictioncli import chain
+from frictioncli.chain import ingest, pair, separate
+assert "scipy" not in sys.modules and "matplotlib" not in sys.modules
+missing = [name for name in chain.__all__ if not hasattr(chain, name)]
+assert not missing, missing
+"""
+
+
+def test_reading_logs_needs_no_scipy_and_all_stages_can_be_asked_for():
+    subprocess.run([sys.executable, "-c", LAZY], check=True)

@@ -29,6 +29,8 @@ _MAGIC = (
 )
 _BZIP2_BLOCKS = (b"1AY&SY", b"\x17rE8P\x90")
 """How the first block of a bzip2 stream begins; text may begin with ``BZh`` too."""
+_START = 10
+"""So many first bytes tell how a file is packed."""
 _XZ_MEMORY = 1 << 27
 """What an xz stream may ask for: twice the need of the strongest preset. [bytes]"""
 _XZ_READ = 1 << 16
@@ -47,7 +49,10 @@ def packing_of(path: Path) -> str | None:
         If the file cannot be opened.
     """
     with path.open("rb") as stream:
-        start = stream.read(10)
+        return _packing(stream.read(_START))
+
+
+def _packing(start: bytes) -> str | None:
     for magic, name in _MAGIC:
         if start.startswith(magic) and (name != "bzip2" or start[4:] in _BZIP2_BLOCKS):
             return name
@@ -65,16 +70,19 @@ def open_bytes(path: Path) -> BinaryIO:
     OSError
         If the file cannot be opened.
     """
-    packing = packing_of(path)
+    stream = path.open("rb")
+    packing = _packing(stream.read(_START))
+    if packing is None:
+        stream.seek(0)
+        return stream
+    stream.close()
     if packing == "gzip":
         return cast(BinaryIO, gzip.open(path, "rb"))
     if packing == "zstd":
         return cast(BinaryIO, pa.CompressedInputStream(pa.OSFile(str(path)), "zstd"))
     if packing == "xz":
         return cast(BinaryIO, io.BufferedReader(_XzStream(path.open("rb"))))
-    if packing == "bzip2":
-        return cast(BinaryIO, bz2.open(path, "rb"))
-    return path.open("rb")
+    return cast(BinaryIO, bz2.open(path, "rb"))
 
 
 def refuse_packed(path: Path, what: str) -> Refusal | None:

@@ -1,0 +1,12 @@
+"""What the files of a work folder are called."""
+
+SAMPLES = "samples.parquet"
+RECORDINGS = "recordings.parquet"
+PAIRS = "pairs.parquet"
+RAMPS = "ramps.parquet"
+TORQUES = "torques.parquet"
+MODEL = "model.json"
+SCHEDULE = "schedule.parquet"
+EVALUATION = "evaluation.parquet"
+DIAGNOSIS = "diagnosis.json"
+EXTENDED = "extended-model.json"
