@@ -155,6 +155,7 @@ def _schedule_caption(results: JointResults, phase: str) -> str:
 
 def _evaluation_caption(results: JointResults) -> str:
     sentences = [
+        "Corrections of the extended model." if results.evaluated_extended else "",
         "Error ε of equation (21) against the number of corrections in a phase. Where several"
         " settings give the same number, the bar is their mean. Diamonds: the same number of"
         " corrections, equally spaced.",
@@ -264,6 +265,6 @@ def runs_drawn_note(results: JointResults) -> str:
     if len(results.runs) <= MOST_RUNS:
         return ""
     return (
-        f"Figures 3 to 11 draw the first {MOST_RUNS} of {len(results.runs)} runs that have the"
-        f" data for them; the fit, the tables and the last figure use all runs."
+        f"Figures 3 to 11 and the explorer show the first {MOST_RUNS} of {len(results.runs)} runs"
+        " that have the data for them; the fit, the tables and the last figure use all runs."
     )

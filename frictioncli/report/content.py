@@ -1,26 +1,14 @@
-"""The tables of the page, as text: parameters, errors of the corrections, pairs."""
+"""Tables of the page, as text: errors of the corrections, pairs."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
 
 import pandas as pd
 
-from frictioncli.model.document import PARAMETERS
-from frictioncli.model.friction import PUBLISHED
 from frictioncli.report.epsilon import compared_criterion
 from frictioncli.report.labels import CRITERION_WORDS, number, speed_text
 from frictioncli.report.results import JointResults, by_speed
 from frictioncli.report.style import PHASE_WORDS, PHASES
-
-_SYMBOLS = {"tau_c": "τc", "alpha": "α", "beta": "β", "gamma": "γ", "delta": "δ"}
-
-_MEANINGS = {
-    "tau_c": "Coulomb friction",
-    "alpha": "load coefficient",
-    "beta": "viscous, stays when hot",
-    "gamma": "viscous, falls with temperature",
-    "delta": "rate of its fall",
-}
 
 _NEIGHBOURS = 3
 
@@ -56,64 +44,6 @@ class TextTable:
     groups: tuple[tuple[str, int], ...] = ()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class ParameterRow:
-    """One parameter of the model as the page states it; ``remark`` says why it is not known."""
-
-    symbol: str
-    meaning: str
-    estimate: str
-    interval: str
-    unit: str
-    published: str
-    remark: str
-
-
-def parameter_rows(results: JointResults) -> list[ParameterRow]:
-    """Return the model's parameters with intervals, units and the published values.
-
-    Parameters
-    ----------
-    results : JointResults
-        One joint's results.
-    """
-    rows = []
-    for name in PARAMETERS:
-        stated = results.model.parameters[name]
-        interval = stated.ci95
-        remark = "" if stated.determined else "not determined by these data"
-        if stated.reason:
-            remark = f"{remark}: {stated.reason}".removeprefix(": ")
-        rows.append(
-            ParameterRow(
-                symbol=_SYMBOLS[name],
-                meaning=_MEANINGS[name],
-                estimate=number(stated.estimate, 4),
-                interval=f"{number(interval[0])} to {number(interval[1])}" if interval else "–",
-                unit=stated.unit,
-                published=f"{getattr(PUBLISHED, name):g}",
-                remark=remark,
-            )
-        )
-    return rows
-
-
-def is_published_joint(results: JointResults, traces: str) -> bool:
-    """Return whether the published values belong to this joint: joint 2 of a KR10, in N·m.
-
-    Parameters
-    ----------
-    results : JointResults
-        One joint's results.
-    traces : str
-        Names of the logs, in which the robot's name would stand.
-    """
-    if results.joint != 2 or results.unit != "N·m":
-        return False
-    named = " ".join([*results.runs, traces]).lower().replace(" ", "").replace("-", "")
-    return results.model.torque_side == "joint" and "kr10" in named
-
-
 def epsilon_tables(results: JointResults) -> list[TextTable]:
     """Return the errors of the simulated setting and its neighbours, and those by bound, per run.
 
@@ -132,7 +62,8 @@ def epsilon_tables(results: JointResults) -> list[TextTable]:
     bounds = sorted(float(value) for value in results.evaluation.loc[bounded, "bound"].unique())
     tables = []
     for run, own in results.evaluation[~bounded].groupby("run"):
-        title = f"{run}: error ε of equation (21) [{results.unit}] (number of corrections)"
+        model = ", extended model" if results.evaluated_extended else ""
+        title = f"{run}{model}: error ε of equation (21) [{results.unit}] (number of corrections)"
         rows: list[_Row] = [
             ((f"k = {k:g}", f"{tmax / 60.0:g}"), own[(own["k"] == k) & (own["tmax"] == tmax)])
             for k, tmax in settings

@@ -4,7 +4,7 @@ import pandas as pd
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from frictioncli.report.labels import TEMPERATURE_SYMBOLS, friction_label, plain, speed_text
+from frictioncli.report.labels import TEMPERATURE_SYMBOLS, friction_label, number, plain, speed_text
 from frictioncli.report.results import MOST_RUNS, JointResults, by_speed
 from frictioncli.report.style import FAINT, MODEL, WIDTH, label_right, legend_above, points
 
@@ -55,7 +55,13 @@ def _friction_through_phase(panel: Axes, own: pd.DataFrame, results: JointResult
     for speed, group in by_speed(own):
         style = results.style(speed)
         minutes = group["time"] / 60.0
-        points(panel, minutes, group["friction_torque"], style, opacity=0.5)
+        told = [
+            f"{speed_text(speed)}, {row['time'] / 60.0:.0f} min: measured"
+            f" {number(row['friction_torque'])} {results.unit}, predicted"
+            f" {number(row['friction_predicted'])} {results.unit}"
+            for row in group.to_dict("records")
+        ]
+        points(panel, minutes, group["friction_torque"], style, opacity=0.5, told=told)
         panel.plot(minutes, group["friction_smoothed"], color=style.colour, linewidth=1.0)
         panel.plot(minutes, group["friction_predicted"], "--", color=style.colour, linewidth=2.0)
         labels.append(

@@ -1,9 +1,10 @@
 """The section of the page on what the simulation gets wrong."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
+from typing import Any
 
 from matplotlib.figure import Figure
 
@@ -41,6 +42,8 @@ class DiagnosisSection:
     ----------
     missing : str
         Why there is nothing to say; empty where there is.
+    document : dict or None
+        The joint's part of ``diagnosis.json``.
     verdict, gain : str
         The verdict and the worth of the extended model, in words.
     causes, unnamed : tuple of CauseText
@@ -54,6 +57,7 @@ class DiagnosisSection:
     """
 
     missing: str = ""
+    document: Mapping[str, Any] | None = None
     verdict: str = ""
     causes: tuple[CauseText, ...] = ()
     unnamed: tuple[CauseText, ...] = ()
@@ -111,6 +115,7 @@ def section(results: JointResults, recalled: Recalled) -> DiagnosisSection:
     document, unit = recalled.document, results.unit
     worst = worst_table(document, unit)
     return DiagnosisSection(
+        document=document,
         verdict=verdict_sentence(document, unit),
         causes=tuple(cause_texts(document, unit)),
         unnamed=tuple(unnamed_texts(document, unit)),

@@ -6,7 +6,8 @@ import pandas as pd
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from frictioncli.report.labels import CRITERION_WORDS, number, plain, span
+from frictioncli.report.hover import tell
+from frictioncli.report.labels import CRITERION_WORDS, counted, number, plain, span
 from frictioncli.report.results import MOST_RUNS, JointResults
 from frictioncli.report.style import (
     FAINT,
@@ -51,7 +52,9 @@ def error_against_corrections(results: JointResults) -> Figure:
         own = evaluation[evaluation["run"] == run]
         for side, phase in enumerate(PHASES):
             rows = own[own["phase"] == phase]
-            _phase_bars(panel, rows, criteria, counts, phase, shift=(side - 0.5) * 0.4)
+            _phase_bars(
+                panel, rows, criteria, counts, phase, shift=(side - 0.5) * 0.4, unit=results.unit
+            )
         panel.plot([], [], label=CRITERION_WORDS["equal"], color=FAINT, **_EQUAL)
         for name in criteria[1:]:
             panel.plot([], [], label=CRITERION_WORDS[name], color=FAINT, **_OTHER)
@@ -76,6 +79,7 @@ def _phase_bars(
     phase: str,
     *,
     shift: float,
+    unit: str,
 ) -> None:
     """Draw one phase: the first criterion as bars, others and equal spacing as marks."""
     colour = PHASE_COLOURS[phase]
@@ -88,7 +92,7 @@ def _phase_bars(
         for name in (criteria[0], "equal", *criteria[1:])
     }
     bars = errors[criteria[0]]
-    panel.bar(
+    drawn = panel.bar(
         [place[count] for count in bars.index],
         bars["epsilon"],
         width=_BAR_WIDTH,
@@ -96,13 +100,17 @@ def _phase_bars(
         alpha=0.85,
         label=PHASE_WORDS[phase],
     )
+    for bar, text in zip(drawn, _told(bars, phase, unit), strict=True):
+        tell(bar, [text])
     for name in list(errors)[1:]:
-        panel.plot(
+        (marks,) = panel.plot(
             [place[count] for count in errors[name].index],
             errors[name]["epsilon"],
             color=colour,
             **(_EQUAL if name == "equal" else _OTHER),
         )
+        told = _told(errors[name], phase, unit)
+        tell(marks, [f"{CRITERION_WORDS[name]}, {text}" for text in told])
     tops = pd.concat([each["epsilon"] for each in errors.values()]).groupby(level=0).max()
     for count, failed in zip(bars.index, bars["failed"], strict=True):
         if failed > 0:
@@ -120,6 +128,13 @@ def _phase_bars(
     none = rows.loc[rows["criterion"] == "none", "epsilon"]
     if len(none):
         panel.axhline(float(none.iloc[0]), color=colour, linestyle=_DASHES, linewidth=1.3)
+
+
+def _told(errors: pd.DataFrame, phase: str, unit: str) -> list[str]:
+    return [
+        f"{PHASE_WORDS[phase]}, {counted(int(count), 'correction')}: ε = {number(error)} {unit}"
+        for count, error in errors["epsilon"].items()
+    ]
 
 
 def _other_criterion(criterion: str, evaluation: pd.DataFrame) -> list[str]:
@@ -194,6 +209,8 @@ def setting_text(results: JointResults) -> str:
         told.append(f"tmax = {first['tmax'] / 60.0:g} min")
     if pd.notna(first["bound"]):
         told.append(f"bound = {first['bound']:g} {results.unit}")
+    if results.simulated_extended:
+        told.append("extended model")
     return ", ".join(told)
 
 

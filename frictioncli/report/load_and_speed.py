@@ -5,7 +5,7 @@ import pandas as pd
 from matplotlib.figure import Figure
 
 from frictioncli.model.friction import carried_to_temperature
-from frictioncli.report.labels import friction_label, plain, speed_text
+from frictioncli.report.labels import friction_label, number, plain, speed_text
 from frictioncli.report.results import MOST_RUNS, JointResults, by_speed
 from frictioncli.report.style import (
     FAINT,
@@ -135,7 +135,16 @@ def friction_against_speed(results: JointResults) -> Figure:
         own = carried[carried["run"] == run]
         panel.plot(speeds, curve, color=MODEL, label="model (16), L = 0")
         for speed, group in by_speed(own):
-            points(panel, group["speed"], group["carried"], results.style(speed), opacity=0.35)
+            points(
+                panel,
+                group["speed"],
+                group["carried"],
+                results.style(speed),
+                opacity=0.35,
+                told=[
+                    f"{speed_text(speed)}: {number(one)} {results.unit}" for one in group["carried"]
+                ],
+            )
         means = own.groupby("speed")["carried"].mean()
         panel.plot(
             means.index,

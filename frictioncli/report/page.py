@@ -1,31 +1,36 @@
 """The report of a work folder: a page that needs nothing but itself, and its figures as files."""
 
+from base64 import b64encode
 from dataclasses import dataclass
+from hashlib import sha256
 from importlib.resources import files
 from pathlib import Path
+from typing import Any
 
 import jinja2
 from markupsafe import Markup, escape
 
 from frictioncli import __version__
 from frictioncli.files import whole
-from frictioncli.model.friction import FORM
 from frictioncli.report import style
 from frictioncli.report.catalogue import FIGURES, FigureEntry, runs_drawn_note
-from frictioncli.report.content import (
-    ParameterRow,
-    TextTable,
-    epsilon_tables,
-    is_published_joint,
-    pairs_table,
-    parameter_rows,
-)
+from frictioncli.report.content import TextTable, epsilon_tables, pairs_table
 from frictioncli.report.diagnosis import DiagnosisSection, diagnosis_sections
-from frictioncli.report.labels import TEMPERATURE_WORDS, listed
+from frictioncli.report.explorer import Explorer, explorers
+from frictioncli.report.formula import formula, symbols, unit_markup
+from frictioncli.report.labels import inert, listed
+from frictioncli.report.lights import Light, Reading, lights
 from frictioncli.report.missing import evaluation_missing
+from frictioncli.report.parameters import (
+    ParameterRow,
+    correlation_table,
+    is_published_joint,
+    parameter_rows,
+    unknowns,
+)
 from frictioncli.report.quality import data_quality
 from frictioncli.report.results import JointResults, read_results
-from frictioncli.report.summary import summary
+from frictioncli.report.summary import KeyFigure, key_figures, measured, summary
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -45,17 +50,24 @@ class PageJoint:
 
     number: int
     summary: str
-    form: str
+    measured: str
+    formula: Markup
     symbols: str
+    key_figures: list[KeyFigure]
+    lights: list[Light]
     parameters: list[ParameterRow]
     published: bool
     remarks: bool
+    correlations: TextTable | None
+    unknowns: list[str]
     epsilon: list[TextTable]
     epsilon_missing: str
+    explorer: Explorer
     diagnosis: DiagnosisSection
     diagnosis_figures: list[PageFigure]
     runs_note: str
     figures: list[PageFigure]
+    undrawn: list[tuple[str, str]]
     pairs: TextTable
 
 
@@ -81,16 +93,16 @@ def write_report(work: Path) -> Path:
     """
     results = read_results(work)
     quality = data_quality(work, results)
-    traces = " ".join(quality.files)
-    sections = diagnosis_sections(work, results)
-    alone = len(results) == 1
-    joints = [_page_joint(own, sections[own.joint], traces, alone=alone) for own in results]
+    shown = _page_joints(work, results, quality.reading, " ".join(quality.files))
     runs = sorted({run for joint in results for run in joint.runs})
+    script = _packaged("explorer.js")
     page = _template().render(
         title=_title(results),
         runs=f"{'Run' if len(runs) == 1 else 'Runs'}: {listed(runs)}",
-        css=Markup((files("frictioncli.report") / "style.css").read_text(encoding="utf-8")),
-        joints=joints,
+        css=Markup(_packaged("style.css")),
+        script=Markup(script),
+        script_digest=b64encode(sha256(script.encode()).digest()).decode(),
+        joints=shown,
         quality=quality,
         version=__version__,
     )
@@ -98,7 +110,7 @@ def write_report(work: Path) -> Path:
     with whole(folder) as draft:
         draft.mkdir()
         (draft / "index.html").write_text(page, encoding="utf-8", newline="\n")
-        drawn = [one for own in joints for one in (*own.diagnosis_figures, *own.figures) if one.svg]
+        drawn = [one for own in shown for one in (*own.diagnosis_figures, *own.figures) if one.svg]
         for figure in drawn:
             (draft / f"{figure.name}.svg").write_text(
                 f'<?xml version="1.0" encoding="utf-8"?>\n{figure.svg}',
@@ -109,12 +121,27 @@ def write_report(work: Path) -> Path:
     return folder / "index.html"
 
 
+def _packaged(name: str) -> str:
+    return (files("frictioncli.report") / name).read_text(encoding="utf-8")
+
+
 def _template() -> jinja2.Template:
     environment = jinja2.Environment(
-        autoescape=True, undefined=jinja2.StrictUndefined, keep_trailing_newline=True
+        autoescape=True,
+        undefined=jinja2.StrictUndefined,
+        keep_trailing_newline=True,
+        finalize=_inert,
     )
-    text = (files("frictioncli.report") / "page.html.jinja").read_text(encoding="utf-8")
-    return environment.from_string(text)
+    environment.policies["json.dumps_kwargs"] = {"separators": (",", ":")}
+    environment.filters["unit"] = unit_markup
+    return environment.from_string(_packaged("page.html.jinja"))
+
+
+def _inert(value: Any) -> Any:
+    """Whatever the template shows passes here, before it is escaped."""
+    if isinstance(value, Markup):
+        return Markup(inert(value))
+    return inert(value) if isinstance(value, str) else value
 
 
 def _title(results: list[JointResults]) -> str:
@@ -124,27 +151,66 @@ def _title(results: list[JointResults]) -> str:
     return f"Friction of joints {listed(numbers)}"
 
 
+def _page_joints(
+    work: Path, results: list[JointResults], reading: Reading, traces: str
+) -> list[PageJoint]:
+    diagnoses, explored = diagnosis_sections(work, results), explorers(work, results)
+    return [
+        _page_joint(
+            own,
+            diagnoses[own.joint],
+            explored[own.joint],
+            lights(own, reading, diagnoses[own.joint].document),
+            published=is_published_joint(own, traces),
+            prefix="" if len(results) == 1 else f"joint{own.joint}-",
+        )
+        for own in results
+    ]
+
+
 def _page_joint(
-    results: JointResults, diagnosis: DiagnosisSection, traces: str, *, alone: bool
+    results: JointResults,
+    diagnosis: DiagnosisSection,
+    explorer: Explorer,
+    judged: list[Light],
+    *,
+    published: bool,
+    prefix: str,
 ) -> PageJoint:
     parameters = parameter_rows(results)
-    prefix = "" if alone else f"joint{results.joint}-"
+    figures = [page_figure(entry, results, prefix) for entry in FIGURES]
     return PageJoint(
         number=results.joint,
-        summary=summary(results),
-        form=FORM,
-        symbols=_symbols(results),
+        summary=summary(results, diagnosis.document),
+        measured=measured(results),
+        formula=formula(results),
+        symbols=symbols(results),
+        key_figures=key_figures(results, diagnosis.document),
+        lights=judged,
         parameters=parameters,
-        published=is_published_joint(results, traces),
+        published=published,
         remarks=any(row.remark for row in parameters),
+        correlations=correlation_table(results),
+        unknowns=unknowns(results, diagnosis.document),
         epsilon=epsilon_tables(results),
         epsilon_missing=evaluation_missing(results),
+        explorer=explorer,
         diagnosis=diagnosis,
         diagnosis_figures=[page_figure(entry, results, prefix) for entry in diagnosis.entries],
         runs_note=runs_drawn_note(results),
-        figures=[page_figure(entry, results, prefix) for entry in FIGURES],
+        figures=[figure for figure in figures if figure.svg],
+        undrawn=_undrawn(figures),
         pairs=pairs_table(results),
     )
+
+
+def _undrawn(figures: list[PageFigure]) -> list[tuple[str, str]]:
+    """Return the titles of figures that could not be drawn, by the reason."""
+    titles: dict[str, list[str]] = {}
+    for figure in figures:
+        if not figure.svg:
+            titles.setdefault(figure.text, []).append(figure.title)
+    return [("; ".join(own), reason) for reason, own in titles.items()]
 
 
 def page_figure(entry: FigureEntry, results: JointResults, prefix: str = "") -> PageFigure:
@@ -164,25 +230,10 @@ def page_figure(entry: FigureEntry, results: JointResults, prefix: str = "") -> 
         return PageFigure(name=name, title=entry.title, text=missing, svg=Markup(""), png=b"")
     with style.styled(name):
         figure = entry.draw(results)
-        drawn = style.svg(figure, name, str(escape(entry.title)))
         return PageFigure(
             name=name,
             title=entry.title,
             text=entry.caption(results),
-            svg=Markup(drawn),
+            svg=Markup(style.svg(figure, name, str(escape(entry.title)))),
             png=style.png(figure),
         )
-
-
-def _symbols(results: JointResults) -> str:
-    unit, side = results.unit, results.model.torque_side
-    at = "" if unit == "A" else f", at the {side}'s side"
-    warm = (
-        f"; T: {TEMPERATURE_WORDS[results.model.temperature]} in °C"
-        if results.model.knows_temperature
-        else ""
-    )
-    return (
-        f"tau: friction torque in {unit}{at}; L: load torque in {results.load_unit};"
-        f" v: speed in deg/s{warm}."
-    )

@@ -3,7 +3,7 @@
 import json
 from collections import Counter
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -12,6 +12,7 @@ import pandas as pd
 from frictioncli import schemas, tables
 from frictioncli.report.content import TextTable
 from frictioncli.report.labels import counted, grouped
+from frictioncli.report.lights import Reading
 from frictioncli.report.results import JointResults, read_optional
 
 _STORED = ("samples", "recordings", "rejected", "pairs", "torques", "schedule", "evaluation")
@@ -23,7 +24,21 @@ _MOST_INPUTS = 200
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Origin:
-    """Where one file of the work folder comes from."""
+    """Where one file of the work folder comes from.
+
+    Attributes
+    ----------
+    file, stage, version : str
+        Its name, and the stage and version of the program that made it.
+    settings : tuple of (str, str)
+        The stage's settings.
+    inputs : tuple of (str, str)
+        Name and SHA-256 of what it was made from.
+    more_inputs : int
+        Inputs that are not listed.
+    like : str
+        Another file made from the same inputs, which are listed there; empty where there is none.
+    """
 
     file: str
     stage: str
@@ -31,6 +46,7 @@ class Origin:
     settings: tuple[tuple[str, str], ...]
     inputs: tuple[tuple[str, str], ...]
     more_inputs: int
+    like: str = ""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -49,6 +65,8 @@ class Quality:
         The counts in a sentence.
     files : tuple of str
         The logs that were read.
+    reading : Reading
+        The counts that the lights judge.
     """
 
     counts: tuple[TextTable, ...]
@@ -56,6 +74,7 @@ class Quality:
     origins: tuple[Origin, ...]
     sentence: str
     files: tuple[str, ...]
+    reading: Reading
 
 
 def data_quality(work: Path, results: list[JointResults]) -> Quality:
@@ -89,9 +108,21 @@ def data_quality(work: Path, results: list[JointResults]) -> Quality:
     return Quality(
         counts=tuple(table for table in counts if table.rows),
         notes=(*_left_out(torques, results), *_notes(documents, recordings, results)),
-        origins=tuple(origins),
+        origins=_listed_once(origins),
         sentence=_sentence(files, rejected, pairing, used),
         files=tuple(str(file) for file in files["file"]),
+        reading=_reading(files, rejected, documents.get("pairs.parquet", {}).get("facts", {})),
+    )
+
+
+def _reading(files: pd.DataFrame, rejected: pd.DataFrame, facts: Mapping[str, Any]) -> Reading:
+    return Reading(
+        rows=int(files["rows_read"].sum()),
+        rejected=int(files["rows_rejected"].sum()),
+        files=len(files),
+        lost=int(rejected["row"].isna().sum()),
+        time_known=facts.get("time_known"),
+        warnings=len(_as_list(facts.get("warnings"))),
     )
 
 
@@ -169,7 +200,8 @@ def _notes(
     """Return what the stages noted, each note once, with the stage that noted it first."""
     found: dict[str, str] = {}
     for document in documents.values():
-        for note in _as_list(document.get("facts", {}).get("notes")):
+        facts = document.get("facts", {})
+        for note in (*_as_list(facts.get("warnings")), *_as_list(facts.get("notes"))):
             found.setdefault(note, str(document.get("stage", "")))
     if not found:
         told = [n for notes in recordings["notes"].dropna() for n in str(notes).splitlines() if n]
@@ -202,5 +234,18 @@ def _origin(file: str, document: Mapping[str, Any]) -> Origin:
     )
 
 
+def _listed_once(origins: list[Origin]) -> tuple[Origin, ...]:
+    """Let a file refer to the first one with the same inputs, where those are many."""
+    first: dict[tuple[tuple[str, str], ...], str] = {}
+    told = []
+    for origin in origins:
+        known = first.setdefault(origin.inputs, origin.file)
+        repeats = len(origin.inputs) > 2 and known != origin.file
+        told.append(replace(origin, inputs=(), more_inputs=0, like=known) if repeats else origin)
+    return tuple(told)
+
+
 def _shown(value: Any) -> str:
+    if value is None or value == {}:
+        return "not set"
     return value if isinstance(value, str) else json.dumps(value, ensure_ascii=False)

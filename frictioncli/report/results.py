@@ -1,7 +1,7 @@
 """What the report draws from: the tables of one joint, read from the work folder."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 import numpy as np
@@ -17,6 +17,8 @@ from frictioncli.report.style import PHASES, SpeedStyle, speed_styles
 
 MOST_RUNS = 3
 """Runs drawn in a figure; more would not fit a page."""
+
+_CORRECTED = (schemas.SCHEDULE, schemas.EVALUATION)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -36,6 +38,8 @@ class JointResults:
         Its rows of these tables; empty where the stage has not been run.
     styles : dict
         Colour and marker per speed.
+    simulated_extended, evaluated_extended : bool
+        Whether these two tables are of the extended model.
     """
 
     model: FrictionModel
@@ -44,6 +48,8 @@ class JointResults:
     schedule: pd.DataFrame
     evaluation: pd.DataFrame
     styles: Mapping[float, SpeedStyle] = field(default_factory=dict)
+    simulated_extended: bool = False
+    evaluated_extended: bool = False
 
     @property
     def joint(self) -> int:
@@ -156,7 +162,18 @@ def read_results(work: Path) -> list[JointResults]:
     models = read_models(work / "model.json")
     schedule = read_optional(work, schemas.SCHEDULE)
     evaluation = read_optional(work, schemas.EVALUATION)
-    return [joint_results(model, torques, schedule, evaluation) for model in models]
+    joints = [joint_results(model, torques, schedule, evaluation) for model in models]
+    simulated, evaluated = (_is_extended(work, table) for table in _CORRECTED)
+    return [
+        replace(joint, simulated_extended=simulated, evaluated_extended=evaluated)
+        for joint in joints
+    ]
+
+
+def _is_extended(work: Path, table: schemas.Table) -> bool:
+    path = work / f"{table.name}.parquet"
+    settings = tables.document(path).get("settings") or {} if path.exists() else {}
+    return bool(settings.get("extended"))
 
 
 def read_optional(work: Path, table: schemas.Table) -> pd.DataFrame:

@@ -21,6 +21,8 @@ from matplotlib.colors import to_hex, to_rgb
 from matplotlib.figure import Figure
 from numpy.typing import ArrayLike
 
+from frictioncli.report.hover import tell, with_titles
+
 WIDTH = 8.0
 """Width of every figure, so that its text has one size on the page. [inch]"""
 
@@ -28,6 +30,9 @@ PNG_DPI = 200
 
 RASTER_FROM = 3000
 """More points than this are stored as a picture inside the SVG, which would else grow large."""
+
+_TOLD_UP_TO = 1000
+"""Points of a series that tell their values; more would make the page large."""
 
 _LINE_HEIGHT = 0.18
 """Height of a line of the smallest text. [inch]"""
@@ -156,6 +161,7 @@ def points(
     filled: bool = True,
     size: float = 3.5,
     opacity: float = 1.0,
+    told: Sequence[str] = (),
 ) -> None:
     """Draw measured points of one speed.
 
@@ -173,8 +179,10 @@ def points(
         Of the markers. [pt]
     opacity : float
         1 hides what is below.
+    told : sequence of str
+        What each point tells when the pointer rests on it.
     """
-    axes.plot(
+    (drawn,) = axes.plot(
         np.asarray(x),
         np.asarray(y),
         linestyle="none",
@@ -186,6 +194,8 @@ def points(
         alpha=opacity,
         rasterized=np.size(x) > RASTER_FROM,
     )
+    if 0 < len(told) <= _TOLD_UP_TO:
+        tell(drawn, told)
 
 
 def legend_above(axes: Axes) -> None:
@@ -271,7 +281,7 @@ def svg(figure: Figure, name: str, title: str) -> str:
     )
     # the layout is found now: the next drawing need not find it again
     figure.set_layout_engine("none")
-    text = stream.getvalue()
+    text = with_titles(stream.getvalue())
     text = text[text.index("<svg") :]
     # two pictures of the same content would have one identifier, and nothing refers to them
     text = re.sub(r' id="image[0-9a-f]+"', "", text)

@@ -10,6 +10,7 @@ from frictioncli.report.labels import (
     TEMPERATURE_LABELS,
     duration,
     friction_label,
+    number,
     plain,
     speed_text,
 )
@@ -130,7 +131,13 @@ def friction_against_temperature(results: JointResults, kind: str) -> Figure:
                 branch = group[group["phase"] == phase]
                 filled = phase == "heat-up"
                 points(
-                    panel, branch[column], branch["friction_torque"], style, filled=filled, size=4.5
+                    panel,
+                    branch[column],
+                    branch["friction_torque"],
+                    style,
+                    filled=filled,
+                    size=4.5,
+                    told=_told(branch, column, speed, PHASE_WORDS[phase], results.unit),
                 )
             at_hottest = group.sort_values(column, kind="stable")["friction_torque"].iloc[-1]
             labels.append((float(at_hottest), speed_text(speed), style.colour))
@@ -140,6 +147,13 @@ def friction_against_temperature(results: JointResults, kind: str) -> Figure:
         label_right(panel, labels, height=_PANEL_HEIGHT)
     axes[-1].set_xlabel(TEMPERATURE_LABELS[kind])
     return figure
+
+
+def _told(rows: pd.DataFrame, column: str, speed: float, what: str, unit: str) -> list[str]:
+    return [
+        f"{speed_text(speed)}, {what}, {warm:.1f} °C: {number(friction)} {unit}"
+        for warm, friction in zip(rows[column], rows["friction_torque"], strict=True)
+    ]
 
 
 def _phase_legend(panel: Axes) -> None:
@@ -164,7 +178,8 @@ def branch_means_with_model(results: JointResults) -> Figure:
         labels = []
         for speed, group in by_speed(means[means["run"] == run]):
             style = results.style(speed)
-            points(panel, group["temperature"], group["friction_torque"], style)
+            told = _told(group, "temperature", speed, "mean", results.unit)
+            points(panel, group["temperature"], group["friction_torque"], style, told=told)
             at = np.linspace(group["temperature"].min(), group["temperature"].max(), 60)
             curve = results.predict(load=0.0, speed=speed, temperature=at)
             panel.plot(at, curve, color=style.colour)

@@ -273,3 +273,9 @@ def current_log(tmp_path_factory: pytest.TempPathFactory) -> JointResults:
 def without_temperature(tmp_path_factory: pytest.TempPathFactory) -> JointResults:
     work = write_work(tmp_path_factory.mktemp("cold"), runs=("day-1",), temperature=False)
     return read_results(work)[0]
+
+
+@pytest.fixture
+def without_figures(monkeypatch: pytest.MonkeyPatch) -> None:
+    """For tests of what the page says: drawing takes most of a report's time."""
+    monkeypatch.setattr("frictioncli.report.page.FIGURES", ())

@@ -3,22 +3,20 @@
 import json
 import re
 from copy import deepcopy
-from dataclasses import asdict
 
 import numpy as np
 import pytest
 
 from frictioncli.diagnosis.extended import extended_model
-from frictioncli.diagnosis.problem import build_problems
 from frictioncli.diagnosis.recall import is_current, read_documents, recall
 from frictioncli.errors import TableError
 from frictioncli.report.diagnosis import diagnosis_sections, entries, section
 from frictioncli.report.diagnosis_text import UNDETECTABLE, chance_text, gain_sentence
 from frictioncli.report.page import page_figure, write_report
 from frictioncli.report.results import read_results
+from tests.report.planted import EXPONENT, OFFSET, SHIFT, TORQUE, VELOCITY, extended
 
 HOSTILE = "<script>alert(1)</script>&\"'$\\frac{kr10$"
-TORQUE, VELOCITY, EXPONENT, SHIFT, OFFSET = 3.0, 8.0, 1.5, 0.4, 0.5
 
 
 def cause(number, effects, probabilities, **changed):
@@ -90,39 +88,6 @@ DIAGNOSIS = {
     "held_out": "day-2",
     "settings": {"alpha": 0.05, "seed": 0},
 }
-
-
-def stated(value, unit="N·m"):
-    return {"estimate": value, "ci95": [value - 0.1, value + 0.1], "unit": unit}
-
-
-def extended(work, torques):
-    """The base model fitted without the last run, with another tau_c and two effects."""
-    model = json.loads((work / "model.json").read_text(encoding="utf-8"))
-    base, _ = build_problems(torques, "motor", "day-2")
-    model["linear_about"] = asdict(base.parameters)
-    for name in base.names:
-        model["parameters"][name]["estimate"] = getattr(base.parameters, name)
-    model["parameters"]["tau_c"]["estimate"] += SHIFT
-    model["gravity"] = dict(zip(("cosine", "sine", "offset"), base.gravity.tolist(), strict=True))
-    model["gravity_about"] = model["gravity"]
-    model["effects"] = [
-        {
-            "name": "stribeck",
-            "shape": {"velocity": VELOCITY, "exponent": EXPONENT, "shift": 0.0},
-            "coefficients": {"boundary_torque": stated(TORQUE)},
-        },
-        {
-            "name": "direction_asymmetry",
-            "shape": {"exponent": 0.5},
-            "coefficients": {
-                "offset": stated(OFFSET),
-                "speed_asymmetry": stated(0.0),
-                "viscous_asymmetry": stated(0.0),
-            },
-        },
-    ]
-    return model
 
 
 def boundary(speed):
@@ -273,7 +238,8 @@ def test_damaged_files_are_refused(tmp_path, work, damage):
         read_documents(tmp_path)
 
 
-def test_page_has_the_section_before_the_figures_escaped_and_the_same_twice(work):
+@pytest.mark.usefixtures("without_figures")
+def test_page_has_the_section_after_the_figures_escaped_and_the_same_twice(work):
     document = deepcopy(DIAGNOSIS)
     document["causes"][0] |= {"claim": HOSTILE, "equation": HOSTILE, "experiment": HOSTILE}
     document["causes"][1]["effects"] = ["direction_asymmetry", HOSTILE]
@@ -281,9 +247,9 @@ def test_page_has_the_section_before_the_figures_escaped_and_the_same_twice(work
     (work / "diagnosis.json").write_text(json.dumps(document), encoding="utf-8")
     page = write_report(work)
     text = page.read_text(encoding="utf-8")
-    start = text.index("<h3>What the simulation gets wrong</h3>")
-    assert start < text.index("<h3>Figures</h3>")
-    assert "<script" not in text
+    start = text.index(">What the simulation gets wrong</h2>")
+    assert text.index(">Figures</h2>") < start < text.index(">Parameters</h2>")
+    assert "<script>alert" not in text
     assert text.count("&lt;script&gt;alert(1)") > 4
     names = {path.name for path in page.parent.glob("diagnosis-*")}
     stems = ("simulation", "maps", "1", "2", "gain")

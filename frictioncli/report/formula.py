@@ -1,0 +1,78 @@
+"""The friction function of a joint as a formula with numbers and units."""
+
+import re
+
+from markupsafe import Markup, escape
+
+from frictioncli.report.labels import TEMPERATURE_WORDS, number
+from frictioncli.report.results import JointResults
+
+_DIGITS = 4
+_POWERS = {"^0.5": Markup("<sup>½</sup>"), "^2": Markup("²")}
+
+
+def unit_markup(unit: str) -> Markup:
+    """Return a unit with its powers raised.
+
+    Parameters
+    ----------
+    unit : str
+        As ``model.json`` has it, such as ``N·m/(deg/s)^0.5``.
+    """
+    parts = re.split(r"(\^0\.5|\^2)", unit)
+    return Markup("").join(_POWERS.get(part, escape(part)) for part in parts)
+
+
+def formula(results: JointResults) -> Markup:
+    """Return equation (16) of a joint; terms that are zero are left out.
+
+    Parameters
+    ----------
+    results : JointResults
+        The joint's results.
+    """
+    values = results.model.friction
+
+    def stated(name: str) -> Markup:
+        found = results.model.parameters[name]
+        unit = found.unit.removeprefix("1") if found.unit.startswith("1/") else f" {found.unit}"
+        return Markup("<b>{}</b>{}").format(number(found.estimate, _DIGITS), unit_markup(unit))
+
+    terms = []
+    if values.tau_c:
+        terms.append(stated("tau_c"))
+    if values.alpha:
+        terms.append(stated("alpha") + Markup(" · <i>L</i>²"))
+    viscous = []
+    if values.beta:
+        viscous.append(stated("beta"))
+    if values.gamma:
+        falls = Markup(" · e<sup>−{} · <i>T</i></sup>").format(stated("delta"))
+        viscous.append(stated("gamma") + falls)
+    if len(viscous) == 2:
+        terms.append(Markup("({}) · √<i>v</i>").format(Markup(" + ").join(viscous)))
+    elif viscous:
+        terms.append(viscous[0] + Markup(" · √<i>v</i>"))
+    whole = Markup(" + ").join(Markup('<span class="term">{}</span>').format(t) for t in terms)
+    return Markup("<i>τ</i> = {}").format(whole or "0")
+
+
+def symbols(results: JointResults) -> str:
+    """Return what the formula's symbols stand for, with units.
+
+    Parameters
+    ----------
+    results : JointResults
+        The joint's results.
+    """
+    unit, side = results.unit, results.model.torque_side
+    at = "" if unit == "A" else f", at the {side}'s side"
+    warm = (
+        f"; T: {TEMPERATURE_WORDS[results.model.temperature]} in °C"
+        if results.model.knows_temperature
+        else ""
+    )
+    return (
+        f"τ: friction torque in {unit}{at}; L: load torque in {results.load_unit};"
+        f" v: speed in deg/s{warm}. Equation (16)."
+    )

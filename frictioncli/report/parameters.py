@@ -1,0 +1,173 @@
+"""What the page says of the model's parameters: values, correlations, what the data do not tell."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from itertools import combinations
+from typing import Any
+
+from frictioncli.model.document import PARAMETERS
+from frictioncli.model.friction import PUBLISHED
+from frictioncli.report.content import TextTable
+from frictioncli.report.labels import PARAMETER_SYMBOLS, listed, number, words
+from frictioncli.report.lights import vague_parameters
+from frictioncli.report.results import JointResults
+
+_MEANINGS = {
+    "tau_c": "Coulomb friction",
+    "alpha": "load coefficient",
+    "beta": "viscous, stays when hot",
+    "gamma": "viscous, falls with temperature",
+    "delta": "rate of its fall",
+}
+
+_TOGETHER = 0.9
+"""Parameters that are correlated more than this are told only together."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ParameterRow:
+    """One parameter of the model as the page states it; ``remark`` says why it is not known."""
+
+    symbol: str
+    meaning: str
+    estimate: str
+    interval: str
+    unit: str
+    published: str
+    remark: str
+
+
+def parameter_rows(results: JointResults) -> list[ParameterRow]:
+    """Return the model's parameters with intervals, units and the published values.
+
+    Parameters
+    ----------
+    results : JointResults
+        One joint's results.
+    """
+    rows = []
+    for name in PARAMETERS:
+        stated = results.model.parameters[name]
+        interval = stated.ci95
+        remark = "" if stated.determined else "not determined by these data"
+        if stated.reason:
+            remark = f"{remark}: {stated.reason}".removeprefix(": ")
+        rows.append(
+            ParameterRow(
+                symbol=PARAMETER_SYMBOLS[name],
+                meaning=_MEANINGS[name],
+                estimate=number(stated.estimate, 4),
+                interval=f"{number(interval[0])} to {number(interval[1])}" if interval else "–",
+                unit=stated.unit,
+                published=f"{getattr(PUBLISHED, name):g}",
+                remark=remark,
+            )
+        )
+    return rows
+
+
+def is_published_joint(results: JointResults, traces: str) -> bool:
+    """Return whether the published values belong to this joint: joint 2 of a KR10, in N·m.
+
+    Parameters
+    ----------
+    results : JointResults
+        One joint's results.
+    traces : str
+        Names of the logs, in which the robot's name would stand.
+    """
+    if results.joint != 2 or results.unit != "N·m":
+        return False
+    named = " ".join([*results.runs, traces]).lower().replace(" ", "").replace("-", "")
+    return results.model.torque_side == "joint" and "kr10" in named
+
+
+def correlation_table(results: JointResults) -> TextTable | None:
+    """Return how the errors of the fitted parameters go together; none where that is not known.
+
+    Parameters
+    ----------
+    results : JointResults
+        One joint's results.
+    """
+    known = results.model.correlation
+    names = [name for name in PARAMETERS if name in known]
+    if len(names) < 2:
+        return None
+    return TextTable(
+        title="Correlations of the estimates",
+        header=("", *(PARAMETER_SYMBOLS[name] for name in names)),
+        rows=tuple(
+            (
+                PARAMETER_SYMBOLS[row],
+                *(
+                    correlation_text(known[row][column])
+                    if place < index
+                    else ("1" if place == index else "")
+                    for place, column in enumerate(names)
+                ),
+            )
+            for index, row in enumerate(names)
+        ),
+    )
+
+
+def correlation_text(value: float) -> str:
+    """Return a correlation with its sign and two digits."""
+    shown = f"{value:+.2f}"
+    return "0" if float(shown) == 0 else shown.replace("-", "−")
+
+
+def unknowns(results: JointResults, diagnosis: Mapping[str, Any] | None) -> list[str]:
+    """Return what the data cannot determine, a sentence each.
+
+    Parameters
+    ----------
+    results : JointResults
+        One joint's results.
+    diagnosis : dict or None
+        The joint's part of ``diagnosis.json``, if there is one.
+    """
+    model = results.model
+    told = [
+        f"{PARAMETER_SYMBOLS[name]} is not determined: {model.parameters[name].reason}."
+        for name in PARAMETERS
+        if not model.parameters[name].determined
+    ]
+    for name in vague_parameters(results):
+        low, high = model.parameters[name].ci95 or (0.0, 0.0)
+        told.append(
+            f"{PARAMETER_SYMBOLS[name]} is known only roughly: {number(low)} to {number(high)}"
+            f" {model.parameters[name].unit}."
+        )
+    for first, second in combinations(
+        [name for name in PARAMETERS if name in model.correlation], 2
+    ):
+        value = model.correlation[first][second]
+        if abs(value) > _TOGETHER:
+            both = f"{PARAMETER_SYMBOLS[first]} and {PARAMETER_SYMBOLS[second]}"
+            told.append(
+                f"{both} are told only together (correlation {correlation_text(value)}): one may be"
+                " off if the other is off with it."
+            )
+    return told + _open_causes(results, diagnosis)
+
+
+def _open_causes(results: JointResults, diagnosis: Mapping[str, Any] | None) -> list[str]:
+    if diagnosis is None:
+        return ["What the simulated torque misses, and why, has not been judged."]
+    told = [
+        f"Which of {listed([words(name) for name in cause['effects']])} is at work: these data"
+        f" cannot tell them apart. {cause['experiment']}"
+        for cause in diagnosis["causes"]
+        if len(cause["effects"]) > 1
+    ]
+    blind = [words(name) for name, size in diagnosis["detectable"].items() if size is None]
+    if blind:
+        told.append(f"Whether there is {' or '.join(blind)}: these data cannot show it.")
+    if len(results.runs) == 1:
+        told.append(
+            "How the model does on another day, and whether a slow change is a drift or an offset:"
+            " there is one run only."
+        )
+    return told

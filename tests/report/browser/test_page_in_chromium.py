@@ -1,0 +1,259 @@
+"""The page as a reader has it: in a browser, narrow and wide, dark, on paper, without scripts."""
+
+import json
+import re
+
+import numpy as np
+import pytest
+
+from frictioncli import chain, schemas, tables
+from frictioncli.correction.settings import EvaluationGrid
+from frictioncli.report.labels import number
+from frictioncli.report.page import write_report
+from frictioncli.report.results import read_results
+from tests.report.planted import extended
+
+HOSTILE = (
+    "</script><script>window.broken = 1</script><img src=x onerror='window.broken = 2'>\u202e$x$"
+)
+GRID = EvaluationGrid(k=(1.0, 2.5, 5.0, 10.0), tmax=(1800.0, 3600.0, 14400.0))
+WIDTHS = (390, 1440)
+
+
+@pytest.fixture(scope="module")
+def work(tmp_path_factory, write_work):
+    """A work folder with a page; the base model's evaluation stands there, the other beside it."""
+    work = write_work(tmp_path_factory.mktemp("browser"), runs=("day-1", HOSTILE), schedule=False)
+    model = extended(work, read_results(work)[0].torques, held_out=HOSTILE)
+    (work / "extended-model.json").write_text(json.dumps(model), encoding="utf-8")
+    chain.evaluate(work, GRID, extended=True)
+    (work / "evaluation.parquet").rename(work / "extended.parquet")
+    chain.evaluate(work, GRID)
+    write_report(work)
+    return work
+
+
+@pytest.fixture(scope="module")
+def page(work):
+    return work / "report" / "index.html"
+
+
+@pytest.fixture
+def opened(chromium, page):
+    """Return a function that opens the page anew."""
+
+    def open_page(width=1440, scheme="light", *, scripts=True):
+        for command, settings in (
+            (
+                "Emulation.setDeviceMetricsOverride",
+                {"width": width, "height": 844, "deviceScaleFactor": 1, "mobile": width < 500},
+            ),
+            (
+                "Emulation.setEmulatedMedia",
+                {"features": [{"name": "prefers-color-scheme", "value": scheme}]},
+            ),
+            ("Emulation.setScriptExecutionDisabled", {"value": not scripts}),
+            ("Network.enable", {}),
+        ):
+            chromium.execute_cdp_cmd(command, settings)
+        chromium.get_log("browser"), chromium.get_log("performance")
+        chromium.get(page.as_uri())
+        return chromium
+
+    yield open_page
+    chromium.execute_cdp_cmd("Emulation.setScriptExecutionDisabled", {"value": False})
+
+
+def requests(driver):
+    events = [json.loads(entry["message"])["message"] for entry in driver.get_log("performance")]
+    sent = [event for event in events if event["method"] == "Network.requestWillBeSent"]
+    return {event["params"]["request"]["url"] for event in sent}
+
+
+def part(driver, name):
+    return driver.find_element("css selector", f'[data-part="{name}"]')
+
+
+def curves(driver):
+    return [
+        step.get_attribute("d") for step in driver.find_elements("css selector", ".charts .step")
+    ]
+
+
+def cells(driver):
+    """The explorer's table: phase to corrections, error, error without any."""
+    rows = driver.find_elements("css selector", '[data-part="errors"] tr')
+    texts = [[cell.text for cell in row.find_elements("tag name", "td")] for row in rows]
+    return {text[0]: text[1:] for text in texts}
+
+
+def drawn_errors(driver, run):
+    """The values that the points of a run's curves tell, phase by phase."""
+    told = driver.execute_script(
+        """
+        const name = [...document.querySelectorAll(".charts h3")].find(
+          (heading) => heading.textContent === arguments[0]);
+        return [...name.nextElementSibling.querySelectorAll(".points")].map((phase) =>
+          [...phase.querySelectorAll("title")].map((title) => title.textContent));
+        """,
+        run,
+    )
+    last = re.compile(r"([−\d.]+) N·m$")
+    return [[float(last.search(one)[1].replace("−", "-")) for one in phase] for phase in told]
+
+
+def overflowing(driver):
+    """Elements that reach beyond the window, but for what scrolls on its own."""
+    return driver.execute_script(
+        """
+        const wide = document.documentElement.clientWidth + 0.5;
+        const scrolls = (node) => node.closest(".scroll, .card, pre, .spoken");
+        return [...document.querySelectorAll("body *")].filter((node) => !scrolls(node)
+          && node.getBoundingClientRect().right > wide).map((node) => node.outerHTML.slice(0, 120));
+        """
+    )
+
+
+def test_no_errors_and_no_request_beyond_the_page(opened, page):
+    driver = opened()
+    assert driver.get_log("browser") == []
+    assert {url for url in requests(driver) if not url.startswith("data:")} == {page.as_uri()}
+
+
+@pytest.mark.parametrize("width", WIDTHS)
+def test_nothing_overflows(opened, width):
+    driver = opened(width)
+    assert driver.execute_script("return document.documentElement.scrollWidth") <= width
+    assert overflowing(driver) == []
+
+
+def evaluated(file):
+    rows = tables.read(file, schemas.EVALUATION)
+    own = rows[(rows["criterion"] == "first_degree") & (rows["run"] == "day-1")]
+    return own.set_index(["phase", "k", "tmax"])
+
+
+def assert_shown(driver, rows, k, tmax):
+    shown = cells(driver)
+    for phase, word in (("heat-up", "heating"), ("cool-down", "cooling")):
+        row = rows.loc[(phase, k, tmax)]
+        assert shown[f"day-1, {word}"][:2] == [str(row["corrections"]), number(row["epsilon"])]
+    for phase, missed in zip(("heat-up", "cool-down"), drawn_errors(driver, "day-1"), strict=True):
+        rms = np.sqrt(np.mean(np.square(missed)))
+        assert rms == pytest.approx(rows.loc[(phase, k, tmax), "epsilon"], abs=0.01)
+
+
+def test_sliders_move_the_curves_and_tell_what_was_evaluated(opened, work):
+    driver, rows = opened(), evaluated(work / "evaluation.parquet")
+    # the usual setting stands where nothing was simulated
+    assert (part(driver, "k-now").text, part(driver, "tmax-now").text) == ("5", "60 min")
+    assert_shown(driver, rows, 5.0, 3600.0)
+    assert part(driver, "k").accessible_name == "k = 5"
+    before = curves(driver)
+    assert len(before) == 4
+    part(driver, "k").send_keys("\ue012")  # the key for left
+    assert part(driver, "k-now").text == "2.5"
+    assert part(driver, "k").get_attribute("aria-valuetext") == "k = 2.5"
+    assert_shown(driver, rows, 2.5, 3600.0)
+    after = curves(driver)
+    assert all(old != new for old, new in zip(before, after, strict=True))
+    part(driver, "tmax").send_keys("\ue010")  # the key for the end
+    assert part(driver, "tmax-now").text == "240 min"
+    assert_shown(driver, rows, 2.5, 14400.0)
+    assert "k = 2.5, tmax = 240 min" in part(driver, "told").get_attribute("textContent")
+
+
+def test_switch_shows_the_extended_model(opened, work):
+    driver = opened()
+    before, base = curves(driver), cells(driver)
+    part(driver, "extended").send_keys(" ")
+    assert part(driver, "extended").is_selected()
+    assert curves(driver) != before
+    assert_shown(driver, evaluated(work / "extended.parquet"), 5.0, 3600.0)
+    assert cells(driver)["day-1, heating"][2] != base["day-1, heating"][2]
+
+
+def test_curves_follow_the_width(opened):
+    driver = opened(1440)
+    chart = driver.find_element("css selector", ".charts svg")
+    wide = driver.execute_script("return arguments[0].getAttribute('viewBox')", chart)
+    driver.execute_cdp_cmd(
+        "Emulation.setDeviceMetricsOverride",
+        {"width": 390, "height": 844, "deviceScaleFactor": 1, "mobile": False},
+    )
+    narrow = driver.execute_async_script(
+        """
+        const [before, done] = arguments;
+        const look = () => {
+          const box = document.querySelector(".charts svg").getAttribute("viewBox");
+          box === before ? requestAnimationFrame(look) : done(box);
+        };
+        look();
+        """,
+        wide,
+    )
+    assert float(narrow.split()[2]) < 390 < float(wide.split()[2])
+
+
+def test_hostile_names_are_inert(opened):
+    driver = opened()
+    assert driver.execute_script("return window.broken") is None
+    shown = HOSTILE.replace("\u202e", "\N{REPLACEMENT CHARACTER}")
+    assert shown in [heading.text for heading in driver.find_elements("css selector", ".charts h3")]
+    assert f"{shown}, heating" in cells(driver)
+    assert driver.find_elements("css selector", "img[onerror]") == []
+    assert driver.find_elements("tag name", "script")[-1].get_attribute("type") == ""
+
+
+def test_a_script_that_slips_in_does_not_run_and_nothing_can_be_fetched(opened):
+    driver = opened()
+    refused = driver.execute_async_script(
+        """
+        const done = arguments[0];
+        const refused = [];
+        document.addEventListener("securitypolicyviolation", (event) => {
+          refused.push(event.effectiveDirective);
+          if (refused.length === 2) done(refused);
+        });
+        const script = document.createElement("script");
+        script.textContent = "window.broken = 3";
+        document.body.append(script);
+        fetch("https://example.invalid/").catch(() => {});
+        """
+    )
+    assert sorted(refused) == ["connect-src", "script-src-elem"]
+    assert driver.execute_script("return window.broken") is None
+
+
+def test_without_scripts_the_page_is_whole_and_says_what_is_missing(opened):
+    driver = opened(390, scripts=False)
+    assert "With scripts" in driver.find_element("css selector", "noscript .missing").text
+    for shown, wanted in ((".explorer", False), ("#fig11 svg", True), (".lights", True)):
+        assert driver.find_element("css selector", shown).is_displayed() is wanted
+
+
+def test_the_page_follows_a_dark_screen(opened):
+    found = {}
+    for scheme in ("light", "dark"):
+        driver = opened(scheme=scheme)
+        found[scheme] = [
+            driver.execute_script(
+                "return getComputedStyle(document.querySelector(arguments[0]))[arguments[1]]",
+                *where,
+            )
+            for where in (
+                ("body", "backgroundColor"),
+                ("body", "color"),
+                (".charts .step", "stroke"),
+                (".charts .points path", "fill"),
+            )
+        ]
+    assert found["light"][0] == "rgb(255, 255, 255)"
+    assert all(light != dark for light, dark in zip(*found.values(), strict=True))
+
+
+def test_points_of_figures_tell_their_values(opened):
+    driver = opened()
+    first = driver.find_element("css selector", "#fig5 use > title").get_attribute("textContent")
+    assert "deg/s, heating, 25.0 °C: " in first
+    assert first.endswith(" N·m")
