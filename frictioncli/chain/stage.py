@@ -4,6 +4,7 @@ import functools
 import inspect
 from collections.abc import Callable
 from dataclasses import dataclass
+from html import escape
 from pathlib import Path
 from typing import ParamSpec
 
@@ -19,6 +20,10 @@ class Done:
 
     def __str__(self) -> str:
         return self.text
+
+    def _repr_html_(self) -> str:
+        """Return the text as it is, for notebooks."""
+        return f"<pre>{escape(self.text)}</pre>"
 
 
 _Arguments = ParamSpec("_Arguments")

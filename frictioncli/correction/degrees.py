@@ -6,11 +6,9 @@ from numpy.typing import NDArray
 Array = NDArray[np.float64]
 Indices = NDArray[np.intp]
 
-DEGREE = 1.0
-"""Change of the motor temperature that the criterion waits for. [°C]"""
-
-_ROUNDING = 1e-9
-"""Readings are whole degrees; converting from Kelvin must not turn 1 °C into less. [°C]"""
+DEGREE = 1.0 - 1e-9
+"""Change of the motor temperature that the criterion waits for: 1 °C. Readings are whole degrees,
+and converting from Kelvin must not turn 1 °C into less. [°C]"""
 
 
 def next_changes(temperature: Array) -> Indices:
@@ -43,8 +41,7 @@ def _first_departures(values: Array) -> Indices:
     def clear(at: Indices, level: int) -> NDArray[np.bool_]:
         highest, lowest = levels[level]
         block = at >> level
-        nearest = DEGREE - _ROUNDING
-        return (highest[block] - values < nearest) & (values - lowest[block] < nearest)
+        return (highest[block] - values < DEGREE) & (values - lowest[block] < DEGREE)
 
     at = np.arange(1, len(values) + 1)
     growing = np.ones(len(values), dtype=bool)

@@ -6,6 +6,7 @@ import numpy as np
 import pandas as pd
 from numpy.typing import ArrayLike, NDArray
 
+from frictioncli.correction.corrector import TemperatureCorrector
 from frictioncli.model.friction import (
     FrictionParameters,
     friction_torque,
@@ -155,5 +156,49 @@ def replay(data: PhaseData, parameters: FrictionParameters, corrections: ArrayLi
     failed[events] = failures
     predicted = friction_torque(
         parameters, load=0.0, speed=data.speed, temperature=data.temperature + correction
+    )
+    return Replay(corrected, failed, correction, predicted)
+
+
+def replay_online(
+    data: PhaseData, corrector: TemperatureCorrector, instants: ArrayLike | None = None
+) -> Replay:
+    """Predict the friction of a phase with the corrector of a robot at work, pair by pair.
+
+    Parameters
+    ----------
+    data : PhaseData
+        The phase.
+    corrector : TemperatureCorrector
+        A new one; it goes through the phase.
+    instants : array_like of int, optional
+        Pairs at which to correct, instead of those at which it is due.
+
+    Notes
+    -----
+    What a correction uses, and what its failure does, is as in :func:`replay`.
+    """
+    count = len(data.time)
+    corrected, failed = np.zeros(count, dtype=bool), np.zeros(count, dtype=bool)
+    correction = np.zeros(count)
+    chosen = None if instants is None else set(np.asarray(instants, dtype=np.int64).tolist())
+    samples = zip(data.time.tolist(), data.temperature.tolist(), data.reading.tolist(), strict=True)
+    for i, (time, temperature, reading) in enumerate(samples):
+        corrector.update(time, temperature, registered=reading)
+        if corrector.is_due if chosen is None else i in chosen:
+            used = data.probe[i]
+            solved = corrector.correct(
+                friction=float(data.friction[used]),
+                load=0.0,
+                speed=float(data.speed[used]),
+                motor_temperature=float(data.temperature[used]),
+            )
+            corrected[i], failed[i] = True, not solved
+        correction[i] = corrector.correction
+    predicted = friction_torque(
+        corrector.parameters,
+        load=0.0,
+        speed=data.speed,
+        temperature=data.temperature + correction,
     )
     return Replay(corrected, failed, correction, predicted)

@@ -100,6 +100,10 @@ def latest_degree(
     return _by_schedule(events, len(k))
 
 
+READINGS = {"first_degree": first_degree, "latest_degree": latest_degree}
+"""Criterion -> how it reads (20)."""
+
+
 def equally_spaced(time: Array, count: int) -> Indices:
     """Return the given number of instants, spread evenly over the time.
 
@@ -116,13 +120,23 @@ def equally_spaced(time: Array, count: int) -> Indices:
 
 @dataclass(frozen=True, slots=True)
 class _Clock:
-    """The instants, and after them one that never comes."""
+    """The instants, and after them one that never comes.
+
+    ``first`` and ``following`` are, for each instant, the first one of the same time and the first
+    one of a later time.
+    """
 
     time: Array
+    first: Indices
+    following: Indices
 
     @classmethod
     def of(cls, time: Array) -> "_Clock":
-        return cls(np.append(time, np.inf))
+        whole = np.append(time, np.inf)
+        changes = np.flatnonzero(np.append(True, np.diff(whole) != 0))
+        borders = np.append(changes, len(whole))
+        lengths = np.diff(borders)
+        return cls(whole, np.repeat(changes, lengths), np.repeat(borders[1:], lengths))
 
     def between(self, start: Indices, end: Indices) -> Array:
         """Return the times from one to another instant; infinite if the latter never comes. [s]."""
@@ -134,8 +148,9 @@ class _Clock:
         found = np.searchsorted(self.time, self.time[start] + wait, side="right")
         found = np.minimum(found, never)
         # the sum is rounded otherwise than the difference that (20) compares
-        found -= self.between(start, found - 1) > wait
-        found += self.between(start, found) <= wait
+        before = self.first[found - 1]
+        found = np.where(self.between(start, before) > wait, before, found)
+        found = np.where(self.between(start, found) <= wait, self.following[found], found)
         return np.minimum(found, never)
 
 

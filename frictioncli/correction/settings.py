@@ -5,9 +5,15 @@ from dataclasses import dataclass
 
 from frictioncli.errors import OptionError
 
-CRITERIA = ("first_degree", "latest_degree", "none", "equal", "uncertainty")
+READINGS = ("first_degree", "latest_degree")
+"""The two workable readings of criterion (20); see :mod:`frictioncli.correction.schedule`."""
+
+CRITERIA = (*READINGS, "none", "equal", "uncertainty")
 """Rules that decide when to correct: two readings of (20), never, evenly in time, and where the
 predicted uncertainty of friction demands it."""
+
+MIDDLE_SPEED = 2 / 3
+"""Share of the highest speed at which to correct: the paper's 67.5 of 101.2 deg/s."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

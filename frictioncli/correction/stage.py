@@ -1,44 +1,21 @@
 """Stages ``simulate`` and ``evaluate``: torques and model of a joint to schedule and errors."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
 from typing import NamedTuple
 
 import numpy as np
 import pandas as pd
+from numpy.typing import ArrayLike
 
+from frictioncli.correction.corrector import TemperatureCorrector
 from frictioncli.correction.deviation import Deviation, estimated_deviation, probes_of
-from frictioncli.correction.replay import PhaseData, Replay, phase_data, replay
-from frictioncli.correction.schedule import (
-    Indices,
-    equally_spaced,
-    first_degree,
-    latest_degree,
-)
-from frictioncli.correction.settings import (
-    CorrectionSettings,
-    EvaluationGrid,
-    ScheduleSettings,
-)
+from frictioncli.correction.phases import Phase, phases_of
+from frictioncli.correction.replay import PhaseData, Replay, replay, replay_online
+from frictioncli.correction.schedule import READINGS, Indices, equally_spaced
+from frictioncli.correction.settings import CorrectionSettings, EvaluationGrid, ScheduleSettings
 from frictioncli.correction.uncertainty import follow
 from frictioncli.errors import NotEnoughData
 from frictioncli.model.document import FrictionModel
-from frictioncli.model.zero_load import friction_at_zero_load
-
-_READINGS = {"first_degree": first_degree, "latest_degree": latest_degree}
-
-_MIDDLE = 2 / 3
-"""The paper corrects at 67.5 deg/s, two thirds of its highest speed."""
-
-
-@dataclass(frozen=True, slots=True)
-class _Phase:
-    """The pairs of one phase, and as arrays."""
-
-    run: str
-    name: str
-    pairs: pd.DataFrame
-    data: PhaseData
 
 
 class Evaluation(NamedTuple):
@@ -73,7 +50,7 @@ def simulate(
         If the joint has no heat-up or cool-down, its model does not know temperature, or the pairs
         are too few to see how uncertain friction becomes, where the criterion asks for it.
     """
-    phases = _phases(torques, model, settings)
+    phases = phases_of(torques, model, settings)
     highest = float(torques["speed"].max())
     process = _deviation(phases, model) if schedule.criterion == "uncertainty" else None
     tables = []
@@ -112,7 +89,7 @@ def evaluate(
     grid : EvaluationGrid
         The values of k, tmax and the bound.
     """
-    phases = _phases(torques, model, settings)
+    phases = phases_of(torques, model, settings)
     highest = float(torques["speed"].max())
     process, notes = None, []
     try:
@@ -137,7 +114,7 @@ def evaluate(
 def _rules(grid: EvaluationGrid, bounds: Sequence[float]) -> list[ScheduleSettings]:
     by_time = [
         ScheduleSettings(criterion=reading, k=k, tmax=tmax)
-        for reading in _READINGS
+        for reading in READINGS
         for k in grid.k
         for tmax in grid.tmax
     ]
@@ -146,7 +123,7 @@ def _rules(grid: EvaluationGrid, bounds: Sequence[float]) -> list[ScheduleSettin
 
 
 def _row(
-    phase: _Phase, model: FrictionModel, criterion: str, rule: ScheduleSettings, result: Replay
+    phase: Phase, model: FrictionModel, criterion: str, rule: ScheduleSettings, result: Replay
 ) -> dict[str, object]:
     return {
         "run": phase.run,
@@ -174,38 +151,7 @@ def _pooled(rows: pd.DataFrame) -> pd.DataFrame:
     return total.drop(columns="pairs")
 
 
-def _phases(
-    torques: pd.DataFrame, model: FrictionModel, settings: CorrectionSettings
-) -> list[_Phase]:
-    """Return each stretch of heat-up or cool-down of the joint, ordered by run and time."""
-    if not model.knows_temperature:
-        raise NotEnoughData(
-            f"joint {model.joint}: the model does not know how friction falls with temperature"
-            f" ({model.parameters['delta'].reason}), so a correction cannot be computed"
-        )
-    pairs = friction_at_zero_load(torques, model.friction.alpha)
-    pairs = pairs[pairs["motor_temperature"].notna()]
-    if "motor_temperature_reading" not in pairs:
-        pairs = pairs.assign(motor_temperature_reading=np.nan)
-    stretch = (pairs["phase"] != pairs["phase"].shift()) | (pairs["run"] != pairs["run"].shift())
-    thermal = pairs["phase"].isin(["heat-up", "cool-down"])
-    if not thermal.any():
-        raise NotEnoughData(
-            f"joint {model.joint}: no heat-up or cool-down of 5 °C or more in the log, so the"
-            " correction of temperature cannot be simulated; log a thermal cycle"
-        )
-    speed = settings.correction_speed
-    if speed is None:
-        speed = _MIDDLE * float(pairs.loc[thermal, "speed"].max())
-    found = []
-    for _, group in pairs[thermal].groupby(stretch.cumsum()[thermal], sort=True):
-        data = phase_data(group, correction_speed=speed, degree=settings.smoothing_degree)
-        head = group.iloc[0]
-        found.append(_Phase(str(head["run"]), str(head["phase"]), group, data))
-    return found
-
-
-def _deviation(phases: list[_Phase], model: FrictionModel) -> Deviation:
+def _deviation(phases: list[Phase], model: FrictionModel) -> Deviation:
     """Return how friction departs from the motor temperature, from all phases of the joint."""
     numbers = pd.factorize(np.array([phase.run for phase in phases], dtype=object))[0]
     probes = probes_of(
@@ -225,11 +171,25 @@ def _simulated(
     process: Deviation | None,
     highest: float,
 ) -> Replay:
-    """Return what one schedule does; evenly spaced corrections are as many as the paper's are."""
-    if schedule.criterion != "equal":
-        return _replays(data, model, [schedule], process, highest)[0]
-    paper = replace(schedule, criterion="first_degree")
-    return _evenly(data, model, _replays(data, model, [paper], process, highest)[0])
+    """Return what one schedule does, as a robot at work would, told pair by pair.
+
+    Evenly spaced corrections are as many as the paper's are.
+    """
+    if process is not None:
+        return follow(data, model.friction, process, bound=schedule.bound, speed=highest)
+    reading = schedule.criterion if schedule.criterion in READINGS else "first_degree"
+
+    def online(instants: ArrayLike | None = None) -> Replay:
+        parameters, k, tmax = model.friction, schedule.k, schedule.tmax
+        corrector = TemperatureCorrector(parameters, k=k, tmax=tmax, reading=reading)
+        return replay_online(data, corrector, instants)
+
+    if schedule.criterion == "none":
+        return online(instants=())
+    result = online()
+    if schedule.criterion == "equal":
+        return online(equally_spaced(data.time, int(result.corrected.sum())))
+    return result
 
 
 def _replays(
@@ -241,7 +201,7 @@ def _replays(
 ) -> list[Replay]:
     """Return what each of the rules does in a phase."""
     instants: dict[ScheduleSettings, Indices] = {}
-    for criterion, reading in _READINGS.items():
+    for criterion, reading in READINGS.items():
         own = [rule for rule in rules if rule.criterion == criterion]
         k, tmax = np.array([rule.k for rule in own]), np.array([rule.tmax for rule in own])
         found = reading(data.time, data.reading, k=k, tmax=tmax)

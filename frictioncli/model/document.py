@@ -3,6 +3,7 @@
 import json
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass
+from html import escape
 from pathlib import Path
 from typing import Any
 
@@ -115,6 +116,17 @@ class FrictionModel:
         )
         return "\n".join([*lines, *(f"  note: {note}" for note in self.notes)])
 
+    def _repr_html_(self) -> str:
+        """Return the parameters as an HTML table, for notebooks."""
+        rows = [("parameter", "estimate", "95 % interval", "unit", "")]
+        for name, entry in self.parameters.items():
+            interval = "" if entry.ci95 is None else f"{entry.ci95[0]:.4g} to {entry.ci95[1]:.4g}"
+            rows.append((name, f"{entry.estimate:.4g}", interval, entry.unit, entry.reason or ""))
+        cells = ("".join(f"<td>{escape(cell)}</td>" for cell in row) for row in rows)
+        body = "".join(f"<tr>{row}</tr>" for row in cells)
+        caption = f"joint {self.joint}: {FORM}; rmse {self.rmse:.3g} {self.torque_unit}"
+        return f"<table><caption>{escape(caption)}</caption>{body}</table>"
+
 
 def write_models(path: Path, models: list[FrictionModel], provenance: Provenance) -> None:
     """Write ``model.json``: the joint with the most pairs on top, all under ``joints`` if several.
@@ -166,7 +178,7 @@ def read_models(path: Path) -> list[FrictionModel]:
     try:
         whole = json.loads(path.read_text(encoding="utf-8"))
         return [_model(part) for part in whole.get("joints", {"": whole}).values()]
-    except (ValueError, KeyError, TypeError, AttributeError) as error:
+    except (ValueError, LookupError, TypeError, AttributeError) as error:
         raise TableError(
             f"{path}: is not a model of this program ({error!r}); run 'frictioncli fit' again"
         ) from error

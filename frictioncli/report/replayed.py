@@ -8,16 +8,14 @@ import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
-from frictioncli.correction import stage as correction
+from frictioncli.correction.phases import phases_of
 from frictioncli.correction.replay import PhaseData, Replay, replay
-from frictioncli.correction.schedule import first_degree, latest_degree
+from frictioncli.correction.schedule import READINGS
 from frictioncli.correction.settings import CorrectionSettings
 from frictioncli.model.document import FrictionModel
 from frictioncli.model.friction import FrictionParameters
 
 Array = NDArray[np.float64]
-
-_READINGS = {"first_degree": first_degree, "latest_degree": latest_degree}
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -124,7 +122,7 @@ def replayed_phases(
         If the model does not know temperature, or no phase heats or cools.
     """
     stretches: dict[tuple[str, str], list[PhaseData]] = {}
-    for phase in correction._phases(torques, model, settings):
+    for phase in phases_of(torques, model, settings):
         if phase.run in runs:
             stretches.setdefault((phase.run, phase.name), []).append(phase.data)
     return [
@@ -166,7 +164,7 @@ def _replayed(
 
 def _scheduled(data: PhaseData, parameters: FrictionParameters, grid: Grid) -> list[Replay]:
     settings = np.array(list(product(grid.k, grid.tmax)))
-    reading = _READINGS[grid.criterion]
+    reading = READINGS[grid.criterion]
     instants = reading(data.time, data.reading, k=settings[:, 0], tmax=settings[:, 1])
     return [replay(data, parameters, own) for own in instants]
 

@@ -1,0 +1,82 @@
+"""Use it on my controller.
+
+The model leaves this program as a C header or a JSON document; the correction of the temperature
+runs in the control loop, sample by sample. Here the second day is lived through again.
+"""
+
+# %%
+import sys
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+
+from frictioncli import pipeline
+from frictioncli.chain.deploying import deployed, export
+from frictioncli.deployment.settings import ExportSettings
+from frictioncli.model.zero_load import friction_at_zero_load
+
+logs = Path(__file__).parents[1] / "sample_logs" / "kr10"
+work = Path(sys.argv[1] if len(sys.argv) > 1 else "friction-run")
+if not (work / "diagnosis.json").exists():
+    pipeline.analyse([logs], work)
+
+# %% Write it down; each file says what was lost in its form
+for target in ("c", "json", "urdf", "mjcf", "csv"):
+    print(export(work, ExportSettings(to=target)), end="\n\n")
+
+# %% The same in Python, with the corrector that a control loop would keep
+joint = deployed(work, ExportSettings(to="json", k=5, tmax=3600))
+corrector = joint.corrector()
+
+# %% The second day's measured pairs, in their order, stand for what the robot does
+torques = pd.read_parquet(work / "torques.parquet")
+pairs = friction_at_zero_load(torques[torques["run"] == "day2"], joint.base.alpha)
+cycle = pairs[pairs["phase"] != "sweep"]
+
+missed = {"motor temperature alone": [], "corrected": []}
+events = []
+wanted = False
+for pair in cycle.itertuples():
+    corrector.update(pair.time, pair.motor_temperature, registered=pair.motor_temperature_reading)
+    wanted = wanted or corrector.is_due
+    # the task goes on until a pair at the correction speed comes by
+    if wanted and abs(pair.speed / joint.correction_speed - 1) < 0.02:
+        corrector.correct(friction=pair.friction_torque, load=0.0, speed=pair.speed)
+        events.append(pair.time)
+        wanted = False
+    bare = joint.friction(load=0.0, speed=pair.speed, temperature=pair.motor_temperature)
+    missed["motor temperature alone"].append(pair.friction_torque - float(bare))
+    missed["corrected"].append(pair.friction_torque - corrector.friction(0.0, pair.speed))
+
+print(f"{len(events)} corrections, at", ", ".join(f"{time / 60:.0f}" for time in events), "min")
+
+# %% The extended model knows the gear's temperature: no correction at all
+# What warms the gear is friction torque times speed; a controller knows it at every moment. This
+# log has no record of the moves that heat the joint up between the pairs. As in the fit, they are
+# taken to be like the latest pairs, as long as the motor warms. The state begins with the day.
+joint = deployed(work, ExportSettings(to="json", extended=True))
+corrector = joint.corrector()
+missed["extended, not corrected"] = errors = []
+powers, warm = [], np.inf
+for pair in pairs.itertuples():
+    moving = pair.motor_temperature > warm
+    corrector.update(
+        pair.time,
+        pair.motor_temperature,
+        housing_temperature=pair.housing_temperature,
+        power=float(np.mean(powers[-8:])) if moving else 0.0,
+    )
+    predicted = corrector.friction(0.0, pair.speed)
+    if pair.phase != "sweep":
+        errors.append(pair.friction_torque - predicted)
+    powers.append(predicted * pair.speed)
+    warm = pair.motor_temperature
+
+# %% What each of them misses
+for name, errors in missed.items():
+    print(f"{name:24s} misses friction by {np.sqrt(np.mean(np.square(errors))):.2f} N·m RMS")
+print(
+    f"at the end friction arises {corrector.gear.excess:+.1f} °C from the motor's temperature;"
+    f" start and time constant leave that uncertain by {corrector.gear.uncertainty:.1f} °C"
+)

@@ -1,0 +1,68 @@
+"""The phases of a thermal cycle in which corrections are simulated."""
+
+from dataclasses import dataclass
+
+import numpy as np
+import pandas as pd
+
+from frictioncli.correction.replay import PhaseData, phase_data
+from frictioncli.correction.settings import MIDDLE_SPEED, CorrectionSettings
+from frictioncli.errors import NotEnoughData
+from frictioncli.model.document import FrictionModel
+from frictioncli.model.zero_load import friction_at_zero_load
+
+
+@dataclass(frozen=True, slots=True)
+class Phase:
+    """The pairs of one phase, and as arrays."""
+
+    run: str
+    name: str
+    pairs: pd.DataFrame
+    data: PhaseData
+
+
+def phases_of(
+    torques: pd.DataFrame, model: FrictionModel, settings: CorrectionSettings
+) -> list[Phase]:
+    """Return each stretch of heat-up or cool-down of a joint, ordered by run and time.
+
+    Parameters
+    ----------
+    torques : DataFrame
+        Rows of :data:`frictioncli.schemas.TORQUES` of the joint.
+    model : FrictionModel
+        Its model.
+    settings : CorrectionSettings
+        Speed of corrections and degree of smoothing.
+
+    Raises
+    ------
+    NotEnoughData
+        If the model does not know temperature, or no phase heats or cools.
+    """
+    if not model.knows_temperature:
+        raise NotEnoughData(
+            f"joint {model.joint}: the model does not know how friction falls with temperature"
+            f" ({model.parameters['delta'].reason}), so a correction cannot be computed"
+        )
+    pairs = friction_at_zero_load(torques, model.friction.alpha)
+    pairs = pairs[pairs["motor_temperature"].notna()]
+    if "motor_temperature_reading" not in pairs:
+        pairs = pairs.assign(motor_temperature_reading=np.nan)
+    stretch = (pairs["phase"] != pairs["phase"].shift()) | (pairs["run"] != pairs["run"].shift())
+    thermal = pairs["phase"].isin(["heat-up", "cool-down"])
+    if not thermal.any():
+        raise NotEnoughData(
+            f"joint {model.joint}: no heat-up or cool-down of 5 °C or more in the log, so the"
+            " correction of temperature cannot be simulated; log a thermal cycle"
+        )
+    speed = settings.correction_speed
+    if speed is None:
+        speed = MIDDLE_SPEED * float(pairs.loc[thermal, "speed"].max())
+    found = []
+    for _, group in pairs[thermal].groupby(stretch.cumsum()[thermal], sort=True):
+        data = phase_data(group, correction_speed=speed, degree=settings.smoothing_degree)
+        head = group.iloc[0]
+        found.append(Phase(str(head["run"]), str(head["phase"]), group, data))
+    return found

@@ -1,0 +1,274 @@
+"""The gear's state, told pair by pair, is what the extended model computes from the whole log."""
+
+import math
+from dataclasses import asdict, replace
+from itertools import pairwise
+
+import numpy as np
+import pandas as pd
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from scipy.integrate import solve_ivp
+
+from frictioncli.correction.corrector import TemperatureCorrector
+from frictioncli.correction.settings import CorrectionSettings, ScheduleSettings
+from frictioncli.correction.stage import simulate
+from frictioncli.deployment.extended_corrector import ExtendedCorrector
+from frictioncli.deployment.extension import MEMORYLESS, carried
+from frictioncli.deployment.gear import GearTemperature
+from frictioncli.diagnosis.applied import friction_beyond, with_effects, without_effects
+from frictioncli.diagnosis.extended import ExtendedModel, FittedEffect
+from frictioncli.diagnosis.gravity import stated_gravity
+from frictioncli.diagnosis.problem import simulated
+from frictioncli.effects import BY_NAME
+from frictioncli.effects.pairs import friction_power, pair_heads
+from frictioncli.model.friction import PUBLISHED
+from tests.correction.test_stage import published_model
+from tests.deployment.joints import LAG, effect
+from tests.model.worlds import torques
+
+GRAVITY = {"cosine": 95.0, "sine": 0.0, "offset": 0.0}
+LAGGING = FittedEffect(
+    effect=BY_NAME["thermal_lag"],
+    shape={"time_constant": 1500.0},
+    coefficients=np.array([0.8, 6.0, 0.4]),
+)
+CHANGED = replace(PUBLISHED, tau_c=9.9, alpha=0.0015, beta=3.0, gamma=20.0, delta=0.07)
+
+
+def model_with(*effects):
+    return ExtendedModel(
+        temperature="motor",
+        parameters=CHANGED,
+        about=PUBLISHED,
+        gravity=GRAVITY,
+        gravity_about=GRAVITY,
+        effects=effects,
+    )
+
+
+def two_days(speeds=(67.5,)):
+    """Two runs whose housing follows its own way; the load is the gravity that is fitted."""
+    days = [torques(seed, speeds=speeds).assign(run=f"day{seed}") for seed in (1, 2)]
+    rows = pd.concat(days, ignore_index=True)
+    housing = rows["motor_temperature"] - 4 * np.sin(rows["time"] / 3000)
+    return rows.assign(load=np.nan, housing_temperature=housing)
+
+
+def pairs_of(rows, added):
+    """One row per pair: its means, its effective load, and what warms the gear before it."""
+    squared = rows["load_torque"] ** 2
+    grouped = rows.assign(squared=squared, added=added).groupby(["run", "pair"], sort=True)
+    means = grouped[["time", "speed", "motor_temperature", "housing_temperature"]].first()
+    means["registered"] = grouped["motor_temperature_reading"].first()
+    means["phase"] = grouped["phase"].first()
+    means[["friction", "squared", "added"]] = grouped[
+        ["friction_torque", "squared", "added"]
+    ].mean()
+    return means.reset_index()
+
+
+def powers(rows, model, extension):
+    """Mean friction power from the pair before to each pair, as the batch sees it."""
+    _, problem = simulated(rows, "motor", model.about, stated_gravity(model.gravity_about))
+    heads = pair_heads(problem.table)
+    level = friction_power(problem.table, heads) * extension.gear.reference_power
+    return np.concatenate([[0.0], level])
+
+
+def replayed(rows, model, schedule):
+    extension = carried(rows, model, None)
+    base = published_model()
+    added, _ = friction_beyond(rows, base, model)
+    pairs = pairs_of(rows, added)
+    told = powers(rows, model, extension) if extension.gear else np.zeros(len(pairs))
+    found, before = [], None
+    for pair, power in zip(pairs.itertuples(), told, strict=True):
+        if before is None or pair.run != before.run:
+            corrector = ExtendedCorrector(TemperatureCorrector(PUBLISHED), extension)
+        if before is None or (pair.run, pair.phase) != (before.run, before.phase):
+            corrector.inner = TemperatureCorrector(PUBLISHED, k=schedule.k, tmax=schedule.tmax)
+        corrector.update(
+            pair.time,
+            pair.motor_temperature,
+            pair.registered,
+            housing_temperature=pair.housing_temperature,
+            power=power,
+        )
+        load = math.sqrt(pair.squared)
+        beyond = corrector.beyond(load, pair.speed)
+        due = corrector.is_due
+        if due:
+            corrector.correct(pair.friction, load, pair.speed)
+        predicted = corrector.friction(load, pair.speed) - PUBLISHED.alpha * pair.squared
+        found.append((pair.run, pair.pair, due, corrector.correction, beyond, predicted))
+        before = pair
+    names = ["run", "pair", "corrected", "correction", "beyond", "predicted"]
+    return pd.DataFrame(found, columns=names).assign(added=pairs["added"])
+
+
+@pytest.mark.parametrize(
+    "effects",
+    [(LAGGING,), (LAGGING, effect("linear_viscous", 0.05), effect("coulomb_temperature", -0.7))],
+    ids=["lag", "lag and others"],
+)
+def test_a_replay_of_the_log_is_the_batch_s_extended_simulation(effects):
+    """Same moments; friction to 1e-9: the two sum the same numbers in another order."""
+    rows, model, schedule = two_days(), model_with(*effects), ScheduleSettings(k=3.0)
+    online = replayed(rows, model, schedule)
+    np.testing.assert_allclose(online["beyond"], online["added"], rtol=1e-9, atol=1e-9)
+    bare, base, added = without_effects(rows, published_model(), model)
+    batch = with_effects(simulate(bare, base, CorrectionSettings(), schedule), added)
+    both = batch.merge(online, on=["run", "pair"], suffixes=("", "_online"))
+    assert len(both) == len(batch) == 2 * 80
+    assert (both["corrected"] == both["corrected_online"]).all()
+    assert both["corrected"].sum() > 10
+    np.testing.assert_allclose(both["correction"], both["temperature_correction"], atol=1e-8)
+    np.testing.assert_allclose(both["predicted"], both["friction_predicted"], rtol=1e-9)
+
+
+def test_effects_that_need_the_past_are_named_and_left_out():
+    others = [
+        FittedEffect(effect=BY_NAME[name], shape={}, coefficients=np.zeros(1))
+        for name in ("drift", "position_ripple", "dress_pack")
+    ]
+    extension = carried(two_days(), model_with(LAGGING, effect("load_linear", 0.1), *others), None)
+    assert [term.effect.name for term in extension.terms] == ["load_linear"]
+    assert extension.left_out == {
+        "drift": "goes with the time since the first log",
+        "position_ripple": "goes with the angle",
+        "dress_pack": "shows in the load, not in friction",
+    }
+    assert carried(two_days(), model_with(), None) is None
+
+
+def test_every_effect_is_carried_or_has_a_reason():
+    for name, entry in BY_NAME.items():
+        if name in (*MEMORYLESS, "thermal_lag"):
+            assert entry.channel == "friction"
+            continue
+        one = FittedEffect(effect=entry, shape={}, coefficients=np.zeros(len(entry.coefficients)))
+        why = carried(two_days(), model_with(one), None).left_out[name]
+        assert ("load" in why) == (entry.channel == "load" and name != "inertia")
+
+
+def test_the_state_refers_to_what_the_log_had():
+    """Reference power and the start's spread, by another route."""
+    rows = two_days()
+    gear = carried(rows, model_with(LAGGING), (900.0, 2600.0)).gear
+    friction = (
+        10.57
+        + 0.0014 * rows["load_torque"] ** 2
+        + np.sqrt(67.5) * (3.48 + 15.66 * np.exp(-0.056 * rows["motor_temperature"]))
+    )
+    assert gear.reference_power == pytest.approx(100 * friction.mean())
+    assert gear.time_constant_ci95 == (900.0, 2600.0)
+    # the whole effect in °C, without the housing's part, whose own column it is
+    alone = replace(LAGGING, coefficients=np.array([0.8, 6.0, 0.0]))
+    same = replace(model_with(alone), parameters=PUBLISHED)
+    added, _ = friction_beyond(rows, published_model(), same)
+    slope = -0.056 * 15.66 * np.exp(-0.056 * rows["motor_temperature"]) * np.sqrt(67.5)
+    assert gear.start_sd == pytest.approx(np.sqrt(np.mean((added / slope) ** 2)))
+
+
+def integrated(time, motor, power):
+    """The gear's two filters by a solver of differential equations; motor linear, power steps."""
+
+    def slope(t, state):
+        place = min(np.searchsorted(time, t, side="left"), len(time) - 1)
+        follower, heat = state
+        warm = np.interp(t, time, motor)
+        return [
+            (warm - follower) / LAG.time_constant,
+            (power[place] / LAG.reference_power - heat) / LAG.time_constant,
+        ]
+
+    state = [motor[0], 0.0]
+    for begin, end in pairwise(time):
+        inside = (begin + 1e-9, end)
+        state = solve_ivp(slope, inside, state, rtol=1e-10, atol=1e-10).y[:, -1]
+    follower, heat = state
+    return LAG.lag_share * (follower - motor[-1]) + LAG.friction_heating * heat
+
+
+def test_uneven_samples_are_stepped_exactly():
+    """Against a numerical solution of theta dF/dt = u - F: to 1e-6 °C after 40 uneven steps."""
+    generator = np.random.default_rng(4)
+    time = np.cumsum(generator.uniform(1, 900, 40))
+    motor = 30 + np.cumsum(generator.normal(0, 1, 40))
+    power = generator.uniform(0, 8000, 40)
+    gear = GearTemperature(LAG)
+    for at in zip(time, motor, [math.nan] * 40, power, strict=True):
+        gear.update(*map(float, at))
+    assert gear.excess == pytest.approx(integrated(time, motor, power), abs=1e-6)
+
+
+@settings(max_examples=50, deadline=None)
+@given(
+    cuts=st.lists(st.floats(0.01, 0.99), min_size=1, max_size=6, unique=True),
+    duration=st.floats(10, 5000),
+    warming=st.floats(-10, 10),
+    power=st.floats(0, 9000),
+)
+def test_more_samples_of_the_same_course_change_nothing(cuts, duration, warming, power):
+    coarse, fine = GearTemperature(LAG), GearTemperature(LAG)
+    for gear in (coarse, fine):
+        gear.update(0.0, 30.0)
+    for share in (*sorted(cuts), 1.0):
+        fine.update(share * duration, 30.0 + share * warming, power=power)
+    coarse.update(duration, 30.0 + warming, power=power)
+    assert fine.excess == pytest.approx(coarse.excess, abs=1e-9)
+    assert fine.uncertainty == pytest.approx(coarse.uncertainty, abs=1e-9)
+
+
+def test_the_unknown_start_fades_with_the_time_constant():
+    gear = GearTemperature(replace(LAG, time_constant_ci95=None))
+    for time, left in ((0.0, 1.0), (1500.0, math.exp(-1)), (15000.0, math.exp(-10))):
+        gear.update(time, 40.0, 40.0)
+        assert gear.uncertainty == pytest.approx(3.0 * left)
+
+
+def test_while_the_motor_warms_the_interval_of_the_time_constant_shows():
+    """Warming by 0.001 °C/s for long: the followers lag by theta/1000, 0.9 and 2.6 °C."""
+    gear = GearTemperature(replace(LAG, friction_heating=0.0))
+    for time in np.arange(0.0, 40_000.0, 100.0):
+        gear.update(time, 20 + time / 1000, 20 + time / 1000)
+    assert gear.excess == pytest.approx(0.8 * -1.5, abs=1e-6)
+    assert gear.uncertainty == pytest.approx(0.8 * (2.6 - 0.9) / (2 * 1.96), rel=1e-3)
+
+
+def test_the_uncertainty_holds_the_truth():
+    """Joints whose gear began off by the spread told, with time constants from the interval."""
+    generator, missed, told = np.random.default_rng(7), [], []
+    for _ in range(300):
+        truth = generator.normal(1750.0, 1700 / (2 * 1.96))
+        if truth < 300:
+            continue
+        gear = GearTemperature(LAG)
+        real = GearTemperature(replace(LAG, time_constant=truth, time_constant_ci95=None))
+        off = generator.normal(0, LAG.start_sd)
+        length = generator.integers(2, 60)
+        motor = 30 + np.cumsum(generator.normal(0.2, 0.5, length))
+        for i, warm in enumerate(motor):
+            for state in (gear, real):
+                state.update(120.0 * i, float(warm), power=4000.0)
+        missed.append(real.excess + off * math.exp(-120.0 * (length - 1) / truth) - gear.excess)
+        told.append(gear.uncertainty)
+    inside = np.mean(np.abs(missed) < 1.96 * np.array(told))
+    assert 0.88 < inside <= 1.0
+    assert np.sqrt(np.mean(np.square(missed))) == pytest.approx(
+        np.sqrt(np.mean(np.square(told))), rel=0.25
+    )
+
+
+def test_an_unknown_housing_counts_as_as_warm_as_the_motor():
+    gear = GearTemperature(LAG)
+    gear.update(0.0, 40.0)
+    assert gear.excess == 0.0
+    gear.update(0.0, 40.0, 30.0)
+    assert gear.excess == pytest.approx(0.4 * -10.0)
+
+
+def test_the_lag_goes_through_plain_values():
+    assert type(LAG).of(asdict(LAG)) == LAG
