@@ -100,8 +100,8 @@ def latest_degree(
     return _by_schedule(events, len(k))
 
 
-READINGS = {"first_degree": first_degree, "latest_degree": latest_degree}
-"""Criterion -> how it reads (20)."""
+BY_READING = {"first_degree": first_degree, "latest_degree": latest_degree}
+"""Reading of (20) -> the search for its instants."""
 
 
 def equally_spaced(time: Array, count: int) -> Indices:

@@ -11,7 +11,7 @@ from frictioncli.correction.corrector import TemperatureCorrector
 from frictioncli.correction.deviation import Deviation, estimated_deviation, probes_of
 from frictioncli.correction.phases import Phase, phases_of
 from frictioncli.correction.replay import PhaseData, Replay, replay, replay_online
-from frictioncli.correction.schedule import READINGS, Indices, equally_spaced
+from frictioncli.correction.schedule import BY_READING, Indices, equally_spaced
 from frictioncli.correction.settings import CorrectionSettings, EvaluationGrid, ScheduleSettings
 from frictioncli.correction.uncertainty import follow
 from frictioncli.errors import NotEnoughData
@@ -114,7 +114,7 @@ def evaluate(
 def _rules(grid: EvaluationGrid, bounds: Sequence[float]) -> list[ScheduleSettings]:
     by_time = [
         ScheduleSettings(criterion=reading, k=k, tmax=tmax)
-        for reading in READINGS
+        for reading in BY_READING
         for k in grid.k
         for tmax in grid.tmax
     ]
@@ -177,7 +177,7 @@ def _simulated(
     """
     if process is not None:
         return follow(data, model.friction, process, bound=schedule.bound, speed=highest)
-    reading = schedule.criterion if schedule.criterion in READINGS else "first_degree"
+    reading = schedule.criterion if schedule.criterion in BY_READING else "first_degree"
 
     def online(instants: ArrayLike | None = None) -> Replay:
         parameters, k, tmax = model.friction, schedule.k, schedule.tmax
@@ -201,7 +201,7 @@ def _replays(
 ) -> list[Replay]:
     """Return what each of the rules does in a phase."""
     instants: dict[ScheduleSettings, Indices] = {}
-    for criterion, reading in READINGS.items():
+    for criterion, reading in BY_READING.items():
         own = [rule for rule in rules if rule.criterion == criterion]
         k, tmax = np.array([rule.k for rule in own]), np.array([rule.tmax for rule in own])
         found = reading(data.time, data.reading, k=k, tmax=tmax)

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from frictioncli.correction.phases import phases_of
 from frictioncli.correction.replay import PhaseData, Replay, replay
-from frictioncli.correction.schedule import READINGS
+from frictioncli.correction.schedule import BY_READING
 from frictioncli.correction.settings import CorrectionSettings
 from frictioncli.model.document import FrictionModel
 from frictioncli.model.friction import FrictionParameters
@@ -164,7 +164,7 @@ def _replayed(
 
 def _scheduled(data: PhaseData, parameters: FrictionParameters, grid: Grid) -> list[Replay]:
     settings = np.array(list(product(grid.k, grid.tmax)))
-    reading = READINGS[grid.criterion]
+    reading = BY_READING[grid.criterion]
     instants = reading(data.time, data.reading, k=settings[:, 0], tmax=settings[:, 1])
     return [replay(data, parameters, own) for own in instants]
 
