@@ -96,7 +96,7 @@ def pieces(path: Path, encoding: str, size: int) -> Iterator[Piece]:
     rest = b""
     try:
         for block in _blocks(path, encoding, size):
-            if b"\r" in block and b"\n" not in block:
+            if b"\n" not in block and b"\r" in block:
                 block = block.replace(b"\r", b"\n")
             block = rest + block
             cut = block.rfind(b"\n") + 1
