@@ -10,8 +10,8 @@ import numpy as np
 import pandas as pd
 
 from frictioncli import chain, schemas, tables
+from frictioncli.comparing.change import change_of_last_run
 from frictioncli.correction.stage import epsilon
-from frictioncli.fleet.change import change_of_last_run
 from frictioncli.model.document import FrictionModel, read_models
 from frictioncli.model.friction import friction_torque
 

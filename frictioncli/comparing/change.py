@@ -18,18 +18,16 @@ import pandas as pd
 from numpy.typing import NDArray
 from scipy import stats
 
+from frictioncli.comparing.averaged import averaged_fit, estimable
 from frictioncli.model.document import FrictionModel
 from frictioncli.model.equations import COEFFICIENTS, jacobian
 from frictioncli.model.identification import freedom, pair_equations, pair_residual, point_noise
-from frictioncli.model.noise import pair_covariance, plausible_noise
+from frictioncli.model.noise import plausible_noise
 from frictioncli.model.observations import Observations, observations
 from frictioncli.model.zero_load import temperature_of
 from frictioncli.reading.discovery import natural_key
 
 Array = NDArray[np.float64]
-
-_RANK = 1e-5
-"""Share of a design of unit columns below which a direction counts as absent."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -70,9 +68,32 @@ def change_of_last_run(torques: pd.DataFrame, model: FrictionModel) -> Change | 
     earlier = np.delete(np.arange(len(runs)), last)
     contrast = np.full(len(runs), -1.0 / len(earlier))
     contrast[last] = 1.0
-    if not _can_tell(design, contrast):
+    # columns of the design have length 1
+    size = np.sqrt(np.bincount(observed.run))
+    asked = np.zeros((1, design.shape[1]))
+    asked[0, : len(runs)] = contrast / size
+    if not estimable(design, asked):
         return None
-    offsets, covariance, steps = _offsets(observed, model, design, len(runs))
+    residual = pair_residual(observed, model.friction)
+    noises = plausible_noise(
+        residual=residual,
+        design=design,
+        time=observed.time,
+        run=observed.run,
+        bins=observed.bins,
+        point=point_noise(observed, model.friction.alpha),
+    )
+    offsets, covariance = averaged_fit(
+        design,
+        residual,
+        noises,
+        time=observed.time,
+        run=observed.run,
+        bins=observed.bins,
+        count=len(runs),
+    )
+    offsets, covariance = offsets / size, covariance / np.outer(size, size)
+    steps = freedom(observed, noises[0][0], design.shape[1])
     estimate = float(contrast @ offsets)
     variance = float(contrast @ covariance @ contrast)
     if len(earlier) > 1:
@@ -95,44 +116,6 @@ def _design(observed: Observations, model: FrictionModel) -> Array:
     run = (observed.run[:, np.newaxis] == np.unique(observed.run)).astype(float)
     design = np.column_stack([run, shape])
     return np.asarray(design / np.maximum(np.linalg.norm(design, axis=0), 1e-300))
-
-
-def _can_tell(design: Array, contrast: Array) -> bool:
-    """Tell whether the runs can be compared: not if each was, say, at a temperature of its own."""
-    runs = np.sqrt(np.count_nonzero(design[:, : len(contrast)], axis=0))
-    asked = np.zeros(design.shape[1])
-    asked[: len(contrast)] = contrast / runs
-    asked /= np.linalg.norm(asked)
-    rank = np.linalg.matrix_rank(design, tol=_RANK)
-    return bool(np.linalg.matrix_rank(np.vstack([design, asked]), tol=_RANK) == rank)
-
-
-def _offsets(
-    observed: Observations, model: FrictionModel, design: Array, runs: int
-) -> tuple[Array, Array, float]:
-    """Return each run's offset, their covariance, and the freedom of the noise estimate."""
-    residual = pair_residual(observed, model.friction)
-    plausible = plausible_noise(
-        residual=residual,
-        design=design,
-        time=observed.time,
-        run=observed.run,
-        bins=observed.bins,
-        point=point_noise(observed, model.friction.alpha),
-    )
-    # columns of the design have length 1
-    size = np.sqrt(np.bincount(observed.run))
-    found, spread = [], []
-    for noise, _ in plausible:
-        truth = pair_covariance(noise, time=observed.time, run=observed.run, bins=observed.bins)
-        inverse = np.linalg.pinv(design.T @ truth.solve(design), rcond=_RANK**2, hermitian=True)
-        found.append((inverse @ (design.T @ truth.solve(residual)))[:runs] / size)
-        spread.append(inverse[:runs, :runs] / np.outer(size, size))
-    weights = np.array([weight for _, weight in plausible])
-    mean = weights @ np.array(found)
-    away = np.array(found) - mean
-    covariance = np.tensordot(weights, np.array(spread), axes=1) + (away.T * weights) @ away
-    return mean, covariance, freedom(observed, plausible[0][0], design.shape[1])
 
 
 def _variance_of_one_more(offsets: Array, covariance: Array, noise: float) -> float:

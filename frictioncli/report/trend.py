@@ -1,0 +1,167 @@
+"""The picture of a comparison: friction over the runs, and its change at reference conditions."""
+
+from collections.abc import Mapping, Sequence
+from datetime import datetime
+from html import escape
+from typing import Any
+
+import numpy as np
+import pandas as pd
+from matplotlib.axes import Axes
+from matplotlib.dates import AutoDateLocator, ConciseDateFormatter
+from matplotlib.figure import Figure
+
+from frictioncli.report.labels import number, plain, speed_text
+from frictioncli.report.style import (
+    FAINT,
+    MODEL,
+    WIDTH,
+    legend_above,
+    png,
+    speed_styles,
+    styled,
+    svg,
+)
+
+_LEVEL = "#2B6CB0"
+_BAND = "#BFD4EA"
+_LIMIT = "#C44536"
+_MOST_NAMES = 12
+_ROW = 0.24
+_NAME = "trend"
+
+
+def trend_pictures(document: Mapping[str, Any]) -> tuple[str, bytes]:
+    """Return the figure of a comparison as an SVG file's text and as a PNG.
+
+    Parameters
+    ----------
+    document : mapping
+        ``comparison.json``.
+    """
+    title = f"Friction of joint {document['joint']} over {len(document['runs'])} runs"
+    with styled(_NAME):
+        figure = trend_figure(document)
+        drawn = svg(figure, _NAME, escape(title))
+        return f'<?xml version="1.0" encoding="utf-8"?>\n{drawn}', png(figure)
+
+
+def trend_figure(document: Mapping[str, Any]) -> Figure:
+    """Draw friction over the runs, and its change at reference conditions.
+
+    Parameters
+    ----------
+    document : mapping
+        ``comparison.json``.
+    """
+    rows = document["friction"]
+    if not rows:
+        figure = Figure(figsize=(WIDTH, 3.6), layout="constrained")
+        _draw_runs(figure.subplots(), document)
+        return figure
+    below = _ROW * len(rows) + 0.9
+    figure = Figure(figsize=(WIDTH, 3.6 + below), layout="constrained")
+    above, lower = figure.subplots(2, 1, height_ratios=(3.6, below))
+    _draw_runs(above, document)
+    _draw_conditions(lower, rows)
+    return figure
+
+
+def _draw_runs(axes: Axes, document: Mapping[str, Any]) -> None:
+    runs, trend = document["runs"], document["trend"]["percent"]
+    dated = document["trend"]["per_1000_h"] is not None
+    place: Any = np.arange(1, len(runs) + 1)
+    if dated:
+        place = [datetime.fromisoformat(run["started_at"]) for run in runs]
+    share = np.array([run["days"] for run in runs] if dated else np.arange(len(runs)), dtype=float)
+    share = share / share[-1]
+    level = np.array([run["level"] for run in runs])
+    reach = np.array([run["ci95"][1] for run in runs]) - level
+    middle = float(np.mean(level))
+    around = share - share.mean()
+    axes.plot(place, middle + trend["estimate"] * around, color=MODEL, label="trend")
+    ends = [middle + slope * around for slope in trend["ci95"]]
+    axes.fill_between(
+        place, np.minimum(*ends), np.maximum(*ends), color=_BAND, alpha=0.5, linewidth=0
+    )
+    axes.plot(
+        place,
+        [run["measured"] for run in runs],
+        linestyle="none",
+        marker="o",
+        color=FAINT,
+        markerfacecolor="white",
+        label="as measured",
+    )
+    axes.errorbar(
+        place,
+        level,
+        yerr=reach,
+        linestyle="none",
+        marker="o",
+        color=_LEVEL,
+        elinewidth=1.2,
+        label="at equal surroundings",
+    )
+    _draw_limits(axes, document, middle + trend["estimate"] * float(around[0]))
+    axes.set_ylabel("friction against the mean [%]")
+    axes.set_title(
+        f"Friction of joint {document['joint']}, first run to last:"
+        f" {_signed(trend['estimate'])} % ({_signed(trend['ci95'][0])} to"
+        f" {_signed(trend['ci95'][1])})",
+        pad=22,
+    )
+    if dated:
+        locator = AutoDateLocator()
+        axes.xaxis.set_major_locator(locator)
+        axes.xaxis.set_major_formatter(ConciseDateFormatter(locator))
+        axes.set_xlabel("date of the run")
+    else:
+        _name_runs(axes, runs)
+    legend_above(axes)
+
+
+def _draw_limits(axes: Axes, document: Mapping[str, Any], start: float) -> None:
+    if document["threshold"] is None:
+        return
+    margin = document["margin"]["value"]
+    for number_, limit in enumerate((start - margin, start + margin)):
+        label = "threshold, from the first run" if number_ == 0 else None
+        axes.axhline(limit, color=_LIMIT, linestyle=(0, (5, 3)), linewidth=1.2, label=label)
+
+
+def _name_runs(axes: Axes, runs: Sequence[Mapping[str, Any]]) -> None:
+    axes.set_xlabel("run, in the order given")
+    if len(runs) <= _MOST_NAMES:
+        axes.set_xticks(range(1, len(runs) + 1))
+
+
+def _draw_conditions(axes: Axes, rows: Sequence[Mapping[str, Any]]) -> None:
+    looks = speed_styles(pd.DataFrame({"speed": [row["speed"] for row in rows], "phase": "sweep"}))
+    for place, row in enumerate(rows):
+        change = row["percent"]
+        centre = change["estimate"]
+        axes.errorbar(
+            centre,
+            place,
+            xerr=[[centre - change["ci95"][0]], [change["ci95"][1] - centre]],
+            marker=looks[row["speed"]].marker,
+            color=looks[row["speed"]].colour,
+            markerfacecolor="white" if row["extrapolated"] else looks[row["speed"]].colour,
+            elinewidth=1.2,
+        )
+    axes.axvline(0.0, color=MODEL, linewidth=1.0)
+    axes.set_yticks(
+        range(len(rows)),
+        [plain(f"{row['temperature']:.0f} °C, {speed_text(row['speed'])}") for row in rows],
+    )
+    axes.invert_yaxis()
+    axes.grid(visible=False, axis="y")
+    hollow = any(row["extrapolated"] for row in rows)
+    note = "\nhollow: not all runs have measured this temperature" if hollow else ""
+    axes.set_xlabel(f"change of friction at the usual load, first run to last [%]{note}")
+    axes.set_title("Change at reference conditions, 95 % intervals")
+
+
+def _signed(value: float) -> str:
+    return f"{'+' if value > 0 else ''}{number(value, 2)}"

@@ -1,0 +1,89 @@
+"""The picture of a comparison shows what its document says."""
+
+from datetime import datetime, timedelta
+
+import numpy as np
+import pytest
+
+from frictioncli.report.style import styled
+from frictioncli.report.trend import trend_figure, trend_pictures
+
+
+def percent(value, half):
+    return {"estimate": value, "ci95": [value - half, value + half], "unit": "%", "p_value": 0.01}
+
+
+def document(*, dated=True, conditions=True, threshold=True):
+    start = datetime(2026, 1, 5)
+    runs = [
+        {
+            "started_at": (start + timedelta(days=7 * number)).isoformat() if dated else None,
+            "days": 7.0 * number if dated else None,
+            "measured": number - 1.0,
+            "level": 0.5 * number - 1.0,
+            "ci95": [0.5 * number - 1.4, 0.5 * number - 0.6],
+        }
+        for number in range(5)
+    ]
+    rows = [
+        {"temperature": 40.0, "speed": speed, "percent": percent(4.0, 1.0), "extrapolated": hollow}
+        for speed, hollow in ((19.1, False), (101.2, True))
+    ]
+    return {
+        "joint": 2,
+        "runs": runs,
+        "trend": {"percent": percent(2.0, 1.5), "per_1000_h": {} if dated else None},
+        "friction": rows if conditions else [],
+        "threshold": {"value": 3.0} if threshold else None,
+        "margin": {"value": 3.0, "unit": "%"},
+    }
+
+
+def drawn(**how):
+    with styled("trend"):
+        return trend_figure(document(**how))
+
+
+def test_the_line_rises_by_the_change():
+    above = drawn().axes[0]
+    line = next(one for one in above.lines if one.get_label() == "trend")
+    heights = line.get_ydata()
+    assert heights[-1] - heights[0] == pytest.approx(2.0)
+
+
+def test_the_points_are_the_levels_and_the_hollow_ones_as_measured():
+    above = drawn().axes[0]
+    hollow = next(one for one in above.lines if one.get_label() == "as measured")
+    np.testing.assert_allclose(hollow.get_ydata(), [-1, 0, 1, 2, 3])
+    filled = next(one for one in above.containers if one.get_label() == "at equal surroundings")
+    np.testing.assert_allclose(filled.lines[0].get_ydata(), [-1, -0.5, 0, 0.5, 1])
+
+
+def test_the_threshold_lies_about_the_first_run():
+    above = drawn().axes[0]
+    limits = sorted(one.get_ydata()[0] for one in above.lines if one.get_linestyle() == "--")
+    # the line begins 1 below the mean level, which is 0
+    np.testing.assert_allclose(limits, [-1.0 - 3.0, -1.0 + 3.0])
+    assert not any(one.get_linestyle() == "--" for one in drawn(threshold=False).axes[0].lines)
+
+
+def test_conditions_are_named_and_hollow_where_not_measured():
+    lower = drawn().axes[1]
+    assert [label.get_text() for label in lower.get_yticklabels()] == [
+        "40 °C, 19.1 deg/s",
+        "40 °C, 101.2 deg/s",
+    ]
+    assert "hollow" in lower.get_xlabel()
+
+
+def test_without_conditions_or_dates_there_is_one_panel_over_the_order():
+    figure = drawn(dated=False, conditions=False)
+    assert len(figure.axes) == 1
+    assert figure.axes[0].get_xlabel() == "run, in the order given"
+
+
+def test_pictures_are_the_same_bytes_again():
+    assert trend_pictures(document()) == trend_pictures(document())
+    text, picture = trend_pictures(document())
+    assert text.startswith('<?xml version="1.0" encoding="utf-8"?>\n<svg')
+    assert picture.startswith(b"\x89PNG")
