@@ -72,16 +72,18 @@ def position_range(motions: list[Motion]) -> tuple[float, float]:
     """Return the greatest distance from zero and the greatest span within a file, in raw units.
 
     A thousandth of the samples on either side does not count, so that damaged cells do not, nor
-    does what lies a million times further from zero than most.
+    does what lies a million times further from zero than most: an axis at rest at zero has no scale
+    of its own.
     """
     furthest = span = 0.0
-    for motion in motions:
-        if not len(motion.position):
-            continue
-        distance = np.abs(motion.position)
-        most = float(np.quantile(distance, 0.95)) or np.inf
-        position = motion.position[distance <= _WILD * most]
+    moved = [motion for motion in motions if len(motion.position)]
+    usual = (float(np.quantile(np.abs(motion.position), 0.95)) for motion in moved)
+    most = max(usual, default=0.0) or np.inf
+    for motion in moved:
+        position = motion.position[np.abs(motion.position) <= _WILD * most]
         n = len(position)
+        if not n:
+            continue
         damaged = int(np.ceil(n / 1000)) if n >= 50 else 0
         ordered = np.sort(position)[damaged : n - damaged]
         furthest = max(furthest, float(np.max(np.abs(ordered))))

@@ -106,6 +106,15 @@ def test_damaged_rows_are_counted(tmp_path):
     assert rejected["text"].tolist() == lines[3:7]
 
 
+def test_damage_at_an_axis_at_rest_does_not_change_the_unit(tmp_path):
+    """An axis that stays at zero has no scale of its own by which damage would stand out."""
+    lines = variable_log(lambda a, b: f"A1 0.0 A2 {b:.9f}").split("\n")
+    for line, damage in enumerate(("292277026596", "-1e308", "9223372036854775807", "9e12"), 9):
+        lines[line] = lines[line].replace("A1 0.0", f"A1 {damage}")
+    (tmp_path / "log.csv").write_text("\n".join(lines), encoding="utf-8")
+    check(samples_of(tmp_path / "log.csv", tmp_path / "work"))
+
+
 def test_a_header_that_names_other_fields_is_refused(tmp_path):
     text = variable_log(CELLS["full"], header="timestamp;AXIS_ACT;TORQUE_A2")
     (tmp_path / "log.csv").write_text(text, encoding="utf-8")

@@ -161,3 +161,13 @@ def test_iso_times_with_decimal_comma(tmp_path):
     np.testing.assert_allclose(table["time"], time, atol=1e-6)
     recordings = tables.read(tmp_path / "work" / "recordings.parquet", schemas.RECORDINGS)
     assert recordings["started_at"][0].startswith("2022-10-26T08:17:20")
+
+
+def test_a_date_of_the_year_1_is_a_time_like_others(tmp_path):
+    """A damaged cell, or a clock that was never set: nanoseconds would run over."""
+    rows = ["Timestamp;position [deg];torque [Nm]", "0001-01-01T00:00:00Z;0.0;0.0"]
+    rows += [f"2022-10-26T08:17:{20 + n / 10:04.1f}Z;{n / 10:.1f};{n % 7}.5" for n in range(300)]
+    (tmp_path / "log.csv").write_text("\n".join(rows))
+    summary = ingest([tmp_path / "log.csv"], tmp_path / "work")
+    assert summary.rows_read == 301
+    assert summary.rows_kept + sum(summary.rows_rejected.values()) == 301
