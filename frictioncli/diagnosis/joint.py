@@ -14,6 +14,9 @@ Array = NDArray[np.float64]
 _ROUNDS = 4
 """Rounds of fitting coefficients and noise scale in turn."""
 
+_ABSENT = 1e-200
+"""A column of less squared length is not there: its share of the torque is no number any more."""
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Fitted:
@@ -82,7 +85,8 @@ def solved(channels: tuple[Equations, Equations], base: int) -> Fitted:
     count = len(inside) - 1
     for _ in range(_ROUNDS):
         gram = inside + friction.between / scales[0] + load.between / scales[1]
-        size = np.sqrt(np.maximum(np.diag(gram)[:count], 1e-300))
+        squared = np.diag(gram)[:count]
+        size = np.where(squared > _ABSENT, np.sqrt(np.maximum(squared, 0.0)), np.inf)
         scaled = gram[:count, :count] / np.outer(size, size)
         inverse = np.linalg.pinv(scaled, rcond=1e-11, hermitian=True) / np.outer(size, size)
         coefficients = inverse @ gram[:count, count]

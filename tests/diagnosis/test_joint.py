@@ -246,3 +246,17 @@ def test_noise_in_torque_units_is_the_covariance_of_its_place(setting):
 
 def test_noise_below_what_is_known_has_no_pair_part():
     assert noise_of(replace(spectra(), known=0.6), (0, 0), 0.5, 0.4).pair == 0.0
+
+
+@pytest.mark.parametrize("size", [0.0, 1e-160, 1e-155])
+def test_a_column_that_is_nearly_nothing_changes_nothing(size):
+    """The square of its length is no number with all its digits any more, or none at all."""
+    channels, inside, means = both()
+    with_it = [
+        [np.insert(rows, 2, size * np.cos(np.arange(len(rows))), axis=1) for rows in part]
+        for part in (inside, means)
+    ]
+    without, found = fitted(channels, inside, means), fitted(channels, *with_it)
+    assert found.coefficients[2] == 0.0
+    np.testing.assert_allclose(np.delete(found.coefficients, 2), without.coefficients, rtol=1e-9)
+    assert found.likelihood == pytest.approx(without.likelihood, rel=1e-9)
