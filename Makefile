@@ -5,7 +5,7 @@ BIN := $(VENV)/bin
 RUN ?= friction-run
 LARGEST ?= 1e8
 
-.PHONY: reproduce test lint coverage blind comparison fleet bench fuzz kill clean
+.PHONY: reproduce test lint coverage blind comparison fleet planning wear bench fuzz kill clean
 
 reproduce: $(VENV)/installed
 	$(BIN)/frictioncli run sample_logs/kr10 -w $(RUN)
@@ -25,6 +25,12 @@ comparison: $(VENV)/studied
 
 fleet: $(VENV)/tested
 	OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1 $(BIN)/python -m tests.studies.fleet
+
+planning: $(VENV)/tested
+	OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1 $(BIN)/python -m tests.studies.planning
+
+wear: $(VENV)/tested
+	OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1 $(BIN)/python -m tests.studies.wear 20
 
 bench: $(VENV)/studied
 	OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1 $(BIN)/python -m tests.studies.minimum

@@ -14,7 +14,7 @@ LAYERS = [
     {"pipeline"},
     {"chain"},
     {"workfolder"},
-    {"report", "inspecting"},
+    {"report", "inspecting", "experiment", "deployment", "comparing"},
     {"correction", "diagnosis"},
     {"model", "effects"},
     {"motion", "reading", "simulator"},

@@ -25,8 +25,11 @@ from frictioncli.workfiles import (
 )
 
 if TYPE_CHECKING:
+    from frictioncli.chain.comparing import above_threshold, compare
     from frictioncli.chain.correcting import evaluate, simulate
+    from frictioncli.chain.deploying import deployed, export
     from frictioncli.chain.modelling import diagnose, fit, has_finding
+    from frictioncli.chain.planning import plan, plan_new
     from frictioncli.chain.reading import ingest, pair, separate
     from frictioncli.chain.showing import report
 
@@ -40,6 +43,12 @@ _STAGES = {
     "simulate": "correcting",
     "evaluate": "correcting",
     "report": "showing",
+    "plan": "planning",
+    "plan_new": "planning",
+    "export": "deploying",
+    "deployed": "deploying",
+    "compare": "comparing",
+    "above_threshold": "comparing",
 }
 """Function -> module of this package."""
 
@@ -55,12 +64,18 @@ __all__ = [
     "SCHEDULE",
     "TORQUES",
     "Done",
+    "above_threshold",
+    "compare",
+    "deployed",
     "diagnose",
     "evaluate",
+    "export",
     "fit",
     "has_finding",
     "ingest",
     "pair",
+    "plan",
+    "plan_new",
     "report",
     "separate",
     "simulate",

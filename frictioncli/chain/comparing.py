@@ -20,10 +20,9 @@ from frictioncli.files import whole, write_text
 from frictioncli.model.document import FrictionModel, read_models
 from frictioncli.provenance import Provenance, sha256, to_json
 from frictioncli.report.trend import trend_pictures
-from frictioncli.workfiles import MODEL, RECORDINGS, TORQUES
+from frictioncli.workfiles import COMPARISON, MODEL, RECORDINGS, TORQUES
 from frictioncli.workfolder import outdated
 
-COMPARISON = "comparison.json"
 TREND = "trend"
 
 

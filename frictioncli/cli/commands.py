@@ -10,7 +10,10 @@ from typing import Annotated, Any
 import typer
 
 from frictioncli.cli import options as o
+from frictioncli.cli.compare import compare
+from frictioncli.cli.export import export
 from frictioncli.cli.fleet import fleet
+from frictioncli.cli.plan import plan
 from frictioncli.cli.terminal import say
 from frictioncli.correction.settings import CorrectionSettings, EvaluationGrid, ScheduleSettings
 from frictioncli.diagnosis.settings import DiagnosisSettings
@@ -286,6 +289,9 @@ def synthesize(
     say(make(folder, settings))
 
 
+app.command()(plan)
+app.command()(export)
+app.command()(compare)
 app.command()(fleet)
 
 

@@ -79,7 +79,7 @@ def trips_of(program: Program, servo: Servo, series: tuple[Series, ...]) -> Trip
     return Trips(
         series=np.repeat(np.arange(len(series)), counts),
         begin=np.concatenate(
-            [one.start + program.trip_begins(servo, one.speeds) for one in series]
+            [one.start + program.of(one).trip_begins(servo, one.speeds) for one in series]
         ),
         speed=np.concatenate([one.speeds for one in series]),
         load=np.repeat([one.load for one in series], counts),

@@ -1,6 +1,6 @@
 """The motion programs: the speed sweep and the thermal cycle, run on the thermal history."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -49,6 +49,10 @@ class Program:
     lead: float
     pause: float
 
+    def of(self, series: "Series") -> "Program":
+        """Return the program with the angles of a series."""
+        return self if series.angles is None else replace(self, angles=series.angles)
+
     def trips(self, speed: float) -> RoundTrips:
         """Return the round trips at one speed."""
         return RoundTrips(speed=speed, angles=self.angles, dwell=self.dwell)
@@ -86,12 +90,15 @@ class Series:
         Speed of each round trip. [deg/s]
     load : int
         Number of the payload that it is measured with, among the run's.
+    angles : tuple of float or None
+        Angles between which it turns; None: the program's. [deg]
     """
 
     phase: str
     start: float
     speeds: tuple[float, ...]
     load: int = 0
+    angles: tuple[float, float] | None = None
 
 
 def run_program(

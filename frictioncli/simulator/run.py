@@ -117,7 +117,7 @@ def prepare(settings: SynthesisSettings, number: int, seeds: np.random.SeedSeque
         axis=settings.joint,
         payloads=payloads,
         joints=tuple(
-            _joint(settings.joint_kind, one, own(settings.motor_heat_share)) for one in payloads
+            joint_of(settings.joint_kind, one, own(settings.motor_heat_share)) for one in payloads
         ),
         program=replace(program, sweep_speeds=(), cycle_speeds=SPEEDS) if enriched else program,
         ambient=Ambient(start=own(settings.ambient), drift=own(settings.ambient_drift)),
@@ -177,7 +177,8 @@ def _run(run: Run, kind: type[History]) -> tuple[History, tuple[Series, ...]]:
     return run_enriched(run.joints, run.program, run.ambient, generator, kind)
 
 
-def _joint(kind: str, payload: float, motor_heat_share: float) -> Joint:
+def joint_of(kind: str, payload: float, motor_heat_share: float) -> Joint:
+    """Return the joint of a kind with a payload [kg] and a share of heat at the motor."""
     joint = defaults.joint(payload=payload, motor_heat_share=motor_heat_share)
     if kind == "zones":
         return joint

@@ -74,7 +74,7 @@ def simulate_world(settings: SynthesisSettings, *, rebuilt: bool = True) -> Worl
         states = [part.state for parts in cells for part in parts]
         planted = plant(effects, settings.seed, states, settings.sign)
     tables = [
-        _table(course, parts, planted, rebuilt)
+        table_of(course, parts, planted, rebuilt)
         for course, parts in zip(courses, cells, strict=True)
     ]
     together = pd.concat(tables, ignore_index=True)
@@ -102,8 +102,10 @@ def _cells(course: Course) -> list[Cells]:
     ]
 
 
-def _table(course: Course, parts: list[Cells], planted: Planted, rebuilt: bool) -> pd.DataFrame:
-    """Return the torques of one run."""
+def table_of(
+    course: Course, parts: list[Cells], planted: Planted, rebuilt: bool = True
+) -> pd.DataFrame:
+    """Return the torques of one run from its cells."""
     run, trips = course.run, course.trips
     sign = run.logger.sign
     offset_seed, noise_seed, register_seed = (generator_of(seed) for seed in run.seeds.spawn(3))
@@ -163,7 +165,9 @@ def _torque(part: Cells, planted: Planted, sign: int) -> NDArray[np.float64]:
 def _middles(course: Course) -> NDArray[np.float64]:
     """Return the time from each round trip's begin to the middle of its pair [s]."""
     run = course.run
-    durations = [run.program.trip_durations(run.joint.servo, one.speeds) for one in course.series]
+    durations = [
+        run.program.of(one).trip_durations(run.joint.servo, one.speeds) for one in course.series
+    ]
     return np.asarray((np.concatenate(durations) - run.program.dwell) / 2.0 + 0.1)
 
 

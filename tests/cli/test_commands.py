@@ -25,6 +25,9 @@ COMMANDS = (
     "diagnose",
     "report",
     "run",
+    "plan",
+    "export",
+    "compare",
     "fleet",
     "synthesize",
 )

@@ -1,0 +1,1 @@
+"""The next experiment: what to measure so that open questions of a diagnosis are settled."""

@@ -1,0 +1,29 @@
+"""Many speeds in equal steps up to the highest: laws of speed differ in how they bow."""
+
+import random
+
+import numpy as np
+
+from frictioncli.experiment.block import Block
+from frictioncli.experiment.limits import Limits
+from frictioncli.experiment.steps import Series
+
+_SPEEDS = 10
+
+
+def variants(limits: Limits, seed: int) -> tuple[Block, ...]:
+    """Return one series of evenly spaced speeds, in random order."""
+    highest = min(limits.fastest, limits.highest_useful)
+    lowest = min(max(limits.slowest, highest / _SPEEDS), highest)
+    able = {limits.speed(float(one)) for one in np.linspace(lowest, highest, _SPEEDS)}
+    speeds = sorted(one for one in able if one <= limits.highest_useful)
+    random.Random(seed).shuffle(speeds)
+    if not speeds:
+        return ()
+    return (
+        Block(
+            name="even speeds",
+            reason="ten speeds in equal steps, half of them fast: how friction bows over speed",
+            steps=(Series(speeds=tuple(speeds), low=limits.low, high=limits.high),),
+        ),
+    )

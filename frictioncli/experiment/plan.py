@@ -1,0 +1,260 @@
+"""The plan of the next experiment for one joint."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+import pandas as pd
+
+from frictioncli.diagnosis.extended import ExtendedModel
+from frictioncli.diagnosis.gravity import NAMES
+from frictioncli.diagnosis.problem import Problem, build_problems
+from frictioncli.errors import NotEnoughData
+from frictioncli.experiment.block import Block
+from frictioncli.experiment.blocks import all_blocks
+from frictioncli.experiment.choose import chosen, seconds_of, steps_of
+from frictioncli.experiment.limits import Limits, limits_of
+from frictioncli.experiment.outlook import Outlook
+from frictioncli.experiment.rivals import opening
+from frictioncli.experiment.rows import Joint, Moment, foreseen, plain
+from frictioncli.experiment.settings import PlanSettings
+from frictioncli.experiment.warmth import warmth_of
+from frictioncli.experiment.worth import decided
+from frictioncli.model.friction import PUBLISHED, FrictionParameters
+
+CHECK = 0.28
+"""Share of the time that is kept for the check on the next day."""
+
+_MORE = 1.02
+"""A further block of the check must show so much more."""
+
+_LEVER = 0.5 * 9.80665
+"""Gravity torque of a mass at half a metre, where no payload has been changed yet. [N·m/kg]"""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Expected:
+    """What is expected after a part of the programme.
+
+    Attributes
+    ----------
+    decided : tuple of float
+        Probability, per question, that it ends with the right name alone.
+    chances : tuple of ndarray
+        Probability, per question, that rival i, if it is at work, leaves rival j behind.
+    half_widths : dict of str to float
+        Half of each parameter's 95 % interval.
+    """
+
+    decided: tuple[float, ...]
+    chances: tuple[np.ndarray, ...]
+    half_widths: Mapping[str, float]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Plan:
+    """The next experiment for one joint.
+
+    Attributes
+    ----------
+    joint : int
+        Joint number.
+    verdict : str
+        The diagnosis that it starts from.
+    torque_unit : str
+        Unit of everything torque-like.
+    limits : Limits
+        Within which it stays.
+    outlook : Outlook
+        What is open.
+    blocks : tuple of Block
+        The programme.
+    moments : tuple of Moment
+        When each block begins and ends, and how warm the motor is then.
+    check : tuple of Block
+        What is repeated on the next day.
+    check_moments : tuple of Moment
+        The same of it.
+    expected : tuple of Expected
+        Before the programme, and after each of its blocks.
+    """
+
+    joint: int
+    verdict: str
+    torque_unit: str
+    limits: Limits
+    outlook: Outlook
+    blocks: tuple[Block, ...]
+    moments: tuple[Moment, ...]
+    check: tuple[Block, ...]
+    check_moments: tuple[Moment, ...]
+    expected: tuple[Expected, ...]
+
+
+def plan_joint(
+    torques: pd.DataFrame,
+    torque_unit: str,
+    document: Mapping[str, Any],
+    extended: ExtendedModel,
+    settings: PlanSettings,
+) -> Plan:
+    """Plan the next experiment for one joint.
+
+    Parameters
+    ----------
+    torques : DataFrame
+        Rows of :data:`frictioncli.schemas.TORQUES` of a single joint.
+    torque_unit : str
+        Unit of everything torque-like.
+    document : mapping
+        The joint's part of ``diagnosis.json``.
+    extended : ExtendedModel
+        Its extended model.
+    settings : PlanSettings
+        Budget and limits.
+
+    Raises
+    ------
+    OptionError
+        If the limits contradict each other.
+    NotEnoughData
+        If no block fits into the time.
+    """
+    limits = limits_of(torques, settings)
+    outlook = outlook_of(torques, document, extended, limits)
+    candidates = all_blocks(limits, settings.seed)
+    if outlook.joint.warmth is None:  # what heats cannot be told apart from what does not
+        candidates = tuple(block for block in candidates if not block.name.startswith("heat"))
+    payload = outlook.joint.payload
+    budget = 60 * settings.minutes
+    blocks = chosen(candidates, outlook.worth, (1 - CHECK) * budget, payload, settings.seed)
+    if not blocks:
+        raise NotEnoughData(
+            f"joint {_number_of(torques)}: no block fits into {settings.minutes:g} min, or none"
+            " tells anything new; give more time with --minutes"
+        )
+    check = check_of(outlook, blocks, budget - seconds_of(blocks, payload), payload)
+    return Plan(
+        joint=_number_of(torques),
+        verdict=str(document["verdict"]),
+        torque_unit=torque_unit,
+        limits=limits,
+        outlook=outlook,
+        blocks=blocks,
+        moments=_moments(outlook.joint, blocks),
+        check=check,
+        check_moments=_moments(outlook.joint, check),
+        expected=tuple(expected(outlook, blocks[:count]) for count in range(len(blocks) + 1)),
+    )
+
+
+def outlook_of(
+    torques: pd.DataFrame, document: Mapping[str, Any], extended: ExtendedModel, limits: Limits
+) -> Outlook:
+    """Return what is open of one joint; parameters as of :func:`plan_joint`."""
+    problem, _ = build_problems(torques, extended.temperature)
+    joint = Joint(
+        torques=plain(torques),
+        temperature=extended.temperature,
+        parameters=_planning_parameters(problem),
+        gravity=_planning_gravity(problem, limits),
+        warmth=warmth_of(torques),
+    )
+    return Outlook.of(
+        joint,
+        opening(problem, document, extended),
+        unnamed=document["verdict"] == "unnamed",
+    )
+
+
+def check_of(
+    outlook: Outlook, blocks: Sequence[Block], budget: float, payload: float | None
+) -> tuple[Block, ...]:
+    """Return what is repeated on the next day: blocks that show the likely causes most, in order.
+
+    Diagnosis keeps the last run to see whether a cause is worth modelling. Where the cause does not
+    show there, a right name would be dropped.
+
+    Parameters
+    ----------
+    outlook : Outlook
+        What is open.
+    blocks : sequence of Block
+        The programme.
+    budget : float
+        Time for the check. [s]
+    payload : float or None
+        What is on before. [kg]
+    """
+    offered = list(dict.fromkeys(blocks))
+    taken: tuple[Block, ...] = ()
+    value = 0.0
+    while True:
+        fitting = [(*taken, one) for one in offered if seconds_of((*taken, one), payload) <= budget]
+        shown = [outlook.shown(steps_of(one)) for one in fitting]
+        if not shown or max(shown) <= value * _MORE:
+            return taken
+        taken, value = fitting[shown.index(max(shown))], max(shown)
+
+
+def expected(outlook: Outlook, blocks: Sequence[Block]) -> Expected:
+    """Return what is expected after blocks."""
+    sight = outlook.after(steps_of(blocks)) if blocks else outlook.before
+    chance = outlook.chances(sight)
+    return Expected(
+        decided=tuple(
+            decided(question, one)
+            for question, one in zip(outlook.opening.questions, chance, strict=True)
+        ),
+        chances=chance,
+        half_widths=outlook.narrowed(sight).half_widths,
+    )
+
+
+def _moments(joint: Joint, blocks: Sequence[Block]) -> tuple[Moment, ...]:
+    """Return when blocks begin and end, and how warm the motor is then."""
+    _, each = foreseen(joint, steps_of(blocks), "planned")
+    found, first = [], 0
+    for block in blocks:
+        own = each[first : first + len(block.steps)]
+        first += len(block.steps)
+        warm = (own[0].temperatures[0], own[-1].temperatures[1])
+        found.append(Moment(own[0].start, own[-1].end, warm))
+    return tuple(found)
+
+
+def _planning_parameters(problem: Problem) -> FrictionParameters:
+    """Return the fitted friction; what the data cannot tell has a usual value.
+
+    A design that is best for one value of a parameter needs a guess of it [1]_. Where the fall with
+    temperature is not determined, the published rate is taken, and half of the viscous part falls.
+
+    References
+    ----------
+    .. [1] H. Chernoff, "Locally optimal designs for estimating parameters," Ann. Math. Stat. 24(4),
+       1953, doi:10.1214/aoms/1177728915.
+    """
+    fitted = problem.parameters
+    if fitted.gamma > 0 and fitted.delta > 0:
+        return fitted
+    warm = float(np.mean(problem.table.temperature)) or 20.0
+    viscous = max(fitted.beta, 1e-3 * float(np.mean(np.abs(problem.friction))))
+    return replace(
+        fitted,
+        beta=viscous / 2,
+        gamma=viscous / 2 * float(np.exp(PUBLISHED.delta * warm)),
+        delta=PUBLISHED.delta,
+    )
+
+
+def _planning_gravity(problem: Problem, limits: Limits) -> np.ndarray:
+    """Return the fitted gravity; a payload that is new to the data gets a usual lever."""
+    if len(problem.gravity) > len(NAMES) or not limits.payloads:
+        return problem.gravity
+    return np.append(problem.gravity, [_LEVER, 0.0])
+
+
+def _number_of(torques: pd.DataFrame) -> int:
+    """Return the number of the joint that rows are of."""
+    return int(torques["joint"].iloc[0])

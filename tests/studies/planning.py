@@ -1,0 +1,75 @@
+"""Does a plan settle what a thin experiment leaves open? Writes docs/planning.md's table.
+
+Thin experiments on simulated joints are diagnosed; where the verdict is ambiguous, the plan, the
+thin experiment again and blocks at random, all of the same length, are simulated on the same joint
+and diagnosed together with it. Rows are kept in ``build/planning.csv``; a second call goes on where
+the first one stopped, and repeats what changed sources have made stale.
+
+Usage: OMP_NUM_THREADS=1 python -m tests.studies.planning [SEEDS] [--minutes M] [--keep] [--page]
+"""
+
+import argparse
+import csv
+import time
+
+import pandas as pd
+
+from tests.studies.planning_examined import COLUMNS, examined
+from tests.studies.planning_page import page
+from tests.studies.planning_worlds import KEY, ROOT, sources, worlds
+
+STORE = ROOT / "build" / "planning.csv"
+PAGE = ROOT / "docs" / "planning.md"
+
+
+def stored(digest: str, *, keep: bool) -> pd.DataFrame:
+    """Return the last row of each world, as text; stale ones only if they are to be kept."""
+    if not STORE.exists():
+        return pd.DataFrame(columns=list(COLUMNS), dtype=str)
+    rows = pd.read_csv(STORE, dtype=str, keep_default_na=False).reindex(columns=list(COLUMNS))
+    if not keep:
+        rows = rows[rows["sources"] == digest]
+    return rows.fillna("").drop_duplicates(list(KEY), keep="last", ignore_index=True)
+
+
+def run(seeds: int, minutes: float, digest: str, done: set[tuple[str, ...]]) -> None:
+    """Examine the worlds that are not done; begin none after so many minutes."""
+    until = time.monotonic() + 60.0 * minutes
+    STORE.parent.mkdir(exist_ok=True)
+    fresh = not STORE.exists()
+    with STORE.open("a", encoding="utf-8", newline="") as stream:
+        writer = csv.DictWriter(stream, COLUMNS)
+        if fresh:
+            writer.writeheader()
+        for world in worlds(seeds):
+            if time.monotonic() > until:
+                break
+            if world.key not in done:
+                writer.writerow(examined(world, digest))
+                stream.flush()
+
+
+def main(arguments: argparse.Namespace) -> None:
+    """Run what is missing, then write the page from what is there."""
+    digest = sources()
+    if not arguments.page:
+        rows = stored(digest, keep=arguments.keep)
+        done = set(zip(*(rows[name] for name in KEY), strict=True))
+        run(arguments.seeds, arguments.minutes, digest, done)
+    rows = stored(digest, keep=arguments.keep)
+    if rows.empty:
+        raise SystemExit(f"{STORE} has no rows of the present sources; nothing written")
+    PAGE.write_text(page(rows, digest, PAGE.read_text(encoding="utf-8")), encoding="utf-8")
+
+
+def _arguments() -> argparse.Namespace:
+    parser = argparse.ArgumentParser(description="Plan for thin experiments.")
+    parser.add_argument("seeds", nargs="?", type=int, default=3, help="repetitions of each world")
+    parser.add_argument("--minutes", type=float, default=float("inf"), help="start none later")
+    parser.add_argument("--keep", action="store_true", help="stale rows count as done")
+    parser.add_argument("--page", action="store_true", help="write the page from the store only")
+    return parser.parse_args()
+
+
+if __name__ == "__main__":
+    main(_arguments())

@@ -1,0 +1,126 @@
+"""One world of the planning study: made ambiguous, planned for, measured again in three ways."""
+
+import random
+import time
+
+import pandas as pd
+
+from frictioncli.diagnosis.diagnose import Diagnosis, diagnose_joint
+from frictioncli.diagnosis.document import diagnosis_document, extended_document
+from frictioncli.diagnosis.extended import extended_model
+from frictioncli.diagnosis.problem import build_problems
+from frictioncli.diagnosis.search import find_causes
+from frictioncli.diagnosis.settings import DiagnosisSettings
+from frictioncli.effects import EFFECTS
+from frictioncli.errors import OptionError
+from frictioncli.experiment.block import Block
+from frictioncli.experiment.blocks import all_blocks
+from frictioncli.experiment.choose import seconds_of as block_seconds
+from frictioncli.experiment.choose import steps_of
+from frictioncli.experiment.plan import CHECK, plan_joint
+from frictioncli.experiment.settings import PlanSettings
+from frictioncli.model.fitting import fit_joint
+from frictioncli.model.settings import FitSettings
+from frictioncli.simulator.programme import Act, simulate_programmes
+from tests.studies.planning_worlds import KEY, World, acts_of, beginning, thin
+
+MINUTES = 90.0
+MAX_SPEED = 180.0
+"""What the plans, and blocks at random, may use: the joint's own limit, which the thin experiment
+does not reach. [deg/s]"""
+
+TEMPERATURE = "motor"
+WAYS = ("plan", "repeat", "random")
+"""The plan, the thin experiment again, and blocks at random; all of the same length."""
+
+COLUMNS = (
+    *KEY,
+    "sources",
+    "verdict",
+    "sets",
+    "truth_held",
+    "expected",
+    "blocks",
+    *(f"{way}_sets" for way in WAYS),  # causes by ; and effects of a set by |, of all runs
+    "note",
+    "seconds",
+)
+
+
+def examined(world: World, digest: str) -> dict[str, object]:
+    """Simulate one world, plan for it if its verdict is ambiguous, and return its row."""
+    began = time.perf_counter()
+    row: dict[str, object] = dict(zip(KEY, world.key, strict=True))
+    row["sources"] = digest
+    try:
+        row |= _compared(world)
+    except OptionError as error:
+        row |= {"verdict": "not hidden", "note": str(error)}
+    except Exception as error:  # a world that breaks down is a result, too
+        row |= {"verdict": "failed", "note": f"{type(error).__name__}: {error}"}
+    row["seconds"] = f"{time.perf_counter() - began:.1f}"
+    return row
+
+
+def _compared(world: World) -> dict[str, object]:
+    first = thin(world.design)
+    torques = simulate_programmes(world.settings(), [first], 1)[0]
+    said = _diagnosed(torques)
+    row: dict[str, object] = {"verdict": said.verdict, "sets": _sets(said)}
+    open_sets = [cause.effects for cause in said.causes if len(cause.effects) > 1]
+    row["truth_held"] = int(any(world.hidden in names for names in open_sets))
+    if said.verdict != "ambiguous" or not row["truth_held"]:
+        return row
+    model = fit_joint(torques, {}, FitSettings(temperature=TEMPERATURE))
+    settings = PlanSettings(minutes=MINUTES, max_speed=MAX_SPEED)
+    plan = plan_joint(
+        torques,
+        "N·m",
+        diagnosis_document(said, DiagnosisSettings()),
+        extended_model(extended_document(said, model)),
+        settings,
+    )
+    row["expected"] = ";".join(f"{one:.3f}" for one in plan.expected[-1].decided)
+    row["blocks"] = ";".join(block.name for block in plan.blocks)
+    for way, (programme, check) in {
+        "plan": (acts_of(steps_of(plan.blocks)), acts_of(steps_of(plan.check))),
+        "repeat": tuple(beginning(first, 60 * MINUTES * share) for share in (1 - CHECK, CHECK)),
+        "random": _random(all_blocks(plan.limits, settings.seed), world),
+    }.items():
+        runs = simulate_programmes(world.settings(), [first, programme, check], 1)
+        row[f"{way}_sets"] = _named(pd.concat(runs, ignore_index=True))
+    return row
+
+
+def _named(torques: pd.DataFrame) -> str:
+    """Return the sets of causes by all runs together, the last one not kept out."""
+    problem, _ = build_problems(torques, TEMPERATURE)
+    found = find_causes(problem, EFFECTS, DiagnosisSettings())
+    return ";".join("|".join(cause.effects) for cause in found.causes)
+
+
+def _diagnosed(torques: pd.DataFrame) -> Diagnosis:
+    return diagnose_joint(torques, TEMPERATURE, "N·m", DiagnosisSettings())
+
+
+def _sets(said: Diagnosis) -> str:
+    return ";".join("|".join(cause.effects) for cause in said.causes)
+
+
+def _random(blocks: tuple[Block, ...], world: World) -> tuple[list[Act], list[Act]]:
+    """Return blocks at random that fill the same time as a plan, and their check, at random too."""
+    generator = random.Random(" ".join(world.key))
+    programme = _at_random(generator, blocks, (1 - CHECK) * 60 * MINUTES)
+    check = _at_random(generator, programme, CHECK * 60 * MINUTES)
+    return acts_of(steps_of(programme)), acts_of(steps_of(check))
+
+
+def _at_random(
+    generator: random.Random, blocks: tuple[Block, ...], budget: float
+) -> tuple[Block, ...]:
+    taken: tuple[Block, ...] = ()
+    while True:
+        fitting = [one for one in blocks if block_seconds((*taken, one), 0.0) <= budget]
+        if not fitting:
+            return taken
+        taken = (*taken, generator.choice(fitting))

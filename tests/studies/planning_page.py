@@ -1,0 +1,120 @@
+"""The tables of docs/planning.md, between its two marks."""
+
+import math
+
+import pandas as pd
+
+from tests.studies.planning_examined import CHECK, MINUTES, WAYS
+
+BEGIN, END = "<!-- study -->", "<!-- /study -->"
+_NAMES = {
+    "plan": "the plan",
+    "repeat": "the thin experiment again",
+    "random": "blocks at random",
+}
+_PROMISED = 0.5
+
+
+def wilson(count: int, total: int, z: float = 1.96) -> tuple[float, float]:
+    """Return Wilson's 95 % interval of a share (J. Am. Stat. Assoc. 22, 1927)."""
+    if not total:
+        return 0.0, 1.0
+    share, square = count / total, z * z / total
+    middle = (share + square / 2) / (1 + square)
+    half = z / (1 + square) * math.sqrt(share * (1 - share) / total + square / (4 * total))
+    return max(middle - half, 0.0), min(middle + half, 1.0)
+
+
+def told(rows: pd.DataFrame) -> pd.DataFrame:
+    """Return the ambiguous worlds whose set holds the truth, with what became of them.
+
+    Added for each way: ``right`` (the hidden effect stands alone in a set, and the old question is
+    gone) and ``wrong`` (a set of one name is not hidden).
+    """
+    open_ = rows[(rows["verdict"] == "ambiguous") & (rows["truth_held"] == "1")].copy()
+    for way in WAYS:
+        sets = [[one.split("|") for one in text.split(";") if one] for text in open_[f"{way}_sets"]]
+        both = list(zip(sets, open_["hidden"], strict=True))
+        open_[f"{way}_right"] = [[truth] in found for found, truth in both]
+        open_[f"{way}_wrong"] = [
+            any(len(one) == 1 and one != [truth] for one in found) for found, truth in both
+        ]
+        open_[f"{way}_lost"] = [not any(truth in one for one in found) for found, truth in both]
+    open_["promised"] = [
+        min((float(one) for one in text.split(";") if one), default=0.0)
+        for text in open_["expected"]
+    ]
+    return open_
+
+
+def share(values: pd.Series) -> str:
+    """Return a share in per cent with its numbers and interval."""
+    count, total = int(values.sum()), len(values)
+    if not total:
+        return "-"
+    low, high = wilson(count, total)
+    return f"{count / total:.0%} ({count}/{total}) [{low:.0%}, {high:.0%}]"
+
+
+def page(rows: pd.DataFrame, digest: str, document: str) -> str:
+    """Return the document with its tables made anew."""
+    before, _, rest = document.partition(BEGIN)
+    _, _, after = rest.partition(END)
+    return f"{before}{BEGIN}\n{tables(rows, digest)}\n{END}{after}"
+
+
+def _shown(sets: str) -> str:
+    """Return sets of causes for people: names of a set with "or", sets with "and"."""
+    return sets.replace("|", " or ").replace(";", "; and ") or "none"
+
+
+def tables(rows: pd.DataFrame, digest: str) -> str:
+    """Return the tables."""
+    found = told(rows)
+    asked = len(rows[~rows["verdict"].isin(["not hidden", "failed"])])
+    failed = len(rows[rows["verdict"] == "failed"])
+    stale = int((rows["sources"] != digest).sum())
+    ambiguous = int((rows["verdict"] == "ambiguous").sum())
+    sure = found[found["promised"] >= _PROMISED]
+    lines = [
+        f"{asked} thin experiments were diagnosed; {ambiguous} were ambiguous, and in {len(found)}",
+        f"of these the set held what is hidden. {failed} more broke down in the diagnosis.",
+        f"Each way took {MINUTES:.0f} min, {CHECK:.0%} of it for the check.",
+        "Square brackets are Wilson's 95 % intervals.",
+        "",
+    ]
+    if stale:
+        lines += [f"{stale} rows were made before the last changes of the program's sources.", ""]
+    for title, part in (
+        ("All", found),
+        (f"Where the plan promised {_PROMISED:.0%} or more", sure),
+        ("Where it promised less, and said so", found[found["promised"] < _PROMISED]),
+    ):
+        if title != "All" and len(part) in (0, len(found)):
+            continue
+        lines += [
+            f"**{title}**, {len(part)} joints:",
+            "",
+            "| | right name alone | truth in no set | another name alone |",
+            "|---|---|---|---|",
+            *(
+                f"| {_NAMES[way]} | {share(part[f'{way}_right'])} | {share(part[f'{way}_lost'])}"
+                f" | {share(part[f'{way}_wrong'])} |"
+                for way in WAYS
+            ),
+            "",
+        ]
+    mean = float(found["promised"].mean()) if len(found) else float("nan")
+    lines += [
+        f"The plans promised the right name alone in {mean:.0%} of the cases, in the mean.",
+        "",
+        "| hidden | design | size [N·m] | set before | promised | plan | again | at random |",
+        "|---|---|---|---|---|---|---|---|",
+    ]
+    for _, row in found.sort_values(["hidden", "design", "size", "seed"]).iterrows():
+        cells = ["**right**" if row[f"{way}_right"] else _shown(row[f"{way}_sets"]) for way in WAYS]
+        lines.append(
+            f"| {row['hidden']} | {row['design']} | {row['size']} |"
+            f" {_shown(row['sets'])} | {row['promised']:.0%} | {' | '.join(cells)} |"
+        )
+    return "\n".join(lines)

@@ -1,0 +1,145 @@
+"""Worlds of the planning study: thin experiments on joints that hide one effect."""
+
+import hashlib
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from frictioncli.experiment.steps import MOUNTING, Heat, Series, Step, mountings
+from frictioncli.simulator.programme import Act, Measured, Moved, Stood
+from frictioncli.simulator.settings import SynthesisSettings
+
+ROOT = Path(__file__).parents[2]
+PACKAGES = ("diagnosis", "effects", "experiment", "simulator", "model")
+"""Packages that a result depends on."""
+
+LOW, HIGH, FASTEST = 0.0, 180.0, 101.2
+
+HIDDEN = (
+    "run_in",
+    "drift",
+    "coulomb_temperature",
+    "linear_viscous",
+    "quadratic_drag",
+    "velocity_exponent",
+)
+"""Effects that an experiment of heating alone mistakes for others: laws of time, way and
+temperature, and laws of speed."""
+
+SIZES = (2.5,)
+"""RMS torque of the hidden effect in the thin experiment. [N·m]"""
+
+DESIGNS = ("heating", "three speeds")
+"""Thin experiments of one run: heating only, measured at four speeds or at three."""
+
+KEY = ("design", "hidden", "size", "seed")
+
+
+@dataclass(frozen=True)
+class World:
+    """One thin experiment on a joint that hides one effect."""
+
+    design: str
+    hidden: str
+    size: float
+    seed: int
+
+    @property
+    def key(self) -> tuple[str, ...]:
+        """What identifies it in the store."""
+        return tuple(str(getattr(self, name)) for name in KEY)
+
+    def settings(self) -> SynthesisSettings:
+        """Return the joint: equation (16) and the hidden effect, noise by the world's own seed."""
+        digest = hashlib.sha256(" ".join(self.key).encode()).digest()
+        return SynthesisSettings(
+            seed=int.from_bytes(digest[:4], "big"),
+            joint_kind="plain",
+            effects=(f"{self.hidden}:{self.size}",),
+        )
+
+
+def worlds(seeds: int) -> list[World]:
+    """Return the worlds of so many seeds, in a fixed random order."""
+    found = []
+    for seed in range(seeds):
+        block = [
+            World(design, hidden, size, seed)
+            for design in DESIGNS
+            for hidden in HIDDEN
+            for size in SIZES
+        ]
+        order = np.random.default_rng([2019, seed]).permutation(len(block))
+        found += [block[place] for place in order]
+    return found
+
+
+def thin(design: str) -> list[Act]:
+    """Return the motions of a thin experiment."""
+    heat = Moved(speed=FASTEST, low=LOW, high=HIGH, seconds=180.0)
+    if design == "heating":
+        one = _series(19.1, 39.4, 67.5, FASTEST)
+        return [act for _ in range(12) for act in (one, heat)]
+    if design == "three speeds":
+        one = _series(20.0, 60.0, FASTEST)
+        return [act for _ in range(8) for act in (one, heat, heat)]
+    raise ValueError(design)
+
+
+def _series(*speeds: float) -> Measured:
+    return Measured(speeds=speeds, low=LOW, high=HIGH)
+
+
+def acts_of(steps: Sequence[Step]) -> list[Act]:
+    """Return what the simulator is to do for the steps of a plan."""
+    found: list[Act] = []
+    for step, change in zip(steps, mountings(steps, None), strict=True):
+        if change:
+            found.append(Stood(MOUNTING))
+        if isinstance(step, Series):
+            found.append(
+                Measured(speeds=step.speeds, low=step.low, high=step.high, more=step.payload or 0.0)
+            )
+        elif isinstance(step, Heat):
+            found.append(
+                Moved(
+                    speed=step.speed,
+                    low=step.low,
+                    high=step.high,
+                    seconds=step.seconds,
+                    until=step.until,
+                )
+            )
+        else:
+            found.append(Stood(step.seconds))
+    return found
+
+
+def seconds_of(act: Act) -> float:
+    """Return about how long a motion takes [s]."""
+    if isinstance(act, Measured):
+        return sum(2 * (act.high - act.low) / speed + 2.0 for speed in act.speeds)
+    return act.seconds
+
+
+def beginning(acts: Sequence[Act], seconds: float) -> list[Act]:
+    """Return motions, begun again where they end, that fit into a time [s]."""
+    found: list[Act] = []
+    left, place = seconds, 0
+    while seconds_of(acts[place % len(acts)]) <= left:
+        found.append(acts[place % len(acts)])
+        left -= seconds_of(found[-1])
+        place += 1
+    return found
+
+
+def sources() -> str:
+    """Return a digest of the sources that the results depend on."""
+    files = [
+        file
+        for package in PACKAGES
+        for file in sorted((ROOT / "frictioncli" / package).rglob("*.py"))
+    ]
+    return hashlib.sha256(b"\0".join(file.read_bytes() for file in files)).hexdigest()[:12]
