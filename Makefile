@@ -5,6 +5,10 @@ BIN := $(VENV)/bin
 RUN ?= friction-run
 LARGEST ?= 1e8
 
+# tests and studies share the cores out among processes: one thread of linear algebra each
+export OMP_NUM_THREADS := 1
+export OPENBLAS_NUM_THREADS := 1
+
 .PHONY: reproduce test lint coverage blind comparison fleet planning wear bench fuzz kill clean
 
 reproduce: $(VENV)/installed
@@ -18,30 +22,30 @@ coverage: $(VENV)/tested
 	$(BIN)/python -m tests.studies.coverage
 
 blind: $(VENV)/tested
-	OMP_NUM_THREADS=1 $(BIN)/python -m tests.studies.blind
+	$(BIN)/python -m tests.studies.blind
 
 comparison: $(VENV)/studied
-	OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1 $(BIN)/python -m tests.studies.comparison
+	$(BIN)/python -m tests.studies.comparison
 
 fleet: $(VENV)/tested
-	OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1 $(BIN)/python -m tests.studies.fleet
+	$(BIN)/python -m tests.studies.fleet
 
 planning: $(VENV)/tested
-	OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1 $(BIN)/python -m tests.studies.planning
+	$(BIN)/python -m tests.studies.planning
 
 wear: $(VENV)/tested
-	OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1 $(BIN)/python -m tests.studies.wear 20
+	$(BIN)/python -m tests.studies.wear 20
 
 bench: $(VENV)/studied
-	OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1 $(BIN)/python -m tests.studies.minimum
-	OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1 $(BIN)/python -m tests.studies.bench_growth --largest $(LARGEST)
-	OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1 $(BIN)/python -m tests.studies.bench
+	$(BIN)/python -m tests.studies.minimum
+	$(BIN)/python -m tests.studies.bench_growth --largest $(LARGEST)
+	$(BIN)/python -m tests.studies.bench
 
 fuzz: $(VENV)/tested
-	OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1 $(BIN)/python -m tests.studies.fuzz $(FUZZ)
+	$(BIN)/python -m tests.studies.fuzz $(FUZZ)
 
 kill: $(VENV)/tested
-	OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1 $(BIN)/python -m tests.studies.kill
+	$(BIN)/python -m tests.studies.kill
 
 lint: $(VENV)/tested
 	$(BIN)/ruff check .

@@ -10,13 +10,13 @@ import pytest
 from frictioncli import chain, schemas, tables
 from frictioncli.diagnosis.diagnose import diagnose_joint
 from frictioncli.diagnosis.document import verdict_text
-from frictioncli.diagnosis.extended import EXTENDED
 from frictioncli.diagnosis.settings import DiagnosisSettings
 from frictioncli.effects import BY_NAME
 from frictioncli.errors import NotEnoughData, OptionError, TableError
 from frictioncli.provenance import Provenance
 from frictioncli.simulator.settings import SynthesisSettings
 from frictioncli.simulator.tabular import simulate_torques
+from frictioncli.workfiles import EXTENDED
 from tests.model.worlds import cycle_temperatures, torques
 
 

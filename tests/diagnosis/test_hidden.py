@@ -33,17 +33,8 @@ SEEDS = {"payload_change": 72}
 """71, or the next one with which the change falls on the first day, which alone is seen."""
 
 
-BESIDE_A_LAG = (
-    "stribeck",
-    "coulomb_temperature",
-    "load_temperature",
-    "drift",
-    "payload_change",
-    "dress_pack",
-    "position_ripple",
-    "reversal_transient",
-)
-"""One effect of each kind: of speed, temperature, load, history, gravity, stroke and ramps."""
+BESIDE_A_LAG = ("coulomb_temperature", "payload_change", "position_ripple")
+"""One effect of each channel, and one of the stroke; docs/blind.md has them all."""
 
 
 @functools.cache
@@ -108,7 +99,7 @@ def test_nothing_is_found_in_a_clean_joint(noise, protocol):
     assert sets(diagnosis) == []
 
 
-@pytest.mark.parametrize("name", ["position_temperature", "speed_resonance"])
+@pytest.mark.parametrize("name", ["position_temperature"])
 def test_what_the_catalogue_does_not_list_gets_no_name(name):
     diagnosis = diagnosed((f"{name}:1",), 71)
     assert diagnosis.verdict == "unnamed"

@@ -14,6 +14,7 @@ import pyarrow.csv as pcsv
 from numpy.typing import NDArray
 
 from frictioncli.reading.formats.base import CsvHints, RawBatch, Refusal
+from frictioncli.reading.formats.compression import packing_of
 from frictioncli.reading.formats.dialect import NOT_NUMBERS, Dialect, detect, split
 from frictioncli.reading.formats.encoding import Piece, decode_head, encoding_of, pieces
 
@@ -92,6 +93,10 @@ class DelimitedText:
     def tasks(self, columns: Collection[int], size: int) -> Iterator[Callable[[], RawBatch]]:
         """Yield in order what makes the batches; each may be called in a thread of its own."""
         wanted = sorted(columns)
+        if self._is_small(size):
+            # read in the thread, too: with many small files that is much of the work
+            yield partial(self._parse_whole, wanted, size)
+            return
         for piece in self._rows(size):
             yield partial(self._parse, piece, wanted)
 
@@ -121,6 +126,21 @@ class DelimitedText:
             parts = piece.content.split(b"\n", skip)
             if len(parts) > skip and parts[skip]:
                 yield Piece(self.dialect.data_line, piece.n_lines - skip, parts[skip])
+
+    def _is_small(self, size: int) -> bool:
+        try:
+            return self.path.stat().st_size <= size and packing_of(self.path) is None
+        except OSError:
+            return False  # reading it will tell
+
+    def _parse_whole(self, wanted: list[int], size: int) -> RawBatch:
+        """Parse a file that is one piece, or two where its last line has no end."""
+        found = list(self._rows(size))
+        if not found:
+            return _batch(None, np.empty(0, np.int64), wanted, np.empty(0, np.int64), ())
+        content = found[0].content if len(found) == 1 else b"".join(one.content for one in found)
+        n_lines = sum(piece.n_lines for piece in found)
+        return self._parse(Piece(found[0].first_line, n_lines, content), wanted)
 
     def _parse(self, piece: Piece, wanted: list[int]) -> RawBatch:
         content = self._blanks_joined(piece.content)
