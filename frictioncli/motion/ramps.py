@@ -60,6 +60,9 @@ _KINDS = dict.fromkeys(COLUMNS, np.float64) | {
 _HALF_SPAN = 0.015
 """Half of the time over which velocity is differentiated. [s]"""
 
+_MOST_NEIGHBOURS = 500
+"""A clock that is read in a wrong unit must not make windows of a million samples."""
+
 _ROLLING = 0.25
 """A move that begins or ends above this share of its speed is cut off there, not turned round."""
 
@@ -112,7 +115,7 @@ def ramp_rows(
     number = np.searchsorted(EDGES, distance, side="right") - 1
     values = {name: channels[name][index] for name in MEANS}
     time = channels["time"]
-    half = max(samples_in(_HALF_SPAN, period), 1)
+    half = min(max(samples_in(_HALF_SPAN, period), 1), _MOST_NEIGHBOURS)
     acceleration = slope(time, channels["velocity"], half)
     for name, shift in LAGS.items():
         values[name] = acceleration[np.clip(index + shift, 0, len(time) - 1)]

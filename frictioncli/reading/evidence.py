@@ -53,8 +53,15 @@ def motion_ratio(motions: list[Motion]) -> float | None:
 
 
 def _window_ratios(motion: Motion) -> NDArray[np.float64]:
+    if len(motion.velocity) != len(motion.time):
+        return np.empty(0)
+    # one damaged cell must not be the only place that moves
+    speed = np.abs(motion.velocity)
+    usual = speed <= _WILD * (float(np.quantile(speed, 0.95)) or np.inf)
+    if not usual.all():
+        motion = Motion(motion.time[usual], motion.position[usual], motion.velocity[usual])
     steps = np.diff(motion.time)
-    if len(motion.velocity) != len(motion.time) or not np.any(steps > 0):
+    if not np.any(steps > 0):
         return np.empty(0)
     area = steps * (motion.velocity[1:] + motion.velocity[:-1]) / 2
     travelled = np.concatenate(([0.0], np.cumsum(area)))

@@ -248,3 +248,14 @@ def test_logs_that_differ_in_side(tmp_path):
     columns["DriveMotorTorq_Act3[Nm]"] = columns["GearTorq_Act2[Nm]"]
     with pytest.raises(LogError, match="differ in side of the torque"):
         ingest([write(tmp_path / "log.csv", columns)], tmp_path / "work")
+
+
+@pytest.mark.parametrize("damage", [292277026596.0, -1e30, 1e308])
+def test_a_damaged_velocity_does_not_change_the_ratio(damage):
+    """It would else be the only place that moves."""
+    time, position, velocity, _ = back_and_forth()
+    broken = velocity.copy()
+    broken[len(broken) // 3] = damage
+    assert evidence.motion_ratio([evidence.Motion(time, position, broken)]) == pytest.approx(
+        1.0, rel=0.01
+    )
