@@ -11,7 +11,7 @@ import pandas as pd
 from numpy.typing import NDArray
 
 from frictioncli import tables
-from frictioncli.correction.settings import CorrectionSettings
+from frictioncli.correction.settings import CorrectionSettings, ScheduleSettings
 from frictioncli.diagnosis.applied import without_effects
 from frictioncli.diagnosis.extended import ExtendedModel, read_extended
 from frictioncli.errors import NotEnoughData
@@ -28,7 +28,7 @@ from frictioncli.report.missing import evaluation_missing
 from frictioncli.report.replayed import Grid, ReplayedPhase, replayed_phases
 from frictioncli.report.results import MOST_RUNS, JointResults
 from frictioncli.report.style import PHASE_WORDS
-from frictioncli.workfiles import EXTENDED
+from frictioncli.workfiles import EVALUATION, EXTENDED
 
 Array = NDArray[np.float64]
 
@@ -68,7 +68,7 @@ def explorers(work: Path, results: list[JointResults]) -> dict[int, Explorer]:
     results : list of JointResults
         What the report draws from.
     """
-    path = work / "evaluation.parquet"
+    path = work / EVALUATION
     stated = tables.document(path).get("settings", {}) if path.exists() else {}
     extensions, models = _extended(work)
     found = {}
@@ -200,7 +200,8 @@ def _agree(phases: list[ReplayedPhase], evaluation: pd.DataFrame, grid: Grid) ->
 
 def _start(results: JointResults, grid: Grid) -> tuple[int, int]:
     """Return the place of the simulated setting in the grid; of the usual one without it."""
-    k, tmax = 5.0, 3600.0
+    usual = ScheduleSettings()
+    k, tmax = usual.k, usual.tmax
     if not results.schedule.empty and pd.notna(results.schedule["k"].iloc[0]):
         k, tmax = (float(results.schedule[name].iloc[0]) for name in ("k", "tmax"))
     return _nearest(grid.k, k), _nearest(grid.tmax, tmax)

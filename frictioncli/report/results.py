@@ -14,6 +14,7 @@ from frictioncli.model.document import FrictionModel, read_models
 from frictioncli.model.friction import friction_torque
 from frictioncli.model.zero_load import PAIR_KEY, friction_at_zero_load, temperature_of
 from frictioncli.report.style import PHASES, SpeedStyle, speed_styles
+from frictioncli.workfiles import MODEL, TORQUES
 
 MOST_RUNS = 3
 """Runs drawn in a figure; more would not fit a page."""
@@ -155,11 +156,11 @@ def read_results(work: Path) -> list[JointResults]:
     TableError
         If ``torques.parquet`` or ``model.json`` is missing or damaged.
     """
-    path = work / "torques.parquet"
+    path = work / TORQUES
     if not path.exists():
         raise TableError(f"{path} is missing; 'frictioncli separate -w {work}' makes it")
     torques = tables.read(path, schemas.TORQUES)
-    models = read_models(work / "model.json")
+    models = read_models(work / MODEL)
     schedule = read_optional(work, schemas.SCHEDULE)
     evaluation = read_optional(work, schemas.EVALUATION)
     joints = [joint_results(model, torques, schedule, evaluation) for model in models]

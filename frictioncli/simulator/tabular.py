@@ -68,7 +68,7 @@ def simulate_world(settings: SynthesisSettings, *, rebuilt: bool = True) -> Worl
     seeds = np.random.SeedSequence(settings.seed).spawn(settings.runs)
     runs = [prepare(settings, number, seed) for number, seed in enumerate(seeds)]
     courses = simulate(runs, FastHistory)
-    cells = [_cells(course) for course in courses]
+    cells = [run_cells(course) for course in courses]
     planted = Planted()
     if effects:
         states = [part.state for parts in cells for part in parts]
@@ -86,7 +86,8 @@ def simulate_world(settings: SynthesisSettings, *, rebuilt: bool = True) -> Worl
     return World(together, planted)
 
 
-def _cells(course: Course) -> list[Cells]:
+def run_cells(course: Course) -> list[Cells]:
+    """Return the angle bins of one run, payload by payload."""
     run = course.run
     return [
         cells_of(

@@ -11,13 +11,12 @@ import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
-from frictioncli.simulator.cells import Cells, cells_of
 from frictioncli.simulator.fast_history import FastHistory
 from frictioncli.simulator.joint import Joint
 from frictioncli.simulator.planted.planting import Planted
-from frictioncli.simulator.run import Course, Run, prepare, simulate
+from frictioncli.simulator.run import Run, prepare, simulate
 from frictioncli.simulator.settings import SynthesisSettings
-from frictioncli.simulator.tabular import table_of
+from frictioncli.simulator.tabular import run_cells, table_of
 
 LOWEST, HIGHEST = 38, 60
 """Motor temperatures of the thermal cycle: it must be warmer than the warmest surroundings. [°C]"""
@@ -86,7 +85,9 @@ def torques_of(life: Life) -> pd.DataFrame:
         _changed(prepare(settings, number, seed), life, float(course))
         for number, (seed, course) in enumerate(zip(seeds, courses, strict=True))
     ]
-    tables = [table_of(course, _cells(course), Planted()) for course in simulate(runs, FastHistory)]
+    tables = [
+        table_of(course, run_cells(course), Planted()) for course in simulate(runs, FastHistory)
+    ]
     for number, table in enumerate(tables):
         table["run"] = f"day{number + 1:02d}"
         if life.kind == "sensor":
@@ -95,22 +96,6 @@ def torques_of(life: Life) -> pd.DataFrame:
     together = pd.concat(tables, ignore_index=True)
     # what a joint carries is not told here
     return together.assign(payload=np.nan)
-
-
-def _cells(course: Course) -> list[Cells]:
-    run = course.run
-    return [
-        cells_of(
-            joint,
-            run.program,
-            course.history,
-            course.journey,
-            course.trips,
-            load=load,
-            interval=run.logger.interval,
-        )
-        for load, joint in enumerate(run.joints)
-    ]
 
 
 def _course(life: Life) -> NDArray[np.float64]:
