@@ -23,6 +23,7 @@ from frictioncli.reading import manifest
 from frictioncli.reading.discovery import Run, discover
 from frictioncli.reading.formats.base import Refusal
 from frictioncli.reading.mapping import ChannelMap, read_map
+from frictioncli.reading.opening import open_run
 from frictioncli.reading.parts import Part, Reading, parts_of
 from frictioncli.reading.planning import readings
 from frictioncli.reading.recording import Recorded, record
@@ -146,8 +147,9 @@ def _samples(
     """Yield the samples of all logs, run by run in order of time; what is seen goes to harvest."""
     for run in runs:
         found: dict[Path, FileFound] = {}
-        usable, refused = readings(run, settings, chart)
-        for log in refused:
+        opened, refused = open_run(run, settings, chart)
+        usable, unusable = readings(opened, settings, chart)
+        for log in (*refused, *unusable):
             found[log.file.path] = raw_look(run, log.file.path, log.refusal, chart, settings)
         clock = Clock(run.name)
         queue = _in_time_order(run, usable, harvest)

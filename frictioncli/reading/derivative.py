@@ -1,5 +1,7 @@
 """Velocity from positions: the slope of a short local fit, with real time stamps."""
 
+from math import floor
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -16,7 +18,7 @@ def half_window(period: float) -> int:
     period : float
         Median time between samples. [s]
     """
-    return int(np.clip(np.floor(_HALF_SPAN / period + 1e-9), 1, _MAX_HALF_WINDOW))
+    return floor(min(max(_HALF_SPAN / period + 1e-9, 1.0), _MAX_HALF_WINDOW))
 
 
 def max_gap(period: float) -> float:

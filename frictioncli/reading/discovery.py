@@ -1,5 +1,6 @@
 """Which files belong to which run, from the files and folders named by the user."""
 
+import os
 import re
 from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
@@ -110,14 +111,19 @@ def _files_of(path: Path, besides: Path | None) -> list[Path]:
 
 def _files_below(folder: Path, besides: Path | None) -> list[Path]:
     work = None if besides is None else besides.resolve()
-    found = [
-        path
-        for path in folder.rglob("*")
-        if path.is_file()
-        and path.name.lower() not in _SILENT
-        and (work is None or work not in path.resolve().parents)
-        and not any(part.startswith(".") for part in path.relative_to(folder).parts)
-    ]
+    found: list[Path] = []
+    for place, folders, files in os.walk(folder):
+        inside = Path(place)
+        if work is not None and inside.resolve().is_relative_to(work):
+            folders.clear()
+            continue
+        folders[:] = [name for name in folders if not name.startswith(".")]
+        found += [
+            inside / name
+            for name in files
+            if not name.startswith(".") and name.lower() not in _SILENT
+        ]
+    found = [path for path in found if path.is_file()]
     return sorted(found, key=lambda path: [natural_key(part) for part in path.parts])
 
 

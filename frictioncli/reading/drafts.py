@@ -26,6 +26,9 @@ from frictioncli.reading.rows import Block
 from frictioncli.tables import TableWriter
 
 _BATCH_ROWS = 1 << 17
+_TABLE_ROWS = 1 << 15
+"""Making a table of the rows of a short log takes longer than they do: so many are one."""
+
 _AS_READ = (
     names.POSITION,
     names.VELOCITY,
@@ -49,9 +52,38 @@ class _Stretch:
 
 
 @dataclass(frozen=True, slots=True)
+class _Piece:
+    """Samples of one recording, with their time since the run's first one [s]."""
+
+    run: str
+    recording: str
+    time: NDArray[np.float64]
+    block: Block
+
+
+@dataclass(slots=True)
 class _Draft:
+    """The samples of one joint; those of short logs are held until they make a table."""
+
+    joint: int
     writer: TableWriter
     stretches: deque[_Stretch] = field(default_factory=deque)
+    held: list[_Piece] = field(default_factory=list)
+    held_rows: int = 0
+
+    def add(self, piece: _Piece) -> None:
+        """Take samples of the newest stretch."""
+        self.stretches[-1].rows += len(piece.block)
+        self.held.append(piece)
+        self.held_rows += len(piece.block)
+        if self.held_rows >= _TABLE_ROWS:
+            self.write()
+
+    def write(self) -> None:
+        """Write what is held."""
+        if self.held:
+            self.writer.write(_table(self.held, self.joint))
+        self.held, self.held_rows = [], 0
 
 
 class Drafts:
@@ -87,41 +119,19 @@ class Drafts:
         for joint in joints:
             if joint not in self._drafts:
                 writer = TableWriter(self._path(joint), schemas.SAMPLES, Provenance("ingest"))
-                self._drafts[joint] = _Draft(self._stack.enter_context(writer))
+                self._drafts[joint] = _Draft(joint, self._stack.enter_context(writer))
             self._drafts[joint].stretches.append(_Stretch(run))
 
     def add(self, block: Block, time: NDArray[np.float64]) -> None:
         """Take samples of the recording begun last, ``time`` from its first sample [s]."""
-        time = time + self._start if self._start else time
+        piece = _Piece(*self._label, time + self._start if self._start else time, block)
         for joint in {joint for joint, _ in block.columns}:
-            draft = self._drafts[joint]
-            draft.writer.write(self._rows(block, joint, time))
-            draft.stretches[-1].rows += len(block)
+            self._drafts[joint].add(piece)
 
     def forget(self, joints: Sequence[int]) -> None:
         """Declare what was taken of the recording begun last void."""
         for joint in joints:
             self._drafts[joint].stretches[-1].void = True
-
-    def _rows(self, block: Block, joint: int, time: NDArray[np.float64]) -> pa.Table:
-        n = len(block)
-        run, recording = self._label
-        found = {
-            name: _column(block.columns[joint, name])
-            for name in _AS_READ
-            if (joint, name) in block.columns
-        }
-        if names.MOTOR_TEMPERATURE in found:
-            found["motor_temperature_reading"] = found[names.MOTOR_TEMPERATURE]
-        return pa.table(
-            {
-                "run": _repeated(run, n),
-                "recording": _repeated(recording, n),
-                "joint": pa.array(np.full(n, joint, np.int16)),
-                "time": pa.array(time),
-                **found,
-            }
-        )
 
     def finish(
         self,
@@ -142,6 +152,7 @@ class Drafts:
             As for :class:`TableWriter`.
         """
         for draft in self._drafts.values():
+            draft.write()
             draft.writer.provenance, draft.writer.facts = provenance, facts
         self._stack.close()
         if self._is_final(temperatures):
@@ -200,10 +211,43 @@ def _rebuilt(rows: pa.Table, points: staircase.Knots) -> pa.Table:
     return rows.set_column(at, "motor_temperature", _column(smooth))
 
 
+def _table(pieces: Sequence[_Piece], joint: int) -> pa.Table:
+    """Return the samples of a joint, piece after piece."""
+    rows = [len(piece.block) for piece in pieces]
+    found = {
+        name: _column(_joined([_values(piece.block, joint, name) for piece in pieces]))
+        for name in _AS_READ
+        if any((joint, name) in piece.block.columns for piece in pieces)
+    }
+    if names.MOTOR_TEMPERATURE in found:
+        found["motor_temperature_reading"] = found[names.MOTOR_TEMPERATURE]
+    return pa.table(
+        {
+            "run": _repeated([piece.run for piece in pieces], rows),
+            "recording": _repeated([piece.recording for piece in pieces], rows),
+            "joint": pa.array(np.full(sum(rows), joint, np.int16)),
+            "time": pa.array(_joined([piece.time for piece in pieces])),
+            **found,
+        }
+    )
+
+
+def _values(block: Block, joint: int, name: str) -> NDArray[np.float64]:
+    values = block.columns.get((joint, name))
+    return values if values is not None else np.full(len(block), np.nan)
+
+
+def _joined(parts: list[NDArray[np.float64]]) -> NDArray[np.float64]:
+    return parts[0] if len(parts) == 1 else np.concatenate(parts)
+
+
 def _column(values: NDArray[np.float64]) -> pa.Array:
     """Return a column; empty where a value is NaN."""
     return pa.array(values, from_pandas=bool(len(values)) and bool(np.isnan(values.min())))
 
 
-def _repeated(text: str, n: int) -> pa.DictionaryArray:
-    return pa.DictionaryArray.from_arrays(pa.array(np.zeros(n, np.int32)), pa.array([text]))
+def _repeated(texts: Sequence[str], rows: Sequence[int]) -> pa.DictionaryArray:
+    """Return each text so many times."""
+    codes = {text: code for code, text in enumerate(dict.fromkeys(texts))}
+    each = np.array([codes[text] for text in texts], np.int32)
+    return pa.DictionaryArray.from_arrays(pa.array(np.repeat(each, rows)), pa.array(list(codes)))

@@ -20,7 +20,7 @@ from frictioncli.reading.drafts import Drafts
 from frictioncli.reading.formats.base import Refusal
 from frictioncli.reading.history import known_temperatures
 from frictioncli.reading.mapping import ChannelMap, read_map
-from frictioncli.reading.opening import RefusedLog
+from frictioncli.reading.opening import RefusedLog, open_run
 from frictioncli.reading.parts import parts_of
 from frictioncli.reading.planning import readings
 from frictioncli.reading.recording import Recorded, record
@@ -72,8 +72,9 @@ def ingest(logs: Logs, work: Path, settings: IngestSettings | None = None) -> In
             chart,
             stack.enter_context(Drafts(Path(name))),
             stack.enter_context(_writer(Path(name), schemas.REJECTED)),
-            stack.enter_context(ThreadPoolExecutor(1)),
+            ThreadPoolExecutor(1),
         )
+        stack.callback(desk.hashing.shutdown, cancel_futures=True)
         harvest = _Harvest()
         for run in runs:
             _read_run(run, desk, harvest)
@@ -175,8 +176,12 @@ def _read_run(run: Run, desk: _Desk, harvest: _Harvest) -> None:
     """Read all logs of a run in order of time."""
     entries, has_manifest, said = _manifest(run)
     harvest.warnings += said
-    found, refused = readings(run, desk.settings, desk.chart)
-    harvest.refused += refused
+    opened, refused = open_run(run, desk.settings, desk.chart)
+    # hashed while the logs are looked at and read
+    for file in dict.fromkeys(file for log in opened for file in log.source.files):
+        harvest.hashes[file] = desk.hashing.submit(sha256, file)
+    found, unusable = readings(opened, desk.settings, desk.chart)
+    harvest.refused += refused + unusable
     clock = _read_logs(run, in_time_order(found, entries), desk, harvest)
     timeline = clock.timeline(has_manifest=has_manifest)
     if not timeline.placed:
@@ -202,8 +207,6 @@ def _read_logs(run: Run, queue: Sequence[Dated], desk: _Desk, harvest: _Harvest)
     in_turn = parts_of([dated.reading for dated in queue], size)
     for dated, (reading, parts) in zip(queue, in_turn, strict=True):
         log, joints = reading.log, [plan.channels.joint for plan in reading.plans]
-        for file in log.source.files:
-            harvest.hashes[file] = desk.hashing.submit(sha256, file)
         desk.drafts.begin(run.name, log.recording, joints, clock.start_of(dated))
         faults = Faults()
         result = record(reading, parts, faults, desk.drafts.add)

@@ -4,7 +4,7 @@ from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
 from functools import partial
-from itertools import groupby
+from itertools import chain, groupby
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,13 +14,15 @@ from frictioncli.reading import aliases as names
 from frictioncli.reading.ahead import in_order
 from frictioncli.reading.beliefs import JointPlan
 from frictioncli.reading.channels import Channel
-from frictioncli.reading.formats.base import RawBatch
+from frictioncli.reading.formats.base import RawBatch, Task
 from frictioncli.reading.formats.compression import UnreadableLog
 from frictioncli.reading.opening import OpenedLog
 from frictioncli.reading.rows import Block, Faults, with_values
 from frictioncli.reading.units import plausible_temperature
 
 _FIRST_BYTES = 1 << 12
+_HANDED_OVER = 1 << 20
+"""Tasks of fewer bytes go to a thread together: handing them over takes longer than some take."""
 _BEYOND = 3
 _BEYOND_SHARE = 0.01
 
@@ -91,7 +93,7 @@ def parts_of(
     batch_bytes : int
         How much of a log makes a part. [byte]
     """
-    results = in_order(_tasks(readings, batch_bytes))
+    results = chain.from_iterable(in_order(_together(_tasks(readings, batch_bytes))))
     for number, group in groupby(results, key=lambda result: result.number):
         yield readings[number], _parts(group)
 
@@ -104,24 +106,51 @@ class _Result:
     part: Part | UnreadableLog
 
 
-def _tasks(readings: Iterable[Reading], batch_bytes: int) -> Iterator[Callable[[], _Result]]:
-    """Yield the tasks of all logs one after the other; each log has at least one, its end."""
+@dataclass(frozen=True, slots=True)
+class _Task:
+    """What makes a result of about so many bytes of a log."""
+
+    work: Callable[[], _Result]
+    size: int
+
+
+def _tasks(readings: Iterable[Reading], batch_bytes: int) -> Iterator[_Task]:
+    """Yield the tasks of all logs one after the other; each log has at least one."""
     for number, reading in enumerate(readings):
-        end: Part | UnreadableLog = Part(_no_rows(reading.plans), Faults(), 0)
+        end: Part | UnreadableLog | None = Part(_no_rows(reading.plans), Faults(), 0)
         columns = {reading.plans[0].channels.time.column}
         for plan in reading.plans:
             columns.update(_column(plan, name) for name in plan.beliefs)
         try:
             for task in reading.log.source.tasks(columns, batch_bytes):
-                yield partial(_done, number, reading, task)
+                yield _Task(partial(_done, number, reading, task), task.size)
+                end = None
         except UnreadableLog as error:
             end = error
-        yield partial(_Result, number, end)
+        if end is not None:
+            yield _Task(partial(_Result, number, end), 0)
 
 
-def _done(number: int, reading: Reading, task: Callable[[], RawBatch]) -> _Result:
+def _together(tasks: Iterable[_Task]) -> Iterator[Callable[[], list[_Result]]]:
+    """Yield the tasks, small ones together."""
+    held: list[_Task] = []
+    held_bytes = 0
+    for task in tasks:
+        if held and held_bytes + task.size > _HANDED_OVER:
+            yield partial(_all, held)
+            held, held_bytes = [], 0
+        held.append(task)
+        held_bytes += task.size
+    yield partial(_all, held)
+
+
+def _all(tasks: Iterable[_Task]) -> list[_Result]:
+    return [task.work() for task in tasks]
+
+
+def _done(number: int, reading: Reading, task: Task) -> _Result:
     try:
-        return _Result(number, _part(task(), reading))
+        return _Result(number, _part(task.read(), reading))
     except UnreadableLog as error:
         return _Result(number, error)
 

@@ -5,30 +5,28 @@ from dataclasses import replace
 
 from frictioncli.errors import OptionError
 from frictioncli.reading.beliefs import JointPlan, plan_joint
-from frictioncli.reading.discovery import Run
 from frictioncli.reading.formats.base import Refusal
 from frictioncli.reading.mapping import ChannelMap
-from frictioncli.reading.opening import OpenedLog, RefusedLog, open_run
+from frictioncli.reading.opening import OpenedLog, RefusedLog
 from frictioncli.reading.parts import Reading, first_look
 from frictioncli.reading.settings import IngestSettings
 from frictioncli.reading.survey import survey
 
 
 def readings(
-    run: Run, settings: IngestSettings, chart: ChannelMap
+    opened: Iterable[OpenedLog], settings: IngestSettings, chart: ChannelMap
 ) -> tuple[list[Reading], list[RefusedLog]]:
-    """Return how each log of a run is going to be read, and the logs that cannot be.
+    """Return how each log is going to be read, and the logs that cannot be.
 
     Raises
     ------
     OptionError
         If one gear ratio is given for several joints.
     """
-    opened, refused = open_run(run, settings, chart)
-    found = []
+    found, refused = [], []
     for log, plans in planned(opened, settings, chart):
         if isinstance(plans, Refusal):
-            refused.append(RefusedLog(run, log.file, log.recording, plans))
+            refused.append(RefusedLog(log.run, log.file, log.recording, plans))
         else:
             found.append(first_look(log, plans))
     return found, refused

@@ -7,6 +7,8 @@ from numpy.typing import NDArray
 
 from frictioncli.reading import staircase
 
+_FEW = 32
+
 
 @dataclass(slots=True)
 class Register:
@@ -51,15 +53,17 @@ class Register:
         self, time: NDArray[np.float64], reading: NDArray[np.float64], wait: float
     ) -> None:
         changed = np.flatnonzero(reading[1:] != reading[:-1]) + 1
-        levels = np.append(reading[changed], [reading[0], *self.levels])
-        levels = np.unique(np.round(levels, 6))
-        if staircase.too_fine(levels):
-            self.smooth = True
-            # two of them are enough to rule it out for the whole run
-            close = int(np.argmin(np.diff(levels)))
-            self.levels = set(levels[close : close + 2].tolist())
-            self.changes.clear()
-            return
+        # a smooth one shows within its first few readings
+        for some in (changed[:_FEW], changed):
+            levels = np.append(reading[some], [reading[0], *self.levels])
+            levels = np.unique(np.round(levels, 6))
+            if staircase.too_fine(levels):
+                self.smooth = True
+                # two of them are enough to rule it out for the whole run
+                close = int(np.argmin(np.diff(levels)))
+                self.levels = set(levels[close : close + 2].tolist())
+                self.changes.clear()
+                return
         self.levels = set(levels.tolist())
         if self.last is not None:
             border = np.array([[self.last[0], time[0]], [self.last[1], reading[0]]])

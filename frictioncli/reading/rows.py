@@ -79,6 +79,8 @@ class Faults:
 
     def counts(self) -> dict[str, int]:
         """Return reason -> lines, for the reasons that occurred."""
+        if not self.codes:
+            return {}
         numbers = np.zeros(len(REASONS), int)
         for codes in self.codes:
             numbers += np.bincount(codes, minlength=len(REASONS))
@@ -209,6 +211,8 @@ def without_stale_start(
 
 def _judged_start(block: Block, names: list[tuple[int, str]], faults: Faults) -> Block:
     stale = max((_stale_rows(block.time, block.columns[name]) for name in names), default=0)
+    if not stale:
+        return block
     faults.add(block.lines[:stale], "stale_first_rows")
     return block.take(slice(stale, None))
 
@@ -216,11 +220,13 @@ def _judged_start(block: Block, names: list[tuple[int, str]], faults: Faults) ->
 def _stale_rows(time: NDArray[np.float64], position: NDArray[np.float64]) -> int:
     """Return how many first rows lie before a jump that the following motion does not explain."""
     jumps = np.abs(np.diff(position[:_START_ROWS]))
-    if len(jumps) < 2 * _STALE_ROWS or np.median(np.diff(time[:_START_ROWS])) > _STALE_PERIOD:
+    if len(jumps) < 2 * _STALE_ROWS:
         return 0
     usual = float(np.max(jumps[_STALE_ROWS:]))
     wild = np.flatnonzero(jumps[:_STALE_ROWS] > max(_STALE_JUMP, _STALE_FACTOR * usual))
-    return int(wild[-1]) + 1 if len(wild) else 0
+    if not len(wild) or np.median(np.diff(time[:_START_ROWS])) > _STALE_PERIOD:
+        return 0
+    return int(wild[-1]) + 1
 
 
 def with_velocity(

@@ -127,3 +127,18 @@ def test_a_void_recording_leaves_no_sample_and_temperatures_are_rebuilt(tmp_path
     assert rebuilt[:5] == pytest.approx([19.8, 19.9, 20.0, 20.1, 20.2])
     assert list(rebuilt[5:]) == [20.0] * 5
     assert set(table["motor_temperature_reading"]) == {20.0}
+
+
+def test_short_recordings_of_different_channels_share_a_table(tmp_path):
+    with Drafts(tmp_path) as drafts:
+        for name, n, channels in (("warm", 4, 3), ("bare", 2, 2), ("again", 3, 3)):
+            piece = block(0, n, [1])
+            if channels == 2:
+                columns = {key: piece.columns[key] for key in piece.columns if "temp" not in key[1]}
+                piece = Block(piece.lines, piece.time, columns)
+            drafts.begin("run", name, [1], 0.0)
+            drafts.add(piece, piece.time)
+        table = finished(drafts, tmp_path, {("run", 1): (None, None, None)})
+    assert list(table["recording"]) == ["warm"] * 4 + ["bare"] * 2 + ["again"] * 3
+    assert list(table["motor_temperature"].isna()) == [False] * 4 + [True] * 2 + [False] * 3
+    assert list(table["position"]) == [1000 + i for i in (0, 1, 2, 3, 0, 1, 0, 1, 2)]

@@ -171,3 +171,29 @@ def test_a_date_of_the_year_1_is_a_time_like_others(tmp_path):
     summary = ingest([tmp_path / "log.csv"], tmp_path / "work")
     assert summary.rows_read == 301
     assert summary.rows_kept + sum(summary.rows_rejected.values()) == 301
+
+
+def test_short_logs_that_share_a_task_come_out_as_alone(tmp_path):
+    """Logs of a folder, one with a broken row, one cut off, one packed: each keeps its rows."""
+    text = text_of(kuka_columns(seconds=1.5))
+    lines = text.splitlines()
+    lines[20] = "torn"
+    texts = {"a": text, "b": "\n".join(lines), "d": text.replace("-4", "-3")}
+    (tmp_path / "logs").mkdir()
+    for name, content in texts.items():
+        (tmp_path / "logs" / f"{name}.csv").write_text(content)
+    packed = gzip.compress(text.encode())
+    (tmp_path / "logs" / "c.csv").write_bytes(packed[: len(packed) // 2])
+    (tmp_path / "logs" / "e.csv").write_bytes(packed)
+    summary = ingest([tmp_path / "logs"], tmp_path / "together")
+    assert [file.file for file in summary.files_rejected] == ["c.csv"]
+    assert summary.rows_rejected == {"wrong_field_count": 1}
+    together = samples(tmp_path / "together")
+    assert list(dict.fromkeys(together["recording"])) == ["a", "b", "d", "e"]
+    for name in ("a", "b", "d", "e"):
+        ingest([tmp_path / "logs" / f"{name}.csv"], tmp_path / name)
+        alone = samples(tmp_path / name)
+        found = together[together["recording"] == name]
+        for column in ("position", "velocity", "torque"):
+            np.testing.assert_array_equal(found[column], alone[column])
+        assert len(alone) == len(lines) - 1 - (name == "b")

@@ -59,6 +59,14 @@ class RawBatch:
     bad_reasons: tuple[str, ...]
 
 
+@dataclass(frozen=True, slots=True)
+class Task:
+    """Work that makes a batch, about so many bytes of it; may be done in a thread of its own."""
+
+    read: Callable[[], RawBatch]
+    size: int
+
+
 class Source(Protocol):
     """An opened log whose columns are known and whose rows can be streamed more than once."""
 
@@ -86,8 +94,8 @@ class Source(Protocol):
         """Yield the rows in order, about ``size`` bytes of the file at a time."""
         ...
 
-    def tasks(self, columns: Collection[int], size: int) -> Iterator[Callable[[], RawBatch]]:
-        """Yield in order what makes the batches; each may be called in a thread of its own."""
+    def tasks(self, columns: Collection[int], size: int) -> Iterator[Task]:
+        """Yield in order what makes the batches, each of at most about ``size`` bytes."""
         ...
 
     def texts(self, lines: NDArray[np.int64], size: int) -> Iterator[tuple[int, str]]:
@@ -103,12 +111,10 @@ class OneStream:
         """All files that its samples come from."""
         return (self.path,)
 
-    def tasks(
-        self: Source, columns: Collection[int], size: int
-    ) -> Iterator[Callable[[], RawBatch]]:
+    def tasks(self: Source, columns: Collection[int], size: int) -> Iterator[Task]:
         """Yield in order what makes the batches; they are ready already."""
         for batch in self.batches(columns, size):
-            yield partial(_ready, batch)
+            yield Task(partial(_ready, batch), sum(v.nbytes for v in batch.values.values()))
 
 
 def _ready(batch: RawBatch) -> RawBatch:

@@ -1,6 +1,6 @@
 """DIAdem recordings: a header (``.dat``) and the binary samples beside it (``.r64``)."""
 
-from collections.abc import Callable, Collection, Iterator
+from collections.abc import Collection, Iterator
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from frictioncli.reading.formats.base import CsvHints, RawBatch, Refusal
+from frictioncli.reading.formats.base import CsvHints, RawBatch, Refusal, Task
 from frictioncli.reading.formats.compression import UnreadableLog
 from frictioncli.reading.formats.diadem_header import (
     DamagedHeader,
@@ -180,15 +180,16 @@ class DiademRecording:
     def batches(self, columns: Collection[int], size: int) -> Iterator[RawBatch]:
         """Yield the samples in order, about ``size`` bytes of the file at a time."""
         for task in self.tasks(columns, size):
-            yield task()
+            yield task.read()
 
-    def tasks(self, columns: Collection[int], size: int) -> Iterator[Callable[[], RawBatch]]:
-        """Yield in order what makes the batches; each may be called in a thread of its own."""
+    def tasks(self, columns: Collection[int], size: int) -> Iterator[Task]:
+        """Yield in order what makes the batches, each of at most about ``size`` bytes."""
         wanted = sorted(columns)
         widths = [c.place.step for c in self.channels if c.place is not None]
         rows = max(size // max(widths), 1)
         for start in range(0, self.n, rows):
-            yield partial(self._batch, wanted, start, min(start + rows, self.n))
+            stop = min(start + rows, self.n)
+            yield Task(partial(self._batch, wanted, start, stop), (stop - start) * max(widths))
 
     def texts(self, lines: NDArray[np.int64], size: int) -> Iterator[tuple[int, str]]:
         """Yield (sample's number, its values) for the asked samples, which must be ascending."""

@@ -1,7 +1,7 @@
 """Time in two columns, seconds and nanoseconds, as one."""
 
 import re
-from collections.abc import Callable, Collection, Iterator, Sequence
+from collections.abc import Collection, Iterator, Sequence
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from frictioncli.reading.formats.base import RawBatch, Source
+from frictioncli.reading.formats.base import RawBatch, Source, Task
 
 _SECONDS = re.compile(r"^(?P<stem>.*?)sec(?:onds|s)?$")
 _NANOSECONDS = re.compile(r"^(?P<stem>.*?)n(?:ano)?sec(?:onds|s)?$")
@@ -83,10 +83,10 @@ class JoinedTime:
         for batch in self.source.batches(self._asked(columns), size):
             yield self._joined(batch)
 
-    def tasks(self, columns: Collection[int], size: int) -> Iterator[Callable[[], RawBatch]]:
-        """Yield in order what makes the batches; each may be called in a thread of its own."""
+    def tasks(self, columns: Collection[int], size: int) -> Iterator[Task]:
+        """Yield in order what makes the batches, each of at most about ``size`` bytes."""
         for task in self.source.tasks(self._asked(columns), size):
-            yield partial(self._done, task)
+            yield Task(partial(self._read, task), task.size)
 
     def texts(self, lines: NDArray[np.int64], size: int) -> Iterator[tuple[int, str]]:
         """Yield (line, text) for the asked lines, which must be ascending."""
@@ -95,8 +95,8 @@ class JoinedTime:
     def _asked(self, columns: Collection[int]) -> set[int]:
         return {*columns, *([self.nanoseconds] if self.seconds in columns else [])}
 
-    def _done(self, task: Callable[[], RawBatch]) -> RawBatch:
-        return self._joined(task())
+    def _read(self, task: Task) -> RawBatch:
+        return self._joined(task.read())
 
     def _joined(self, batch: RawBatch) -> RawBatch:
         if self.nanoseconds not in batch.values:
