@@ -36,9 +36,12 @@ class Tally:
 
 
 def sources() -> str:
-    """Return what the results depend on."""
+    """Return what the results depend on: all that reads and inspects logs, and the study."""
     digest = hashlib.sha256()
-    files = [*(ROOT / "frictioncli").rglob("*.py"), *(ROOT / "tests" / "studies").glob("fuzz*.py")]
+    package = ROOT / "frictioncli"
+    files = [*package.glob("*.py"), *(ROOT / "tests" / "studies").glob("fuzz*.py")]
+    for part in ("reading", "inspecting", "motion"):
+        files += (package / part).rglob("*.py")
     for path in sorted(files):
         digest.update(path.read_bytes())
     return digest.hexdigest()
