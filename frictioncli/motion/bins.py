@@ -5,6 +5,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from frictioncli.motion.segments import offsets
+
 Array = NDArray[np.float64]
 Numbers = NDArray[np.int64]
 
@@ -64,60 +66,67 @@ def bin_means(
         return BinMeans(none, none, none, nothing, nothing, nothing)
     number = position / width
     np.floor(number, out=number)
-    edge = np.ones(len(number), dtype=bool)
+    edge = np.empty(len(number), dtype=bool)
     np.not_equal(number[1:], number[:-1], out=edge[1:])
-    edge[start] = True
+    edge[start] = edge[0] = True
     edge[stop[stop < len(edge)]] = True
     edges = np.flatnonzero(edge)
-    span = np.searchsorted(start, edges, side="right") - 1
-    run = np.flatnonzero((span >= 0) & (edges < stop[span]))
-    order, head = _by_angle(span[run], number[edges[run]])
-    run = run[order]
-    count = np.diff(edges, append=len(number))[run]
-    count = count if len(head) == len(run) else np.add.reduceat(count, head)
+    found = number[edges]
+    run, span, head = _by_angle(found, np.searchsorted(edges, start), np.searchsorted(edges, stop))
+    length = np.append(edges[1:], len(number)) - edges
+    count = _together(length[run], head)
     place, mean_torque, mean_time = (
-        _sums(values, edges, run, head) / count for values in (position, torque, time)
+        _together(np.add.reduceat(values, edges)[run], head) / count
+        for values in (position, torque, time)
     )
-    span = span[run][head]
-    found = number[edges[run[head]]]
+    found, span = found[run[head]], span[head]
     off = (found + 0.5) * width - place
     mean_load = np.full(len(count), np.nan)
-    if not np.isnan(load).all():
-        mean_load = _sums(load, edges, run, head) / count
+    # a run that begins with no load has no mean load
+    if not np.isnan(load[edges[run]]).all():
+        mean_load = _together(np.add.reduceat(load, edges)[run], head) / count
         mean_load += slopes(span, place, mean_load) * off
+    mean_torque += slopes(span, place, mean_torque) * off
     return BinMeans(
         span=span,
         bin=found.astype(np.int64),
         n=count,
-        torque=mean_torque + slopes(span, place, mean_torque) * off,
+        torque=mean_torque,
         load=mean_load,
         time=mean_time,
     )
 
 
-def _sums(values: Array, edges: Numbers, run: Numbers, head: Numbers) -> Array:
-    """Return sums over runs of samples, in the order given, those of one bin together."""
-    sums = np.add.reduceat(values, edges)[run]
-    return sums if len(head) == len(run) else np.add.reduceat(sums, head)
+def _together(values: NDArray, head: Numbers) -> NDArray:
+    """Return sums over the runs of each bin, which begin at ``head``."""
+    return values if len(head) == len(values) else np.add.reduceat(values, head)
 
 
-def _by_angle(span: Numbers, number: Array) -> tuple[Numbers, Numbers]:
-    """Return the order of runs by span and bin, and where in it each bin begins.
+def _by_angle(number: Array, begin: Numbers, end: Numbers) -> tuple[Numbers, Numbers, Numbers]:
+    """Return runs by span and bin, their spans, and where among them each bin begins.
 
     A joint that goes one way meets its bins one after the other, back in the opposite order; only
     where noise takes it to and fro over an edge need they be sorted.
+
+    Parameters
+    ----------
+    number : ndarray, shape (runs,)
+        Bin of each run of samples in one bin.
+    begin, end : ndarray of int, shape (spans,)
+        First and past-the-end run of each span.
     """
-    first = np.flatnonzero(np.diff(span, prepend=-1))
-    last = np.append(first[1:], len(span)) - 1
-    mirror = np.where(number[first] > number[last], first + last, 0)
-    order = np.abs(np.repeat(mirror, last - first + 1) - np.arange(len(span)))
-    rising = np.diff(number[order]) > 0
-    rising[first[1:] - 1] = True
-    if rising.all():
-        return order, np.arange(len(order))
-    order = np.lexsort((number, span))
-    new = (np.diff(number[order]) != 0) | (np.diff(span) != 0)
-    return order, np.flatnonzero(np.append(True, new))
+    count = end - begin
+    span = np.repeat(np.arange(len(count)), count)
+    # of a span that falls, from the last run back: counted in negative numbers
+    first = np.where(number[begin] > number[end - 1], 1 - end, begin)
+    run = np.abs(np.repeat(first - offsets(count), count) + np.arange(len(span)))
+    own = number[run]
+    if ((own[1:] > own[:-1]) | (span[1:] != span[:-1])).all():
+        return run, span, np.arange(len(run))
+    order = np.lexsort((own, span))
+    run, span, own = run[order], span[order], own[order]
+    new = (own[1:] != own[:-1]) | (span[1:] != span[:-1])
+    return run, span, np.flatnonzero(np.append(True, new))
 
 
 def slopes(span: Numbers, place: Array, values: Array) -> Array:
@@ -130,14 +139,14 @@ def slopes(span: Numbers, place: Array, values: Array) -> Array:
     place, values : ndarray, shape (points,)
         Different places of a curve's points, and what stands there. A curve of one point is flat.
     """
-    joined = span[1:] == span[:-1]
-    # the next curve may begin where this one ends
-    step = np.where(joined, np.diff(place), 1.0)
-    steep = np.diff(values) / step
-    before, behind = np.append(False, joined), np.append(joined, False)
-    steep_before, steep_behind = np.append(0.0, steep), np.append(steep, 0.0)
-    step_before, step_behind = np.append(1.0, step), np.append(step, 1.0)
+    n = len(span)
+    # between a curve's points; before its first and behind its last one 0 over 1
+    joined, step, steep = np.zeros(n + 1, dtype=bool), np.ones(n + 1), np.zeros(n + 1)
+    np.equal(span[1:], span[:-1], out=joined[1:-1])
+    np.subtract(place[1:], place[:-1], out=step[1:-1], where=joined[1:-1])
+    np.subtract(values[1:], values[:-1], out=steep[1:-1], where=joined[1:-1])
+    steep /= step
     # of two neighbours, the nearer one's slope counts more
-    both = (step_behind * steep_before + step_before * steep_behind) / (step_before + step_behind)
-    one_sided = np.where(behind, steep_behind, np.where(before, steep_before, 0.0))
-    return np.where(before & behind, both, one_sided)
+    both = step[1:] * steep[:-1] + step[:-1] * steep[1:]
+    both /= step[:-1] + step[1:]
+    return np.where(joined[:-1] & joined[1:], both, steep[:-1] + steep[1:])

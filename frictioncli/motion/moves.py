@@ -42,7 +42,9 @@ def running_sum(velocity: Array) -> Array:
         Sums. [deg/s]
     """
     total = np.zeros(len(velocity) + 1)
-    np.cumsum((velocity + _EXACT) - _EXACT, out=total[1:])
+    rounded = velocity + _EXACT
+    rounded -= _EXACT
+    np.cumsum(rounded, out=total[1:])
     return total
 
 

@@ -37,6 +37,27 @@ def offsets(length: Numbers) -> Numbers:
     return np.cumsum(length) - length
 
 
+def over_samples(values: Array, start: Numbers, stop: Numbers, size: int, outside: float) -> Array:
+    """Return for each of ``size`` samples the value of its segment.
+
+    Parameters
+    ----------
+    values : ndarray, shape (segments,)
+        What the samples of each segment get.
+    start, stop : ndarray of int, shape (segments,)
+        First and past-the-end sample of segments that do not overlap, in order.
+    size : int
+        Samples.
+    outside : float
+        What those in no segment get.
+    """
+    bounds = np.column_stack([start, stop]).ravel()
+    length = np.diff(bounds, prepend=0, append=size)
+    held = np.full(len(length), outside)
+    held[1::2] = values
+    return np.repeat(held, length)
+
+
 def reduced(function: np.ufunc, values: NDArray, start: Numbers, stop: Numbers) -> NDArray:
     """Return a ufunc's reduction over each segment.
 
@@ -67,9 +88,11 @@ def means(values: Array, start: Numbers, stop: Numbers) -> Array:
     start, stop : ndarray of int, shape (segments,)
         As for :func:`reduced`.
     """
+    with np.errstate(invalid="ignore"):
+        total = reduced(np.add, values, start, stop)
+    if np.isfinite(total).all():
+        return total / (stop - start)
     finite = np.isfinite(values)
-    if finite.all():
-        return reduced(np.add, values, start, stop) / (stop - start)
     count = reduced(np.add, finite.astype(float), start, stop)
     total = reduced(np.add, np.where(finite, values, 0.0), start, stop)
     return np.divide(total, count, out=np.full(len(start), np.nan), where=count > 0)
@@ -81,7 +104,7 @@ def runs(flags: NDArray[np.bool_], offset: Numbers) -> tuple[Numbers, Numbers, N
     Parameters
     ----------
     flags : ndarray of bool, shape (samples,)
-        Segments end to end.
+        Segments in order, none true between them.
     offset : ndarray of int, shape (segments,)
         Where each begins.
     """

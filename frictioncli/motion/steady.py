@@ -8,10 +8,11 @@ millions of them.
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.lib.stride_tricks import as_strided
 from numpy.typing import NDArray
 
 from frictioncli.motion.moves import SMOOTHING, half_window
-from frictioncli.motion.segments import means, members, offsets, reduced, runs
+from frictioncli.motion.segments import means, members, offsets, over_samples, reduced, runs
 from frictioncli.motion.settings import SteadySettings
 
 Array = NDArray[np.float64]
@@ -114,11 +115,19 @@ def _smoothed_speed(
 ) -> Array:
     """Return the moving mean of speed of all moves end to end, each within its own bounds."""
     length = last - first
-    half = np.repeat(half_window(time, first, last, width), length)
-    sample = members(first, last)
-    low = np.maximum(sample - half, np.repeat(first, length))
-    high = np.minimum(sample + half + 1, np.repeat(last, length))
-    return np.abs(total[high] - total[low]) / (high - low)
+    half = half_window(time, first, last, width)
+    low = members(first - half, last - half)
+    high = low + np.repeat(2 * half + 1, length)
+    speed = total.take(high, mode="clip")
+    speed -= total.take(low, mode="clip")
+    speed /= np.repeat(2.0 * half + 1, length)
+    # near the ends of a move the mean is one of fewer neighbours
+    begin, end = offsets(length), np.cumsum(length)
+    near = np.concatenate([members(begin, begin + half), members(end - half, end)])
+    move = np.tile(np.repeat(np.arange(len(half)), half), 2)
+    low, high = np.maximum(low[near], first[move]), np.minimum(high[near], last[move])
+    speed[near] = (total[high] - total[low]) / (high - low)
+    return np.abs(speed, out=speed)
 
 
 def _between_dips(
@@ -128,16 +137,19 @@ def _between_dips(
 
     They count in samples of the moves end to end.
     """
-    offset = offsets(last - first)
-    speed = np.abs(velocity[members(first, last)])
+    length = last - first
+    begin, end = offsets(length), np.cumsum(length)
+    speed = velocity[members(first, last)]
+    np.abs(speed, out=speed)
     # of three neighbours the median: one bad sample is no dip
     middle = speed.copy()
     before, here, after = speed[:-2], speed[1:-1], speed[2:]
-    middle[1:-1] = np.maximum(np.minimum(before, here), np.minimum(np.maximum(before, here), after))
-    for end in (offset, offset + (last - first) - 1):
-        middle[end] = speed[end]
-    peak = reduced(np.maximum, middle, offset, offset + (last - first))
-    start, stop, move = runs(middle >= np.repeat(_DIP * peak, last - first), offset)
+    low, high = np.minimum(before, here), np.maximum(before, here)
+    np.maximum(low, np.minimum(high, after, out=high), out=middle[1:-1])
+    for edge in (begin, end - 1):
+        middle[edge] = speed[edge]
+    peak = reduced(np.maximum, middle, begin, end)
+    start, stop, move = runs(middle >= np.repeat(_DIP * peak, length), begin)
     kept = stop - start >= settings.min_samples
     return start[kept], stop[kept], move[kept]
 
@@ -161,21 +173,21 @@ def _plateaus(
     held = (tolerance <= 4 * settings.speed_tolerance * level) & (level >= settings.min_speed)
     stretch = np.flatnonzero(held)
     start, stop = start[stretch], stop[stretch]
-    length = stop - start
-    away = np.abs(speed[members(start, stop)] - np.repeat(level[stretch], length))
-    offset = offsets(length)
-    begin, end, owner = runs(away <= np.repeat(tolerance[stretch], length), offset)
+    away = speed - over_samples(level[stretch], start, stop, len(speed), 0.0)
+    np.abs(away, out=away)
+    begin, end, owner = runs(
+        away <= over_samples(tolerance[stretch], start, stop, len(speed), -1.0), start
+    )
     # a few noisy samples inside a plateau do not end it
-    gap = begin[1:] - end[:-1] > np.maximum(3, length[owner[1:]] // 50)
+    gap = begin[1:] - end[:-1] > np.maximum(3, (stop - start)[owner[1:]] // 50)
     apart = gap | (owner[1:] != owner[:-1])
     begin = begin[np.append(True, apart)] if len(begin) else begin
     end = end[np.append(apart, True)] if len(end) else end
-    owner = np.searchsorted(offset, begin, side="right") - 1
+    owner = np.searchsorted(start, begin, side="right") - 1
     # the first of the longest ones of each stretch
     order = np.lexsort((begin - end, owner))
     chosen = order[np.diff(owner[order], prepend=-1) != 0]
-    shift = (start - offset)[owner[chosen]]
-    return begin[chosen] + shift, end[chosen] + shift, stretch[owner[chosen]]
+    return begin[chosen], end[chosen], stretch[owner[chosen]]
 
 
 def _densest(speed: Array, start: Numbers, stop: Numbers) -> tuple[Array, Array]:
@@ -183,13 +195,18 @@ def _densest(speed: Array, start: Numbers, stop: Numbers) -> tuple[Array, Array]
     length = stop - start
     cores = np.minimum(np.maximum(np.ceil(_CORE * length).astype(np.int64), 2), length - 1)
     level, spread = np.empty(len(start)), np.empty(len(start))
-    # sorted together: of long ones those with the same core, whose lengths hardly differ
     kind = np.where(cores > _LONG_CORE, cores, -length)
+    # a view whose row i holds sample i and those that follow it
+    longest = length.max(initial=0)
+    padded = np.append(speed, np.full(longest, np.inf))
+    following = as_strided(padded, (len(speed), longest), 2 * padded.strides)
+    # sorted together: of long ones those with the same core, whose lengths hardly differ
     for one in np.unique(kind):
         rows = np.flatnonzero(kind == one)
-        core, column = int(cores[rows[0]]), np.arange(length[rows].max())
-        ordered = speed.take(start[rows, None] + column, mode="clip")
-        np.copyto(ordered, np.inf, where=column >= length[rows, None])
+        core, own = int(cores[rows[0]]), length[rows]
+        ordered = following[:, : own.max()][start[rows]]
+        ends = ordered[:, own.min() :]
+        np.copyto(ends, np.inf, where=np.arange(own.min(), own.max()) >= own[:, None])
         ordered.sort(axis=1)
         width = ordered[:, core:] - ordered[:, :-core]
         row, densest = np.arange(len(rows)), width.argmin(axis=1)

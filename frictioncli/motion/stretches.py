@@ -19,6 +19,7 @@ from frictioncli.motion.moves import LONGEST, SMOOTHING, directions, moves, runn
 from frictioncli.motion.segments import keep_freed_memory
 from frictioncli.motion.settings import SteadySettings
 from frictioncli.schemas import SAMPLES
+from frictioncli.tables import ahead
 
 Array = NDArray[np.float64]
 Numbers = NDArray[np.int64]
@@ -27,7 +28,7 @@ Channels = dict[str, Array]
 BEHIND = 4096
 """Samples before a stretch that it brings along, to see where the joint came from."""
 
-_BLOCK = 1 << 16
+_BLOCK = 1 << 17
 """Samples that are gathered before they are looked at; fewer at a recording's end."""
 
 _FIRST = 1 << 14
@@ -99,6 +100,8 @@ def stretches(
 ) -> Iterator[Stretch]:
     """Yield the samples in stretches with whole moves, recording by recording.
 
+    While the caller works on one, a thread already cuts the next.
+
     Parameters
     ----------
     batches : iterable of RecordBatch
@@ -111,9 +114,15 @@ def stretches(
     """
     keep_freed_memory()
     wanted = tuple(dict.fromkeys(("time", "velocity", *names)))
+    return ahead(_stretches(_pieces(batches, wanted), settings))
+
+
+def _stretches(
+    pieces: Iterable[tuple[Source, Channels]], settings: SteadySettings
+) -> Iterator[Stretch]:
     here: tuple[str, str] | None = None
     tails: dict[Source, _Tail] = {}
-    for source, channels in _pieces(batches, wanted):
+    for source, channels in pieces:
         if source[:2] != here:
             for done, tail in tails.items():
                 yield _cut(done, tail, settings, ended=True)

@@ -24,9 +24,13 @@ def alone(position, torque, width):
 
 
 @settings(max_examples=60, deadline=None)
-@given(seed=st.integers(0, 10**6), noise=st.sampled_from([0.0, 0.02, 2.0]))
-def test_many_spans_at_once_are_as_each_alone(seed, noise):
-    """Spans either way, with gaps between them, angles that waver over the edges of bins."""
+@given(
+    seed=st.integers(0, 10**6),
+    noise=st.sampled_from([0.0, 0.02, 2.0]),
+    unknown=st.sampled_from([0.0, 0.02, 0.5, 1.0]),
+)
+def test_many_spans_at_once_are_as_each_alone(seed, noise, unknown):
+    """Spans either way, with gaps, angles that waver over edges of bins, loads partly unknown."""
     generator = np.random.default_rng(seed)
     lengths = generator.integers(2, 60, 7)
     gaps = generator.integers(0, 4, 7)
@@ -38,6 +42,7 @@ def test_many_spans_at_once_are_as_each_alone(seed, noise):
         position[begin : begin + length] = generator.uniform(-90, 90) + way
     position += generator.normal(0, noise, n) if noise else 0.0
     torque, load, time = generator.normal(size=(3, n))
+    load[generator.uniform(size=n) < unknown] = np.nan
     stop = start + lengths
     found = bin_means(
         position=position, torque=torque, load=load, time=time, start=start, stop=stop, width=5.0

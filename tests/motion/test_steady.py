@@ -6,7 +6,15 @@ import numpy as np
 import pytest
 
 from frictioncli.errors import OptionError
-from frictioncli.motion.moves import SMOOTHING, directions, moves, running_sum, samples_in
+from frictioncli.motion import steady
+from frictioncli.motion.moves import (
+    SMOOTHING,
+    directions,
+    half_window,
+    moves,
+    running_sum,
+    samples_in,
+)
 from frictioncli.motion.settings import SteadySettings
 from frictioncli.motion.steady import steady_parts
 from tests.moves import journey, trapezoid
@@ -41,6 +49,22 @@ def test_plateau_of_a_trapezoid_holds_no_acceleration(speed):
     # the constant part lasts 180/v - v/a seconds, of which at most a quarter settles
     cruise = 180 / speed - speed / 2000
     assert inside["time"].iloc[-1] - inside["time"].iloc[0] > 0.6 * min(cruise, cruise - 0.25)
+
+
+def test_smoothed_speed_is_the_mean_of_neighbours_within_the_move():
+    """Three moves of unlike sampling, one too short for any neighbour, two back to back."""
+    velocity = np.random.default_rng(2).integers(-40, 40, 60).astype(float)
+    first, last = np.array([0, 18, 31]), np.array([18, 20, 60])
+    time = np.concatenate([0.01 * np.arange(30), 1 + 0.02 * np.arange(30)])
+    widths, halves = np.array([0.031, 0.05, 0.1]), [3, 0, 5]
+    assert half_window(time, first, last, widths).tolist() == halves
+    expected = []
+    for move, half in zip(map(slice, first, last), halves, strict=True):
+        own = velocity[move]
+        for sample in range(len(own)):
+            expected.append(abs(own[max(sample - half, 0) : sample + half + 1].mean()))
+    found = steady._smoothed_speed(time, running_sum(velocity), first, last, widths)
+    np.testing.assert_allclose(found, expected, rtol=1e-12)
 
 
 def test_direction_is_in_the_sign_of_the_speed():

@@ -96,7 +96,7 @@ def _bins(pairs: int) -> Work:
                 at_most=True,
             ),
         ],
-        sources=("motion/bins.py",),
+        sources=("motion/bins.py", "motion/segments.py"),
     )
 
 
@@ -229,7 +229,8 @@ def bins_of_frictioncli(data: Path, out: Path) -> Callable[[], float]:
     keep_freed_memory()
     position, torque = np.load(data / "pairs.npy")
     pairs, _, samples = position.shape
-    position, torque = position.ravel(), torque.ravel()
+    # the angles wanted are the middles of bins; an angle's zero is no part of the work
+    position, torque = position.ravel() + 2.5, torque.ravel()
     together = 2 * 20
     start = samples * np.arange(together)
     none, time = np.full(together * samples, np.nan), PERIOD * np.arange(together * samples)
@@ -239,7 +240,7 @@ def bins_of_frictioncli(data: Path, out: Path) -> Callable[[], float]:
         for first in range(0, 2 * pairs, together):
             here = slice(first * samples, (first + together) * samples)
             means = bin_means(
-                position=position[here] + 2.5,
+                position=position[here],
                 torque=torque[here],
                 load=none,
                 time=time,
