@@ -1,6 +1,6 @@
 """Base and a rival fitted together to both channels, with the scale of the noise among them."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -52,10 +52,10 @@ class Equations:
 
     Attributes
     ----------
-    inside : ndarray, shape (columns, columns)
+    inside : ndarray, shape (columns, columns), or (rivals, columns, columns)
         Of the columns' deviations inside pairs, in units of their noise. Columns are the base's,
         the rival's, and the misfit.
-    between : ndarray, shape (columns, columns)
+    between : ndarray, of the same shape
         Of their pair means, under a noise of scale 1.
     determinant : float
         Restricted log determinant of that noise.
@@ -79,49 +79,83 @@ def solved(channels: tuple[Equations, Equations], base: int) -> Fitted:
     base : int
         Number of the base's columns.
     """
+    friction, load = (
+        replace(one, inside=one.inside[np.newaxis], between=one.between[np.newaxis])
+        for one in channels
+    )
+    return solved_each((friction, load), base)[0]
+
+
+def solved_each(channels: tuple[Equations, Equations], base: int) -> list[Fitted]:
+    """Fit each of many rivals with as many columns, as :func:`solved`.
+
+    Parameters
+    ----------
+    channels : (Equations, Equations)
+        Of friction and load, their inner products of shape (rivals, columns, columns).
+    base : int
+        Number of the base's columns.
+    """
     friction, load = channels
     inside = friction.inside + load.inside
-    scales = [max(float(one.between[-1, -1]), 1e-12) / max(one.freedom, 1) for one in channels]
-    count = len(inside) - 1
+    freedom = [max(one.freedom, 1) for one in channels]
+    scales = [
+        np.maximum(one.between[:, -1, -1], 1e-12) / free
+        for one, free in zip(channels, freedom, strict=True)
+    ]
     for _ in range(_ROUNDS):
-        gram = inside + friction.between / scales[0] + load.between / scales[1]
-        squared = np.diag(gram)[:count]
+        gram = inside + (friction.between.T / scales[0]).T + (load.between.T / scales[1]).T
+        own = gram[:, :-1, :-1]
+        squared = np.diagonal(own, axis1=1, axis2=2)
         size = np.where(squared > _ABSENT, np.sqrt(np.maximum(squared, 0.0)), np.inf)
-        scaled = gram[:count, :count] / np.outer(size, size)
-        inverse = np.linalg.pinv(scaled, rcond=1e-11, hermitian=True) / np.outer(size, size)
-        coefficients = inverse @ gram[:count, count]
-        rest = np.append(-coefficients, 1.0)
-        squares = [max(float(rest @ one.between @ rest), 1e-300) for one in channels]
+        sizes = _outer(size)
+        inverse = np.linalg.pinv(own / sizes, rcond=1e-11, hermitian=True) / sizes
+        coefficients = np.einsum("rij,rj->ri", inverse, gram[:, :-1, -1])
+        rest = np.append(-coefficients, np.ones((len(gram), 1)), axis=1)
+        squares = [np.maximum(_square(one.between, rest), 1e-300) for one in channels]
         scales = [
-            max(square / max(one.freedom, 1), 1e-12)
-            for one, square in zip(channels, squares, strict=True)
+            np.maximum(square / free, 1e-12) for square, free in zip(squares, freedom, strict=True)
         ]
-    likelihood = -0.5 * float(rest @ inside @ rest)
+    likelihood = -0.5 * _square(inside, rest)
     for one, square, scale in zip(channels, squares, scales, strict=True):
         likelihood -= 0.5 * (one.freedom * np.log(scale) + square / scale + one.determinant)
-    left, rank = _left(gram[:count, :count], base)
-    return Fitted(
-        likelihood=likelihood,
-        coefficients=coefficients,
-        covariance=np.asarray(inverse),
-        scales=(scales[0], scales[1]),
-        visible=left,
-        freedom=rank,
-    )
+    left, rank = _left(own, base)
+    return [
+        Fitted(
+            likelihood=float(likelihood[i]),
+            coefficients=coefficients[i],
+            covariance=inverse[i],
+            scales=(float(scales[0][i]), float(scales[1][i])),
+            visible=left[i],
+            freedom=int(rank[i]),
+        )
+        for i in range(len(gram))
+    ]
 
 
-def _left(gram: Array, base: int) -> tuple[Array, int]:
-    """Return the lengths that the base leaves of the rival's columns, and their rank."""
-    if len(gram) == base:
-        return np.empty(0), 0
-    size = np.sqrt(np.maximum(np.diag(gram), 1e-300))
-    scaled = gram / np.outer(size, size)
-    inner = np.linalg.pinv(scaled[:base, :base], rcond=1e-11, hermitian=True)
-    rest = scaled[base:, base:] - scaled[base:, :base] @ inner @ scaled[:base, base:]
-    own = np.maximum(np.diag(rest), 0.0)
-    seen = (own > 1e-6) & (size[base:] > 1e-6)
-    rank = int(np.linalg.matrix_rank(rest[np.ix_(seen, seen)], tol=1e-7, hermitian=True))
-    return np.where(seen, np.sqrt(own) * size[base:], 0.0), rank if seen.any() else 0
+def _outer(size: Array) -> Array:
+    """Return products of the columns' sizes, shape (rivals, columns, columns)."""
+    return size[:, :, np.newaxis] * size[:, np.newaxis, :]
+
+
+def _square(gram: Array, combination: Array) -> Array:
+    """Return squared lengths of a combination of each rival's columns, shape (rivals,)."""
+    return np.asarray(np.einsum("ri,rij,rj->r", combination, gram, combination))
+
+
+def _left(gram: Array, base: int) -> tuple[Array, NDArray[np.intp]]:
+    """Return the lengths that the base leaves of each rival's columns, and their ranks."""
+    if gram.shape[1] == base:
+        return np.empty((len(gram), 0)), np.zeros(len(gram), dtype=np.intp)
+    size = np.sqrt(np.maximum(np.diagonal(gram, axis1=1, axis2=2), 1e-300))
+    scaled = gram / _outer(size)
+    inner = np.linalg.pinv(scaled[:, :base, :base], rcond=1e-11, hermitian=True)
+    rest = scaled[:, base:, base:] - scaled[:, base:, :base] @ inner @ scaled[:, :base, base:]
+    own = np.maximum(np.diagonal(rest, axis1=1, axis2=2), 0.0)
+    seen = (own > 1e-6) & (size[:, base:] > 1e-6)
+    told = np.where(seen[:, :, np.newaxis] & seen[:, np.newaxis, :], rest, 0.0)
+    rank = np.linalg.matrix_rank(told, tol=1e-7, hermitian=True)
+    return np.where(seen, np.sqrt(own) * size[:, base:], 0.0), rank
 
 
 def noise_of(spectra: Spectra, setting: Setting, scale: float, point: float) -> Noise:

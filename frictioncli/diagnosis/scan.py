@@ -17,61 +17,12 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from frictioncli.diagnosis.groups import Groups, unmixing
 from frictioncli.diagnosis.spectra import STRENGTHS, Spectra
 
 Array = NDArray[np.float64]
 Setting = tuple[int, int]
 """Place of a noise: of its correlation time and of its strength."""
-
-_VISIBLE = 1e-3
-"""A column of which the base leaves less than this share says nothing of its own."""
-
-
-@dataclass(frozen=True, slots=True)
-class Groups:
-    """How columns are grouped: group *i* has ``width[i]`` columns from ``start[i]``."""
-
-    start: NDArray[np.intp]
-    width: NDArray[np.intp]
-
-    @classmethod
-    def of(cls, widths: Sequence[int]) -> "Groups":
-        """Return groups that follow each other."""
-        width = np.array(widths, dtype=np.intp)
-        return cls((np.cumsum(width) - width).astype(np.intp), width)
-
-    def columns(self, group: int) -> slice:
-        """Return the columns of a group."""
-        return slice(int(self.start[group]), int(self.start[group] + self.width[group]))
-
-    def orthonormal(self, whole: Array, left: Array) -> Array:
-        """Return the columns orthonormal within each group; what is not visible becomes zero.
-
-        Parameters
-        ----------
-        whole, left : ndarray, shape (rows, columns)
-            Columns before and after the base has taken its share.
-        """
-        before = np.linalg.norm(whole, axis=0)
-        size = np.linalg.norm(left, axis=0)
-        seen = (size > _VISIBLE * before) & (size > 1e-12)
-        unit = np.where(seen, left / np.where(seen, size, 1.0), 0.0)
-        for wide in np.unique(self.width[self.width > 1]):
-            first = self.start[self.width == wide]
-            for later in range(1, int(wide)):
-                own = unit[:, first + later]
-                for earlier in range(later):
-                    other = unit[:, first + earlier]
-                    own = own - other * np.einsum("ij,ij->j", other, own)
-                rest = np.sqrt(np.einsum("ij,ij->j", own, own))
-                unit[:, first + later] = np.where(rest > 1e-4, own / np.maximum(rest, 1e-4), 0.0)
-        return unit
-
-    def sums(self, values: Array) -> Array:
-        """Return sums over the columns of each group, shape (groups, ...)."""
-        if not len(self.start):
-            return np.zeros((0, values.shape[1]))
-        return np.asarray(np.add.reduceat(values, self.start, axis=0))
 
 
 @dataclass(frozen=True, slots=True)
@@ -112,6 +63,8 @@ class Null:
         scale 1. [-], [(N·m)²], [-]
     best : (int, int)
         The noise that suits best.
+    fits : tuple of tuple of _Fit
+        The base under each noise: correlation times, then strengths as :func:`_strengths` has them.
     """
 
     freedom: int
@@ -121,6 +74,7 @@ class Null:
     scale: Array
     determinant: Array
     best: Setting
+    fits: tuple[tuple["_Fit", ...], ...]
 
 
 def null_of(spectra: Spectra, base: Array, misfit: Array) -> Null:
@@ -139,10 +93,12 @@ def null_of(spectra: Spectra, base: Array, misfit: Array) -> Null:
     freedom = len(data) - known.shape[1]
     likelihood = np.full((len(spectra.spectra), len(STRENGTHS)), -np.inf)
     scale, determinant = np.ones_like(likelihood), np.zeros_like(likelihood)
+    fits = []
     for t, spectrum in enumerate(spectra.spectra):
         turned, part = spectra.modes(spectrum, known), spectra.modes(spectrum, data)
-        for s in _strengths(t):
-            fit = _Fit.of(spectrum.values, float(STRENGTHS[s]), turned)
+        own = [_Fit.of(spectrum.values, float(STRENGTHS[s]), turned) for s in _strengths(t)]
+        fits.append(tuple(own))
+        for s, fit in zip(_strengths(t), own, strict=True):
             square = max(float(np.sum(np.square(fit.off(part)))), 1e-300)
             likelihood[t, s] = -0.5 * (freedom * np.log(square) + fit.determinant)
             scale[t, s], determinant[t, s] = square / freedom, fit.determinant
@@ -155,6 +111,7 @@ def null_of(spectra: Spectra, base: Array, misfit: Array) -> Null:
         scale=scale,
         determinant=determinant,
         best=(int(at[0]), int(at[1])),
+        fits=tuple(fits),
     )
 
 
@@ -189,25 +146,69 @@ def scan(
         Their source.
     """
     both = np.hstack([null.data, _drawn(spectra, null, draws, generator)])
-    found = np.full((len(groups.start), both.shape[1]), -np.inf)
+    # most rivals show in one channel only; where all columns are zero the base stands alone
+    shows = groups.sums(np.any(rivals[0], axis=0)[:, np.newaxis].astype(np.intp))[:, 0] > 0
+    shown, columns = groups.chosen(shows)
+    of_group = np.tile(np.array(null.best, dtype=np.intp), (len(shows), 1))
+    drawn = np.zeros((len(shows), draws))
+    if not shows.any():
+        return Scan(of_group, drawn)
+    found = np.full((len(shown.start), both.shape[1]), -np.inf)
     without = np.full(both.shape[1], -np.inf)
-    of_group = np.zeros((len(groups.start), 2), dtype=np.intp)
+    best = np.zeros((len(shown.start), 2), dtype=np.intp)
     for t, spectrum in enumerate(spectra.spectra):
         turned, part = spectra.modes(spectrum, null.known), spectra.modes(spectrum, both)
-        for s in _strengths(t):
-            fit = _Fit.of(spectrum.values, float(STRENGTHS[s]), turned)
+        whole = rivals[t][:, columns]
+        # what the base takes without drift it takes under any: so little is left to cancel
+        own = whole - turned @ (turned.T @ whole)
+        mixings = _mixings(null.fits[t], whole, own, shown)
+        for number, (s, fit) in enumerate(zip(_strengths(t), null.fits[t], strict=True)):
             left = fit.off(part)
             square = np.maximum(np.einsum("ij,ij->j", left, left), 1e-300)
-            unit = groups.orthonormal(fit.weighted(rivals[t]), fit.off(rivals[t]))
-            taken = groups.sums(np.square(unit.T @ left))
+            taken = shown.taken([one[number] for one in mixings], own.T @ fit.weighted(left))
             rest = np.maximum(square - taken, 1e-12 * square)
             chance = -0.5 * (null.freedom * np.log(rest) + fit.determinant)
-            of_group[chance[:, 0] > found[:, 0]] = (t, s)
+            best[chance[:, 0] > found[:, 0]] = (t, s)
             np.maximum(found, chance, out=found)
             alone = -0.5 * (null.freedom * np.log(square) + fit.determinant)
             np.maximum(without, alone, out=without)
-    ratio = 2 * (found - without)
-    return Scan(of_group, np.maximum(ratio[:, 1:], 0.0))
+    of_group[shows] = best
+    drawn[shows] = np.maximum(2 * (found - without)[:, 1:], 0.0)
+    return Scan(of_group, drawn)
+
+
+def _mixings(fits: Sequence["_Fit"], whole: Array, own: Array, groups: Groups) -> list[Array]:
+    r"""Return what makes the columns of each width orthonormal under each noise off the base.
+
+    With weights :math:`W` and the base's basis :math:`B` the inner products of what is left of
+    columns :math:`C` are :math:`C^\mathsf{T} W^2 C - (B^\mathsf{T} W C)^\mathsf{T}
+    (B^\mathsf{T} W C)`.
+
+    Parameters
+    ----------
+    fits : sequence of _Fit
+        The base under each noise.
+    whole, own : ndarray, shape (pairs, columns)
+        Modes of the columns, and the same less any of the base's.
+    groups : Groups
+        Theirs.
+
+    Returns
+    -------
+    list of ndarray, shape (noises, groups, width, width)
+        In the order of :meth:`Groups.alike`.
+    """
+    precision = np.array([np.square(fit.weight) for fit in fits])
+    before = precision @ np.square(whole)
+    base = np.array([fit.weighted(fit.basis).T @ own for fit in fits])
+    found = []
+    for _, columns in groups.alike():
+        part, share = own[:, columns], base[..., columns]
+        products = part[..., :, np.newaxis] * part[..., np.newaxis, :]
+        inner = np.tensordot(precision, products, 1)
+        inner -= np.einsum("sbgi,sbgj->sgij", share, share)
+        found.append(unmixing(inner, before[:, columns]))
+    return found
 
 
 def _drawn(spectra: Spectra, null: Null, draws: int, generator: np.random.Generator) -> Array:
@@ -260,10 +261,23 @@ def span(columns: Array) -> Array:
     return np.asarray(left[:, strength > 1e-7 * strength[0]])
 
 
-def weighted_gram(spectra: Spectra, setting: Setting, modes: Array) -> Array:
-    """Return inner products of modes under a noise of scale 1."""
+def weighted_gram(
+    spectra: Spectra, setting: Setting, modes: Array, others: Array | None = None
+) -> Array:
+    """Return inner products of modes under a noise of scale 1, with each other or with others.
+
+    Parameters
+    ----------
+    spectra : Spectra
+        The channel's noises.
+    setting : (int, int)
+        Place of the noise.
+    modes, others : ndarray, shape (..., pairs, columns)
+        Modes of columns.
+    """
     variance = 1 + STRENGTHS[setting[1]] * spectra.spectra[setting[0]].values
-    return np.asarray(modes.T @ (modes / variance[:, np.newaxis]))
+    second = modes if others is None else others
+    return np.asarray(modes.swapaxes(-1, -2) @ (second / variance[:, np.newaxis]))
 
 
 def drawn_inside(

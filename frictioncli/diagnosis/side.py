@@ -1,6 +1,8 @@
 """One channel of a step: base and accepted effects there, under the noise that suits them."""
 
-from dataclasses import dataclass
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from functools import partial
 
 import numpy as np
 from numpy.typing import NDArray
@@ -75,12 +77,75 @@ class Side:
         setting : (int, int)
             Place of the noise.
         """
-        rows = np.hstack([self.base.inside, rival.inside, self.misfit.inside])
-        known = self.known[setting[0]]
-        means = np.hstack([known[:, :-1], modes, known[:, -1:]])
+        alone = self.equations_each(rival, modes, np.arange(rival.count)[np.newaxis], setting)
+        return replace(alone, inside=alone.inside[0], between=alone.between[0])
+
+    def equations_each(
+        self, rivals: Channel, modes: Array, columns: NDArray[np.intp], setting: Setting
+    ) -> Equations:
+        """Return the inner products of base, each of many rivals, and misfit under one noise.
+
+        Parameters
+        ----------
+        rivals : Channel
+            Columns of the rivals.
+        modes : ndarray, shape (pairs, columns)
+            Their modes at the noise's correlation time.
+        columns : ndarray of int, shape (rivals, width)
+            Which columns are whose.
+        setting : (int, int)
+            Place of the noise.
+        """
+        known = np.hstack([self.base.inside, self.misfit.inside])
         return Equations(
-            inside=np.asarray(rows.T @ rows) / self.point**2,
-            between=weighted_gram(self.spectra, setting, means),
+            inside=_bordered(_inner, known, rivals.inside, columns) / self.point**2,
+            between=_bordered(
+                partial(weighted_gram, self.spectra, setting),
+                self.known[setting[0]],
+                modes,
+                columns,
+            ),
             determinant=float(self.null.determinant[setting]),
             freedom=self.null.freedom,
         )
+
+
+def _inner(first: Array, second: Array) -> Array:
+    return np.asarray(first.swapaxes(-1, -2) @ second)
+
+
+def _bordered(
+    product: Callable[[Array, Array], Array],
+    known: Array,
+    rivals: Array,
+    columns: NDArray[np.intp],
+) -> Array:
+    """Return inner products of the base's columns, each rival's, and the misfit.
+
+    Parameters
+    ----------
+    product : callable
+        Inner products of the columns of one array with those of another.
+    known : ndarray, shape (rows, base + 1)
+        The base's columns, then the misfit; their products are the same beside all rivals.
+    rivals : ndarray, shape (rows, columns)
+        Columns of the rivals.
+    columns : ndarray of int, shape (rivals, width)
+        Which columns are whose.
+
+    Returns
+    -------
+    ndarray, shape (rivals, base + width + 1, base + width + 1)
+        The base's columns first, the misfit last.
+    """
+    own = np.moveaxis(rivals[:, columns], 1, 0)
+    across = product(own, known)
+    base, width = known.shape[1] - 1, columns.shape[1]
+    found = np.empty((len(columns), base + width + 1, base + width + 1))
+    middle = slice(base, base + width)
+    place = np.delete(np.arange(base + width + 1), middle)
+    found[:, place[:, np.newaxis], place] = product(known, known)
+    found[:, middle, middle] = product(own, own)
+    found[:, middle, place] = across
+    found[:, place, middle] = across.swapaxes(-1, -2)
+    return found

@@ -1,5 +1,6 @@
 """One step of the search: base and accepted effects against every rival, in both channels."""
 
+from collections import defaultdict
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -18,7 +19,7 @@ from frictioncli.diagnosis.columns import (
     left_of_base,
     main_channel,
 )
-from frictioncli.diagnosis.joint import Fitted, solved
+from frictioncli.diagnosis.joint import Fitted, solved, solved_each
 from frictioncli.diagnosis.judged import Judged, Score
 from frictioncli.diagnosis.problem import Problem
 from frictioncli.diagnosis.scan import Setting, drawn_inside
@@ -101,7 +102,7 @@ class Step:
             Number of draws of noise; without any all p-values are 1.
         """
         suited, drawn = self._scanned(catalogue, seed, draws)
-        fits = [self._of_group(catalogue, group, noise) for group, noise in enumerate(suited)]
+        fits = self._fits(catalogue, suited)
         found, first = {}, 0
         for hypothesis in catalogue.hypotheses:
             own = slice(first, first + len(hypothesis.shapes))
@@ -135,14 +136,31 @@ class Step:
             [part.inside / side.point for part, side in zip(channels, self.sides, strict=True)]
         )
 
-    def _of_group(self, catalogue: Catalogue, group: int, settings: Settings) -> Fitted:
-        """Return the fit of base and one group of a catalogue's columns."""
-        chosen = catalogue.groups.columns(group)
-        friction, load = (
-            modes[time][:, chosen]
-            for modes, (time, _) in zip(catalogue.modes, settings, strict=True)
-        )
-        return _fitted(self.sides, catalogue.columns.take(chosen), (friction, load), settings)
+    def _fits(self, catalogue: Catalogue, suited: Sequence[Settings]) -> list[Fitted]:
+        """Return the fit of base and each group of a catalogue's columns under its noises.
+
+        Groups as wide under the same noises are fitted at once.
+        """
+        alike = defaultdict(list)
+        for group, settings in enumerate(suited):
+            alike[settings, catalogue.groups.width[group]].append(group)
+        found: dict[int, Fitted] = {}
+        for (settings, width), groups in alike.items():
+            columns = np.r_[*(catalogue.groups.columns(one) for one in groups)]
+            columns = columns.reshape(-1, width)
+            friction, load = (
+                side.equations_each(part, modes[setting[0]], columns, setting)
+                for side, part, modes, setting in zip(
+                    self.sides,
+                    catalogue.columns.channels,
+                    catalogue.modes,
+                    settings,
+                    strict=True,
+                )
+            )
+            fits = solved_each((friction, load), self.base_count)
+            found |= dict(zip(groups, fits, strict=True))
+        return [found[group] for group in range(len(suited))]
 
     def noise(self) -> tuple[Noise, Noise]:
         """Return the noise of friction and load that suits base and accepted effects."""

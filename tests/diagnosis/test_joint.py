@@ -7,7 +7,7 @@ import pytest
 from scipy import stats
 from scipy.linalg import block_diag, null_space
 
-from frictioncli.diagnosis.joint import Equations, noise_of, solved
+from frictioncli.diagnosis.joint import Equations, noise_of, solved, solved_each
 from frictioncli.diagnosis.scan import null_of, weighted_gram
 from frictioncli.diagnosis.spectra import STRENGTHS, spectra_of
 from tests.diagnosis import noises
@@ -260,3 +260,43 @@ def test_a_column_that_is_nearly_nothing_changes_nothing(size):
     assert found.coefficients[2] == 0.0
     np.testing.assert_allclose(np.delete(found.coefficients, 2), without.coefficients, rtol=1e-9)
     assert found.likelihood == pytest.approx(without.likelihood, rel=1e-9)
+
+
+def test_many_rivals_at_once_are_fitted_as_each_alone():
+    """Among them a repeated column and one of zeros, which must not touch their neighbours."""
+    channels, inside, means = both(8)
+    cases = []
+    for change in (lambda rows: None, repeat_third, empty_last):
+        parts = [[rows.copy() for rows in part] for part in (inside, means)]
+        for rows in (*parts[0], *parts[1]):
+            change(rows)
+        cases.append(parts)
+    stacked = tuple(
+        Equations(
+            inside=np.stack([case[0][number].T @ case[0][number] for case in cases]),
+            between=np.stack([inner(*channels[number], case[1][number]) for case in cases]),
+            determinant=0.0,
+            freedom=COUNT - 2,
+        )
+        for number in range(2)
+    )
+    found = solved_each(stacked, 2)
+    assert [fit.freedom for fit in found] == [2, 1, 1]
+    for fit, case in zip(found, cases, strict=True):
+        alone = fitted(channels, *case)
+        assert fit.likelihood == pytest.approx(alone.likelihood, rel=1e-10)
+        np.testing.assert_allclose(fit.coefficients, alone.coefficients, rtol=1e-8, atol=1e-12)
+        np.testing.assert_allclose(fit.visible, alone.visible, rtol=1e-8, atol=1e-12)
+    # the first against dense least squares, at the scales found
+    coefficients, covariance = dense(channels, inside, means, found[0].scales)
+    error = np.sqrt(np.diag(covariance))
+    np.testing.assert_allclose(found[0].coefficients, coefficients, atol=2e-3 * error.min())
+    assert found[2].coefficients[3] == 0.0
+
+
+def repeat_third(rows):
+    rows[:, 3] = -2.0 * rows[:, 2]
+
+
+def empty_last(rows):
+    rows[:, 3] = 0.0

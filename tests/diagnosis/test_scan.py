@@ -272,3 +272,28 @@ def test_inner_products_of_modes_are_those_under_the_dense_noise(setting):
     spectrum = SPECTRA.spectra[setting[0]]
     found = weighted_gram(SPECTRA, setting, SPECTRA.modes(spectrum, SPECTRA.scaled(RIVALS)))
     np.testing.assert_allclose(found, RIVALS.T @ inverse @ RIVALS, rtol=1e-7, atol=1e-9)
+
+
+@pytest.mark.parametrize("setting", [(0, 0), (2, 4)])
+def test_inner_products_with_others_are_those_of_each_group(setting):
+    inverse = np.linalg.inv(noises.covariance(PAIRS, SPECTRA, setting))
+    own = SPECTRA.modes_at(setting[0], RIVALS)
+    stacked = np.stack([own[:, :2], own[:, 2:]])
+    found = weighted_gram(SPECTRA, setting, stacked, SPECTRA.modes_at(setting[0], BASE))
+    assert found.shape == (2, 2, 3)
+    np.testing.assert_allclose(np.vstack(found), RIVALS.T @ inverse @ BASE, rtol=1e-7, atol=1e-9)
+
+
+def test_groups_that_do_not_show_leave_the_others_as_they_are():
+    """Zeros before, between and after: they take nothing, and the base's noise suits them best."""
+    places = [1, 2, 3, 6]
+    padded = np.zeros((COUNT, 8))
+    padded[:, places] = RIVALS
+    found = scanned(20, rivals=padded, groups=Groups.of([1, 1, 2, 2, 1, 1]))
+    plain = scanned(20)
+    shows = [1, 2, 4]
+    np.testing.assert_allclose(found.drawn[shows], plain.drawn, rtol=1e-12)
+    np.testing.assert_array_equal(found.of_group[shows], plain.of_group)
+    hidden = [0, 3, 5]
+    np.testing.assert_array_equal(found.drawn[hidden], 0.0)
+    assert [found.settings[group] for group in hidden] == [NULL.best] * 3
