@@ -1,4 +1,4 @@
-"""Which blocks, in which order: greedy and from random starts, then exchanges, within a budget.
+"""Which blocks, in which order: the best of many at random, then exchanges, within a budget.
 
 Every block changes what the next one finds: temperature, way, rest. So whole programmes are
 compared, not blocks.
@@ -12,15 +12,14 @@ from frictioncli.experiment.steps import MOUNTING, Step, duration, mountings
 
 Worth = Callable[[Sequence[Step]], float]
 
-_LEAST = 1e-4
-"""What a block must add to be taken."""
+_STARTS = 30
+"""Programmes at random, of which the best is changed further."""
 
-_ROUNDS = 1
-"""Rounds of exchanges."""
+TRIALS = 100
+"""Exchanges of a stretch of it that are tried."""
 
-_STARTS = 40
-"""Programmes at random that compete with the greedy one: it never heats for long before it sees
-what that is good for."""
+_STRETCH = 3
+"""A stretch is at most one in so many of its blocks."""
 
 _REPEATS = 12
 """Times that one block may come, at most: more of the same guards against noise only."""
@@ -38,7 +37,12 @@ def seconds_of(blocks: Sequence[Block], payload: float | None) -> float:
 
 
 def chosen(
-    candidates: Sequence[Block], worth: Worth, budget: float, payload: float | None, seed: int
+    candidates: Sequence[Block],
+    worth: Worth,
+    budget: float,
+    payload: float | None,
+    seed: int,
+    trials: int = TRIALS,
 ) -> tuple[Block, ...]:
     """Return the blocks that are worth most together, in order.
 
@@ -53,78 +57,33 @@ def chosen(
     payload : float or None
         What is on before. [kg]
     seed : int
-        Source of the random starts.
+        Source of the random starts and exchanges.
+    trials : int
+        Exchanges that are tried.
     """
-    greedy = _greedy(candidates, worth, budget, payload)
     generator = random.Random(seed)
-    starts = [_at_random(generator, candidates, budget, payload) for _ in range(_STARTS)]
-    rated = [(worth(steps_of(one)), -place, one) for place, one in enumerate([greedy, *starts])]
-    value, _, taken = max(rated, key=lambda one: one[:2])
-    for _ in range(_ROUNDS):
-        better, gain = _exchanged(taken, candidates, worth, value, budget, payload)
-        if not gain > _LEAST:
-            break
-        taken, value = better, value + gain
-    return taken
 
+    def filled(taken: tuple[Block, ...], place: int) -> tuple[Block, ...]:
+        """Return a programme with blocks at random from a place on, until its time is filled."""
+        fitting = list(candidates)
+        while fitting:
+            one = generator.choice(fitting)
+            longer = (*taken[:place], one, *taken[place:])
+            if longer.count(one) > _REPEATS or seconds_of(longer, payload) > budget:
+                fitting.remove(one)
+            else:
+                taken, place = longer, place + 1
+        return taken
 
-def _greedy(
-    candidates: Sequence[Block], worth: Worth, budget: float, payload: float | None
-) -> tuple[Block, ...]:
-    """Return a programme to which each block adds most for its time."""
-    taken: tuple[Block, ...] = ()
-    value = worth(())
-    while True:
-        fitting = [
-            (*taken, one)
-            for one in candidates
-            if taken.count(one) < _REPEATS and seconds_of((*taken, one), payload) <= budget
-        ]
-        # what counts is worth per time: many short blocks may do more than a long one
-        rated = [
-            ((worth(steps_of(one)) - value) / (one[-1].seconds + 30.0), place)
-            for place, one in enumerate(fitting)
-        ]
-        gaining = [pair for pair in rated if pair[0] > _LEAST / 600.0]
-        if not gaining:
-            return taken
-        best = max(gaining, key=lambda pair: (pair[0], -pair[1]))[1]
-        taken = fitting[best]
-        value = worth(steps_of(taken))
-
-
-def _at_random(
-    generator: random.Random, candidates: Sequence[Block], budget: float, payload: float | None
-) -> tuple[Block, ...]:
-    """Return blocks at random that fill a time [s]."""
-    taken: tuple[Block, ...] = ()
-    while True:
-        fitting = [
-            one
-            for one in candidates
-            if taken.count(one) < _REPEATS and seconds_of((*taken, one), payload) <= budget
-        ]
-        if not fitting:
-            return taken
-        taken = (*taken, generator.choice(fitting))
-
-
-def _exchanged(
-    taken: tuple[Block, ...],
-    candidates: Sequence[Block],
-    worth: Worth,
-    value: float,
-    budget: float,
-    payload: float | None,
-) -> tuple[tuple[Block, ...], float]:
-    """Return a programme with blocks exchanged one place after the other, and what it gains."""
-    current, reached = taken, value
-    for place in range(len(taken)):
-        for one in candidates:
-            other = (*current[:place], one, *current[place + 1 :])
-            if other.count(one) > _REPEATS or seconds_of(other, payload) > budget:
-                continue
-            found = worth(steps_of(other))
-            if found > reached + _LEAST:
-                current, reached = other, found
-    return current, reached - value
+    starts = [filled((), 0) for _ in range(_STARTS)]
+    rated = [worth(steps_of(one)) for one in starts]
+    value = max(rated)
+    taken = starts[rated.index(value)]
+    for _ in range(trials):
+        first = generator.randrange(len(taken) + 1)
+        count = generator.randint(1, 1 + len(taken) // _STRETCH)
+        other = filled(taken[:first] + taken[first + count :], first)
+        found = worth(steps_of(other))
+        if found > value:
+            taken, value = other, found
+    return taken if value > worth(()) else ()

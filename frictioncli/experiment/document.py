@@ -66,6 +66,7 @@ def plan_document(
                 "right_name_alone": {
                     "now": _rounded(plan.expected[0].decided[number]),
                     "after": _rounded(plan.expected[-1].decided[number]),
+                    "after_check": _rounded(plan.settled.decided[number]),
                 },
                 "rules_out": _ruled_out(question, plan.expected[-1], number),
             }
@@ -195,7 +196,9 @@ def plan_text(plan: Plan, units: Mapping[str, str], files: Sequence[str]) -> str
         shares = ", ".join(f"{name} {share:.0%}" for name, share in question.probabilities.items())
         now, after = plan.expected[0].decided[number], plan.expected[-1].decided[number]
         lines.append(f"  open: {shares}; the right name alone: {_chance(now)} now,")
-        lines.append(f"    {_chance(after)} after it{_too_little(after)}")
+        last = plan.settled.decided[number]
+        checked = f", {_chance(last)} with the check" if plan.check else ""
+        lines.append(f"    {_chance(after)} after it{checked}{_too_little(last)}")
     if plan.verdict == "unnamed":
         lines.append("  no known effect explains the structure: blocks that spread over all inputs")
     told: set[str] = set()

@@ -12,6 +12,10 @@ from frictioncli.experiment.steps import ACCELERATION
 USUAL_HOTTEST = 65.0
 """Heating moves may go as far as the paper's, whatever was measured. [°C]"""
 
+SLOWER = 60.0
+"""Slow moves endanger nothing: they may be slower than the fastest by this, whatever was measured.
+"""
+
 BIN = 5.0
 """Width of the angle bins where the data do not tell. [deg]"""
 
@@ -27,7 +31,7 @@ class Limits:
     low, high : float
         Angles between which it may turn. [deg]
     slowest, fastest : float
-        Lowest and highest speed of measured moves. [deg/s]
+        Lowest and highest speed of moves. [deg/s]
     hottest : float
         Motor temperature at which heating moves end. [°C]
     payloads : tuple of float
@@ -74,11 +78,10 @@ class Limits:
 
     def speeds(self, count: int, slowest: float = 0.0) -> tuple[float, ...]:
         """Return so many speeds from slow to fast in equal ratios; fewer if they coincide."""
-        low = max(self.slowest, slowest, self.fastest / 60.0)
-        wanted = np.geomspace(min(low, self.fastest), self.fastest, count)
         # the highest needs room to reach its speed and hold it
-        able = [self.speed(float(one)) for one in wanted if one <= self.highest_useful]
-        return tuple(sorted(set(able)))
+        high = min(self.fastest, self.highest_useful)
+        low = min(max(self.slowest, slowest), high)
+        return tuple(sorted({self.speed(float(one)) for one in np.geomspace(low, high, count)}))
 
     @property
     def highest_useful(self) -> float:
@@ -103,7 +106,7 @@ def limits_of(torques: pd.DataFrame, settings: PlanSettings) -> Limits:
     """
     half = bin_width(torques) / 2
     low, high = float(torques["position"].min() - half), float(torques["position"].max() + half)
-    slowest, fastest = float(torques["speed"].min()), float(torques["speed"].max())
+    measured, fastest = float(torques["speed"].min()), float(torques["speed"].max())
     warmest = float(torques["motor_temperature"].max())
     hottest = USUAL_HOTTEST if np.isnan(warmest) else max(warmest, USUAL_HOTTEST)
     beyond = []
@@ -125,7 +128,7 @@ def limits_of(torques: pd.DataFrame, settings: PlanSettings) -> Limits:
     return Limits(
         low=low,
         high=high,
-        slowest=min(slowest, fastest),
+        slowest=min(measured, fastest / SLOWER),
         fastest=fastest,
         hottest=hottest if settings.max_temperature is None else settings.max_temperature,
         payloads=settings.payload,

@@ -9,18 +9,12 @@ from numpy.typing import NDArray
 
 from frictioncli.diagnosis.columns import left_of_base, main_channel
 from frictioncli.diagnosis.problem import Problem, simulated
+from frictioncli.experiment.precision import Precision, precision
 from frictioncli.experiment.rivals import Opening
 from frictioncli.experiment.rows import Joint, foreseen, together
 from frictioncli.experiment.spread import spread
 from frictioncli.experiment.steps import Step
-from frictioncli.experiment.worth import (
-    Precision,
-    Sight,
-    chances,
-    decided,
-    noncentralities,
-    precision,
-)
+from frictioncli.experiment.worth import Sight, chances, decided, margins, noncentralities
 from frictioncli.model.document import PARAMETERS
 
 Array = NDArray[np.float64]
@@ -34,16 +28,16 @@ _THERMAL = ("gamma", "delta")
 WIDE = 0.2
 """An interval whose half is more than this share of the estimate is wide."""
 
-_ENOUGH = 30.0
-"""Added noncentrality beyond which a rival is as good as gone."""
+_ENOUGH = 15.0
+"""Margin of the odds' logarithm beyond which more is worth nothing."""
 
 _PULL = 0.3
 _NARROW = 0.01
 _SPREAD = 0.004
 _SPREAD_ALONE = 0.02
-"""Weights of evidence that does not decide yet; per nat, of precision, and of rows that spread over
-all inputs, beside open questions and beside precision: a plan should meet what no one thought of.
-"""
+"""Weights of evidence beyond what decides, where it is enough; per nat, of precision, and of rows
+that spread over all inputs, beside open questions and beside precision: a plan should meet what no
+one thought of."""
 
 _LOOSE = 10.0
 """How many times its usual size a parameter may have before any data."""
@@ -110,16 +104,22 @@ class Outlook:
         """Estimates of the parameters by name: the base's, and causes' as ``effect.name``."""
         return _estimates(self.joint, self.opening)
 
-    def after(self, steps: Sequence[Step]) -> Sight:
-        """Return the rows at hand together with those that steps would add."""
-        run = f"{self.joint.torques['run'].astype(str).max()}{PLANNED}"
-        new, _ = foreseen(self.joint, steps, run)
+    def after(self, *days: Sequence[Step]) -> Sight:
+        """Return the rows at hand together with those that steps, day after day, would add."""
+        last = str(self.joint.torques["run"].max())
+        runs = [
+            foreseen(self.joint, steps, f"{last}{PLANNED * number}")[0]
+            for number, steps in enumerate(days, 1)
+        ]
+        new = pd.concat([run for run in runs if len(run)] or runs[:1], ignore_index=True)
         problem = _problem(self.joint, together(self.joint.torques, new))
         travel = problem.whole.travel.copy()
         if len(new):
             share = self.joint.warmth.recorded if self.joint.warmth else 1.0
             travel[-len(new) :] = share * new["way"]
-        return Sight(problem, self.opening.noise, replace(problem.whole, travel=travel))
+        at_hand = len(self.before.problem.layout.bins) / len(problem.layout.bins)
+        whole = replace(problem.whole, travel=travel)
+        return Sight(problem, self.opening.noise, whole, at_hand)
 
     def chances(self, sight: Sight) -> tuple[Array, ...]:
         """Return, per question, the probability that i, if at work, leaves j behind."""
@@ -140,11 +140,11 @@ class Outlook:
         prior = _prior(self.joint, self.opening, problem)
         return precision(sight, self.opening, prior, names, _told(names))
 
-    def worth(self, steps: Sequence[Step]) -> float:
-        """Return what steps are worth, from what is decided and how narrow intervals become."""
-        if not steps:
+    def worth(self, *days: Sequence[Step]) -> float:
+        """Return what steps, day after day, are worth: names decided, intervals narrowed."""
+        if not any(days):
             return 0.0
-        sight = self.after(steps)
+        sight = self.after(*days)
         narrow = self.precision.of(self.matter).volume
         narrow -= self.narrowed(sight).of(self.matter).volume
         low, high = spread([self.before.problem.table, sight.problem.table])
@@ -160,9 +160,8 @@ class Outlook:
         ):
             total += decided(question, chances(question, before, after, pairs))
             share = np.array([question.probabilities[rival.name] for rival in question.rivals])
-            added = np.minimum(np.maximum(after - before, 0.0), _ENOUGH) / _ENOUGH
-            np.fill_diagonal(added, np.inf)
-            total += _PULL * float(share @ added.min(axis=1))
+            margin = margins(question, before, after, pairs, _ENOUGH)
+            total += _PULL * float(share @ margin) / _ENOUGH
         return total
 
     def shown(self, steps: Sequence[Step]) -> float:

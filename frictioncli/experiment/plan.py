@@ -19,6 +19,7 @@ from frictioncli.experiment.outlook import Outlook
 from frictioncli.experiment.rivals import opening
 from frictioncli.experiment.rows import Joint, Moment, foreseen, plain
 from frictioncli.experiment.settings import PlanSettings
+from frictioncli.experiment.steps import Step
 from frictioncli.experiment.warmth import warmth_of
 from frictioncli.experiment.worth import decided
 from frictioncli.model.friction import PUBLISHED, FrictionParameters
@@ -26,8 +27,14 @@ from frictioncli.model.friction import PUBLISHED, FrictionParameters
 CHECK = 0.28
 """Share of the time that is kept for the check on the next day."""
 
-_MORE = 1.02
-"""A further block of the check must show so much more."""
+_SHOWN = 1.5
+"""A check that shows the likely causes so many times as much as the programme shows enough."""
+
+_SHOWING = 0.3
+"""Weight of what the check shows, beside its worth after the programme."""
+
+_TRIALS = 40
+"""Exchanges that are tried for the check."""
 
 _LEVER = 0.5 * 9.80665
 """Gravity torque of a mass at half a metre, where no payload has been changed yet. [N·m/kg]"""
@@ -78,6 +85,8 @@ class Plan:
         The same of it.
     expected : tuple of Expected
         Before the programme, and after each of its blocks.
+    settled : Expected
+        After programme and check, by all runs together.
     """
 
     joint: int
@@ -90,6 +99,7 @@ class Plan:
     check: tuple[Block, ...]
     check_moments: tuple[Moment, ...]
     expected: tuple[Expected, ...]
+    settled: Expected
 
 
 def plan_joint(
@@ -134,7 +144,8 @@ def plan_joint(
             f"joint {_number_of(torques)}: no block fits into {settings.minutes:g} min, or none"
             " tells anything new; give more time with --minutes"
         )
-    check = check_of(outlook, blocks, budget - seconds_of(blocks, payload), payload)
+    rest = budget - seconds_of(blocks, payload)
+    check = check_of(outlook, blocks, rest, payload, settings.seed)
     return Plan(
         joint=_number_of(torques),
         verdict=str(document["verdict"]),
@@ -146,6 +157,7 @@ def plan_joint(
         check=check,
         check_moments=_moments(outlook.joint, check),
         expected=tuple(expected(outlook, blocks[:count]) for count in range(len(blocks) + 1)),
+        settled=expected(outlook, blocks, check),
     )
 
 
@@ -169,12 +181,12 @@ def outlook_of(
 
 
 def check_of(
-    outlook: Outlook, blocks: Sequence[Block], budget: float, payload: float | None
+    outlook: Outlook, blocks: Sequence[Block], budget: float, payload: float | None, seed: int
 ) -> tuple[Block, ...]:
-    """Return what is repeated on the next day: blocks that show the likely causes most, in order.
+    """Return what of a programme is repeated on the next day.
 
     Diagnosis keeps the last run to see whether a cause is worth modelling. Where the cause does not
-    show there, a right name would be dropped.
+    show there, a right name would be dropped. Later that run speaks for or against names, too.
 
     Parameters
     ----------
@@ -186,21 +198,24 @@ def check_of(
         Time for the check. [s]
     payload : float or None
         What is on before. [kg]
+    seed : int
+        Source of what is tried.
     """
-    offered = list(dict.fromkeys(blocks))
-    taken: tuple[Block, ...] = ()
-    value = 0.0
-    while True:
-        fitting = [(*taken, one) for one in offered if seconds_of((*taken, one), payload) <= budget]
-        shown = [outlook.shown(steps_of(one)) for one in fitting]
-        if not shown or max(shown) <= value * _MORE:
-            return taken
-        taken, value = fitting[shown.index(max(shown))], max(shown)
+    programme = steps_of(blocks)
+    usual = max(outlook.shown(programme), 1e-9)
+
+    def worth(steps: Sequence[Step]) -> float:
+        if not steps:
+            return 0.0
+        shown = min(outlook.shown(steps) / usual, _SHOWN)
+        return outlook.worth(programme, steps) + _SHOWING * shown
+
+    return chosen(list(dict.fromkeys(blocks)), worth, budget, payload, seed, trials=_TRIALS)
 
 
-def expected(outlook: Outlook, blocks: Sequence[Block]) -> Expected:
-    """Return what is expected after blocks."""
-    sight = outlook.after(steps_of(blocks)) if blocks else outlook.before
+def expected(outlook: Outlook, *days: Sequence[Block]) -> Expected:
+    """Return what is expected after blocks, day after day."""
+    sight = outlook.after(*map(steps_of, days)) if any(days) else outlook.before
     chance = outlook.chances(sight)
     return Expected(
         decided=tuple(

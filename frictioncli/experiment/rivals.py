@@ -1,5 +1,6 @@
 """What is open after a diagnosis: rivals for the same misfit, each fitted to all data at hand."""
 
+from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
@@ -23,10 +24,13 @@ Array = NDArray[np.float64]
 _MOST = 5
 """Rivals of one question, at most; the least likely of longer sets are left out."""
 
+_MOST_OTHERS = 8
+"""Effects at most that the rivals are easily taken for, though not by the data at hand."""
+
 _THINKABLE = 0.01
 """An effect outside a set that is as likely as this is a rival, too."""
 
-_WANDERING = 0.01
+_WANDERING = 0.007
 _WANDERING_TIME = 1200.0
 """Friction of a joint is taken to wander by this share of it in this time [s], even where a thin
 experiment shows less: what a rival explains in it may be wandering, too."""
@@ -55,9 +59,18 @@ class Rival:
 
 @dataclass(frozen=True, slots=True)
 class Question:
-    """Which of some effects is the cause."""
+    """Which of some effects is the cause.
+
+    Attributes
+    ----------
+    rivals : tuple of Rival
+        Effects that may be the cause.
+    others : tuple of Rival
+        Effects that the data at hand speak against, but which more data might be taken for.
+    """
 
     rivals: tuple[Rival, ...]
+    others: tuple[Rival, ...] = ()
 
     @property
     def probabilities(self) -> dict[str, float]:
@@ -147,9 +160,12 @@ def _wandering(noise: Noise, friction: float) -> Noise:
 
 
 def _question(step: Step, names: Sequence[str]) -> Question:
-    """Return the rivals of these names, each with the shape that suits it best."""
+    """Return the rivals of these names and what they are easily taken for, fitted."""
     problem = step.problem
-    effects = [BY_NAME[name] for name in names]
+    taken_for = [other for name in names for other in BY_NAME[name].confounders]
+    known = {*names, *(one.effect.name for one in step.accepted)}
+    others = [name for name, _ in Counter(taken_for).most_common() if name not in known]
+    effects = [BY_NAME[name] for name in [*names, *others[:_MOST_OTHERS]]]
     able = [effect for effect in effects if not missing_columns(effect, problem.table)]
     hypotheses = [hypothesis_of(effect, problem) for effect in able]
     judged = step.judged(Catalogue.of(step.bench, hypotheses), seed=0, draws=0)
@@ -159,4 +175,7 @@ def _question(step: Step, names: Sequence[str]) -> Question:
         score = step.refined(one.score(effect))
         bonus = max(score.statistic - one.statistic, 0.0) / 2
         rivals.append(Rival(score, one.evidence + bonus))
-    return Question(tuple(rivals))
+    return Question(
+        tuple(rival for rival in rivals if rival.name in names),
+        tuple(rival for rival in rivals if rival.name not in names),
+    )

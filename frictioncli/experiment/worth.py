@@ -1,25 +1,24 @@
-r"""What a programme is worth: how surely it names the cause, and how narrow it makes intervals.
+r"""How surely a programme names the cause.
 
 All of it follows from inner products :math:`G = C' V^{-1} C` of columns under the noise :math:`V`
 that the data at hand show, taken over the rows at hand and those to come.
 
-**Discrimination.** If rival A is at work, its torque :math:`s_A` is there. B with any shape and
+If rival A is at work, its torque :math:`s_A` is there. B with any
 coefficients, and the base refitted, leaves the noncentrality
 
-.. math:: \lambda_{AB} = \min_B \lVert s_A - X_B c \rVert^2_{V^{-1}}
+.. math::
+    \lambda_{AB} = -2 \ln \operatorname{mean}_\theta
+    \exp\left(-\tfrac12 \min_c \lVert s_A - X_B(\theta) c \rVert^2_{V^{-1}}\right)
 
-of it [1]_. New rows add :math:`\delta` to it. The logarithm of the odds of A against B, :math:`D`
-by the data at hand, becomes normal with mean :math:`D + \delta/2` and variance :math:`\delta`; A is
-named where it exceeds ln 19, a credible set of 95 %.
-
-**Precision.** The gain is half the fall of the log determinant of the covariance of the parameters
-that matter (D_s-optimality [2]_), in nats.
+of it [1]_, the likelihood averaged over B's shapes :math:`\theta`. New rows add :math:`\delta` to
+:math:`\lambda_{AB} - \lambda_{AA}`. The logarithm of the odds of A against B, :math:`D` by the data
+at hand, becomes normal with mean :math:`D + \delta/2` and variance :math:`\delta`; A is named where
+it exceeds ln 19, a credible set of 95 %.
 
 References
 ----------
 .. [1] A. C. Atkinson and V. V. Fedorov, "The design of experiments for discriminating between two
    rival models," Biometrika 62(1), 1975, doi:10.1093/biomet/62.1.57.
-.. [2] A. C. Atkinson, A. N. Donev and R. D. Tobias, Optimum Experimental Designs, with SAS, 2007.
 """
 
 from collections.abc import Sequence
@@ -38,8 +37,8 @@ from frictioncli.diagnosis.columns import (
 )
 from frictioncli.diagnosis.judged import Score
 from frictioncli.diagnosis.problem import Problem
-from frictioncli.effects.base import Effect, EffectTable
-from frictioncli.experiment.rivals import Opening, Question
+from frictioncli.effects.base import EffectTable
+from frictioncli.experiment.rivals import Question
 from frictioncli.model.noise import Noise, pair_covariance
 
 Array = NDArray[np.float64]
@@ -50,7 +49,13 @@ NAMED = float(np.log(19.0))
 _LEAST_SHARE = 0.25
 """What is left, at the least, of a squared size when noise is taken off."""
 
-_SHAPES = 18
+_LEAST_ADDED = 1e-9
+"""Noncentrality of rows that tell nothing."""
+
+_NODES = ((-(3**0.5), 1 / 6), (0.0, 2 / 3), (3**0.5, 1 / 6))
+"""Places and weights of a mean over a normal distribution (Gauss and Hermite, three points)."""
+
+_SHAPES = 12
 """Shapes of a rival that are tried on the rows to come, at most."""
 
 
@@ -69,11 +74,14 @@ class Sight:
         of the recorded way at hand. A diagnosis only knows the way that is recorded; where moves
         that heat were not, more of the planned way would be, and a cause that goes with the way
         would look as if it went with another.
+    at_hand : float
+        Share of the pairs at hand in all: where they end, something may have happened.
     """
 
     problem: Problem
     noise: tuple[Noise, Noise]
     gone: EffectTable
+    at_hand: float = 1.0
 
     def gram(self, columns: Columns) -> Array:
         """Return inner products of columns under the noise of both channels."""
@@ -110,10 +118,11 @@ def _left(gram: Array, columns: NDArray[np.intp], target: int) -> float:
 
 
 def noncentralities(sight: Sight, question: Question, others: Sequence[Score]) -> Array:
-    """Return the noncentrality of each rival against each, shape (rivals, rivals + 1).
+    """Return the noncentrality of each rival against each, shape (rivals, rivals + others + 1).
 
-    Entry (i, j): how far rival i, if it is at work, is from all that rival j can do. The last
-    column is the base alone: a cause that better data leave to the base loses its name, too.
+    Entry (i, j): how far rival i, if it is at work, is from all that rival j can do. The question's
+    other effects follow the rivals. The last column is the base alone: a cause that better data
+    leave to the base loses its name, too.
 
     Parameters
     ----------
@@ -133,9 +142,9 @@ def noncentralities(sight: Sight, question: Question, others: Sequence[Score]) -
     )
     parts, places = [known], []
     first = 0
-    for rival in question.rivals:
+    for rival in (*question.rivals, *question.others):
         own = []
-        for shape in tried_shapes(rival.score.effect, problem, rival.score.shape):
+        for shape in tried_shapes(rival.score, sight):
             columns = basis_columns(problem, problem.basis(rival.score.effect, shape))
             own.append(np.arange(first, first + columns.count))
             parts.append(columns)
@@ -143,18 +152,17 @@ def noncentralities(sight: Sight, question: Question, others: Sequence[Score]) -
         places.append(own)
     signals = []
     for rival in question.rivals:
-        basis = rival.score.effect.evaluate(sight.gone, rival.score.shape)
+        basis = rival.score.effect.evaluate(sight.gone, _kept(rival.score, sight.at_hand))
         coefficients = _shrunk(rival.score)
         torque = [(part @ coefficients)[:, np.newaxis] for part in basis]
         signals.append(reduced(problem.layout, *torque))
     gram = _off(sight.gram(joined([*parts, *signals])), known.count)
-    count = len(question.rivals)
-    found = np.zeros((count, count + 1))
-    for i in range(count):
-        found[i, count] = max(float(gram[first + i, first + i]), 0.0)
-        for j in range(count):
-            if i != j:
-                found[i, j] = min(_left(gram, own, first + i) for own in places[j])
+    found = np.zeros((len(question.rivals), len(places) + 1))
+    for i in range(len(found)):
+        found[i, -1] = max(float(gram[first + i, first + i]), 0.0)
+        for j, shapes in enumerate(places):
+            left = np.array([_left(gram, own, first + i) for own in shapes])
+            found[i, j] = -2 * (np.logaddexp.reduce(-left / 2) - np.log(len(left)))
     return found
 
 
@@ -169,39 +177,82 @@ def _shrunk(score: Score) -> Array:
     return np.asarray(score.coefficients * np.sqrt(max(share, _LEAST_SHARE)))
 
 
-def tried_shapes(
-    effect: Effect, problem: Problem, fitted: dict[str, float]
-) -> list[dict[str, float]]:
+def _kept(score: Score, at_hand: float) -> dict[str, float]:
+    """Return a fitted shape among all rows: moments are shares of the pairs, which are more now."""
+    if score.effect.moments is None:
+        return score.shape
+    return {name: value * at_hand for name, value in score.shape.items()}
+
+
+def tried_shapes(score: Score, sight: Sight) -> list[dict[str, float]]:
     """Return the shapes of a rival that are tried on rows to come, the fitted one among them."""
-    grid = effect.shapes(problem.whole)
+    grid = score.effect.shapes(sight.problem.whole)
     if len(grid) > _SHAPES:
         chosen = np.unique(np.linspace(0, len(grid) - 1, _SHAPES).round().astype(int))
         grid = [grid[place] for place in chosen]
-    return [fitted, *grid]
+    if score.effect.moments is not None and sight.at_hand < 1:
+        grid.append({"moment": sight.at_hand})
+    return [_kept(score, sight.at_hand), *grid]
 
 
 def chances(question: Question, before: Array, after: Array, pairs: int) -> Array:
-    """Return the probability that i, if it is at work, leaves j behind, shape (rivals, rivals + 1).
+    """Return the probability that i, if it is at work, leaves j behind.
 
-    The last column is the base alone.
+    Shape (rivals, rivals + others + 1); the last column is the base alone. The size of what is at
+    work is as uncertain as the data at hand leave it.
 
     Parameters
     ----------
     question : Question
         The rivals with what the data at hand say.
-    before, after : ndarray, shape (rivals, rivals + 1)
+    before, after : ndarray, shape (rivals, rivals + others + 1)
         Noncentralities of the rows at hand, and of those with the programme's.
     pairs : int
         Pairs in all: the scale of the noise is estimated from them, so that a likelihood ratio
         grows with their logarithm only.
     """
-    evidence = np.array([rival.evidence for rival in question.rivals])
-    odds = evidence[:, np.newaxis] - np.append(evidence, 0.0)
-    added = pairs * (np.log1p(after / pairs) - np.log1p(before / pairs))
-    added = np.maximum(added, 1e-9)
-    found = norm.cdf((odds + added / 2 - NAMED) / np.sqrt(added))
+    found = np.zeros_like(after)
+    odds, error = _odds(question), _size_error(question)
+    for place, weight in _NODES:
+        square = np.square(np.maximum(1 + place * error, 0.0))[:, np.newaxis]
+        added = _added(square * before, square * after, pairs)
+        scatter = np.sqrt(np.maximum(np.abs(added), _LEAST_ADDED))
+        found += weight * norm.cdf((odds + added / 2 - NAMED) / scatter)
     np.fill_diagonal(found, 1.0)
-    return np.asarray(found)
+    return found
+
+
+def margins(question: Question, before: Array, after: Array, pairs: int, enough: float) -> Array:
+    """Return by how much odds exceed what a name needs, in the mean over all rivals.
+
+    Logarithms, for each rival as the one at work; beyond ``enough`` they count no more. Other
+    parameters are as of :func:`chances`.
+    """
+    margin = _odds(question) + _added(before, after, pairs) / 2 - NAMED
+    np.fill_diagonal(margin, np.nan)
+    return np.asarray(np.nanmean(np.clip(margin, -enough, enough), axis=1))
+
+
+def _odds(question: Question) -> Array:
+    """Return logarithms of the odds by the data at hand, shape (rivals, rivals + others + 1)."""
+    evidence = [rival.evidence for rival in (*question.rivals, *question.others)]
+    own = np.array(evidence[: len(question.rivals)])
+    return np.asarray(own[:, np.newaxis] - np.array([*evidence, 0.0]))
+
+
+def _added(before: Array, after: Array, pairs: int) -> Array:
+    """Return what rows add to the odds, doubled, where the noise's scale is estimated, too.
+
+    What is at work has to find its own shape among many, as its rivals have.
+    """
+    gained = pairs * (np.log1p(after / pairs) - np.log1p(before / pairs))
+    return np.asarray(gained - np.diag(gained)[:, np.newaxis])
+
+
+def _size_error(question: Question) -> Array:
+    """Return the relative standard error of each rival's size."""
+    statistic = np.array([max(rival.score.statistic, 1.0) for rival in question.rivals])
+    return np.asarray(1 / np.sqrt(statistic))
 
 
 def decided(question: Question, chance: Array) -> float:
@@ -209,68 +260,3 @@ def decided(question: Question, chance: Array) -> float:
     share = question.probabilities
     weight = np.array([share[rival.name] for rival in question.rivals])
     return float(weight @ np.prod(chance, axis=1))
-
-
-@dataclass(frozen=True, slots=True)
-class Precision:
-    """Covariance of parameters.
-
-    Attributes
-    ----------
-    names : tuple of str
-        Parameters.
-    covariance : ndarray, shape (names, names)
-        Their covariance by the noise at hand.
-    """
-
-    names: tuple[str, ...]
-    covariance: Array
-
-    def of(self, names: Sequence[str]) -> "Precision":
-        """Return the same of some of the parameters."""
-        chosen = [self.names.index(name) for name in names]
-        return Precision(tuple(names), self.covariance[np.ix_(chosen, chosen)])
-
-    @property
-    def half_widths(self) -> dict[str, float]:
-        """Half of each 95 % interval."""
-        errors = 1.96 * np.sqrt(np.maximum(np.diag(self.covariance), 0.0))
-        return dict(zip(self.names, map(float, errors), strict=True))
-
-    @property
-    def volume(self) -> float:
-        """Half the logarithm of the determinant."""
-        return 0.5 * float(np.linalg.slogdet(self.covariance)[1])
-
-
-def precision(
-    sight: Sight, opening: Opening, prior: Array, names: Sequence[str], told: Sequence[str]
-) -> Precision:
-    """Return the covariance of parameters.
-
-    Parameters
-    ----------
-    sight : Sight
-        Rows and noise.
-    opening : Opening
-        Causes, which are fitted beside the base.
-    prior : ndarray, shape (columns,)
-        Weights of what is believed beforehand, of the base's and the causes' columns.
-    names : sequence of str
-        Names of these columns.
-    told : sequence of str
-        Those that are told; the others are fitted beside them.
-    """
-    gram = sight.gram(_model(sight.problem, opening))
-    total = gram + np.diag(prior)
-    size = np.sqrt(np.diag(total))
-    inverse = np.linalg.pinv(total / np.outer(size, size), rcond=1e-13, hermitian=True)
-    covariance = inverse / np.outer(size, size)
-    chosen = [list(names).index(name) for name in told]
-    return Precision(tuple(told), covariance[np.ix_(chosen, chosen)])
-
-
-def _model(problem: Problem, opening: Opening) -> Columns:
-    """Return the columns of base and likeliest causes."""
-    bases = (problem.basis(one.effect, one.shape) for one in opening.causes)
-    return joined([base_columns(problem), *(basis_columns(problem, basis) for basis in bases)])

@@ -24,7 +24,7 @@ from frictioncli.model.settings import FitSettings
 from frictioncli.simulator.programme import Act, simulate_programmes
 from tests.studies.planning_worlds import KEY, World, acts_of, beginning, thin
 
-MINUTES = 90.0
+MINUTES = 45.0
 MAX_SPEED = 180.0
 """What the plans, and blocks at random, may use: the joint's own limit, which the thin experiment
 does not reach. [deg/s]"""
@@ -80,7 +80,7 @@ def _compared(world: World) -> dict[str, object]:
         extended_model(extended_document(said, model)),
         settings,
     )
-    row["expected"] = ";".join(f"{one:.3f}" for one in plan.expected[-1].decided)
+    row["expected"] = ";".join(f"{one:.3f}" for one in plan.settled.decided)
     row["blocks"] = ";".join(block.name for block in plan.blocks)
     for way, (programme, check) in {
         "plan": (acts_of(steps_of(plan.blocks)), acts_of(steps_of(plan.check))),
@@ -108,11 +108,12 @@ def _sets(said: Diagnosis) -> str:
 
 
 def _random(blocks: tuple[Block, ...], world: World) -> tuple[list[Act], list[Act]]:
-    """Return blocks at random that fill the same time as a plan, and their check, at random too."""
+    """Return blocks at random for both days of a plan, which they fill."""
     generator = random.Random(" ".join(world.key))
-    programme = _at_random(generator, blocks, (1 - CHECK) * 60 * MINUTES)
-    check = _at_random(generator, programme, CHECK * 60 * MINUTES)
-    return acts_of(steps_of(programme)), acts_of(steps_of(check))
+    first, second = (
+        _at_random(generator, blocks, share * 60 * MINUTES) for share in (1 - CHECK, CHECK)
+    )
+    return acts_of(steps_of(first)), acts_of(steps_of(second))
 
 
 def _at_random(

@@ -2,6 +2,7 @@
 
 from frictioncli.experiment.block import Block, Variants
 from frictioncli.experiment.blocks import (
+    both_ends,
     even_speeds,
     heat,
     part_stroke,
@@ -19,6 +20,7 @@ KINDS: tuple[Variants, ...] = (
     sweep.variants,
     shuffled.variants,
     even_speeds.variants,
+    both_ends.variants,
     heat.variants,
     travel.variants,
     pause.variants,

@@ -15,11 +15,8 @@ def variants(limits: Limits, seed: int) -> tuple[Block, ...]:
     """Return one series of evenly spaced speeds, in random order."""
     highest = min(limits.fastest, limits.highest_useful)
     lowest = min(max(limits.slowest, highest / _SPEEDS), highest)
-    able = {limits.speed(float(one)) for one in np.linspace(lowest, highest, _SPEEDS)}
-    speeds = sorted(one for one in able if one <= limits.highest_useful)
+    speeds = sorted({limits.speed(float(one)) for one in np.linspace(lowest, highest, _SPEEDS)})
     random.Random(seed).shuffle(speeds)
-    if not speeds:
-        return ()
     return (
         Block(
             name="even speeds",
