@@ -25,7 +25,7 @@ from frictioncli.quantities import TORQUE
 from frictioncli.schemas import Table
 
 _KEY = b"frictioncli"
-_BATCH_ROWS = 1 << 16
+_BATCH_ROWS = 1 << 17
 _READ_BYTES = 1 << 20
 _Item = TypeVar("_Item")
 _GROUP_BYTES = 1 << 23

@@ -19,7 +19,6 @@ from frictioncli.motion.moves import LONGEST, SMOOTHING, directions, moves, runn
 from frictioncli.motion.segments import keep_freed_memory
 from frictioncli.motion.settings import SteadySettings
 from frictioncli.schemas import SAMPLES
-from frictioncli.tables import ahead
 
 Array = NDArray[np.float64]
 Numbers = NDArray[np.int64]
@@ -100,8 +99,6 @@ def stretches(
 ) -> Iterator[Stretch]:
     """Yield the samples in stretches with whole moves, recording by recording.
 
-    While the caller works on one, a thread already cuts the next.
-
     Parameters
     ----------
     batches : iterable of RecordBatch
@@ -114,15 +111,9 @@ def stretches(
     """
     keep_freed_memory()
     wanted = tuple(dict.fromkeys(("time", "velocity", *names)))
-    return ahead(_stretches(_pieces(batches, wanted), settings))
-
-
-def _stretches(
-    pieces: Iterable[tuple[Source, Channels]], settings: SteadySettings
-) -> Iterator[Stretch]:
     here: tuple[str, str] | None = None
     tails: dict[Source, _Tail] = {}
-    for source, channels in pieces:
+    for source, channels in _pieces(batches, wanted):
         if source[:2] != here:
             for done, tail in tails.items():
                 yield _cut(done, tail, settings, ended=True)
