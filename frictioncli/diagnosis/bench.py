@@ -15,9 +15,9 @@ from frictioncli.diagnosis.columns import (
     left_of_base,
     misfit_column,
 )
+from frictioncli.diagnosis.groups import Groups
 from frictioncli.diagnosis.layout import PairLayout
 from frictioncli.diagnosis.problem import Problem
-from frictioncli.diagnosis.scan import Groups
 from frictioncli.diagnosis.spectra import Modes, Spectra, spectra_of
 from frictioncli.effects.base import Basis
 

@@ -8,8 +8,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from frictioncli.diagnosis.columns import Channel
+from frictioncli.diagnosis.groups import Groups
 from frictioncli.diagnosis.joint import Equations, noise_of
-from frictioncli.diagnosis.scan import Groups, Null, Scan, Setting, null_of, scan, weighted_gram
+from frictioncli.diagnosis.scan import Null, Scan, Setting, null_of, scan, weighted_gram
 from frictioncli.diagnosis.spectra import Modes, Spectra
 from frictioncli.model.noise import Noise
 

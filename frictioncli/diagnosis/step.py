@@ -146,8 +146,7 @@ class Step:
             alike[settings, catalogue.groups.width[group]].append(group)
         found: dict[int, Fitted] = {}
         for (settings, width), groups in alike.items():
-            columns = np.r_[*(catalogue.groups.columns(one) for one in groups)]
-            columns = columns.reshape(-1, width)
+            columns = catalogue.groups.start[groups][:, np.newaxis] + np.arange(width)
             friction, load = (
                 side.equations_each(part, modes[setting[0]], columns, setting)
                 for side, part, modes, setting in zip(

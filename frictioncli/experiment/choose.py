@@ -15,7 +15,7 @@ Worth = Callable[[Sequence[Step]], float]
 _STARTS = 30
 """Programmes at random, of which the best is changed further."""
 
-TRIALS = 100
+_TRIALS = 100
 """Exchanges of a stretch of it that are tried."""
 
 _STRETCH = 3
@@ -42,7 +42,7 @@ def chosen(
     budget: float,
     payload: float | None,
     seed: int,
-    trials: int = TRIALS,
+    trials: int = _TRIALS,
 ) -> tuple[Block, ...]:
     """Return the blocks that are worth most together, in order.
 

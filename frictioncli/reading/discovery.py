@@ -118,12 +118,8 @@ def _files_below(folder: Path, besides: Path | None) -> list[Path]:
             folders.clear()
             continue
         folders[:] = [name for name in folders if not name.startswith(".")]
-        found += [
-            inside / name
-            for name in files
-            if not name.startswith(".") and name.lower() not in _SILENT
-        ]
-    found = [path for path in found if path.is_file()]
+        named = (one for one in files if not one.startswith(".") and one.lower() not in _SILENT)
+        found += [path for path in map(inside.joinpath, named) if path.is_file()]
     return sorted(found, key=lambda path: [natural_key(part) for part in path.parts])
 
 

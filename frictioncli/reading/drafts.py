@@ -25,7 +25,6 @@ from frictioncli.reading import staircase
 from frictioncli.reading.rows import Block
 from frictioncli.tables import TableWriter
 
-_BATCH_ROWS = 1 << 17
 _TABLE_ROWS = 1 << 15
 """Making a table of the rows of a short log takes longer than they do: so many are one."""
 
@@ -191,7 +190,7 @@ class _Rows:
     """The rows of a draft, taken in order."""
 
     def __init__(self, path: Path) -> None:
-        self._batches = tables.batches(path, schemas.SAMPLES, _BATCH_ROWS)
+        self._batches = tables.batches(path, schemas.SAMPLES)
         self._rest: pa.RecordBatch | None = None
 
     def take(self, count: int) -> Iterator[pa.Table]:

@@ -106,15 +106,7 @@ class _Result:
     part: Part | UnreadableLog
 
 
-@dataclass(frozen=True, slots=True)
-class _Task:
-    """What makes a result of about so many bytes of a log."""
-
-    work: Callable[[], _Result]
-    size: int
-
-
-def _tasks(readings: Iterable[Reading], batch_bytes: int) -> Iterator[_Task]:
+def _tasks(readings: Iterable[Reading], batch_bytes: int) -> Iterator[Task[_Result]]:
     """Yield the tasks of all logs one after the other; each log has at least one."""
     for number, reading in enumerate(readings):
         end: Part | UnreadableLog | None = Part(_no_rows(reading.plans), Faults(), 0)
@@ -123,17 +115,17 @@ def _tasks(readings: Iterable[Reading], batch_bytes: int) -> Iterator[_Task]:
             columns.update(_column(plan, name) for name in plan.beliefs)
         try:
             for task in reading.log.source.tasks(columns, batch_bytes):
-                yield _Task(partial(_done, number, reading, task), task.size)
+                yield Task(partial(_done, number, reading, task), task.size)
                 end = None
         except UnreadableLog as error:
             end = error
         if end is not None:
-            yield _Task(partial(_Result, number, end), 0)
+            yield Task(partial(_Result, number, end), 0)
 
 
-def _together(tasks: Iterable[_Task]) -> Iterator[Callable[[], list[_Result]]]:
+def _together(tasks: Iterable[Task[_Result]]) -> Iterator[Callable[[], list[_Result]]]:
     """Yield the tasks, small ones together."""
-    held: list[_Task] = []
+    held: list[Task[_Result]] = []
     held_bytes = 0
     for task in tasks:
         if held and held_bytes + task.size > _HANDED_OVER:
@@ -144,11 +136,11 @@ def _together(tasks: Iterable[_Task]) -> Iterator[Callable[[], list[_Result]]]:
     yield partial(_all, held)
 
 
-def _all(tasks: Iterable[_Task]) -> list[_Result]:
-    return [task.work() for task in tasks]
+def _all(tasks: Iterable[Task[_Result]]) -> list[_Result]:
+    return [task.read() for task in tasks]
 
 
-def _done(number: int, reading: Reading, task: Task) -> _Result:
+def _done(number: int, reading: Reading, task: Task[RawBatch]) -> _Result:
     try:
         return _Result(number, _part(task.read(), reading))
     except UnreadableLog as error:

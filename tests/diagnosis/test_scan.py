@@ -10,7 +10,8 @@ from scipy import stats
 from scipy.linalg import null_space
 
 from frictioncli.diagnosis import scan as scanning
-from frictioncli.diagnosis.scan import Groups, null_of, scan, span, weighted_gram
+from frictioncli.diagnosis.groups import Groups
+from frictioncli.diagnosis.scan import null_of, scan, span, weighted_gram
 from frictioncli.diagnosis.spectra import STRENGTHS, spectra_of
 from tests.diagnosis import noises
 

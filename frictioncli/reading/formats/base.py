@@ -4,10 +4,12 @@ from collections.abc import Callable, Collection, Iterator
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
-from typing import Protocol
+from typing import Generic, Protocol, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
+
+T = TypeVar("T")
 
 
 @dataclass(frozen=True, slots=True)
@@ -60,10 +62,10 @@ class RawBatch:
 
 
 @dataclass(frozen=True, slots=True)
-class Task:
-    """Work that makes a batch, about so many bytes of it; may be done in a thread of its own."""
+class Task(Generic[T]):
+    """Reading that may be done in a thread of its own; what it makes has about so many bytes."""
 
-    read: Callable[[], RawBatch]
+    read: Callable[[], T]
     size: int
 
 
@@ -94,7 +96,7 @@ class Source(Protocol):
         """Yield the rows in order, about ``size`` bytes of the file at a time."""
         ...
 
-    def tasks(self, columns: Collection[int], size: int) -> Iterator[Task]:
+    def tasks(self, columns: Collection[int], size: int) -> Iterator[Task[RawBatch]]:
         """Yield in order what makes the batches, each of at most about ``size`` bytes."""
         ...
 
@@ -111,7 +113,7 @@ class OneStream:
         """All files that its samples come from."""
         return (self.path,)
 
-    def tasks(self: Source, columns: Collection[int], size: int) -> Iterator[Task]:
+    def tasks(self: Source, columns: Collection[int], size: int) -> Iterator[Task[RawBatch]]:
         """Yield in order what makes the batches; they are ready already."""
         for batch in self.batches(columns, size):
             yield Task(partial(_ready, batch), sum(v.nbytes for v in batch.values.values()))

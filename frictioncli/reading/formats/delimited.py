@@ -90,7 +90,7 @@ class DelimitedText:
             if len(batch.lines) or len(batch.bad_lines):
                 yield batch
 
-    def tasks(self, columns: Collection[int], size: int) -> Iterator[Task]:
+    def tasks(self, columns: Collection[int], size: int) -> Iterator[Task[RawBatch]]:
         """Yield in order what makes the batches, each of at most about ``size`` bytes."""
         wanted = sorted(columns)
         whole = self._plain_bytes()

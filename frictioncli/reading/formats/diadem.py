@@ -182,7 +182,7 @@ class DiademRecording:
         for task in self.tasks(columns, size):
             yield task.read()
 
-    def tasks(self, columns: Collection[int], size: int) -> Iterator[Task]:
+    def tasks(self, columns: Collection[int], size: int) -> Iterator[Task[RawBatch]]:
         """Yield in order what makes the batches, each of at most about ``size`` bytes."""
         wanted = sorted(columns)
         widths = [c.place.step for c in self.channels if c.place is not None]

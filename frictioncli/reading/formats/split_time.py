@@ -83,7 +83,7 @@ class JoinedTime:
         for batch in self.source.batches(self._asked(columns), size):
             yield self._joined(batch)
 
-    def tasks(self, columns: Collection[int], size: int) -> Iterator[Task]:
+    def tasks(self, columns: Collection[int], size: int) -> Iterator[Task[RawBatch]]:
         """Yield in order what makes the batches, each of at most about ``size`` bytes."""
         for task in self.source.tasks(self._asked(columns), size):
             yield Task(partial(self._read, task), task.size)
@@ -95,7 +95,7 @@ class JoinedTime:
     def _asked(self, columns: Collection[int]) -> set[int]:
         return {*columns, *([self.nanoseconds] if self.seconds in columns else [])}
 
-    def _read(self, task: Task) -> RawBatch:
+    def _read(self, task: Task[RawBatch]) -> RawBatch:
         return self._joined(task.read())
 
     def _joined(self, batch: RawBatch) -> RawBatch:
