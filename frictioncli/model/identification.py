@@ -189,7 +189,11 @@ def _covariance(
         truth = pair_covariance(possible, time=observed.time, run=observed.run, bins=observed.bins)
         filling += weight * (spread.T @ truth.times(spread))
     bread = np.linalg.pinv(between.T @ between + np.outer(inside, inside))
-    return np.asarray(bread @ filling @ bread / np.outer(size, size))
+    scale = np.outer(size, size)
+    # without gamma there is no telling delta
+    return np.divide(
+        bread @ filling @ bread, scale, out=np.full_like(scale, np.nan), where=scale > 0
+    )
 
 
 def contrast_inflation(observed: Observations, alpha: float, point: float) -> float:

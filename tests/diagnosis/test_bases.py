@@ -1,0 +1,53 @@
+"""The base model beside something hidden: what bends it must not be taken for a second cause."""
+
+import numpy as np
+import pandas as pd
+import pytest
+
+from frictioncli.diagnosis.problem import build_problems
+from frictioncli.diagnosis.search import find_causes
+from frictioncli.diagnosis.settings import DiagnosisSettings
+from frictioncli.effects import EFFECTS
+from tests.model.worlds import TRUTH, torques
+
+RATE = 6.0  # [N·m/h]
+
+
+def warming(seed, *, speeds, hours, minutes, rise):
+    """Return a run in which the motor warms while friction grows, as in the hours before."""
+    time = np.arange(0.0, 60.0 * minutes, 240.0)
+    temperature = 16.0 + rise * (1 - np.exp(-time / 2600.0))
+    rows = torques(
+        seed, temperatures=(temperature, time, np.full(len(time), "heat-up")), speeds=speeds
+    )
+    return rows.assign(
+        friction_torque=rows["friction_torque"] + RATE * (hours + rows["time"] / 3600.0),
+        housing_temperature=16.0 + 0.75 * (rows["motor_temperature"] - 16.0),
+        load=np.nan,
+    )
+
+
+def grown_while_warmed(seed):
+    """Return two days on which the joint warmed while friction grew by 7 N·m."""
+    first = warming(2 * seed, speeds=(20.0, 40.0, 70.0, 101.0), hours=0.0, minutes=45, rise=33.0)
+    speeds = (5.0, 9.0, 15.0, 22.0, 36.0, 58.0, 75.0, 93.0, 120.0, 151.0)
+    second = warming(2 * seed + 1, speeds=speeds, hours=0.73, minutes=30, rise=16.0)
+    rows = pd.concat([first.assign(run="day1"), second.assign(run="day2")], ignore_index=True)
+    return build_problems(rows, "motor")[0]
+
+
+def test_growth_hides_beta_from_the_fit_and_not_from_the_diagnosis():
+    problem = grown_while_warmed(1)
+    assert problem.parameters.beta == 0
+    assert abs(problem.parameters.delta / TRUTH["delta"] - 1) > 0.3
+    assert problem.names == ("tau_c", "alpha", "beta", "gamma", "delta")
+    derivative = problem.friction_base[:, problem.names.index("beta")]
+    np.testing.assert_array_equal(derivative, np.sqrt(problem.table.speed))
+
+
+@pytest.mark.parametrize("seed", [1, 2, 4])
+def test_no_second_cause_is_named_for_what_the_first_one_hid(seed):
+    (cause,) = find_causes(grown_while_warmed(seed), EFFECTS, DiagnosisSettings()).causes
+    assert cause.effects == ("drift",)
+    rate, hours = cause.score.coefficients[0], cause.score.shape["time_constant"]
+    assert rate * hours * -np.expm1(-1.2 / hours) == pytest.approx(RATE * 1.2, rel=0.25)
