@@ -11,6 +11,7 @@ from frictioncli.diagnosis.extended import extended_model
 from frictioncli.diagnosis.problem import build_problems
 from frictioncli.diagnosis.search import find_causes
 from frictioncli.diagnosis.settings import DiagnosisSettings
+from frictioncli.diagnosis.worth import worthwhile
 from frictioncli.effects import EFFECTS
 from frictioncli.errors import OptionError
 from frictioncli.experiment.block import Block
@@ -93,10 +94,12 @@ def _compared(world: World) -> dict[str, object]:
 
 
 def _named(torques: pd.DataFrame) -> str:
-    """Return the sets of causes by all runs together, the last one not kept out."""
+    """Return the sets of causes worth modelling by all runs together, the last one not kept out."""
     problem, _ = build_problems(torques, TEMPERATURE)
-    found = find_causes(problem, EFFECTS, DiagnosisSettings())
-    return ";".join("|".join(cause.effects) for cause in found.causes)
+    settings = DiagnosisSettings()
+    found = find_causes(problem, EFFECTS, settings)
+    causes, _ = worthwhile(found, found.step.weighing(), problem, settings.seed)
+    return ";".join("|".join(cause.effects) for cause in causes)
 
 
 def _diagnosed(torques: pd.DataFrame) -> Diagnosis:
