@@ -19,7 +19,8 @@ from tests.studies import (
     bench_schedule,
     bench_start,
 )
-from tests.studies.benching import STORE, Work, measure, stored
+from tests.studies.bench_rounds import STORE, measure, stored
+from tests.studies.benching import Work
 
 STUDIES = [bench_ingest, bench_motion, bench_fit, bench_schedule, bench_start]
 

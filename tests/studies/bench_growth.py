@@ -17,15 +17,8 @@ from pathlib import Path
 import numpy as np
 
 from tests.moves import journey
-from tests.studies.benching import (
-    MEGABYTE,
-    ROOT,
-    STORE,
-    Disagreement,
-    command,
-    measured_run,
-    state,
-)
+from tests.studies.bench_rounds import ROOT, STORE, measured_run, state
+from tests.studies.benching import MEGABYTE, Disagreement, command
 
 STAGES = ("ingest", "pair", "separate", "fit")
 ROWS = STORE / "growth.jsonl"

@@ -7,7 +7,8 @@ from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 
 from tests.studies import bench_growth, minimum
-from tests.studies.benching import MEGABYTE, ROOT, Goal, Measured, Work, stored
+from tests.studies.bench_rounds import ROOT, Measured, stored
+from tests.studies.benching import MEGABYTE, Goal, Work
 
 PAGE = ROOT / "docs" / "benchmarks.md"
 LIBRARIES = ("numpy", "scipy", "pandas", "pyarrow", "polars", "duckdb", "typer")

@@ -20,7 +20,7 @@ from scipy.optimize import least_squares
 from frictioncli.model.equations import COEFFICIENTS, Equations
 from frictioncli.model.projection import DELTA_BOUNDS, minimise
 from tests.studies.bench_fit import SOURCES
-from tests.studies.benching import STORE, state
+from tests.studies.bench_rounds import STORE, state
 
 JOINTS = 10_000
 ROWS = STORE / "minimum.csv"

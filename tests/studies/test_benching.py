@@ -9,18 +9,9 @@ import numpy as np
 import pytest
 
 from tests.studies import bench_page
+from tests.studies.bench_rounds import measure, stored
 from tests.studies.bench_schedule import plain_loop
-from tests.studies.benching import (
-    Disagreement,
-    Goal,
-    Work,
-    command,
-    faster,
-    function,
-    measure,
-    peak,
-    stored,
-)
+from tests.studies.benching import Disagreement, Goal, Work, command, faster, function, peak
 
 HUNDRED_MEGABYTES = "b = b'x' * 100_000_000; print(len(b))"
 IN_A_CHILD = (
