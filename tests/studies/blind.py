@@ -9,7 +9,6 @@ Usage: OMP_NUM_THREADS=1 python -m tests.studies.blind [SEEDS] [--minutes M] [--
 """
 
 import argparse
-import csv
 import os
 import time
 from collections.abc import Iterable
@@ -24,35 +23,17 @@ from tests.studies.blind_figures import confusion_picture, power_picture
 from tests.studies.blind_page import page
 from tests.studies.blind_rows import told
 from tests.studies.blind_worlds import KEY, KINDS, ROOT, World, sources, worlds
+from tests.studies.rows import Rows
 
-STORE = ROOT / "build" / "blind.csv"
+ROWS = Rows(ROOT / "build" / "blind.csv", COLUMNS, KEY)
 DOCS = ROOT / "docs"
-
-
-def stored(digest: str, *, keep: bool) -> pd.DataFrame:
-    """Return the last row of each world, as text; stale ones only if they are to be kept."""
-    if not STORE.exists():
-        return pd.DataFrame(columns=list(COLUMNS), dtype=str)
-    rows = pd.read_csv(STORE, dtype=str, keep_default_na=False).reindex(columns=list(COLUMNS))
-    rows = rows[rows["sources"].fillna("") != ""]
-    fresh = rows["sources"] == digest
-    if not keep:
-        rows, fresh = rows[fresh], fresh[fresh]
-    # a row of these sources goes before a later one of others
-    order = fresh.astype(int).sort_values(kind="stable").index
-    return rows.loc[order].fillna("").drop_duplicates(list(KEY), keep="last", ignore_index=True)
 
 
 def run(missing: Iterable[World], digest: str, processes: int, minutes: float) -> None:
     """Examine worlds and store their rows; hand out none any more after so many minutes."""
     until = time.monotonic() + 60.0 * minutes
-    _prepare_store()
     waiting = iter(missing)
-    with (
-        ProcessPoolExecutor(processes) as pool,
-        STORE.open("a", encoding="utf-8", newline="") as stream,
-    ):
-        writer = csv.DictWriter(stream, COLUMNS)
+    with ProcessPoolExecutor(processes) as pool, ROWS.adding() as add:
         tasks: set[Future[dict[str, object]]] = set()
         while True:
             if time.monotonic() < until:
@@ -62,22 +43,7 @@ def run(missing: Iterable[World], digest: str, processes: int, minutes: float) -
                 break
             done, tasks = wait(tasks, return_when=FIRST_COMPLETED)
             for task in done:
-                writer.writerow(task.result())
-            stream.flush()
-
-
-def _prepare_store() -> None:
-    """Give the store the columns of this study; rows of an earlier one keep what they have."""
-    STORE.parent.mkdir(exist_ok=True)
-    header = ",".join(COLUMNS)
-    if STORE.exists():
-        with STORE.open(encoding="utf-8") as stream:
-            if stream.readline().strip() == header:
-                return
-        rows = pd.read_csv(STORE, dtype=str, keep_default_na=False)
-        rows.reindex(columns=list(COLUMNS)).to_csv(STORE, index=False)
-    else:
-        STORE.write_text(header + "\n", encoding="utf-8")
+                add(task.result())
 
 
 def write(rows: pd.DataFrame, digest: str, folder: Path) -> None:
@@ -92,14 +58,13 @@ def main(arguments: argparse.Namespace) -> None:
     """Run what is missing, then write the page from what is there."""
     digest = sources()
     if not arguments.page:
-        rows = stored(digest, keep=arguments.keep)
-        done = set(zip(*(rows[name] for name in KEY), strict=True))
+        done = ROWS.done(digest, keep=arguments.keep)
         asked = [world for world in worlds(arguments.seeds) if arguments.only in ("", world.kind)]
         missing = [world for world in asked if world.key not in done]
         run(missing, digest, arguments.processes, arguments.minutes)
-    rows = stored(digest, keep=arguments.keep)
+    rows = ROWS.read(digest, keep=arguments.keep)
     if rows.empty:
-        raise SystemExit(f"{STORE} has no rows of the present sources; nothing written")
+        raise SystemExit(f"{ROWS.path} has no rows of the present sources; nothing written")
     write(rows, digest, DOCS)
 
 

@@ -9,56 +9,37 @@ Usage: OMP_NUM_THREADS=1 python -m tests.studies.planning [SEEDS] [--minutes M] 
 """
 
 import argparse
-import csv
 import time
-
-import pandas as pd
 
 from tests.studies.planning_examined import COLUMNS, examined
 from tests.studies.planning_page import page
 from tests.studies.planning_worlds import KEY, ROOT, sources, worlds
+from tests.studies.rows import Rows
 
-STORE = ROOT / "build" / "planning.csv"
+ROWS = Rows(ROOT / "build" / "planning.csv", COLUMNS, KEY)
 PAGE = ROOT / "docs" / "planning.md"
-
-
-def stored(digest: str, *, keep: bool) -> pd.DataFrame:
-    """Return the last row of each world, as text; stale ones only if they are to be kept."""
-    if not STORE.exists():
-        return pd.DataFrame(columns=list(COLUMNS), dtype=str)
-    rows = pd.read_csv(STORE, dtype=str, keep_default_na=False).reindex(columns=list(COLUMNS))
-    if not keep:
-        rows = rows[rows["sources"] == digest]
-    return rows.fillna("").drop_duplicates(list(KEY), keep="last", ignore_index=True)
 
 
 def run(seeds: int, minutes: float, digest: str, done: set[tuple[str, ...]]) -> None:
     """Examine the worlds that are not done; begin none after so many minutes."""
     until = time.monotonic() + 60.0 * minutes
-    STORE.parent.mkdir(exist_ok=True)
-    fresh = not STORE.exists()
-    with STORE.open("a", encoding="utf-8", newline="") as stream:
-        writer = csv.DictWriter(stream, COLUMNS)
-        if fresh:
-            writer.writeheader()
+    with ROWS.adding() as add:
         for world in worlds(seeds):
             if time.monotonic() > until:
                 break
             if world.key not in done:
-                writer.writerow(examined(world, digest))
-                stream.flush()
+                add(examined(world, digest))
 
 
 def main(arguments: argparse.Namespace) -> None:
     """Run what is missing, then write the page from what is there."""
     digest = sources()
     if not arguments.page:
-        rows = stored(digest, keep=arguments.keep)
-        done = set(zip(*(rows[name] for name in KEY), strict=True))
+        done = ROWS.done(digest, keep=arguments.keep)
         run(arguments.seeds, arguments.minutes, digest, done)
-    rows = stored(digest, keep=arguments.keep)
+    rows = ROWS.read(digest, keep=arguments.keep)
     if rows.empty:
-        raise SystemExit(f"{STORE} has no rows of the present sources; nothing written")
+        raise SystemExit(f"{ROWS.path} has no rows of the present sources; nothing written")
     PAGE.write_text(page(rows, digest, PAGE.read_text(encoding="utf-8")), encoding="utf-8")
 
 
