@@ -3,6 +3,7 @@
 import math
 
 import pandas as pd
+from scipy import stats
 
 from tests.studies.planning_examined import CHECK, MINUTES, WAYS
 
@@ -63,6 +64,17 @@ def page(rows: pd.DataFrame, digest: str, document: str) -> str:
     return f"{before}{BEGIN}\n{tables(rows, digest)}\n{END}{after}"
 
 
+def _against(found: pd.DataFrame, way: str) -> str:
+    """Return on how many joints only the plan was right, and on how many only another way."""
+    plan, other = found["plan_right"], found[f"{way}_right"]
+    ours, theirs = int((plan & ~other).sum()), int((other & ~plan).sum())
+    chance = stats.binomtest(ours, ours + theirs).pvalue if ours + theirs else 1.0
+    return (
+        f"Only the plan was right in {ours} joints, only {_NAMES[way]} in {theirs}: a difference"
+        f" that chance alone makes with probability {chance:.2g} (sign test)."
+    )
+
+
 def _shown(sets: str) -> str:
     """Return sets of causes for people: names of a set with "or", sets with "and"."""
     return sets.replace("|", " or ").replace(";", "; and ") or "none"
@@ -87,6 +99,7 @@ def tables(rows: pd.DataFrame, digest: str) -> str:
         lines += [f"{stale} rows were made before the last changes of the program's sources.", ""]
     for title, part in (
         ("All", found),
+        ("Without running-in, which is over by then", found[found["hidden"] != "run_in"]),
         (f"Where the plan promised {_PROMISED:.0%} or more", sure),
         ("Where it promised less, and said so", found[found["promised"] < _PROMISED]),
     ):
@@ -107,6 +120,7 @@ def tables(rows: pd.DataFrame, digest: str) -> str:
     mean = float(found["promised"].mean()) if len(found) else float("nan")
     lines += [
         f"The plans promised the right name alone in {mean:.0%} of the cases, in the mean.",
+        *(_against(found, way) for way in WAYS[1:]),
         "",
         "| hidden | design | size [N·m] | set before | promised | plan | again | at random |",
         "|---|---|---|---|---|---|---|---|",
