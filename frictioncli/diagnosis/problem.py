@@ -234,7 +234,7 @@ def _assembled(
         viscous=np.zeros_like(speed),
         temperature_slope=np.zeros_like(speed),
         load_slope=np.zeros_like(speed),
-        travel=travel_of(rows, layout)[pair],
+        travel=travel_of(rows, layout, motor[heads])[pair],
         rest=rest[pair],
         order=order[pair],
     )

@@ -118,7 +118,7 @@ class EffectTable:
     load_slope : ndarray, shape (rows,)
         Its derivative by load torque. [1]
     travel : ndarray, shape (rows,)
-        Way travelled in the run up to the pair as far as the log covers it. [deg]
+        Way travelled in the run up to the pair; that of unrecorded moves is guessed. [deg]
     rest : ndarray, shape (rows,)
         Time without recorded motion before the measuring series of the pair. [s]
     order : ndarray, shape (rows,)

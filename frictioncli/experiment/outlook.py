@@ -115,8 +115,7 @@ class Outlook:
         problem = _problem(self.joint, together(self.joint.torques, new))
         travel = problem.whole.travel.copy()
         if len(new):
-            share = self.joint.warmth.recorded if self.joint.warmth else 1.0
-            travel[-len(new) :] = share * new["way"]
+            travel[-len(new) :] = new["way"]
         at_hand = len(self.before.problem.layout.bins) / len(problem.layout.bins)
         whole = replace(problem.whole, travel=travel)
         return Sight(problem, self.opening.noise, whole, at_hand)

@@ -12,6 +12,8 @@ import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
+from frictioncli.diagnosis.history import moved_throughout
+
 Array = NDArray[np.float64]
 
 _TIMES = np.geomspace(1200.0, 28_800.0, 25)
@@ -34,10 +36,6 @@ _LEAST_DUTY = 0.5
 """With less recorded motion than this share of the time, a motor that warms was moved unrecorded.
 """
 
-_LEAST_PACE = 0.4
-"""It was moved all the time if it warmed at least so fast, relative to the median of such times; a
-longer pause with some motion in it tells neither heating nor cooling."""
-
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Warmth:
@@ -53,15 +51,12 @@ class Warmth:
         Warming by friction power. [°C/s per N·m·deg/s]
     housing_share : float
         Rise of the housing per rise of the motor above ambient. [-]
-    recorded : float
-        Share of the way travelled in the data that their log has. [-]
     """
 
     ambient: float
     time_constant: float
     heating: float
     housing_share: float
-    recorded: float
 
     def after(self, temperature: float, seconds: float, power: float = 0.0) -> float:
         """Return the motor temperature after a time at constant power [°C].
@@ -123,7 +118,6 @@ def warmth_of(torques: pd.DataFrame) -> Warmth | None:
         time_constant=time_constant,
         heating=heating,
         housing_share=min(max(share, 0.0), 1.0),
-        recorded=_recorded(pairs),
     )
 
 
@@ -150,16 +144,8 @@ def _steps(pairs: pd.DataFrame, strongest: float) -> tuple[Array, Array, Array, 
             found.append((rise, (motor[end] + motor[begin]) / 2, power, span, hidden))
             begin = end
     rises, warm, powers, spans, flags = np.array(found, dtype=float).reshape(-1, 5).T
-    kept = (flags == 0) | _moved_throughout(rises, spans, flags > 0)
+    kept = (flags == 0) | moved_throughout(rises, spans, flags > 0)
     return rises[kept], warm[kept], powers[kept], spans[kept]
-
-
-def _moved_throughout(rise: Array, seconds: Array, hidden: NDArray[np.bool_]) -> NDArray[np.bool_]:
-    """Return which times of unrecorded warming were motion all through."""
-    if not hidden.any():
-        return hidden
-    pace = rise / seconds
-    return hidden & (pace >= _LEAST_PACE * float(np.median(pace[hidden])))
 
 
 def _fitted(
@@ -186,16 +172,3 @@ def _fitted(
         if cost < best[0]:
             best = (cost, float(time), heating)
     return best[1], best[2]
-
-
-def _recorded(pairs: pd.DataFrame) -> float:
-    """Return the share of the way that the log has, if what heats unrecorded goes at full speed."""
-    stroke = 2 * (pairs["high"] - pairs["low"]).to_numpy(float)
-    time, motor = pairs["time"].to_numpy(float), pairs["motor"].to_numpy(float)
-    gap = np.diff(time) - (stroke / pairs["speed"].to_numpy(float))[:-1]
-    same = np.diff(pd.factorize(pairs["run"])[0]) == 0
-    moved = _moved_throughout(
-        np.diff(motor), np.maximum(gap, 1e-9), same & (gap > _SPAN / 2) & (np.diff(motor) > 0)
-    )
-    hidden = float(np.sum(gap[moved])) * float(pairs["speed"].max())
-    return float(stroke.sum() / (stroke.sum() + hidden))

@@ -70,10 +70,9 @@ class Sight:
     noise : (Noise, Noise)
         Noise of friction and load. [N·m]
     gone : EffectTable
-        The rows of all runs with the way that the joint really travels in a planned run, in units
-        of the recorded way at hand. A diagnosis only knows the way that is recorded; where moves
-        that heat were not, more of the planned way would be, and a cause that goes with the way
-        would look as if it went with another.
+        The rows of all runs with the way that the joint really travels in a planned run. A
+        diagnosis guesses the way of moves that are not recorded, and a cause that goes with the
+        way may look as if it went with another.
     at_hand : float
         Share of the pairs at hand in all: where they end, something may have happened.
     """

@@ -81,15 +81,34 @@ def test_runs_follow_each_other_on_the_clock():
     assert layout.time.tolist() == [10, 50, 5, 30, 7]
 
 
+ROWS = pd.DataFrame(
+    {
+        "run": ["a"] * 6 + ["b"] * 3,
+        "joint": 2,
+        "pair": [0, 0, 0, 1, 1, 2, 0, 0, 1],
+        "speed": 20.0,
+        "position": [10.0, 40.0, 25.0, 20.0, 30.0, 5.0, 0.0, 90.0, 0.0],
+    }
+)
+
+
 def test_a_pair_travels_its_angles_twice():
     """Before the third pair of a run: there and back over 30 and over 10 deg."""
-    rows = pd.DataFrame(
-        {
-            "run": ["a"] * 6 + ["b"] * 3,
-            "joint": 2,
-            "pair": [0, 0, 0, 1, 1, 2, 0, 0, 1],
-            "position": [10.0, 40.0, 25.0, 20.0, 30.0, 5.0, 0.0, 90.0, 0.0],
-        }
-    )
-    layout = pairs([0, 1, 2, 0, 1], [0, 0, 0, 1, 1])
-    assert travel_of(rows, layout).tolist() == [0, 60, 80, 0, 180]
+    layout = pairs([0, 10, 20, 0, 10], [0, 0, 0, 1, 1])
+    assert travel_of(ROWS, layout, np.full(5, 40.0)).tolist() == [0, 60, 80, 0, 180]
+
+
+@pytest.mark.parametrize(
+    ("warm", "way"),
+    [
+        ((30.0, 34.0, 34.0), [0, 60 + 300 * 20, 80 + 300 * 20]),
+        ((30.0, 30.1, 33.0), [0, 60, 80]),
+        ((30.0, 26.0, 34.0), [0, 60, 80]),
+        ((np.nan, np.nan, np.nan), [0, 60, 80]),
+    ],
+)
+def test_a_motor_that_warms_in_a_pause_tells_of_way_at_the_highest_speed(warm, way):
+    """The first pair takes 3 s of the 303 at 20 deg/s; warming within a series tells nothing."""
+    layout = pairs([0, 303, 313, 0, 10], [0, 0, 0, 1, 1])
+    found = travel_of(ROWS, layout, np.array([*warm, 20.0, 20.0]))
+    assert found.tolist() == [*way, 0, 180]
