@@ -27,6 +27,9 @@ _SCAN = np.geomspace(*DELTA_BOUNDS, 64)
 _MANY = 2_000
 """More equations than this are searched in their summary."""
 
+_HALVINGS = 50
+"""Halvings of a valley's side in search of where it begins to fall."""
+
 _SUMMARY_ERROR = 1e-4
 """Valleys that differ less than so much in the summary are told apart on all equations."""
 
@@ -68,7 +71,7 @@ def minimise(equations: Equations, terms: tuple[str, ...]) -> FrictionParameters
     if "gamma" not in terms:
         return project(equations, terms, 0.0)[0]
     if len(equations) <= _MANY:
-        lows = [_lowest(equations, terms, *valley) for valley in _valleys(equations, terms)]
+        lows = [_lowest(equations, terms, *_around(place)) for place in _valleys(equations, terms)]
     else:
         lows = _lowest_of_many(equations, terms)
     return min(lows, key=lambda low: low[1])[0]
@@ -79,31 +82,51 @@ def _lowest_of_many(
 ) -> list[tuple[FrictionParameters, float]]:
     """Return the minima, and their misfits, in the valleys that their summary shows as deepest."""
     summary = summarised(equations)
-    valleys = _valleys(summary, terms)
-    lows = [_lowest(summary, terms, *valley) for valley in valleys]
+    places = _valleys(summary, terms)
+    lows = [_lowest(summary, terms, *_around(place)) for place in places]
     deep = min(misfit for _, misfit in lows) * (1 + _SUMMARY_ERROR)
     found = []
-    for (low, misfit), (start, end) in zip(lows, valleys, strict=True):
+    for (low, misfit), place in zip(lows, places, strict=True):
         if misfit <= deep:
+            start, _, end = _around(place)
             near = settled(equations, summary, terms, low)
             if near is None or not start <= near[0].delta <= end:
-                near = _lowest(equations, terms, start, end)
+                near = _lowest(equations, terms, *_around(_descended(equations, terms, place)))
             found.append(near)
     return found
 
 
-def _valleys(equations: Equations, terms: tuple[str, ...]) -> list[tuple[float, float]]:
-    """Return the ranges of delta in which the misfit has a local minimum."""
+def _valleys(equations: Equations, terms: tuple[str, ...]) -> list[int]:
+    """Return the places in the scan of delta at which the misfit has a local minimum."""
     triangles = _triangles(equations, terms, _SCAN)
     misfits = np.array([_non_negative(triangle)[1] for triangle in triangles])
     padded = np.concatenate([[np.inf], misfits, [np.inf]])
     lows = np.flatnonzero((misfits < padded[:-2]) & (misfits <= padded[2:]))
-    last = len(_SCAN) - 1
-    return [(float(_SCAN[max(i - 1, 0)]), float(_SCAN[min(i + 1, last)])) for i in lows.tolist()]
+    return [int(place) for place in lows]
+
+
+def _around(place: int) -> tuple[float, float, float]:
+    """Return the low end, the lowest scanned one and the high end of delta in a valley."""
+    low, high = max(place - 1, 0), min(place + 1, len(_SCAN) - 1)
+    return float(_SCAN[low]), float(_SCAN[place]), float(_SCAN[high])
+
+
+def _descended(equations: Equations, terms: tuple[str, ...], place: int) -> int:
+    """Return the place in the scan from which the misfit falls to neither side, from a near one."""
+
+    def misfit(at: int) -> float:
+        inside = 0 <= at < len(_SCAN)
+        return project(equations, terms, float(_SCAN[at]))[1] if inside else np.inf
+
+    here = misfit(place)
+    for way in (-1, 1):
+        while (beside := misfit(place + way)) < here:
+            place, here = place + way, beside
+    return place
 
 
 def _lowest(
-    equations: Equations, terms: tuple[str, ...], low: float, high: float
+    equations: Equations, terms: tuple[str, ...], low: float, middle: float, high: float
 ) -> tuple[FrictionParameters, float]:
     """Return the minimum in a valley, and its misfit.
 
@@ -118,11 +141,19 @@ def _lowest(
         # the coefficients are the best ones, so that only delta's own effect remains
         return -float(derivatives[-1] @ (equations.friction - coefficients @ derivatives[:-1]))
 
-    if slope(low) >= 0:
-        return project(equations, terms, low)
-    if slope(high) <= 0:
-        return project(equations, terms, high)
-    return project(equations, terms, brentq(slope, low, high, xtol=1e-15, rtol=1e-14))
+    rising = slope(middle)
+    near, far = middle, low if rising > 0 else high
+    for _ in range(_HALVINGS if rising and near != far else 0):
+        if slope(far) * rising < 0:
+            delta = brentq(slope, min(near, far), max(near, far), xtol=1e-15, rtol=1e-14)
+            return project(equations, terms, delta)
+        # where gamma is zero the misfit is level: the valley ends before
+        between = (near + far) / 2
+        if project(equations, terms, between)[1] < project(equations, terms, near)[1]:
+            near = between
+        else:
+            far = between
+    return project(equations, terms, near)
 
 
 def _triangles(equations: Equations, terms: tuple[str, ...], deltas: Array) -> Array:

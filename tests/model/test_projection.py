@@ -37,6 +37,13 @@ def test_no_other_point_is_lower(seed):
     assert same
 
 
+@pytest.mark.parametrize("seed", [1289, 4084, 5354, 7521])
+def test_a_minimum_is_found_beyond_a_level_stretch(seed):
+    """Without gamma the misfit is level over delta; it falls at the end of the range only."""
+    *_, same = compared(seed)
+    assert same
+
+
 def test_many_equations_have_the_minimum_of_extended_precision():
     observations = observed(30_000)
     exact, error = minimum(observations)
