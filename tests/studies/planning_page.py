@@ -99,7 +99,6 @@ def tables(rows: pd.DataFrame, digest: str) -> str:
         lines += [f"{stale} rows were made before the last changes of the program's sources.", ""]
     for title, part in (
         ("All", found),
-        ("Without running-in, which is over by then", found[found["hidden"] != "run_in"]),
         (f"Where the plan promised {_PROMISED:.0%} or more", sure),
         ("Where it promised less, and said so", found[found["promised"] < _PROMISED]),
     ):
