@@ -1,8 +1,7 @@
 """Friction falls with the way travelled, as surfaces and grease settle.
 
-Surfaces stay run in, so the way of earlier runs counts too; grease may flow back between runs, and
-then every run starts anew. The shape parameter ``carried_over`` is the share of earlier runs' way
-that counts; within one run it has no effect.
+Surfaces stay run in, so the way of earlier runs counts too. What is back on every cold start is no
+running-in, but an effect of temperature, or of rest, after which grease has flowed back.
 """
 
 import numpy as np
@@ -11,19 +10,19 @@ from frictioncli.effects.base import Basis, Effect, EffectTable, Parameter, Sign
 from frictioncli.effects.pairs import starts
 
 
-def basis(table: EffectTable, *, distance: float, carried_over: float) -> Basis:
+def basis(table: EffectTable, *, distance: float) -> Basis:
     """Return the share of the running-in that is still to come."""
     begins = starts(table.run)
     run = np.cumsum(begins) - 1
     covered = np.maximum.reduceat(table.travel, np.flatnonzero(begins))
     before = np.cumsum(covered) - covered
-    return friction_only(np.exp(-(table.travel + carried_over * before[run]) / distance))
+    return friction_only(np.exp(-(table.travel + before[run]) / distance))
 
 
 EFFECT = Effect(
     name="run_in",
     summary="Friction falls with the way travelled and then stays.",
-    equation="dtau = A*exp(-(s + c*s_before)/s0)",
+    equation="dtau = A*exp(-s/s0), s: way of all runs",
     source="Exponential running-in of lubricated contacts; size is an engineering estimate",
     channel="friction",
     shape=(
@@ -35,15 +34,6 @@ EFFECT = Effect(
             upper=3_600_000.0,
             description="Way after which 37 % of the running-in remain",
             search="logarithmic",
-        ),
-        Parameter(
-            name="carried_over",
-            symbol="c",
-            unit="1",
-            lower=0.0,
-            upper=1.0,
-            description="Share of the way of earlier runs that still counts",
-            points=3,
         ),
     ),
     coefficients=(

@@ -185,11 +185,11 @@ def test_only_angles_of_the_same_pair_and_neighbours_in_time_matter(effect, tabl
     )
 
 
-@pytest.mark.parametrize("name", ["thermal_lag", "run_in", "rest_recovery"])
+@pytest.mark.parametrize("name", ["thermal_lag", "rest_recovery"])
 def test_what_integrates_restarts_with_each_run(name, table):
     """The second day alone gives what it gives after the first one."""
     effect = BY_NAME[name]
-    shape = middle(effect) | ({"carried_over": 0.0} if name == "run_in" else {})
+    shape = middle(effect)
     second = table.run == 1
     alone = effect.evaluate(selected(table, second), shape)
     after = effect.evaluate(table, shape)

@@ -153,12 +153,11 @@ def test_drift_slows_down_with_its_time_constant():
     assert found == pytest.approx([0.0, 1 / 60, 24.0 * (1 - np.exp(-1)), 24.0], rel=1e-3)
 
 
-@pytest.mark.parametrize(("carried_over", "second_day"), [(0.0, 0.0), (1.0, 2.0), (0.5, 1.0)])
-def test_run_in_falls_with_the_way_and_may_carry_over(carried_over, second_day):
+def test_run_in_falls_with_the_way_of_all_days():
     """First day 0 and 20,000 deg, second day from 0 again, with 10,000 deg to run in."""
     table = small(travel=[0.0, 20_000.0, 0.0], run=[0, 0, 1])
-    found = friction("run_in", table, distance=10_000.0, carried_over=carried_over)
-    assert found == pytest.approx(np.array([[1.0], [np.exp(-2)], [np.exp(-second_day)]]))
+    found = friction("run_in", table, distance=10_000.0)
+    assert found == pytest.approx(np.array([[1.0], [np.exp(-2)], [np.exp(-2)]]))
 
 
 def test_rest_recovery_needs_a_rest_and_settles_with_the_pairs():

@@ -3,6 +3,7 @@
 import random
 import time
 
+import numpy as np
 import pandas as pd
 
 from frictioncli.diagnosis.diagnose import Diagnosis, diagnose_joint
@@ -11,7 +12,7 @@ from frictioncli.diagnosis.extended import extended_model
 from frictioncli.diagnosis.problem import build_problems
 from frictioncli.diagnosis.search import find_causes
 from frictioncli.diagnosis.settings import DiagnosisSettings
-from frictioncli.diagnosis.worth import worthwhile
+from frictioncli.diagnosis.worth import SLIGHT
 from frictioncli.effects import EFFECTS
 from frictioncli.errors import OptionError
 from frictioncli.experiment.block import Block
@@ -94,11 +95,14 @@ def _compared(world: World) -> dict[str, object]:
 
 
 def _named(torques: pd.DataFrame) -> str:
-    """Return the sets of causes worth modelling by all runs together, the last one not kept out."""
+    """Return the sets of causes by all runs together, the last one not kept out.
+
+    Slight ones, which no diagnosis finds worth modelling, do not count.
+    """
     problem, _ = build_problems(torques, TEMPERATURE)
-    settings = DiagnosisSettings()
-    found = find_causes(problem, EFFECTS, settings)
-    causes, _ = worthwhile(found, found.step.weighing(), problem, settings.seed)
+    found = find_causes(problem, EFFECTS, DiagnosisSettings())
+    least = SLIGHT * float(np.mean(np.abs(problem.friction)))
+    causes = [cause for cause in found.causes if cause.visible >= least]
     return ";".join("|".join(cause.effects) for cause in causes)
 
 
