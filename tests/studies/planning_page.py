@@ -30,13 +30,14 @@ def told(rows: pd.DataFrame) -> pd.DataFrame:
     """Return the ambiguous worlds whose set holds the truth, with what became of them.
 
     Added for each way: ``right`` (the hidden effect stands alone in a set, and the old question is
-    gone) and ``wrong`` (a set of one name is not hidden).
+    gone), ``only`` (and nothing else is named) and ``wrong`` (a set of one name is not hidden).
     """
     open_ = rows[(rows["verdict"] == "ambiguous") & (rows["truth_held"] == "1")].copy()
     for way in WAYS:
         sets = [[one.split("|") for one in text.split(";") if one] for text in open_[f"{way}_sets"]]
         both = list(zip(sets, open_["hidden"], strict=True))
         open_[f"{way}_right"] = [[truth] in found for found, truth in both]
+        open_[f"{way}_only"] = [found == [[truth]] for found, truth in both]
         open_[f"{way}_wrong"] = [
             any(len(one) == 1 and one != [truth] for one in found) for found, truth in both
         ]
@@ -107,11 +108,11 @@ def tables(rows: pd.DataFrame, digest: str) -> str:
         lines += [
             f"**{title}**, {len(part)} joints:",
             "",
-            "| | right name alone | truth in no set | another name alone |",
-            "|---|---|---|---|",
+            "| | right name alone | and no other cause | truth in no set | another name alone |",
+            "|---|---|---|---|---|",
             *(
-                f"| {_NAMES[way]} | {share(part[f'{way}_right'])} | {share(part[f'{way}_lost'])}"
-                f" | {share(part[f'{way}_wrong'])} |"
+                f"| {_NAMES[way]} | {share(part[f'{way}_right'])} | {share(part[f'{way}_only'])}"
+                f" | {share(part[f'{way}_lost'])} | {share(part[f'{way}_wrong'])} |"
                 for way in WAYS
             ),
             "",
