@@ -141,18 +141,21 @@ def _lowest(
         # the coefficients are the best ones, so that only delta's own effect remains
         return -float(derivatives[-1] @ (equations.friction - coefficients @ derivatives[:-1]))
 
-    rising = slope(middle)
-    near, far = middle, low if rising > 0 else high
-    for _ in range(_HALVINGS if rising and near != far else 0):
-        if slope(far) * rising < 0:
+    way = np.sign(slope(middle))
+    near, far = middle, low if way > 0 else high
+    there = np.sign(slope(far))
+    for _ in range(_HALVINGS if way and near != far else 0):
+        if there == -way:
             delta = brentq(slope, min(near, far), max(near, far), xtol=1e-15, rtol=1e-14)
             return project(equations, terms, delta)
         # where gamma is zero the misfit is level: the valley ends before
         between = (near + far) / 2
-        if project(equations, terms, between)[1] < project(equations, terms, near)[1]:
+        here = np.sign(slope(between))
+        falls = project(equations, terms, between)[1] < project(equations, terms, near)[1]
+        if here == way and falls:
             near = between
         else:
-            far = between
+            far, there = between, here
     return project(equations, terms, near)
 
 
