@@ -6,14 +6,11 @@ from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
-import numpy as np
-
 from frictioncli.correction.settings import ScheduleSettings
 from frictioncli.deployment.deployed import DeployedModel, middle_speed
 from frictioncli.deployment.extension import LAG, Extension
 from frictioncli.deployment.gear import GearLag
 from frictioncli.diagnosis.extended import FittedEffect
-from frictioncli.effects import BY_NAME
 from frictioncli.errors import FrictionError, TableError
 from frictioncli.model.document import FrictionModel, model_document, read_models
 from frictioncli.model.friction import FrictionParameters
@@ -117,16 +114,6 @@ def _extension(document: Mapping[str, Any]) -> Extension:
         about=FrictionParameters(**document["linear_about"]),
         parameters=FrictionParameters(**document["parameters"]),
         gear=None if gear is None else GearLag.of(gear),
-        terms=tuple(_term(entry) for entry in document["effects"]),
+        terms=tuple(FittedEffect.of(entry) for entry in document["effects"]),
         left_out=dict(document["left_out"]),
-    )
-
-
-def _term(document: Mapping[str, Any]) -> FittedEffect:
-    effect = BY_NAME[document["name"]]
-    stated = [document["coefficients"][parameter.name] for parameter in effect.coefficients]
-    return FittedEffect(
-        effect=effect,
-        shape={name: float(value) for name, value in document["shape"].items()},
-        coefficients=np.array([float(coefficient["estimate"]) for coefficient in stated]),
     )

@@ -42,6 +42,26 @@ class FittedEffect:
     shape: Mapping[str, float]
     coefficients: Array
 
+    @classmethod
+    def of(cls, document: Mapping[str, Any]) -> "FittedEffect":
+        """Return the effect that a document states, which is one of the catalogue.
+
+        Raises
+        ------
+        TableError
+            If its shape has other parameters than the catalogue's, as of another version.
+        """
+        effect = BY_NAME[document["name"]]
+        shape = {name: float(value) for name, value in document["shape"].items()}
+        known = {axis.name for axis in effect.shape}
+        if set(shape) != known:
+            raise TableError(
+                f"{effect.name} has the shape parameters {sorted(shape)}, expected {sorted(known)}"
+            )
+        stated = [document["coefficients"][parameter.name] for parameter in effect.coefficients]
+        coefficients = np.array([float(coefficient["estimate"]) for coefficient in stated])
+        return cls(effect=effect, shape=shape, coefficients=coefficients)
+
     def at(self, problem: Problem) -> Term:
         """Return what it adds to a problem's rows."""
         basis = problem.basis(self.effect, self.shape)
@@ -124,7 +144,7 @@ def extended_model(document: Mapping[str, Any]) -> ExtendedModel:
     Raises
     ------
     TableError
-        If it names an effect that the catalogue does not have.
+        If it names an effect that the catalogue does not have, or with another shape.
     """
     entries = document["effects"]
     unknown = sorted({entry["name"] for entry in entries} - set(BY_NAME))
@@ -141,17 +161,7 @@ def extended_model(document: Mapping[str, Any]) -> ExtendedModel:
         about=FrictionParameters(**(about or stated)),
         gravity=document["gravity"] if entries else {},
         gravity_about=document["gravity_about"] if entries else {},
-        effects=tuple(_fitted(entry) for entry in entries),
-    )
-
-
-def _fitted(entry: Mapping[str, Any]) -> FittedEffect:
-    effect = BY_NAME[entry["name"]]
-    stated = [entry["coefficients"][parameter.name] for parameter in effect.coefficients]
-    return FittedEffect(
-        effect=effect,
-        shape=dict(entry["shape"]),
-        coefficients=np.array([float(coefficient["estimate"]) for coefficient in stated]),
+        effects=tuple(FittedEffect.of(entry) for entry in entries),
     )
 
 

@@ -4,7 +4,7 @@ A row holds, beside its world's key, a digest of the sources that it depends on.
 """
 
 import csv
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
@@ -77,15 +77,10 @@ class Rows:
         """Give the file the columns of this study."""
         self.path.parent.mkdir(parents=True, exist_ok=True)
         if not self.path.exists():
-            _header(self.path, self.columns)
+            pd.DataFrame(columns=list(self.columns)).to_csv(self.path, index=False)
             return
         with self.path.open(encoding="utf-8", newline="") as stream:
             present = next(csv.reader(stream), [])
         if present != list(self.columns):
             rows = pd.read_csv(self.path, dtype=str, keep_default_na=False)
             rows.reindex(columns=list(self.columns)).to_csv(self.path, index=False)
-
-
-def _header(path: Path, columns: Sequence[str]) -> None:
-    with path.open("w", encoding="utf-8", newline="") as stream:
-        csv.writer(stream).writerow(columns)

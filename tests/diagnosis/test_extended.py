@@ -1,0 +1,21 @@
+"""``extended-model.json`` as other versions may have written it."""
+
+import pytest
+
+from frictioncli.diagnosis.extended import FittedEffect
+from frictioncli.errors import TableError
+
+RUN_IN = {"name": "run_in", "coefficients": {"initial_excess": {"estimate": 2.0}}}
+
+
+def test_an_effect_is_read_as_it_is_stated():
+    found = FittedEffect.of(RUN_IN | {"shape": {"distance": 1e5}})
+    assert found.effect.name == "run_in"
+    assert found.shape == {"distance": 1e5}
+    assert found.coefficients.tolist() == [2.0]
+
+
+@pytest.mark.parametrize("shape", [{}, {"distance": 1e5, "carried_over": 0.5}, {"way": 1e5}])
+def test_a_shape_of_another_version_is_refused_by_name(shape):
+    with pytest.raises(TableError, match=r"run_in has the shape parameters .* \['distance'\]"):
+        FittedEffect.of(RUN_IN | {"shape": shape})
