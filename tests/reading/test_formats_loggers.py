@@ -106,6 +106,32 @@ def test_damaged_rows_are_counted(tmp_path):
     assert rejected["text"].tolist() == lines[3:7]
 
 
+def test_rows_with_lost_bytes_are_rejected(tmp_path):
+    """NUL stands for bytes that are lost: in a number, in a structure, or in place of a row."""
+    lines = variable_log(CELLS["full"]).split("\n")
+    lines[2] = lines[2].replace("{E6AXIS", "{E6\0AXIS")
+    lines[4] = lines[4].replace("A1 ", "A1\0 ")
+    lines[5] = lines[5].replace(";63", ";6\x003")
+    lines[6] = "\0" * len(lines[6])
+    lines[7] = "A1\0 1 A2 2;" + lines[7]
+    (tmp_path / "log.csv").write_text("\n".join(lines), encoding="utf-8")
+    summary = ingest([tmp_path / "log.csv"], tmp_path / "work")
+    assert summary.rows_rejected == {"not_a_number": 5}
+    assert summary.rows_read == len(TIME)
+    rejected = tables.read(tmp_path / "work" / "rejected.parquet", schemas.REJECTED)
+    assert rejected["row"].tolist() == [3, 5, 6, 7, 8]
+    samples = samples_of(tmp_path / "log.csv", tmp_path / "again")
+    np.testing.assert_allclose(samples["position"], np.delete(POSITION, [1, 3, 4, 5, 6]), atol=1e-6)
+
+
+def test_structures_are_found_behind_a_damaged_first_row(tmp_path):
+    lines = variable_log(CELLS["full"]).split("\n")
+    lines[1] = lines[1].replace("A1 ", "\0A1 ")
+    (tmp_path / "log.csv").write_text("\n".join(lines), encoding="utf-8")
+    samples = samples_of(tmp_path / "log.csv", tmp_path / "work")
+    np.testing.assert_allclose(samples["position"], POSITION[1:], atol=1e-6)
+
+
 def test_damage_at_an_axis_at_rest_does_not_change_the_unit(tmp_path):
     """An axis that stays at zero has no scale of its own by which damage would stand out."""
     lines = variable_log(lambda a, b: f"A1 0.0 A2 {b:.9f}").split("\n")

@@ -37,7 +37,8 @@ def read_struct_cells(path: Path, head: bytes, hints: CsvHints) -> "StructCells 
     header = next((number for number, line in enumerate(lines) if line.strip()), None)
     if header is None or _STRUCT.search(lines[header]):
         return None
-    first = next((_cells(line) for line in lines[header + 1 :] if _STRUCT.search(line)), None)
+    whole = (line for line in lines[header + 1 :] if _STRUCT.search(line) and _MARK not in line)
+    first = next(map(_cells, whole), None)
     if first is None:
         return None
     names = [name.strip().strip('"') for name in _split(lines[header])]
@@ -128,6 +129,8 @@ class StructCells(OneStream):
 
     def _row(self, text: str, wanted: list[int]) -> list[float] | str:
         """Return the asked numbers of a row, or the reason why it has none."""
+        if _MARK in text:  # bytes are lost: what stands around them is no number
+            return "not_a_number"
         cells = _cells(text)
         flat: list[str] = []
         if len(cells) != len(self.members):
@@ -151,12 +154,12 @@ def _split(text: str) -> list[str]:
 
 
 def _cells(text: str) -> list[str | list[tuple[str, str]]]:
-    """Return the fields of a row: plain texts, and of structures the names and numbers."""
+    """Return the fields of a row without NUL: plain texts, and of structures names and numbers."""
     structures = [_MEMBER.findall(found) for found in _STRUCT.findall(text)]
     following = iter(structures)
     return [
         next(following) if _MARK in cell else cell.strip().strip('"').strip()
-        for cell in _split(_STRUCT.sub(_MARK, text.replace(_MARK, "")))
+        for cell in _split(_STRUCT.sub(_MARK, text))
     ]
 
 
