@@ -9,12 +9,14 @@ from numpy.typing import NDArray
 
 from frictioncli.diagnosis.columns import left_of_base, main_channel
 from frictioncli.diagnosis.problem import Problem, simulated
+from frictioncli.experiment.apart import Apart, apart
 from frictioncli.experiment.precision import Precision, precision
 from frictioncli.experiment.rivals import Opening
 from frictioncli.experiment.rows import Joint, foreseen, together
+from frictioncli.experiment.sight import Sight
 from frictioncli.experiment.spread import spread
 from frictioncli.experiment.steps import Step
-from frictioncli.experiment.worth import Sight, chances, decided, margins, noncentralities
+from frictioncli.experiment.worth import chances, decided, margins
 from frictioncli.model.document import PARAMETERS
 
 Array = NDArray[np.float64]
@@ -60,7 +62,7 @@ class Outlook:
         Whether there is structure that no effect explains.
     before : Sight
         The rows at hand.
-    noncentrality : tuple of ndarray
+    apart : tuple of Apart
         How far apart the rivals of each question are in them.
     precision : Precision
         Covariance of all parameters by them.
@@ -72,7 +74,7 @@ class Outlook:
     opening: Opening
     unnamed: bool
     before: Sight
-    noncentrality: tuple[Array, ...]
+    apart: tuple[Apart, ...]
     precision: Precision
     matter: tuple[str, ...]
 
@@ -94,7 +96,7 @@ class Outlook:
             opening=opening,
             unnamed=unnamed,
             before=before,
-            noncentrality=_apart(before, opening),
+            apart=_apart(before, opening),
             precision=whole,
             matter=wide or PARAMETERS,
         )
@@ -123,12 +125,9 @@ class Outlook:
     def chances(self, sight: Sight) -> tuple[Array, ...]:
         """Return, per question, the probability that i, if at work, leaves j behind."""
         return tuple(
-            chances(question, before, after, len(sight.problem.layout.bins))
+            chances(question, before, after)
             for question, before, after in zip(
-                self.opening.questions,
-                self.noncentrality,
-                _apart(sight, self.opening),
-                strict=True,
+                self.opening.questions, self.apart, _apart(sight, self.opening), strict=True
             )
         )
 
@@ -152,14 +151,13 @@ class Outlook:
         if not self.opening.questions:
             return narrow + _SPREAD_ALONE * (high - low)
         total = _NARROW * narrow + _SPREAD * (high - low)
-        apart = _apart(sight, self.opening)
-        pairs = len(sight.problem.layout.bins)
+        now_apart = _apart(sight, self.opening)
         for question, before, after in zip(
-            self.opening.questions, self.noncentrality, apart, strict=True
+            self.opening.questions, self.apart, now_apart, strict=True
         ):
-            total += decided(question, chances(question, before, after, pairs))
+            total += decided(question, chances(question, before, after))
             share = np.array([question.probabilities[rival.name] for rival in question.rivals])
-            margin = margins(question, before, after, pairs, _ENOUGH)
+            margin = margins(question, before, after, _ENOUGH)
             total += _PULL * float(share @ margin) / _ENOUGH
         return total
 
@@ -186,15 +184,15 @@ class Outlook:
         return total
 
 
-def _apart(sight: Sight, opening: Opening) -> tuple[Array, ...]:
-    """Return the noncentralities of each question's rivals."""
+def _apart(sight: Sight, opening: Opening) -> tuple[Apart, ...]:
+    """Return how far apart the rivals of each question are."""
     found = []
     for question in opening.questions:
         others = [
             *opening.settled,
             *(other.leading.score for other in opening.questions if other is not question),
         ]
-        found.append(noncentralities(sight, question, others))
+        found.append(apart(sight, question, others))
     return tuple(found)
 
 

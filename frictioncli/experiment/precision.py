@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from frictioncli.diagnosis.columns import Columns, base_columns, basis_columns, joined
 from frictioncli.diagnosis.problem import Problem
 from frictioncli.experiment.rivals import Opening
-from frictioncli.experiment.worth import Sight
+from frictioncli.experiment.sight import Sight
 
 Array = NDArray[np.float64]
 

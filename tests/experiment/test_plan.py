@@ -167,15 +167,14 @@ def test_structure_without_a_name_gets_blocks_that_spread_over_all_inputs(copy):
     said = str(plan(copy, PlanSettings(minutes=25.0)))
     assert "no known effect explains" in said
     blocks = document(copy)["programme"]["blocks"]
-    kinds = {step["kind"] for block in blocks for step in block["steps"]}
-    assert kinds >= {"series", "rest"}  # the data at hand heat the joint, and never let it rest
-    strokes = {
-        (step["low_deg"], step["high_deg"])
-        for block in blocks
-        for step in block["steps"]
-        if step["kind"] == "series"
-    }
-    assert len(strokes) > 1 or len({block["name"] for block in blocks}) > 3
+    steps = [step for block in blocks for step in block["steps"]]
+    # the data at hand heat the joint at three speeds from end to end, and never let it rest
+    assert {step["kind"] for step in steps} >= {"series", "rest"}
+    series = [step for step in steps if step["kind"] == "series"]
+    speeds = np.unique([speed for step in series for speed in step["speeds_deg_s"]])
+    assert len(speeds) >= 6
+    assert speeds.min() < 20.0 / 2
+    assert len({(step["low_deg"], step["high_deg"]) for step in series}) >= 2
 
 
 @pytest.mark.parametrize(

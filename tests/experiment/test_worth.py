@@ -4,23 +4,17 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from scipy.stats import norm
 
 from frictioncli.diagnosis.columns import base_rows
 from frictioncli.diagnosis.judged import Score
 from frictioncli.diagnosis.problem import build_problems
 from frictioncli.effects import BY_NAME
+from frictioncli.experiment.apart import Apart, apart, tried_shapes
+from frictioncli.experiment.evidence import Noises
 from frictioncli.experiment.rivals import Question, Rival
+from frictioncli.experiment.sight import Sight
 from frictioncli.experiment.spread import spread
-from frictioncli.experiment.worth import (
-    NAMED,
-    Sight,
-    chances,
-    decided,
-    margins,
-    noncentralities,
-    tried_shapes,
-)
+from frictioncli.experiment.worth import NAMED, chances, decided, margins
 from frictioncli.model.noise import Noise
 from frictioncli.simulator.programme import Measured, Moved, simulate_programmes
 from frictioncli.simulator.settings import SynthesisSettings
@@ -47,6 +41,17 @@ def score(name, shape, *coefficients):
     return Score(BY_NAME[name], shape, np.array(coefficients), np.zeros((0, 0)), 1e12)
 
 
+def in_rows(left, pairs=10**9):
+    """Noncentralities in rows whose noise is known but for its scale."""
+    alone = Noises(
+        friction=NOISE[:1],
+        square=np.array([float(pairs)]),
+        determinant=np.zeros(1),
+        freedom=pairs,
+    )
+    return Apart(left[np.newaxis], alone)
+
+
 def dense(problem, noise):
     """Covariance of all rows of one channel: white, shared by a pair, and drift."""
     pair = problem.layout.row_pair
@@ -60,7 +65,7 @@ def test_noncentrality_is_what_generalised_least_squares_leaves(problem):
     drift = score("drift", {"time_constant": 200.0}, 1.5)
     warm = score("coulomb_temperature", {}, -0.1)
     question = Question((Rival(drift, 0.0), Rival(warm, 0.0)))
-    found = noncentralities(Sight(problem, NOISE, problem.whole), question, ())
+    found = apart(Sight(problem, NOISE, problem.whole), question, ()).left[0]
     base = base_rows(problem)
 
     def left(signal, rival, shapes):
@@ -105,23 +110,29 @@ def test_chances_are_those_of_drawn_likelihood_ratios():
     other = Rival(score("coulomb_temperature", {}, 1.0), 0.0)
     question = Question((rival, other))
     after = np.array([[0.0, signal @ signal, 0.0], [0.0, 0.0, 0.0]])
-    found = chances(question, np.zeros((2, 3)), after, pairs=10**9)
+    found = chances(question, in_rows(np.zeros((2, 3))), in_rows(after))
     assert found[0, 1] == pytest.approx(drawn, abs=0.03)
     assert found[0, 0] == 1.0
 
 
-def test_a_noise_of_unknown_size_makes_evidence_grow_with_its_logarithm():
+def test_a_noise_of_unknown_size_takes_part_of_what_a_rival_leaves():
+    """The log ratio of residual squares of two fits, many times."""
     question = Question(
         (
             Rival(score("drift", {"time_constant": 200.0}, 1.0), 0.0),
             Rival(score("coulomb_temperature", {}, 1.0), 0.0),
         )
     )
-    pairs, after = 40, np.array([[0.0, 60.0, 1e9], [60.0, 0.0, 1e9]])
-    found = chances(question, np.zeros((2, 3)), after, pairs)
-    added = 40 * np.log(1 + 60 / 40)
-    assert found[0, 1] == pytest.approx(norm.cdf((added / 2 - np.log(19)) / np.sqrt(added)))
-    assert decided(question, found) == pytest.approx(found[0, 1])
+    generator = np.random.default_rng(9)
+    for pairs, length in ((40, 12.0), (40, 60.0), (300, 20.0)):
+        noise = generator.standard_normal((20000, pairs))
+        signal = np.full(pairs, np.sqrt(length / pairs))
+        squares = [np.sum(np.square(rest), axis=1) for rest in (noise + signal, noise)]
+        odds = pairs / 2 * np.log(squares[0] / squares[1])
+        after = np.array([[0.0, length, 1e9], [length, 0.0, 1e9]])
+        found = chances(question, in_rows(np.zeros((2, 3)), pairs), in_rows(after, pairs))
+        assert found[0, 1] == pytest.approx(np.mean(odds > NAMED), abs=0.03)
+        assert decided(question, found) == pytest.approx(found[0, 1])
 
 
 def test_a_size_that_is_not_sure_makes_names_less_sure():
@@ -134,7 +145,7 @@ def test_a_size_that_is_not_sure_makes_names_less_sure():
     one = replace(score("drift", {"time_constant": 200.0}, 1.0), statistic=statistic)
     question = Question((Rival(one, 0.0), Rival(score("coulomb_temperature", {}, 1.0), 0.0)))
     after = np.array([[0.0, added, 1e9], [added, 0.0, 1e9]])
-    found = chances(question, np.zeros((2, 3)), after, pairs=10**9)
+    found = chances(question, in_rows(np.zeros((2, 3))), in_rows(after))
     assert found[0, 1] == pytest.approx(np.mean(odds > NAMED), abs=0.02)
     assert found[1, 0] > found[0, 1]  # the other's size is known
 
@@ -150,7 +161,7 @@ def test_what_finds_its_own_shape_late_gains_less():
     own = 2 * np.log(8)
     before = np.zeros((2, 3))
     after = np.array([[own, 20.0, 1e9], [20.0, 0.0, 1e9]])
-    found = margins(question, before, after, 10**9, enough=15.0)
+    found = margins(question, in_rows(before), in_rows(after), enough=15.0)
     late, early = (20.0 - own) / 2 - NAMED, 10.0 - NAMED
     assert found == pytest.approx([(late + 15.0) / 2, (early + 15.0) / 2], abs=1e-3)
 
@@ -160,11 +171,11 @@ def test_what_a_rival_may_be_taken_for_must_be_left_behind_too(problem):
     drift = Rival(score("drift", {"time_constant": 200.0}, 1.5), 0.0)
     warm = Rival(score("coulomb_temperature", {}, -0.1), 0.0)
     sight = Sight(problem, NOISE, problem.whole)
-    whole = noncentralities(sight, Question((drift, warm), (drift,)), ())
+    whole = apart(sight, Question((drift, warm), (drift,)), ()).left[0]
     assert whole.shape == (2, 4)
     assert whole[:, 2] == pytest.approx(whole[:, 0])
     asked = Question((drift, warm), (drift,))
-    chance = chances(asked, np.zeros_like(whole), 1e6 * whole, pairs=10**9)
+    chance = chances(asked, in_rows(np.zeros_like(whole)), in_rows(1e6 * whole))
     assert chance[0, 2] == pytest.approx(0.0, abs=0.05)
     assert decided(asked, chance) < 0.55
 
@@ -185,8 +196,8 @@ def test_without_new_rows_nothing_is_decided():
             Rival(score("coulomb_temperature", {}, 1.0), 0.0),
         )
     )
-    same = np.full((2, 3), 12.0)
-    assert decided(question, chances(question, same, same, 50)) == pytest.approx(0.0, abs=1e-6)
+    same = in_rows(np.full((2, 3), 12.0), 50)
+    assert decided(question, chances(question, same, same)) == pytest.approx(0.0, abs=1e-6)
 
 
 def test_rows_spread_by_the_determinant_of_a_quadratic(problem):
