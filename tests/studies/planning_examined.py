@@ -15,25 +15,24 @@ from frictioncli.diagnosis.settings import DiagnosisSettings
 from frictioncli.diagnosis.worth import SLIGHT
 from frictioncli.effects import EFFECTS
 from frictioncli.errors import OptionError
-from frictioncli.experiment.block import Block
 from frictioncli.experiment.blocks import all_blocks
-from frictioncli.experiment.choose import seconds_of as block_seconds
 from frictioncli.experiment.choose import steps_of
 from frictioncli.experiment.plan import CHECK, plan_joint
 from frictioncli.experiment.settings import PlanSettings
 from frictioncli.model.fitting import fit_joint
 from frictioncli.model.settings import FitSettings
-from frictioncli.simulator.programme import Act, simulate_programmes
+from frictioncli.simulator.programme import simulate_programmes
+from tests.studies.planning_random import blocks_at_random, motions_at_random
 from tests.studies.planning_worlds import KEY, World, acts_of, beginning, thin
 
-MINUTES = 45.0
 MAX_SPEED = 180.0
 """What the plans, and blocks at random, may use: the joint's own limit, which the thin experiment
 does not reach. [deg/s]"""
 
 TEMPERATURE = "motor"
-WAYS = ("plan", "repeat", "random")
-"""The plan, the thin experiment again, and blocks at random; all of the same length."""
+WAYS = ("plan", "repeat", "blocks", "motions")
+"""The plan, the thin experiment again, blocks at random, and motions at random; all of the same
+length."""
 
 COLUMNS = (
     *KEY,
@@ -42,7 +41,7 @@ COLUMNS = (
     "sets",
     "truth_held",
     "expected",
-    "blocks",
+    "programme",
     *(f"{way}_sets" for way in WAYS),  # causes by ; and effects of a set by |, of all runs
     "note",
     "seconds",
@@ -74,7 +73,7 @@ def _compared(world: World) -> dict[str, object]:
     if said.verdict != "ambiguous" or not row["truth_held"]:
         return row
     model = fit_joint(torques, {}, FitSettings(temperature=TEMPERATURE))
-    settings = PlanSettings(minutes=MINUTES, max_speed=MAX_SPEED)
+    settings = PlanSettings(minutes=world.minutes, max_speed=MAX_SPEED)
     plan = plan_joint(
         torques,
         "N·m",
@@ -83,11 +82,15 @@ def _compared(world: World) -> dict[str, object]:
         settings,
     )
     row["expected"] = ";".join(f"{one:.3f}" for one in plan.settled.decided)
-    row["blocks"] = ";".join(block.name for block in plan.blocks)
+    row["programme"] = ";".join(block.name for block in plan.blocks)
+    chance = random.Random(" ".join(world.key))
+    blocks = all_blocks(plan.limits, settings.seed)
+    days = [60 * world.minutes * share for share in (1 - CHECK, CHECK)]
     for way, (programme, check) in {
-        "plan": (acts_of(steps_of(plan.blocks)), acts_of(steps_of(plan.check))),
-        "repeat": tuple(beginning(first, 60 * MINUTES * share) for share in (1 - CHECK, CHECK)),
-        "random": _random(all_blocks(plan.limits, settings.seed), world),
+        "plan": [acts_of(steps_of(part)) for part in (plan.blocks, plan.check)],
+        "repeat": [beginning(first, seconds) for seconds in days],
+        "blocks": [blocks_at_random(chance, blocks, seconds) for seconds in days],
+        "motions": [motions_at_random(chance, MAX_SPEED, seconds) for seconds in days],
     }.items():
         runs = simulate_programmes(world.settings(), [first, programme, check], 1)
         row[f"{way}_sets"] = _named(pd.concat(runs, ignore_index=True))
@@ -112,23 +115,3 @@ def _diagnosed(torques: pd.DataFrame) -> Diagnosis:
 
 def _sets(said: Diagnosis) -> str:
     return ";".join("|".join(cause.effects) for cause in said.causes)
-
-
-def _random(blocks: tuple[Block, ...], world: World) -> tuple[list[Act], list[Act]]:
-    """Return blocks at random for both days of a plan, which they fill."""
-    generator = random.Random(" ".join(world.key))
-    first, second = (
-        _at_random(generator, blocks, share * 60 * MINUTES) for share in (1 - CHECK, CHECK)
-    )
-    return acts_of(steps_of(first)), acts_of(steps_of(second))
-
-
-def _at_random(
-    generator: random.Random, blocks: tuple[Block, ...], budget: float
-) -> tuple[Block, ...]:
-    taken: tuple[Block, ...] = ()
-    while True:
-        fitting = [one for one in blocks if block_seconds((*taken, one), 0.0) <= budget]
-        if not fitting:
-            return taken
-        taken = (*taken, generator.choice(fitting))

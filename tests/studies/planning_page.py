@@ -5,15 +5,16 @@ import math
 import pandas as pd
 from scipy import stats
 
-from tests.studies.planning_examined import CHECK, MINUTES, WAYS
+from tests.studies.planning_examined import CHECK, WAYS
+from tests.studies.planning_worlds import BUDGETS, HIDDEN
 
 BEGIN, END = "<!-- study -->", "<!-- /study -->"
 _NAMES = {
     "plan": "the plan",
     "repeat": "the thin experiment again",
-    "random": "blocks at random",
+    "blocks": "blocks at random",
+    "motions": "motions at random",
 }
-_PROMISED = 0.5
 
 
 def wilson(count: int, total: int, z: float = 1.96) -> tuple[float, float]:
@@ -84,51 +85,76 @@ def _shown(sets: str) -> str:
 def tables(rows: pd.DataFrame, digest: str) -> str:
     """Return the tables."""
     found = told(rows)
-    asked = len(rows[~rows["verdict"].isin(["not hidden", "failed"])])
-    failed = len(rows[rows["verdict"] == "failed"])
+    first = rows[rows["minutes"] == str(BUDGETS[0])]
+    asked = len(first[~first["verdict"].isin(["not hidden", "failed"])])
+    failed = int((rows["verdict"] == "failed").sum())
     stale = int((rows["sources"] != digest).sum())
-    ambiguous = int((rows["verdict"] == "ambiguous").sum())
-    sure = found[found["promised"] >= _PROMISED]
+    ambiguous = int((first["verdict"] == "ambiguous").sum())
+    held = int((found["minutes"] == str(BUDGETS[0])).sum())
     lines = [
-        f"{asked} thin experiments were diagnosed; {ambiguous} were ambiguous, and in {len(found)}",
-        f"of these the set held what is hidden. {failed} more broke down in the diagnosis.",
-        f"Each way took {MINUTES:.0f} min, {CHECK:.0%} of it for the check.",
-        "Square brackets are Wilson's 95 % intervals.",
+        f"{asked} thin experiments were diagnosed; {ambiguous} were ambiguous, and in {held} of",
+        f"these the set held what is hidden. {failed} more broke down. {CHECK:.0%} of the time is",
+        "for the check. Square brackets are Wilson's 95 % intervals.",
         "",
     ]
     if stale:
         lines += [f"{stale} rows were made before the last changes of the program's sources.", ""]
-    for title, part in (
-        ("All", found),
-        (f"Where the plan promised {_PROMISED:.0%} or more", sure),
-        ("Where it promised less, and said so", found[found["promised"] < _PROMISED]),
-    ):
-        if title != "All" and len(part) in (0, len(found)):
-            continue
-        lines += [
-            f"**{title}**, {len(part)} joints:",
-            "",
-            "| | right name alone | and no other cause | truth in no set | another name alone |",
-            "|---|---|---|---|---|",
-            *(
-                f"| {_NAMES[way]} | {share(part[f'{way}_right'])} | {share(part[f'{way}_only'])}"
-                f" | {share(part[f'{way}_lost'])} | {share(part[f'{way}_wrong'])} |"
-                for way in WAYS
-            ),
-            "",
-        ]
-    mean = float(found["promised"].mean()) if len(found) else float("nan")
-    lines += [
-        f"The plans promised the right name alone in {mean:.0%} of the cases, in the mean.",
+    for minutes in BUDGETS:
+        part = found[found["minutes"] == str(minutes)]
+        if len(part):
+            lines += _budget(part, minutes)
+    return "\n".join([*lines, *_by_effect(found), *_unsettled(found)])
+
+
+def _budget(found: pd.DataFrame, minutes: float) -> list[str]:
+    """Return what became of the joints within one budget."""
+    return [
+        f"**{minutes:.0f} minutes**, {len(found)} joints:",
+        "",
+        "| | right name alone | and no other cause | truth in no set | another name alone |",
+        "|---|---|---|---|---|",
+        *(
+            f"| {_NAMES[way]} | {share(found[f'{way}_right'])} | {share(found[f'{way}_only'])}"
+            f" | {share(found[f'{way}_lost'])} | {share(found[f'{way}_wrong'])} |"
+            for way in WAYS
+        ),
+        "",
+        f"The plans promised the right name alone in {float(found['promised'].mean()):.0%} of the"
+        " cases, in the mean.",
         *(_against(found, way) for way in WAYS[1:]),
         "",
-        "| hidden | design | size [N·m] | set before | promised | plan | again | at random |",
-        "|---|---|---|---|---|---|---|---|",
     ]
-    for _, row in found.sort_values(["hidden", "design", "size", "seed"]).iterrows():
+
+
+def _by_effect(found: pd.DataFrame) -> list[str]:
+    """Return how often each way ends with the right name alone, effect by effect."""
+    heads = [f"{_NAMES[way]}, {minutes:.0f} min" for minutes in BUDGETS for way in WAYS]
+    lines = [
+        f"| hidden | {' | '.join(heads)} |",
+        "|---|" + "---|" * len(heads),
+    ]
+    for hidden in HIDDEN:
+        cells = []
+        for minutes in BUDGETS:
+            part = found[(found["hidden"] == hidden) & (found["minutes"] == str(minutes))]
+            cells += [f"{int(part[f'{way}_right'].sum())}/{len(part)}" for way in WAYS]
+        lines.append(f"| {hidden} | {' | '.join(cells)} |")
+    return [*lines, ""]
+
+
+def _unsettled(found: pd.DataFrame) -> list[str]:
+    """Return what the plan made of the joints that it did not settle."""
+    lines = [
+        "Not settled by the plan:",
+        "",
+        "| hidden | design | min | set before | promised | the plan | again | blocks | motions |",
+        "|---|---|---|---|---|---|---|---|---|",
+    ]
+    missed = found[~found["plan_right"]].sort_values(["minutes", "hidden", "design", "seed"])
+    for _, row in missed.iterrows():
         cells = ["**right**" if row[f"{way}_right"] else _shown(row[f"{way}_sets"]) for way in WAYS]
         lines.append(
-            f"| {row['hidden']} | {row['design']} | {row['size']} |"
+            f"| {row['hidden']} | {row['design']} | {float(row['minutes']):.0f} |"
             f" {_shown(row['sets'])} | {row['promised']:.0%} | {' | '.join(cells)} |"
         )
-    return "\n".join(lines)
+    return lines

@@ -34,17 +34,21 @@ SIZES = (2.5,)
 DESIGNS = ("heating", "three speeds")
 """Thin experiments of one run: heating only, measured at four speeds or at three."""
 
-KEY = ("design", "hidden", "size", "seed")
+BUDGETS = (45.0, 20.0)
+"""Minutes that the next experiment may take."""
+
+KEY = ("design", "hidden", "size", "seed", "minutes")
 
 
 @dataclass(frozen=True)
 class World:
-    """One thin experiment on a joint that hides one effect."""
+    """One thin experiment on a joint that hides one effect, and the minutes for the next one."""
 
     design: str
     hidden: str
     size: float
     seed: int
+    minutes: float
 
     @property
     def key(self) -> tuple[str, ...]:
@@ -52,8 +56,11 @@ class World:
         return tuple(str(getattr(self, name)) for name in KEY)
 
     def settings(self) -> SynthesisSettings:
-        """Return the joint: equation (16) and the hidden effect, noise by the world's own seed."""
-        digest = hashlib.sha256(" ".join(self.key).encode()).digest()
+        """Return the joint: equation (16) and the hidden effect, noise by the world's own seed.
+
+        The joint is the same whatever the minutes.
+        """
+        digest = hashlib.sha256(" ".join(self.key[:-1]).encode()).digest()
         return SynthesisSettings(
             seed=int.from_bytes(digest[:4], "big"),
             joint_kind="plain",
@@ -66,10 +73,11 @@ def worlds(seeds: int) -> list[World]:
     found = []
     for seed in range(seeds):
         block = [
-            World(design, hidden, size, seed)
+            World(design, hidden, size, seed, minutes)
             for design in DESIGNS
             for hidden in HIDDEN
             for size in SIZES
+            for minutes in BUDGETS
         ]
         order = np.random.default_rng([2019, seed]).permutation(len(block))
         found += [block[place] for place in order]
