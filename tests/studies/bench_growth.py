@@ -4,7 +4,8 @@
 The log is written as a KUKA trace, read by ``ingest``, and goes through the other stages; each is
 a process of its own. Rows of the present package are not measured again. Writes docs/growth.png;
 the table is on the page of ``make bench``. A sample needs 45 bytes of disk in the log and 30 in the
-work folder while its size is measured.
+work folder while its size is measured; logs of more than 1e8 samples are compressed as they are
+made, and read as a stream.
 
 Usage: python -m tests.studies.bench_growth [--largest 1e8] [--data FOLDER]
 """
@@ -33,9 +34,15 @@ PERIOD = 0.012
 CHUNK = 200
 """Laps that are written at a time."""
 
+STREAMED_BEYOND = 10**8
+"""Samples beyond which a log is never on the disk as text."""
+
 
 def write_log(path: Path, samples: int) -> None:
-    """Write the trace of one long thermal cycle: there and back at four speeds, over and over."""
+    """Write the trace of one long thermal cycle: there and back at four speeds, over and over.
+
+    It is compressed if its name ends in ``.zst``.
+    """
     import pyarrow as pa
     from pyarrow import csv
 
@@ -46,8 +53,10 @@ def write_log(path: Path, samples: int) -> None:
     names = ["Zeit[sec]", "AxisPos_Act2[°]", "GearTorq_Act2[Nm]", "Motortemperatur2[K]"]
     schema = pa.schema([(name, pa.float64()) for name in names])
     options = csv.WriteOptions(delimiter=";", quoting_style="none")
-    path.parent.mkdir(parents=True, exist_ok=True)
-    with csv.CSVWriter(path, schema, write_options=options) as writer:
+    with (
+        pa.output_stream(path, compression="detect") as stream,
+        csv.CSVWriter(stream, schema, write_options=options) as writer,
+    ):
         for begin in range(0, samples, CHUNK * len(load)):
             count = min(CHUNK * len(load), samples - begin)
             number = np.arange(begin, begin + count)
@@ -75,7 +84,9 @@ def measure_size(samples: int, data: Path) -> list[dict]:
     """Return the rows of one size, up to the first stage that fails."""
     folder = data / f"growth-{samples}"
     shutil.rmtree(folder, ignore_errors=True)
-    write_log(folder / "logs" / "trace.csv", samples)
+    (folder / "logs").mkdir(parents=True)
+    name = "trace.csv.zst" if samples > STREAMED_BEYOND else "trace.csv"
+    write_log(folder / "logs" / name, samples)
     rows = []
     for stage in STAGES:
         logs = ["{data}/logs"] if stage == "ingest" else []
@@ -137,7 +148,8 @@ def section() -> str:
         "",
         "One recording at 12 ms, read and taken through the stages, each a process of its own.",
         f"Slopes are powers of the number of samples, fitted from {LINEAR_FROM:.0e} on: 1 is linear"
-        " growth, 0 none.",
+        f" growth, 0 none. A log of more than {STREAMED_BEYOND:.0e} samples is compressed as it is"
+        " made, and read as a stream.",
         "",
         "![Time and peak memory by number of samples](growth.png)",
         "",
