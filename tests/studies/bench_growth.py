@@ -159,7 +159,7 @@ def section() -> str:
     for samples in sorted({row["samples"] for row in rows}):
         own = {row["stage"]: row for row in rows if row["samples"] == samples}
         cells = [
-            f"{own[s]['wall']:.3g} | {own[s]['peak'] / MEGABYTE:.0f}" if s in own else "failed |"
+            f"{own[s]['wall']:.3g} | {own[s]['peak'] / MEGABYTE:.0f}" if s in own else "not done |"
             for s in STAGES
         ]
         lines.append(f"| {samples:.0e} | " + " | ".join(cells) + " |")
