@@ -15,6 +15,7 @@ import sys
 import tempfile
 from dataclasses import dataclass
 from functools import cache
+from itertools import chain
 from pathlib import Path
 
 from tests.studies.bench_call import RESULT
@@ -115,9 +116,13 @@ def _rows(work: Work, store: Path) -> list[dict]:
 @cache
 def state(*sources: str) -> str:
     """Return a digest of files and folders of the package: other states' measures do not count."""
-    places = [PACKAGE / source for source in sources]
-    files = [file for place in places for file in (sorted(place.rglob("*.py")) or [place])]
+    files = [file for source in sources for file in _sources(PACKAGE / source)]
     return hashlib.sha256(b"\0".join(file.read_bytes() for file in files)).hexdigest()[:12]
+
+
+def _sources(place: Path) -> list[Path]:
+    """Return a file, or all of a folder that runs."""
+    return sorted(chain(place.rglob("*.py"), place.rglob("*.c"))) or [place]
 
 
 def _prepared(work: Work, folder: Path) -> None:

@@ -14,6 +14,7 @@ import os
 import time
 from collections import Counter
 from dataclasses import dataclass, field
+from itertools import chain
 from pathlib import Path
 
 from tests.studies.fuzz_layouts import layouts
@@ -41,7 +42,7 @@ def sources() -> str:
     package = ROOT / "frictioncli"
     files = [*package.glob("*.py"), *(ROOT / "tests" / "studies").glob("fuzz*.py")]
     for part in ("reading", "inspecting", "motion"):
-        files += (package / part).rglob("*.py")
+        files += chain((package / part).rglob("*.py"), (package / part).rglob("*.c"))
     for path in sorted(files):
         digest.update(path.read_bytes())
     return digest.hexdigest()

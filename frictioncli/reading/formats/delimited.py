@@ -17,6 +17,7 @@ from frictioncli.reading.formats.base import CsvHints, RawBatch, Refusal, Task
 from frictioncli.reading.formats.compression import packing_of
 from frictioncli.reading.formats.dialect import NOT_NUMBERS, Dialect, detect, split
 from frictioncli.reading.formats.encoding import Piece, decode_head, encoding_of, pieces
+from frictioncli.reading.formats.plain_numbers import plain_columns
 
 _TEXT_LIMIT = 200
 _NULLS = ["", *NOT_NUMBERS]
@@ -146,11 +147,21 @@ class DelimitedText:
 
     def _parse(self, piece: Piece, wanted: list[int]) -> RawBatch:
         content = self._blanks_joined(piece.content)
+        numbers = self._plain(content, piece.n_lines, wanted)
+        if numbers is not None:
+            values = dict(zip(wanted, map(_with_value, numbers), strict=True))
+            return RawBatch(piece.lines, values, np.empty(0, np.int64), ())
         table = self._table(content, self._types(wanted))
         if table is not None and table.num_rows == piece.n_lines:
-            lines = np.arange(piece.first_line, piece.first_line + piece.n_lines, dtype=np.int64)
-            return _batch(table, lines, wanted, np.empty(0, np.int64), ())
+            return _batch(table, piece.lines, wanted, np.empty(0, np.int64), ())
         return self._parse_carefully(content, piece.first_line, wanted)
+
+    def _plain(self, content: bytes, n_lines: int, wanted: list[int]) -> NDArray[np.float64] | None:
+        """Return the wanted columns of text that holds nothing but numbers, else None."""
+        if not self.dialect.dates.isdisjoint(wanted):
+            return None
+        form = (self.dialect.delimiter, self.dialect.decimal, len(self.columns))
+        return plain_columns(content, *form, wanted, n_lines)
 
     def _parse_carefully(self, content: bytes, first_line: int, wanted: list[int]) -> RawBatch:
         """Parse rows of which some are blank or damaged, and say which lines are damaged."""
@@ -270,13 +281,12 @@ def _batch(
         if pa.types.is_string(cells.type):
             values[column] = _seconds(cells.to_pylist())
             continue
-        values[column] = _numbers(cells)
+        values[column] = _with_value(cells.to_numpy())
     return RawBatch(lines, values, bad_lines, reasons)
 
 
-def _numbers(cells: pa.ChunkedArray) -> NDArray[np.float64]:
-    """Return a column's numbers, NaN where there is none."""
-    numbers = cells.to_numpy()
+def _with_value(numbers: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Return numbers with NaN where one says that there is none."""
     # where one is NaN the extremes are too, and tell nothing
     if not len(numbers) or -_NO_VALUE <= numbers.min() <= numbers.max() <= _NO_VALUE:
         return numbers
