@@ -249,4 +249,5 @@ def _repeated(texts: Sequence[str], rows: Sequence[int]) -> pa.DictionaryArray:
     """Return each text so many times."""
     codes = {text: code for code, text in enumerate(dict.fromkeys(texts))}
     each = np.array([codes[text] for text in texts], np.int32)
-    return pa.DictionaryArray.from_arrays(pa.array(np.repeat(each, rows)), pa.array(list(codes)))
+    labels = pa.array(np.repeat(each, rows))
+    return pa.DictionaryArray.from_arrays(labels, pa.array(list(codes)), safe=False)

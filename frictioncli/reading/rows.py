@@ -168,10 +168,11 @@ def _growing(
     block: Block, following: NDArray[np.float64], last: float, faults: Faults
 ) -> tuple[Block, float]:
     """Judge a block's rows after time ``last``; the times ``following`` it help to judge."""
-    n = len(block)
-    time = np.concatenate((block.time, following))
-    if n and time[0] > last and np.all(time[1:] > time[:-1]):
-        return block, float(time[n - 1])
+    n, time = len(block), block.time
+    grows = n > 0 and time[0] > last and bool(np.all(time[1:] > time[:-1]))
+    if grows and np.all(np.diff(following, prepend=time[-1]) > 0):
+        return block, float(time[-1])
+    time = np.concatenate((time, following))
     keep = np.zeros(n, bool)
     equal = np.zeros(n, bool)
     for i in range(n):
