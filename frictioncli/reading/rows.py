@@ -168,11 +168,10 @@ def _growing(
     block: Block, following: NDArray[np.float64], last: float, faults: Faults
 ) -> tuple[Block, float]:
     """Judge a block's rows after time ``last``; the times ``following`` it help to judge."""
-    n, time = len(block), block.time
-    grows = n > 0 and time[0] > last and bool(np.all(time[1:] > time[:-1]))
-    if grows and np.all(np.diff(following, prepend=time[-1]) > 0):
-        return block, float(time[-1])
-    time = np.concatenate((time, following))
+    n = len(block)
+    if n and _grows(block.time, last) and _grows(following, block.time[-1]):
+        return block, float(block.time[-1])
+    time = np.concatenate((block.time, following))
     keep = np.zeros(n, bool)
     equal = np.zeros(n, bool)
     for i in range(n):
@@ -189,6 +188,11 @@ def _growing(
     faults.add(block.lines[~keep & ~equal], "time_not_increasing")
     faults.add(block.lines[equal], "duplicate_time")
     return block.take(keep), last
+
+
+def _grows(time: NDArray[np.float64], last: float) -> bool:
+    """Tell whether times grow from ``last`` on."""
+    return not len(time) or bool(time[0] > last and np.all(time[1:] > time[:-1]))
 
 
 def without_stale_start(

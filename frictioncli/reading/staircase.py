@@ -97,9 +97,8 @@ def too_fine(levels: NDArray[np.float64]) -> bool:
     Parameters
     ----------
     levels : ndarray, shape (n,)
-        Distinct readings. [°C]
+        Distinct readings, ascending. [°C]
     """
-    levels = np.unique(np.round(levels, 6))
     return len(levels) > _MAX_LEVELS or bool(np.min(np.diff(levels), initial=np.inf) < _MIN_STEP)
 
 
