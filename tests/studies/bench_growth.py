@@ -5,7 +5,7 @@ The log is written as a KUKA trace, read by ``ingest``, and goes through the oth
 a process of its own. Rows of the present package are not measured again. Writes docs/growth.png;
 the table is on the page of ``make bench``. A sample needs 45 bytes of disk in the log and 30 in the
 work folder while its size is measured; logs of more than 1e8 samples are compressed as they are
-made, and read as a stream.
+made, and read as a stream. What an earlier package took stays, marked so, until measured anew.
 
 Usage: python -m tests.studies.bench_growth [--largest 1e8] [--data FOLDER]
 """
@@ -75,9 +75,14 @@ def write_log(path: Path, samples: int) -> None:
 
 
 def stored() -> list[dict]:
-    """Return the rows of the present package, one per stage and size."""
+    """Return the rows, one per stage and size; some may be of an earlier package."""
     lines = ROWS.read_text(encoding="utf-8").splitlines() if ROWS.exists() else []
-    return [row for row in map(json.loads, lines) if row["state"] == state(".")]
+    return [json.loads(line) for line in lines]
+
+
+def present(rows: list[dict]) -> list[dict]:
+    """Return the rows of the present package."""
+    return [row for row in rows if row["state"] == state(".")]
 
 
 def measure_size(samples: int, data: Path) -> list[dict]:
@@ -109,7 +114,7 @@ def measure_size(samples: int, data: Path) -> list[dict]:
 
 def slope(rows: list[dict], stage: str, measure: str) -> float:
     """Return by which power of the samples a stage's ``wall`` or ``peak`` grows; NaN if unknown."""
-    large = [row for row in rows if row["stage"] == stage and row["samples"] >= LINEAR_FROM]
+    large = [r for r in present(rows) if r["stage"] == stage and r["samples"] >= LINEAR_FROM]
     if len(large) < 2:
         return float("nan")
     samples, values = zip(*((row["samples"], row[measure]) for row in large), strict=True)
@@ -162,9 +167,12 @@ def section() -> str:
             f"{own[s]['wall']:.3g} | {own[s]['peak'] / MEGABYTE:.0f}" if s in own else "not done |"
             for s in STAGES
         ]
-        lines.append(f"| {samples:.0e} | " + " | ".join(cells) + " |")
+        mark = "" if present(list(own.values())) else " *earlier*"
+        lines.append(f"| {samples:.0e}{mark} | " + " | ".join(cells) + " |")
     slopes = [f"{slope(rows, s, 'wall'):.2f} | {slope(rows, s, 'peak'):.2f}" for s in STAGES]
     lines += ["| slope | " + " | ".join(slopes) + " |", ""]
+    if len(present(rows)) < len(rows):
+        lines += ["*Earlier*: measured on an earlier state of the program; no part of slopes.", ""]
     return "\n".join(lines).replace("e+0", "e")
 
 
@@ -178,7 +186,8 @@ def main() -> None:
     ROWS.parent.mkdir(parents=True, exist_ok=True)
     samples = SMALLEST
     while samples <= asked.largest:
-        if not any(row["samples"] == samples for row in rows):
+        if not any(row["samples"] == samples for row in present(rows)):
+            rows = [row for row in rows if row["samples"] != samples]
             rows += measure_size(samples, asked.data)
             ROWS.write_text("".join(json.dumps(row) + "\n" for row in rows), encoding="utf-8")
         samples *= 10
