@@ -2,6 +2,8 @@
 
 import re
 import shutil
+import sysconfig
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -29,7 +31,10 @@ def bits(values):
     return np.asarray(values, float).view(np.int64).tolist()
 
 
-@pytest.mark.skipif(shutil.which("cc") is None, reason="no C compiler")
+HEADER = Path(sysconfig.get_path("include")) / "Python.h"
+
+
+@pytest.mark.skipif(not (shutil.which("cc") and HEADER.exists()), reason="no C compiler")
 def test_parser_is_there_where_a_compiler_is():
     assert plain_numbers._plain_numbers is not None
 
