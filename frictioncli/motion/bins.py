@@ -5,6 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from frictioncli.motion.bin_runs import bin_runs
 from frictioncli.motion.segments import offsets
 
 Array = NDArray[np.float64]
@@ -64,29 +65,26 @@ def bin_means(
     if not len(start):
         none, nothing = np.empty(0, np.int64), np.empty(0)
         return BinMeans(none, none, none, nothing, nothing, nothing)
-    number = position / width
-    np.floor(number, out=number)
-    edge = np.empty(len(number), dtype=bool)
-    np.not_equal(number[1:], number[:-1], out=edge[1:])
-    edge[start] = edge[0] = True
-    edge[stop[stop < len(edge)]] = True
-    edges = np.flatnonzero(edge)
-    found = number[edges]
-    run, span, head = _by_angle(found, np.searchsorted(edges, start), np.searchsorted(edges, stop))
-    length = np.append(edges[1:], len(number)) - edges
-    count = _together(length[run], head)
-    place, mean_torque, mean_time = (
-        _together(np.add.reduceat(values, edges)[run], head) / count
-        for values in (position, torque, time)
+    runs = bin_runs(
+        position=position,
+        torque=torque,
+        load=load,
+        time=time,
+        start=start,
+        stop=stop,
+        width=width,
     )
-    found, span = found[run[head]], span[head]
+    run, span, head = _by_angle(runs.bin, np.append(0, runs.end[:-1]), runs.end)
+    count = _together(runs.count[run], head)
+    place, mean_torque, mean_load, mean_time = (
+        _together(sums[run], head) / count
+        for sums in (runs.position, runs.torque, runs.load, runs.time)
+    )
+    found, span = runs.bin[run[head]], span[head]
     off = (found + 0.5) * width - place
-    mean_load = np.full(len(count), np.nan)
-    # a run that begins with no load has no mean load
-    if not np.isnan(load[edges[run]]).all():
-        mean_load = _together(np.add.reduceat(load, edges)[run], head) / count
-        mean_load += slopes(span, place, mean_load) * off
     mean_torque += slopes(span, place, mean_torque) * off
+    if not np.isnan(mean_load).all():
+        mean_load += slopes(span, place, mean_load) * off
     return BinMeans(
         span=span,
         bin=found.astype(np.int64),

@@ -96,7 +96,12 @@ def _bins(pairs: int) -> Work:
                 at_most=True,
             ),
         ],
-        sources=("motion/bins.py", "motion/segments.py"),
+        sources=(
+            "motion/bins.py",
+            "motion/bin_runs.py",
+            "motion/_bin_runs.c",
+            "motion/segments.py",
+        ),
     )
 
 
@@ -231,7 +236,7 @@ def bins_of_frictioncli(data: Path, out: Path) -> Callable[[], float]:
     pairs, _, samples = position.shape
     # the angles wanted are the middles of bins; an angle's zero is no part of the work
     position, torque = position.ravel() + 2.5, torque.ravel()
-    together = 2 * 20
+    together = 2 * 100
     start = samples * np.arange(together)
     none, time = np.full(together * samples, np.nan), PERIOD * np.arange(together * samples)
 
