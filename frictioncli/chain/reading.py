@@ -1,24 +1,12 @@
-"""From logs to torques: ``ingest``, ``pair``, ``separate``."""
+"""From logs to samples: ``ingest``."""
 
-from dataclasses import asdict
 from pathlib import Path
 
-from frictioncli import schemas, tables
-from frictioncli.chain.stage import Done, present, stage
-from frictioncli.motion.given import given
-from frictioncli.motion.pages import Pages
-from frictioncli.motion.pairing import pair_spans
-from frictioncli.motion.results import pair_rows, ramp_rows
-from frictioncli.motion.separation import separate as separate_pairs
-from frictioncli.motion.separation import sign_conventions
-from frictioncli.motion.settings import PairingSettings
-from frictioncli.motion.spans import Joint, find_spans
-from frictioncli.motion.summary import PairTally, TorqueRanges, pairing_text, separation_text
-from frictioncli.provenance import Provenance, hashes
+from frictioncli.chain.stage import Done, stage
 from frictioncli.reading.discovery import Logs
 from frictioncli.reading.ingest import ingest as ingest_logs
 from frictioncli.reading.settings import IngestSettings
-from frictioncli.workfiles import PAIRS, RAMPS, RECORDINGS, SAMPLES, TORQUES
+from frictioncli.workfiles import SAMPLES
 
 
 @stage
@@ -26,52 +14,3 @@ def ingest(logs: Logs, work: Path, settings: IngestSettings | None = None) -> Do
     """Read logs into ``samples.parquet``; what cannot be used goes to ``rejected.parquet``."""
     summary = ingest_logs(logs, work, settings or IngestSettings())
     return Done(work / SAMPLES, str(summary))
-
-
-@stage
-def pair(work: Path, settings: PairingSettings | None = None) -> Done:
-    """Match counter-directed constant velocity: ``pairs.parquet``; the rest: ``ramps.parquet``."""
-    settings = settings or PairingSettings()
-    source = work / SAMPLES
-    facts = tables.facts(source)
-    provenance = Provenance("pair", asdict(settings), hashes(present(source, work / RECORDINGS)))
-    said = given(work / RECORDINGS)
-    tally = PairTally()
-    with (
-        Pages[Joint](work) as moving,
-        Pages[Joint](work) as paired,
-        tables.TableWriter(work / RAMPS, schemas.RAMPS, provenance) as ramps,
-        tables.TableWriter(work / PAIRS, schemas.PAIRS, provenance) as pairs,
-    ):
-        samples = tables.ahead(tables.batches(source, schemas.SAMPLES))
-        found = find_spans(samples, settings.steady, settings.bin_width, moving)
-        pairing = pair_spans(found, settings, paired, said["payload"])
-        facts |= {
-            "samples": found.samples,
-            "dropped": pairing.dropped,
-            "bin_width": found.bin_width,
-        }
-        ramps.facts = pairs.facts = facts
-        for rows in ramp_rows(found, said["payload"]):
-            ramps.write(rows)
-        for rows in tally.counted(pair_rows(found, pairing, said["phase"])):
-            pairs.write(rows)
-    return Done(work / PAIRS, pairing_text(tally, facts, settings.bin_width))
-
-
-@stage
-def separate(work: Path, sign: int | None = None) -> Done:
-    """Separate friction torque from load torque by equation (8): ``torques.parquet``."""
-    source = work / PAIRS
-    facts = tables.facts(source)
-    signs = sign_conventions(tables.batches(source, schemas.PAIRS), sign)
-    facts["sign"] = {str(joint): value for joint, value in signs.items()}
-    provenance = Provenance("separate", {"sign": sign}, hashes([source]))
-    ranges = TorqueRanges()
-    with tables.TableWriter(work / TORQUES, schemas.TORQUES, provenance) as torques:
-        pairs = tables.ahead(tables.batches(source, schemas.PAIRS))
-        for rows in ranges.seen(separate_pairs(batch, signs) for batch in pairs):
-            torques.write(rows)
-        facts |= {"load_unit": "N·m"} if ranges.own_load else {}
-        torques.facts = facts
-    return Done(work / TORQUES, separation_text(ranges, signs, facts, told=sign is not None))
