@@ -9,6 +9,9 @@ from typing import Any
 
 from frictioncli import __version__
 
+_BLOCK_BYTES = 1 << 20
+"""Most logs are hashed at once: threads that read them would have to wait for one another."""
+
 
 @dataclass(frozen=True, slots=True)
 class Provenance:
@@ -37,8 +40,11 @@ def sha256(path: Path) -> str:
         for part in sorted(p for p in path.rglob("*") if p.is_file()):
             digest.update(sha256(part).encode())
         return digest.hexdigest()
-    with path.open("rb") as stream:
-        return hashlib.file_digest(stream, "sha256").hexdigest()
+    digest = hashlib.sha256()
+    with path.open("rb", buffering=0) as stream:
+        while block := stream.read(_BLOCK_BYTES):
+            digest.update(block)
+    return digest.hexdigest()
 
 
 def hashes(paths: Iterable[Path]) -> dict[str, str]:

@@ -12,9 +12,8 @@ from concurrent.futures import Future, ThreadPoolExecutor
 from contextlib import ExitStack, contextmanager
 from pathlib import Path
 from types import TracebackType
-from typing import Any, Self, TypeVar
+from typing import TYPE_CHECKING, Any, Self, TypeVar
 
-import pandas as pd
 import pyarrow as pa
 import pyarrow.parquet as pq
 
@@ -23,6 +22,10 @@ from frictioncli.files import whole
 from frictioncli.provenance import Provenance
 from frictioncli.quantities import TORQUE
 from frictioncli.schemas import Table
+
+if TYPE_CHECKING:
+    # takes longer to import than most logs to read
+    import pandas as pd
 
 _KEY = b"frictioncli"
 _BATCH_ROWS = 1 << 17
@@ -97,9 +100,9 @@ class TableWriter:
         self._writing: Future[None] | None = None
         return self
 
-    def write(self, batch: pa.RecordBatch | pa.Table | pd.DataFrame) -> None:
+    def write(self, batch: "pa.RecordBatch | pa.Table | pd.DataFrame") -> None:
         """Append rows; columns are matched by name and those that are missing become null."""
-        if isinstance(batch, pd.DataFrame):
+        if not isinstance(batch, pa.RecordBatch | pa.Table):
             batch = pa.Table.from_pandas(batch, preserve_index=False)
         rows = conform(batch, self._table, self._schema)
         self.rows += rows.num_rows
@@ -209,7 +212,7 @@ def conform(rows: pa.RecordBatch | pa.Table, table: Table, schema: pa.Schema) ->
 
 def write(
     path: Path,
-    rows: pd.DataFrame | pa.Table,
+    rows: "pd.DataFrame | pa.Table",
     table: Table,
     provenance: Provenance,
     facts: Mapping[str, Any] | None = None,
@@ -219,7 +222,7 @@ def write(
         writer.write(rows)
 
 
-def read(path: Path, table: Table) -> pd.DataFrame:
+def read(path: Path, table: Table) -> "pd.DataFrame":
     """Read a whole table; labels come as plain strings, columns that may be null may be absent.
 
     Raises
@@ -233,7 +236,7 @@ def read(path: Path, table: Table) -> pd.DataFrame:
     for column in table.columns:
         if column.name not in frame:
             frame[column.name] = pa.nulls(len(frame), pa.float64()).to_pandas()
-        if isinstance(frame[column.name].dtype, pd.CategoricalDtype):
+        if frame[column.name].dtype == "category":
             frame[column.name] = frame[column.name].astype(frame[column.name].cat.categories.dtype)
     return frame[list(table.names)]
 

@@ -5,6 +5,7 @@ import re
 from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from pathlib import Path
 
 from frictioncli.errors import LogError
@@ -17,13 +18,13 @@ Logs = Sequence[Path] | Mapping[str, Path]
 _SILENT = frozenset({manifest.NAME, "truth.json", "metadata.yaml", "thumbs.db", "desktop.ini"})
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, eq=False)
 class LogFile:
-    """A file that may be a log, as it was named or found."""
+    """A file that may be a log, as it was named or found; no two of a call are one file."""
 
     path: Path
 
-    @property
+    @cached_property
     def stem(self) -> str:
         """The name without its ending, ``.csv.gz`` counting as one."""
         packed = self.path.suffix.lower() in ENDINGS
@@ -120,7 +121,11 @@ def _files_below(folder: Path, besides: Path | None) -> list[Path]:
         folders[:] = [name for name in folders if not name.startswith(".")]
         named = (one for one in files if not one.startswith(".") and one.lower() not in _SILENT)
         found += [path for path in map(inside.joinpath, named) if path.is_file()]
-    return sorted(found, key=lambda path: [natural_key(part) for part in path.parts])
+    keys = {
+        place: [natural_key(part) for part in place.parts]
+        for place in {path.parent for path in found}
+    }
+    return sorted(found, key=lambda path: [*keys[path.parent], natural_key(path.name)])
 
 
 def _unique_names(folders: list[Path]) -> dict[Path, str]:

@@ -4,7 +4,6 @@ import os
 import tempfile
 from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
-from concurrent.futures import Future, ThreadPoolExecutor
 from contextlib import ExitStack
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -18,6 +17,7 @@ from frictioncli.reading import manifest
 from frictioncli.reading.discovery import Logs, Run, discover
 from frictioncli.reading.drafts import Drafts
 from frictioncli.reading.formats.base import Refusal
+from frictioncli.reading.hashing import Hashing
 from frictioncli.reading.history import known_temperatures
 from frictioncli.reading.mapping import ChannelMap, read_map
 from frictioncli.reading.opening import RefusedLog, open_run
@@ -72,16 +72,15 @@ def ingest(logs: Logs, work: Path, settings: IngestSettings | None = None) -> In
             chart,
             stack.enter_context(Drafts(Path(name))),
             stack.enter_context(_writer(Path(name), schemas.REJECTED)),
-            ThreadPoolExecutor(1),
+            stack.enter_context(Hashing()),
         )
-        stack.callback(desk.hashing.shutdown, cancel_futures=True)
         harvest = _Harvest()
         for run in runs:
             _read_run(run, desk, harvest)
         if not harvest.recordings:
             raise _nothing_left(harvest.refused)
         facts = _facts(harvest)
-        provenance = Provenance("ingest", settings.as_dict(), _inputs(harvest, settings.map_file))
+        provenance = Provenance("ingest", settings.as_dict(), _inputs(harvest, desk))
         _finish(Path(name), work, desk, harvest, provenance, facts)
     return _summary(harvest, facts)
 
@@ -94,7 +93,7 @@ class _Desk:
     chart: ChannelMap
     drafts: Drafts
     rejected: TableWriter
-    hashing: ThreadPoolExecutor
+    hashing: Hashing
 
 
 @dataclass(slots=True)
@@ -103,7 +102,6 @@ class _Harvest:
 
     timelines: dict[str, Timeline] = field(default_factory=dict)
     temperatures: dict[tuple[str, int], tuple[Knots | None, ...]] = field(default_factory=dict)
-    hashes: dict[Path, Future[str]] = field(default_factory=dict)
     refused: list[RefusedLog] = field(default_factory=list)
     notes: list[str] = field(default_factory=list)
     warnings: list[str] = field(default_factory=list)
@@ -178,8 +176,7 @@ def _read_run(run: Run, desk: _Desk, harvest: _Harvest) -> None:
     harvest.warnings += said
     opened, refused = open_run(run, desk.settings, desk.chart)
     # hashed while the logs are looked at and read
-    for file in dict.fromkeys(file for log in opened for file in log.source.files):
-        harvest.hashes[file] = desk.hashing.submit(sha256, file)
+    desk.hashing.ask(file for log in opened for file in log.source.files)
     found, unusable = readings(opened, desk.settings, desk.chart)
     harvest.refused += refused + unusable
     clock = _read_logs(run, in_time_order(found, entries), desk, harvest)
@@ -204,17 +201,19 @@ def _read_logs(run: Run, queue: Sequence[Dated], desk: _Desk, harvest: _Harvest)
     """Read logs one after the other; those that cannot be used join the refused."""
     clock = Clock(run.name)
     size = desk.settings.batch_bytes
+    smooth: set[int] = set()
     in_turn = parts_of([dated.reading for dated in queue], size)
     for dated, (reading, parts) in zip(queue, in_turn, strict=True):
         log, joints = reading.log, [plan.channels.joint for plan in reading.plans]
         desk.drafts.begin(run.name, log.recording, joints, clock.start_of(dated))
         faults = Faults()
-        result = record(reading, parts, faults, desk.drafts.add)
+        result = record(reading, parts, faults, desk.drafts.add, smooth)
         if isinstance(result, Refusal):
             desk.drafts.forget(joints)
             harvest.refused.append(RefusedLog(run, log.file, log.recording, result))
             continue
         clock.place(dated, result)
+        smooth.update(joint for joint, shown in result.registers.items() if shown.smooth)
         for rows in rejected_rows(log, faults, size):
             desk.rejected.write(rows)
     return clock
@@ -253,10 +252,11 @@ def _facts(harvest: _Harvest) -> dict[str, Any]:
     }
 
 
-def _inputs(harvest: _Harvest, map_file: Path | None) -> dict[str, str]:
+def _inputs(harvest: _Harvest, desk: _Desk) -> dict[str, str]:
     """Return run and file name -> SHA-256 of all files that samples come from."""
+    hashes, map_file = desk.hashing.found(), desk.settings.map_file
     inputs = {
-        f"{r.log.run.name}/{file.name}": harvest.hashes[file].result()
+        f"{r.log.run.name}/{file.name}": hashes[file]
         for r in harvest.recordings
         for file in r.log.source.files
     }

@@ -5,6 +5,7 @@ from contextlib import suppress
 from dataclasses import dataclass
 from functools import partial
 from itertools import chain, groupby
+from statistics import median
 
 import numpy as np
 from numpy.typing import NDArray
@@ -75,7 +76,7 @@ def first_look(log: OpenedLog, plans: Iterable[JointPlan]) -> Reading:
         log,
         plans,
         begin=float(known[0]) * belief.factor if len(known) else np.nan,
-        period=float(np.median(steps)) * belief.factor if len(steps) else 1.0,
+        period=median(steps.tolist()) * belief.factor if len(steps) else 1.0,
     )
 
 

@@ -53,6 +53,8 @@ def planned(
 
 def _with_notes(plans: list[JointPlan], log: OpenedLog) -> list[JointPlan]:
     """Return the plans with what only this log has to say."""
+    if not log.beside.notes:
+        return plans
     return [replace(plans[0], notes=(*plans[0].notes, *log.beside.notes)), *plans[1:]]
 
 

@@ -1,6 +1,6 @@
 """A log read to its end: usable rows in order, rejected lines, what was seen on the way."""
 
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Collection, Iterable, Iterator
 from dataclasses import dataclass
 
 import numpy as np
@@ -100,7 +100,11 @@ Sink = Callable[[Block, NDArray[np.float64]], None]
 
 
 def record(
-    reading: Reading, parts: Iterable[Part], faults: Faults, sink: Sink
+    reading: Reading,
+    parts: Iterable[Part],
+    faults: Faults,
+    sink: Sink,
+    smooth: Collection[int] = (),
 ) -> Recorded | Refusal:
     """Hand all samples of a log to ``sink``.
 
@@ -114,6 +118,8 @@ def record(
         Takes the lines that are rejected.
     sink : callable
         Takes the samples.
+    smooth : collection of int
+        Joints whose temperature is known not to come from a register of steps.
 
     Returns
     -------
@@ -134,7 +140,8 @@ def record(
             rows += part.rows
             yield part
 
-    registers = {plan.channels.joint: Register() for plan in reading.plans}
+    joints = [plan.channels.joint for plan in reading.plans]
+    registers = {joint: Register(smooth=joint in smooth) for joint in joints}
     wait = staircase.longest_wait(reading.period)
     kept, begin, time = 0, 0.0, np.zeros(1)
     try:

@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from frictioncli.reading import staircase
 
-_FEW = 32
+_FIRST_ROWS = 256
 
 
 @dataclass(slots=True)
@@ -25,7 +25,7 @@ class Register:
     last : tuple of float, or None
         Time and value of the last reading. [s, °C]
     smooth : bool
-        The readings rule a register of steps out.
+        The readings rule a register of steps out; further ones are passed over.
     """
 
     changes: list[staircase.Changes] = field(default_factory=list)
@@ -36,15 +36,14 @@ class Register:
 
     def see(self, time: NDArray[np.float64], reading: NDArray[np.float64], wait: float) -> None:
         """Take in the next samples."""
-        if not len(reading):
+        if self.smooth or not len(reading):
             return
         if not (np.isfinite(reading.min()) and np.isfinite(reading.max())):
             present = np.isfinite(reading)
             time, reading = time[present], reading[present]
             if not len(time):
                 return
-        if not self.smooth:
-            self._see_steps(time, reading, wait)
+        self._see_steps(time, reading, wait)
         if self.first is None:
             self.first = float(time[0])
         self.last = (float(time[-1]), float(reading[-1]))
@@ -52,10 +51,10 @@ class Register:
     def _see_steps(
         self, time: NDArray[np.float64], reading: NDArray[np.float64], wait: float
     ) -> None:
-        changed = np.flatnonzero(reading[1:] != reading[:-1]) + 1
-        # a smooth one shows within its first few readings
-        for some in (changed[:_FEW], changed):
-            levels = np.append(reading[some], [reading[0], *self.levels])
+        # a smooth one mostly shows within its first readings
+        for some in (reading[:_FIRST_ROWS], reading):
+            changed = some[1:][some[1:] != some[:-1]]
+            levels = np.append(changed, [some[0], *self.levels])
             levels = np.unique(np.round(levels, 6))
             if staircase.too_fine(levels):
                 self.smooth = True

@@ -151,4 +151,6 @@ def plausible_temperature(values: "NDArray[np.float64]") -> "NDArray[np.float64]
     """Return temperatures [°C] with those outside -30..150 °C replaced by NaN."""
     import numpy as np
 
+    if len(values) and _COLDEST <= values.min() <= values.max() <= _HOTTEST:
+        return values
     return np.where((values >= _COLDEST) & (values <= _HOTTEST), values, np.nan)

@@ -64,13 +64,13 @@ def test_a_packed_log_gives_the_samples_of_the_plain_one(tmp_path, ending):
 def test_the_ending_does_not_matter(tmp_path, ending):
     log = tmp_path / "log.csv"
     log.write_bytes(PACKERS[ending](b"a;b\n1;2\n"))
-    assert head_of(log) == b"a;b\n1;2\n"
+    assert head_of(log).content == b"a;b\n1;2\n"
 
 
 def test_text_that_begins_like_a_packed_file_is_text(tmp_path):
     log = tmp_path / "log.csv"
     log.write_bytes(b"BZhub;Winkel\n1;2\n")
-    assert head_of(log) == b"BZhub;Winkel\n1;2\n"
+    assert head_of(log).content == b"BZhub;Winkel\n1;2\n"
 
 
 @packed

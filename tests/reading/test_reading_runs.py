@@ -244,3 +244,38 @@ def test_a_damaged_archive_is_rejected_by_name(tmp_path):
         "cut.csv.gz": "unreadable_file",
         "short.csv.gz": "unreadable_file",
     }
+
+
+@pytest.mark.parametrize("change", ["none", "crlf", "no_end", "damaged", "packed", "lone_cr"])
+def test_a_log_after_one_like_it_gives_what_it_gives_alone(tmp_path, change):
+    first = write(tmp_path / "both" / "a.csv", kuka_columns(3.0))
+    content = first.read_bytes()
+    lines = content.split(b"\n")
+    changed = {
+        "none": content,
+        "crlf": content.replace(b"\n", b"\r\n"),
+        "no_end": content.removesuffix(b"\n"),
+        "damaged": b"\n".join([*lines[:90], b"broken", *lines[90:]]),
+        "packed": gzip.compress(content),
+        "lone_cr": lines[0] + b"\n" + b"\r".join(lines[1:]),
+    }[change]
+    second = tmp_path / "both" / "b.csv"
+    alone = tmp_path / "alone" / "b.csv"
+    alone.parent.mkdir()
+    for path in (second, alone):
+        path.write_bytes(changed)
+    ingest([second.parent], tmp_path / "together")
+    try:
+        ingest([alone], tmp_path / "once")
+    except LogError:
+        assert "b.csv" in set(rejected(tmp_path / "together")["recording"])
+        return
+    for name, table in (("samples", schemas.SAMPLES), ("rejected", schemas.REJECTED)):
+        found, expected = (
+            tables.read(tmp_path / work / f"{name}.parquet", table) for work in ("together", "once")
+        )
+        found = found[found["recording"] == expected["recording"].iloc[0]] if len(expected) else []
+        own = [c for c in expected.columns if c not in ("run", "time")]
+        assert len(found) == len(expected)
+        if len(expected):
+            assert found[own].reset_index(drop=True).equals(expected[own])

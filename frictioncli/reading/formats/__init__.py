@@ -1,7 +1,6 @@
 """File formats that can be read. A new one is a module beside these and a line in ``READERS``."""
 
 from collections.abc import Iterable
-from dataclasses import replace
 from pathlib import Path
 
 from frictioncli.reading.formats.arrow_tables import read_arrow
@@ -54,10 +53,11 @@ def open_log(path: Path, hints: CsvHints, like: Source | Refusal | None = None) 
     """
     try:
         head = head_of(path)
-        if isinstance(like, DelimitedText) and like.has_form(head):
-            return replace(like, path=path)
+        alike = like.like(path, head) if isinstance(like, DelimitedText) else None
+        if alike is not None:
+            return alike
         for reader in READERS:
-            found = reader(path, head, hints)
+            found = reader(path, head.content, hints)
             if found is not None:
                 return found if isinstance(found, Refusal) else with_joined_time(found)
     except UnreadableLog as error:

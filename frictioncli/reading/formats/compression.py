@@ -85,6 +85,11 @@ def open_bytes(path: Path) -> BinaryIO:
     return cast(BinaryIO, bz2.open(path, "rb"))
 
 
+def is_packed(stream: BinaryIO) -> bool:
+    """Tell whether what :func:`open_bytes` opened is unpacked on the way."""
+    return not isinstance(getattr(stream, "raw", None), io.FileIO)
+
+
 def refuse_packed(path: Path, what: str) -> Refusal | None:
     """Return why a packed container cannot be read, or None where it is not packed.
 

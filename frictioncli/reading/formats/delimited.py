@@ -2,21 +2,27 @@
 
 import re
 from collections.abc import Collection, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
 
 import numpy as np
-import pandas as pd
 import pyarrow as pa
 import pyarrow.compute as pc
 import pyarrow.csv as pcsv
 from numpy.typing import NDArray
 
 from frictioncli.reading.formats.base import CsvHints, RawBatch, Refusal, Task
-from frictioncli.reading.formats.compression import packing_of
 from frictioncli.reading.formats.dialect import NOT_NUMBERS, Dialect, detect, split
-from frictioncli.reading.formats.encoding import Piece, decode_head, encoding_of, pieces
+from frictioncli.reading.formats.encoding import (
+    ASCII_BASED,
+    Head,
+    Piece,
+    decode_head,
+    encoding_of,
+    pieces,
+    rest_of,
+)
 from frictioncli.reading.formats.plain_numbers import plain_columns
 
 _TEXT_LIMIT = 200
@@ -52,12 +58,17 @@ def read_delimited(path: Path, head: bytes, hints: CsvHints) -> "DelimitedText |
 
 @dataclass(frozen=True, slots=True)
 class DelimitedText:
-    """A text log whose form is known; ``above`` are the bytes before its first row."""
+    """A text log whose form is known.
+
+    ``above`` are the bytes before its first row. ``rows_bytes`` tells how many follow where they
+    can be read as they stand; where that is not known the file is read piece by piece.
+    """
 
     path: Path
     encoding: str
     dialect: Dialect
     above: bytes
+    rows_bytes: int | None = None
 
     @property
     def files(self) -> tuple[Path, ...]:
@@ -74,15 +85,19 @@ class DelimitedText:
         """The file's form in words."""
         return f"{self.dialect.text}, {self.encoding.upper()}"
 
-    def has_form(self, head: bytes) -> bool:
-        """Tell whether a file's beginning is one of the same header over nothing but numbers."""
-        if self.dialect.dates or not head.startswith(self.above):
-            return False
-        rows = head[len(self.above) :]
+    def like(self, path: Path, head: Head) -> "DelimitedText | None":
+        """Return a file with the same header over nothing but numbers; None where it is another."""
+        if self.dialect.dates or not head.content.startswith(self.above):
+            return None
+        rows = head.content[len(self.above) :]
         delimiter = self.dialect.delimiter.encode()
         if rows.translate(None, _NUMBER + delimiter + self.dialect.decimal.encode()):
-            return False
-        return rows.split(b"\n", 1)[0].count(delimiter) + 1 == len(self.columns)
+            return None
+        if rows.split(b"\n", 1)[0].count(delimiter) + 1 != len(self.columns):
+            return None
+        if head.plain_bytes is None or self.encoding not in ASCII_BASED:
+            return replace(self, path=path, rows_bytes=None)
+        return replace(self, path=path, rows_bytes=head.plain_bytes - len(self.above))
 
     def batches(self, columns: Collection[int], size: int) -> Iterator[RawBatch]:
         """Yield the rows in order, about ``size`` bytes of the file at a time."""
@@ -94,10 +109,9 @@ class DelimitedText:
     def tasks(self, columns: Collection[int], size: int) -> Iterator[Task[RawBatch]]:
         """Yield in order what makes the batches, each of at most about ``size`` bytes."""
         wanted = sorted(columns)
-        whole = self._plain_bytes()
-        if whole is not None and whole <= size:
+        if self.rows_bytes is not None and self.rows_bytes <= size:
             # read in the thread, too: with many small files that is much of the work
-            yield Task(partial(self._parse_whole, wanted, size), whole)
+            yield Task(partial(self._parse_whole, self.rows_bytes, wanted), self.rows_bytes)
             return
         for piece in self._rows(size):
             yield Task(partial(self._parse, piece, wanted), len(piece.content))
@@ -129,16 +143,10 @@ class DelimitedText:
             if len(parts) > skip and parts[skip]:
                 yield Piece(self.dialect.data_line, piece.n_lines - skip, parts[skip])
 
-    def _plain_bytes(self) -> int | None:
-        """Return the size of a file that is not packed; None where that cannot be told."""
-        try:
-            return self.path.stat().st_size if packing_of(self.path) is None else None
-        except OSError:
-            return None  # reading it will tell
-
-    def _parse_whole(self, wanted: list[int], size: int) -> RawBatch:
-        """Parse a file that is one piece, or two where its last line has no end."""
-        found = list(self._rows(size))
+    def _parse_whole(self, n_bytes: int, wanted: list[int]) -> RawBatch:
+        """Parse rows of about so many bytes: one piece, or two where the last line has no end."""
+        line = self.dialect.data_line
+        found = list(rest_of(self.path, len(self.above), line, n_bytes + 1))
         if not found:
             return _batch(None, np.empty(0, np.int64), wanted, np.empty(0, np.int64), ())
         content = found[0].content if len(found) == 1 else b"".join(one.content for one in found)
@@ -149,7 +157,7 @@ class DelimitedText:
         content = self._blanks_joined(piece.content)
         numbers = self._plain(content, piece.n_lines, wanted)
         if numbers is not None:
-            values = dict(zip(wanted, map(_with_value, numbers), strict=True))
+            values = dict(zip(wanted, numbers, strict=True))
             return RawBatch(piece.lines, values, np.empty(0, np.int64), ())
         table = self._table(content, self._types(wanted))
         if table is not None and table.num_rows == piece.n_lines:
@@ -296,6 +304,8 @@ def _with_value(numbers: NDArray[np.float64]) -> NDArray[np.float64]:
 
 def _seconds(texts: list[str]) -> NDArray[np.float64]:
     """Return ISO 8601 dates as time since 1970 [s]; NaN where there is none."""
+    import pandas as pd  # takes longer to import than most logs to read
+
     cleaned = pd.Series([text.strip().replace(",", ".") for text in texts], dtype="str")
     dates = pd.to_datetime(cleaned, format="ISO8601", errors="coerce", utc=True)
     # coarse: a year 1 must not run over in nanoseconds

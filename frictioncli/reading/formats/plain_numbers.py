@@ -1,6 +1,6 @@
 """Delimited text that holds nothing but numbers: parsed by ``_plain_numbers.c`` where it was built.
 
-It is three to four times as fast as pyarrow, and most logs are such texts from end to end.
+It is 2.5 to 4 times as fast as pyarrow, and most logs are such texts from end to end.
 """
 
 from collections.abc import Sequence
@@ -38,7 +38,8 @@ def plain_columns(
         The doubles nearest to the texts; NaN where a cell is empty. None if any row has another
         number of fields, or any wanted cell is more than digits with a sign, a decimal sign and an
         exponent: quoted, padded, a word, or longer than what one rounding turns into a double (2^53
-        without the decimal sign, 10^22). And None if the parser was not built.
+        without the decimal sign, 10^-22 to 10^18, so that none reaches 10^34). And None if the
+        parser was not built.
     """
     if _plain_numbers is None or n_fields < 2 or not wanted:
         return None
@@ -47,3 +48,10 @@ def plain_columns(
     found = np.empty((len(wanted), n_rows))
     plain = _plain_numbers.columns(content, ord(delimiter), ord(decimal), asked.data, found.data)
     return found if plain else None
+
+
+def line_feeds(content: bytes) -> int:
+    """Count line ends; of short lines ``bytes.count`` takes many times as long."""
+    if _plain_numbers is None:
+        return content.count(b"\n")
+    return _plain_numbers.line_feeds(content)
