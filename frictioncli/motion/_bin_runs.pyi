@@ -1,15 +1,3 @@
-from _typeshed import ReadableBuffer, WriteableBuffer
+from _typeshed import ReadableBuffer
 
-def runs(
-    position: ReadableBuffer,
-    torque: ReadableBuffer,
-    load: ReadableBuffer,
-    time: ReadableBuffer,
-    start: ReadableBuffer,
-    stop: ReadableBuffer,
-    width: float,
-    sums: WriteableBuffer,
-    count: WriteableBuffer,
-    end: WriteableBuffer,
-    /,
-) -> None: ...
+def runs(*arguments: ReadableBuffer | float) -> None: ...

@@ -3,6 +3,7 @@
 Without it numpy makes the same sums, to the last bit, in several passes.
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -55,27 +56,20 @@ def bin_runs(
     width: float,
 ) -> BinRuns:
     """Return the runs of samples in one angle bin, span after span; see :func:`bins.bin_means`."""
+    samples = [np.ascontiguousarray(values) for values in (position, torque, load, time)]
     if _bin_runs is None:
-        return _in_passes(position, torque, load, time, start, stop, width)
+        return _in_passes(samples, start, stop, width)
     room = int((stop - start).sum())
     sums, count, end = np.empty((5, room)), np.empty(room, np.int64), np.empty_like(start)
-    samples = map(np.ascontiguousarray, (position, torque, load, time))
-    _bin_runs.runs(*samples, start, stop, width, sums, count, end)
+    given = [array.data for array in (*samples, start, stop)]
+    _bin_runs.runs(*given, width, sums.data, count.data, end.data)
     runs = int(end[-1]) if len(end) else 0
-    return BinRuns(*sums[:, :runs], count=count[:runs], end=end)
+    return _bin_runs_of(sums[0, :runs], list(sums[1:, :runs]), count[:runs], end)
 
 
-def _in_passes(
-    position: Array,
-    torque: Array,
-    load: Array,
-    time: Array,
-    start: Numbers,
-    stop: Numbers,
-    width: float,
-) -> BinRuns:
+def _in_passes(samples: Sequence[Array], start: Numbers, stop: Numbers, width: float) -> BinRuns:
     inside = members(start, stop)
-    number = np.floor(position[inside] / width)
+    number = np.floor(samples[0][inside] / width)
     last = np.cumsum(stop - start)
     new = np.ones(len(inside) + 1, dtype=bool)
     np.not_equal(number[1:], number[:-1], out=new[1:-1])
@@ -84,5 +78,10 @@ def _in_passes(
     count = np.diff(edges)
     run = np.repeat(np.arange(len(count)), count)
     # added one after the other, unlike numpy.add.reduceat
-    sums = [np.bincount(run, values[inside]) for values in (position, torque, load, time)]
-    return BinRuns(number[edges[:-1]], *sums, count=count, end=np.searchsorted(edges, last))
+    sums = [np.asarray(np.bincount(run, values[inside]), np.float64) for values in samples]
+    return _bin_runs_of(number[edges[:-1]], sums, count, np.searchsorted(edges, last))
+
+
+def _bin_runs_of(number: Array, sums: Sequence[Array], count: Numbers, end: Numbers) -> BinRuns:
+    position, torque, load, time = sums
+    return BinRuns(number, position, torque, load, time, count, end)
