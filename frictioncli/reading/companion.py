@@ -1,5 +1,6 @@
 """What files beside a log tell of it: when it began, and the payload."""
 
+from collections.abc import Collection
 from dataclasses import dataclass
 from datetime import datetime
 from pathlib import Path
@@ -31,16 +32,23 @@ class Beside:
     notes: tuple[str, ...] = ()
 
 
-def beside(log: Path) -> Beside:
+def beside(log: Path, names: Collection[str]) -> Beside:
     """Return what the DIAdem header and the programme's file beside a log tell.
 
     The log may be the header itself. The programme's file is called ``<trace>_PROG.TXT``.
+
+    Parameters
+    ----------
+    log : Path
+        The log.
+    names : collection of str
+        Names of all that is in its folder.
     """
-    trace = trace_of(log.stem)
-    start = _start_by_header(log.with_suffix(".dat"))
-    files = (log.with_name(f"{trace}{PROGRAM}{ending}") for ending in _PROGRAM_ENDINGS)
-    file = next((file for file in files if file.is_file()), None)
-    if file is None:
+    trace, header = trace_of(log.stem), f"{log.stem}.dat"
+    start = _start_by_header(log.with_name(header)) if header in names else None
+    files = (f"{trace}{PROGRAM}{ending}" for ending in _PROGRAM_ENDINGS)
+    file = next((log.with_name(name) for name in files if name in names), None)
+    if file is None or not file.is_file():
         return Beside(start, None, () if start is None else ("started as its .dat header tells",))
     program = read_program(file)
     if program is None:

@@ -1,5 +1,6 @@
 """From files to opened logs with their channels chosen, or the reason why not."""
 
+import os
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -86,6 +87,7 @@ def open_run(
     refusals |= {file: one for file, one in choices.items() if isinstance(one, Refusal)}
     usable = {file: one for file, one in choices.items() if not isinstance(one, Refusal)}
     labels = _labels(run, usable)
+    names = {folder: set(os.listdir(folder)) for folder in {file.path.parent for file in usable}}
     opened = [
         OpenedLog(
             run=run,
@@ -94,7 +96,7 @@ def open_run(
             source=choice.source,
             channels=choice.channels,
             joints=choice.joints,
-            beside=beside(file.path),
+            beside=beside(file.path, names[file.path.parent]),
         )
         for file, choice in usable.items()
     ]

@@ -6,6 +6,7 @@ begins: a step that looks at neighbours holds rows back until it has seen them.
 
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
+from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
@@ -224,6 +225,9 @@ def _judged_start(block: Block, names: list[tuple[int, str]], faults: Faults) ->
 
 def _stale_rows(time: NDArray[np.float64], position: NDArray[np.float64]) -> int:
     """Return how many first rows lie before a jump that the following motion does not explain."""
+    first = position[: _STALE_ROWS + 1].tolist()
+    if all(abs(after - before) <= _STALE_JUMP for before, after in pairwise(first)):
+        return 0
     jumps = np.abs(np.diff(position[:_START_ROWS]))
     if len(jumps) < 2 * _STALE_ROWS:
         return 0

@@ -26,6 +26,8 @@ from frictioncli.reading.formats.encoding import (
 from frictioncli.reading.formats.plain_numbers import plain_columns
 
 _TEXT_LIMIT = 200
+_SMALL = 1 << 20
+"""Rows that are joined where pieces end: of larger files that would cost more than it saves."""
 _NULLS = ["", *NOT_NUMBERS]
 _NUMBER = b"0123456789+-eE\r\n"
 _NO_VALUE = 9e34
@@ -134,6 +136,9 @@ class DelimitedText:
 
     def _rows(self, size: int) -> Iterator[Piece]:
         """Yield the pieces from the first row on."""
+        if self.rows_bytes is not None and self.rows_bytes <= _SMALL:
+            yield from self._rest(min(size, self.rows_bytes + 1))
+            return
         for piece in pieces(self.path, self.encoding, size):
             skip = self.dialect.data_line - piece.first_line
             if skip <= 0:
@@ -143,10 +148,13 @@ class DelimitedText:
             if len(parts) > skip and parts[skip]:
                 yield Piece(self.dialect.data_line, piece.n_lines - skip, parts[skip])
 
+    def _rest(self, size: int) -> Iterator[Piece]:
+        """Yield the pieces of a file that can be read as it stands."""
+        return rest_of(self.path, len(self.above), self.dialect.data_line, size)
+
     def _parse_whole(self, n_bytes: int, wanted: list[int]) -> RawBatch:
         """Parse rows of about so many bytes: one piece, or two where the last line has no end."""
-        line = self.dialect.data_line
-        found = list(rest_of(self.path, len(self.above), line, n_bytes + 1))
+        found = list(self._rest(n_bytes + 1))
         if not found:
             return _batch(None, np.empty(0, np.int64), wanted, np.empty(0, np.int64), ())
         content = found[0].content if len(found) == 1 else b"".join(one.content for one in found)
