@@ -22,7 +22,7 @@ from frictioncli.reading.rows import Block, Faults, with_values
 from frictioncli.reading.units import plausible_temperature
 
 _FIRST_BYTES = 1 << 12
-_HANDED_OVER = 1 << 20
+_HANDED_OVER = 1 << 21
 """Tasks of fewer bytes go to a thread together: handing them over takes longer than some take."""
 _BEYOND = 3
 _BEYOND_SHARE = 0.01
