@@ -66,12 +66,12 @@ static PyObject *runs(PyObject *Py_UNUSED(module), PyObject *args) {
     int right = torque.len == position.len && load.len == position.len &&
                 time.len == position.len && stop.len == start.len && end.len == start.len &&
                 sums.len == 5 * count.len && width > 0;
-    int64_t longest = 0;
+    int64_t together = 0;
     for (Py_ssize_t span = 0; right && span < spans; span++) {
         right = from[span] >= 0 && from[span] < to[span] && to[span] <= samples;
-        longest += to[span] - from[span];
+        if (right) together += to[span] - from[span];
     }
-    if (right && longest <= room) {
+    if (right && together <= room) {
         Samples in = {position.buf, torque.buf, load.buf, time.buf};
         double *column = sums.buf;
         Runs out = {column,           column + room,     column + 2 * room,
