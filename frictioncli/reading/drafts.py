@@ -157,6 +157,8 @@ class Drafts:
         if self._is_final(temperatures):
             os.replace(self._path(next(iter(self._drafts))), target)
             return
+        # else what reading has freed stays beside what this needs
+        pa.default_memory_pool().release_unused()
         rows = {joint: _Rows(self._path(joint)) for joint in self._drafts}
         with TableWriter(target, schemas.SAMPLES, provenance, facts) as writer:
             for run in dict.fromkeys(run for run, _ in temperatures):
