@@ -13,6 +13,7 @@ import pyarrow.csv as pcsv
 from numpy.typing import NDArray
 
 from frictioncli.reading.formats.base import CsvHints, RawBatch, Refusal, Task
+from frictioncli.reading.formats.dates import seconds_since_1970
 from frictioncli.reading.formats.dialect import NOT_NUMBERS, Dialect, detect, split
 from frictioncli.reading.formats.encoding import (
     ASCII_BASED,
@@ -295,7 +296,7 @@ def _batch(
             continue
         cells = table.column(str(column))
         if pa.types.is_string(cells.type):
-            values[column] = _seconds(cells.to_pylist())
+            values[column] = seconds_since_1970(cells.to_pylist())
             continue
         values[column] = _with_value(cells.to_numpy())
     return RawBatch(lines, values, bad_lines, reasons)
@@ -308,15 +309,3 @@ def _with_value(numbers: NDArray[np.float64]) -> NDArray[np.float64]:
         return numbers
     beyond = np.isfinite(numbers) & (np.abs(numbers) > _NO_VALUE)
     return np.where(beyond, np.nan, numbers)
-
-
-def _seconds(texts: list[str]) -> NDArray[np.float64]:
-    """Return ISO 8601 dates as time since 1970 [s]; NaN where there is none."""
-    import pandas as pd  # takes longer to import than most logs to read
-
-    cleaned = pd.Series([text.strip().replace(",", ".") for text in texts], dtype="str")
-    dates = pd.to_datetime(cleaned, format="ISO8601", errors="coerce", utc=True)
-    # coarse: a year 1 must not run over in nanoseconds
-    epoch = pd.Timestamp("1970-01-01", tz="UTC").as_unit("s")
-    seconds = (dates - epoch) / pd.Timedelta(seconds=1)
-    return np.asarray(seconds.to_numpy(dtype=float), np.float64)
