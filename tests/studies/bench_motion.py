@@ -153,6 +153,9 @@ def write_samples(data: Path, *, rows: int, speeds: tuple[float, ...]) -> None:
 
 def parts_of_frictioncli(data: Path, out: Path) -> Callable[[], int]:
     """Prepare the package's way; the act leaves speed and mean torque of every part."""
+    # pyarrow imports it for the first array: as for pandas' way, imports are no part of the work
+    import pandas as pd  # noqa: F401
+
     from frictioncli import schemas, tables
     from frictioncli.motion.segments import means
     from frictioncli.motion.settings import SteadySettings
