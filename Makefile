@@ -9,7 +9,7 @@ LARGEST ?= 1e8
 export OMP_NUM_THREADS := 1
 export OPENBLAS_NUM_THREADS := 1
 
-.PHONY: reproduce test lint coverage blind comparison fleet planning wear bench fuzz kill clean
+.PHONY: reproduce test lint same coverage blind comparison fleet planning wear bench fuzz kill clean
 
 reproduce: $(VENV)/installed
 	$(BIN)/frictioncli run sample_logs/kr10 -w $(RUN)
@@ -46,6 +46,9 @@ fuzz: $(VENV)/tested
 
 kill: $(VENV)/tested
 	$(BIN)/python -m tests.studies.kill
+
+same: $(VENV)/tested
+	$(BIN)/python -m tests.studies.same
 
 lint: $(VENV)/tested
 	$(BIN)/ruff check .
