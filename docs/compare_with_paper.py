@@ -9,12 +9,13 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 
-from frictioncli import chain, schemas, tables
+from frictioncli import schemas, tables
 from frictioncli.model.document import read_models
 from frictioncli.model.fitting import fit_joint
 from frictioncli.model.friction import PUBLISHED, carried_to_temperature, friction_torque
 from frictioncli.model.settings import FitSettings
 from frictioncli.model.zero_load import friction_at_zero_load
+from frictioncli.workfiles import EVALUATION, MODEL, SCHEDULE, TORQUES
 
 HEADER = ("what", "published", "reproduced here")
 REFERENCE_TEMPERATURE = 20.0
@@ -22,12 +23,12 @@ REFERENCE_TEMPERATURE = 20.0
 
 def comparison(work: Path) -> list[tuple[str, str, str]]:
     """Return rows of (what, published, reproduced) for a work folder that ``run`` has filled."""
-    torques = tables.read(work / chain.TORQUES, schemas.TORQUES)
-    facts = tables.facts(work / chain.TORQUES)
+    torques = tables.read(work / TORQUES, schemas.TORQUES)
+    facts = tables.facts(work / TORQUES)
     model = fit_joint(torques, facts, FitSettings(method="paper"))
     pairs = friction_at_zero_load(torques, model.friction.alpha)
-    schedule = tables.read(work / chain.SCHEDULE, schemas.SCHEDULE)
-    evaluation = tables.read(work / chain.EVALUATION, schemas.EVALUATION)
+    schedule = tables.read(work / SCHEDULE, schemas.SCHEDULE)
+    evaluation = tables.read(work / EVALUATION, schemas.EVALUATION)
     rows = [
         ("heating, 25 to 65 °C", "about 100 min", _durations(pairs, "heat-up")),
         ("natural cooling, 65 to 25 °C", "about 300 min", _durations(pairs, "cool-down")),
@@ -87,7 +88,7 @@ def _share(pairs: pd.DataFrame) -> str:
 
 def _low_speeds(pairs: pd.DataFrame, work: Path) -> str:
     """Return how far friction below 15 deg/s lies from the model that the run has fitted."""
-    friction = read_models(work / chain.MODEL)[0].friction
+    friction = read_models(work / MODEL)[0].friction
     sweep = pairs[pairs["phase"] == "sweep"].sort_values("speed")
     carried = carried_to_temperature(
         friction,

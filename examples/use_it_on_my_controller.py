@@ -11,10 +11,10 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 
-from frictioncli import pipeline
-from frictioncli.chain.deploying import deployed, export
 from frictioncli.deployment.settings import ExportSettings
 from frictioncli.model.zero_load import friction_at_zero_load
+from frictioncli.stages import run as pipeline
+from frictioncli.stages.export import deployed, export
 
 logs = Path(__file__).parents[1] / "sample_logs" / "kr10"
 work = Path(sys.argv[1] if len(sys.argv) > 1 else "friction-run")

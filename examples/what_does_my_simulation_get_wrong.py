@@ -9,7 +9,8 @@ import json
 import sys
 from pathlib import Path
 
-from frictioncli import chain, pipeline
+from frictioncli.stages import run as pipeline
+from frictioncli.stages.simulate import simulate
 
 logs = Path(__file__).parents[1] / "sample_logs" / "kr10"
 work = Path(sys.argv[1] if len(sys.argv) > 1 else "friction-run")
@@ -44,4 +45,4 @@ for name, size in diagnosis["detectable"].items():
 
 # %% Corrections with the extended model: hardly any is left to make
 print()
-print(chain.simulate(work, extended=True))
+print(simulate(work, extended=True))

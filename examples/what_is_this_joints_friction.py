@@ -6,19 +6,22 @@ from pathlib import Path
 
 import numpy as np
 
-from frictioncli import chain
 from frictioncli.model.document import read_models
 from frictioncli.model.friction import friction_torque
+from frictioncli.stages.fit import fit
+from frictioncli.stages.ingest import ingest
+from frictioncli.stages.pair import pair
+from frictioncli.stages.separate import separate
 
 logs = Path(__file__).parents[1] / "sample_logs" / "kr10"
 work = Path(sys.argv[1] if len(sys.argv) > 1 else "friction-run")
 
 # %% The chain, stage by stage; each writes its table into the work folder and says what it found
 if not (work / "model.json").exists():
-    print(chain.ingest([logs], work))
-    print(chain.pair(work))
-    print(chain.separate(work))
-    print(chain.fit(work))
+    print(ingest([logs], work))
+    print(pair(work))
+    print(separate(work))
+    print(fit(work))
 
 # %% The parameters of equation (16) with 95 % intervals; a notebook shows ``model`` as a table
 (model,) = read_models(work / "model.json")

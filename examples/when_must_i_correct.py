@@ -10,8 +10,10 @@ from pathlib import Path
 
 import pandas as pd
 
-from frictioncli import chain, pipeline
 from frictioncli.correction.settings import EvaluationGrid, ScheduleSettings
+from frictioncli.stages import run as pipeline
+from frictioncli.stages.evaluate import evaluate
+from frictioncli.stages.simulate import simulate
 
 logs = Path(__file__).parents[1] / "sample_logs" / "kr10"
 work = Path(sys.argv[1] if len(sys.argv) > 1 else "friction-run")
@@ -24,7 +26,7 @@ for schedule in (
     ScheduleSettings(criterion="first_degree", k=5, tmax=3600),
     ScheduleSettings(criterion="uncertainty", bound=2.0),
 ):
-    print(chain.simulate(work, schedule), end="\n\n")
+    print(simulate(work, schedule), end="\n\n")
 
 # %% The moments of the latter, and what was corrected
 rows = pd.read_parquet(work / "schedule.parquet")
@@ -41,4 +43,4 @@ print(
 # %% Error by number of corrections, over a grid of settings
 print()
 grid = EvaluationGrid(k=(2, 5, 10, 20), tmax=(1800, 3600, 7200), bound=(1, 2, 3, 4))
-print(chain.evaluate(work, grid))
+print(evaluate(work, grid))

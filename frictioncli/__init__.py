@@ -1,6 +1,6 @@
 """Friction of a robot joint: from its torque logs to a judged model.
 
-The stages that the command line offers are functions of :mod:`frictioncli.chain`;
+Every command is a function in a module of its name in :mod:`frictioncli.stages`;
 the physics is in :mod:`frictioncli.model`, on plain arrays.
 """
 

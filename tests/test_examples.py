@@ -1,5 +1,6 @@
 """The examples and the Python page run as they stand, on the sample logs, and say what is true."""
 
+import importlib
 import json
 import re
 import runpy
@@ -9,13 +10,18 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from frictioncli import chain, schemas, tables
-from frictioncli.chain.deploying import deployed, export
+from frictioncli import schemas, tables
 from frictioncli.deployment.document import load_deployed
 from frictioncli.deployment.settings import ExportSettings
 from frictioncli.diagnosis.applied import friction_beyond
 from frictioncli.diagnosis.extended import read_extended
 from frictioncli.model.document import read_models
+from frictioncli.stages.diagnose import diagnose
+from frictioncli.stages.export import deployed, export
+from frictioncli.stages.fit import fit
+from frictioncli.stages.ingest import ingest
+from frictioncli.stages.pair import pair as pair_stage
+from frictioncli.stages.separate import separate
 from tests.deployment.test_extended_corrector import pairs_of, powers
 
 ROOT = Path(__file__).parents[1]
@@ -27,8 +33,8 @@ PAGE = (ROOT / "docs" / "python.md").read_text(encoding="utf-8")
 def work(tmp_path_factory):
     """The work folder that all examples share."""
     folder = tmp_path_factory.mktemp("examples") / "friction-run"
-    chain.ingest([ROOT / "sample_logs" / "kr10"], folder)
-    for stage in (chain.pair, chain.separate, chain.fit, chain.diagnose):
+    ingest([ROOT / "sample_logs" / "kr10"], folder)
+    for stage in (pair_stage, separate, fit, diagnose):
         stage(folder)
     return folder
 
@@ -104,7 +110,8 @@ def test_the_page_runs_as_it_stands(work, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     (tmp_path / "friction-run").symlink_to(work, target_is_directory=True)
     for stage in ("ingest", "pair", "separate", "fit", "diagnose"):
-        monkeypatch.setattr(chain, stage, lambda *paths: paths[-1], raising=False)
+        module = importlib.import_module(f"frictioncli.stages.{stage}")
+        monkeypatch.setattr(module, stage, lambda *paths: paths[-1])
     names = {}
     for block in blocks:
         exec(block, names)

@@ -11,8 +11,7 @@ LAYERS = [
     {"__main__"},
     {"cli"},
     {"fleet"},
-    {"pipeline"},
-    {"chain"},
+    {"stages"},
     {"workfolder"},
     {"report", "inspecting", "experiment", "deployment", "comparing"},
     {"correction", "diagnosis"},
@@ -68,15 +67,15 @@ def test_every_part_has_a_layer():
 
 def test_simulator_knows_nothing_of_the_model_it_tests():
     for module in (PACKAGE / "simulator").glob("*.py"):
-        forbidden = {"model", "motion", "correction", "reading", "report", "chain"}
+        forbidden = {"model", "motion", "correction", "reading", "report", "stages"}
         assert not imported_parts(module) & forbidden, module
 
 
 def test_an_upward_import_would_be_seen(tmp_path):
     """The guard itself is tried: a module of ``motion`` that reaches up to ``model``."""
     module = tmp_path / "bad.py"
-    module.write_text("from frictioncli.model.friction import FORM\nimport frictioncli.chain\n")
-    assert imported_parts(module) == {"model", "chain"}
+    module.write_text("from frictioncli.model.friction import FORM\nimport frictioncli.stages\n")
+    assert imported_parts(module) == {"model", "stages"}
     assert all(level(part) < level("motion") for part in imported_parts(module))
 
 

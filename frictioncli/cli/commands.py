@@ -105,9 +105,9 @@ def ingest(
     from frictioncli.reading.settings import IngestSettings
 
     settings = o.chosen(IngestSettings, locals())
-    from frictioncli import chain
+    from frictioncli.stages.ingest import ingest as ingest_stage
 
-    say(chain.ingest(logs, work, settings))
+    say(ingest_stage(logs, work, settings))
 
 
 @app.command()
@@ -125,18 +125,18 @@ def pair(
     """Match counter-directed constant-speed motion by speed [deg/s] and angle bin [deg]."""
     steady = o.chosen(SteadySettings, locals())
     settings = o.chosen(PairingSettings, locals())
-    from frictioncli import chain
+    from frictioncli.stages.pair import pair as pair_stage
 
-    say(chain.pair(work, settings))
+    say(pair_stage(work, settings))
 
 
 @app.command()
 def separate(work: o.Work = o.WORK, sign: o.Sign = "auto") -> None:
     """Separate friction torque from load torque [N·m] by equation (8)."""
     number = o.sign_number(sign)
-    from frictioncli import chain
+    from frictioncli.stages.separate import separate as separate_stage
 
-    say(chain.separate(work, number))
+    say(separate_stage(work, number))
 
 
 @app.command()
@@ -147,9 +147,9 @@ def fit(
 ) -> None:
     """Identify the friction model (16): load [N·m], speed [deg/s], temperature [°C]."""
     settings = FitSettings(method=method, temperature=temperature)
-    from frictioncli import chain
+    from frictioncli.stages.fit import fit as fit_stage
 
-    say(chain.fit(work, settings))
+    say(fit_stage(work, settings))
 
 
 @app.command()
@@ -166,9 +166,9 @@ def simulate(
     """Simulate the temperature correction of Algorithm 3; tmax in minutes, epsilon in N·m."""
     schedule = ScheduleSettings(criterion=criterion, k=k, tmax=tmax * 60, bound=bound)
     correction = o.chosen(CorrectionSettings, locals())
-    from frictioncli import chain
+    from frictioncli.stages.simulate import simulate as simulate_stage
 
-    say(chain.simulate(work, schedule, correction, extended=extended))
+    say(simulate_stage(work, schedule, correction, extended=extended))
 
 
 @app.command()
@@ -183,9 +183,9 @@ def evaluate(
 ) -> None:
     """Evaluate schedules over k, tmax [min] and bound [N·m]: epsilon [N·m] by corrections."""
     grid, correction = _grid(k, tmax, bound), o.chosen(CorrectionSettings, locals())
-    from frictioncli import chain
+    from frictioncli.stages.evaluate import evaluate as evaluate_stage
 
-    say(chain.evaluate(work, grid, correction, extended=extended))
+    say(evaluate_stage(work, grid, correction, extended=extended))
 
 
 @app.command()
@@ -199,19 +199,20 @@ def diagnose(
     """Find what the simulated torque [N·m] gets wrong, name the cause, measure the gain."""
     o.check_fail_on(fail_on)
     settings = o.chosen(DiagnosisSettings, locals())
-    from frictioncli import chain
+    from frictioncli.stages.diagnose import diagnose as diagnose_stage
+    from frictioncli.stages.diagnose import has_finding
 
-    say(chain.diagnose(work, settings))
-    if fail_on and chain.has_finding(work, named_only=fail_on == "named"):
+    say(diagnose_stage(work, settings))
+    if fail_on and has_finding(work, named_only=fail_on == "named"):
         raise typer.Exit(3)
 
 
 @app.command()
 def report(work: o.Work = o.WORK) -> None:
     """Draw the figures (deg, deg/s, s, N·m, °C) and write report/index.html."""
-    from frictioncli import chain
+    from frictioncli.stages.report import report as report_stage
 
-    say(chain.report(work))
+    say(report_stage(work))
 
 
 @app.command()
@@ -256,7 +257,7 @@ def run(
         "schedule": ScheduleSettings(criterion=criterion, k=k, tmax=tmax * 60, bound=bound),
         "correction": o.chosen(CorrectionSettings, locals()),
     }
-    from frictioncli import pipeline
+    from frictioncli.stages import run as pipeline
 
     pipeline.run(logs, work, pipeline.RunSettings(**parts), tell=_tell)
 

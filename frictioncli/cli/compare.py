@@ -48,8 +48,9 @@ def compare(
         day_to_day=day_to_day,
         fail_above=None if fail_above is None else threshold_of(fail_above),
     )
-    from frictioncli.chain import comparing
+    from frictioncli.stages.compare import above_threshold
+    from frictioncli.stages.compare import compare as compare_stage
 
-    say(comparing.compare(runs, out, settings))
-    if comparing.above_threshold(out):
+    say(compare_stage(runs, out, settings))
+    if above_threshold(out):
         raise typer.Exit(3)

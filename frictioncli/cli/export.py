@@ -81,6 +81,6 @@ def export(
 ) -> None:
     """Write the model as C, URDF, MJCF, JSON or a table (N·m or A, deg/s, °C); say what is lost."""
     settings = o.chosen(ExportSettings, locals() | {"tmax": tmax * 60})
-    from frictioncli.chain import deploying
+    from frictioncli.stages.export import export as export_stage
 
-    say(deploying.export(work, settings))
+    say(export_stage(work, settings))

@@ -86,7 +86,7 @@ def fleet(
         "schedule": ScheduleSettings(k=k, tmax=tmax * 60),
     }
     from frictioncli.fleet.fleet import run_fleet
-    from frictioncli.pipeline import RunSettings
+    from frictioncli.stages.run import RunSettings
 
     settings = RunSettings(**parts)
     try:

@@ -65,6 +65,7 @@ def plan(
 ) -> None:
     """Plan the next experiment [min, deg, deg/s, °C]: what it would settle; write its program."""
     settings = o.chosen(PlanSettings, locals())
-    from frictioncli.chain import planning
+    from frictioncli.stages.plan import plan as plan_stage
+    from frictioncli.stages.plan import plan_new
 
-    say(planning.plan_new(work, settings) if new else planning.plan(work, settings))
+    say(plan_new(work, settings) if new else plan_stage(work, settings))

@@ -25,8 +25,8 @@ from frictioncli.fleet.layout import joints_of
 from frictioncli.fleet.local import run_local
 from frictioncli.fleet.note import check_own, read_row
 from frictioncli.fleet.settings import FleetSettings
-from frictioncli.pipeline import RunSettings
 from frictioncli.provenance import Provenance, sha256
+from frictioncli.stages.run import RunSettings
 from frictioncli.tables import TableWriter
 from frictioncli.workfolder import alone
 

@@ -11,14 +11,16 @@ from typing import Any
 
 from threadpoolctl import threadpool_limits
 
-from frictioncli import __version__, chain, pipeline
+from frictioncli import __version__
 from frictioncli.errors import FrictionError, LogError
 from frictioncli.files import write_text
 from frictioncli.fleet.layout import JointLogs
 from frictioncli.fleet.note import FAILURE, Note, emptied, read_note, write_note
 from frictioncli.fleet.row import row_of, unused_runs
-from frictioncli.pipeline import RunSettings
 from frictioncli.provenance import sha256
+from frictioncli.stages import run as pipeline
+from frictioncli.stages.run import RunSettings
+from frictioncli.stages.stage import Done
 from frictioncli.workfolder import alone
 
 DONE, UNCHANGED, FAILED = "done", "unchanged", "failed"
@@ -164,7 +166,7 @@ def _worked(task: JointTask, runs: Mapping[str, Path], settings: RunSettings) ->
     """Run the chain; return what was left out."""
     left_out = []
 
-    def note(stage: str, done: chain.Done) -> None:
+    def note(stage: str, done: Done) -> None:
         if not done.path.exists():
             left_out.append(f"{stage} {done}")
 

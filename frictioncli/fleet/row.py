@@ -9,11 +9,12 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
-from frictioncli import chain, schemas, tables
+from frictioncli import schemas, tables
 from frictioncli.comparing.change import change_of_last_run
 from frictioncli.correction.stage import epsilon
 from frictioncli.model.document import FrictionModel, read_models
 from frictioncli.model.friction import friction_torque
+from frictioncli.workfiles import DIAGNOSIS, MODEL, SCHEDULE, TORQUES
 
 _PHASES = {"heat-up": "heating", "cool-down": "cooling"}
 
@@ -26,9 +27,9 @@ def row_of(work: Path) -> dict[str, Any]:
     work : Path
         A work folder on which the chain has run.
     """
-    torques = tables.read(work / chain.TORQUES, schemas.TORQUES)
+    torques = tables.read(work / TORQUES, schemas.TORQUES)
     # logs of one joint were read, so there is one model
-    model = read_models(work / chain.MODEL)[0]
+    model = read_models(work / MODEL)[0]
     row = _model_columns(model) | _reference_columns(model) | _schedule_columns(work)
     row |= _diagnosis_columns(work)
     change = change_of_last_run(torques, model)
@@ -47,7 +48,7 @@ def unused_runs(work: Path, runs: Iterable[str]) -> list[str]:
     runs : iterable of str
         Names of the runs that it was given.
     """
-    used = set(tables.read(work / chain.TORQUES, schemas.TORQUES)["run"].unique())
+    used = set(tables.read(work / TORQUES, schemas.TORQUES)["run"].unique())
     return [run for run in runs if run not in used]
 
 
@@ -80,9 +81,9 @@ def _reference_columns(model: FrictionModel) -> dict[str, Any]:
 
 
 def _schedule_columns(work: Path) -> dict[str, Any]:
-    if not (work / chain.SCHEDULE).exists():
+    if not (work / SCHEDULE).exists():
         return {}
-    schedule = tables.read(work / chain.SCHEDULE, schemas.SCHEDULE)
+    schedule = tables.read(work / SCHEDULE, schemas.SCHEDULE)
     row: dict[str, Any] = {}
     for phase, own in schedule.groupby("phase"):
         kind = _PHASES[str(phase)]
@@ -96,9 +97,9 @@ def _per_run(schedule: pd.DataFrame) -> float:
 
 
 def _diagnosis_columns(work: Path) -> dict[str, Any]:
-    if not (work / chain.DIAGNOSIS).exists():
+    if not (work / DIAGNOSIS).exists():
         return {}
-    document = json.loads((work / chain.DIAGNOSIS).read_text(encoding="utf-8"))
+    document = json.loads((work / DIAGNOSIS).read_text(encoding="utf-8"))
     row = {"verdict": document["verdict"], "causes": causes_text(document)}
     gain = document["gain"]
     if gain is not None:

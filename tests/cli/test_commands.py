@@ -11,7 +11,7 @@ import pytest
 
 from frictioncli import schemas, tables
 from frictioncli.cli.commands import app
-from frictioncli.pipeline import RunSettings
+from frictioncli.stages.run import RunSettings
 from tests.moves import journey
 
 COMMANDS = (

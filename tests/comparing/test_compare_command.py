@@ -6,10 +6,10 @@ from datetime import timedelta
 import numpy as np
 import pytest
 
-from frictioncli.chain.comparing import compare as stage
 from frictioncli.cli import compare as command
 from frictioncli.comparing.settings import ComparisonSettings
 from frictioncli.errors import OptionError, TableError
+from frictioncli.stages.compare import compare as stage
 from tests.comparing.folders import FIRST, one_each, write_folder
 from tests.comparing.worlds import torques
 

@@ -4,13 +4,13 @@ from dataclasses import replace
 
 import pytest
 
-from frictioncli.chain.deploying import export
 from frictioncli.cli.export import export as command
 from frictioncli.deployment.document import load_deployed
 from frictioncli.deployment.settings import TARGETS, ExportSettings
 from frictioncli.errors import OptionError, TableError
 from frictioncli.model.document import write_models
 from frictioncli.provenance import Provenance, sha256
+from frictioncli.stages.export import export
 from tests.deployment.joints import joint
 
 

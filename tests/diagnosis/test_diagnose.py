@@ -7,7 +7,7 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from frictioncli import chain, schemas, tables
+from frictioncli import schemas, tables
 from frictioncli.diagnosis.diagnose import diagnose_joint
 from frictioncli.diagnosis.document import verdict_text
 from frictioncli.diagnosis.settings import DiagnosisSettings
@@ -16,7 +16,11 @@ from frictioncli.errors import NotEnoughData, OptionError, TableError
 from frictioncli.provenance import Provenance
 from frictioncli.simulator.settings import SynthesisSettings
 from frictioncli.simulator.tabular import simulate_torques
-from frictioncli.workfiles import EXTENDED
+from frictioncli.stages.diagnose import diagnose
+from frictioncli.stages.evaluate import evaluate
+from frictioncli.stages.fit import fit
+from frictioncli.stages.simulate import simulate
+from frictioncli.workfiles import DIAGNOSIS, EVALUATION, EXTENDED, RAMPS, TORQUES
 from tests.model.worlds import cycle_temperatures, torques
 
 
@@ -155,17 +159,17 @@ def work(tmp_path_factory):
     folder = tmp_path_factory.mktemp("work")
     rows = lagging(days(8)).assign(torque_forward=1.0, torque_reverse=1.0, n_forward=1, n_reverse=1)
     tables.write(
-        folder / chain.TORQUES, rows, schemas.TORQUES, Provenance("test"), {"torque_unit": "N·m"}
+        folder / TORQUES, rows, schemas.TORQUES, Provenance("test"), {"torque_unit": "N·m"}
     )
     none = pd.DataFrame(columns=[column.name for column in schemas.RAMPS.columns])
-    tables.write(folder / chain.RAMPS, none, schemas.RAMPS, Provenance("test"))
-    chain.fit(folder)
-    chain.diagnose(folder)
+    tables.write(folder / RAMPS, none, schemas.RAMPS, Provenance("test"))
+    fit(folder)
+    diagnose(folder)
     return folder
 
 
 def test_files_have_the_keys_of_the_contract(work):
-    found = json.loads((work / chain.DIAGNOSIS).read_text(encoding="utf-8"))
+    found = json.loads((work / DIAGNOSIS).read_text(encoding="utf-8"))
     keys = {"verdict", "causes", "gain", "detectable", "simulation", "settings"}
     assert keys <= set(found)
     cause = found["causes"][0]
@@ -177,7 +181,7 @@ def test_files_have_the_keys_of_the_contract(work):
     assert found["settings"]["alpha"] == 0.05
 
 
-@pytest.mark.parametrize("file", [chain.DIAGNOSIS, EXTENDED])
+@pytest.mark.parametrize("file", [DIAGNOSIS, EXTENDED])
 def test_files_name_all_that_they_were_made_from(work, file):
     found = json.loads((work / file).read_text(encoding="utf-8"))
     assert found["provenance"]["inputs"] == {
@@ -190,16 +194,16 @@ def test_the_extended_model_needs_fewer_corrections(work):
     """Uncorrected, it must predict better than the base does uncorrected."""
     errors = {}
     for extended in (False, True):
-        chain.evaluate(work, extended=extended)
-        rows = tables.read(work / chain.EVALUATION, schemas.EVALUATION)
+        evaluate(work, extended=extended)
+        rows = tables.read(work / EVALUATION, schemas.EVALUATION)
         errors[extended] = rows[rows["criterion"] == "none"]["epsilon"].to_numpy()
     assert (errors[True] < 0.6 * errors[False]).all()
 
 
 def test_a_schedule_of_the_extended_model_shows_measured_friction(work):
-    plain = chain.simulate(work)
+    plain = simulate(work)
     rows = tables.read(plain.path, schemas.SCHEDULE)
-    chain.simulate(work, extended=True)
+    simulate(work, extended=True)
     extended = tables.read(plain.path, schemas.SCHEDULE)
     # alpha may differ a little; friction at zero load must be the measured one in both
     difference = extended["friction_torque"] - rows["friction_torque"]
@@ -207,6 +211,6 @@ def test_a_schedule_of_the_extended_model_shows_measured_friction(work):
 
 
 def test_a_missing_extended_model_names_the_command(tmp_path, work):
-    (tmp_path / chain.TORQUES).write_bytes((work / chain.TORQUES).read_bytes())
+    (tmp_path / TORQUES).write_bytes((work / TORQUES).read_bytes())
     with pytest.raises(TableError, match="frictioncli diagnose"):
-        chain.simulate(tmp_path, extended=True)
+        simulate(tmp_path, extended=True)

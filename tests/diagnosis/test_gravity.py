@@ -6,7 +6,7 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from frictioncli import chain, schemas, tables
+from frictioncli import schemas, tables
 from frictioncli.diagnosis.applied import without_effects
 from frictioncli.diagnosis.diagnose import diagnose_joint
 from frictioncli.diagnosis.extended import read_extended
@@ -17,6 +17,9 @@ from frictioncli.diagnosis.settings import DiagnosisSettings
 from frictioncli.errors import TableError
 from frictioncli.model.document import read_models
 from frictioncli.provenance import Provenance
+from frictioncli.stages.diagnose import diagnose
+from frictioncli.stages.fit import fit
+from frictioncli.workfiles import EXTENDED, TORQUES
 from tests.model.worlds import cycle_temperatures, torques
 
 P, Q, C, PER_KG, ASIDE = 70.0, 5.0, -2.0, 8.3, 0.6
@@ -130,11 +133,11 @@ def test_an_extended_model_with_payloads_is_read_back(tmp_path):
     rows = carried(noise=0.3, undeclared=0.2).assign(
         torque_forward=1.0, torque_reverse=1.0, n_forward=1, n_reverse=1
     )
-    path = tmp_path / chain.TORQUES
+    path = tmp_path / TORQUES
     tables.write(path, rows, schemas.TORQUES, Provenance("test"), {"torque_unit": "N·m"})
-    chain.fit(tmp_path)
-    chain.diagnose(tmp_path)
-    written = json.loads((tmp_path / chain.EXTENDED).read_text(encoding="utf-8"))
+    fit(tmp_path)
+    diagnose(tmp_path)
+    written = json.loads((tmp_path / EXTENDED).read_text(encoding="utf-8"))
     assert written["gravity"]["cosine_per_kg"] == pytest.approx(PER_KG, abs=0.1)
     assert set(written["gravity_about"]) == set(written["gravity"])
     stored = tables.read(path, schemas.TORQUES)
@@ -142,6 +145,6 @@ def test_an_extended_model_with_payloads_is_read_back(tmp_path):
     found = recall(stored, document, extended)
     before, after = (np.std(rows["load"]) for rows in (found.new.before, found.new.after))
     assert after < 0.5 < before
-    (model,) = read_models(tmp_path / chain.EXTENDED)
-    added = without_effects(stored, model, read_extended(tmp_path / chain.EXTENDED)[2])[2]
+    (model,) = read_models(tmp_path / EXTENDED)
+    added = without_effects(stored, model, read_extended(tmp_path / EXTENDED)[2])[2]
     assert added.abs().max() < 1.0  # the effect is of the load: friction hardly changes

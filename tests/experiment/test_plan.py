@@ -7,13 +7,14 @@ import numpy as np
 import pytest
 
 from frictioncli import schemas, tables
-from frictioncli.chain.modelling import diagnose, fit
-from frictioncli.chain.planning import plan, plan_new
 from frictioncli.errors import FrictionError
 from frictioncli.experiment.settings import PlanSettings
 from frictioncli.provenance import Provenance
 from frictioncli.simulator.programme import Measured, Moved, simulate_programmes
 from frictioncli.simulator.settings import SynthesisSettings
+from frictioncli.stages.diagnose import diagnose
+from frictioncli.stages.fit import fit
+from frictioncli.stages.plan import plan, plan_new
 from frictioncli.workfiles import TORQUES
 from tests.experiment.axis import Arm
 from tests.experiment.krl import Controller

@@ -13,7 +13,7 @@ from frictioncli.fleet.layout import JointLogs
 from frictioncli.fleet.note import check_own, read_note
 from frictioncli.fleet.row import causes_text
 from frictioncli.model.settings import FitSettings
-from frictioncli.pipeline import RunSettings
+from frictioncli.stages.run import RunSettings
 from tests.fleet.fleets import contents
 from tests.fleet.joints import Joint, friction, write_joint
 

@@ -14,7 +14,7 @@ from frictioncli.fleet.layout import joints_of
 from frictioncli.fleet.local import run_local
 from frictioncli.fleet.note import read_note
 from frictioncli.fleet.settings import FleetSettings
-from frictioncli.pipeline import RunSettings
+from frictioncli.stages.run import RunSettings
 from tests.fleet.fleets import Deadly, begun, children, contents, done, fleet, started, until
 from tests.fleet.joints import Joint, write_joint
 

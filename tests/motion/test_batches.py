@@ -7,11 +7,14 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from frictioncli import chain, schemas, tables
+from frictioncli import schemas, tables
 from frictioncli.errors import TableError
 from frictioncli.motion import moves, sections, stretches
 from frictioncli.motion.settings import SteadySettings
 from frictioncli.provenance import Provenance
+from frictioncli.stages.pair import pair
+from frictioncli.stages.separate import separate
+from frictioncli.workfiles import RAMPS, SAMPLES, TORQUES
 from tests import found
 from tests.moves import journey, samples
 
@@ -115,18 +118,18 @@ def test_a_folder_of_files_is_read_as_one_table(tmp_path):
     turns = [frame[frame["time"] < 105.0], frame[frame["time"] >= 105.0]]
     for name in ("file", "folder"):
         (tmp_path / name).mkdir()
-    (tmp_path / "folder" / chain.SAMPLES).mkdir()
+    (tmp_path / "folder" / SAMPLES).mkdir()
     provenance = Provenance("ingest")
-    tables.write(tmp_path / "file" / chain.SAMPLES, frame, schemas.SAMPLES, provenance)
+    tables.write(tmp_path / "file" / SAMPLES, frame, schemas.SAMPLES, provenance)
     for i, part in enumerate(turns):
-        path = tmp_path / "folder" / chain.SAMPLES / f"part-{i}.parquet"
+        path = tmp_path / "folder" / SAMPLES / f"part-{i}.parquet"
         tables.write(path, part, schemas.SAMPLES, provenance)
     pairs, ramps = [], []
     for name in ("file", "folder"):
-        chain.pair(tmp_path / name)
-        chain.separate(tmp_path / name)
-        pairs.append(tables.read(tmp_path / name / chain.TORQUES, schemas.TORQUES))
-        ramps.append(tables.read(tmp_path / name / chain.RAMPS, schemas.RAMPS))
+        pair(tmp_path / name)
+        separate(tmp_path / name)
+        pairs.append(tables.read(tmp_path / name / TORQUES, schemas.TORQUES))
+        ramps.append(tables.read(tmp_path / name / RAMPS, schemas.RAMPS))
     pd.testing.assert_frame_equal(*pairs, check_exact=True)
     pd.testing.assert_frame_equal(*ramps, check_exact=True)
 

@@ -6,8 +6,12 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from frictioncli import chain, schemas, tables
+from frictioncli import schemas, tables
 from frictioncli.errors import NotEnoughData
+from frictioncli.stages.ingest import ingest
+from frictioncli.stages.pair import pair
+from frictioncli.stages.separate import separate
+from frictioncli.workfiles import PAIRS, RAMPS, TORQUES
 from tests.found import pairs as found_pairs
 from tests.moves import journey, samples
 
@@ -83,10 +87,10 @@ def write_folder(folder, manifest):
 
 
 def separated(folder, work):
-    chain.ingest([folder], work)
-    chain.pair(work)
-    chain.separate(work)
-    for name, table in ((chain.PAIRS, schemas.PAIRS), (chain.TORQUES, schemas.TORQUES)):
+    ingest([folder], work)
+    pair(work)
+    separate(work)
+    for name, table in ((PAIRS, schemas.PAIRS), (TORQUES, schemas.TORQUES)):
         yield tables.read(work / name, table)
 
 
@@ -104,7 +108,7 @@ def test_the_manifest_gives_pairs_and_torques_their_payload(tmp_path):
 def test_pairs_and_ramps_name_the_recordings_that_gave_their_payload(tmp_path):
     write_folder(tmp_path / "day1", manifest=True)
     list(separated(tmp_path / "day1", tmp_path / "work"))
-    for name in (chain.PAIRS, chain.RAMPS):
+    for name in (PAIRS, RAMPS):
         inputs = tables.document(tmp_path / "work" / name)["inputs"]
         assert set(inputs) == {"samples.parquet", "recordings.parquet"}
 

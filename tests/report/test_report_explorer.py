@@ -8,13 +8,15 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from frictioncli import chain, schemas, tables
+from frictioncli import schemas, tables
 from frictioncli.correction.settings import EvaluationGrid, ScheduleSettings
 from frictioncli.provenance import Provenance
 from frictioncli.report.explorer import explorers
 from frictioncli.report.labels import number
 from frictioncli.report.page import write_report
 from frictioncli.report.results import read_results
+from frictioncli.stages.evaluate import evaluate
+from frictioncli.stages.simulate import simulate
 from tests.report.planted import extended
 
 GRID = EvaluationGrid(k=(1.0, 2.5, 5.0, 10.0), tmax=(1800.0, 3600.0, 14400.0))
@@ -26,8 +28,8 @@ def work(tmp_path_factory, write_work):
     torques = read_results(folder)[0].torques
     model = extended(folder, torques)
     (folder / "extended-model.json").write_text(json.dumps(model), encoding="utf-8")
-    chain.simulate(folder, ScheduleSettings(k=2.5, tmax=3600.0))
-    chain.evaluate(folder, GRID)
+    simulate(folder, ScheduleSettings(k=2.5, tmax=3600.0))
+    evaluate(folder, GRID)
     return folder
 
 
@@ -59,7 +61,7 @@ def errors(phase, schedule):
 @pytest.mark.parametrize("flavour", ["base", "extended"])
 def test_every_cell_says_what_the_evaluation_says(copied, flavour):
     if flavour == "extended":
-        chain.evaluate(copied, GRID, extended=True)
+        evaluate(copied, GRID, extended=True)
     data = explored(copied).data
     assert data["evaluated"] == flavour
     rows = tables.read(copied / "evaluation.parquet", schemas.EVALUATION)
@@ -113,7 +115,7 @@ def test_two_cycles_of_a_run_are_one_phase_each(copied):
     facts = tables.facts(copied / "torques.parquet")
     tables.write(copied / "torques.parquet", whole, schemas.TORQUES, Provenance("separate"), facts)
     (copied / "extended-model.json").unlink()
-    chain.evaluate(copied, GRID)
+    evaluate(copied, GRID)
     found = explored(copied)
     assert "'frictioncli diagnose' makes one" in found.without_extended
     rows = tables.read(copied / "evaluation.parquet", schemas.EVALUATION)
@@ -159,7 +161,7 @@ def test_a_large_grid_stays_small(copied):
     grid = EvaluationGrid(
         k=tuple(np.linspace(0.5, 20, 20)), tmax=tuple(np.linspace(300.0, 9000.0, 20))
     )
-    chain.evaluate(copied, grid)
+    evaluate(copied, grid)
     data = explored(copied).data
     assert len(data["models"]["extended"][0]["epsilon"]) == 400
     assert len(json.dumps(data)) < 500_000
@@ -169,7 +171,7 @@ def test_a_large_grid_stays_small(copied):
 def test_names_in_the_data_are_inert(tmp_path, write_work):
     hostile = "</script><script>alert(1)</script>\u202e=1+1'\""
     folder = write_work(tmp_path, runs=(hostile,), schedule=False)
-    chain.evaluate(folder, GRID)
+    evaluate(folder, GRID)
     page = write_report(folder).read_text(encoding="utf-8")
     blocks = re.findall(r'<script type="application/json" id="joint2-grid">(.*?)</script>', page)
     assert len(blocks) == 1

@@ -13,7 +13,7 @@ from tests.robustness.runs import check_readable, digests, finished, outputs, st
 
 _CHANGES = {"open", "os.rename", "os.remove", "os.mkdir", "os.rmdir", "os.link", "os.truncate"}
 _PROCESSES = multiprocessing.get_context("forkserver")
-_PROCESSES.set_forkserver_preload(["frictioncli.pipeline", "frictioncli.report.page"])
+_PROCESSES.set_forkserver_preload(["frictioncli.stages.run", "frictioncli.report.page"])
 
 
 class Worlds:

@@ -9,25 +9,33 @@ from pathlib import Path
 
 import pytest
 
-from frictioncli import chain, pipeline
 from frictioncli.errors import FrictionError
 from frictioncli.files import whole, write_text
+from frictioncli.stages import run as pipeline
+from frictioncli.stages.diagnose import diagnose
+from frictioncli.stages.evaluate import evaluate
+from frictioncli.stages.fit import fit
+from frictioncli.stages.ingest import ingest
+from frictioncli.stages.pair import pair
+from frictioncli.stages.report import report
+from frictioncli.stages.separate import separate
+from frictioncli.stages.simulate import simulate
 from tests.robustness.runs import check_readable, digests, finished, outputs, refused, write_warm_up
 
 STAGES = {
-    "ingest": lambda logs, work: chain.ingest([logs], work),
-    "pair": lambda logs, work: chain.pair(work),
-    "separate": lambda logs, work: chain.separate(work),
-    "fit": lambda logs, work: chain.fit(work),
-    "diagnose": lambda logs, work: chain.diagnose(work),
-    "simulate": lambda logs, work: chain.simulate(work),
-    "evaluate": lambda logs, work: chain.evaluate(work),
-    "report": lambda logs, work: chain.report(work),
+    "ingest": lambda logs, work: ingest([logs], work),
+    "pair": lambda logs, work: pair(work),
+    "separate": lambda logs, work: separate(work),
+    "fit": lambda logs, work: fit(work),
+    "diagnose": lambda logs, work: diagnose(work),
+    "simulate": lambda logs, work: simulate(work),
+    "evaluate": lambda logs, work: evaluate(work),
+    "report": lambda logs, work: report(work),
     "run": lambda logs, work: pipeline.run([logs], work),
 }
 WRITING = {"ingest": (64_000, 16_000, 100), "report": (20_000, 100)}
 _PROCESSES = multiprocessing.get_context("forkserver")
-_PROCESSES.set_forkserver_preload(["frictioncli.pipeline", "frictioncli.report.page"])
+_PROCESSES.set_forkserver_preload(["frictioncli.stages.run", "frictioncli.report.page"])
 
 
 @pytest.fixture(scope="module")
@@ -167,7 +175,7 @@ def test_an_output_that_is_a_folder_is_replaced(done, tmp_path):
     work = shutil.copytree(done / "work", tmp_path / "work")
     (work / "model.json").unlink()
     (work / "model.json" / "below").mkdir(parents=True)
-    chain.fit(work)
+    fit(work)
     assert digests(work)["model.json"] == digests(done / "work")["model.json"]
 
 

@@ -6,8 +6,8 @@ from html.parser import HTMLParser
 
 import pytest
 
-from frictioncli import pipeline
 from frictioncli.cli.terminal import inert
+from frictioncli.stages import run as pipeline
 from tests.reading.logs import kuka_columns, text_of
 from tests.robustness.runs import finished, refused, write_warm_up
 

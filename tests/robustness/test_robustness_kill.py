@@ -5,16 +5,18 @@ from functools import partial
 
 import pytest
 
-from frictioncli import chain
 from frictioncli.files import whole
+from frictioncli.stages.fit import fit
+from frictioncli.stages.ingest import ingest
+from frictioncli.stages.pair import pair
 from tests.robustness.kills import Worlds, killed_before_change, killed_run
 from tests.robustness.runs import digests
 
 KILLS = 3
 STAGES = {
-    "ingest": lambda logs, work: partial(chain.ingest, [logs], work),
-    "pair": lambda logs, work: partial(chain.pair, work),
-    "fit": lambda logs, work: partial(chain.fit, work),
+    "ingest": lambda logs, work: partial(ingest, [logs], work),
+    "pair": lambda logs, work: partial(pair, work),
+    "fit": lambda logs, work: partial(fit, work),
 }
 
 

@@ -8,8 +8,12 @@ import time
 
 import pytest
 
-from frictioncli import chain, pipeline
 from frictioncli.errors import FrictionError
+from frictioncli.stages import run as pipeline
+from frictioncli.stages.fit import fit
+from frictioncli.stages.pair import pair
+from frictioncli.stages.report import report
+from frictioncli.stages.separate import separate
 from frictioncli.workfolder import alone, outdated
 from tests.robustness.runs import digests, finished, refused, started, write_warm_up
 
@@ -90,31 +94,31 @@ def test_two_spellings_of_a_folder_are_one_folder(tmp_path, monkeypatch):
 def test_a_fault_gives_the_folder_back(done, work):
     (work / "torques.parquet").unlink()
     with pytest.raises(FrictionError, match="torques"):
-        chain.fit(work)
-    chain.separate(work)
-    chain.fit(work)
+        fit(work)
+    separate(work)
+    fit(work)
 
 
 def test_tables_that_belong_together_need_no_warning(work):
-    for stage in (chain.pair, chain.separate, chain.fit, chain.report):
+    for stage in (pair, separate, fit, report):
         assert "warning" not in stage(work).text
     copied = shutil.copytree(work, work.parent / "copied")  # all times are new, the bytes are not
-    assert "warning" not in chain.fit(copied).text
+    assert "warning" not in fit(copied).text
 
 
 def test_a_table_made_from_a_replaced_one_is_told(work):
     pairs = digests(work)["pairs.parquet"]
-    chain.pair(work, pipeline.PairingSettings(bin_width=2.0))
+    pair(work, pipeline.PairingSettings(bin_width=2.0))
     assert digests(work)["pairs.parquet"] != pairs
     told = (
         "warning: torques.parquet was made from another pairs.parquet than the one here;"
         " run 'frictioncli separate' again"
     )
-    assert chain.fit(work).text.splitlines()[0] == told
-    assert told in chain.report(work).text
-    chain.separate(work)
-    assert "warning" not in chain.fit(work).text
-    told = chain.report(work).text
+    assert fit(work).text.splitlines()[0] == told
+    assert told in report(work).text
+    separate(work)
+    assert "warning" not in fit(work).text
+    told = report(work).text
     assert "warning: evaluation.parquet was made from another torques.parquet" in told
     assert "run 'frictioncli evaluate' again" in told
 
@@ -125,7 +129,7 @@ def test_an_old_model_is_told_whatever_its_time(work):
     document["provenance"]["inputs"]["torques.parquet"] = "0" * 64
     (work / "model.json").write_text(json.dumps(document), encoding="utf-8")
     os.utime(work / "model.json", (1, 1))
-    assert "model.json was made from another torques.parquet" in chain.report(work).text
+    assert "model.json was made from another torques.parquet" in report(work).text
 
 
 @pytest.mark.parametrize(

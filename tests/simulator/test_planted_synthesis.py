@@ -12,11 +12,14 @@ import pandas as pd
 import pytest
 
 import frictioncli.simulator
-from frictioncli import chain
 from frictioncli.errors import OptionError
 from frictioncli.simulator.settings import SynthesisSettings
 from frictioncli.simulator.synthesize import synthesize
 from frictioncli.simulator.tabular import simulate_torques
+from frictioncli.stages.ingest import ingest
+from frictioncli.stages.pair import pair
+from frictioncli.stages.separate import separate
+from frictioncli.workfiles import TORQUES
 
 SHORT = {"runs": 1, "seed": 3, "lowest": 25, "highest": 28}
 
@@ -26,10 +29,10 @@ def synthesis(folder: Path, **changes: object):
 
 
 def torques(folder: Path, work: Path) -> pd.DataFrame:
-    chain.ingest([folder], work)
-    chain.pair(work)
-    chain.separate(work)
-    return pd.read_parquet(work / chain.TORQUES)
+    ingest([folder], work)
+    pair(work)
+    separate(work)
+    return pd.read_parquet(work / TORQUES)
 
 
 def test_truth_tells_each_effect(tmp_path):

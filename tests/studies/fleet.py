@@ -18,7 +18,8 @@ from pathlib import Path
 
 import pandas as pd
 
-from frictioncli import pipeline, schemas, tables
+from frictioncli import schemas, tables
+from frictioncli.stages import run as pipeline
 from tests.fleet.clusters import scheduler, worker
 from tests.fleet.fleets import ENVIRONMENT, PROGRAM, ROOT, contents
 from tests.fleet.joints import Joint, write_joint

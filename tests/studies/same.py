@@ -1,9 +1,9 @@
 """Checks that a change of the code leaves every output as it was, byte for byte.
 
-Runs the program over sample logs, synthetic logs and, where they are at hand, real logs, and compares
-the SHA-256 of every file written and of everything printed with the list kept in ``same.sha256``.
-The list holds for one platform and one set of library versions: write it with the state before a
-change, on the machine on which the change is checked.
+Runs the program over sample logs, synthetic logs and, where they are at hand, real logs, and
+compares the SHA-256 of every file written and of everything printed with the list kept in
+``same.sha256``. The list holds for one platform and one set of library versions: write it with the
+state before a change, on the machine on which the change is checked.
 
 Usage: python -m tests.studies.same [GROUP ...] [--write] [--keep FOLDER]
 """

@@ -6,11 +6,12 @@ import re
 import numpy as np
 import pytest
 
-from frictioncli import chain, schemas, tables
+from frictioncli import schemas, tables
 from frictioncli.correction.settings import EvaluationGrid
 from frictioncli.report.labels import number
 from frictioncli.report.page import write_report
 from frictioncli.report.results import read_results
+from frictioncli.stages.evaluate import evaluate
 from tests.report.planted import extended
 
 HOSTILE = (
@@ -26,9 +27,9 @@ def work(tmp_path_factory, write_work):
     work = write_work(tmp_path_factory.mktemp("browser"), runs=("day-1", HOSTILE), schedule=False)
     model = extended(work, read_results(work)[0].torques, held_out=HOSTILE)
     (work / "extended-model.json").write_text(json.dumps(model), encoding="utf-8")
-    chain.evaluate(work, GRID, extended=True)
+    evaluate(work, GRID, extended=True)
     (work / "evaluation.parquet").rename(work / "extended.parquet")
-    chain.evaluate(work, GRID)
+    evaluate(work, GRID)
     write_report(work)
     return work
 

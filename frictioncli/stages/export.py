@@ -4,7 +4,6 @@ from pathlib import Path
 from typing import Any
 
 from frictioncli import __version__, schemas, tables
-from frictioncli.chain.stage import Done, stage
 from frictioncli.correction.settings import ScheduleSettings
 from frictioncli.deployment.deployed import DeployedModel, middle_speed
 from frictioncli.deployment.export import export as exported
@@ -15,6 +14,7 @@ from frictioncli.errors import OptionError, TableError
 from frictioncli.files import write_text
 from frictioncli.model.document import FrictionModel, read_models
 from frictioncli.provenance import hashes
+from frictioncli.stages.stage import Done, stage
 from frictioncli.workfiles import DIAGNOSIS, EXTENDED, MODEL, TORQUES
 
 EXPORTS = "export"

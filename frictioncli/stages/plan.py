@@ -6,7 +6,6 @@ from pathlib import Path
 from typing import Any
 
 from frictioncli import schemas, tables
-from frictioncli.chain.stage import Done, stage
 from frictioncli.diagnosis.recall import is_current, read_documents
 from frictioncli.errors import NotEnoughData, OptionError, TableError
 from frictioncli.experiment.block import Block
@@ -25,6 +24,7 @@ from frictioncli.experiment.settings import PlanSettings
 from frictioncli.files import write_text
 from frictioncli.model.document import read_models
 from frictioncli.provenance import Provenance, hashes, to_json
+from frictioncli.stages.stage import Done, stage
 from frictioncli.workfiles import DIAGNOSIS, EXTENDED, MODEL, PLAN, TORQUES
 
 

@@ -1,10 +1,9 @@
-"""The whole chain in one call, from logs to the report."""
+"""The whole chain in one call, from logs to the report: ``run``."""
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from frictioncli import chain
 from frictioncli.correction.settings import CorrectionSettings, EvaluationGrid, ScheduleSettings
 from frictioncli.diagnosis.settings import DiagnosisSettings
 from frictioncli.errors import NotEnoughData
@@ -12,9 +11,19 @@ from frictioncli.model.settings import FitSettings
 from frictioncli.motion.settings import PairingSettings
 from frictioncli.reading.discovery import Logs
 from frictioncli.reading.settings import IngestSettings
+from frictioncli.stages.diagnose import diagnose
+from frictioncli.stages.evaluate import evaluate
+from frictioncli.stages.fit import fit
+from frictioncli.stages.ingest import ingest
+from frictioncli.stages.pair import pair
+from frictioncli.stages.report import report
+from frictioncli.stages.separate import separate
+from frictioncli.stages.simulate import simulate
+from frictioncli.stages.stage import Done
+from frictioncli.workfiles import DIAGNOSIS, EVALUATION, EXTENDED, SCHEDULE
 from frictioncli.workfolder import alone
 
-Tell = Callable[[str, chain.Done], None]
+Tell = Callable[[str, Done], None]
 """Is told each stage's name and what it made."""
 
 
@@ -59,7 +68,7 @@ def run(
     """
     with alone(work):
         analyse(logs, work, settings, tell)
-        done = chain.report(work)
+        done = report(work)
     tell("report", done)
     return done.path
 
@@ -77,23 +86,23 @@ def analyse(
 
 
 def _analyse(logs: Logs, work: Path, chosen: RunSettings, tell: Tell) -> None:
-    for name in (chain.DIAGNOSIS, chain.EXTENDED):
+    for name in (DIAGNOSIS, EXTENDED):
         (work / name).unlink(missing_ok=True)
-    tell("ingest", chain.ingest(logs, work, chosen.ingest))
-    tell("pair", chain.pair(work, chosen.pairing))
-    tell("separate", chain.separate(work, chosen.sign))
-    tell("fit", chain.fit(work, chosen.fit))
-    optional: dict[str, tuple[str, Callable[[], chain.Done]]] = {}
+    tell("ingest", ingest(logs, work, chosen.ingest))
+    tell("pair", pair(work, chosen.pairing))
+    tell("separate", separate(work, chosen.sign))
+    tell("fit", fit(work, chosen.fit))
+    optional: dict[str, tuple[str, Callable[[], Done]]] = {}
     if chosen.diagnosis is not None:
-        optional["diagnose"] = (chain.DIAGNOSIS, lambda: chain.diagnose(work, chosen.diagnosis))
+        optional["diagnose"] = (DIAGNOSIS, lambda: diagnose(work, chosen.diagnosis))
     optional |= {
         "simulate": (
-            chain.SCHEDULE,
-            lambda: chain.simulate(work, chosen.schedule, chosen.correction),
+            SCHEDULE,
+            lambda: simulate(work, chosen.schedule, chosen.correction),
         ),
         "evaluate": (
-            chain.EVALUATION,
-            lambda: chain.evaluate(work, chosen.grid, chosen.correction),
+            EVALUATION,
+            lambda: evaluate(work, chosen.grid, chosen.correction),
         ),
     }
     for stage, (name, make) in optional.items():
@@ -101,4 +110,4 @@ def _analyse(logs: Logs, work: Path, chosen: RunSettings, tell: Tell) -> None:
             tell(stage, make())
         except NotEnoughData as fault:
             (work / name).unlink(missing_ok=True)
-            tell(stage, chain.Done(work / name, f"left out: {fault}"))
+            tell(stage, Done(work / name, f"left out: {fault}"))

@@ -2,7 +2,7 @@
 
 from pathlib import Path
 
-from frictioncli.chain.stage import Done, stage
+from frictioncli.stages.stage import Done, stage
 
 
 @stage

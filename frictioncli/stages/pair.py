@@ -1,21 +1,19 @@
-"""From samples to torques: ``pair``, ``separate``."""
+"""From samples to pairs: ``pair``."""
 
 from dataclasses import asdict
 from pathlib import Path
 
 from frictioncli import schemas, tables
-from frictioncli.chain.stage import Done, present, stage
 from frictioncli.motion.given import given
 from frictioncli.motion.pages import Pages
 from frictioncli.motion.pairing import pair_spans
 from frictioncli.motion.results import pair_rows, ramp_rows
-from frictioncli.motion.separation import separate as separate_pairs
-from frictioncli.motion.separation import sign_conventions
 from frictioncli.motion.settings import PairingSettings
 from frictioncli.motion.spans import Joint, find_spans
-from frictioncli.motion.summary import PairTally, TorqueRanges, pairing_text, separation_text
+from frictioncli.motion.summary import PairTally, pairing_text
 from frictioncli.provenance import Provenance, hashes
-from frictioncli.workfiles import PAIRS, RAMPS, RECORDINGS, SAMPLES, TORQUES
+from frictioncli.stages.stage import Done, present, stage
+from frictioncli.workfiles import PAIRS, RAMPS, RECORDINGS, SAMPLES
 
 
 @stage
@@ -47,21 +45,3 @@ def pair(work: Path, settings: PairingSettings | None = None) -> Done:
         for rows in tally.counted(pair_rows(found, pairing, said["phase"])):
             pairs.write(rows)
     return Done(work / PAIRS, pairing_text(tally, facts, settings.bin_width))
-
-
-@stage
-def separate(work: Path, sign: int | None = None) -> Done:
-    """Separate friction torque from load torque by equation (8): ``torques.parquet``."""
-    source = work / PAIRS
-    facts = tables.facts(source)
-    signs = sign_conventions(tables.batches(source, schemas.PAIRS), sign)
-    facts["sign"] = {str(joint): value for joint, value in signs.items()}
-    provenance = Provenance("separate", {"sign": sign}, hashes([source]))
-    ranges = TorqueRanges()
-    with tables.TableWriter(work / TORQUES, schemas.TORQUES, provenance) as torques:
-        pairs = tables.ahead(tables.batches(source, schemas.PAIRS))
-        for rows in ranges.seen(separate_pairs(batch, signs) for batch in pairs):
-            torques.write(rows)
-        facts |= {"load_unit": "N·m"} if ranges.own_load else {}
-        torques.facts = facts
-    return Done(work / TORQUES, separation_text(ranges, signs, facts, told=sign is not None))

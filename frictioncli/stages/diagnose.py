@@ -1,41 +1,20 @@
-"""From torques to models: ``fit``, ``diagnose``."""
+"""From torques and a model to what the simulated torque gets wrong: ``diagnose``."""
 
 import json
 from dataclasses import asdict
 from pathlib import Path
 
 from frictioncli import schemas, tables
-from frictioncli.chain.stage import Done, present, stage
 from frictioncli.diagnosis.diagnose import diagnose_joint
 from frictioncli.diagnosis.document import diagnosis_document, extended_document, verdict_text
 from frictioncli.diagnosis.ramps import ramp_logs
 from frictioncli.diagnosis.settings import DiagnosisSettings
 from frictioncli.errors import NotEnoughData
 from frictioncli.files import write_text
-from frictioncli.model.document import by_joint, read_models, write_models
-from frictioncli.model.fitting import fit_joint
-from frictioncli.model.settings import FitSettings
+from frictioncli.model.document import by_joint, read_models
 from frictioncli.provenance import Provenance, hashes, to_json
+from frictioncli.stages.stage import Done, present, stage
 from frictioncli.workfiles import DIAGNOSIS, EXTENDED, MODEL, RAMPS, TORQUES
-
-
-@stage
-def fit(work: Path, settings: FitSettings | None = None) -> Done:
-    """Identify equation (16) for every joint: ``model.json``."""
-    settings = settings or FitSettings()
-    source = work / TORQUES
-    facts = tables.facts(source)
-    torques = tables.read(source, schemas.TORQUES)
-    models, faults = [], []
-    for _, group in torques.groupby("joint"):
-        try:
-            models.append(fit_joint(group, facts, settings))
-        except NotEnoughData as fault:
-            faults.append(str(fault))
-    if not models:
-        raise NotEnoughData("; ".join(faults))
-    write_models(work / MODEL, models, Provenance("fit", asdict(settings), hashes([source])))
-    return Done(work / MODEL, "\n".join([*(model.table() for model in models), *faults]))
 
 
 @stage

@@ -2,10 +2,10 @@
 
 from pathlib import Path
 
-from frictioncli.chain.stage import Done, stage
 from frictioncli.reading.discovery import Logs
 from frictioncli.reading.ingest import ingest as ingest_logs
 from frictioncli.reading.settings import IngestSettings
+from frictioncli.stages.stage import Done, stage
 from frictioncli.workfiles import SAMPLES
 
 

@@ -9,7 +9,6 @@ from pathlib import Path
 import pandas as pd
 
 from frictioncli import schemas, tables
-from frictioncli.chain.stage import Done, stage
 from frictioncli.comparing.comparison import compare_runs
 from frictioncli.comparing.days import Folder, distinct_names, in_order
 from frictioncli.comparing.document import comparison_document
@@ -20,6 +19,7 @@ from frictioncli.files import whole, write_text
 from frictioncli.model.document import FrictionModel, read_models
 from frictioncli.provenance import Provenance, sha256, to_json
 from frictioncli.report.trend import trend_pictures
+from frictioncli.stages.stage import Done, stage
 from frictioncli.workfiles import COMPARISON, MODEL, RECORDINGS, TORQUES
 from frictioncli.workfolder import outdated
 

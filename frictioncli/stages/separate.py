@@ -1,0 +1,29 @@
+"""From pairs to torques: ``separate``."""
+
+from pathlib import Path
+
+from frictioncli import schemas, tables
+from frictioncli.motion.separation import separate as separate_pairs
+from frictioncli.motion.separation import sign_conventions
+from frictioncli.motion.summary import TorqueRanges, separation_text
+from frictioncli.provenance import Provenance, hashes
+from frictioncli.stages.stage import Done, stage
+from frictioncli.workfiles import PAIRS, TORQUES
+
+
+@stage
+def separate(work: Path, sign: int | None = None) -> Done:
+    """Separate friction torque from load torque by equation (8): ``torques.parquet``."""
+    source = work / PAIRS
+    facts = tables.facts(source)
+    signs = sign_conventions(tables.batches(source, schemas.PAIRS), sign)
+    facts["sign"] = {str(joint): value for joint, value in signs.items()}
+    provenance = Provenance("separate", {"sign": sign}, hashes([source]))
+    ranges = TorqueRanges()
+    with tables.TableWriter(work / TORQUES, schemas.TORQUES, provenance) as torques:
+        pairs = tables.ahead(tables.batches(source, schemas.PAIRS))
+        for rows in ranges.seen(separate_pairs(batch, signs) for batch in pairs):
+            torques.write(rows)
+        facts |= {"load_unit": "N·m"} if ranges.own_load else {}
+        torques.facts = facts
+    return Done(work / TORQUES, separation_text(ranges, signs, facts, told=sign is not None))
