@@ -5,7 +5,10 @@ compares the SHA-256 of every file written and of everything printed with the li
 ``same.sha256``. The list holds for one platform and one set of library versions: write it with the
 state before a change, on the machine on which the change is checked.
 
-Usage: python -m tests.studies.same [GROUP ...] [--write] [--keep FOLDER]
+Outputs of ``fleet`` name the folder of the logs, so everything is made in one fixed folder, where it
+stays until the next call; a second call at the same time waits.
+
+Usage: python -m tests.studies.same [GROUP ...] [--write]
 """
 
 import argparse
@@ -20,9 +23,12 @@ from collections.abc import Callable, Iterator
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
+from filelock import FileLock
+
 ROOT = Path(__file__).parents[2]
 REAL = Path(os.environ.get("FRICTIONCLI_REAL", ROOT.parent / "shared" / "real"))
 LIST = Path(__file__).with_name("same.sha256")
+PLACE = Path(tempfile.gettempdir()) / "frictioncli-same"
 SAMPLE = ROOT / "sample_logs" / "kr10"
 
 _SECONDS = re.compile(rb"[0-9]+ s of work")
@@ -174,7 +180,6 @@ def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("groups", nargs="*", metavar="GROUP", help=f"of {', '.join(GROUPS)}")
     parser.add_argument("--write", action="store_true", help="write the list instead")
-    parser.add_argument("--keep", type=Path, help="folder to keep the outputs in")
     asked = parser.parse_args()
     names = asked.groups or list(GROUPS)
     if unknown := set(names) - set(GROUPS):
@@ -182,11 +187,12 @@ def main() -> int:
     if not REAL.is_dir() and "real" in names:
         names.remove("real")
         print(f"real: left out, no folder {REAL.name} beside the project")
-    with tempfile.TemporaryDirectory() as temporary:
-        place = asked.keep or Path(temporary)
+    PLACE.mkdir(exist_ok=True)
+    with FileLock(PLACE.with_suffix(".lock")):
+        shutil.rmtree(PLACE)
         with ThreadPoolExecutor(2) as pool:
-            list(pool.map(lambda name: GROUPS[name](Outputs(place / name)), names))
-        found = dict(digests(place))
+            list(pool.map(lambda name: GROUPS[name](Outputs(PLACE / name)), names))
+        found = dict(digests(PLACE))
     lines = LIST.read_text(encoding="utf-8").splitlines() if LIST.exists() else []
     known = {name: digest for digest, _, name in (line.partition("  ") for line in lines)}
     kept = {name: known[name] for name in known if name.partition("/")[0] not in names}
