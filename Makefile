@@ -55,7 +55,7 @@ lint: $(VENV)/tested
 	$(BIN)/ruff format --check .
 	$(BIN)/mypy
 
-$(VENV)/installed: pyproject.toml frictioncli/reading/formats/_plain_numbers.c
+$(VENV)/installed: pyproject.toml frictioncli/logs/formats/_plain_numbers.c
 	$(PYTHON) -m venv $(VENV)
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable .
 	touch $@

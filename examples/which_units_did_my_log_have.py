@@ -12,7 +12,7 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 
-from frictioncli.inspecting.inspection import inspect
+from frictioncli.inspection.inspect import inspect
 
 day = Path(__file__).parents[1] / "sample_logs" / "kr10" / "day1"
 logs = [day / "010_sweep_KRCIpo.csv", day / "012_heat-up_KRCIpo.csv"]

@@ -1,6 +1,6 @@
 """The glossary: what each measured or computed quantity is called, and in which unit.
 
-One unit system inside: deg, deg/s, s, N·m, °C. Only :mod:`frictioncli.reading` converts.
+One unit system inside: deg, deg/s, s, N·m, °C. Only :mod:`frictioncli.logs` converts.
 
 Sign of friction: with ``sign = +1`` the logged torque is ``load + friction`` while the joint moves
 forward (position grows) and ``load - friction`` in reverse; with ``sign = -1`` (the source paper's

@@ -8,12 +8,12 @@ from types import SimpleNamespace
 import pandas as pd
 import pyarrow as pa
 
-from frictioncli.motion.given import given
-from frictioncli.motion.pages import Pages
-from frictioncli.motion.pairing import pair_spans
-from frictioncli.motion.results import pair_rows, ramp_rows
-from frictioncli.motion.settings import PairingSettings
-from frictioncli.motion.spans import find_spans
+from frictioncli.pairs.manifest_facts import given
+from frictioncli.pairs.pair_tables import pair_rows, ramp_rows
+from frictioncli.pairs.pairing import pair_segments
+from frictioncli.pairs.partitioned_store import PartitionedStore
+from frictioncli.pairs.segments import find_segments
+from frictioncli.pairs.settings import PairingSettings
 from tests.moves import batches
 
 SAID_NOTHING = given(Path("no such table"))
@@ -23,8 +23,8 @@ SAID_NOTHING = given(Path("no such table"))
 def spans(frame, rows=100_000, settings=None):
     """Yield what is found in samples that come so many rows at a time."""
     settings = settings or PairingSettings()
-    with tempfile.TemporaryDirectory() as folder, Pages(Path(folder)) as pages:
-        yield find_spans(batches(frame, rows), settings.steady, settings.bin_width, pages)
+    with tempfile.TemporaryDirectory() as folder, PartitionedStore(Path(folder)) as pages:
+        yield find_segments(batches(frame, rows), settings.steady, settings.bin_width, pages)
 
 
 def ramps(frame, rows=100_000):
@@ -40,9 +40,9 @@ def pairs(frame, rows=100_000, *, payload=None, phase=None, **settings):
     with (
         spans(frame, rows, chosen) as found,
         tempfile.TemporaryDirectory() as folder,
-        Pages(Path(folder)) as pages,
+        PartitionedStore(Path(folder)) as pages,
     ):
-        pairing = pair_spans(found, chosen, pages, payload)
+        pairing = pair_segments(found, chosen, pages, payload)
         said = SAID_NOTHING["phase"] if phase is None else phase
         tables = list(pair_rows(found, pairing, said))
     return SimpleNamespace(

@@ -13,10 +13,10 @@ LAYERS = [
     {"fleet"},
     {"stages"},
     {"workfolder"},
-    {"report", "inspecting", "experiment", "deployment", "comparing"},
+    {"report", "inspection", "design", "deployment", "comparison"},
     {"correction", "diagnosis"},
     {"model", "effects"},
-    {"motion", "reading", "simulator"},
+    {"pairs", "logs", "simulator"},
     {"tables"},
     {"schemas", "files", "provenance", "workfiles"},
     {"quantities", "errors", "__init__"},
@@ -67,16 +67,16 @@ def test_every_part_has_a_layer():
 
 def test_simulator_knows_nothing_of_the_model_it_tests():
     for module in (PACKAGE / "simulator").glob("*.py"):
-        forbidden = {"model", "motion", "correction", "reading", "report", "stages"}
+        forbidden = {"model", "pairs", "correction", "logs", "report", "stages"}
         assert not imported_parts(module) & forbidden, module
 
 
 def test_an_upward_import_would_be_seen(tmp_path):
-    """The guard itself is tried: a module of ``motion`` that reaches up to ``model``."""
+    """The guard itself is tried: a module of ``pairs`` that reaches up to ``model``."""
     module = tmp_path / "bad.py"
     module.write_text("from frictioncli.model.friction import FORM\nimport frictioncli.stages\n")
     assert imported_parts(module) == {"model", "stages"}
-    assert all(level(part) < level("motion") for part in imported_parts(module))
+    assert all(level(part) < level("pairs") for part in imported_parts(module))
 
 
 @pytest.mark.parametrize("module", MODULES, ids=lambda path: str(path.relative_to(PACKAGE)))

@@ -19,7 +19,7 @@ from frictioncli.correction.settings import CorrectionSettings, EvaluationGrid, 
 from frictioncli.diagnosis.settings import DiagnosisSettings
 from frictioncli.errors import OptionError
 from frictioncli.model.settings import FitSettings
-from frictioncli.motion.settings import PairingSettings, SteadySettings
+from frictioncli.pairs.settings import PairingSettings, SteadySettings
 from frictioncli.simulator.settings import SynthesisSettings
 
 app = typer.Typer(
@@ -64,26 +64,26 @@ def inspect(
     suggest_map: o.SuggestMap = False,
 ) -> None:
     """Show what logs hold (deg, deg/s, s, N·m, °C), how good they are and what they suffice for."""
-    from frictioncli.reading.settings import IngestSettings
+    from frictioncli.logs.settings import IngestSettings
 
     settings = o.chosen(IngestSettings, locals())
     if json and suggest_map:
         raise OptionError("--json and --suggest-map: expected one of them")
     if suggest_map:
-        from frictioncli.inspecting.suggesting.suggested import suggested_map
+        from frictioncli.inspection.map_suggestion.suggest_map import suggested_map
 
         say(suggested_map(logs, settings))
         return
-    from frictioncli.inspecting.inspection import inspect as look
+    from frictioncli.inspection.inspect import inspect as look
 
     found = look(logs, settings)
     if json:
-        from frictioncli.inspecting.document import document
+        from frictioncli.inspection.document import document
         from frictioncli.provenance import to_json
 
         say(to_json(document(found)).rstrip())
         return
-    from frictioncli.inspecting.text import text
+    from frictioncli.inspection.text import text
 
     say(text(found))
 
@@ -102,7 +102,7 @@ def ingest(
     temperature_unit: o.TemperatureUnit = None,
 ) -> None:
     """Read logs into samples: deg, deg/s, s, N·m (or A), °C."""
-    from frictioncli.reading.settings import IngestSettings
+    from frictioncli.logs.settings import IngestSettings
 
     settings = o.chosen(IngestSettings, locals())
     from frictioncli.stages.ingest import ingest as ingest_stage
@@ -246,7 +246,7 @@ def run(
     smoothing_degree: o.SmoothingDegree = o.CORRECTION.smoothing_degree,
 ) -> None:
     """Run the whole chain, from logs to the report. Units: deg, deg/s, s, N·m, °C."""
-    from frictioncli.reading.settings import IngestSettings
+    from frictioncli.logs.settings import IngestSettings
 
     steady = o.chosen(SteadySettings, locals())
     parts: dict[str, Any] = {

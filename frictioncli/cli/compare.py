@@ -6,7 +6,7 @@ from typing import Annotated
 import typer
 
 from frictioncli.cli.terminal import say
-from frictioncli.comparing.settings import ComparisonSettings, threshold_of
+from frictioncli.comparison.settings import ComparisonSettings, threshold_of
 
 _DEFAULTS = ComparisonSettings()
 

@@ -75,7 +75,7 @@ def fleet(
     tmax: o.TMax = o.SCHEDULE.tmax / 60,
 ) -> None:
     """Run the chain for many joints; one row each in fleet.parquet. N·m (or A), °C, deg/s."""
-    from frictioncli.reading.settings import IngestSettings
+    from frictioncli.logs.settings import IngestSettings
 
     options = o.chosen(FleetSettings, locals())
     parts: dict[str, Any] = {

@@ -16,7 +16,7 @@ from frictioncli.correction.settings import (
 from frictioncli.diagnosis.settings import DiagnosisSettings
 from frictioncli.errors import OptionError
 from frictioncli.model.settings import METHODS, TEMPERATURES, FitSettings
-from frictioncli.motion.settings import PairingSettings, SteadySettings
+from frictioncli.pairs.settings import PairingSettings, SteadySettings
 from frictioncli.simulator.settings import (
     JOINT_KINDS,
     NOISE_KINDS,

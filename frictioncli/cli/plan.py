@@ -6,7 +6,7 @@ import typer
 
 from frictioncli.cli import options as o
 from frictioncli.cli.terminal import say
-from frictioncli.experiment.settings import PROGRAMS, PlanSettings
+from frictioncli.design.settings import PROGRAMS, PlanSettings
 
 PLAN = PlanSettings()
 _LIMITS, _PROGRAM = "Limits", "Program"

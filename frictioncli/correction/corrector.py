@@ -14,7 +14,7 @@ References
 import math
 from dataclasses import dataclass, field
 
-from frictioncli.correction.degrees import DEGREE
+from frictioncli.correction.degree_crossings import DEGREE
 from frictioncli.correction.settings import READINGS
 from frictioncli.model.friction import (
     FrictionParameters,

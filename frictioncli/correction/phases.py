@@ -13,7 +13,7 @@ from frictioncli.model.zero_load import friction_at_zero_load
 
 
 @dataclass(frozen=True, slots=True)
-class Phase:
+class CorrectionPhase:
     """The pairs of one phase, and as arrays."""
 
     run: str
@@ -24,7 +24,7 @@ class Phase:
 
 def phases_of(
     torques: pd.DataFrame, model: FrictionModel, settings: CorrectionSettings
-) -> list[Phase]:
+) -> list[CorrectionPhase]:
     """Return each stretch of heat-up or cool-down of a joint, ordered by run and time.
 
     Parameters
@@ -64,5 +64,5 @@ def phases_of(
     for _, group in pairs[thermal].groupby(stretch.cumsum()[thermal], sort=True):
         data = phase_data(group, correction_speed=speed, degree=settings.smoothing_degree)
         head = group.iloc[0]
-        found.append(Phase(str(head["run"]), str(head["phase"]), group, data))
+        found.append(CorrectionPhase(str(head["run"]), str(head["phase"]), group, data))
     return found

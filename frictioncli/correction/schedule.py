@@ -28,7 +28,7 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from frictioncli.correction.degrees import next_changes
+from frictioncli.correction.degree_crossings import next_changes
 
 Array = NDArray[np.float64]
 Indices = NDArray[np.intp]

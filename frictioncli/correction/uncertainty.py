@@ -38,7 +38,7 @@ _LEAST = 0.01
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Belief:
+class FilterState:
     """What is known of the deviation at one moment, for each way that its process may be.
 
     Attributes
@@ -80,7 +80,7 @@ class Belief:
             return np.zeros(len(clock)), (variance + np.square(mean)) @ process.weight
         return mean @ process.weight, variance @ process.weight
 
-    def corrected(self, value: float, clock: Array, process: Deviation) -> "Belief":
+    def corrected(self, value: float, clock: Array, process: Deviation) -> "FilterState":
         """Return the belief after a correction.
 
         Parameters
@@ -94,7 +94,7 @@ class Belief:
         """
         mean, variance = (part[0] for part in self.at(clock[np.newaxis], process))
         gain = variance / (variance + process.noise)
-        return Belief(
+        return FilterState(
             clock=clock, mean=mean + gain * (value - mean), variance=(1 - gain) * variance
         )
 
@@ -132,7 +132,9 @@ def follow(
     clock = travel(data)[:, np.newaxis] + data.time[:, np.newaxis] * process.rate
     measured = measured_deviation(data, parameters)
     allowed = bound**2 / speed
-    belief = Belief(clock=clock[0], mean=process.mean, variance=process.variance, untouched=True)
+    belief = FilterState(
+        clock=clock[0], mean=process.mean, variance=process.variance, untouched=True
+    )
     deviation = np.zeros(count)
     corrected, failed = np.zeros(count, dtype=bool), np.zeros(count, dtype=bool)
     begin, size, used = 0, _BLOCK, -1

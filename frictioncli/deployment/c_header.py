@@ -4,11 +4,11 @@ from collections.abc import Callable, Mapping, Sequence
 from string import Template
 from textwrap import fill
 
-from frictioncli.deployment import c_parts as c
-from frictioncli.deployment.deployed import DeployedModel
-from frictioncli.deployment.extension import Extension
-from frictioncli.deployment.gear import GearLag
-from frictioncli.diagnosis.extended import FittedEffect
+from frictioncli.deployment import c_template as c
+from frictioncli.deployment.deployed_model import DeployedModel
+from frictioncli.deployment.extension import DeployedExtension
+from frictioncli.deployment.gear_temperature import GearLag
+from frictioncli.diagnosis.documents.extended_model import FittedEffect
 from frictioncli.model.document import PARAMETERS
 
 _GIVEN = {
@@ -72,7 +72,7 @@ def _units(joint: DeployedModel) -> dict[str, str]:
     }
 
 
-def _words(joint: DeployedModel, extension: Extension | None) -> dict[str, str]:
+def _words(joint: DeployedModel, extension: DeployedExtension | None) -> dict[str, str]:
     gear = extension is not None
     return {
         "constants": "\n".join(_constants(joint, extension)),
@@ -91,7 +91,7 @@ def _words(joint: DeployedModel, extension: Extension | None) -> dict[str, str]:
     }
 
 
-def _constants(joint: DeployedModel, extension: Extension | None) -> list[str]:
+def _constants(joint: DeployedModel, extension: DeployedExtension | None) -> list[str]:
     lines = []
 
     def define(name: str, value: float | str, remark: str) -> None:

@@ -7,10 +7,10 @@ from pathlib import Path
 from typing import Any
 
 from frictioncli.correction.settings import ScheduleSettings
-from frictioncli.deployment.deployed import DeployedModel, middle_speed
-from frictioncli.deployment.extension import LAG, Extension
-from frictioncli.deployment.gear import GearLag
-from frictioncli.diagnosis.extended import FittedEffect
+from frictioncli.deployment.deployed_model import DeployedModel, middle_speed
+from frictioncli.deployment.extension import LAG, DeployedExtension
+from frictioncli.deployment.gear_temperature import GearLag
+from frictioncli.diagnosis.documents.extended_model import FittedEffect
 from frictioncli.errors import FrictionError, TableError
 from frictioncli.model.document import FrictionModel, model_document, read_models
 from frictioncli.model.friction import FrictionParameters
@@ -84,7 +84,7 @@ def _deployed(whole: Mapping[str, Any], model: FrictionModel) -> DeployedModel:
     )
 
 
-def _extension_document(extension: Extension) -> dict[str, Any]:
+def _extension_document(extension: DeployedExtension) -> dict[str, Any]:
     effects = [
         {
             "name": term.effect.name,
@@ -108,9 +108,9 @@ def _extension_document(extension: Extension) -> dict[str, Any]:
     }
 
 
-def _extension(document: Mapping[str, Any]) -> Extension:
+def _extension(document: Mapping[str, Any]) -> DeployedExtension:
     gear = document[LAG]
-    return Extension(
+    return DeployedExtension(
         about=FrictionParameters(**document["linear_about"]),
         parameters=FrictionParameters(**document["parameters"]),
         gear=None if gear is None else GearLag.of(gear),

@@ -4,12 +4,12 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
 from frictioncli.deployment.c_header import c_header
-from frictioncli.deployment.conditions import conditions
-from frictioncli.deployment.deployed import DeployedModel, why_no_correction
+from frictioncli.deployment.deployed_model import DeployedModel, why_no_correction
 from frictioncli.deployment.document import deployed_document
-from frictioncli.deployment.lookup import csv_text, lookup
+from frictioncli.deployment.lookup_table import csv_text, lookup
+from frictioncli.deployment.operating_conditions import conditions
 from frictioncli.deployment.settings import ExportSettings
-from frictioncli.deployment.simple_form import SimpleForm, simple_form
+from frictioncli.deployment.simplified_friction import SimpleForm, simple_form
 from frictioncli.deployment.xml_forms import mjcf, urdf
 from frictioncli.model.friction import FORM
 from frictioncli.provenance import to_json

@@ -4,8 +4,8 @@ import math
 from dataclasses import dataclass, field
 
 from frictioncli.correction.corrector import TemperatureCorrector
-from frictioncli.deployment.extension import Extension
-from frictioncli.deployment.gear import GearTemperature
+from frictioncli.deployment.extension import DeployedExtension
+from frictioncli.deployment.gear_temperature import GearTemperature
 
 
 @dataclass(slots=True)
@@ -19,14 +19,14 @@ class ExtendedCorrector:
     ----------
     inner : TemperatureCorrector
         A new one, on the parameters about which the extension is linear.
-    extension : Extension
+    extension : DeployedExtension
         What the extended model adds.
     temperature : {"motor", "housing", "mean"}
         Temperature that the base is given in the extension.
     """
 
     inner: TemperatureCorrector
-    extension: Extension
+    extension: DeployedExtension
     temperature: str = "motor"
     gear: GearTemperature | None = field(init=False)
     _housing: float = field(default=math.nan, init=False)

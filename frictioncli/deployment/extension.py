@@ -1,7 +1,8 @@
 r"""What of an extended model can be carried by a controller, and what it then adds to friction.
 
-The extended model is linear about its base (:mod:`frictioncli.diagnosis.extended`). With changes of
-the parameters and a temperature of friction that is E above the one measured, it adds to (16)
+The extended model is linear about its base
+(:mod:`frictioncli.diagnosis.documents.extended_model`). With changes of the parameters and a
+temperature of friction that is E above the one measured, it adds to (16)
 
 .. math::
 
@@ -18,12 +19,12 @@ import numpy as np
 import pandas as pd
 from numpy.typing import ArrayLike, NDArray
 
-from frictioncli.deployment.gear import GearLag
-from frictioncli.diagnosis.extended import ExtendedModel, FittedEffect
-from frictioncli.diagnosis.gravity import stated_gravity
-from frictioncli.diagnosis.problem import simulated
+from frictioncli.deployment.gear_temperature import GearLag
+from frictioncli.diagnosis.data.gravity import stated_gravity
+from frictioncli.diagnosis.data.problem import simulated
+from frictioncli.diagnosis.documents.extended_model import ExtendedModel, FittedEffect
 from frictioncli.effects.base import EffectTable
-from frictioncli.effects.pairs import pair_heads
+from frictioncli.effects.pair_series import pair_heads
 from frictioncli.model.friction import FrictionParameters, friction_torque
 
 Array = NDArray[np.float64]
@@ -55,7 +56,7 @@ _NO_FRICTION = "shows in the load, not in friction"
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Extension:
+class DeployedExtension:
     """The part of an extended model that goes along.
 
     Attributes
@@ -112,7 +113,7 @@ def carried(
     torques: pd.DataFrame,
     model: ExtendedModel,
     time_constant_ci95: tuple[float, float] | None,
-) -> Extension | None:
+) -> DeployedExtension | None:
     """Return what of an extended model can be carried; none if it has no effects.
 
     Parameters
@@ -128,7 +129,7 @@ def carried(
         return None
     own = {fitted.effect.name: fitted for fitted in model.effects}
     lag = own.get(LAG)
-    return Extension(
+    return DeployedExtension(
         about=model.about,
         parameters=model.parameters,
         gear=_gear(torques, model, lag, time_constant_ci95) if lag else None,

@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from textwrap import fill
 from xml.sax.saxutils import quoteattr
 
-from frictioncli.deployment.simple_form import SimpleForm
+from frictioncli.deployment.simplified_friction import SimpleForm
 
 _URDF = """\
 <?xml version="1.0" encoding="UTF-8"?>

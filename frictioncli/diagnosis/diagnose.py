@@ -7,14 +7,14 @@ import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
-from frictioncli.diagnosis.adequacy import Structure, structures
-from frictioncli.diagnosis.detectable import detectable
-from frictioncli.diagnosis.extension import Extension, Gain, extend, measured_gain
-from frictioncli.diagnosis.problem import Problem, build_problems
-from frictioncli.diagnosis.ramps import RampEvidence, RampLog, ramp_evidence
-from frictioncli.diagnosis.search import Cause, Found, find_causes
+from frictioncli.diagnosis.data.problem import Problem, build_problems
+from frictioncli.diagnosis.fit.extension import Extension, Gain, extend, measured_gain
+from frictioncli.diagnosis.ramps.evidence import RampEvidence, RampLog, ramp_evidence
+from frictioncli.diagnosis.search.cause_search import Cause, Found, find_causes
+from frictioncli.diagnosis.search.detectable import detectable
+from frictioncli.diagnosis.search.holdout import SLIGHT, worthwhile
+from frictioncli.diagnosis.search.lack_of_fit import Structure, structures
 from frictioncli.diagnosis.settings import DiagnosisSettings
-from frictioncli.diagnosis.worth import SLIGHT, worthwhile
 from frictioncli.effects import EFFECTS
 from frictioncli.effects.base import Effect
 from frictioncli.errors import NotEnoughData

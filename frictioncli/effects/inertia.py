@@ -16,7 +16,7 @@ torque grows with :math:`v`. The shape ``growth`` lies between the two: 0 and 1.
 import numpy as np
 
 from frictioncli.effects.base import Basis, Effect, EffectTable, Parameter, Signature
-from frictioncli.effects.pairs import stroke_ends
+from frictioncli.effects.pair_series import stroke_ends
 
 
 def basis(table: EffectTable, *, distance: float, growth: float) -> Basis:

@@ -8,7 +8,7 @@ changes with the load as the base model's alpha L^2 does, to first order. The mo
 import numpy as np
 
 from frictioncli.effects.base import Basis, Effect, EffectTable, Parameter, Signature
-from frictioncli.effects.pairs import measured_share, series_starts
+from frictioncli.effects.pair_series import measured_share, series_starts
 
 
 def basis(table: EffectTable, *, moment: float) -> Basis:

@@ -11,7 +11,7 @@ same angle for slow and fast moves.
 import numpy as np
 
 from frictioncli.effects.base import Basis, Effect, EffectTable, Parameter, Signature
-from frictioncli.effects.pairs import turning_points
+from frictioncli.effects.pair_series import turning_points
 
 
 def basis(table: EffectTable, *, distance: float, side: float) -> Basis:

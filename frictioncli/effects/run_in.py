@@ -7,7 +7,7 @@ running-in, but an effect of temperature, or of rest, after which grease has flo
 import numpy as np
 
 from frictioncli.effects.base import Basis, Effect, EffectTable, Parameter, Signature, friction_only
-from frictioncli.effects.pairs import starts
+from frictioncli.effects.pair_series import starts
 
 
 def basis(table: EffectTable, *, distance: float) -> Basis:

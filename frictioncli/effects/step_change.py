@@ -7,7 +7,7 @@ is then found as easily as one between two runs, however long the joint stood st
 import numpy as np
 
 from frictioncli.effects.base import Basis, Effect, EffectTable, Parameter, Signature, friction_only
-from frictioncli.effects.pairs import measured_share, series_starts
+from frictioncli.effects.pair_series import measured_share, series_starts
 
 
 def basis(table: EffectTable, *, moment: float) -> Basis:

@@ -19,7 +19,7 @@ start of each run the gear is taken to be as warm as the motor.
 import numpy as np
 
 from frictioncli.effects.base import Basis, Effect, EffectTable, Parameter, Signature, friction_only
-from frictioncli.effects.pairs import (
+from frictioncli.effects.pair_series import (
     first_order_lag,
     first_order_response,
     friction_power,

@@ -12,7 +12,7 @@ sharp.
 import numpy as np
 
 from frictioncli.effects.base import Basis, Effect, EffectTable, Parameter, Signature, friction_only
-from frictioncli.effects.pairs import pair_heads
+from frictioncli.effects.pair_series import pair_heads
 
 
 def basis(table: EffectTable, *, exponent: float) -> Basis:

@@ -9,7 +9,7 @@ from typing import Any
 from frictioncli import __version__
 from frictioncli.errors import FrictionError, OptionError
 from frictioncli.fleet.joint import JointTask, Outcome, run_joint
-from frictioncli.fleet.local import given_up
+from frictioncli.fleet.local_pool import given_up
 
 _PATIENCE = 60
 """How long a scheduler and its first worker are waited for. [s]"""

@@ -21,9 +21,9 @@ from frictioncli.fleet.joint import (
     Outcome,
     settings_document,
 )
+from frictioncli.fleet.joint_record import check_own, read_row
 from frictioncli.fleet.layout import joints_of
-from frictioncli.fleet.local import run_local
-from frictioncli.fleet.note import check_own, read_row
+from frictioncli.fleet.local_pool import run_local
 from frictioncli.fleet.settings import FleetSettings
 from frictioncli.provenance import Provenance, sha256
 from frictioncli.stages.run import RunSettings

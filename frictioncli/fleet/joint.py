@@ -14,9 +14,9 @@ from threadpoolctl import threadpool_limits
 from frictioncli import __version__
 from frictioncli.errors import FrictionError, LogError
 from frictioncli.files import write_text
+from frictioncli.fleet.joint_record import FAILURE, Note, emptied, read_note, write_note
 from frictioncli.fleet.layout import JointLogs
-from frictioncli.fleet.note import FAILURE, Note, emptied, read_note, write_note
-from frictioncli.fleet.row import row_of, unused_runs
+from frictioncli.fleet.table_row import row_of, unused_runs
 from frictioncli.provenance import sha256
 from frictioncli.stages import run as pipeline
 from frictioncli.stages.run import RunSettings

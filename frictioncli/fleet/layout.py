@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from frictioncli.errors import LogError, MappingError
-from frictioncli.reading.discovery import natural_key
+from frictioncli.logs.runs.discovery import natural_key
 
 REQUIRED = ("robot", "joint", "run", "path")
 """Columns that a table of contents must have."""

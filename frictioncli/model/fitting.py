@@ -6,8 +6,8 @@ import numpy as np
 import pandas as pd
 
 from frictioncli.errors import NotEnoughData
-from frictioncli.model.determinacy import Determination, at_bound, determined_fit
 from frictioncli.model.document import PARAMETERS, FrictionModel, ParameterEstimate
+from frictioncli.model.identifiability import Determination, at_bound, determined_fit
 from frictioncli.model.identification import Estimate
 from frictioncli.model.observations import observations
 from frictioncli.model.paper_method import consecutive_fit

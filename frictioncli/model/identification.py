@@ -15,7 +15,7 @@ from frictioncli.model.equations import Equations, jacobian
 from frictioncli.model.friction import FrictionParameters, friction_torque
 from frictioncli.model.noise import Noise, pair_covariance, plausible_noise
 from frictioncli.model.observations import Observations
-from frictioncli.model.projection import minimise
+from frictioncli.model.variable_projection import minimise
 
 Array = NDArray[np.float64]
 

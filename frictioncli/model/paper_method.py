@@ -11,9 +11,9 @@ import pandas as pd
 from numpy.typing import NDArray
 
 from frictioncli.errors import NotEnoughData
-from frictioncli.model.determinacy import Determination
 from frictioncli.model.equations import COEFFICIENTS, Equations, jacobian
 from frictioncli.model.friction import FrictionParameters, friction_torque
+from frictioncli.model.identifiability import Determination
 from frictioncli.model.identification import (
     Estimate,
     contrast_inflation,
@@ -25,7 +25,7 @@ from frictioncli.model.identification import (
 )
 from frictioncli.model.noise import pair_covariance, plausible_noise
 from frictioncli.model.observations import Observations
-from frictioncli.model.projection import minimise
+from frictioncli.model.variable_projection import minimise
 from frictioncli.model.zero_load import friction_at_zero_load, temperature_of
 
 Array = NDArray[np.float64]

@@ -23,7 +23,7 @@ _WARM_AXES = ("temperature", "motor_temperature", "housing_temperature")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Series:
+class BinnedSeries:
     """Rows that are binned apart from the others.
 
     Attributes
@@ -67,7 +67,7 @@ class Binned:
     term: Array
 
 
-def series_of(table: EffectTable, axis: str, channel: str) -> list[Series]:
+def series_of(table: EffectTable, axis: str, channel: str) -> list[BinnedSeries]:
     """Return how the rows are split, so that an effect's evidence does not cancel in the mean.
 
     Parameters
@@ -95,12 +95,12 @@ def series_of(table: EffectTable, axis: str, channel: str) -> list[Series]:
     return _two(np.ones(len(table.speed), bool), "", "")
 
 
-def _two(chosen: NDArray[np.bool_], name: str, other: str) -> list[Series]:
+def _two(chosen: NDArray[np.bool_], name: str, other: str) -> list[BinnedSeries]:
     if chosen.all() or not chosen.any():
-        return [Series(name="", colour=MODEL, filled=True, rows=np.ones(len(chosen), bool))]
+        return [BinnedSeries(name="", colour=MODEL, filled=True, rows=np.ones(len(chosen), bool))]
     return [
-        Series(name=name, colour=HEATING, filled=True, rows=chosen),
-        Series(name=other, colour=COOLING, filled=False, rows=~chosen),
+        BinnedSeries(name=name, colour=HEATING, filled=True, rows=chosen),
+        BinnedSeries(name=other, colour=COOLING, filled=False, rows=~chosen),
     ]
 
 

@@ -5,9 +5,9 @@ from dataclasses import dataclass
 from typing import Any
 
 from frictioncli.effects import BY_NAME
-from frictioncli.report.content import TextTable
 from frictioncli.report.labels import counted, listed, number, share_text, speed_text, words
 from frictioncli.report.results import JointResults
+from frictioncli.report.text_tables import TextTable
 
 UNDETECTABLE = "cannot be shown by these data"
 

@@ -12,11 +12,11 @@ from numpy.typing import NDArray
 
 from frictioncli import tables
 from frictioncli.correction.settings import CorrectionSettings, ScheduleSettings
-from frictioncli.diagnosis.applied import without_effects
-from frictioncli.diagnosis.extended import ExtendedModel, read_extended
+from frictioncli.diagnosis.documents.apply_extension import without_effects
+from frictioncli.diagnosis.documents.extended_model import ExtendedModel, read_extended
 from frictioncli.errors import NotEnoughData
 from frictioncli.model.document import FrictionModel, read_models
-from frictioncli.report.epsilon import compared_criterion
+from frictioncli.report.epsilon_figures import compared_criterion
 from frictioncli.report.labels import (
     CRITERION_WORDS,
     TEMPERATURE_SYMBOLS,
@@ -24,8 +24,8 @@ from frictioncli.report.labels import (
     number,
     speed_text,
 )
-from frictioncli.report.missing import evaluation_missing
-from frictioncli.report.replayed import Grid, ReplayedPhase, replayed_phases
+from frictioncli.report.replayed_schedules import ReplayedPhase, ScheduleGrid, replayed_phases
+from frictioncli.report.requirements import evaluation_missing
 from frictioncli.report.results import MOST_RUNS, JointResults
 from frictioncli.report.style import PHASE_WORDS
 from frictioncli.workfiles import EVALUATION, EXTENDED
@@ -126,7 +126,7 @@ def explorer(
     )
     criterion = compared_criterion(results, bounded=False)
     rows = results.evaluation[results.evaluation["criterion"] == criterion]
-    grid = Grid(
+    grid = ScheduleGrid(
         criterion=criterion,
         k=tuple(sorted(float(k) for k in rows["k"].unique())),
         tmax=tuple(sorted(float(tmax) for tmax in rows["tmax"].unique())),
@@ -179,7 +179,7 @@ def _lacking(extension: ExtendedModel | None) -> str:
     return ""
 
 
-def _agree(phases: list[ReplayedPhase], evaluation: pd.DataFrame, grid: Grid) -> bool:
+def _agree(phases: list[ReplayedPhase], evaluation: pd.DataFrame, grid: ScheduleGrid) -> bool:
     """Return whether the evaluation has the same errors and corrections as the replays."""
     keys = ["run", "phase", "k", "tmax"]
     table = evaluation[evaluation["criterion"].isin(("none", grid.criterion))].set_index(keys)
@@ -198,7 +198,7 @@ def _agree(phases: list[ReplayedPhase], evaluation: pd.DataFrame, grid: Grid) ->
     )
 
 
-def _start(results: JointResults, grid: Grid) -> tuple[int, int]:
+def _start(results: JointResults, grid: ScheduleGrid) -> tuple[int, int]:
     """Return the place of the simulated setting in the grid; of the usual one without it."""
     usual = ScheduleSettings()
     k, tmax = usual.k, usual.tmax

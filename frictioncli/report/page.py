@@ -13,14 +13,11 @@ from markupsafe import Markup, escape
 from frictioncli import __version__
 from frictioncli.files import whole
 from frictioncli.report import style
-from frictioncli.report.catalogue import FIGURES, FigureEntry, runs_drawn_note
-from frictioncli.report.content import TextTable, epsilon_tables, pairs_table
-from frictioncli.report.diagnosis import DiagnosisSection, diagnosis_sections
+from frictioncli.report.diagnosis_section import DiagnosisSection, diagnosis_sections
 from frictioncli.report.explorer import Explorer, explorers
+from frictioncli.report.figure_list import FIGURES, FigureEntry, runs_drawn_note
 from frictioncli.report.formula import formula, symbols, unit_markup
 from frictioncli.report.labels import inert, listed
-from frictioncli.report.lights import Light, Reading, lights
-from frictioncli.report.missing import evaluation_missing
 from frictioncli.report.parameters import (
     ParameterRow,
     correlation_table,
@@ -29,8 +26,11 @@ from frictioncli.report.parameters import (
     unknowns,
 )
 from frictioncli.report.quality import data_quality
+from frictioncli.report.quality_lights import Light, LightReading, lights
+from frictioncli.report.requirements import evaluation_missing
 from frictioncli.report.results import JointResults, read_results
 from frictioncli.report.summary import KeyFigure, key_figures, measured, summary
+from frictioncli.report.text_tables import TextTable, epsilon_tables, pairs_table
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -152,7 +152,7 @@ def _title(results: list[JointResults]) -> str:
 
 
 def _page_joints(
-    work: Path, results: list[JointResults], reading: Reading, traces: str
+    work: Path, results: list[JointResults], reading: LightReading, traces: str
 ) -> list[PageJoint]:
     diagnoses, explored = diagnosis_sections(work, results), explorers(work, results)
     return [

@@ -7,10 +7,10 @@ from typing import Any
 
 from frictioncli.model.document import PARAMETERS
 from frictioncli.model.friction import PUBLISHED
-from frictioncli.report.content import TextTable
 from frictioncli.report.labels import PARAMETER_SYMBOLS, listed, number, words
-from frictioncli.report.lights import vague_parameters
+from frictioncli.report.quality_lights import vague_parameters
 from frictioncli.report.results import JointResults
+from frictioncli.report.text_tables import TextTable
 
 _MEANINGS = {
     "tau_c": "Coulomb friction",

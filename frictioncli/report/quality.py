@@ -10,10 +10,10 @@ from typing import Any
 import pandas as pd
 
 from frictioncli import schemas, tables
-from frictioncli.report.content import TextTable
 from frictioncli.report.labels import counted, grouped
-from frictioncli.report.lights import Reading
+from frictioncli.report.quality_lights import LightReading
 from frictioncli.report.results import JointResults, read_optional
+from frictioncli.report.text_tables import TextTable
 
 _STORED = ("samples", "recordings", "rejected", "pairs", "torques", "schedule", "evaluation")
 
@@ -65,7 +65,7 @@ class Quality:
         The counts in a sentence.
     files : tuple of str
         The logs that were read.
-    reading : Reading
+    reading : LightReading
         The counts that the lights judge.
     """
 
@@ -74,7 +74,7 @@ class Quality:
     origins: tuple[Origin, ...]
     sentence: str
     files: tuple[str, ...]
-    reading: Reading
+    reading: LightReading
 
 
 def data_quality(work: Path, results: list[JointResults]) -> Quality:
@@ -115,8 +115,8 @@ def data_quality(work: Path, results: list[JointResults]) -> Quality:
     )
 
 
-def _reading(files: pd.DataFrame, rejected: pd.DataFrame, facts: Mapping[str, Any]) -> Reading:
-    return Reading(
+def _reading(files: pd.DataFrame, rejected: pd.DataFrame, facts: Mapping[str, Any]) -> LightReading:
+    return LightReading(
         rows=int(files["rows_read"].sum()),
         rejected=int(files["rows_rejected"].sum()),
         files=len(files),

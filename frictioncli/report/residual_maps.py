@@ -8,7 +8,7 @@ from matplotlib.collections import QuadMesh
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
-from frictioncli.diagnosis.recall import Recalled
+from frictioncli.diagnosis.documents.reload import Reloaded
 from frictioncli.effects.base import EffectTable
 from frictioncli.report.binning import levels, parting
 from frictioncli.report.labels import TEMPERATURE_SYMBOLS
@@ -44,14 +44,14 @@ class Scale:
         return np.searchsorted(self.edges[1:-1], self.values, side="right")
 
 
-def map_figure(results: JointResults, *, recalled: Recalled) -> Figure:
+def map_figure(results: JointResults, *, recalled: Reloaded) -> Figure:
     """Draw the misfit of both channels over speed, temperature, angle and time.
 
     Parameters
     ----------
     results : JointResults
         One joint's results.
-    recalled : Recalled
+    recalled : Reloaded
         Its diagnosis.
     """
     seen = recalled.seen

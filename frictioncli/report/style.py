@@ -21,7 +21,7 @@ from matplotlib.colors import to_hex, to_rgb
 from matplotlib.figure import Figure
 from numpy.typing import ArrayLike
 
-from frictioncli.report.hover import tell, with_titles
+from frictioncli.report.tooltips import tell, with_titles
 
 WIDTH = 8.0
 """Width of every figure, so that its text has one size on the page. [inch]"""

@@ -8,7 +8,7 @@ import numpy as np
 import pandas as pd
 
 from frictioncli.model.document import PARAMETERS
-from frictioncli.report.epsilon import compared_criterion, setting_text
+from frictioncli.report.epsilon_figures import compared_criterion, setting_text
 from frictioncli.report.labels import (
     CRITERION_WORDS,
     PARAMETER_SYMBOLS,

@@ -5,12 +5,12 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from frictioncli.simulator.history import History
-from frictioncli.simulator.joint import Joint
+from frictioncli.simulator.joint import SimulatedJoint
+from frictioncli.simulator.motion_profile import MotionProfile, Servo, move_duration
+from frictioncli.simulator.paper_protocol import PaperProgram, SeriesOfMoves
 from frictioncli.simulator.planted.journey import Journey
 from frictioncli.simulator.planted.state import State, state_of
-from frictioncli.simulator.profile import Motion, Servo, move_duration
-from frictioncli.simulator.program import Program, Series
+from frictioncli.simulator.thermal_history import History
 
 BIN = 5.0
 """Width of the angle bins [deg]."""
@@ -73,7 +73,7 @@ class Trips:
     load: NDArray[np.int64]
 
 
-def trips_of(program: Program, servo: Servo, series: tuple[Series, ...]) -> Trips:
+def trips_of(program: PaperProgram, servo: Servo, series: tuple[SeriesOfMoves, ...]) -> Trips:
     """Return the round trips of a run's series."""
     counts = [len(one.speeds) for one in series]
     return Trips(
@@ -87,8 +87,8 @@ def trips_of(program: Program, servo: Servo, series: tuple[Series, ...]) -> Trip
 
 
 def cells_of(
-    joint: Joint,
-    program: Program,
+    joint: SimulatedJoint,
+    program: PaperProgram,
     history: History,
     journey: Journey,
     trips: Trips,
@@ -100,9 +100,9 @@ def cells_of(
 
     Parameters
     ----------
-    joint : Joint
+    joint : SimulatedJoint
         The joint with that payload.
-    program, history, journey, trips : Program, History, Journey, Trips
+    program, history, journey, trips : PaperProgram, History, Journey, Trips
         The run.
     load : int
         Number of the payload.
@@ -138,7 +138,7 @@ def cells_of(
     state = state_of(
         joint,
         journey,
-        Motion(position=position, velocity=velocity, acceleration=np.zeros(position.shape)),
+        MotionProfile(position=position, velocity=velocity, acceleration=np.zeros(position.shape)),
         time=time,
         since_reversal=since,
         temperatures=history.at(time),

@@ -3,9 +3,9 @@
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from frictioncli.simulator.history import History
-from frictioncli.simulator.joint import Joint, MeanPower
-from frictioncli.simulator.thermal import Ambient
+from frictioncli.simulator.joint import MeanPower, SimulatedJoint
+from frictioncli.simulator.thermal_history import History
+from frictioncli.simulator.thermal_network import Ambient
 
 STEP = 30.0
 """Longest step; the fastest part of the joint, its sensor, takes minutes [s]."""
@@ -14,7 +14,7 @@ STEP = 30.0
 class FastHistory(History):
     """The history by the midpoint rule, the dissipated power held within each step."""
 
-    def __init__(self, joint: Joint, ambient: Ambient) -> None:
+    def __init__(self, joint: SimulatedJoint, ambient: Ambient) -> None:
         super().__init__(joint, ambient)
         self._names = joint.network.names
         self._times = [0.0]

@@ -7,9 +7,9 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from frictioncli.simulator.arm import Arm
-from frictioncli.simulator.profile import Servo, move_duration, round_trips
-from frictioncli.simulator.thermal import ThermalNetwork
-from frictioncli.simulator.zones import Zone, friction_torque
+from frictioncli.simulator.friction_zones import Zone, friction_torque
+from frictioncli.simulator.motion_profile import Servo, move_duration, round_trips
+from frictioncli.simulator.thermal_network import ThermalNetwork
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -33,7 +33,7 @@ class HeatEntry:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Joint:
+class SimulatedJoint:
     """All that is true about the simulated joint."""
 
     arm: Arm
@@ -85,7 +85,7 @@ class MeanPower:
         Absolute velocity, averaged with the standing times. [rad/s]
     """
 
-    def __init__(self, joint: Joint, trips: RoundTrips) -> None:
+    def __init__(self, joint: SimulatedJoint, trips: RoundTrips) -> None:
         distance = abs(trips.angles[1] - trips.angles[0])
         moving = move_duration(joint.servo, distance=distance, speed=trips.speed)
         motion, _, _ = round_trips(

@@ -9,7 +9,7 @@ from scipy.signal import lfilter
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Noise:
+class SimulatedNoise:
     """Standard deviations and correlation times of the random parts.
 
     Attributes

@@ -5,14 +5,14 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from frictioncli.simulator.noise import Noise
+from frictioncli.simulator.noise import SimulatedNoise
 
 PAIR_SPACING = 75.0
 """Mean time between the pairs of the thermal cycle, over which drift coefficients hold [s]."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class UnevenNoise(Noise):
+class UnevenNoise(SimulatedNoise):
     """Torque noise that is not the same for all samples.
 
     Attributes
@@ -53,7 +53,7 @@ OUTLIER = 10.0
 """Factor on the noise of an outlier [-]."""
 
 
-def noise_of_kind(kind: str, default: Noise) -> Noise:
+def noise_of_kind(kind: str, default: SimulatedNoise) -> SimulatedNoise:
     """Return the noise of a kind.
 
     Parameters
@@ -64,7 +64,7 @@ def noise_of_kind(kind: str, default: Noise) -> Noise:
         with that correlation, in percent, over the mean time between two pairs of the cycle;
         ``outliers``: 1 % of the samples have ten times the noise; ``heteroscedastic``: noise grows
         with torque and speed.
-    default : Noise
+    default : SimulatedNoise
         The default noise.
     """
     if kind == "default":

@@ -8,14 +8,14 @@ import pandas as pd
 
 from frictioncli.simulator.cells import Cells, cells_of, trips_of
 from frictioncli.simulator.fast_history import FastHistory
-from frictioncli.simulator.history import MOTOR, History
+from frictioncli.simulator.paper_protocol import SeriesOfMoves, measure
 from frictioncli.simulator.planted.catalogue import asked
 from frictioncli.simulator.planted.journey import Before, look_back
 from frictioncli.simulator.planted.planting import Planted, plant
-from frictioncli.simulator.program import Series, measure
-from frictioncli.simulator.run import DAY, Course, Run, joint_of, prepare
+from frictioncli.simulator.run import DAY, RunCourse, SimulatedRun, joint_of, prepare
 from frictioncli.simulator.settings import SynthesisSettings
 from frictioncli.simulator.tabular import table_of
+from frictioncli.simulator.thermal_history import MOTOR, History
 
 _LOOK = 30.0
 """Moves that heat look at the motor's temperature so often [s]."""
@@ -106,7 +106,7 @@ def simulate_programmes(
         )
         journey = look_back(history, run.program.angles, first=series[0].start, before=before)
         trips = trips_of(run.program, run.joint.servo, series)
-        course = Course(run=run, history=history, series=series, trips=trips, journey=journey)
+        course = RunCourse(run=run, history=history, series=series, trips=trips, journey=journey)
         courses.append(course)
         cells.append(_cells(course, setups))
         operated += history.time
@@ -120,8 +120,8 @@ def simulate_programmes(
 
 
 def _run(
-    settings: SynthesisSettings, run: Run, acts: Sequence[Act]
-) -> tuple[Run, History, tuple[Series, ...], tuple[Setup, ...]]:
+    settings: SynthesisSettings, run: SimulatedRun, acts: Sequence[Act]
+) -> tuple[SimulatedRun, History, tuple[SeriesOfMoves, ...], tuple[Setup, ...]]:
     """Let one run take its course; its payloads are then its setups'."""
     setups = tuple(dict.fromkeys(_setup(act) for act in acts if isinstance(act, Measured)))
     share = settings.motor_heat_share[run.number % len(settings.motor_heat_share)]
@@ -148,7 +148,7 @@ def _setup(act: Measured) -> Setup:
     return act.more, act.low, act.high
 
 
-def _move(history: History, run: Run, act: Moved) -> None:
+def _move(history: History, run: SimulatedRun, act: Moved) -> None:
     trips = replace(run.program, angles=(act.low, act.high)).trips(act.speed)
     sensor = run.joint.network.names.index(MOTOR)
     left = act.seconds
@@ -157,7 +157,7 @@ def _move(history: History, run: Run, act: Moved) -> None:
         left -= _LOOK
 
 
-def _cells(course: Course, setups: Sequence[Setup]) -> list[Cells]:
+def _cells(course: RunCourse, setups: Sequence[Setup]) -> list[Cells]:
     run = course.run
     return [
         cells_of(

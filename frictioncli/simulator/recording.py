@@ -6,13 +6,13 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from frictioncli.simulator.history import HOUSING, MOTOR, History
-from frictioncli.simulator.joint import Joint
-from frictioncli.simulator.noise import Noise
+from frictioncli.simulator.joint import SimulatedJoint
+from frictioncli.simulator.motion_profile import MotionProfile, round_trips
+from frictioncli.simulator.noise import SimulatedNoise
+from frictioncli.simulator.paper_protocol import PaperProgram, SeriesOfMoves
 from frictioncli.simulator.planted.journey import Journey
 from frictioncli.simulator.planted.state import STANDING_SPEED, Extra, State, state_of
-from frictioncli.simulator.profile import Motion, round_trips
-from frictioncli.simulator.program import Program, Series
+from frictioncli.simulator.thermal_history import HOUSING, MOTOR, History
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -72,8 +72,8 @@ def registered(value: ArrayLike, step: float) -> NDArray[np.float64]:
 
 
 def control_torque(
-    joint: Joint,
-    motion: Motion,
+    joint: SimulatedJoint,
+    motion: MotionProfile,
     *,
     temperatures: dict[str, NDArray[np.float64]],
     sign: int,
@@ -83,9 +83,9 @@ def control_torque(
 
     Parameters
     ----------
-    joint : Joint
+    joint : SimulatedJoint
         The joint.
-    motion : Motion
+    motion : MotionProfile
         Its motion.
     temperatures : dict
         Node temperatures at the motion's samples. [°C]
@@ -108,13 +108,13 @@ def control_torque(
 
 
 def record(
-    joint: Joint,
-    program: Program,
+    joint: SimulatedJoint,
+    program: PaperProgram,
     history: History,
-    series: Series,
+    series: SeriesOfMoves,
     *,
     logger: Logger,
-    noise: Noise,
+    noise: SimulatedNoise,
     pair_offsets: NDArray[np.float64],
     generator: np.random.Generator,
     hidden: Callable[[State], Extra] | None = None,
@@ -124,13 +124,13 @@ def record(
 
     Parameters
     ----------
-    joint, program, history : Joint, Program, History
+    joint, program, history : SimulatedJoint, PaperProgram, History
         What moves, how, and at which temperatures.
-    series : Series
+    series : SeriesOfMoves
         The series to log.
     logger : Logger
         Sampling and resolutions.
-    noise : Noise
+    noise : SimulatedNoise
         Torque noise.
     pair_offsets : ndarray
         Friction offset of each of the series' round trips. [N·m]

@@ -5,20 +5,20 @@ from datetime import datetime, timedelta
 
 import numpy as np
 
-from frictioncli.simulator import defaults
+from frictioncli.simulator import default_joint
 from frictioncli.simulator.cells import Trips, cells_of, trips_of
-from frictioncli.simulator.enriched import PAYLOADS, SPEEDS, run_enriched
-from frictioncli.simulator.history import History, ThermalHistory
-from frictioncli.simulator.joint import Joint
-from frictioncli.simulator.noise import Noise
+from frictioncli.simulator.enriched_protocol import PAYLOADS, SPEEDS, run_enriched
+from frictioncli.simulator.joint import SimulatedJoint
+from frictioncli.simulator.noise import SimulatedNoise
 from frictioncli.simulator.noise_kinds import noise_of_kind
-from frictioncli.simulator.plain import plain_joint
+from frictioncli.simulator.paper_protocol import PaperProgram, SeriesOfMoves, run_program
+from frictioncli.simulator.plain_joint import plain_joint
 from frictioncli.simulator.planted.journey import Before, Journey, look_back
 from frictioncli.simulator.planted.state import State
-from frictioncli.simulator.program import Program, Series, run_program
 from frictioncli.simulator.recording import Logger
 from frictioncli.simulator.settings import SynthesisSettings
-from frictioncli.simulator.thermal import Ambient
+from frictioncli.simulator.thermal_history import History, ThermalHistory
+from frictioncli.simulator.thermal_network import Ambient
 
 FIRST_DAY = datetime(2019, 3, 4, 8, 0, 0)
 """Start of the first run; each further run starts a day later."""
@@ -31,7 +31,7 @@ _ORDER_STREAM = 1_000_000
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Run:
+class SimulatedRun:
     """Everything that one run is simulated with.
 
     Attributes
@@ -46,9 +46,9 @@ class Run:
         Number of the joint in the traces' channel names.
     payloads : tuple of float
         Masses at the flange that its series have. [kg]
-    joints : tuple of Joint
+    joints : tuple of SimulatedJoint
         The joint with each of them.
-    program, ambient, logger, noise : Program, Ambient, Logger, Noise
+    program, ambient, logger, noise : PaperProgram, Ambient, Logger, SimulatedNoise
         Motion, surroundings and recording.
     seeds : numpy.random.SeedSequence
         Source of all its random parts.
@@ -61,27 +61,27 @@ class Run:
     day: datetime
     axis: int
     payloads: tuple[float, ...]
-    joints: tuple[Joint, ...]
-    program: Program
+    joints: tuple[SimulatedJoint, ...]
+    program: PaperProgram
     ambient: Ambient
     logger: Logger
-    noise: Noise
+    noise: SimulatedNoise
     seeds: np.random.SeedSequence
     enriched: bool
 
     @property
-    def joint(self) -> Joint:
+    def joint(self) -> SimulatedJoint:
         """The joint with the first payload."""
         return self.joints[0]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Course:
+class RunCourse:
     """How a run went: its temperatures and series, and what lies behind each moment."""
 
-    run: Run
+    run: SimulatedRun
     history: History
-    series: tuple[Series, ...]
+    series: tuple[SeriesOfMoves, ...]
     trips: Trips
     journey: Journey
 
@@ -101,7 +101,9 @@ class Course:
         ]
 
 
-def prepare(settings: SynthesisSettings, number: int, seeds: np.random.SeedSequence) -> Run:
+def prepare(
+    settings: SynthesisSettings, number: int, seeds: np.random.SeedSequence
+) -> SimulatedRun:
     """Return run ``number``, counted from 0, of a synthesis."""
 
     def own(values: tuple[float, ...]) -> float:
@@ -109,8 +111,8 @@ def prepare(settings: SynthesisSettings, number: int, seeds: np.random.SeedSeque
 
     enriched = settings.protocol == "enriched"
     payloads = tuple(settings.payload + more for more in (PAYLOADS if enriched else (0.0,)))
-    program = replace(defaults.PROGRAM, lowest=settings.lowest, highest=settings.highest)
-    return Run(
+    program = replace(default_joint.PROGRAM, lowest=settings.lowest, highest=settings.highest)
+    return SimulatedRun(
         name=f"day{number + 1}",
         number=number,
         day=FIRST_DAY + timedelta(days=number),
@@ -122,22 +124,22 @@ def prepare(settings: SynthesisSettings, number: int, seeds: np.random.SeedSeque
         program=replace(program, sweep_speeds=(), cycle_speeds=SPEEDS) if enriched else program,
         ambient=Ambient(start=own(settings.ambient), drift=own(settings.ambient_drift)),
         logger=replace(
-            defaults.LOGGER,
+            default_joint.LOGGER,
             sign=settings.sign,
-            interval=defaults.LOGGER.interval * settings.thin,
+            interval=default_joint.LOGGER.interval * settings.thin,
         ),
-        noise=noise_of_kind(settings.noise_kind, defaults.NOISE).scaled(settings.noise_scale),
+        noise=noise_of_kind(settings.noise_kind, default_joint.NOISE).scaled(settings.noise_scale),
         seeds=seeds,
         enriched=enriched,
     )
 
 
-def simulate(runs: list[Run], kind: type[History] = ThermalHistory) -> list[Course]:
+def simulate(runs: list[SimulatedRun], kind: type[History] = ThermalHistory) -> list[RunCourse]:
     """Let runs take their course, one after the other on the same joint.
 
     Parameters
     ----------
-    runs : list of Run
+    runs : list of SimulatedRun
         The runs.
     kind : type of History
         How temperatures are integrated.
@@ -156,7 +158,7 @@ def simulate(runs: list[Run], kind: type[History] = ThermalHistory) -> list[Cour
         )
         journey = look_back(history, run.program.angles, first=series[0].start, before=before)
         courses.append(
-            Course(
+            RunCourse(
                 run=run,
                 history=history,
                 series=series,
@@ -169,7 +171,7 @@ def simulate(runs: list[Run], kind: type[History] = ThermalHistory) -> list[Cour
     return courses
 
 
-def _run(run: Run, kind: type[History]) -> tuple[History, tuple[Series, ...]]:
+def _run(run: SimulatedRun, kind: type[History]) -> tuple[History, tuple[SeriesOfMoves, ...]]:
     if not run.enriched:
         return run_program(run.joint, run.program, run.ambient, kind)
     own = np.random.SeedSequence(run.seeds.entropy, spawn_key=(*run.seeds.spawn_key, _ORDER_STREAM))
@@ -177,9 +179,9 @@ def _run(run: Run, kind: type[History]) -> tuple[History, tuple[Series, ...]]:
     return run_enriched(run.joints, run.program, run.ambient, generator, kind)
 
 
-def joint_of(kind: str, payload: float, motor_heat_share: float) -> Joint:
+def joint_of(kind: str, payload: float, motor_heat_share: float) -> SimulatedJoint:
     """Return the joint of a kind with a payload [kg] and a share of heat at the motor."""
-    joint = defaults.joint(payload=payload, motor_heat_share=motor_heat_share)
+    joint = default_joint.joint(payload=payload, motor_heat_share=motor_heat_share)
     if kind == "zones":
         return joint
     return plain_joint(arm=joint.arm, servo=joint.servo, motor_heat_share=motor_heat_share)

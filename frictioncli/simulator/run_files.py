@@ -8,11 +8,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from frictioncli.simulator.enriched import second_shares
+from frictioncli.simulator.enriched_protocol import second_shares
+from frictioncli.simulator.paper_protocol import SeriesOfMoves
 from frictioncli.simulator.planted.state import Extra, State
-from frictioncli.simulator.program import Series
 from frictioncli.simulator.recording import record
-from frictioncli.simulator.run import Course
+from frictioncli.simulator.run import RunCourse
 from frictioncli.simulator.trace_writer import ManifestRow, manifest_text, moment, write_trace
 
 MANIFEST = "manifest.csv"
@@ -53,13 +53,13 @@ class _Planned:
     """A series with its file name and, for each round trip, begin and friction offset."""
 
     file: str
-    series: Series
+    series: SeriesOfMoves
     begins: NDArray[np.float64]
     offsets: NDArray[np.float64]
 
 
 def write_run(
-    folder: Path, course: Course, hidden: Callable[[State], Extra] | None = None
+    folder: Path, course: RunCourse, hidden: Callable[[State], Extra] | None = None
 ) -> tuple[RunSummary, dict[str, Any]]:
     """Write a run's traces and manifest.
 
@@ -67,7 +67,7 @@ def write_run(
     ----------
     folder : Path
         Folder to make.
-    course : Course
+    course : RunCourse
         How the run went.
     hidden : callable, optional
         Returns what planted effects add at a state.
@@ -119,7 +119,7 @@ def generator_of(seed: np.random.SeedSequence) -> np.random.Generator:
     return np.random.Generator(np.random.PCG64(seed))
 
 
-def _durations(series: tuple[Series, ...]) -> tuple[float, float]:
+def _durations(series: tuple[SeriesOfMoves, ...]) -> tuple[float, float]:
     """Return how long the first heat-up and the first cool-down took [s]."""
     phases = [one.phase for one in series]
     hot = phases.index("heat-up")
@@ -128,7 +128,7 @@ def _durations(series: tuple[Series, ...]) -> tuple[float, float]:
     return series[cool].start - series[hot].start, series[end - 1].start - series[cool].start
 
 
-def _plan(course: Course, generator: np.random.Generator) -> tuple[_Planned, ...]:
+def _plan(course: RunCourse, generator: np.random.Generator) -> tuple[_Planned, ...]:
     """Name the series so that they sort by time, and draw their friction offsets."""
     series, begins = course.series, course.trips.begin
     offsets = course.run.noise.pair_offsets(generator, begins)
@@ -140,7 +140,7 @@ def _plan(course: Course, generator: np.random.Generator) -> tuple[_Planned, ...
     )
 
 
-def _manifest_row(course: Course, planned: _Planned) -> ManifestRow:
+def _manifest_row(course: RunCourse, planned: _Planned) -> ManifestRow:
     run, series = course.run, planned.series
     return ManifestRow(
         file=planned.file,
@@ -151,7 +151,7 @@ def _manifest_row(course: Course, planned: _Planned) -> ManifestRow:
     )
 
 
-def _truth(course: Course, planned: tuple[_Planned, ...]) -> dict[str, Any]:
+def _truth(course: RunCourse, planned: tuple[_Planned, ...]) -> dict[str, Any]:
     """Return every parameter of a run, and its true temperatures at each round trip's begin."""
     run = course.run
     recordings = []

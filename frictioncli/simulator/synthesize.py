@@ -10,7 +10,7 @@ import numpy as np
 from frictioncli import files
 from frictioncli.errors import OptionError
 from frictioncli.provenance import to_json
-from frictioncli.simulator.joint import Joint
+from frictioncli.simulator.joint import SimulatedJoint
 from frictioncli.simulator.planted.catalogue import asked
 from frictioncli.simulator.planted.planting import Planted, plant
 from frictioncli.simulator.run import prepare, simulate
@@ -129,7 +129,7 @@ def synthesize(folder: Path, settings: SynthesisSettings | None = None) -> Synth
     )
 
 
-def _friction(joint: Joint, kind: str) -> str:
+def _friction(joint: SimulatedJoint, kind: str) -> str:
     if kind == "plain":
         return "friction of equation (16) at the motor's true temperature"
     zones = ", ".join(f"{zone.name} ({zone.node})" for zone in joint.zones)

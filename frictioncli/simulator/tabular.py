@@ -8,15 +8,15 @@ from numpy.typing import NDArray
 
 from frictioncli.simulator.cells import Cells, cells_of
 from frictioncli.simulator.fast_history import FastHistory
-from frictioncli.simulator.history import HOUSING, MOTOR
-from frictioncli.simulator.noise import Noise
+from frictioncli.simulator.noise import SimulatedNoise
 from frictioncli.simulator.noise_kinds import OUTLIER, UnevenNoise
 from frictioncli.simulator.planted.catalogue import asked
 from frictioncli.simulator.planted.planting import Planted, plant
 from frictioncli.simulator.recording import registered
-from frictioncli.simulator.run import Course, prepare, simulate
+from frictioncli.simulator.run import RunCourse, prepare, simulate
 from frictioncli.simulator.run_files import generator_of
 from frictioncli.simulator.settings import SynthesisSettings
+from frictioncli.simulator.thermal_history import HOUSING, MOTOR
 
 REBUILT = 0.05
 """Standard deviation of a motor temperature that is rebuilt from its whole degrees [K]."""
@@ -86,7 +86,7 @@ def simulate_world(settings: SynthesisSettings, *, rebuilt: bool = True) -> Worl
     return World(together, planted)
 
 
-def run_cells(course: Course) -> list[Cells]:
+def run_cells(course: RunCourse) -> list[Cells]:
     """Return the angle bins of one run, payload by payload."""
     run = course.run
     return [
@@ -104,7 +104,7 @@ def run_cells(course: Course) -> list[Cells]:
 
 
 def table_of(
-    course: Course, parts: list[Cells], planted: Planted, rebuilt: bool = True
+    course: RunCourse, parts: list[Cells], planted: Planted, rebuilt: bool = True
 ) -> pd.DataFrame:
     """Return the torques of one run from its cells."""
     run, trips = course.run, course.trips
@@ -163,7 +163,7 @@ def _torque(part: Cells, planted: Planted, sign: int) -> NDArray[np.float64]:
     return np.asarray(np.mean(torque, axis=0) + slope * away)
 
 
-def _middles(course: Course) -> NDArray[np.float64]:
+def _middles(course: RunCourse) -> NDArray[np.float64]:
     """Return the time from each round trip's begin to the middle of its pair [s]."""
     run = course.run
     durations = [
@@ -173,7 +173,7 @@ def _middles(course: Course) -> NDArray[np.float64]:
 
 
 def _temperatures(
-    course: Course, time: NDArray[np.float64], generator: np.random.Generator, rebuilt: bool
+    course: RunCourse, time: NDArray[np.float64], generator: np.random.Generator, rebuilt: bool
 ) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
     """Return motor temperature, its reading and housing temperature per round trip [°C]."""
     logger, noise = course.run.logger, course.run.noise
@@ -183,7 +183,7 @@ def _temperatures(
     if not rebuilt:
         return reading, reading, housing
     quiet = noise.white == noise.slow == noise.per_pair == 0.0
-    error = Noise(
+    error = SimulatedNoise(
         white=0.0,
         correlated=0.0,
         correlation_time=1.0,
@@ -195,7 +195,7 @@ def _temperatures(
 
 
 def _noise(
-    noise: Noise,
+    noise: SimulatedNoise,
     generator: np.random.Generator,
     torque: NDArray[np.float64],
     speed: NDArray[np.float64],

@@ -9,16 +9,16 @@ from pathlib import Path
 import pandas as pd
 
 from frictioncli import schemas, tables
-from frictioncli.comparing.comparison import compare_runs
-from frictioncli.comparing.days import Folder, distinct_names, in_order
-from frictioncli.comparing.document import comparison_document
-from frictioncli.comparing.settings import ComparisonSettings
-from frictioncli.comparing.text import comparison_text
+from frictioncli.comparison.compare import compare_runs
+from frictioncli.comparison.days import Folder, distinct_names, in_order
+from frictioncli.comparison.document import comparison_document
+from frictioncli.comparison.settings import ComparisonSettings
+from frictioncli.comparison.text import comparison_text
 from frictioncli.errors import OptionError
 from frictioncli.files import whole, write_text
 from frictioncli.model.document import FrictionModel, read_models
 from frictioncli.provenance import Provenance, sha256, to_json
-from frictioncli.report.trend import trend_pictures
+from frictioncli.report.trend_figure import trend_pictures
 from frictioncli.stages.stage import Done, stage
 from frictioncli.workfiles import COMPARISON, MODEL, RECORDINGS, TORQUES
 from frictioncli.workfolder import outdated

@@ -6,8 +6,12 @@ from pathlib import Path
 
 from frictioncli import schemas, tables
 from frictioncli.diagnosis.diagnose import diagnose_joint
-from frictioncli.diagnosis.document import diagnosis_document, extended_document, verdict_text
-from frictioncli.diagnosis.ramps import ramp_logs
+from frictioncli.diagnosis.documents.document import (
+    diagnosis_document,
+    extended_document,
+    verdict_text,
+)
+from frictioncli.diagnosis.ramps.evidence import ramp_logs
 from frictioncli.diagnosis.settings import DiagnosisSettings
 from frictioncli.errors import NotEnoughData
 from frictioncli.files import write_text

@@ -5,11 +5,11 @@ from typing import Any
 
 from frictioncli import __version__, schemas, tables
 from frictioncli.correction.settings import ScheduleSettings
-from frictioncli.deployment.deployed import DeployedModel, middle_speed
+from frictioncli.deployment.deployed_model import DeployedModel, middle_speed
 from frictioncli.deployment.export import export as exported
-from frictioncli.deployment.extension import LAG, Extension, carried
+from frictioncli.deployment.extension import LAG, DeployedExtension, carried
 from frictioncli.deployment.settings import ExportSettings
-from frictioncli.diagnosis.recall import read_documents
+from frictioncli.diagnosis.documents.reload import read_documents
 from frictioncli.errors import OptionError, TableError
 from frictioncli.files import write_text
 from frictioncli.model.document import FrictionModel, read_models
@@ -77,7 +77,7 @@ def _chosen(source: Path, joint: int | None) -> FrictionModel:
     return models[joint]
 
 
-def _extension(work: Path, model: FrictionModel) -> Extension | None:
+def _extension(work: Path, model: FrictionModel) -> DeployedExtension | None:
     documents = read_documents(work)
     if model.joint not in documents:
         raise TableError(

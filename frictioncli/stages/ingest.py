@@ -2,9 +2,9 @@
 
 from pathlib import Path
 
-from frictioncli.reading.discovery import Logs
-from frictioncli.reading.ingest import ingest as ingest_logs
-from frictioncli.reading.settings import IngestSettings
+from frictioncli.logs.ingest import ingest as ingest_logs
+from frictioncli.logs.runs.discovery import Logs
+from frictioncli.logs.settings import IngestSettings
 from frictioncli.stages.stage import Done, stage
 from frictioncli.workfiles import SAMPLES
 

@@ -4,13 +4,13 @@ from dataclasses import asdict
 from pathlib import Path
 
 from frictioncli import schemas, tables
-from frictioncli.motion.given import given
-from frictioncli.motion.pages import Pages
-from frictioncli.motion.pairing import pair_spans
-from frictioncli.motion.results import pair_rows, ramp_rows
-from frictioncli.motion.settings import PairingSettings
-from frictioncli.motion.spans import Joint, find_spans
-from frictioncli.motion.summary import PairTally, pairing_text
+from frictioncli.pairs.manifest_facts import given
+from frictioncli.pairs.pair_tables import pair_rows, ramp_rows
+from frictioncli.pairs.pairing import pair_segments
+from frictioncli.pairs.partitioned_store import PartitionedStore
+from frictioncli.pairs.segments import Joint, find_segments
+from frictioncli.pairs.settings import PairingSettings
+from frictioncli.pairs.summary import PairTally, pairing_text
 from frictioncli.provenance import Provenance, hashes
 from frictioncli.stages.stage import Done, present, stage
 from frictioncli.workfiles import PAIRS, RAMPS, RECORDINGS, SAMPLES
@@ -26,14 +26,14 @@ def pair(work: Path, settings: PairingSettings | None = None) -> Done:
     said = given(work / RECORDINGS)
     tally = PairTally()
     with (
-        Pages[Joint](work) as moving,
-        Pages[Joint](work) as paired,
+        PartitionedStore[Joint](work) as moving,
+        PartitionedStore[Joint](work) as paired,
         tables.TableWriter(work / RAMPS, schemas.RAMPS, provenance) as ramps,
         tables.TableWriter(work / PAIRS, schemas.PAIRS, provenance) as pairs,
     ):
         samples = tables.ahead(tables.batches(source, schemas.SAMPLES))
-        found = find_spans(samples, settings.steady, settings.bin_width, moving)
-        pairing = pair_spans(found, settings, paired, said["payload"])
+        found = find_segments(samples, settings.steady, settings.bin_width, moving)
+        pairing = pair_segments(found, settings, paired, said["payload"])
         facts |= {
             "samples": found.samples,
             "dropped": pairing.dropped,

@@ -6,21 +6,16 @@ from pathlib import Path
 from typing import Any
 
 from frictioncli import schemas, tables
-from frictioncli.diagnosis.recall import is_current, read_documents
+from frictioncli.design.block import Block
+from frictioncli.design.document import block_document, limits_document, plan_document, plan_text
+from frictioncli.design.limits import Limits
+from frictioncli.design.paper_protocol import algorithms, new_limits, usual_seconds
+from frictioncli.design.plan import plan_joint
+from frictioncli.design.programs import FORMS
+from frictioncli.design.programs.programme import REDUCED, Programme
+from frictioncli.design.settings import PlanSettings
+from frictioncli.diagnosis.documents.reload import is_current, read_documents
 from frictioncli.errors import NotEnoughData, OptionError, TableError
-from frictioncli.experiment.block import Block
-from frictioncli.experiment.document import (
-    block_document,
-    limits_document,
-    plan_document,
-    plan_text,
-)
-from frictioncli.experiment.limits import Limits
-from frictioncli.experiment.paper import algorithms, new_limits, usual_seconds
-from frictioncli.experiment.plan import plan_joint
-from frictioncli.experiment.programs import FORMS
-from frictioncli.experiment.programs.programme import REDUCED, Programme
-from frictioncli.experiment.settings import PlanSettings
 from frictioncli.files import write_text
 from frictioncli.model.document import read_models
 from frictioncli.provenance import Provenance, hashes, to_json

@@ -7,10 +7,10 @@ from pathlib import Path
 from frictioncli.correction.settings import CorrectionSettings, EvaluationGrid, ScheduleSettings
 from frictioncli.diagnosis.settings import DiagnosisSettings
 from frictioncli.errors import NotEnoughData
+from frictioncli.logs.runs.discovery import Logs
+from frictioncli.logs.settings import IngestSettings
 from frictioncli.model.settings import FitSettings
-from frictioncli.motion.settings import PairingSettings
-from frictioncli.reading.discovery import Logs
-from frictioncli.reading.settings import IngestSettings
+from frictioncli.pairs.settings import PairingSettings
 from frictioncli.stages.diagnose import diagnose
 from frictioncli.stages.evaluate import evaluate
 from frictioncli.stages.fit import fit

@@ -3,9 +3,9 @@
 from pathlib import Path
 
 from frictioncli import schemas, tables
-from frictioncli.motion.separation import separate as separate_pairs
-from frictioncli.motion.separation import sign_conventions
-from frictioncli.motion.summary import TorqueRanges, separation_text
+from frictioncli.pairs.separation import separate as separate_pairs
+from frictioncli.pairs.separation import sign_conventions
+from frictioncli.pairs.summary import TorqueRanges, separation_text
 from frictioncli.provenance import Provenance, hashes
 from frictioncli.stages.stage import Done, stage
 from frictioncli.workfiles import PAIRS, TORQUES

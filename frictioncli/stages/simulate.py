@@ -6,7 +6,7 @@ from pathlib import Path
 import pandas as pd
 
 from frictioncli import schemas
-from frictioncli.correction import stage as correction
+from frictioncli.correction import evaluation as correction
 from frictioncli.correction.settings import CorrectionSettings, ScheduleSettings
 from frictioncli.model.document import FrictionModel
 from frictioncli.stages.corrected import corrected

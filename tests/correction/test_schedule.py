@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from frictioncli.correction.degrees import next_changes
+from frictioncli.correction.degree_crossings import next_changes
 from frictioncli.correction.schedule import equally_spaced, first_degree, latest_degree
 
 

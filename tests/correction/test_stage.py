@@ -4,13 +4,13 @@ import numpy as np
 import pytest
 
 from frictioncli import schemas
+from frictioncli.correction.evaluation import epsilon, evaluate, simulate
 from frictioncli.correction.replay import phase_data, replay, smoothed_friction
 from frictioncli.correction.settings import (
     CorrectionSettings,
     EvaluationGrid,
     ScheduleSettings,
 )
-from frictioncli.correction.stage import epsilon, evaluate, simulate
 from frictioncli.errors import NotEnoughData, OptionError
 from frictioncli.model.document import FrictionModel, ParameterEstimate
 from frictioncli.model.friction import PUBLISHED

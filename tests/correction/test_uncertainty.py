@@ -12,10 +12,10 @@ from frictioncli.correction.deviation import (
     estimated_deviation,
     probes_of,
 )
+from frictioncli.correction.evaluation import evaluate
 from frictioncli.correction.replay import PhaseData
 from frictioncli.correction.settings import CorrectionSettings, EvaluationGrid, ScheduleSettings
-from frictioncli.correction.stage import evaluate
-from frictioncli.correction.uncertainty import Belief, follow
+from frictioncli.correction.uncertainty import FilterState, follow
 from frictioncli.errors import NotEnoughData, OptionError
 from frictioncli.model.friction import PUBLISHED, friction_torque
 from tests.correction.test_stage import published_model, shifted, simulated
@@ -74,7 +74,7 @@ def followed(data, bound, how=None):
 def test_between_corrections_the_estimate_fades_and_its_variance_grows():
     """After half a correlation length: 0.2 + 0.8 e^-0.5, and 0.5 e^-1 + 4 (1 - e^-1)."""
     how = process(spread=2.0, mean=0.2, length=3.0)
-    belief = Belief(clock=np.array([7.0]), mean=np.array([1.0]), variance=np.array([0.5]))
+    belief = FilterState(clock=np.array([7.0]), mean=np.array([1.0]), variance=np.array([0.5]))
     mean, variance = belief.at(np.array([[7.0], [8.5], [1e6]]), how)
     np.testing.assert_allclose(mean[:, 0], [1.0, 0.685225, 0.2], atol=1e-6)
     np.testing.assert_allclose(variance[:, 0], [0.5, 2.712422, 4.0], atol=1e-6)
@@ -83,7 +83,7 @@ def test_between_corrections_the_estimate_fades_and_its_variance_grows():
 def test_a_correction_moves_by_the_share_that_its_noise_leaves():
     """Variance 4 against noise 1: four fifths of the way, and 0.8 is left."""
     how = process(spread=2.0, noise=1.0)
-    start = Belief(clock=np.zeros(1), mean=how.mean, variance=how.variance, untouched=True)
+    start = FilterState(clock=np.zeros(1), mean=how.mean, variance=how.variance, untouched=True)
     after = start.corrected(5.0, np.zeros(1), how)
     assert (after.mean[0], after.variance[0]) == (pytest.approx(4.0), pytest.approx(0.8))
     assert not after.untouched
@@ -91,7 +91,7 @@ def test_a_correction_moves_by_the_share_that_its_noise_leaves():
 
 def test_before_the_first_correction_nothing_is_corrected_and_the_mean_is_error():
     how = process(spread=2.0, mean=3.0)
-    start = Belief(clock=np.zeros(1), mean=how.mean, variance=how.variance, untouched=True)
+    start = FilterState(clock=np.zeros(1), mean=how.mean, variance=how.variance, untouched=True)
     deviation, error = start.predicted(np.array([[0.0], [50.0]]), how)
     np.testing.assert_allclose(deviation, 0.0)
     np.testing.assert_allclose(error, 13.0)
@@ -106,7 +106,7 @@ def test_ways_that_the_process_may_be_are_weighed():
         variance=np.array([1.0, 4.0]),
         noise=np.zeros(2),
     )
-    belief = Belief(clock=np.zeros(2), mean=np.array([1.0, 2.0]), variance=np.zeros(2))
+    belief = FilterState(clock=np.zeros(2), mean=np.array([1.0, 2.0]), variance=np.zeros(2))
     deviation, error = belief.predicted(np.ones((1, 2)), both)
     assert deviation[0] == pytest.approx(0.25 * np.exp(-1) + 0.75 * 2 * np.exp(-0.5))
     assert error[0] == pytest.approx(0.25 * (1 - np.exp(-2)) + 0.75 * 4 * (1 - np.exp(-1)))

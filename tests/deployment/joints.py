@@ -5,10 +5,10 @@ from dataclasses import replace
 import numpy as np
 
 from frictioncli.correction.settings import ScheduleSettings
-from frictioncli.deployment.deployed import DeployedModel
-from frictioncli.deployment.extension import Extension
-from frictioncli.deployment.gear import GearLag
-from frictioncli.diagnosis.extended import FittedEffect
+from frictioncli.deployment.deployed_model import DeployedModel
+from frictioncli.deployment.extension import DeployedExtension
+from frictioncli.deployment.gear_temperature import GearLag
+from frictioncli.diagnosis.documents.extended_model import FittedEffect
 from frictioncli.effects import BY_NAME
 from frictioncli.model.document import ParameterEstimate
 from frictioncli.model.friction import PUBLISHED
@@ -79,7 +79,7 @@ TERMS = (
 
 
 def extended(terms=TERMS, gear=LAG):
-    return Extension(
+    return DeployedExtension(
         about=PUBLISHED,
         parameters=replace(PUBLISHED, tau_c=9.9, alpha=0.0015, beta=3.0, gamma=20.0, delta=0.07),
         gear=gear,

@@ -7,9 +7,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from frictioncli.correction.evaluation import simulate
 from frictioncli.correction.replay import phase_data
 from frictioncli.correction.settings import CorrectionSettings, ScheduleSettings
-from frictioncli.correction.stage import simulate
 from frictioncli.deployment.export import export
 from frictioncli.deployment.settings import ExportSettings
 from frictioncli.model.friction import temperature_from_friction

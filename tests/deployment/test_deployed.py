@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 
 from frictioncli.correction.corrector import TemperatureCorrector
 from frictioncli.correction.settings import ScheduleSettings
-from frictioncli.deployment.deployed import middle_speed
+from frictioncli.deployment.deployed_model import middle_speed
 from frictioncli.deployment.document import load_deployed
 from frictioncli.deployment.export import export
 from frictioncli.deployment.extended_corrector import ExtendedCorrector

@@ -12,17 +12,21 @@ from hypothesis import strategies as st
 from scipy.integrate import solve_ivp
 
 from frictioncli.correction.corrector import TemperatureCorrector
+from frictioncli.correction.evaluation import simulate
 from frictioncli.correction.settings import CorrectionSettings, ScheduleSettings
-from frictioncli.correction.stage import simulate
 from frictioncli.deployment.extended_corrector import ExtendedCorrector
 from frictioncli.deployment.extension import MEMORYLESS, carried
-from frictioncli.deployment.gear import GearTemperature
-from frictioncli.diagnosis.applied import friction_beyond, with_effects, without_effects
-from frictioncli.diagnosis.extended import ExtendedModel, FittedEffect
-from frictioncli.diagnosis.gravity import stated_gravity
-from frictioncli.diagnosis.problem import simulated
+from frictioncli.deployment.gear_temperature import GearTemperature
+from frictioncli.diagnosis.data.gravity import stated_gravity
+from frictioncli.diagnosis.data.problem import simulated
+from frictioncli.diagnosis.documents.apply_extension import (
+    friction_beyond,
+    with_effects,
+    without_effects,
+)
+from frictioncli.diagnosis.documents.extended_model import ExtendedModel, FittedEffect
 from frictioncli.effects import BY_NAME
-from frictioncli.effects.pairs import friction_power, pair_heads
+from frictioncli.effects.pair_series import friction_power, pair_heads
 from frictioncli.model.friction import PUBLISHED
 from tests.correction.test_stage import published_model
 from tests.deployment.joints import LAG, effect

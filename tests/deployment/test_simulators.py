@@ -5,10 +5,10 @@ import xml.etree.ElementTree as ET
 import numpy as np
 import pytest
 
-from frictioncli.deployment.conditions import conditions
 from frictioncli.deployment.export import export
+from frictioncli.deployment.operating_conditions import conditions
 from frictioncli.deployment.settings import ExportSettings
-from frictioncli.deployment.simple_form import simple_form
+from frictioncli.deployment.simplified_friction import simple_form
 from frictioncli.errors import OptionError
 from frictioncli.model.friction import PUBLISHED, friction_torque
 from tests.deployment.joints import joint

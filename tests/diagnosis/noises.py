@@ -4,9 +4,9 @@ import numpy as np
 import pandas as pd
 from scipy.linalg import null_space
 
-from frictioncli.diagnosis.layout import PairLayout
-from frictioncli.diagnosis.problem import simulated
-from frictioncli.diagnosis.spectra import STRENGTHS
+from frictioncli.diagnosis.data.pair_layout import PairLayout
+from frictioncli.diagnosis.data.problem import simulated
+from frictioncli.diagnosis.noise.spectra import STRENGTHS
 from frictioncli.model.friction import FrictionParameters
 from tests.model.worlds import TRUTH, cycle_temperatures, torques
 

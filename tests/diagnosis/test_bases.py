@@ -4,8 +4,8 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from frictioncli.diagnosis.problem import build_problems
-from frictioncli.diagnosis.search import find_causes
+from frictioncli.diagnosis.data.problem import build_problems
+from frictioncli.diagnosis.search.cause_search import find_causes
 from frictioncli.diagnosis.settings import DiagnosisSettings
 from frictioncli.effects import EFFECTS
 from tests.model.worlds import TRUTH, torques

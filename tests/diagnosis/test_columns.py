@@ -8,8 +8,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
-from frictioncli.diagnosis.bench import Bench, Catalogue, point_noise
-from frictioncli.diagnosis.columns import (
+from frictioncli.diagnosis.data.gravity import carried_load
+from frictioncli.diagnosis.fit.columns import (
     Hypothesis,
     base_rows,
     hypothesis_of,
@@ -17,7 +17,7 @@ from frictioncli.diagnosis.columns import (
     misfit_column,
     reduced,
 )
-from frictioncli.diagnosis.gravity import carried_load
+from frictioncli.diagnosis.search.precomputed import Catalogue, Precomputed, point_noise
 from frictioncli.effects import BY_NAME, EFFECTS
 from frictioncli.effects.base import Basis
 from frictioncli.model.friction import FrictionParameters, friction_torque
@@ -220,7 +220,7 @@ def test_point_noise_is_that_of_a_row_about_its_pair(joint, channel):
 
 
 def test_a_catalogue_keeps_order_and_can_do_without(joint):
-    bench = Bench.of(joint)
+    bench = Precomputed.of(joint)
     effects = [BY_NAME[name] for name in ("linear_viscous", "inertia", "load_linear")]
     whole = Catalogue.of(bench, [hypothesis_of(effect, joint) for effect in effects])
     shapes = len(BY_NAME["inertia"].shapes(joint.whole))
@@ -239,7 +239,7 @@ def test_a_catalogue_keeps_order_and_can_do_without(joint):
 
 
 def test_a_catalogue_can_be_empty(joint):
-    bench = Bench.of(joint)
+    bench = Precomputed.of(joint)
     empty = Catalogue.of(bench, [hypothesis_of(BY_NAME["drift"], joint)]).without({"drift"})
     assert empty.columns.count == 0
     assert empty.hypotheses == ()

@@ -2,7 +2,7 @@
 
 import pytest
 
-from frictioncli.diagnosis.extended import FittedEffect
+from frictioncli.diagnosis.documents.extended_model import FittedEffect
 from frictioncli.errors import TableError
 
 RUN_IN = {"name": "run_in", "coefficients": {"initial_excess": {"estimate": 2.0}}}

@@ -7,12 +7,12 @@ import pandas as pd
 import pytest
 
 from frictioncli import schemas, tables
-from frictioncli.diagnosis.applied import without_effects
+from frictioncli.diagnosis.data.gravity import gravity_columns, gravity_document, stated_gravity
+from frictioncli.diagnosis.data.problem import build_problems, simulated
 from frictioncli.diagnosis.diagnose import diagnose_joint
-from frictioncli.diagnosis.extended import read_extended
-from frictioncli.diagnosis.gravity import gravity_columns, gravity_document, stated_gravity
-from frictioncli.diagnosis.problem import build_problems, simulated
-from frictioncli.diagnosis.recall import read_documents, recall
+from frictioncli.diagnosis.documents.apply_extension import without_effects
+from frictioncli.diagnosis.documents.extended_model import read_extended
+from frictioncli.diagnosis.documents.reload import read_documents, reload
 from frictioncli.diagnosis.settings import DiagnosisSettings
 from frictioncli.errors import TableError
 from frictioncli.model.document import read_models
@@ -142,7 +142,7 @@ def test_an_extended_model_with_payloads_is_read_back(tmp_path):
     assert set(written["gravity_about"]) == set(written["gravity"])
     stored = tables.read(path, schemas.TORQUES)
     (document, extended), *_ = read_documents(tmp_path).values()
-    found = recall(stored, document, extended)
+    found = reload(stored, document, extended)
     before, after = (np.std(rows["load"]) for rows in (found.new.before, found.new.after))
     assert after < 0.5 < before
     (model,) = read_models(tmp_path / EXTENDED)

@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from frictioncli.diagnosis.groups import Groups, unmixing
+from frictioncli.diagnosis.noise.orthonormal_groups import Groups, unmixing
 
 
 def inner_products(columns):

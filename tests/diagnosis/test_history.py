@@ -6,8 +6,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from frictioncli.diagnosis.history import clock_of, series, travel_of
-from frictioncli.diagnosis.layout import PairLayout
+from frictioncli.diagnosis.data.motion_history import clock_of, series, travel_of
+from frictioncli.diagnosis.data.pair_layout import PairLayout
 
 INF = np.inf
 

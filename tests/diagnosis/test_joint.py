@@ -7,9 +7,9 @@ import pytest
 from scipy import stats
 from scipy.linalg import block_diag, null_space
 
-from frictioncli.diagnosis.joint import Equations, noise_of, solved, solved_each
-from frictioncli.diagnosis.scan import null_of, weighted_gram
-from frictioncli.diagnosis.spectra import STRENGTHS, spectra_of
+from frictioncli.diagnosis.fit.two_channel_fit import NormalEquations, noise_of, solved, solved_each
+from frictioncli.diagnosis.noise.likelihood_scan import null_of, weighted_gram
+from frictioncli.diagnosis.noise.spectra import STRENGTHS, spectra_of
 from tests.diagnosis import noises
 
 PAIRS = noises.layout(40, 30, bins=2)
@@ -46,7 +46,7 @@ def both(seed=0, contrasts=50):
 
 def fitted(channels, inside, means, base=2):
     friction, load = (
-        Equations(
+        NormalEquations(
             inside=rows.T @ rows,
             between=inner(spectrum, setting, columns),
             determinant=0.0,
@@ -136,7 +136,7 @@ def test_likelihood_is_that_of_the_contrasts():
         second = np.hstack([zero, zero, offset, *(0 * one for one in rivals), load])
         places = [(null[0], own, setting, first), (null[1], other, (2, 3), second)]
         channels = (
-            Equations(
+            NormalEquations(
                 inside=np.zeros((columns.shape[1],) * 2),
                 between=inner(noises_of, place, columns),
                 determinant=float(alone.determinant[place]),
@@ -272,7 +272,7 @@ def test_many_rivals_at_once_are_fitted_as_each_alone():
             change(rows)
         cases.append(parts)
     stacked = tuple(
-        Equations(
+        NormalEquations(
             inside=np.stack([case[0][number].T @ case[0][number] for case in cases]),
             between=np.stack([inner(*channels[number], case[1][number]) for case in cases]),
             determinant=0.0,

@@ -6,7 +6,13 @@ import numpy as np
 import pytest
 
 from frictioncli import schemas, tables
-from frictioncli.diagnosis.ramps import MOST_SAID, RampLog, arbitrated, ramp_evidence, ramp_logs
+from frictioncli.diagnosis.ramps.evidence import (
+    MOST_SAID,
+    RampLog,
+    arbitrated,
+    ramp_evidence,
+    ramp_logs,
+)
 from frictioncli.model.friction import PUBLISHED, friction_torque
 from frictioncli.provenance import Provenance
 from tests import found

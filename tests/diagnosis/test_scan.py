@@ -9,10 +9,10 @@ from hypothesis import strategies as st
 from scipy import stats
 from scipy.linalg import null_space
 
-from frictioncli.diagnosis import scan as scanning
-from frictioncli.diagnosis.groups import Groups
-from frictioncli.diagnosis.scan import null_of, scan, span, weighted_gram
-from frictioncli.diagnosis.spectra import STRENGTHS, spectra_of
+from frictioncli.diagnosis.noise import likelihood_scan as scanning
+from frictioncli.diagnosis.noise.likelihood_scan import null_of, scan, span, weighted_gram
+from frictioncli.diagnosis.noise.orthonormal_groups import Groups
+from frictioncli.diagnosis.noise.spectra import STRENGTHS, spectra_of
 from tests.diagnosis import noises
 
 PAIRS = noises.layout(13, 9, bins=[2, 3] * 11)

@@ -5,13 +5,13 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from frictioncli.diagnosis import search
-from frictioncli.diagnosis.bench import Bench, Catalogue
-from frictioncli.diagnosis.columns import hypothesis_of
-from frictioncli.diagnosis.judged import Score
-from frictioncli.diagnosis.search import find_causes
+from frictioncli.diagnosis.fit.columns import hypothesis_of
+from frictioncli.diagnosis.fit.judgement import Score
+from frictioncli.diagnosis.search import cause_search
+from frictioncli.diagnosis.search.cause_search import find_causes
+from frictioncli.diagnosis.search.precomputed import Catalogue, Precomputed
+from frictioncli.diagnosis.search.step import Step
 from frictioncli.diagnosis.settings import DiagnosisSettings
-from frictioncli.diagnosis.step import Step
 from tests.diagnosis.noises import problem
 from tests.diagnosis.waves import THREE, A, B, C, effect, wave
 
@@ -23,7 +23,7 @@ def catalogue(monkeypatch):
     """Make the search know other effects than those of the catalogue."""
 
     def known(*effects):
-        monkeypatch.setattr(search, "BY_NAME", {one.name: one for one in effects})
+        monkeypatch.setattr(cause_search, "BY_NAME", {one.name: one for one in effects})
         return effects
 
     return known
@@ -68,7 +68,7 @@ def test_a_first_wrong_name_is_replaced(catalogue):
     mixture = effect("mixture", [(1.0, A), (1.0, B), (0.3, C)])
     effects = catalogue(mixture, effect("a", [(1.0, A)]), effect("b", [(1.0, B)]))
     data = problem(10, friction=lambda rows: A(rows) + 0.6 * B(rows))
-    bench = Bench.of(data)
+    bench = Precomputed.of(data)
     first = Step.of(bench, []).judged(
         Catalogue.of(bench, [hypothesis_of(one, data) for one in effects]), 0, 0
     )
@@ -80,9 +80,9 @@ def test_a_first_wrong_name_is_replaced(catalogue):
 
 
 def hunting(data, effects):
-    bench = Bench.of(data)
+    bench = Precomputed.of(data)
     hypotheses = Catalogue.of(bench, [hypothesis_of(one, data) for one in effects])
-    return search._Hunt(bench, hypotheses, SETTINGS, None)
+    return cause_search._Search(bench, hypotheses, SETTINGS, None)
 
 
 def guessed(one, *coefficients):
@@ -120,7 +120,7 @@ def test_what_was_dropped_does_not_come_back(catalogue, monkeypatch):
         assert len(tried) < 10
         return accepted[:-1]
 
-    monkeypatch.setattr(search._Hunt, "settled", fickle)
+    monkeypatch.setattr(cause_search._Search, "settled", fickle)
     data = problem(18, friction=lambda rows: A(rows) + 0.5 * B(rows) + 2.0 * C(rows))
     assert find_causes(data, effects, SETTINGS).causes == ()
     assert tried == ["c", "a", "b"]
@@ -187,7 +187,7 @@ def test_the_search_ends_whatever_the_catalogue(catalogue, monkeypatch, seed):
     )
     mixed = list(zip(generator.normal(size=5), waves, strict=True))
     tried = []
-    settled = search._Hunt.settled
+    settled = cause_search._Search.settled
 
     def counted(hunt, accepted):
         tried.append([one.effect.name for one in accepted])
@@ -195,7 +195,7 @@ def test_the_search_ends_whatever_the_catalogue(catalogue, monkeypatch, seed):
         assert len(tried) <= 9 * 5
         return settled(hunt, accepted)
 
-    monkeypatch.setattr(search._Hunt, "settled", counted)
+    monkeypatch.setattr(cause_search._Search, "settled", counted)
     data = problem(seed, friction=lambda rows: sum(a * one(rows) for a, one in mixed))
     found = find_causes(data, effects, SETTINGS)
     assert 1 <= len(found.causes) <= SETTINGS.most

@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from frictioncli.diagnosis.columns import Channel
-from frictioncli.diagnosis.side import Side
-from frictioncli.diagnosis.spectra import spectra_of
+from frictioncli.diagnosis.fit.channel_likelihood import ChannelLikelihood
+from frictioncli.diagnosis.fit.columns import ChannelColumns
+from frictioncli.diagnosis.noise.spectra import spectra_of
 from tests.diagnosis import noises
 
 PAIRS = noises.layout(14, 11, bins=[2, 3, 2, 3, 2] * 5)
@@ -15,12 +15,14 @@ GENERATOR = np.random.default_rng(9)
 
 
 def channel(columns):
-    return Channel(GENERATOR.normal(size=(40, columns)), GENERATOR.normal(size=(COUNT, columns)))
+    return ChannelColumns(
+        GENERATOR.normal(size=(40, columns)), GENERATOR.normal(size=(COUNT, columns))
+    )
 
 
 BASE, RIVALS, MISFIT = channel(3), channel(5), channel(1)
 SPECTRA = spectra_of(PAIRS, POINT, np.linspace(0, 0.2, COUNT), MISFIT.means[:, 0])
-SIDE = Side.of(SPECTRA, POINT, BASE, MISFIT)
+SIDE = ChannelLikelihood.of(SPECTRA, POINT, BASE, MISFIT)
 
 
 def products(chosen, setting):
@@ -45,7 +47,7 @@ def test_equations_of_many_rivals_are_those_of_their_rows(columns, setting):
 
 
 def test_equations_of_the_base_alone_hold_base_and_misfit():
-    nothing = Channel(RIVALS.inside[:, :0], RIVALS.means[:, :0])
+    nothing = ChannelColumns(RIVALS.inside[:, :0], RIVALS.means[:, :0])
     found = SIDE.equations(nothing, nothing.means, (2, 4))
     inside, between = products([], (2, 4))
     np.testing.assert_allclose(found.inside, inside, rtol=1e-9, atol=1e-9)

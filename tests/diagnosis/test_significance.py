@@ -6,7 +6,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy import integrate, stats
 
-from frictioncli.diagnosis.significance import (
+from frictioncli.diagnosis.noise.significance import (
     Chance,
     chance_of,
     credible_set,

@@ -6,7 +6,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
-from frictioncli.diagnosis.spectra import STRENGTHS, spectra_of
+from frictioncli.diagnosis.noise.spectra import STRENGTHS, spectra_of
 from tests.diagnosis.noises import alike, layout
 
 PAIRS = layout(7, 5, bins=[2, 3, 4] * 4)

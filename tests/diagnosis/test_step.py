@@ -5,11 +5,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from frictioncli.diagnosis.adequacy import structures
-from frictioncli.diagnosis.bench import Bench, Catalogue
-from frictioncli.diagnosis.columns import hypothesis_of
-from frictioncli.diagnosis.judged import Score
-from frictioncli.diagnosis.step import Step
+from frictioncli.diagnosis.fit.columns import hypothesis_of
+from frictioncli.diagnosis.fit.judgement import Score
+from frictioncli.diagnosis.search.lack_of_fit import structures
+from frictioncli.diagnosis.search.precomputed import Catalogue, Precomputed
+from frictioncli.diagnosis.search.step import Step
 from frictioncli.effects import BY_NAME
 from tests.diagnosis.noises import problem
 from tests.diagnosis.waves import A, B, C, effect, wave
@@ -26,7 +26,7 @@ ASKED = (
 
 
 def judged(data, names, draws=0, seed=0):
-    bench = Bench.of(data)
+    bench = Precomputed.of(data)
     step = Step.of(bench, [])
     catalogue = Catalogue.of(bench, [hypothesis_of(BY_NAME[name], data) for name in names])
     return step, step.judged(catalogue, seed, draws)
@@ -81,7 +81,7 @@ def test_noise_has_no_structure_beyond_chance():
     least = []
     for seed in range(4):
         data = problem(seed, **DRIFTS[seed % 3])
-        step = Step.of(Bench.of(data), [])
+        step = Step.of(Precomputed.of(data), [])
         found = structures(step, seed)
         assert found == sorted(found, key=lambda one: one.p_value)
         least.append(found[0].p_value)
@@ -127,7 +127,7 @@ def test_a_size_is_the_torque_of_its_white_length(name, channel):
         column = getattr(step.problem.basis(effect, shape), channel)[:, 0]
         planted = 10 * scale * column / np.sqrt(np.mean(np.square(column)))
         data = replace(step.problem, **{channel: getattr(step.problem, channel) + planted})
-        bench = Bench.of(data)
+        bench = Precomputed.of(data)
         alone = Catalogue.of(bench, [hypothesis_of(effect, data, [shape])])
         statistics.append(Step.of(bench, []).judged(alone, 0, 0)[name].statistic)
         assert one.size_scale > 0
@@ -160,7 +160,7 @@ def test_what_physics_forbids_explains_nothing(name):
 
 def test_the_noise_of_a_step_is_that_of_the_data():
     """Rows 0.3, pair means of 0.25 and 0.2 in friction, 0.1 in load: medians of 9 problems."""
-    noise = [Step.of(Bench.of(problem(seed)), []).noise() for seed in range(9)]
+    noise = [Step.of(Precomputed.of(problem(seed)), []).noise() for seed in range(9)]
     for number, between in ((0, np.hypot(0.25, 0.2)), (1, 0.1)):
         point = np.median([one[number].point for one in noise])
         pair = np.median([np.hypot(one[number].pair, one[number].drift) for one in noise])
@@ -188,7 +188,7 @@ def test_a_size_is_visible_as_far_as_the_base_cannot_take_it():
     """A constant torque with a wave on it: the base takes the constant."""
     only = effect("any", [(1.0, C), (3.0, lambda rows: np.ones_like(rows.position))])
     data = problem(6, friction=lambda rows: 2.0 * C(rows))
-    step = Step.of(Bench.of(data), [])
+    step = Step.of(Precomputed.of(data), [])
     score = Score(only, {}, np.array([2.0]), np.eye(1), 1.0)
     assert step.size(score) == pytest.approx(np.sqrt(2.0 + 36.0), rel=0.02)
     assert step.visible(score) == pytest.approx(np.sqrt(2.0), rel=0.1)
@@ -197,7 +197,7 @@ def test_a_size_is_visible_as_far_as_the_base_cannot_take_it():
 def test_accepted_effects_are_part_of_the_base():
     data = problem(7, friction=lambda rows: 1.0 * A(rows) + 1.0 * B(rows))
     first, second = effect("a", [(1.0, A)]), effect("b", [(1.0, B)])
-    bench = Bench.of(data)
+    bench = Precomputed.of(data)
     accepted = Score(first, {}, np.array([1.0]), np.eye(1), 1.0)
     step = Step.of(bench, [accepted])
     assert step.base_count == Step.of(bench, []).base_count + 1

@@ -7,8 +7,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from frictioncli.diagnosis.layout import PairLayout
-from frictioncli.diagnosis.weighing import Weighing, Weights
+from frictioncli.diagnosis.data.pair_layout import PairLayout
+from frictioncli.diagnosis.fit.weighted_fit import WeightedFit, Weights
 from frictioncli.model.noise import Noise
 from tests.diagnosis import noises
 
@@ -76,7 +76,7 @@ def correlation(weights):
 
 
 def weighing():
-    return Weighing(Weights.of(PAIRS, NOISE, EXTRA), Weights.of(PAIRS, QUIET, 0 * EXTRA))
+    return WeightedFit(Weights.of(PAIRS, NOISE, EXTRA), Weights.of(PAIRS, QUIET, 0 * EXTRA))
 
 
 def columns(seed):

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
-from frictioncli.effects.pairs import (
+from frictioncli.effects.pair_series import (
     first_order_lag,
     first_order_response,
     measured_share,

@@ -8,8 +8,8 @@ import time
 from dataclasses import dataclass
 from pathlib import Path
 
+from frictioncli.fleet.joint_record import read_note
 from frictioncli.fleet.layout import JointLogs
-from frictioncli.fleet.note import read_note
 from tests.fleet.joints import Joint, write_joint
 
 ROOT = Path(__file__).parents[2]

@@ -4,7 +4,7 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from frictioncli.comparing.change import change_of_last_run
+from frictioncli.comparison.change import change_of_last_run
 from frictioncli.model.fitting import fit_joint
 from frictioncli.model.settings import FitSettings
 

@@ -9,9 +9,9 @@ import pytest
 from frictioncli.errors import FrictionError
 from frictioncli.fleet import joint as joints
 from frictioncli.fleet.joint import JointTask, run_joint
+from frictioncli.fleet.joint_record import check_own, read_note
 from frictioncli.fleet.layout import JointLogs
-from frictioncli.fleet.note import check_own, read_note
-from frictioncli.fleet.row import causes_text
+from frictioncli.fleet.table_row import causes_text
 from frictioncli.model.settings import FitSettings
 from frictioncli.stages.run import RunSettings
 from tests.fleet.fleets import contents

@@ -10,9 +10,9 @@ import pytest
 from frictioncli import schemas, tables
 from frictioncli.fleet.fleet import run_fleet
 from frictioncli.fleet.joint import JointTask
+from frictioncli.fleet.joint_record import read_note
 from frictioncli.fleet.layout import joints_of
-from frictioncli.fleet.local import run_local
-from frictioncli.fleet.note import read_note
+from frictioncli.fleet.local_pool import run_local
 from frictioncli.fleet.settings import FleetSettings
 from frictioncli.stages.run import RunSettings
 from tests.fleet.fleets import Deadly, begun, children, contents, done, fleet, started, until

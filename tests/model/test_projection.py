@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 
 from frictioncli.model.equations import COEFFICIENTS, Equations, jacobian, summarised
 from frictioncli.model.friction import FrictionParameters
-from frictioncli.model.projection import DELTA_BOUNDS, minimise
+from frictioncli.model.variable_projection import DELTA_BOUNDS, minimise
 from tests.studies.bench_fit import NAMES, SAME, minimum, observed
 from tests.studies.minimum import compared, misfit, oracle, random_joint
 

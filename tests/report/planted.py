@@ -3,7 +3,7 @@
 import json
 from dataclasses import asdict
 
-from frictioncli.diagnosis.problem import build_problems
+from frictioncli.diagnosis.data.problem import build_problems
 
 TORQUE, VELOCITY, EXPONENT, SHIFT, OFFSET = 3.0, 8.0, 1.5, 0.4, 0.5
 

@@ -7,10 +7,10 @@ from copy import deepcopy
 import numpy as np
 import pytest
 
-from frictioncli.diagnosis.extended import extended_model
-from frictioncli.diagnosis.recall import is_current, read_documents, recall
+from frictioncli.diagnosis.documents.extended_model import extended_model
+from frictioncli.diagnosis.documents.reload import is_current, read_documents, reload
 from frictioncli.errors import TableError
-from frictioncli.report.diagnosis import diagnosis_sections, entries, section
+from frictioncli.report.diagnosis_section import diagnosis_sections, entries, section
 from frictioncli.report.diagnosis_text import UNDETECTABLE, chance_text, gain_sentence
 from frictioncli.report.page import page_figure, write_report
 from frictioncli.report.results import read_results
@@ -116,7 +116,7 @@ def results(work):
 
 @pytest.fixture(scope="module")
 def recalled(work, results):
-    return recall(results.torques, *read_documents(work)[2])
+    return reload(results.torques, *read_documents(work)[2])
 
 
 def test_recalled_misfits_are_those_of_the_files(recalled):
@@ -190,7 +190,7 @@ def test_silence_is_explained_and_draws_no_gain(results, work):
     document, model = deepcopy(DIAGNOSIS), json.loads((work / "extended-model.json").read_text())
     document |= {"verdict": "no_evidence", "causes": [], "gain": None}
     model["effects"] = []
-    found = recall(results.torques, document, extended_model(model))
+    found = reload(results.torques, document, extended_model(model))
     assert found.seen.after is found.seen.before
     told = section(results, found)
     assert "No cause was found in that" in told.verdict

@@ -11,13 +11,13 @@ from matplotlib.container import ErrorbarContainer
 from matplotlib.patches import Rectangle
 from matplotlib.text import Text
 
-from frictioncli.diagnosis.recall import read_documents, recall
+from frictioncli.diagnosis.documents.reload import read_documents, reload
 from frictioncli.report import style
 from frictioncli.report.binning import binned, bins_of, levels, parting, series_of
-from frictioncli.report.evidence import evidence_figure, shown_probabilities
+from frictioncli.report.evidence_figure import evidence_figure, shown_probabilities
 from frictioncli.report.residual_maps import Scale, cell_means, colour_limit, map_figure
 from frictioncli.report.results import read_results
-from frictioncli.report.simulation import gain_figure, simulated_rows, simulation_figure
+from frictioncli.report.simulated_torque import gain_figure, simulated_rows, simulation_figure
 from tests.report.test_report_diagnosis import SHIFT, boundary, diagnosed
 
 
@@ -33,7 +33,7 @@ def results(work):
 
 @pytest.fixture(scope="module")
 def recalled(work, results):
-    return recall(results.torques, *read_documents(work)[2])
+    return reload(results.torques, *read_documents(work)[2])
 
 
 def texts(figure):

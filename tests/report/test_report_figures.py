@@ -11,14 +11,14 @@ from matplotlib.colors import to_hex
 from matplotlib.text import Text
 
 from frictioncli.report import style
-from frictioncli.report.catalogue import FIGURES
-from frictioncli.report.corrections import corrected_estimates
-from frictioncli.report.epsilon import (
+from frictioncli.report.corrected_friction import corrected_estimates
+from frictioncli.report.epsilon_figures import (
     counts_shown,
     error_against_corrections,
     setting_text,
     uncertainty_text,
 )
+from frictioncli.report.figure_list import FIGURES
 from frictioncli.report.labels import plain
 from frictioncli.report.load_and_speed import (
     at_reference_temperature,
@@ -27,7 +27,7 @@ from frictioncli.report.load_and_speed import (
     telling_pairs,
 )
 from frictioncli.report.residuals import residual_figure, residuals
-from frictioncli.report.thermal import (
+from frictioncli.report.thermal_figures import (
     branch_means_with_model,
     friction_against_temperature,
     temperatures_over_time,

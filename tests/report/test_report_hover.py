@@ -5,10 +5,10 @@ import xml.etree.ElementTree as ElementTree
 
 import numpy as np
 
-from frictioncli.report.epsilon import error_against_corrections
-from frictioncli.report.hover import tell
+from frictioncli.report.epsilon_figures import error_against_corrections
 from frictioncli.report.load_and_speed import at_reference_temperature, friction_against_speed
 from frictioncli.report.style import panels, styled, svg
+from frictioncli.report.tooltips import tell
 
 
 def drawn(figure, name="figure"):

@@ -5,11 +5,11 @@ from dataclasses import replace
 import pytest
 
 from frictioncli.model.document import ParameterEstimate
-from frictioncli.report.lights import (
+from frictioncli.report.quality_lights import (
     FAIR,
     GOOD,
     POOR,
-    Reading,
+    LightReading,
     clock_light,
     lights,
     model_light,
@@ -21,7 +21,7 @@ from frictioncli.report.lights import (
     temperature_light,
 )
 
-CLEAN = Reading(rows=10_000, rejected=0, files=8, lost=0, time_known=True, warnings=0)
+CLEAN = LightReading(rows=10_000, rejected=0, files=8, lost=0, time_known=True, warnings=0)
 
 
 @pytest.mark.parametrize(

@@ -8,10 +8,10 @@ from itertools import pairwise
 import pytest
 
 from frictioncli.errors import TableError
-from frictioncli.report.content import epsilon_tables
 from frictioncli.report.labels import listed
 from frictioncli.report.page import write_report
 from frictioncli.report.parameters import is_published_joint, parameter_rows
+from frictioncli.report.text_tables import epsilon_tables
 
 HOSTILE = "<script>alert(1)</script>&\"'$\\frac{kr10$\u202e=1+1\x1b"
 

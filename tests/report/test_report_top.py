@@ -7,11 +7,11 @@ import numpy as np
 import pytest
 
 from frictioncli.model.document import ParameterEstimate
-from frictioncli.report.content import epsilon_tables
 from frictioncli.report.formula import formula, symbols, unit_markup
 from frictioncli.report.parameters import correlation_table, correlation_text, unknowns
 from frictioncli.report.results import read_results
 from frictioncli.report.summary import corrections_needed, key_figures, measured, summary
+from frictioncli.report.text_tables import epsilon_tables
 
 DIAGNOSIS = {
     "verdict": "named",

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from frictioncli.report.style import styled
-from frictioncli.report.trend import trend_figure, trend_pictures
+from frictioncli.report.trend_figure import trend_figure, trend_pictures
 
 
 def percent(value, half):

@@ -4,7 +4,7 @@ import pyarrow as pa
 import pyarrow.parquet as pq
 import pytest
 
-from frictioncli.reading.ingest import IngestSettings, ingest
+from frictioncli.logs.ingest import IngestSettings, ingest
 from tests.studies.fuzz_damage import Case, case
 from tests.studies.fuzz_layouts import layouts
 from tests.studies.fuzz_process import GOOD, examine_here

@@ -8,7 +8,7 @@ import pytest
 
 from frictioncli.cli.terminal import inert
 from frictioncli.stages import run as pipeline
-from tests.reading.logs import kuka_columns, text_of
+from tests.logs.logs import kuka_columns, text_of
 from tests.robustness.runs import finished, refused, write_warm_up
 
 HTML = "<script>alert(1)</script><img src=x onerror=alert(2)>"

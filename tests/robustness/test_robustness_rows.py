@@ -12,7 +12,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from frictioncli import schemas, tables
-from frictioncli.reading.ingest import IngestSettings, ingest
+from frictioncli.logs.ingest import IngestSettings, ingest
 from tests.studies.fuzz_damage import ROW_DAMAGE
 from tests.studies.fuzz_layouts import layouts
 

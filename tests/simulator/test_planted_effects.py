@@ -6,16 +6,16 @@ from math import cos, exp, hypot, log, pi, radians, sin, sqrt, tanh
 import numpy as np
 import pytest
 
-from frictioncli.simulator import defaults
-from frictioncli.simulator.plain import plain_joint
+from frictioncli.simulator import default_joint
+from frictioncli.simulator.plain_joint import plain_joint
 from frictioncli.simulator.planted.catalogue import EFFECTS
 from frictioncli.simulator.planted.journey import Before, Journey
 from frictioncli.simulator.planted.state import State
 
 # q 30 deg, v -50 deg/s, motor 60, gear 50, housing 45 degC, load 80 and friction 40 N·m,
 # 2 h into a run of 4 h that follows a run of 4 h, 36000 deg turned in it and 36000 before.
-ARM = defaults.joint(payload=2.0, motor_heat_share=0.5).arm
-JOINT = plain_joint(arm=ARM, servo=defaults.SERVO, motor_heat_share=0.5)
+ARM = default_joint.joint(payload=2.0, motor_heat_share=0.5).arm
+JOINT = plain_joint(arm=ARM, servo=default_joint.SERVO, motor_heat_share=0.5)
 GRID = np.arange(0.0, 14401.0, 10.0)
 JOURNEY = Journey(
     before=Before(run=1, clock=86400.0, operated=14400.0, travelled=36000.0, total=28800.0),

@@ -4,24 +4,24 @@ import numpy as np
 import pytest
 from scipy.optimize import curve_fit
 
-from frictioncli.simulator import defaults
-from frictioncli.simulator.history import HOUSING, MOTOR
-from frictioncli.simulator.program import run_program
+from frictioncli.simulator import default_joint
+from frictioncli.simulator.paper_protocol import run_program
 from frictioncli.simulator.settings import SynthesisSettings
-from frictioncli.simulator.thermal import Ambient
+from frictioncli.simulator.thermal_history import HOUSING, MOTOR
+from frictioncli.simulator.thermal_network import Ambient
 
 ASKED = SynthesisSettings()
-SPEEDS = defaults.PROGRAM.cycle_speeds
+SPEEDS = default_joint.PROGRAM.cycle_speeds
 CORRECTION_SPEED = SPEEDS.index(67.5)
 
 
 def branches(run: int = 0, motor_heat_share: float | None = None) -> dict[str, dict]:
     """Return time, temperatures and friction at L = 0 of each branch, per series and speed."""
     share = ASKED.motor_heat_share[run] if motor_heat_share is None else motor_heat_share
-    joint = defaults.joint(payload=ASKED.payload, motor_heat_share=share)
+    joint = default_joint.joint(payload=ASKED.payload, motor_heat_share=share)
     ambient = Ambient(start=ASKED.ambient[run], drift=ASKED.ambient_drift[run])
-    history, series = run_program(joint, defaults.PROGRAM, ambient)
-    middle = np.add(defaults.PROGRAM.trip_begins(joint.servo, SPEEDS), (10.0, 5.0, 3.0, 2.0))
+    history, series = run_program(joint, default_joint.PROGRAM, ambient)
+    middle = np.add(default_joint.PROGRAM.trip_begins(joint.servo, SPEEDS), (10.0, 5.0, 3.0, 2.0))
     found = {}
     for phase in ("heat-up", "cool-down"):
         starts = np.array([one.start for one in series if one.phase == phase])
@@ -175,8 +175,8 @@ def test_about_seven_corrections_keep_the_error_within_2_newton_metres(run):
 
 
 def test_friction_of_a_cold_joint_follows_the_square_root_down_to_the_slowest_sweep():
-    joint = defaults.joint(payload=ASKED.payload, motor_heat_share=ASKED.motor_heat_share[0])
-    speed = np.array(defaults.PROGRAM.sweep_speeds)
+    joint = default_joint.joint(payload=ASKED.payload, motor_heat_share=ASKED.motor_heat_share[0])
+    speed = np.array(default_joint.PROGRAM.sweep_speeds)
     cold = dict.fromkeys(joint.network.names, 20.0)
     friction = joint.friction(load=0.0, speed=speed, temperatures=cold)
     fast = speed >= min(SPEEDS)

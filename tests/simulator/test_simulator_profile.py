@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy.integrate import cumulative_trapezoid, solve_ivp
 
-from frictioncli.simulator.profile import Servo, follow, move_duration, round_trips
+from frictioncli.simulator.motion_profile import Servo, follow, move_duration, round_trips
 
 SERVO = Servo(acceleration=400.0, frequency=6.0, damping=0.45)
 

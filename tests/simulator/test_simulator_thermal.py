@@ -5,21 +5,23 @@ import pytest
 from scipy.integrate import trapezoid
 
 from frictioncli.simulator.arm import Arm, Body
-from frictioncli.simulator.history import MOTOR, ThermalHistory
-from frictioncli.simulator.joint import HeatEntry, Joint, MeanPower, RoundTrips
-from frictioncli.simulator.profile import Servo
-from frictioncli.simulator.thermal import Ambient, ThermalLink, ThermalNetwork, ThermalNode
-from frictioncli.simulator.zones import LubricatedZone
+from frictioncli.simulator.friction_zones import LubricatedZone
+from frictioncli.simulator.joint import HeatEntry, MeanPower, RoundTrips, SimulatedJoint
+from frictioncli.simulator.motion_profile import Servo
+from frictioncli.simulator.thermal_history import MOTOR, ThermalHistory
+from frictioncli.simulator.thermal_network import Ambient, ThermalLink, ThermalNetwork, ThermalNode
 
 TRIPS = RoundTrips(speed=90.0, angles=(0.0, 180.0), dwell=0.5)
 # 180 deg at 90 deg/s with ramps at 180 deg/s² take 2.5 s, the dwell makes it 3 s: pi rad each 3 s.
 HEAT = 30.0 * np.pi / 3.0
 
 
-def dry_joint(network: ThermalNetwork, shares: dict[str, float], copper_loss: float = 0.0) -> Joint:
+def dry_joint(
+    network: ThermalNetwork, shares: dict[str, float], copper_loss: float = 0.0
+) -> SimulatedJoint:
     """Return a joint with 30 N·m of dry friction whatever happens, and no weight."""
     nothing = Body(name="nothing", mass=0.0, along=0.0, across=0.0)
-    return Joint(
+    return SimulatedJoint(
         arm=Arm(bodies=(), payload=nothing, rotor_inertia=0.0),
         servo=Servo(acceleration=180.0, frequency=6.0, damping=0.4),
         zones=(

@@ -3,12 +3,12 @@
 import numpy as np
 import pytest
 
-from frictioncli.simulator import defaults
+from frictioncli.simulator import default_joint
 from frictioncli.simulator.arm import Arm, Body
-from frictioncli.simulator.noise import Noise
-from frictioncli.simulator.profile import Motion
+from frictioncli.simulator.friction_zones import LubricatedZone, friction_torque
+from frictioncli.simulator.motion_profile import MotionProfile
+from frictioncli.simulator.noise import SimulatedNoise
 from frictioncli.simulator.recording import control_torque, registered
-from frictioncli.simulator.zones import LubricatedZone, friction_torque
 
 ARM = Arm(
     bodies=(Body(name="link", mass=2.0, along=0.5, across=0.1, own_inertia=0.05),),
@@ -50,10 +50,10 @@ def test_inertia_by_hand():
 
 
 def test_default_arm_loads_the_joint_as_in_the_paper():
-    arm = defaults.joint(payload=2.0, motor_heat_share=0.5).arm
+    arm = default_joint.joint(payload=2.0, motor_heat_share=0.5).arm
     amplitude = np.hypot(*arm.gravity_coefficients())
     assert 90.0 <= amplitude <= 100.0
-    mesh = next(zone for zone in defaults.ZONES if zone.name == "gear mesh")
+    mesh = next(zone for zone in default_joint.ZONES if zone.name == "gear mesh")
     assert mesh.load_square * amplitude**2 == pytest.approx(12.0, abs=1.5)
 
 
@@ -70,13 +70,13 @@ def test_zones_add_up_each_at_its_own_temperature():
 
 @pytest.mark.parametrize("sign", [1, -1])
 def test_equation_one(sign):
-    joint = defaults.joint(payload=2.0, motor_heat_share=0.5)
+    joint = default_joint.joint(payload=2.0, motor_heat_share=0.5)
     position = np.array([0.0, 60.0, 60.0, 120.0])
     velocity = np.array([0.0, 67.5, -67.5, 40.0])
     acceleration = np.array([0.0, 0.0, 0.0, -300.0])
     torque = control_torque(
         joint,
-        Motion(position, velocity, acceleration),
+        MotionProfile(position, velocity, acceleration),
         temperatures={node: np.full(4, value) for node, value in TEMPERATURES.items()},
         sign=sign,
     )
@@ -93,7 +93,7 @@ def test_equation_one(sign):
             + zone.viscous * np.exp(-zone.thinning * (TEMPERATURES[zone.node] - 40.0))
         )
         * np.abs(velocity) ** zone.speed_exponent
-        for zone in defaults.ZONES
+        for zone in default_joint.ZONES
     )
     inertial = joint.arm.inertia() * np.pi / 180.0 * acceleration
     assert torque == pytest.approx(inertial + weight + sign * np.sign(velocity) * friction)
@@ -108,7 +108,7 @@ def test_sensor_registers_the_nearest_step():
 
 
 def test_noise_has_the_stated_deviation_and_memory():
-    noise = Noise(
+    noise = SimulatedNoise(
         white=0.6, correlated=0.8, correlation_time=0.12, slow=0.0, slow_time=1.0, per_pair=0.0
     )
     drawn = noise.torque(np.random.default_rng(7), count=200_000, interval=0.012)
@@ -118,7 +118,7 @@ def test_noise_has_the_stated_deviation_and_memory():
 
 
 def test_friction_wanders_slowly_between_round_trips():
-    noise = Noise(
+    noise = SimulatedNoise(
         white=0.0, correlated=0.0, correlation_time=1.0, slow=0.5, slow_time=600.0, per_pair=0.2
     )
     times = np.arange(100_000) * 60.0

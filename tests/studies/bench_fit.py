@@ -41,7 +41,7 @@ def _work(size: int, must: float, reach: float | None) -> Work:
                 "frictioncli",
                 "tests.studies.bench_fit:projected",
                 times=TIMES,
-                shown="frictioncli.model.projection.minimise(equations, COEFFICIENTS)",
+                shown="frictioncli.model.variable_projection.minimise(equations, COEFFICIENTS)",
             ),
             function(
                 "curve_fit",
@@ -81,7 +81,7 @@ def law(at, tau_c, alpha, beta, gamma, delta):
 def projected(data: Path, out: Path) -> Callable[[], list[float]]:
     """Prepare frictioncli's fit, which has no start."""
     from frictioncli.model.equations import COEFFICIENTS, Equations
-    from frictioncli.model.projection import minimise
+    from frictioncli.model.variable_projection import minimise
 
     temperature, speed, load, friction = np.load(data / "observations.npy")
 

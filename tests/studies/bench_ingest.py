@@ -26,7 +26,7 @@ PERIOD = 0.004
 CYCLE = 100_000
 """Rows after which everything but time repeats; they take 400 s."""
 
-READ = ("reading", "tables.py", "files.py", "provenance.py", "schemas.py")
+READ = ("logs", "tables.py", "files.py", "provenance.py", "schemas.py")
 SAMPLES = ("time", "position", "velocity", "torque", "motor_temperature")
 IMPORTS = 130 * MEGABYTE
 """What Python with pyarrow and pandas takes before any work. [bytes]"""

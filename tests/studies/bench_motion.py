@@ -48,7 +48,7 @@ def _parts(name: str, rows: int, speeds: tuple[float, ...]) -> Work:
             function(
                 "frictioncli",
                 "tests.studies.bench_motion:parts_of_frictioncli",
-                shown="frictioncli.motion.steady.steady_parts over tables.batches(samples)",
+                shown="frictioncli.pairs.constant_speed.steady_parts over tables.batches(samples)",
             ),
             function(
                 "pandas",
@@ -62,7 +62,7 @@ def _parts(name: str, rows: int, speeds: tuple[float, ...]) -> Work:
             faster("frictioncli", "pandas", must=3),
             peak("frictioncli", 256),
         ],
-        sources=("motion", "tables.py"),
+        sources=("pairs", "tables.py"),
     )
 
 
@@ -76,7 +76,7 @@ def _bins(pairs: int) -> Work:
                 "frictioncli",
                 "tests.studies.bench_motion:bins_of_frictioncli",
                 times=3,
-                shown="frictioncli.motion.bins.bin_means of many moves at once",
+                shown="frictioncli.pairs.bins.bin_means of many moves at once",
             ),
             function(
                 "np.interp",
@@ -97,10 +97,10 @@ def _bins(pairs: int) -> Work:
             ),
         ],
         sources=(
-            "motion/bins.py",
-            "motion/bin_runs.py",
-            "motion/_bin_runs.c",
-            "motion/segments.py",
+            "pairs/bins.py",
+            "pairs/bin_runs.py",
+            "pairs/_bin_runs.c",
+            "pairs/array_runs.py",
         ),
     )
 
@@ -157,10 +157,10 @@ def parts_of_frictioncli(data: Path, out: Path) -> Callable[[], int]:
     import pandas as pd  # noqa: F401
 
     from frictioncli import schemas, tables
-    from frictioncli.motion.segments import means
-    from frictioncli.motion.settings import SteadySettings
-    from frictioncli.motion.steady import steady_parts
-    from frictioncli.motion.stretches import stretches
+    from frictioncli.pairs.array_runs import means
+    from frictioncli.pairs.chunks import chunks
+    from frictioncli.pairs.constant_speed import constant_speed_parts
+    from frictioncli.pairs.settings import SteadySettings
 
     wanted = [column for column in schemas.SAMPLES.columns if column.name in PART_COLUMNS]
     table, settings = replace(schemas.SAMPLES, columns=tuple(wanted)), SteadySettings()
@@ -168,9 +168,9 @@ def parts_of_frictioncli(data: Path, out: Path) -> Callable[[], int]:
     def act() -> int:
         found = []
         batches = tables.ahead(tables.batches(data / "samples.parquet", table))
-        for stretch in stretches(batches, ("torque",), settings):
+        for stretch in chunks(batches, ("torque",), settings):
             time, velocity = stretch.channels["time"], stretch.channels["velocity"]
-            parts = steady_parts(
+            parts = constant_speed_parts(
                 time, velocity, stretch.total, stretch.first, stretch.last, settings
             )
             torque = means(stretch.channels["torque"], parts.start, parts.stop)
@@ -231,8 +231,8 @@ def write_pairs(data: Path, *, pairs: int) -> None:
 
 def bins_of_frictioncli(data: Path, out: Path) -> Callable[[], float]:
     """Prepare bin means of all moves; the act returns the RMS error of friction. [N·m]"""
-    from frictioncli.motion.bins import bin_means
-    from frictioncli.motion.segments import keep_freed_memory
+    from frictioncli.pairs.array_runs import keep_freed_memory
+    from frictioncli.pairs.bins import bin_means
 
     keep_freed_memory()
     position, torque = np.load(data / "pairs.npy")

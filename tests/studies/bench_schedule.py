@@ -39,7 +39,7 @@ def _work(steps: int, must: float, reach: float | None) -> Work:
         ],
         check=same_events,
         goals=[faster("frictioncli", "plain loop", must, reach)],
-        sources=("correction/schedule.py", "correction/degrees.py"),
+        sources=("correction/schedule.py", "correction/degree_crossings.py"),
     )
 
 

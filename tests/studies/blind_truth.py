@@ -8,8 +8,8 @@ import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
-from frictioncli.diagnosis.columns import base_rows
-from frictioncli.diagnosis.problem import Problem, build_problems
+from frictioncli.diagnosis.data.problem import Problem, build_problems
+from frictioncli.diagnosis.fit.columns import base_rows
 from frictioncli.simulator.tabular import simulate_world
 from tests.studies.blind_worlds import World
 

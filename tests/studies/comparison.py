@@ -36,7 +36,7 @@ COLUMNS = (
     *("hidden", "noise", "seed", "method", "sources"),
     *("found", "claims", "gain", "found_gated", "claims_gated", "gain_gated", "seconds"),
 )
-SHARED = ("simulator", "motion", "model", "effects", "diagnosis/problem.py")
+SHARED = ("simulator", "pairs", "model", "effects", "diagnosis/data/problem.py")
 
 SIZE = 1.0
 """RMS torque of a hidden effect before the base model takes its share. [N·m]"""

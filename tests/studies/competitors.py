@@ -17,8 +17,8 @@ from sklearn.gaussian_process import GaussianProcessRegressor
 from sklearn.gaussian_process.kernels import RBF, ConstantKernel, WhiteKernel
 from sklearn.preprocessing import StandardScaler
 
+from frictioncli.diagnosis.data.problem import Problem
 from frictioncli.diagnosis.diagnose import diagnose_joint
-from frictioncli.diagnosis.problem import Problem
 from frictioncli.diagnosis.settings import DiagnosisSettings
 from tests.studies.joints import (
     NOTHING,

@@ -41,7 +41,7 @@ def sources() -> str:
     digest = hashlib.sha256()
     package = ROOT / "frictioncli"
     files = [*package.glob("*.py"), *(ROOT / "tests" / "studies").glob("fuzz*.py")]
-    for part in ("reading", "inspecting", "motion"):
+    for part in ("logs", "inspection", "pairs"):
         files += chain((package / part).rglob("*.py"), (package / part).rglob("*.c"))
     for path in sorted(files):
         digest.update(path.read_bytes())

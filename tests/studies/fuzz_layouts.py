@@ -12,7 +12,7 @@ import pyarrow.feather
 import pyarrow.parquet as pq
 from numpy.typing import NDArray
 
-from tests.reading.logs import back_and_forth
+from tests.logs.logs import back_and_forth
 
 TIME, POSITION, VELOCITY, TORQUE = back_and_forth(seconds=3.0)
 TORQUE = TORQUE + np.round(np.arange(len(TIME)) * 0.001, 3)  # every row is one of a kind

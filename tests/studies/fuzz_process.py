@@ -128,11 +128,11 @@ def examine_here(number: int) -> Finding:
 
 def _outcome(one: Case, folder: Path, *, inspected: bool) -> tuple[str, str]:
     from frictioncli.errors import FrictionError
-    from frictioncli.inspecting.document import document
-    from frictioncli.inspecting.inspection import inspect
-    from frictioncli.inspecting.text import text
+    from frictioncli.inspection.document import document
+    from frictioncli.inspection.inspect import inspect
+    from frictioncli.inspection.text import text
+    from frictioncli.logs.ingest import IngestSettings, ingest
     from frictioncli.provenance import to_json
-    from frictioncli.reading.ingest import IngestSettings, ingest
 
     run, work = folder / "run", folder / "work"
     run.mkdir()

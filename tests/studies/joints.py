@@ -12,7 +12,7 @@ import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
-from frictioncli.diagnosis.problem import Problem, build_problems
+from frictioncli.diagnosis.data.problem import Problem, build_problems
 from frictioncli.effects import EFFECTS
 from frictioncli.effects.availability import judgeable
 from frictioncli.effects.base import Effect

@@ -18,7 +18,7 @@ import numpy as np
 from scipy.optimize import least_squares
 
 from frictioncli.model.equations import COEFFICIENTS, Equations
-from frictioncli.model.projection import DELTA_BOUNDS, minimise
+from frictioncli.model.variable_projection import DELTA_BOUNDS, minimise
 from tests.studies.bench_fit import SOURCES
 from tests.studies.bench_rounds import STORE, state
 

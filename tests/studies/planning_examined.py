@@ -6,19 +6,19 @@ import time
 import numpy as np
 import pandas as pd
 
+from frictioncli.design.blocks import all_blocks
+from frictioncli.design.plan import CHECK, plan_joint
+from frictioncli.design.selection import steps_of
+from frictioncli.design.settings import PlanSettings
+from frictioncli.diagnosis.data.problem import build_problems
 from frictioncli.diagnosis.diagnose import Diagnosis, diagnose_joint
-from frictioncli.diagnosis.document import diagnosis_document, extended_document
-from frictioncli.diagnosis.extended import extended_model
-from frictioncli.diagnosis.problem import build_problems
-from frictioncli.diagnosis.search import find_causes
+from frictioncli.diagnosis.documents.document import diagnosis_document, extended_document
+from frictioncli.diagnosis.documents.extended_model import extended_model
+from frictioncli.diagnosis.search.cause_search import find_causes
+from frictioncli.diagnosis.search.holdout import SLIGHT
 from frictioncli.diagnosis.settings import DiagnosisSettings
-from frictioncli.diagnosis.worth import SLIGHT
 from frictioncli.effects import EFFECTS
 from frictioncli.errors import OptionError
-from frictioncli.experiment.blocks import all_blocks
-from frictioncli.experiment.choose import steps_of
-from frictioncli.experiment.plan import CHECK, plan_joint
-from frictioncli.experiment.settings import PlanSettings
 from frictioncli.model.fitting import fit_joint
 from frictioncli.model.settings import FitSettings
 from frictioncli.simulator.programme import simulate_programmes

@@ -2,10 +2,10 @@
 
 import random
 
-from frictioncli.experiment.block import Block
-from frictioncli.experiment.choose import seconds_of as block_seconds
-from frictioncli.experiment.choose import steps_of
-from frictioncli.experiment.steps import Series
+from frictioncli.design.block import Block
+from frictioncli.design.selection import seconds_of as block_seconds
+from frictioncli.design.selection import steps_of
+from frictioncli.design.steps import SeriesStep
 from frictioncli.simulator.programme import Act, Measured, Moved, Stood
 from tests.studies.planning_worlds import HIGH, LOW, acts_of, seconds_of
 
@@ -32,7 +32,7 @@ def blocks_at_random(
         one
         for one in blocks
         if block_seconds((*taken, one), 0.0) <= budget
-        and (taken or any(isinstance(step, Series) for step in one.steps))
+        and (taken or any(isinstance(step, SeriesStep) for step in one.steps))
     ]:
         taken = (*taken, generator.choice(fitting))
     return acts_of(steps_of(taken))

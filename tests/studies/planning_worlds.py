@@ -7,12 +7,12 @@ from pathlib import Path
 
 import numpy as np
 
-from frictioncli.experiment.steps import MOUNTING, Heat, Series, Step, mountings
+from frictioncli.design.steps import MOUNTING, HeatStep, SeriesStep, Step, mountings
 from frictioncli.simulator.programme import Act, Measured, Moved, Stood
 from frictioncli.simulator.settings import SynthesisSettings
 
 ROOT = Path(__file__).parents[2]
-PACKAGES = ("diagnosis", "effects", "experiment", "simulator", "model")
+PACKAGES = ("diagnosis", "effects", "design", "simulator", "model")
 """Packages that a result depends on."""
 
 LOW, HIGH, FASTEST = 0.0, 180.0, 101.2
@@ -106,11 +106,11 @@ def acts_of(steps: Sequence[Step]) -> list[Act]:
     for step, change in zip(steps, mountings(steps, None), strict=True):
         if change:
             found.append(Stood(MOUNTING))
-        if isinstance(step, Series):
+        if isinstance(step, SeriesStep):
             found.append(
                 Measured(speeds=step.speeds, low=step.low, high=step.high, more=step.payload or 0.0)
             )
-        elif isinstance(step, Heat):
+        elif isinstance(step, HeatStep):
             found.append(
                 Moved(
                     speed=step.speed,

@@ -5,8 +5,8 @@ compares the SHA-256 of every file written and of everything printed with the li
 ``same.sha256``. The list holds for one platform and one set of library versions: write it with the
 state before a change, on the machine on which the change is checked.
 
-Outputs of ``fleet`` name the folder of the logs, so everything is made in one fixed folder, where it
-stays until the next call; a second call at the same time waits.
+Outputs of ``fleet`` name the folder of the logs, so everything is made in one fixed folder, where
+it stays until the next call; a second call at the same time waits.
 
 Usage: python -m tests.studies.same [GROUP ...] [--write]
 """

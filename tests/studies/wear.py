@@ -16,9 +16,9 @@ from pathlib import Path
 
 import pandas as pd
 
-from frictioncli.comparing.comparison import Comparison, compare_runs
-from frictioncli.comparing.days import Folder, in_order
-from frictioncli.comparing.settings import ComparisonSettings, Threshold
+from frictioncli.comparison.compare import Comparison, compare_runs
+from frictioncli.comparison.days import Folder, in_order
+from frictioncli.comparison.settings import ComparisonSettings, Threshold
 from frictioncli.model.fitting import fit_joint
 from frictioncli.model.settings import FitSettings
 from tests.studies.wear_page import write_page
@@ -30,7 +30,15 @@ ROWS = ROOT / "build" / "wear.csv"
 _FIRST_SEED = 1000
 """Seeds below were looked at while the method was made."""
 
-_METHOD = ("averaged", "causes", "comparison", "levels", "loads", "scatter", "settings")
+_METHOD = (
+    "noise_averaged_fit",
+    "causes",
+    "compare",
+    "run_levels",
+    "loads",
+    "day_to_day",
+    "settings",
+)
 """Modules that rows depend on."""
 
 _SETTINGS = ComparisonSettings(fail_above=Threshold(3.0, "%"))
@@ -110,7 +118,7 @@ def _said(found: Comparison, prefix: str) -> dict[str, object]:
 
 def sources() -> str:
     """Return a digest of the method and the worlds."""
-    files = [ROOT / "frictioncli" / "comparing" / f"{name}.py" for name in _METHOD]
+    files = [ROOT / "frictioncli" / "comparison" / f"{name}.py" for name in _METHOD]
     files.append(Path(__file__).with_name("wear_world.py"))
     return hashlib.sha256(b"\0".join(file.read_bytes() for file in files)).hexdigest()[:12]
 

@@ -12,9 +12,9 @@ import pandas as pd
 from numpy.typing import NDArray
 
 from frictioncli.simulator.fast_history import FastHistory
-from frictioncli.simulator.joint import Joint
+from frictioncli.simulator.joint import SimulatedJoint
 from frictioncli.simulator.planted.planting import Planted
-from frictioncli.simulator.run import Run, prepare, simulate
+from frictioncli.simulator.run import SimulatedRun, prepare, simulate
 from frictioncli.simulator.settings import SynthesisSettings
 from frictioncli.simulator.tabular import run_cells, table_of
 
@@ -104,7 +104,7 @@ def _course(life: Life) -> NDArray[np.float64]:
     return np.round(steady) if life.kind in ("sudden", "payload") else steady
 
 
-def _changed(run: Run, life: Life, course: float) -> Run:
+def _changed(run: SimulatedRun, life: Life, course: float) -> SimulatedRun:
     more = life.change * course
     program = replace(run.program, sweep_speeds=SPEEDS)
     joints = run.joints
@@ -120,7 +120,7 @@ def _changed(run: Run, life: Life, course: float) -> Run:
     return replace(run, joints=joints, program=program)
 
 
-def _worn(joint: Joint, *, dry: float, viscous: float) -> Joint:
+def _worn(joint: SimulatedJoint, *, dry: float, viscous: float) -> SimulatedJoint:
     """Return a joint whose dry and viscous friction are greater by these shares."""
     zones = tuple(
         replace(
@@ -143,7 +143,7 @@ def _worn(joint: Joint, *, dry: float, viscous: float) -> Joint:
     return replace(joint, zones=zones)
 
 
-def _dry_share(joint: Joint) -> float:
+def _dry_share(joint: SimulatedJoint) -> float:
     """Return the share of dry friction at 45 °C and the mean of the speeds, load included."""
     at = {name: 45.0 for name in joint.network.names}
     angles = np.linspace(0, 180, 37)
@@ -153,6 +153,6 @@ def _dry_share(joint: Joint) -> float:
     return float(np.mean(still) / np.mean(moving))
 
 
-def _carrying(joint: Joint, factor: float) -> Joint:
+def _carrying(joint: SimulatedJoint, factor: float) -> SimulatedJoint:
     payload = replace(joint.arm.payload, mass=joint.arm.payload.mass * factor)
     return replace(joint, arm=replace(joint.arm, payload=payload))

@@ -9,7 +9,7 @@ from frictioncli.simulator.planted.coulomb_temperature import CoulombTemperature
 from frictioncli.simulator.planted.direction_asymmetry import DirectionAsymmetry
 from frictioncli.simulator.planted.dress_pack import DressPack
 from frictioncli.simulator.planted.drift import Drift
-from frictioncli.simulator.planted.effect import Effect
+from frictioncli.simulator.planted.effect import PlantedEffect
 from frictioncli.simulator.planted.inertia import Inertia
 from frictioncli.simulator.planted.lifting_loss import LiftingLoss
 from frictioncli.simulator.planted.linear_viscous import LinearViscous
@@ -31,7 +31,7 @@ from frictioncli.simulator.planted.thermal_lag import ThermalLag
 from frictioncli.simulator.planted.torque_constant import TorqueConstant
 from frictioncli.simulator.planted.velocity_exponent import VelocityExponent
 
-_KINDS: tuple[type[Effect], ...] = (
+_KINDS: tuple[type[PlantedEffect], ...] = (
     Stribeck,
     VelocityExponent,
     LinearViscous,
@@ -59,7 +59,7 @@ _KINDS: tuple[type[Effect], ...] = (
     LiftingLoss,
 )
 
-EFFECTS: dict[str, type[Effect]] = {kind.name: kind for kind in _KINDS}
+EFFECTS: dict[str, type[PlantedEffect]] = {kind.name: kind for kind in _KINDS}
 """Effects by name; those that no catalogue lists stand at the end."""
 
 

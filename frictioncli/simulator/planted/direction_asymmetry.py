@@ -5,12 +5,12 @@ from typing import ClassVar, Self
 
 import numpy as np
 
-from frictioncli.simulator.planted.effect import Effect, sign
+from frictioncli.simulator.planted.effect import PlantedEffect, sign
 from frictioncli.simulator.planted.state import Extra, State
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class DirectionAsymmetry(Effect):
+class DirectionAsymmetry(PlantedEffect):
     r"""Friction that is greater in one direction.
 
     Attributes

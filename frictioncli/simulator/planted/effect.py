@@ -10,7 +10,7 @@ from frictioncli.simulator.planted.state import Extra, State
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Effect(ABC):
+class PlantedEffect(ABC):
     """A planted effect.
 
     Attributes

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from frictioncli.simulator.history import History
+from frictioncli.simulator.thermal_history import History
 
 GRID = 10.0
 """Step at which temperatures and heat are kept [s]."""

@@ -5,12 +5,12 @@ from typing import ClassVar, Self
 
 import numpy as np
 
-from frictioncli.simulator.planted.effect import Effect
+from frictioncli.simulator.planted.effect import PlantedEffect
 from frictioncli.simulator.planted.state import Extra, State
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class LiftingLoss(Effect):
+class LiftingLoss(PlantedEffect):
     r"""Friction by load that differs between lifting and lowering.
 
     Attributes

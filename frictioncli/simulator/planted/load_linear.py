@@ -5,12 +5,12 @@ from typing import ClassVar, Self
 
 import numpy as np
 
-from frictioncli.simulator.planted.effect import Effect, log_uniform
+from frictioncli.simulator.planted.effect import PlantedEffect, log_uniform
 from frictioncli.simulator.planted.state import Extra, State
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class LoadLinear(Effect):
+class LoadLinear(PlantedEffect):
     r"""Friction proportional to the absolute load, rounded where the load vanishes.
 
     Attributes

@@ -6,12 +6,12 @@ from typing import ClassVar, Self
 import numpy as np
 
 from frictioncli.simulator.arm import GRAVITY
-from frictioncli.simulator.planted.effect import Effect, sign
+from frictioncli.simulator.planted.effect import PlantedEffect, sign
 from frictioncli.simulator.planted.state import Extra, State
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class PayloadChange(Effect):
+class PayloadChange(PlantedEffect):
     r"""A mass that is put on or taken off at one moment.
 
     Attributes

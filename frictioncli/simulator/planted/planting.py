@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from frictioncli.errors import OptionError
 from frictioncli.simulator.planted.catalogue import EFFECTS, Asked
-from frictioncli.simulator.planted.effect import Effect
+from frictioncli.simulator.planted.effect import PlantedEffect
 from frictioncli.simulator.planted.state import Extra, State
 
 SIZES = (0.5, 2.0)
@@ -31,13 +31,13 @@ class Buried:
 
     Attributes
     ----------
-    effect : Effect
+    effect : PlantedEffect
         The effect.
     rms : float
         Root mean square of its torque over the cells that count. [N·m]
     """
 
-    effect: Effect
+    effect: PlantedEffect
     rms: float
 
     def truth(self) -> dict[str, Any]:
@@ -67,7 +67,7 @@ class Planted:
         return added((one.effect for one in self.buried), state)
 
 
-def added(effects: Iterable[Effect], state: State) -> Extra:
+def added(effects: Iterable[PlantedEffect], state: State) -> Extra:
     """Return what effects add, each that scales the torque seeing those before it [N·m]."""
     friction, load = np.zeros(state.position.shape), np.zeros(state.position.shape)
     for effect in effects:
@@ -113,7 +113,11 @@ def plant(asked: Sequence[Asked], seed: int, states: Sequence[State], sign: int)
 
 
 def _sized(
-    effect: Effect, before: Sequence[Effect], states: Sequence[State], sign: int, size: float
+    effect: PlantedEffect,
+    before: Sequence[PlantedEffect],
+    states: Sequence[State],
+    sign: int,
+    size: float,
 ) -> Buried:
     """Scale ``effect`` until its torque has root mean square ``size``."""
     if effect.scales_torque:
@@ -135,7 +139,7 @@ def _sized(
     )
 
 
-def _rms(effect: Effect, states: Sequence[State], sign: int) -> float:
+def _rms(effect: PlantedEffect, states: Sequence[State], sign: int) -> float:
     squares: list[NDArray[np.float64]] = []
     for state in states:
         extra = effect.torque(state)

@@ -5,12 +5,12 @@ from typing import ClassVar, Self
 
 import numpy as np
 
-from frictioncli.simulator.planted.effect import Effect, log_uniform
+from frictioncli.simulator.planted.effect import PlantedEffect, log_uniform
 from frictioncli.simulator.planted.state import Extra, State
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class RunIn(Effect):
+class RunIn(PlantedEffect):
     r"""Running-in: friction that falls with travel, not with time.
 
     Attributes

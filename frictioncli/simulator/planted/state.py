@@ -6,10 +6,10 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from frictioncli.simulator.history import HOUSING, MOTOR
-from frictioncli.simulator.joint import Joint
+from frictioncli.simulator.joint import SimulatedJoint
+from frictioncli.simulator.motion_profile import MotionProfile
 from frictioncli.simulator.planted.journey import Journey
-from frictioncli.simulator.profile import Motion
+from frictioncli.simulator.thermal_history import HOUSING, MOTOR
 
 STANDING_SPEED = 0.2
 """Below this velocity friction goes linearly through zero: at rest, torque is load [deg/s]."""
@@ -37,7 +37,7 @@ class State:
 
     Attributes
     ----------
-    joint : Joint
+    joint : SimulatedJoint
         The joint without planted effects.
     journey : Journey
         What it went through.
@@ -53,7 +53,7 @@ class State:
         Gravity, friction and inertial torque without the effect. [N·m]
     """
 
-    joint: Joint
+    joint: SimulatedJoint
     journey: Journey
     time: NDArray[np.float64]
     position: NDArray[np.float64]
@@ -114,9 +114,9 @@ class State:
 
 
 def state_of(
-    joint: Joint,
+    joint: SimulatedJoint,
     journey: Journey,
-    motion: Motion,
+    motion: MotionProfile,
     *,
     time: NDArray[np.float64],
     since_reversal: NDArray[np.float64],

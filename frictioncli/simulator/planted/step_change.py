@@ -5,12 +5,12 @@ from typing import ClassVar, Self
 
 import numpy as np
 
-from frictioncli.simulator.planted.effect import Effect, log_uniform, sign
+from frictioncli.simulator.planted.effect import PlantedEffect, log_uniform, sign
 from frictioncli.simulator.planted.state import Extra, State
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class StepChange(Effect):
+class StepChange(PlantedEffect):
     r"""A change at one moment that stays.
 
     Attributes

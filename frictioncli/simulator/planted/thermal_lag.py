@@ -7,13 +7,13 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.signal import lfilter
 
-from frictioncli.simulator.planted.effect import Effect, log_uniform
+from frictioncli.simulator.planted.effect import PlantedEffect, log_uniform
 from frictioncli.simulator.planted.journey import GRID, Journey
 from frictioncli.simulator.planted.state import Extra, State
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class ThermalLag(Effect):
+class ThermalLag(PlantedEffect):
     r"""Friction at a hidden gear temperature in place of the temperatures that the joint has.
 
     Attributes

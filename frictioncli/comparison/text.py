@@ -1,0 +1,111 @@
+"""A comparison in plain words."""
+
+from frictioncli.comparison.causes import CauseOfChange
+from frictioncli.comparison.compare import Comparison
+from frictioncli.comparison.day_to_day import LevelEstimate
+from frictioncli.comparison.document import load_unit
+
+_WEAK = (
+    "how much a joint differs from day to day cannot be seen from two runs: the interval rests on"
+    " an assumed"
+)
+
+
+def comparison_text(comparison: Comparison) -> str:
+    """Return what changed, how sure that is, what it looks like and what to do."""
+    days, model = comparison.days, comparison.days.models[-1]
+    unit = model.torque_unit
+    lines = [
+        f"joint {model.joint}, {len(comparison.levels)} runs{_span(comparison)}:"
+        f" {comparison.verdict.replace('_', ' ')}",
+        f"  friction, first run to last: {_words(comparison, comparison.trend)}",
+    ]
+    if comparison.last_run is not None:
+        lines.append(f"  last run to the earlier:     {_words(comparison, comparison.last_run)}")
+    if comparison.load is not None:
+        load = comparison.load
+        lines.append(
+            f"  load torque, first to last:  {load.value:+.2g} % ({load.low:+.2g} to"
+            f" {load.high:+.2g})"
+        )
+    lines += [_cause_text(comparison, cause) for cause in comparison.causes]
+    if comparison.weak:
+        lines.append(f"  weak: {_WEAK} {comparison.settings.day_to_day:g} % (--day-to-day)")
+    if comparison.verdict == "undetermined":
+        lines.append(f"  a change of {comparison.margin:.2g} % is not ruled out; measure more days")
+    lines.append(
+        f"  mean friction {comparison.mean_friction:.3g} {unit}; from day to day"
+        f" {comparison.scatter:.2g} % (1 sigma) beside noise within the runs; surroundings from"
+        f" {days.surroundings_from}"
+    )
+    lines += _conditions_text(comparison, unit)
+    lines += _parameters_text(comparison)
+    if comparison.exceeded is not None:
+        found = "a change above it was found" if comparison.exceeded else "no change above it found"
+        lines.append(f"  threshold {_threshold(comparison, unit)}: {found}")
+    return "\n".join(lines)
+
+
+def _span(comparison: Comparison) -> str:
+    days = comparison.days
+    folders = len(days.folders)
+    where = f" of {folders} folders" if folders > 1 else ""
+    first, last = days.days[0], days.days[-1]
+    if first.begun is None or last.begun is None:
+        return f"{where}, in the order given (dates are not known)"
+    return f"{where}, {first.begun:%Y-%m-%d} to {last.begun:%Y-%m-%d}"
+
+
+def _words(comparison: Comparison, estimate: LevelEstimate) -> str:
+    unit, factor = comparison.days.models[-1].torque_unit, comparison.mean_friction / 100
+    return (
+        f"{estimate.value:+.2f} % ({estimate.low:+.2f} to {estimate.high:+.2f}),"
+        f" {estimate.value * factor:+.3g} {unit} ({estimate.low * factor:+.3g} to"
+        f" {estimate.high * factor:+.3g})"
+    )
+
+
+def _cause_text(comparison: Comparison, cause: CauseOfChange) -> str:
+    shares = ", ".join(f"{name} {cause.probabilities[name]:.0%}" for name in cause.effects)
+    since = "" if cause.moment is None else f" since {comparison.days.days[cause.moment].label}"
+    return (
+        f"  looks like {' or '.join(cause.effects)} ({shares}), {cause.change.value:+.2g} % in the"
+        f" {cause.channel}{since}: {cause.claim}"
+    )
+
+
+def _conditions_text(comparison: Comparison, unit: str) -> list[str]:
+    if not comparison.conditions:
+        return ["  change at other conditions: not told; measure more speeds or temperatures"]
+    load = f"{comparison.conditions[0].load:.3g} {load_unit(comparison)}"
+    lines = [f"  friction [{unit}] at a load of {load}, and its change, first run to last"]
+    for one in comparison.conditions:
+        factor = one.friction / 100
+        mark = "  not measured in all runs" if one.extrapolated else ""
+        lines.append(
+            f"    {one.temperature:3.0f} °C {one.speed:6.1f} deg/s {one.friction:8.2f}"
+            f" {one.change.value * factor:+7.2f} ({one.change.low * factor:+.2f} to"
+            f" {one.change.high * factor:+.2f}){mark}"
+        )
+    return lines
+
+
+def _parameters_text(comparison: Comparison) -> list[str]:
+    if not comparison.parameters:
+        return []
+    lines = [
+        "  parameters of the first and the last folder's model; they make up for each other, so"
+        " rely on the friction above"
+    ]
+    for one in comparison.parameters:
+        told = "not in both models"
+        if one.change is not None and one.ci95 is not None:
+            told = f"{one.change:+.3g} ({one.ci95[0]:+.3g} to {one.ci95[1]:+.3g}) {one.unit}"
+        lines.append(f"    {one.name:6s} {one.first:9.4g} -> {one.last:9.4g}  {told}")
+    return lines
+
+
+def _threshold(comparison: Comparison, unit: str) -> str:
+    threshold = comparison.settings.fail_above
+    assert threshold is not None  # only asked where there is one
+    return f"{threshold.value:g} {'%' if threshold.unit == '%' else unit}"

@@ -1,0 +1,273 @@
+"""``plan.json``, and the plan in plain words."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import asdict
+from itertools import groupby
+from typing import Any
+
+from frictioncli.design.block import Block
+from frictioncli.design.limits import Limits
+from frictioncli.design.plan import Expected, Plan
+from frictioncli.design.predicted_rows import Moment
+from frictioncli.design.programs.programme import REDUCED
+from frictioncli.design.rivals import Question
+from frictioncli.design.steps import HeatStep, RestStep, SeriesStep, Step
+from frictioncli.quantities import TORQUE
+
+_LIKELY = 0.01
+"""A rival as unlikely as this is not spoken of."""
+
+_NOTABLE = 0.1
+"""A block's reason names rivals whose chance of being ruled out it raises by as much."""
+
+
+def plan_document(
+    plan: Plan, units: Mapping[str, str], files: Sequence[str], check_files: Sequence[str]
+) -> dict[str, Any]:
+    """Return one joint's plan as plain values.
+
+    Parameters
+    ----------
+    plan : Plan
+        The plan.
+    units : mapping of str to str
+        Units of the base model's parameters.
+    files, check_files : sequence of str
+        Names of the robot program's files, and of the check's.
+    """
+    return {
+        "joint": plan.joint,
+        "verdict": plan.verdict,
+        "torque_unit": plan.torque_unit,
+        "limits": limits_document(plan.limits),
+        "programme": {
+            "files": list(files),
+            "duration_s": _rounded(plan.moments[-1].end),
+            "blocks": [
+                block_document(block, moment) | {"expected": _expected(plan, number)}
+                for number, (block, moment) in enumerate(
+                    zip(plan.blocks, plan.moments, strict=True)
+                )
+            ],
+        },
+        "check": {
+            "when": "on the next day, from cold, as a run of its own",
+            "files": list(check_files),
+            "duration_s": _rounded(plan.check_moments[-1].end) if plan.check else 0.0,
+            "blocks": [
+                block_document(block, moment)
+                for block, moment in zip(plan.check, plan.check_moments, strict=True)
+            ],
+        },
+        "questions": [
+            {
+                "effects": [rival.name for rival in question.rivals],
+                "probabilities": _shares(question),
+                "right_name_alone": {
+                    "now": _rounded(plan.expected[0].decided[number]),
+                    "after": _rounded(plan.expected[-1].decided[number]),
+                    "after_check": _rounded(plan.settled.decided[number]),
+                },
+                "rules_out": _ruled_out(question, plan.expected[-1], number),
+            }
+            for number, question in enumerate(plan.outlook.opening.questions)
+        ],
+        "intervals": _intervals(plan, units),
+        "thermal": None
+        if plan.outlook.joint.warmth is None
+        else {
+            "ambient_degC": _rounded(plan.outlook.joint.warmth.ambient),
+            "time_constant_s": _rounded(plan.outlook.joint.warmth.time_constant),
+        },
+    }
+
+
+def limits_document(limits: Limits) -> dict[str, Any]:
+    """Return limits as plain values."""
+    return {
+        "low_deg": limits.low,
+        "high_deg": limits.high,
+        "slowest_deg_s": limits.slowest,
+        "fastest_deg_s": limits.fastest,
+        "hottest_degC": limits.hottest,
+        "payloads_kg": list(limits.payloads),
+        "speed_step_deg_s": limits.speed_step,
+        "beyond_measured": list(limits.beyond),
+    }
+
+
+def block_document(block: Block, moment: Moment | None) -> dict[str, Any]:
+    """Return a block as plain values, with what is foreseen of it."""
+    told: dict[str, Any] = {"name": block.name, "reason": block.reason}
+    if moment is not None:
+        warm = [_rounded(one) if one == one else None for one in moment.temperatures]
+        told |= {
+            "start_s": _rounded(moment.start),
+            "duration_s": _rounded(moment.end - moment.start),
+            "motor_temperature_degC": warm,
+        }
+    return told | {"steps": [_step(step) for step in block.steps]}
+
+
+def _step(step: Step) -> dict[str, Any]:
+    names = {"speed": "speed_deg_s", "speeds": "speeds_deg_s", "low": "low_deg", "high": "high_deg"}
+    names |= {"seconds": "duration_s", "until": "until_degC", "payload": "payload_kg"}
+    kinds = {SeriesStep: "series", HeatStep: "heat", RestStep: "rest"}
+    told = {names[name]: value for name, value in asdict(step).items()}
+    return {"kind": kinds[type(step)]} | {
+        name: list(value) if isinstance(value, tuple) else value for name, value in told.items()
+    }
+
+
+def _shares(question: Question) -> dict[str, float]:
+    return {name: _rounded(share) for name, share in question.probabilities.items()}
+
+
+def _expected(plan: Plan, number: int) -> dict[str, Any]:
+    """Return what is expected after a block, and which rivals it helps to rule out."""
+    before, after = plan.expected[number], plan.expected[number + 1]
+    return {
+        "right_name_alone": [_rounded(one) for one in after.decided],
+        "rules_out": [
+            {"rival": rival, "if": truth, "chance_before": old, "chance_after": new}
+            for place, question in enumerate(plan.outlook.opening.questions)
+            for truth, rival, old, new in _raised(question, before, after, place)
+        ],
+    }
+
+
+def _raised(
+    question: Question, before: Expected, after: Expected, place: int
+) -> list[tuple[str, str, float, float]]:
+    """Return what a block does for the chance that a rival is ruled out, most first."""
+    names = [rival.name for rival in question.rivals]
+    found = [
+        (truth, rival, _rounded(before.chances[place][i, j]), _rounded(after.chances[place][i, j]))
+        for i, truth in enumerate(names)
+        for j, rival in enumerate(names)
+        if i != j and after.chances[place][i, j] - before.chances[place][i, j] > _NOTABLE
+    ]
+    return sorted(found, key=lambda one: one[2] - one[3])
+
+
+def _ruled_out(question: Question, after: Expected, place: int) -> list[dict[str, Any]]:
+    names = [rival.name for rival in question.rivals]
+    return [
+        {"if": truth, "rival": rival, "chance": _rounded(after.chances[place][i, j])}
+        for i, truth in enumerate(names)
+        for j, rival in enumerate(names)
+        if i != j
+    ]
+
+
+def _intervals(plan: Plan, units: Mapping[str, str]) -> list[dict[str, Any]]:
+    known = dict(units)
+    for one in plan.outlook.opening.causes:
+        for parameter in one.effect.coefficients:
+            unit = parameter.unit.replace(TORQUE, plan.torque_unit)
+            known[f"{one.effect.name}.{parameter.name}"] = unit
+    first, last = plan.expected[0].half_widths, plan.expected[-1].half_widths
+    return [
+        {
+            "parameter": name,
+            "estimate": _rounded(plan.outlook.estimates[name]),
+            "half_width_now": _rounded(first[name]),
+            "half_width_after": _rounded(last[name]),
+            "unit": known.get(name, ""),
+            "wide": name in plan.outlook.matter,
+        }
+        for name in first
+    ]
+
+
+def _rounded(value: float) -> float:
+    """Return a value in five digits: more is not known, and last digits differ by machine."""
+    return float(f"{value:.5g}")
+
+
+def plan_text(plan: Plan, units: Mapping[str, str], files: Sequence[str]) -> str:
+    """Return the plan in plain words."""
+    whole = plan.moments[-1].end
+    lines = [
+        f"joint {plan.joint}: {plan.verdict}; next: {whole / 60:.0f} min"
+        + (f", and {plan.check_moments[-1].end / 60:.0f} min on the next day" if plan.check else "")
+    ]
+    for number, question in enumerate(plan.outlook.opening.questions):
+        shares = ", ".join(f"{name} {share:.0%}" for name, share in question.probabilities.items())
+        now, after = plan.expected[0].decided[number], plan.expected[-1].decided[number]
+        lines.append(f"  open: {shares}; the right name alone: {_chance(now)} now,")
+        last = plan.settled.decided[number]
+        checked = f", {_chance(last)} with the check" if plan.check else ""
+        lines.append(f"    {_chance(after)} after it{checked}{_too_little(last)}")
+    if plan.verdict == "unnamed":
+        lines.append("  no known effect explains the structure: blocks that spread over all inputs")
+    told: set[str] = set()
+    for first, last in _alike(plan):
+        lines += _blocks_text(plan, first, last, tell=plan.blocks[first].name not in told)
+        told.add(plan.blocks[first].name)
+    if plan.check:
+        names = ", ".join(block.name for block in plan.check)
+        lines.append(f"  next day, cold, as a check: {names}")
+        lines.append(
+            "    log both as runs of their own: diagnose learns from all runs but the last,"
+        )
+        lines.append("    which shows whether what it has learned is worth modelling")
+    wide = [one for one in _intervals(plan, units) if one["wide"]]
+    for one in wide:
+        lines.append(
+            f"  {one['parameter']} {one['estimate']:.3g} {one['unit']}:"
+            f" +-{one['half_width_now']:.2g} now, +-{one['half_width_after']:.2g} after"
+        )
+    limits = plan.limits
+    lines.append(
+        f"  within {limits.low:g} to {limits.high:g} deg, {limits.slowest:.3g} to"
+        f" {limits.fastest:.4g} deg/s"
+        + (f", motor up to {limits.hottest:.0f} °C" if plan.outlook.joint.warmth else "")
+        + (f"; beyond the data: {'; '.join(limits.beyond)}" if limits.beyond else "")
+    )
+    lines.append(f"  program: {', '.join(files)}. {REDUCED}")
+    return "\n".join(lines)
+
+
+def _alike(plan: Plan) -> list[tuple[int, int]]:
+    """Return the numbers of the first and the last of the blocks of one kind in a row."""
+    groups = groupby(range(len(plan.blocks)), key=lambda place: plan.blocks[place].name)
+    rows = [list(places) for _, places in groups]
+    return [(places[0], places[-1]) for places in rows]
+
+
+def _blocks_text(plan: Plan, first: int, last: int, *, tell: bool) -> list[str]:
+    """Return what there is to say of blocks of one kind in a row; their reason where asked."""
+    block, start, end = plan.blocks[first], plan.moments[first], plan.moments[last]
+    count = last - first + 1
+    number = f"{first + 1}." if count == 1 else f"{first + 1}-{last + 1}."
+    low, high = start.temperatures[0], end.temperatures[1]
+    warm = f", motor {low:.0f} to {high:.0f} °C" if low == low else ""
+    often = f", {count} times" if count > 1 else ""
+    lines = [
+        f"  {number:>6s} {_clock(start.start)} {block.name}{often}"
+        f" ({(end.end - start.start) / 60:.1f} min{warm})"
+    ]
+    if tell:
+        lines.append(f"         {block.reason}")
+    before, after = plan.expected[first], plan.expected[last + 1]
+    for place, question in enumerate(plan.outlook.opening.questions):
+        likely = question.probabilities
+        raised = _raised(question, before, after, place)
+        for truth, rival, old, new in [one for one in raised if likely[one[0]] >= _LIKELY][:2]:
+            lines.append(
+                f"         rules out {rival} if {truth} is at work: {old:.0%} to {new:.0%}"
+            )
+    return lines
+
+
+def _chance(value: float) -> str:
+    return "less than 1 %" if value < 0.01 else f"{value:.0%}"
+
+
+def _too_little(value: float) -> str:
+    return "; more time (--minutes), payloads or range are needed" if value < 0.5 else ""
+
+
+def _clock(seconds: float) -> str:
+    return f"{int(seconds) // 60:d}:{int(seconds) % 60:02d}"

@@ -1,0 +1,230 @@
+"""The programme as a KUKA program: a ``.src`` with what it does, a ``.dat`` with its constants.
+
+System variables used [1]_: ``$VEL_AXIS`` is a whole number of per cent of the axis' rated speed,
+``$MOT_TEMP`` the motor temperature in whole kelvins, ``$TIMER`` counts milliseconds, ``$TRACE``
+starts and ends the controller's trace.
+
+References
+----------
+.. [1] KUKA, System Variables for KUKA System Software 8.1 to 8.4, 2016.
+"""
+
+import math
+
+from frictioncli.design.block import Block
+from frictioncli.design.programs.programme import MARGIN, Programme, plain_text
+from frictioncli.design.steps import DWELL, LEAD, HeatStep, RestStep, SeriesStep
+from frictioncli.errors import OptionError
+
+KELVIN = 273
+LONGEST_NAME = 24
+"""Longest name of a program that the controller takes."""
+
+_ACCELERATION = 50
+"""Share of the axis' acceleration. [%]"""
+
+_BODY = """\
+; ---------------------------------------------------------------- parts
+; Moves axis {axis} alone to A (deg) at V (deg/s); stops the program outside of the limits.
+DEF GO_TO (A :IN, V :IN)
+DECL REAL A, V
+DECL INT PERCENT
+IF (A < A_LOW) OR (A > A_HIGH) OR (V <= 0.0) OR (V > V_MAX) THEN
+  HALT ; angle or speed outside of the limits in {name}.dat
+ENDIF
+IF (A >= A_LOW) AND (A <= A_HIGH) AND (V > 0.0) AND (V <= V_MAX) THEN
+  PERCENT = V * 100.0 / V_RATED
+  IF PERCENT < 1 THEN
+    PERCENT = 1
+  ENDIF
+  $VEL_AXIS[{axis}] = PERCENT
+  TARGET.A{axis} = A
+  PTP TARGET
+ENDIF
+END
+
+; One pair: there and back at V (deg/s) from LOW to HIGH (deg).
+DEF PAIR (LOW :IN, HIGH :IN, V :IN)
+DECL REAL LOW, HIGH, V
+NOT_TOO_HOT( )
+GO_TO(HIGH, V)
+WAIT SEC DWELL
+GO_TO(LOW, V)
+WAIT SEC DWELL
+END
+
+; Moves between LOW and HIGH (deg) at V (deg/s) for a time (s), or until the motor has UNTIL_K (K).
+DEF HEAT (LOW :IN, HIGH :IN, V :IN, SECONDS :IN, UNTIL_K :IN)
+DECL REAL LOW, HIGH, V, SECONDS
+DECL INT UNTIL_K
+WAIT SEC 0.0 ; stops the advance run: the timer starts when the axis stands
+$TIMER[1] = 0
+$TIMER_STOP[1] = FALSE
+WHILE ($TIMER[1] < SECONDS * 1000.0) AND ($MOT_TEMP[{axis}] < UNTIL_K)
+  GO_TO(HIGH, V)
+  GO_TO(LOW, V)
+  WAIT SEC 0.0
+ENDWHILE
+$TIMER_STOP[1] = TRUE
+END
+
+; Holds still for a time (s), or until the motor has cooled to UNTIL_K (K).
+DEF COOL (SECONDS :IN, UNTIL_K :IN)
+DECL REAL SECONDS
+DECL INT UNTIL_K
+WAIT SEC 0.0
+$TIMER[1] = 0
+$TIMER_STOP[1] = FALSE
+WHILE ($TIMER[1] < SECONDS * 1000.0) AND ($MOT_TEMP[{axis}] > UNTIL_K)
+  WAIT SEC 1.0
+ENDWHILE
+$TIMER_STOP[1] = TRUE
+END
+
+; Stands while the motor is hotter than T_STOP_K (K), an hour at the longest.
+DEF NOT_TOO_HOT ( )
+WAIT SEC 0.0
+$TIMER[2] = 0
+$TIMER_STOP[2] = FALSE
+WHILE ($MOT_TEMP[{axis}] > T_STOP_K) AND ($TIMER[2] < 3600000)
+  WAIT SEC 5.0
+ENDWHILE
+$TIMER_STOP[2] = TRUE
+IF $MOT_TEMP[{axis}] > T_STOP_K THEN
+  HALT ; still too hot after an hour
+ENDIF
+END
+
+; USER HOOK: starts the recording. Needs a trace configuration with position, velocity, torque and
+; motor temperature of axis {axis} that is loaded already. Replace it if you record otherwise.
+DEF TRACE_ON ( )
+WAIT SEC 0.0
+$TRACE.MODE = #T_START
+WAIT SEC LEAD
+END
+
+; USER HOOK: ends the recording and waits until it is written, a minute at the longest.
+DEF TRACE_OFF ( )
+WAIT SEC 0.0
+$TRACE.MODE = #T_STOP
+$TIMER[3] = 0
+$TIMER_STOP[3] = FALSE
+WHILE ($TRACE.STATE <> #T_END) AND ($TIMER[3] < 60000)
+  WAIT SEC 0.5
+ENDWHILE
+$TIMER_STOP[3] = TRUE
+END
+"""
+
+
+def written(programme: Programme) -> dict[str, str]:
+    """Return the text of the ``.src`` and the ``.dat`` by file name.
+
+    Raises
+    ------
+    OptionError
+        If the axis' rated speed is not known.
+    """
+    step = programme.limits.speed_step
+    if step is None:
+        raise OptionError("a KUKA program needs the rated speed of the axis: --rated-speed")
+    name = programme.name.upper()[:LONGEST_NAME]
+    return {
+        f"{name.lower()}.src": _source(programme, name),
+        f"{name.lower()}.dat": _data(programme, name, 100 * step),
+    }
+
+
+def _source(programme: Programme, name: str) -> str:
+    axis = programme.axis
+    head = [
+        "&ACCESS RVP",
+        "&REL 1",
+        f"DEF {name} ( )",
+        *(f"; {plain_text(text)}" for text in programme.told()),
+        f"; Limits and speeds are constants in {name.lower()}.dat. V_RATED there must be the rated",
+        "; speed of the axis: speeds are stated in whole per cent of it. Run in T1 first, then in",
+        "; automatic mode with the override at 100 %: another override makes other speeds.",
+        ";FOLD INI",
+        "  ;FOLD BASISTECH INI",
+        "    GLOBAL INTERRUPT DECL 3 WHEN $STOPMESS==TRUE DO IR_STOPM( )",
+        "    INTERRUPT ON 3",
+        "    BAS(#INITMOV, 0)",
+        "  ;ENDFOLD",
+        ";ENDFOLD",
+        "PTP $AXIS_ACT ; block coincidence: the robot stays where it is",
+        "TARGET = $AXIS_ACT ; the other axes keep these angles",
+        f"$ACC_AXIS[{axis}] = {_ACCELERATION}",
+    ]
+    return "\n".join(
+        [*head, *_main(programme), "END", "", _BODY.format(axis=axis, name=name.lower())]
+    )
+
+
+def _main(programme: Programme) -> list[str]:
+    lines: list[str] = []
+    at, payload = None, None
+    for number, block in enumerate(programme.blocks, start=1):
+        lines += ["", f"; ---- block {number}: {plain_text(block.name)}", *_reason(block)]
+        for step in block.steps:
+            if isinstance(step, RestStep):
+                lines.append(_rest(step))
+                continue
+            if isinstance(step, SeriesStep) and step.payload not in (None, payload):
+                payload = step.payload
+                lines += [
+                    f"HALT ; OPERATOR: mount {payload:g} kg, set its load data, then start again",
+                ]
+            if step.low != at:
+                lines.append(f"GO_TO({step.low:.3f}, V_APPROACH)")
+                at = step.low
+            if isinstance(step, HeatStep):
+                until = programme.limits.hottest if step.until is None else step.until
+                lines.append(
+                    f"HEAT({step.low:.3f}, {step.high:.3f}, {step.speed:.3f},"
+                    f" {step.seconds:.1f}, {math.floor(until + KELVIN)})"
+                )
+            else:
+                lines += [
+                    "TRACE_ON( )",
+                    *(f"PAIR({step.low:.3f}, {step.high:.3f}, {v:.3f})" for v in step.speeds),
+                    "TRACE_OFF( )",
+                ]
+    return lines
+
+
+def _rest(step: RestStep) -> str:
+    if step.until is None:
+        return f"WAIT SEC {step.seconds:.1f} ; hold still"
+    return f"COOL({step.seconds:.1f}, {math.ceil(step.until + KELVIN)})"
+
+
+def _reason(block: Block) -> list[str]:
+    return [f"; {plain_text(block.reason)}"]
+
+
+def _data(programme: Programme, name: str, rated: float) -> str:
+    limits = programme.limits
+    constants = (
+        ("REAL", "V_RATED", f"{rated:.3f}", "rated speed of the axis: CHECK IT (deg/s)"),
+        ("REAL", "V_MAX", f"{limits.fastest * (1 + 1e-6):.3f}", "highest speed (deg/s)"),
+        ("REAL", "V_APPROACH", f"{programme.approach:.3f}", "to where a series begins (deg/s)"),
+        ("REAL", "A_LOW", f"{limits.low:.3f}", "lowest angle (deg)"),
+        ("REAL", "A_HIGH", f"{limits.high:.3f}", "highest angle (deg)"),
+        ("INT", "T_STOP_K", f"{math.floor(limits.hottest + MARGIN) + KELVIN}", "wait above (K)"),
+        ("REAL", "DWELL", f"{DWELL:.3f}", "standing time at each end (s)"),
+        ("REAL", "LEAD", f"{LEAD:.3f}", "standing time after a recording starts (s)"),
+    )
+    lines = [
+        "&ACCESS RVP",
+        "&REL 1",
+        f"DEFDAT {name}",
+        "; Limits of this program. Change them only towards the safe side.",
+        ";FOLD EXTERNAL DECLARATIONS",
+        "  EXT BAS (BAS_COMMAND :IN, REAL :IN)",
+        ";ENDFOLD",
+        *(f"DECL {kind} {what}={value} ; {text}" for kind, what, value, text in constants),
+        "DECL E6AXIS TARGET ; where the axis is sent; the other axes as at the start",
+        "ENDDAT",
+    ]
+    return "\n".join(lines) + "\n"

@@ -1,0 +1,1 @@
+"""What a diagnosis works on: torques per pair, gravity, motion history, base models."""

@@ -1,0 +1,1 @@
+"""``diagnosis.json`` and ``extended-model.json``: written, read back, applied."""

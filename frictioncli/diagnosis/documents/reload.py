@@ -1,0 +1,176 @@
+"""What a diagnosis has seen, rebuilt from the files of a work folder: misfits and fitted terms."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pandas as pd
+from numpy.typing import NDArray
+
+from frictioncli.diagnosis.data.problem import Problem, build_problems
+from frictioncli.diagnosis.documents.extended_model import (
+    ExtendedModel,
+    Term,
+    read_by_joint,
+    read_extended,
+)
+from frictioncli.errors import TableError
+from frictioncli.workfiles import DIAGNOSIS, EXTENDED
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Misfits:
+    """What the simulated torque misses in some runs, without and with the extension.
+
+    Attributes
+    ----------
+    problem : Problem
+        The rows, with the base model.
+    before, after : dict of str to ndarray
+        Measured minus simulated torque per channel, ``friction`` and ``load``, by the base and by
+        the extended model. [N·m]
+    terms : tuple of Term
+        Effects of the extended model, in the order of the causes.
+    """
+
+    problem: Problem
+    before: dict[str, Array]
+    after: dict[str, Array]
+    terms: tuple[Term, ...]
+
+    def without(self, number: int, channel: str) -> Array:
+        """Return what the extended model misses when one of its terms is taken out. [N·m].
+
+        Parameters
+        ----------
+        number : int
+            Place of the term, from 0.
+        channel : {"friction", "load"}
+            Which channel.
+        """
+        return self.after[channel] + self.terms[number].of(channel)
+
+    @staticmethod
+    def torque(channels: Mapping[str, Array]) -> Array:
+        """Return the misfit of the torque, all rows forward, then all in reverse. [N·m]."""
+        return np.concatenate(
+            [channels["load"] + channels["friction"], channels["load"] - channels["friction"]]
+        )
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Reloaded:
+    """One joint's diagnosis with its data.
+
+    Attributes
+    ----------
+    document : dict
+        The joint's part of ``diagnosis.json``.
+    seen : Misfits
+        The runs that the diagnosis has learned from.
+    new : Misfits or None
+        The run that was kept out of it.
+    """
+
+    document: Mapping[str, Any]
+    seen: Misfits
+    new: Misfits | None
+
+    @property
+    def judged(self) -> Misfits:
+        """What the gain was measured on."""
+        return self.new or self.seen
+
+    @property
+    def causes(self) -> list[Mapping[str, Any]]:
+        """Causes that effects of the catalogue stand for, in the order of the terms."""
+        return [cause for cause in self.document["causes"] if cause["effects"]]
+
+
+def read_documents(work: Path) -> dict[int, tuple[Mapping[str, Any], ExtendedModel]]:
+    """Return each joint's part of ``diagnosis.json``, and its extended model.
+
+    Without the first there are none.
+
+    Raises
+    ------
+    TableError
+        If a file is damaged, the second is missing, or they do not belong together.
+    """
+    if not (work / DIAGNOSIS).exists():
+        return {}
+    diagnoses = read_by_joint(work / DIAGNOSIS, _looked_through)
+    models = read_extended(work / EXTENDED)
+    for joint, document in diagnoses.items():
+        named = sum(bool(cause["effects"]) for cause in document["causes"])
+        effects = models[joint].effects if joint in models else ()
+        if joint not in models or len(effects) != named:
+            raise TableError(
+                f"{work / EXTENDED}: has {len(effects)} effects of joint {joint}, {DIAGNOSIS} has"
+                f" {named} named causes; run 'frictioncli diagnose' again"
+            )
+    return {joint: (document, models[joint]) for joint, document in diagnoses.items()}
+
+
+def _looked_through(part: Mapping[str, Any]) -> Mapping[str, Any]:
+    """Touch what every reader relies on, so that a damaged file is found here."""
+    for cause in part["causes"]:
+        for key in ("effects", "probabilities", "channel", "size", "p_value", "seen_in", "claim"):
+            cause[key]
+        for key in ("equation", "experiment", "parameters"):
+            cause[key]
+    for key in ("verdict", "gain", "detectable", "runs", "held_out"):
+        part[key]
+    float(part["simulation"]["rmse"])
+    return part
+
+
+def is_current(document: Mapping[str, Any], torques: pd.DataFrame) -> bool:
+    """Return whether a joint's diagnosis is of the runs that its torques have now."""
+    known = {*document["runs"], *filter(None, [document["held_out"]])}
+    return known == {str(run) for run in torques["run"].unique()}
+
+
+def reload(torques: pd.DataFrame, document: Mapping[str, Any], extended: ExtendedModel) -> Reloaded:
+    """Rebuild what a diagnosis has seen.
+
+    Parameters
+    ----------
+    torques : DataFrame
+        Rows of :data:`frictioncli.schemas.TORQUES` of a single joint.
+    document : dict
+        The joint's part of ``diagnosis.json``.
+    extended : ExtendedModel
+        Its extended model.
+    """
+    seen, new = build_problems(torques, extended.temperature, document["held_out"])
+    return Reloaded(
+        document=document,
+        seen=misfits(seen, extended),
+        new=None if new is None else misfits(new, extended),
+    )
+
+
+def misfits(problem: Problem, extended: ExtendedModel) -> Misfits:
+    """Return what the base and the extended model miss of a problem's rows.
+
+    Parameters
+    ----------
+    problem : Problem
+        Rows with the base model that the extension started from.
+    extended : ExtendedModel
+        The joint's extended model.
+    """
+    before = {"friction": problem.friction_misfit, "load": problem.load_misfit}
+    if not extended.effects:
+        return Misfits(problem=problem, before=before, after=before, terms=())
+    beyond = extended.beyond(problem)
+    after = {
+        "friction": before["friction"] - beyond.friction,
+        "load": before["load"] - beyond.load,
+    }
+    return Misfits(problem=problem, before=before, after=after, terms=beyond.terms)

@@ -1,0 +1,1 @@
+"""Least-squares fits of base and effects to both channels."""

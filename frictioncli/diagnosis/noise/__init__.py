@@ -1,0 +1,1 @@
+"""Noise of pair means: spectra, likelihoods under each, and significance."""

@@ -1,0 +1,132 @@
+"""One joint's row of the fleet's table, from the files of its work folder."""
+
+import json
+import math
+from collections.abc import Iterable, Mapping
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pandas as pd
+
+from frictioncli import schemas, tables
+from frictioncli.comparison.change import change_of_last_run
+from frictioncli.correction.evaluation import epsilon
+from frictioncli.model.document import FrictionModel, read_models
+from frictioncli.model.friction import friction_torque
+from frictioncli.workfiles import DIAGNOSIS, MODEL, SCHEDULE, TORQUES
+
+_PHASES = {"heat-up": "heating", "cool-down": "cooling"}
+
+
+def row_of(work: Path) -> dict[str, Any]:
+    """Return what the work folder of one joint says; columns that it cannot fill are absent.
+
+    Parameters
+    ----------
+    work : Path
+        A work folder on which the chain has run.
+    """
+    torques = tables.read(work / TORQUES, schemas.TORQUES)
+    # logs of one joint were read, so there is one model
+    model = read_models(work / MODEL)[0]
+    row = _model_columns(model) | _reference_columns(model) | _schedule_columns(work)
+    row |= _diagnosis_columns(work)
+    change = change_of_last_run(torques, model)
+    if change is not None:
+        row |= _with_interval("change", change.estimate, change.ci95)
+    return {name: _plain(value) for name, value in row.items()}
+
+
+def unused_runs(work: Path, runs: Iterable[str]) -> list[str]:
+    """Return those of the runs that gave no pairs.
+
+    Parameters
+    ----------
+    work : Path
+        A work folder on which the chain has run.
+    runs : iterable of str
+        Names of the runs that it was given.
+    """
+    used = set(tables.read(work / TORQUES, schemas.TORQUES)["run"].unique())
+    return [run for run in runs if run not in used]
+
+
+def _model_columns(model: FrictionModel) -> dict[str, Any]:
+    row: dict[str, Any] = {
+        "torque_unit": model.torque_unit,
+        "temperature": model.temperature,
+        "rmse": model.rmse,
+        "n_pairs": model.n_pairs,
+    }
+    for name, entry in model.parameters.items():
+        row |= _with_interval(name, entry.estimate, entry.ci95)
+        row |= {f"{name}_unit": entry.unit, f"{name}_determined": entry.determined}
+    return row
+
+
+def _reference_columns(model: FrictionModel) -> dict[str, Any]:
+    """Return friction without load at the middle speed, where the data reach the temperature."""
+    speeds, reach = model.range["speed"], model.range["temperature"]
+    if speeds is None:
+        return {}
+    speed = sum(speeds) / 2
+    row: dict[str, Any] = {"reference_speed": speed}
+    for temperature in schemas.REFERENCE_TEMPERATURES:
+        if reach is not None and reach[0] <= temperature <= reach[1]:
+            row[f"friction_{temperature}"] = float(
+                friction_torque(model.friction, load=0.0, speed=speed, temperature=temperature)
+            )
+    return row
+
+
+def _schedule_columns(work: Path) -> dict[str, Any]:
+    if not (work / SCHEDULE).exists():
+        return {}
+    schedule = tables.read(work / SCHEDULE, schemas.SCHEDULE)
+    row: dict[str, Any] = {}
+    for phase, own in schedule.groupby("phase"):
+        kind = _PHASES[str(phase)]
+        row[f"epsilon_{kind}"] = epsilon(own, "friction_smoothed")
+        row[f"corrections_{kind}"] = _per_run(own)
+    return row
+
+
+def _per_run(schedule: pd.DataFrame) -> float:
+    return float(schedule["corrected"].sum() / schedule["run"].nunique())
+
+
+def _diagnosis_columns(work: Path) -> dict[str, Any]:
+    if not (work / DIAGNOSIS).exists():
+        return {}
+    document = json.loads((work / DIAGNOSIS).read_text(encoding="utf-8"))
+    row = {"verdict": document["verdict"], "causes": causes_text(document)}
+    gain = document["gain"]
+    if gain is not None:
+        row |= _with_interval("gain", gain["reduction"], gain["ci95"])
+        row["gain_basis"] = gain["basis"]
+    return row
+
+
+def causes_text(document: Mapping[str, Any]) -> str:
+    """Return the causes of a diagnosis, strongest first: ``thermal_lag; drift or run_in``.
+
+    Parameters
+    ----------
+    document : mapping
+        A joint's part of ``diagnosis.json``.
+    """
+    named = [" or ".join(cause["effects"]) or "unnamed" for cause in document["causes"]]
+    return "; ".join(named)
+
+
+def _with_interval(name: str, value: Any, interval: Any) -> dict[str, Any]:
+    low, high = (None, None) if interval is None else interval
+    return {name: value, f"{name}_low": low, f"{name}_high": high}
+
+
+def _plain(value: Any) -> Any:
+    """Return a value that JSON knows; what is not finite is missing."""
+    if isinstance(value, np.generic):
+        value = value.item()
+    return None if isinstance(value, float) and not math.isfinite(value) else value

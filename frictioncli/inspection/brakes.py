@@ -1,0 +1,72 @@
+"""Brake columns: how long the brake was closed, whichever way the column says it."""
+
+import re
+from collections.abc import Sequence
+
+import numpy as np
+
+from frictioncli.logs.channels import aliases as names
+from frictioncli.logs.channels.recognition import split_unit
+from frictioncli.logs.channels.unit_inference import JointPlan
+from frictioncli.logs.formats.base import Source
+from frictioncli.logs.samples.row_checks import LIMITS
+
+_NAME = re.compile(r"brake|bremse", re.I)
+_MOST_VALUES = 256
+_STILL = 0.02
+"""A value that goes with less than this share of the usual speed means closed."""
+
+
+def closed_seconds(source: Source, plan: JointPlan, batch_bytes: int) -> float | None:
+    """Return how long the brake was closed [s], from one more pass over three columns of a log.
+
+    Closed are the values at which the joint does not move. So 0 and 1 may mean either, and so may
+    the bits of KUKA's ``$BRAKE_SIG``.
+
+    Parameters
+    ----------
+    source : Source
+        The log.
+    plan : JointPlan
+        How the joint is read.
+    batch_bytes : int
+        How much of the log to hold at a time. [byte]
+
+    Returns
+    -------
+    float or None
+        None where no column is named after a brake, it holds no signal, or the joint never moves.
+    """
+    brake = _brake_column(source.columns)
+    if brake is None:
+        return None
+    time, position = plan.channels.time.column, plan.channels.position.column
+    factor = plan.beliefs[names.TIME].factor
+    seconds: dict[float, float] = {}
+    ways: dict[float, float] = {}
+    last: dict[int, float] = {}
+    for batch in source.batches([brake, time, position], batch_bytes):
+        rows = {c: np.concatenate(([last.get(c, np.nan)], batch.values[c])) for c in batch.values}
+        if not len(batch.lines):
+            continue
+        last = {column: float(values[-1]) for column, values in rows.items()}
+        with np.errstate(over="ignore"):  # damaged cells may be of any size
+            elapsed = np.diff(rows[time]) * factor
+            way = np.abs(np.diff(rows[position]) * plan.beliefs[names.POSITION].factor)
+        plausible = (elapsed < LIMITS[names.TIME]) & (way < LIMITS[names.POSITION])
+        good = (elapsed > 0) & plausible & np.isfinite(rows[brake][1:])
+        for value in np.unique(rows[brake][1:][good]).tolist():
+            at = good & (rows[brake][1:] == value)
+            seconds[value] = seconds.get(value, 0.0) + float(elapsed[at].sum())
+            ways[value] = ways.get(value, 0.0) + float(way[at].sum())
+            if len(seconds) > _MOST_VALUES:
+                return None
+    usual = max((ways[value] / seconds[value] for value in seconds), default=0.0)
+    if not usual or len(seconds) < 2:
+        return None
+    return sum(s for value, s in seconds.items() if ways[value] / s < _STILL * usual)
+
+
+def _brake_column(columns: Sequence[str]) -> int | None:
+    """Return the first column that is named after a brake."""
+    return next((i for i, name in enumerate(columns) if _NAME.search(split_unit(name)[0])), None)

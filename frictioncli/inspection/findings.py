@@ -1,0 +1,148 @@
+"""What is found in a file: the records that the terminal text and the JSON document show."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from frictioncli.inspection.monitors.constant_torque import Limit
+from frictioncli.inspection.monitors.resolution import Resolution
+from frictioncli.inspection.monitors.sampling import Sampling
+from frictioncli.inspection.other_clocks import OtherClock
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ChannelFound:
+    """A column that is read.
+
+    Attributes
+    ----------
+    quantity, column : str
+        What it is, and its name in the file.
+    side : str
+        Side of the gear on which the column is; "" where it does not matter or is not known.
+    unit_found, unit_believed : str
+        The header's unit, "" where it gives none, and the unit in which it is read.
+    evidence : str
+        Why that unit is believed.
+    lowest, highest : float
+        Range of the values, in the unit used inside (deg, deg/s, N·m or A, °C).
+    grid : Resolution or None
+        The step between its values, same unit.
+    """
+
+    quantity: str
+    column: str
+    side: str
+    unit_found: str
+    unit_believed: str
+    evidence: str
+    lowest: float
+    highest: float
+    grid: Resolution | None
+
+    @property
+    def constant(self) -> bool:
+        """Whether the channel never changes."""
+        return not self.highest > self.lowest
+
+
+@dataclass(frozen=True, slots=True)
+class Spikes:
+    """Single samples of a channel unlike their neighbours; ``farthest`` in the channel's unit."""
+
+    quantity: str
+    count: int
+    line: int
+    farthest: float
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class JointFound:
+    """What a file holds of one joint.
+
+    Attributes
+    ----------
+    joint : int
+        Its number, from 1.
+    torque_unit, torque_side : str
+        Unit and side of the torque as it is read.
+    gear_ratio : float or None
+        Motor turns per joint turn, where it is used.
+    channels : tuple of ChannelFound
+        Its columns.
+    velocity_agreement : float or None
+        Change of position per integrated velocity, 1 where they agree. [-]
+    held_samples, held_line : int
+        Samples that repeat the one before while the joint moves, and the first line.
+    limits : tuple of Limit
+        Where the torque is cut off.
+    spikes : tuple of Spikes
+        Per channel.
+    frozen_spans, frozen_s : int, float
+        Stretches of constant torque at standstill and their sum. [s]
+    brake_closed_s : float or None
+        Time with the brake closed by a column of its own. [s]
+    moves : mapping of str to int
+        Constant-speed parts ``forward`` and ``reverse``.
+    """
+
+    joint: int
+    torque_unit: str
+    torque_side: str
+    gear_ratio: float | None
+    channels: tuple[ChannelFound, ...]
+    velocity_agreement: float | None = None
+    held_samples: int = 0
+    held_line: int | None = None
+    limits: tuple[Limit, ...] = ()
+    spikes: tuple[Spikes, ...] = ()
+    frozen_spans: int = 0
+    frozen_s: float = 0.0
+    brake_closed_s: float | None = None
+    moves: Mapping[str, int] = field(default_factory=dict)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class FileFound:
+    """What a file holds.
+
+    Attributes
+    ----------
+    path : Path
+        The file.
+    run, recording : str
+        The run it belongs to, and its name as a recording.
+    form : str
+        Its format; "" where it is none that is read.
+    reason, refusal : str
+        Why it cannot be used, as a word and in words; "" where it can.
+    columns : int
+        Columns in the file.
+    rows, rows_kept : int
+        Rows read, and those that become samples.
+    rejected : mapping of str to int
+        Reason -> rows that cannot be used.
+    sampling : Sampling or None
+        How it was sampled; None where no row could be read.
+    clocks : tuple of OtherClock
+        Time columns that are not used.
+    joints : tuple of JointFound
+        What it holds of each joint.
+    notes : tuple of str
+        What reading believes against or beyond the header.
+    """
+
+    path: Path
+    run: str
+    recording: str = ""
+    form: str = ""
+    reason: str = ""
+    refusal: str = ""
+    columns: int = 0
+    rows: int = 0
+    rows_kept: int = 0
+    rejected: Mapping[str, int] = field(default_factory=dict)
+    sampling: Sampling | None = None
+    clocks: tuple[OtherClock, ...] = ()
+    joints: tuple[JointFound, ...] = ()
+    notes: tuple[str, ...] = ()

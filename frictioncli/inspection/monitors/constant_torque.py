@@ -1,0 +1,150 @@
+"""Torque that does not change: at its limit while moving, or frozen while standing."""
+
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+
+from frictioncli.inspection.monitors.joint_rows import JointRows
+from frictioncli.logs.channels import aliases as names
+
+Array = NDArray[np.float64]
+Flags = NDArray[np.bool_]
+
+_ALIVE = 0.8
+"""Share of moving samples whose torque differs from the one before: then a constant one is odd."""
+
+_BETWEEN = 0.1
+"""Share of the moving samples between the limits that it takes to tell."""
+
+_LEAST_FLAT = 5
+_LEAST_FROZEN = 10
+_LEAST_SECONDS = 1.0
+
+
+@dataclass(frozen=True, slots=True)
+class Limit:
+    """A limit that the torque stays at: its value, moving samples at it, longest stay, share."""
+
+    torque: float
+    samples: int
+    longest: int
+    share: float
+
+
+@dataclass(slots=True)
+class _Top:
+    """The highest torque so far and how long it held."""
+
+    value: float = -np.inf
+    samples: int = 0
+    longest: int = 0
+    running: int = 0
+
+    def see(self, torque: Array, moving: Flags) -> None:
+        if not len(torque):
+            return
+        highest = float(torque.max())
+        if highest > self.value:
+            self.value, self.samples, self.longest, self.running = highest, 0, 0, 0
+        at = (torque == self.value) & moving
+        self.samples += int(at.sum())
+        lengths, begins = _runs(at)
+        if not len(lengths):
+            self.running = 0
+            return
+        lengths[0] += self.running if begins[0] == 0 else 0
+        self.longest = max(self.longest, int(lengths.max()))
+        self.running = int(lengths[-1]) if at[-1] else 0
+
+
+@dataclass(slots=True)
+class _Standstill:
+    """Stretches of rows that repeat the torque of the row before while the joint stands."""
+
+    seconds: float = 0.0
+    spans: int = 0
+    _open_rows: int = 0
+    _open_since: float = np.nan
+    _last: float = np.nan
+
+    def see(self, time: Array, still: Flags) -> None:
+        rows, begins = _runs(still)
+        before = np.concatenate(([self._last], time))
+        since, until = before[begins], time[begins + rows - 1]
+        if self._open_rows and len(still) and still[0]:
+            rows[0] += self._open_rows
+            since[0] = self._open_since
+        else:
+            self.end()
+        self._open_rows = 0
+        if len(still) and still[-1]:
+            self._open_rows, self._open_since = int(rows[-1]), float(since[-1])
+            rows, since, until = rows[:-1], since[:-1], until[:-1]
+        self._count(rows, until - since)
+        self._last = float(time[-1])
+
+    def end(self) -> None:
+        """Count the stretch that is still open."""
+        self._count(np.array([self._open_rows]), np.array([self._last - self._open_since]))
+        self._open_rows = 0
+
+    def _count(self, rows: NDArray[np.intp], seconds: Array) -> None:
+        long = (rows >= _LEAST_FROZEN) & (seconds >= _LEAST_SECONDS)
+        self.spans += int(long.sum())
+        self.seconds += float(seconds[long].sum())
+
+
+@dataclass(slots=True)
+class ConstantTorqueMonitor:
+    """Watches the torque of a joint for stretches in which it is exactly constant.
+
+    Where torque repeats itself anyway, as one that is rounded coarsely, nothing is concluded.
+    """
+
+    _high: _Top = field(default_factory=_Top)
+    _low: _Top = field(default_factory=_Top)
+    _standstill: _Standstill = field(default_factory=_Standstill)
+    _moving: int = 0
+    _changing: int = 0
+
+    def see(self, rows: JointRows) -> None:
+        """Take in the next rows."""
+        torque, new = rows.required(names.TORQUE), rows.new
+        moving = rows.moving[new]
+        self._high.see(torque[new], moving)
+        self._low.see(-torque[new], moving)
+        same = rows.joined & (np.diff(torque, prepend=np.nan) == 0)
+        self._moving += int(moving.sum())
+        self._changing += int((moving & ~same[new]).sum())
+        self._standstill.see(rows.window.rows.time[new], (same & ~rows.moving)[new])
+
+    @property
+    def _alive(self) -> bool:
+        """Whether torque changes from sample to sample where it is not at a limit."""
+        between = self._moving - self._high.samples - self._low.samples
+        return between > _BETWEEN * self._moving and self._changing >= _ALIVE * between
+
+    def limits(self) -> tuple[Limit, ...]:
+        """Return the limits at which the torque stays while the joint moves."""
+        if not self._alive:
+            return ()
+        return tuple(
+            Limit(sign * top.value, top.samples, top.longest, top.samples / self._moving)
+            for top, sign in ((self._high, 1.0), (self._low, -1.0))
+            if top.longest >= _LEAST_FLAT
+        )
+
+    def frozen(self) -> tuple[int, float]:
+        """Return how many stretches of constant torque at standstill there are, and their sum [s].
+
+        Either the brake is closed and the torque a left-over, or the controller does not regulate.
+        """
+        self._standstill.end()
+        return (self._standstill.spans, self._standstill.seconds) if self._alive else (0, 0.0)
+
+
+def _runs(flags: Flags) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
+    """Return lengths and beginnings of the stretches where a flag is set."""
+    edges = np.flatnonzero(np.diff(np.concatenate(([False], flags, [False])).astype(np.int8)))
+    return edges[1::2] - edges[::2], edges[::2]

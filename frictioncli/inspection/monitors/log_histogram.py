@@ -1,0 +1,104 @@
+"""Counts of positive values on a logarithmic scale: quantiles of streams of any length."""
+
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+
+_RESOLUTION = 1e-4
+_SMALLEST, _LARGEST = 1e-12, 1e12
+_HALF = 0.5
+
+
+@dataclass(slots=True)
+class LogHistogram:
+    """A histogram with classes of 0.01 % of the value; values up to 0 are left out."""
+
+    _keys: NDArray[np.int64] = field(default_factory=lambda: np.empty(0, np.int64))
+    _counts: Array = field(default_factory=lambda: np.empty(0))
+    _sums: Array = field(default_factory=lambda: np.empty(0))
+
+    def add(self, values: Array, counts: Array | None = None) -> None:
+        """Take in values, each once or as often as told.
+
+        Parameters
+        ----------
+        values : ndarray, shape (n,)
+            What to count, in any unit.
+        counts : ndarray, shape (n,), optional
+            How often each.
+        """
+        times = np.ones(len(values)) if counts is None else counts
+        positive = np.isfinite(values) & (values > 0)
+        values, times = values[positive], times[positive]
+        if not len(values):
+            return
+        within = np.clip(values, _SMALLEST, _LARGEST)
+        keys = np.concatenate((self._keys, np.floor(np.log(within) / _RESOLUTION).astype(np.int64)))
+        self._keys, index = np.unique(keys, return_inverse=True)
+        self._counts = _summed(index, np.concatenate((self._counts, times)))
+        self._sums = _summed(index, np.concatenate((self._sums, times * values)))
+
+    @property
+    def total(self) -> int:
+        """How many values were counted."""
+        return int(self._counts.sum())
+
+    def above(self, limit: float) -> int:
+        """Return how many values exceed a limit, to 0.01 % of it."""
+        return int(self._counts[self._values > limit].sum())
+
+    def sum_above(self, limit: float) -> float:
+        """Return the sum of the values that exceed a limit, to 0.01 % of it."""
+        return float(self._sums[self._values > limit].sum())
+
+    def quantile(self, share: float) -> float:
+        """Return the value that a share of all does not exceed; NaN where there is none."""
+        return _quantile(self._values, self._counts, share)
+
+    def spread(self) -> float:
+        """Return the median distance from the median, as a standard deviation."""
+        distance = np.abs(self._values - self.quantile(_HALF))
+        order = np.argsort(distance)
+        return 1.4826 * _quantile(distance[order], self._counts[order], _HALF)
+
+    def densest(self) -> float:
+        """Return the mean of the half of all values that lie closest together; NaN where none."""
+        if not len(self._keys):
+            return float("nan")
+        values = self._values
+        reached = np.concatenate(([0.0], np.cumsum(self._counts)))
+        last = np.searchsorted(reached, reached[:-1] + _HALF * reached[-1])
+        fits = np.flatnonzero(last < len(reached))
+        widths = values[last[fits] - 1] - values[fits]
+        first = int(fits[np.argmin(widths)])
+        half = slice(first, int(last[first]))
+        return float(self._sums[half].sum() / self._counts[half].sum())
+
+    def share_near(self, value: float, tolerance: float) -> float:
+        """Return the share of all values that differ from one by at most ``tolerance`` of it."""
+        near = np.abs(self._values - value) <= tolerance * value
+        return float(self._counts[near].sum() / max(self._counts.sum(), 1))
+
+    def steps_left_out(self, period: float, longest: float) -> int:
+        """Return how many whole periods the steps up to ``longest`` pass over."""
+        values = self._values
+        skipped = np.where(values < longest, np.round(values / period) - 1, 0)
+        return int((np.maximum(skipped, 0) * self._counts).sum())
+
+    @property
+    def _values(self) -> Array:
+        return self._sums / self._counts
+
+
+def _summed(index: NDArray[np.intp], values: Array) -> Array:
+    return np.asarray(np.bincount(index, values), np.float64)
+
+
+def _quantile(ordered: Array, counts: Array, share: float) -> float:
+    if not len(ordered):
+        return float("nan")
+    reached = np.cumsum(counts)
+    return float(ordered[int(np.searchsorted(reached, share * reached[-1]))])

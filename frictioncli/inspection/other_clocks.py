@@ -1,0 +1,89 @@
+"""Other time columns of a log, held against the one that is used."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from frictioncli.logs.channels import aliases as names
+from frictioncli.logs.channels import units
+from frictioncli.logs.channels.recognition import LogChannel, recognise
+from frictioncli.logs.channels.unit_inference import JointPlan
+from frictioncli.logs.formats.base import Source
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True, slots=True)
+class OtherClock:
+    """A time column that is not used: how fast it runs and how far it departs from the one used.
+
+    ``rate`` is its seconds per second of the clock used, ``departs_s`` the greatest difference,
+    both counted from the first row.
+    """
+
+    column: str
+    rate: float
+    departs_s: float
+
+
+def other_clocks(source: Source, plan: JointPlan, batch_bytes: int) -> tuple[OtherClock, ...]:
+    """Return what other time columns show, from one more pass over the time columns alone.
+
+    Parameters
+    ----------
+    source : Source
+        The log.
+    plan : JointPlan
+        How it is read.
+    batch_bytes : int
+        How much of the log to hold at a time. [byte]
+    """
+    used = plan.channels.time.column
+    others = [
+        channel
+        for channel in recognise(source.columns)
+        if channel.quantity == names.TIME and channel.column != used
+    ]
+    if not others:
+        return ()
+    comparisons = [_Comparison(channel, plan.beliefs[names.TIME].factor) for channel in others]
+    for batch in source.batches([used, *(channel.column for channel in others)], batch_bytes):
+        for comparison in comparisons:
+            comparison.see(batch.values[used], batch.values[comparison.channel.column])
+    return tuple(found for comparison in comparisons if (found := comparison.result()))
+
+
+@dataclass(slots=True)
+class _Comparison:
+    """One other clock while the rows go by; ``factor`` [s] is that of the clock used."""
+
+    channel: LogChannel
+    factor: float
+    _other_factor: float = np.nan
+    _start: float = np.nan
+    _apart: float = np.nan
+    _squares: float = 0.0
+    _sloped: float = 0.0
+    _farthest: float = 0.0
+
+    def see(self, used: Array, other: Array) -> None:
+        good = np.isfinite(used) & np.isfinite(other)
+        used, other = used[good] * self.factor, other[good]
+        if not len(used):
+            return
+        if np.isnan(self._start):
+            written = units.canonical(self.channel.unit or self.channel.meaning.unit, names.TIME)
+            self._other_factor = units.FACTORS[names.TIME][units.time_unit([other], written)]
+            self._start = float(used[0])
+            self._apart = float(other[0] * self._other_factor - used[0])
+        since = used - self._start
+        departs = other * self._other_factor - used - self._apart
+        self._squares += float(since @ since)
+        self._sloped += float(since @ departs)
+        self._farthest = max(self._farthest, float(np.abs(departs).max()))
+
+    def result(self) -> OtherClock | None:
+        if self._squares == 0:
+            return None
+        return OtherClock(self.channel.name, 1 + self._sloped / self._squares, self._farthest)

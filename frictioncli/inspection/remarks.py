@@ -1,0 +1,173 @@
+"""What is odd in a file, in sentences; a word for its kind lets many be told at once."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+from frictioncli.inspection.findings import ChannelFound, FileFound, JointFound
+from frictioncli.inspection.monitors.sampling import Sampling
+from frictioncli.inspection.other_clocks import OtherClock
+from frictioncli.quantities import TORQUE
+
+_UNEVEN = 0.1
+"""Jitter that is worth a word, as a share of the period."""
+
+_SLOWER = 0.05
+"""Shortfall of the real rate that is worth a word."""
+
+_UPTIME = (60.0, 1e9)
+"""A clock that starts in this range counts from the controller's start. [s]"""
+
+_DISAGREES = 0.05
+
+_SAME_RATE = 1e-4
+_APART = 0.01
+"""Rate and distance at which two clocks still are one. [s]"""
+
+_STANDS = 0.5
+"""A joint that moves less stands. [deg]"""
+
+_FINE = 5000.0
+"""Steps in a channel's range above which they do not matter."""
+
+_UNITS = {
+    "position": "deg",
+    "velocity": "deg/s",
+    "torque": TORQUE,
+    "motor_temperature": "°C",
+    "housing_temperature": "°C",
+    "load": "N·m",
+}
+
+
+@dataclass(frozen=True, slots=True)
+class Remark:
+    """Something odd: its kind, one word or two, and the sentence."""
+
+    kind: str
+    text: str
+
+
+def remarks(found: FileFound) -> tuple[Remark, ...]:
+    """Return what is odd in a file."""
+    return (
+        *(
+            Remark(reason.replace("_", " "), f"{count} of {found.rows} rows rejected: {reason}")
+            for reason, count in sorted(found.rejected.items())
+        ),
+        *(() if found.sampling is None else _of_sampling(found.sampling)),
+        *(Remark("clocks", _told(clock)) for clock in found.clocks if _departs(clock)),
+        *(
+            Remark(remark.kind, f"joint {joint.joint}: {remark.text}")
+            for joint in found.joints
+            for remark in _of_joint(joint)
+        ),
+        *(Remark("note", text) for text in found.notes),
+    )
+
+
+def stands(found: JointFound) -> bool:
+    """Return whether a joint does not move in a file."""
+    position = next(c for c in found.channels if c.quantity == "position")
+    return position.highest - position.lowest < _STANDS
+
+
+def unit_of(quantity: str, torque_unit: str) -> str:
+    """Return the unit in which a quantity is shown."""
+    unit = _UNITS[quantity]
+    return torque_unit if unit == TORQUE else unit
+
+
+def _departs(clock: OtherClock) -> bool:
+    return abs(clock.rate - 1) > _SAME_RATE or clock.departs_s > _APART
+
+
+def _told(clock: OtherClock) -> str:
+    return (
+        f"{clock.column} is another clock, not used: {clock.rate:.6g} times as fast, departs by up"
+        f" to {clock.departs_s:.3g} s"
+    )
+
+
+def _of_sampling(found: Sampling) -> Iterator[Remark]:
+    period = found.nominal_period_s
+    if found.jitter_s > _UNEVEN * period:
+        yield Remark("jitter", f"uneven times: jitter {found.jitter_s:.3g} s at {period:.4g} s")
+    without_gaps = max(found.duration_s - found.gaps_s, period)
+    if period > 0 and found.rate_hz * found.duration_s * period < (1 - _SLOWER) * without_gaps:
+        between = found.rate_hz * found.duration_s / without_gaps
+        yield Remark(
+            "rate",
+            f"{between:.4g} Hz in fact, where the usual step of {period:.4g} s means"
+            f" {1 / period:.4g} Hz",
+        )
+    if found.gaps:
+        longest = found.longest_gaps[0]
+        plural = "s" if found.gaps > 1 else ""
+        yield Remark(
+            "gaps",
+            f"{found.gaps} gap{plural} of more than five periods, longest {longest.seconds:.3g} s"
+            f" after {longest.at_s:.4g} s (line {longest.line})",
+        )
+    if found.missing_samples:
+        yield Remark("missing", f"{found.missing_samples} samples missing between others")
+    if found.duplicated_times:
+        yield Remark("duplicated", f"{found.duplicated_times} rows repeat the time before")
+    if found.backward_times > len(found.resets):
+        back = found.backward_times - len(found.resets)
+        yield Remark("disorder", f"{back} rows go back in time")
+    for reset in found.resets[:3]:
+        yield Remark(
+            "reset",
+            f"clock set back at line {reset.line}: from {reset.before_s:.4g} to"
+            f" {reset.after_s:.4g} s",
+        )
+    if _UPTIME[0] < found.begins_s < _UPTIME[1]:
+        yield Remark("uptime", f"the clock starts at {found.begins_s:.3f} s, not at 0")
+
+
+def _of_joint(found: JointFound) -> Iterator[Remark]:
+    if stands(found):
+        return
+    for channel in found.channels:
+        if channel.constant and "temperature" not in channel.quantity:
+            yield Remark("constant", f"{channel.column} is constant")
+    if found.velocity_agreement is not None and abs(found.velocity_agreement - 1) > _DISAGREES:
+        yield Remark(
+            "velocity",
+            f"position changes {found.velocity_agreement:.3g} times as much as the velocity says",
+        )
+    if found.held_samples:
+        yield Remark(
+            "held",
+            f"{found.held_samples} held samples: all channels repeat while it moves, first in line"
+            f" {found.held_line}",
+        )
+    for limit in found.limits:
+        yield Remark(
+            "limit",
+            f"torque stays at {limit.torque:.4g} {found.torque_unit} for up to {limit.longest}"
+            f" samples, {100 * limit.share:.2g} % of the motion: cut off?",
+        )
+    for spikes in found.spikes:
+        unit = unit_of(spikes.quantity, found.torque_unit)
+        plural = "s" if spikes.count > 1 else ""
+        yield Remark(
+            "spikes",
+            f"{spikes.count} spike{plural} in {spikes.quantity}, up to {spikes.farthest:.3g}"
+            f" {unit}, first in line {spikes.line}",
+        )
+    if found.frozen_spans:
+        yield Remark(
+            "frozen",
+            f"torque exactly constant at standstill for {found.frozen_s:.3g} s in"
+            f" {found.frozen_spans} stretch{'es' * (found.frozen_spans > 1)}: brake closed?",
+        )
+    if found.brake_closed_s:
+        yield Remark("brake", f"brake closed for {found.brake_closed_s:.3g} s")
+
+
+def stepped(channel: ChannelFound) -> bool:
+    """Return whether a channel's steps are coarse enough to be mentioned."""
+    if channel.grid is None:
+        return False
+    return channel.highest - channel.lowest < _FINE * channel.grid.step

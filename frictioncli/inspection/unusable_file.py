@@ -1,0 +1,92 @@
+"""A file that cannot be used still has a form and a clock."""
+
+from contextlib import suppress
+from pathlib import Path
+
+import numpy as np
+
+from frictioncli.inspection.findings import FileFound
+from frictioncli.inspection.monitors.sampling import Sampling, SamplingMonitor
+from frictioncli.inspection.monitors.windows import Windows
+from frictioncli.logs.channels import aliases as names
+from frictioncli.logs.channels import units
+from frictioncli.logs.channels.channel_map import ChannelMap
+from frictioncli.logs.channels.recognition import LogChannel, recognise
+from frictioncli.logs.formats import open_log
+from frictioncli.logs.formats.base import Refusal, Source
+from frictioncli.logs.formats.compression import UnreadableLog
+from frictioncli.logs.runs.discovery import LogRun
+from frictioncli.logs.samples.row_checks import RowBlock
+from frictioncli.logs.settings import IngestSettings
+
+_TABLES = (
+    "no_time_channel",
+    "no_torque_channel",
+    "no_position_channel",
+    "no_gear_ratio",
+    "torque_in_percent",
+    "mapped_column_missing",
+)
+"""Why a log is refused that has rows and columns all the same."""
+
+
+def raw_look(
+    run: LogRun, path: Path, refusal: Refusal, chart: ChannelMap, settings: IngestSettings
+) -> FileFound:
+    """Return what can be told of a file that is not used.
+
+    Parameters
+    ----------
+    run : LogRun
+        Its run.
+    path : Path
+        The file.
+    refusal : Refusal
+        Why it is not used.
+    chart : ChannelMap
+        What the user says of its form.
+    settings : IngestSettings
+        What the user says of the unit of time.
+    """
+    source = open_log(path, chart.hints) if refusal.reason in _TABLES else refusal
+    if isinstance(source, Refusal):
+        return FileFound(path=path, run=run.name, reason=refusal.reason, refusal=refusal.text)
+    times = [channel for channel in recognise(source.columns) if channel.quantity == names.TIME]
+    rows, sampling = 0, None
+    if times:
+        rows, sampling = _sampled(source, times[0], settings)
+    return FileFound(
+        path=path,
+        run=run.name,
+        form=source.form,
+        reason=refusal.reason,
+        refusal=refusal.text,
+        columns=len(source.columns),
+        rows=rows,
+        sampling=sampling,
+    )
+
+
+def _sampled(
+    source: Source, time: LogChannel, settings: IngestSettings
+) -> tuple[int, Sampling | None]:
+    """Return how many rows a log has and how it was sampled."""
+    windows, watch = Windows(), SamplingMonitor()
+    factor, rows = np.nan, 0
+    with suppress(UnreadableLog):
+        for batch in source.batches([time.column], settings.batch_bytes):
+            rows += len(batch.lines) + len(batch.bad_lines)
+            values = batch.values[time.column]
+            good = np.isfinite(values)
+            if np.isnan(factor):
+                factor = units.FACTORS[names.TIME][_unit(time, values[good], settings)]
+            for window in windows.see(RowBlock(batch.lines[good], values[good] * factor, {})):
+                watch.see(window)
+    for window in windows.rest():
+        watch.see(window)
+    return rows, watch.result()
+
+
+def _unit(time: LogChannel, values: np.ndarray, settings: IngestSettings) -> str:
+    written = units.canonical(time.unit or time.meaning.unit, names.TIME)
+    return settings.forced_units().get(names.TIME) or units.time_unit([values], written)

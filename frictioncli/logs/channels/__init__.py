@@ -1,0 +1,1 @@
+"""Channels of a log: their names, their units, and how these are inferred."""

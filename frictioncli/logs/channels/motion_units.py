@@ -1,0 +1,207 @@
+"""Units of a joint's motion: what the header says, held against what the survey shows."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+
+from frictioncli.logs.channels import aliases as names
+from frictioncli.logs.channels import unit_evidence, units
+from frictioncli.logs.channels.recognition import JointChannels, LogChannel
+from frictioncli.logs.channels.survey import Survey
+from frictioncli.logs.channels.unit_evidence import MotionEvidence, MotionUnits
+
+
+@dataclass(slots=True)
+class Remarks:
+    """What is to be said of a joint's channels: notes, and warnings of what may be wrong."""
+
+    notes: list[str] = field(default_factory=list)
+    warnings: list[str] = field(default_factory=list)
+
+
+@dataclass(frozen=True, slots=True)
+class JointMotion:
+    """Units of a joint's motion channels.
+
+    Attributes
+    ----------
+    units : MotionUnits
+        Of time, position and velocity.
+    furthest : float
+        Greatest distance of the position from zero. [raw]
+    across : str or None
+        Unit of the position on the other side of the gear.
+    """
+
+    units: MotionUnits
+    furthest: float
+    across: str | None
+
+
+@dataclass(frozen=True, slots=True)
+class _Axis:
+    """Position and velocity on one side of the gear; ``hint`` is how to force the former's unit."""
+
+    time: LogChannel
+    position: LogChannel
+    velocity: LogChannel | None
+    hint: str
+
+
+def joint_motion(
+    channels: JointChannels, survey: Survey, forced: Mapping[str, str], remarks: Remarks
+) -> JointMotion:
+    """Find the units of time, of both positions, and of the velocity on whichever side it is."""
+    time, position, velocity = channels.time, channels.position, channels.velocity
+    across = channels.across
+    beside = velocity is None or velocity.meaning.side == position.meaning.side
+    axis = _Axis(time, position, velocity if beside else None, "; force with --position-unit {}")
+    found, furthest = _axis_units(axis, survey, forced, remarks)
+    elsewhere = None
+    if across is not None:
+        # a forced position unit is the other channel's
+        others = {name: unit for name, unit in forced.items() if name != names.POSITION}
+        axis = _Axis(time, across, None if beside else velocity, "")
+        beyond, _ = _axis_units(axis, survey, others, remarks)
+        elsewhere = beyond.position
+        if not beside:
+            found = replace(beyond, position=found.position)
+    if velocity is None:
+        remarks.notes.append("no velocity channel: differentiated from position")
+    if found.time != (units.canonical(time.unit, names.TIME) or "s") and names.TIME not in forced:
+        remarks.notes.append(f"{time.name} is read as {found.time}")
+    return JointMotion(found, furthest, elsewhere)
+
+
+def _axis_units(
+    axis: _Axis, survey: Survey, forced: Mapping[str, str], remarks: Remarks
+) -> tuple[MotionUnits, float]:
+    """Return the units of time, position and velocity, and the furthest raw position."""
+    position = axis.position
+    family = survey.family(position)
+    everything = [
+        motion for member in family for motion in motions_of(survey, axis.time, member, None)
+    ]
+    furthest, span = unit_evidence.position_range(everything)
+    possible, why = unit_evidence.possible_position_units(
+        furthest=furthest,
+        span=span,
+        on_motor=position.meaning.side == names.MOTOR_SIDE,
+        way_per_turn=_lever(survey, family),
+    )
+    allowed = possible
+    if names.POSITION in forced:
+        allowed = frozenset({forced[names.POSITION]})
+        if not allowed <= possible:
+            remarks.warnings.append(
+                f"{position.name} is read as {forced[names.POSITION]} as told, but {why}"
+            )
+    times = [head[axis.time.column] for head in survey.heads]
+    written_time = units.canonical(axis.time.unit or axis.time.meaning.unit, names.TIME)
+    declared_time = forced.get(names.TIME) or units.time_unit(times, written_time)
+    declared_position = forced.get(names.POSITION) or units.canonical(position.unit, names.POSITION)
+    declared_velocity = forced.get(names.VELOCITY)
+    ratio = None
+    if axis.velocity is not None:
+        written = units.canonical(axis.velocity.unit, names.VELOCITY)
+        declared_velocity = declared_velocity or written
+        ratio = unit_evidence.motion_ratio(motions_of(survey, axis.time, position, axis.velocity))
+    time_is_told = written_time is not None or names.TIME in forced or declared_time != "s"
+    found = unit_evidence.motion_units(
+        declared=(
+            declared_time if time_is_told else None,
+            declared_position,
+            declared_velocity,
+        ),
+        possible=allowed,
+        ratio=ratio,
+    )
+    found = _held_to(found, forced, remarks)
+    _remark_position(axis, found, why, forced, remarks)
+    if axis.velocity is not None:
+        _remark_velocity(axis.velocity, found, forced, remarks)
+    return found, furthest
+
+
+def _held_to(found: MotionUnits, forced: Mapping[str, str], remarks: Remarks) -> MotionUnits:
+    """Return the units with the forced ones in place, and warn where measurements disagree."""
+    time = forced.get(names.TIME, found.time)
+    velocity = forced.get(names.VELOCITY, found.velocity)
+    if time != found.time or (velocity != found.velocity and found.evidence):
+        remarks.warnings.append(
+            f"time and velocity are read as {time} and {velocity} as told, but {found.evidence}:"
+            f" {found.time} and {found.velocity} would fit"
+        )
+    return MotionUnits(time, found.position, velocity, found.reversed_velocity, found.evidence)
+
+
+def _remark_position(
+    axis: _Axis,
+    found: MotionUnits,
+    why: str,
+    forced: Mapping[str, str],
+    remarks: Remarks,
+) -> None:
+    position = axis.position
+    written = units.canonical(position.unit, names.POSITION)
+    if names.POSITION in forced or written == found.position:
+        return
+    if written is None and found.position == "deg":
+        return
+    says = f"says {position.unit}" if position.unit else "has no unit"
+    other = "rad" if found.position == "deg" else "deg"
+    reason = "; ".join(text for text in (why, found.evidence) if text)
+    remarks.notes.append(
+        f"{position.name} {says}, {reason}: read as {found.position}{axis.hint.format(other)}"
+    )
+
+
+def _remark_velocity(
+    velocity: LogChannel, found: MotionUnits, forced: Mapping[str, str], remarks: Remarks
+) -> None:
+    written = units.canonical(velocity.unit, names.VELOCITY)
+    if found.velocity is None:
+        remarks.warnings.append(
+            f"{velocity.name} is not used, {found.evidence}; velocity is differentiated from"
+            " position"
+        )
+    elif found.velocity != (written or "deg/s") and found.evidence and names.VELOCITY not in forced:
+        says = f"says {velocity.unit}" if velocity.unit else "has no unit"
+        remarks.notes.append(f"{velocity.name} {says}, {found.evidence}: read as {found.velocity}")
+    if found.reversed_velocity:
+        remarks.warnings.append(
+            f"{velocity.name} has the sign opposite to the change of position: turned round"
+        )
+
+
+def motions_of(
+    survey: Survey, time: LogChannel, position: LogChannel, velocity: LogChannel | None
+) -> list[MotionEvidence]:
+    """Return the surveyed motion of an axis per log; velocity is empty where it has none."""
+    motions = []
+    for head in survey.heads:
+        good = np.isfinite(head[position.column])
+        rate = np.empty(0)
+        if velocity is not None:
+            good = good & np.isfinite(head[velocity.column])
+            rate = head[velocity.column][good]
+        motions.append(MotionEvidence(head[time.column][good], head[position.column][good], rate))
+    return motions
+
+
+def _lever(survey: Survey, family: list[LogChannel]) -> float | None:
+    """Return the tool's way per turn of an axis [mm per raw unit], median over the logs."""
+    tool = survey.tool()
+    if not tool:
+        return None
+    scale = 1000.0 if all(c.unit.strip() == "m" for c in tool) else 1.0
+    found = []
+    for head in survey.heads:
+        way = scale * np.stack([head[c.column] for c in tool], axis=1)
+        axes = np.stack([head[c.column] for c in family], axis=1)
+        good = np.isfinite(way).all(axis=1) & np.isfinite(axes).all(axis=1)
+        size = unit_evidence.lever(way[good], axes[good])
+        if size is not None:
+            found.append(size)
+    return float(np.median(found)) if found else None

@@ -1,0 +1,266 @@
+"""What a column of a log is, from its name: quantity, joint, side of the gear and unit."""
+
+import re
+from collections.abc import Collection, Iterable, Sequence
+from dataclasses import dataclass, replace
+
+from frictioncli.logs.channels.aliases import (
+    HOUSING_TEMPERATURE,
+    LOAD,
+    MEANINGS,
+    MOTOR_SIDE,
+    MOTOR_TEMPERATURE,
+    POSITION,
+    TIME,
+    TOOL,
+    TORQUE,
+    VELOCITY,
+    Meaning,
+)
+from frictioncli.logs.formats.base import Refusal
+
+_UNIT = re.compile(r"^(?P<name>.*?)\s*[\[(](?P<unit>[^\[\]()]*)[\])]\s*$")
+_TAIL = re.compile(
+    r"^(?P<name>.*?)(?:(?<=[a-z])[AJ]|[ _.\-(\[]+[AaJj]?[ _]?|)(?P<joint>\d{1,2})[)\]]?$"
+)
+_FRONT = re.compile(
+    r"^(?:joint|axis|axle|achse|gelenk|[aj])[ _.]?(?P<joint>\d{1,2})[ _.\-]+(?P<name>.+)$", re.I
+)
+_JOINT_IN_BRACKETS = re.compile(r"^[AaJj]?\d{1,2}$")
+_DRIVE = re.compile(r"NextGenDrive#(\d{1,2})|(?:^|[_\s-])(?:A|J|axis|joint|achse)(\d)$", re.I)
+
+
+@dataclass(frozen=True, slots=True)
+class LogChannel:
+    """A recognised column.
+
+    Attributes
+    ----------
+    column : int
+        Index in the file, from 0.
+    name : str
+        Its name as it stands there.
+    meaning : Meaning
+        Quantity, side and rank.
+    joint : int or None
+        Joint number from 1; None where the name has none.
+    unit : str
+        Unit as written, "" where none.
+    family : str
+        The name without number and unit: columns of one family share their unit.
+    borrowed : bool
+        Taken from another file of the same trace, at this file's times: second choice.
+    """
+
+    column: int
+    name: str
+    meaning: Meaning
+    joint: int | None
+    unit: str
+    family: str
+    borrowed: bool = False
+
+    @property
+    def quantity(self) -> str:
+        """The quantity, one of ``CHANNELS`` or ``TOOL``."""
+        return self.meaning.quantity
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class JointChannels:
+    """The columns used for one joint of a file.
+
+    ``across`` is the position on the other side of the gear: the two tell its ratio. The velocity
+    is on the side of either of them.
+    """
+
+    joint: int
+    time: LogChannel
+    position: LogChannel
+    torque: LogChannel
+    velocity: LogChannel | None = None
+    across: LogChannel | None = None
+    motor_temperature: LogChannel | None = None
+    housing_temperature: LogChannel | None = None
+    load: LogChannel | None = None
+    notes: tuple[str, ...] = ()
+
+
+def split_unit(column: str) -> tuple[str, str]:
+    """Return a column's name without its unit, and the unit as written ("" where none)."""
+    found = _UNIT.match(column.strip().strip('"'))
+    if found is None or _JOINT_IN_BRACKETS.match(found["unit"].strip()):
+        return column.strip().strip('"'), ""
+    unit = found["unit"].strip()
+    if unit in ("x", "y", "z", "rx", "ry", "rz"):  # an axis of a frame, no unit
+        return f"{found['name']} {unit}", ""
+    return found["name"], unit
+
+
+def recognise(columns: Sequence[str], borrowed_from: int | None = None) -> tuple[LogChannel, ...]:
+    """Return the columns whose names tell what they are, in file order.
+
+    Where a family has a column numbered 0 the file counts joints from 0 and all of its joint
+    numbers are raised by one. Of columns of the same name the first is taken.
+
+    Parameters
+    ----------
+    columns : sequence of str
+        Column names.
+    borrowed_from : int, optional
+        The first column that another file lends.
+    """
+    found: list[LogChannel] = []
+    seen: set[str] = set()
+    for index, column in enumerate(columns):
+        if column in seen:
+            continue
+        seen.add(column)
+        channel = _recognised(index, column)
+        if channel is not None:
+            borrowed = borrowed_from is not None and index >= borrowed_from
+            found.append(replace(channel, borrowed=borrowed))
+    from_zero = any(channel.joint == 0 for channel in found)
+    if not from_zero:
+        return tuple(found)
+    return tuple(c if c.joint is None else replace(c, joint=c.joint + 1) for c in found)
+
+
+def _recognised(index: int, column: str) -> LogChannel | None:
+    name, unit = split_unit(column)
+    for text in _readings(name):
+        plain = MEANINGS.get(_key(text))
+        if plain is not None:
+            return LogChannel(index, column, plain, None, unit, _key(text))
+        for pattern in (_FRONT, _TAIL):
+            parts = pattern.match(text)
+            meaning = MEANINGS.get(_key(parts["name"])) if parts else None
+            if parts and meaning and meaning.quantity not in (TIME, TOOL):
+                joint = int(parts["joint"])
+                return LogChannel(index, column, meaning, joint, unit, _key(parts["name"]))
+    return None
+
+
+def _readings(name: str) -> tuple[str, ...]:
+    """Return how a name may be read: a ROS topic, /joints/joint_2/position, from its end."""
+    if not name.startswith("/"):
+        return (name,)
+    parts = name.split("/")
+    return "_".join(parts[-2:]), parts[-1]
+
+
+def _key(name: str) -> str:
+    lower = name.lower().replace("ä", "ae").replace("ö", "oe").replace("ü", "ue")
+    return re.sub(r"[^a-z0-9]", "", lower.replace("ß", "ss"))
+
+
+def joint_in_name(stem: str) -> int | None:
+    """Return the joint that a file's name tells, such as 3 of ``..._NextGenDrive#3``."""
+    found = _DRIVE.search(stem)
+    return int(found[1] or found[2]) if found else None
+
+
+def assign(
+    channels: Sequence[LogChannel],
+    columns: Sequence[str],
+    *,
+    joints: tuple[int, ...] | None,
+    file_joint: int,
+) -> tuple[JointChannels, ...] | Refusal:
+    """Choose the columns for each joint.
+
+    Parameters
+    ----------
+    channels : sequence of LogChannel
+        The recognised columns.
+    columns : sequence of str
+        All column names, for the text of a refusal.
+    joints : tuple of int or None
+        The joints wanted; None for every joint with a torque channel.
+    file_joint : int
+        The joint of columns without a number.
+
+    Returns
+    -------
+    tuple of JointChannels or Refusal
+        ``no_torque_channel``, ``no_position_channel`` or ``no_time_channel``.
+    """
+    times = _of(channels, TIME)
+    torques = _of(channels, TORQUE)
+    have = {file_joint if c.joint is None else c.joint for c in torques}
+    wanted = sorted(have if joints is None else have & set(joints))
+    if not wanted:
+        which = "" if joints is None else f" of joint {', '.join(map(str, joints))}"
+        return _missing("torque", which, channels, columns)
+    single = len(have | {c.joint for c in channels if c.joint is not None}) == 1
+    chosen: list[JointChannels] = []
+    for joint in wanted:
+        own = [c for c in channels if c.joint == joint]
+        own += [c for c in channels if c.joint is None and (single or joint == file_joint)]
+        shared = own + [c for c in channels if c.joint is None and c not in own]
+        positions = _of(own, POSITION)
+        if positions and times:
+            chosen.append(_joint_channels(joint, times[0], positions, own, shared))
+    if chosen:
+        lacking = sorted({*(joints or ()), *wanted} - {own.joint for own in chosen})
+        without = tuple(f"joint {joint}: no position and torque channel" for joint in lacking)
+        return replace(chosen[0], notes=(*chosen[0].notes, *without)), *chosen[1:]
+    if not times:
+        return _missing("time", "", channels, columns)
+    return _missing("position", f" of joint {', '.join(map(str, wanted))}", channels, columns)
+
+
+def _joint_channels(
+    joint: int,
+    time: LogChannel,
+    positions: list[LogChannel],
+    own: Sequence[LogChannel],
+    shared: Sequence[LogChannel],
+) -> JointChannels:
+    torques = _of(own, TORQUE)
+    position = min(positions, key=lambda c: (c.borrowed, c.meaning.side == MOTOR_SIDE))
+    across = _first([c for c in positions if c.meaning.side != position.meaning.side])
+    velocities = _of(own, VELOCITY)
+    same_side = [c for c in velocities if c.meaning.side == position.meaning.side]
+    notes = []
+    if len(torques) > 1:
+        others = ", ".join(c.name for c in torques[1:])
+        notes.append(f"torque of joint {joint} is {torques[0].name}; not used: {others}")
+    return JointChannels(
+        joint=joint,
+        time=time,
+        position=position,
+        torque=torques[0],
+        velocity=_first(same_side or (velocities if across else [])),
+        across=across,
+        motor_temperature=_first(_of(shared, MOTOR_TEMPERATURE)),
+        housing_temperature=_first(_of(shared, HOUSING_TEMPERATURE)),
+        load=_first(_of(own, LOAD)),
+        notes=tuple(notes),
+    )
+
+
+def _of(channels: Iterable[LogChannel], quantity: str) -> list[LogChannel]:
+    """Return the channels of a quantity, preferred ones first."""
+    return sorted(
+        (c for c in channels if c.quantity == quantity),
+        key=lambda c: (c.borrowed, c.meaning.rank, c.column),
+    )
+
+
+def _first(channels: Sequence[LogChannel]) -> LogChannel | None:
+    return channels[0] if channels else None
+
+
+def _missing(
+    what: str, which: str, channels: Sequence[LogChannel], columns: Sequence[str]
+) -> Refusal:
+    quantities: Collection[str] = {c.quantity for c in channels}
+    lacking = [name for name in (TIME, POSITION, TORQUE) if name not in quantities] or [what]
+    named = [column for column in columns if column]
+    shown = ", ".join(named[:12]) + (f", ... ({len(named)} in all)" if len(named) > 12 else "")
+    return Refusal(
+        f"no_{what}_channel",
+        f"no {' and no '.join(lacking)} channel{which} found; columns found: {shown}; a friction"
+        " test needs time, position and torque (or motor current): name them with --map",
+    )

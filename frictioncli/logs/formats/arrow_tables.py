@@ -1,0 +1,220 @@
+"""Parquet, Feather and Arrow files: columns of numbers, times and lists, streamed with pyarrow."""
+
+import mmap
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
+from functools import partial
+from pathlib import Path
+
+import numpy as np
+import pyarrow as pa
+import pyarrow.compute as pc
+import pyarrow.parquet as pq
+from numpy.typing import NDArray
+
+from frictioncli.logs.formats.base import CsvHints, Refusal
+from frictioncli.logs.formats.compression import refuse_packed
+from frictioncli.logs.formats.containers import ContainerLog, Rows, listed, readable, with_unit
+
+_PARQUET = b"PAR1"
+_ARROW = b"ARROW1\0\0"
+_FEATHER_1 = b"FEA1"
+_OWN = b"frictioncli"
+_BUFFER_BYTES = 1 << 20
+_LOOKED_AT = 512
+_LONGEST_LIST = 64
+_UNIT = (b"unit", b"units")
+_NUMBER = r"^\s*[+-]?(\d+([.,]\d*)?|[.,]\d+)([eE][+-]?\d+)?\s*$"
+_PER_SECOND = {"s": 1, "ms": 10**3, "us": 10**6, "ns": 10**9}
+
+_Batches = Callable[[Path, Sequence[str], int], Iterator[pa.RecordBatch]]
+"""Takes a file, fields and how many rows to hold at a time; yields the fields."""
+
+
+@dataclass(frozen=True, slots=True)
+class _Leaf:
+    """Where a column's numbers are: in a field, in struct fields below it, in lists of one length.
+
+    ``element`` is the place in the list; ``length`` is 0 where there is no list.
+    """
+
+    path: tuple[str, ...]
+    element: int = 0
+    length: int = 0
+
+    @property
+    def name(self) -> str:
+        """The column's name: path with dots, place in the list in brackets."""
+        return ".".join(self.path) + (f"[{self.element}]" if self.length else "")
+
+
+def read_arrow(path: Path, head: bytes, hints: CsvHints) -> ContainerLog | Refusal | None:
+    """Open a Parquet or Feather (Arrow IPC) file; None when it is another format.
+
+    Raises
+    ------
+    UnreadableLog
+        If it is damaged.
+    """
+    if head.startswith(_FEATHER_1):
+        return Refusal("format_not_read", "Feather table of version 1; save it as version 2")
+    batches: _Batches
+    if head.startswith(_PARQUET):
+        what, batches = "a Parquet table", _parquet_batches
+    elif head.startswith(_ARROW):
+        what, batches = "an Arrow table", _arrow_batches
+    else:
+        return None
+    packed = refuse_packed(path, what)
+    if packed is not None:
+        return packed
+    with readable(f"cannot be read as {what}"):
+        schema = _schema(path)
+        if _OWN in (schema.metadata or {}):
+            return Refusal(
+                "not_a_log",
+                "a table that frictioncli wrote, no log; name the logs it was made from, or go on"
+                " from it with -w and its folder",
+            )
+        fields = list(dict.fromkeys(schema.names))
+        first = next(batches(path, fields, _LOOKED_AT), None)
+        if first is None or not first.num_rows:
+            return Refusal("too_few_rows", f"{what} without rows; expected rows of numbers")
+        leaves = [leaf for name in fields for leaf in _leaves(_column(first, name), (name,))]
+        texts = [name for name in fields if _holds_numbers_as_text(_column(first, name))]
+    if texts:
+        return Refusal(
+            "not_a_number",
+            f"{what} whose columns {listed(texts)} hold numbers as text; save them as numbers",
+        )
+    columns = tuple(with_unit(leaf.name, _unit(schema, leaf)) for leaf in leaves)
+    return ContainerLog(path, columns, what, partial(_rows, path, batches, tuple(leaves)))
+
+
+def _schema(path: Path) -> pa.Schema:
+    with path.open("rb") as stream:
+        is_parquet = stream.read(len(_PARQUET)) == _PARQUET
+    return pq.read_schema(path) if is_parquet else pa.ipc.open_file(_mapped(path)).schema
+
+
+def _parquet_batches(path: Path, fields: Sequence[str], rows: int) -> Iterator[pa.RecordBatch]:
+    # pre_buffer would hold a whole row group's bytes beside its values
+    with pq.ParquetFile(path, pre_buffer=False, buffer_size=_BUFFER_BYTES) as file:
+        yield from file.iter_batches(batch_size=rows, columns=list(fields), use_threads=False)
+
+
+def _arrow_batches(path: Path, fields: Sequence[str], rows: int) -> Iterator[pa.RecordBatch]:
+    # a batch of the file may be as large as the file: mapped, only what is looked at is loaded
+    memory = _mapped(path)
+    file = pa.ipc.open_file(memory)
+    for number in range(file.num_record_batches):
+        batch = file.get_batch(number)
+        for begin in range(0, batch.num_rows, rows):
+            yield batch.slice(begin, rows)
+            if hasattr(memory, "madvise"):  # not on Windows
+                memory.madvise(mmap.MADV_DONTNEED)
+
+
+def _mapped(path: Path) -> mmap.mmap:
+    with path.open("rb") as stream:
+        return mmap.mmap(stream.fileno(), 0, access=mmap.ACCESS_READ)
+
+
+def _column(batch: pa.RecordBatch, name: str) -> pa.Array:
+    """Return a column by its name; of several of one name the first."""
+    return batch.column(batch.schema.get_all_field_indices(name)[0])
+
+
+def _leaves(array: pa.Array, path: tuple[str, ...]) -> Iterator[_Leaf]:
+    """Yield the columns of numbers in a field; texts and the like have none."""
+    kind = array.type
+    if pa.types.is_struct(kind):
+        for field in kind:
+            yield from _leaves(pc.struct_field(array, [field.name]), (*path, field.name))
+    elif _is_list(kind) and _is_number(kind.value_type):
+        # a row whose list has another length is one without values
+        lengths = pc.mode(pc.list_value_length(array)).to_pylist()
+        usual = lengths[0] if lengths else {"mode": 0, "count": 0}
+        if usual["mode"] <= _LONGEST_LIST and usual["count"] > len(array) / 2:
+            yield from (_Leaf(path, element, usual["mode"]) for element in range(usual["mode"]))
+    elif _is_number(kind):
+        yield _Leaf(path)
+
+
+def _is_list(kind: pa.DataType) -> bool:
+    of = pa.types
+    return of.is_list(kind) or of.is_large_list(kind) or of.is_fixed_size_list(kind)
+
+
+def _is_number(kind: pa.DataType) -> bool:
+    of = pa.types
+    if of.is_dictionary(kind):
+        kind = kind.value_type
+    if of.is_integer(kind) or of.is_floating(kind) or of.is_decimal(kind) or of.is_boolean(kind):
+        return True
+    return _is_time(kind)
+
+
+def _is_time(kind: pa.DataType) -> bool:
+    return pa.types.is_timestamp(kind) or pa.types.is_duration(kind) or pa.types.is_time(kind)
+
+
+def _holds_numbers_as_text(array: pa.Array) -> bool:
+    """Tell whether a column of texts is one of measured numbers: all are, and they differ."""
+    kind = array.type.value_type if pa.types.is_dictionary(array.type) else array.type
+    if not (pa.types.is_string(kind) or pa.types.is_large_string(kind)):
+        return False
+    cells = pc.drop_null(pc.cast(array, pa.string()))
+    return len(pc.unique(cells)) > 1 and pc.all(pc.match_substring_regex(cells, _NUMBER)).as_py()
+
+
+def _unit(schema: pa.Schema, leaf: _Leaf) -> str:
+    """Return the unit that a field's metadata tells; times are brought to seconds."""
+    field = schema.field(schema.names.index(leaf.path[0]))
+    for name in leaf.path[1:]:
+        field = field.type.field(name)
+    if _is_time(field.type):
+        return "s"
+    metadata = field.metadata or {}
+    return next((metadata[key].decode("utf-8", "replace") for key in _UNIT if key in metadata), "")
+
+
+def _rows(
+    path: Path, batches: _Batches, leaves: Sequence[_Leaf], columns: Sequence[int], rows: int
+) -> Iterator[Rows]:
+    """Yield the values of the asked columns; see :class:`ContainerLog`."""
+    fields = list(dict.fromkeys(leaves[column].path[0] for column in columns))
+    for batch in batches(path, fields, rows):
+        yield {column: _values(batch, leaves[column]) for column in columns}
+
+
+def _values(batch: pa.RecordBatch, leaf: _Leaf) -> NDArray[np.float64]:
+    array = _column(batch, leaf.path[0])
+    if len(leaf.path) > 1:
+        array = pc.struct_field(array, list(leaf.path[1:]))
+    if not leaf.length:
+        return _numbers(array)
+    lengths = np.asarray(pc.fill_null(pc.list_value_length(array), 0).to_numpy())
+    whole = lengths == leaf.length
+    values = np.full(len(array), np.nan)
+    begin = np.cumsum(lengths) - lengths
+    values[whole] = _numbers(array.flatten())[begin[whole] + leaf.element]
+    return values
+
+
+def _numbers(array: pa.Array) -> NDArray[np.float64]:
+    """Return numbers, NaN where there is none; times in seconds."""
+    if pa.types.is_dictionary(array.type):
+        array = array.dictionary_decode()
+    if _is_time(array.type):
+        steps = _PER_SECOND[array.type.unit]
+        bare = pc.fill_null(array.view(f"int{array.type.bit_width}"), 0).to_numpy()
+        # a count of nanoseconds since 1970 has more digits than a float: whole seconds apart
+        rest = np.fmod(bare, steps)
+        seconds = (bare - rest) // steps + rest / steps
+        return np.where(array.is_null().to_numpy(zero_copy_only=False), np.nan, seconds)
+    if pa.types.is_boolean(array.type):
+        array = array.cast(pa.uint8())
+    numbers = pc.fill_null(array.cast(pa.float64(), safe=False), np.nan)
+    # a copy: the file's memory does not outlive its reading
+    return np.array(numbers.to_numpy(zero_copy_only=False), np.float64)

@@ -1,0 +1,222 @@
+"""DIAdem recordings: a header (``.dat``) and the binary samples beside it (``.r64``)."""
+
+from collections.abc import Collection, Iterator
+from dataclasses import dataclass
+from functools import partial
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from frictioncli.logs.formats.base import CsvHints, RawBatch, Refusal, Task
+from frictioncli.logs.formats.compression import UnreadableLog
+from frictioncli.logs.formats.diadem_header import (
+    DamagedHeader,
+    Header,
+    HeaderSection,
+    is_header,
+    read_header,
+)
+from frictioncli.logs.formats.diadem_layout import Place, is_file, places
+
+_NAME, _UNIT, _KIND, _LENGTH, _OFFSET, _FACTOR = 200, 202, 210, 220, 240, 241
+_NO_VALUE = 111
+
+_TEXT_LIMIT = 200
+_LIKE_NO_VALUE = 1e-6
+"""The header writes the value with fewer digits than the samples hold."""
+
+
+@dataclass(frozen=True, slots=True)
+class StoredChannel:
+    """A channel: ``value = number * factor + offset``; without a place its numbers are 0, 1, 2."""
+
+    name: str
+    place: Place | None
+    factor: float
+    offset: float
+
+
+def read_diadem(path: Path, head: bytes, hints: CsvHints) -> "DiademRecording | Refusal | None":
+    """Open a DIAdem recording by its header, or say why not; None where it is none."""
+    if not is_header(head):
+        return None
+    try:
+        recording = open_recording(path)
+    except UnreadableLog as error:
+        return Refusal("unreadable_file", str(error))
+    except DamagedHeader as error:
+        return Refusal("format_not_read", f"DIAdem header: {error}")
+    if recording is None:
+        return None
+    return recording.lacking() or recording
+
+
+def open_recording(path: Path) -> "DiademRecording | None":
+    """Return the recording that a header describes; None where the file is no DIAdem header.
+
+    Whether all samples are there is not checked, see :meth:`DiademRecording.lacking`.
+
+    Raises
+    ------
+    UnreadableLog
+        If the header cannot be read.
+    DamagedHeader
+        If it contradicts itself, or holds what is not read.
+    """
+    header = read_header(path)
+    if header is None:
+        return None
+    explicit, implicit = _by_kind(header)
+    if not explicit:
+        raise DamagedHeader(
+            "it names no explicit channel; of KUKA traces the header and its .r64, or the CSV,"
+            " are read"
+        )
+    lengths = {c.count(_LENGTH): c.where for c in implicit if c.text(_LENGTH)}
+    lengths |= {c.count(_LENGTH): c.where for c in explicit}
+    if len(lengths) > 1:
+        told = " and ".join(f"{n} in {where}" for n, where in list(lengths.items())[:2])
+        raise DamagedHeader(f"key 220 is {told}; expected as many samples in all channels")
+    stored = places(header, explicit)
+    columns = []
+    for section in header.channels:
+        unit = section.text(_UNIT)
+        columns.append(
+            StoredChannel(
+                section.text(_NAME) + (f"[{unit}]" if unit else ""),
+                stored.get(section.where),
+                section.factor(_FACTOR),
+                section.number(_OFFSET, 0.0),
+            )
+        )
+    no_value = header.general.number(_NO_VALUE, 9.9e34)
+    return DiademRecording(path, tuple(columns), next(iter(lengths)), no_value)
+
+
+def _by_kind(header: Header) -> tuple[list[HeaderSection], list[HeaderSection]]:
+    """Return the channels with stored numbers, and those that only count."""
+    kinds: dict[str, list[HeaderSection]] = {"EXPLI": [], "IMPLI": []}
+    for section in header.channels:
+        kind = section.text(_KIND).upper()[:5]
+        if kind not in kinds:
+            raise section.damaged(_KIND, "EXPLIZIT or IMPLIZIT")
+        kinds[kind].append(section)
+    return kinds["EXPLI"], kinds["IMPLI"]
+
+
+@dataclass(frozen=True, slots=True)
+class DiademRecording:
+    """A recording whose header is understood; ``n`` samples per channel.
+
+    Values are in the units that the header names, its factors and offsets applied.
+    """
+
+    path: Path
+    channels: tuple[StoredChannel, ...]
+    n: int
+    no_value: float
+
+    @property
+    def files(self) -> tuple[Path, ...]:
+        """The header and the files of samples."""
+        stored = (c.place.file for c in self.channels if c.place is not None)
+        return (self.path, *dict.fromkeys(stored))
+
+    @property
+    def columns(self) -> tuple[str, ...]:
+        """Names with units, as a CSV of the recording has them."""
+        return tuple(channel.name for channel in self.channels)
+
+    @property
+    def form(self) -> str:
+        """The file's form in words."""
+        kinds = {c.place.dtype.name: None for c in self.channels if c.place is not None}
+        return f"DIAdem header and binary samples, {', '.join(kinds)}"
+
+    def lacking(self) -> Refusal | None:
+        """Return why the samples that the header promises are not there, None where they are."""
+        if self.n < 1:
+            return Refusal("too_few_rows", "the DIAdem header promises no samples (key 220 is 0)")
+        for file in self.files[1:]:
+            if not is_file(file):
+                return Refusal(
+                    "samples_missing",
+                    f"DIAdem header without its samples: {file.name} is not beside it; copy both",
+                )
+            own = [c.place for c in self.channels if c.place and c.place.file == file]
+            size, needed = file.stat().st_size, max(place.end(self.n) for place in own)
+            if own[0].in_rows:
+                needed = max(place.step for place in own) * self.n
+            if size < needed or (own[0].in_rows and size > needed):
+                return Refusal(
+                    "samples_incomplete",
+                    f"{file.name} holds {size} bytes; the header tells of {self.n} samples in"
+                    f" {len(own)} channels, {needed} bytes: copy both files again",
+                )
+        return None
+
+    def raw(self, column: int, start: int, stop: int) -> NDArray[np.float64]:
+        """Return a channel's stored numbers of some samples, as many as are there.
+
+        Parameters
+        ----------
+        column : int
+            Index of the channel.
+        start, stop : int
+            First sample, from 0, and the one after the last.
+        """
+        place = self.channels[column].place
+        if place is None:
+            return np.arange(start, stop, dtype=np.float64)
+        begin = place.first + start * place.step
+        with place.file.open("rb") as stream:
+            stream.seek(begin)
+            content = stream.read((stop - start - 1) * place.step + place.dtype.itemsize)
+        count = max((len(content) - place.dtype.itemsize) // place.step + 1, 0)
+        stored = np.ndarray((count,), place.dtype, content, strides=(place.step,))
+        return stored.astype(np.float64)
+
+    def batches(self, columns: Collection[int], size: int) -> Iterator[RawBatch]:
+        """Yield the samples in order, about ``size`` bytes of the file at a time."""
+        for task in self.tasks(columns, size):
+            yield task.read()
+
+    def tasks(self, columns: Collection[int], size: int) -> Iterator[Task[RawBatch]]:
+        """Yield in order what makes the batches, each of at most about ``size`` bytes."""
+        wanted = sorted(columns)
+        widths = [c.place.step for c in self.channels if c.place is not None]
+        rows = max(size // max(widths), 1)
+        for start in range(0, self.n, rows):
+            stop = min(start + rows, self.n)
+            yield Task(partial(self._batch, wanted, start, stop), (stop - start) * max(widths))
+
+    def texts(self, lines: NDArray[np.int64], size: int) -> Iterator[tuple[int, str]]:
+        """Yield (sample's number, its values) for the asked samples, which must be ascending."""
+        for line in lines.tolist():
+            batch = self._batch(range(len(self.channels)), line - 1, line)
+            cells = ("" if np.isnan(v[0]) else f"{v[0]:.9g}" for v in batch.values.values())
+            yield line, ";".join(cells)[:_TEXT_LIMIT]
+
+    def _batch(self, columns: Collection[int], start: int, stop: int) -> RawBatch:
+        return RawBatch(
+            np.arange(start + 1, stop + 1, dtype=np.int64),
+            {column: self._values(column, start, stop) for column in columns},
+            np.empty(0, np.int64),
+            (),
+        )
+
+    def _values(self, column: int, start: int, stop: int) -> NDArray[np.float64]:
+        channel = self.channels[column]
+        try:
+            numbers = self.raw(column, start, stop)
+        except OSError as error:
+            raise UnreadableLog(f"samples cannot be read ({error}); copy both files") from error
+        if len(numbers) < stop - start:
+            raise UnreadableLog(f"samples end before number {stop}; expected {self.n}: copy again")
+        with np.errstate(over="ignore", invalid="ignore"):
+            values = numbers * channel.factor + channel.offset
+            if channel.place is not None:
+                gap = np.abs(numbers - self.no_value) <= _LIKE_NO_VALUE * abs(self.no_value)
+                values[gap] = np.nan
+        return values

@@ -1,0 +1,221 @@
+"""The form of a delimited text: delimiter, decimal sign, header, found from its first lines."""
+
+import csv
+import re
+from collections import Counter
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from frictioncli.logs.formats.base import CsvHints, Refusal
+
+_DELIMITERS = (";", "\t", ",", " ")
+_NAMES = {";": "';'", "\t": "tab", ",": "','", " ": "blanks"}
+_POINT = re.compile(r"\s*[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?\s*")
+_COMMA = re.compile(r"\s*[+-]?(\d+,?\d*|,\d+)([eE][+-]?\d+)?\s*")
+_DATE = re.compile(r"\s*\d{4}-\d\d-\d\d([T ]\d\d:\d\d.*)?\s*")
+_UNIT_CELL = re.compile(r"\s*[\[(]?[^\s\d\[\]()]{0,6}(/s\^?[2²]?)?[\])]?\s*")
+_SAMPLE_LINES = 60
+NOT_NUMBERS = ("nan", "NaN", "NAN", "-nan", "NA", "N/A", "n/a", "null", "NULL", "None", "none", "-")
+
+
+@dataclass(frozen=True, slots=True)
+class Dialect:
+    """How a text log is written.
+
+    Attributes
+    ----------
+    delimiter, decimal : str
+        A blank as delimiter stands for any run of blanks and tabs.
+    columns : tuple of str
+        Column names, one per field of a row; "" where the header names none.
+    data_line : int
+        Line of the first row, from 1.
+    dates : frozenset of int
+        Columns that hold ISO 8601 dates.
+    """
+
+    delimiter: str
+    decimal: str
+    columns: tuple[str, ...]
+    data_line: int
+    dates: frozenset[int]
+
+    @property
+    def text(self) -> str:
+        """The form in words."""
+        decimal = "comma" if self.decimal == "," else "point"
+        return f"text, {_NAMES[self.delimiter]}, decimal {decimal}"
+
+
+@dataclass(frozen=True, slots=True)
+class _Candidate:
+    delimiter: str
+    decimal: str
+    width: int
+    share: float
+
+
+def split(line: str, delimiter: str) -> list[str]:
+    """Return the fields of a line; quotes are honoured, a blank stands for any run of blanks.
+
+    A line that breaks the rules of quoting has no fields.
+    """
+    if delimiter == " ":
+        return line.replace('"', "").split()
+    try:
+        return next(csv.reader([line], delimiter=delimiter), [])
+    except csv.Error:
+        return []
+
+
+def detect(lines: Sequence[str], hints: CsvHints) -> Dialect | Refusal:
+    """Find the form of a text from its first lines.
+
+    Parameters
+    ----------
+    lines : sequence of str
+        The first lines without line ends; blank ones included, so that line numbers hold.
+    hints : CsvHints
+        What the user says.
+
+    Returns
+    -------
+    Dialect or Refusal
+        ``too_few_rows``, ``one_column``, ``wrong_delimiter``, ``wrong_field_count`` or
+        ``not_a_log``.
+    """
+    filled = [line for line in lines if line.strip()]
+    if len(filled) < 2:
+        return _too_short(filled)
+    sample = filled[1:][-_SAMPLE_LINES:]
+    allowed = _DELIMITERS if hints.delimiter is None else (hints.delimiter,)
+    candidates = [_candidate(sample, delimiter, hints.decimal) for delimiter in allowed]
+    best = max(candidates, key=lambda candidate: (round(candidate.share, 2), candidate.width))
+    if best.share < 0.3:
+        return _no_table(filled, hints)
+    start, first = _first_row(lines, best)
+    header = _header(lines[:start], best)
+    if isinstance(header, Refusal):
+        return header
+    names, data_line = header
+    surplus = [cell for cell in first[len(names) :] if cell.strip()]
+    if names and surplus:
+        return _unequal(len(names), best.width)
+    columns = tuple((names + [""] * best.width)[: best.width])
+    if not names:
+        columns = tuple(f"column {i + 1}" for i in range(best.width))
+    dates = frozenset(i for i, cell in enumerate(first) if _DATE.fullmatch(cell))
+    return Dialect(best.delimiter, best.decimal, columns, data_line, dates)
+
+
+def _candidate(sample: Sequence[str], delimiter: str, decimal: str | None) -> _Candidate:
+    rows = [split(line, delimiter) for line in sample]
+    width = Counter(len(row) for row in rows).most_common(1)[0][0]
+    same = [row for row in rows if len(row) == width]
+    cells = [cell for row in same for cell in row if cell.strip() and cell not in NOT_NUMBERS]
+    share: dict[str, float] = {}
+    for sign, pattern in ((".", _POINT), (",", _COMMA)):
+        hits = sum(bool(pattern.fullmatch(cell) or _DATE.fullmatch(cell)) for cell in cells)
+        share[sign] = hits / len(cells) if cells else 0.0
+    if decimal is None:
+        decimal = "," if share[","] > share["."] else "."
+    usable = width >= 2
+    return _Candidate(
+        delimiter, decimal, width, share[decimal] * len(same) / len(rows) if usable else 0.0
+    )
+
+
+def _first_row(lines: Sequence[str], form: _Candidate) -> tuple[int, list[str]]:
+    """Return the index of the first line that is mostly numbers, and its fields."""
+    pattern = _COMMA if form.decimal == "," else _POINT
+    for index, line in enumerate(lines):
+        fields = split(line, form.delimiter) if line.strip() else []
+        filled = [cell for cell in fields if cell.strip()]
+        hits = sum(bool(pattern.fullmatch(cell) or _DATE.fullmatch(cell)) for cell in filled)
+        if len(fields) == form.width and hits and hits >= 0.3 * len(filled):
+            return index, fields
+    return len(lines), []
+
+
+def _header(above: Sequence[str], form: _Candidate) -> tuple[list[str], int] | Refusal:
+    """Return the column names and the number of the line after them.
+
+    The header is the line above the first row with the most names; lines between it and that row
+    are damaged rows.
+    """
+    pattern = _COMMA if form.decimal == "," else _POINT
+    lines = {
+        index: _header_fields(line, form.delimiter)
+        for index, line in enumerate(above)
+        if line.strip()
+    }
+    named = {
+        index: fields
+        for index, fields in lines.items()
+        if len(fields) >= 2 and 2 * sum(bool(pattern.fullmatch(f)) for f in fields) < len(fields)
+    }
+    if not named:
+        return [], 1 + next((i for i, line in enumerate(above) if line.strip()), len(above))
+    fitting = {index: fields for index, fields in named.items() if len(fields) <= form.width}
+    if not fitting:
+        return _unequal(len(next(iter(named.values()))), form.width)
+    at = max(fitting, key=lambda index: (len(fitting[index]), -index))
+    names = fitting[at]
+    below = next((index for index in lines if index > at), None)
+    units = lines[below] if below is not None else []
+    if below is None or len(units) > len(names) or not _are_units(units):
+        return names, at + 2
+    padded = units + [""] * (len(names) - len(units))
+    paired = zip(names, padded, strict=True)
+    return [f"{name} [{unit.strip('[]()')}]" if unit else name for name, unit in paired], below + 2
+
+
+def _header_fields(line: str, delimiter: str) -> list[str]:
+    """Return the fields of a line without empty ones at its end."""
+    if delimiter == " ":
+        # "Zeit [s]" is one name
+        line = re.sub(r"\s+(?=[\[(])", "", line)
+    fields = [field.strip().strip('"').strip() for field in split(line, delimiter)]
+    while fields and not fields[-1]:
+        fields.pop()
+    return fields
+
+
+def _unequal(names: int, width: int) -> Refusal:
+    return Refusal(
+        "wrong_field_count",
+        f"the header names {names} columns but the rows have {width} fields; expected as many;"
+        " a decimal comma in a comma-separated file does this: save it with ';'",
+    )
+
+
+def _are_units(names: Sequence[str]) -> bool:
+    marks = ("s", "ms", "deg", "rad", "nm", "n·m", "a", "°c", "k", "°", "deg/s", "rad/s", "°/s")
+    known = sum(name.strip("[]()").lower() in marks for name in names)
+    return known >= 2 and all(_UNIT_CELL.fullmatch(name) for name in names)
+
+
+def _too_short(filled: Sequence[str]) -> Refusal:
+    if filled and max(len(split(filled[0], d)) for d in _DELIMITERS) >= 2:
+        return Refusal(
+            "too_few_rows", "a header line and no rows; expected at least two rows of numbers"
+        )
+    return Refusal("not_a_log", "text without rows; expected a header line and rows of numbers")
+
+
+def _no_table(filled: Sequence[str], hints: CsvHints) -> Refusal:
+    if hints.delimiter is not None:
+        return Refusal(
+            "wrong_delimiter",
+            f"the map's delimiter {_NAMES[hints.delimiter]} does not separate numbers; the first"
+            f" line is {filled[0][:120]!r}",
+        )
+    body = "".join(filled[1:])
+    digits = sum(character.isdigit() for character in body)
+    if digits > 0.3 * len(body):
+        return Refusal(
+            "one_column",
+            "no ';', tab, ',' or blank separates the numbers; the first line is"
+            f" {filled[0][:120]!r}; save the log as CSV",
+        )
+    return Refusal("not_a_log", "text that is no table of numbers")

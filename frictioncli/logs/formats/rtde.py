@@ -1,0 +1,58 @@
+"""Universal Robots' ``record.py --binary``: two lines of text, then packed numbers."""
+
+from collections.abc import Iterator, Sequence
+from functools import partial
+from pathlib import Path
+
+import numpy as np
+
+from frictioncli.logs.formats.base import CsvHints, Refusal
+from frictioncli.logs.formats.compression import open_bytes
+from frictioncli.logs.formats.containers import ContainerLog, Rows, listed
+
+_WHAT = "an RTDE recording (binary)"
+_TYPES = {
+    b"DOUBLE": ">f8",
+    b"INT32": ">i4",
+    b"UINT32": ">u4",
+    b"UINT64": ">u8",
+    b"UINT8": "u1",
+    b"BOOL": "u1",
+}
+"""How the client library names what it packs, big-endian and without gaps."""
+_BLOCK_BYTES = 1 << 22
+
+
+def read_rtde(path: Path, head: bytes, hints: CsvHints) -> ContainerLog | Refusal | None:
+    """Open a binary RTDE recording; None when it is another format."""
+    lines = head.split(b"\n", 2)
+    types = lines[1].split() if len(lines) == 3 else []
+    if not types or not set(types) <= set(_TYPES):
+        return None
+    names = lines[0].decode("utf-8", "replace").split()
+    if len(names) != len(types):
+        return Refusal(
+            "wrong_field_count",
+            f"{_WHAT} that names {len(names)} columns ({listed(names)}) and {len(types)} types;"
+            " expected as many",
+        )
+    row = np.dtype([(str(i), _TYPES[kind]) for i, kind in enumerate(types)])
+    begin = len(head) - len(lines[2])
+    return ContainerLog(path, tuple(names), _WHAT, partial(_rows, path, begin, row))
+
+
+def _rows(
+    path: Path, begin: int, row: np.dtype[np.void], columns: Sequence[int], rows: int
+) -> Iterator[Rows]:
+    """Yield the values of the asked columns; see :class:`ContainerLog`."""
+    most = min(rows, max(_BLOCK_BYTES // row.itemsize, 1))
+    with open_bytes(path) as stream:
+        stream.read(begin)
+        while content := stream.read(most * row.itemsize):
+            whole, cut = divmod(len(content), row.itemsize)
+            found = np.frombuffer(content, row, whole)
+            yield {
+                # a recording that was broken off ends within a row: one without values
+                column: np.append(found[str(column)].astype(np.float64), [np.nan] * bool(cut))
+                for column in columns
+            }

@@ -1,0 +1,175 @@
+"""Logs of KUKA variables: delimited text in which a cell may hold a whole axis structure.
+
+Such a cell reads ``{E6AXIS: A1 45.2, A2 -12.3}`` or ``A1 45.2 A2 -12.3``; it becomes one column per
+axis. Separators and decimal signs may differ from row to row.
+"""
+
+import re
+from collections.abc import Collection, Iterator
+from dataclasses import dataclass
+from datetime import UTC, datetime
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from frictioncli.logs.formats.base import CsvHints, OneStream, RawBatch, Refusal
+from frictioncli.logs.formats.dialect import NOT_NUMBERS
+from frictioncli.logs.formats.encoding import decode_head, encoding_of, pieces
+
+_NUMBER = r"[+-]?\d+(?:[.,]\d+)?(?:[eE][+-]?\d+)?"
+_MEMBER = re.compile(rf"\b([A-Z]\d?)\s+({_NUMBER})")
+_STRUCT = re.compile(
+    rf"\{{?\s*(?:[A-Z]\w*\s*:)?\s*[A-Z]\d?\s+{_NUMBER}(?:\s*[,\s]\s*[A-Z]\d?\s+{_NUMBER})+\s*\}}?"
+)
+_MARK = "\0"
+_SEPARATORS = ";\t,"
+_TEXT_LIMIT = 200
+_LOOKED_AT = 20
+
+
+def read_struct_cells(path: Path, head: bytes, hints: CsvHints) -> "StructCells | Refusal | None":
+    """Open a log of KUKA variables with structures in its cells; None when there are none."""
+    encoding = hints.encoding or encoding_of(head)
+    if encoding is None:
+        return None
+    lines = decode_head(head, encoding).splitlines()[:_LOOKED_AT]
+    header = next((number for number, line in enumerate(lines) if line.strip()), None)
+    if header is None or _STRUCT.search(lines[header]):
+        return None
+    whole = (line for line in lines[header + 1 :] if _STRUCT.search(line) and _MARK not in line)
+    first = next(map(_cells, whole), None)
+    if first is None:
+        return None
+    names = [name.strip().strip('"') for name in _split(lines[header])]
+    if len(names) != len(first):
+        return Refusal(
+            "wrong_field_count",
+            f"the header names {len(names)} columns but the rows have {len(first)} fields, each"
+            " structure counted as one; expected as many",
+        )
+    members = tuple(
+        tuple(member for member, _ in cell) if isinstance(cell, list) else None for cell in first
+    )
+    return StructCells(path, encoding, header + 2, tuple(names), members)
+
+
+@dataclass(frozen=True, slots=True)
+class StructCells(OneStream):
+    """A log with structures in its cells.
+
+    Attributes
+    ----------
+    path : Path
+        The file.
+    encoding : str
+        A Python encoding name.
+    data_line : int
+        Line of the first row, from 1.
+    fields : tuple of str
+        Names of the fields of a row.
+    members : tuple
+        Per field the names of its structure's members, None where it is a plain number.
+    """
+
+    path: Path
+    encoding: str
+    data_line: int
+    fields: tuple[str, ...]
+    members: tuple[tuple[str, ...] | None, ...]
+
+    @property
+    def columns(self) -> tuple[str, ...]:
+        """The names of the fields; a structure's members follow its name."""
+        names: list[str] = []
+        for field, members in zip(self.fields, self.members, strict=True):
+            names += [field] if members is None else [f"{field}_{member}" for member in members]
+        return tuple(names)
+
+    @property
+    def form(self) -> str:
+        """The file's form in words."""
+        return f"text with structures in cells, {self.encoding.upper()}"
+
+    def batches(self, columns: Collection[int], size: int) -> Iterator[RawBatch]:
+        """Yield the rows in order, about ``size`` bytes of the file at a time."""
+        wanted = sorted(columns)
+        for lines in self._lines(size):
+            rows: list[list[float]] = []
+            good: list[int] = []
+            bad: dict[int, str] = {}
+            for number, text in lines:
+                row = self._row(text, wanted)
+                if isinstance(row, str):
+                    bad[number] = row
+                else:
+                    rows.append(row)
+                    good.append(number)
+            values = np.array(rows, np.float64).reshape(len(rows), len(wanted))
+            yield RawBatch(
+                np.array(good, np.int64),
+                {column: values[:, place].copy() for place, column in enumerate(wanted)},
+                np.array(list(bad), np.int64),
+                tuple(bad.values()),
+            )
+
+    def texts(self, lines: NDArray[np.int64], size: int) -> Iterator[tuple[int, str]]:
+        """Yield (line, text) for the asked lines, which must be ascending."""
+        asked = {int(line) for line in lines}
+        for part in self._lines(size):
+            yield from ((number, text[:_TEXT_LIMIT]) for number, text in part if number in asked)
+
+    def _lines(self, size: int) -> Iterator[list[tuple[int, str]]]:
+        """Yield the numbers and texts of the rows, blank ones left out."""
+        charset = "cp1252" if self.encoding == "cp1252" else "utf-8"
+        for piece in pieces(self.path, self.encoding, size):
+            texts = piece.content.decode(charset, "replace").split("\n")
+            numbered = enumerate(texts, piece.first_line)
+            yield [(n, text) for n, text in numbered if n >= self.data_line and text.strip()]
+
+    def _row(self, text: str, wanted: list[int]) -> list[float] | str:
+        """Return the asked numbers of a row, or the reason why it has none."""
+        if _MARK in text:  # bytes are lost: what stands around them is no number
+            return "not_a_number"
+        cells = _cells(text)
+        flat: list[str] = []
+        if len(cells) != len(self.members):
+            return "wrong_field_count"
+        for cell, members in zip(cells, self.members, strict=True):
+            if isinstance(cell, str) and members is None:
+                flat.append(cell)
+            elif isinstance(cell, list) and tuple(name for name, _ in cell) == members:
+                flat += [number for _, number in cell]
+            else:
+                return "wrong_field_count"
+        try:
+            return [_number(flat[column]) for column in wanted]
+        except ValueError:
+            return "not_a_number"
+
+
+def _split(text: str) -> list[str]:
+    """Return the fields of a line by whichever separator stands in it."""
+    return text.split(next((sign for sign in _SEPARATORS if sign in text), ";"))
+
+
+def _cells(text: str) -> list[str | list[tuple[str, str]]]:
+    """Return the fields of a row without NUL: plain texts, and of structures names and numbers."""
+    structures = [_MEMBER.findall(found) for found in _STRUCT.findall(text)]
+    following = iter(structures)
+    return [
+        next(following) if _MARK in cell else cell.strip().strip('"').strip()
+        for cell in _split(_STRUCT.sub(_MARK, text))
+    ]
+
+
+def _number(cell: str) -> float:
+    """Return a number or the seconds since 1970 of a date; NaN for an empty cell."""
+    if not cell or cell in NOT_NUMBERS:
+        return np.nan
+    number = cell.replace(",", ".")
+    try:
+        return float(number)
+    except ValueError:
+        moment = datetime.fromisoformat(number)
+        return (moment if moment.tzinfo else moment.replace(tzinfo=UTC)).timestamp()

@@ -1,0 +1,44 @@
+"""Files that are no delimited text: named, so that the user knows what was left out and why."""
+
+from pathlib import Path
+
+from frictioncli.logs.formats.base import CsvHints, Refusal
+from frictioncli.logs.formats.encoding import encoding_of
+
+_NOT_READ = "format_not_read"
+_NOT_A_LOG = "not_a_log"
+# beginning of the file, reason, what it is
+_MAGIC: tuple[tuple[bytes, str, str], ...] = (
+    (b"TDSm", _NOT_READ, "TDMS measurement; export the log as CSV"),
+    (b"PK\x03\x04", _NOT_READ, "Excel workbook or zip archive; save the log as CSV"),
+    (b"\xd0\xcf\x11\xe0", _NOT_READ, "old Excel workbook; save the log as CSV"),
+    (b"\x89PNG", _NOT_A_LOG, "PNG picture"),
+    (b"\xff\xd8\xff", _NOT_A_LOG, "JPEG picture"),
+    (b"%PDF", _NOT_A_LOG, "PDF document"),
+    (b"<?xml", _NOT_A_LOG, "XML document"),
+    (b"<", _NOT_A_LOG, "XML or HTML document"),
+    (b"{", _NOT_A_LOG, "JSON document"),
+    (b"&ACCESS", _NOT_A_LOG, "KRL program"),
+    (b"DEFDAT", _NOT_A_LOG, "KRL data list"),
+)
+
+
+def read_foreign(path: Path, head: bytes, hints: CsvHints) -> Refusal | None:
+    """Return what a file is that cannot be read as a log, or None when it may be one."""
+    if not head:
+        return Refusal("empty_file", "empty file; expected a header line and rows of numbers")
+    start = head.removeprefix(b"\xef\xbb\xbf").lstrip(b" \t\r\n")
+    for magic, reason, what in _MAGIC:
+        if start.startswith(magic):
+            return Refusal(reason, what)
+    if start.startswith(b"#BEGINHEADER") or b"#BEGINMOTIONINFO" in head:
+        return Refusal(_NOT_A_LOG, "KUKA motion information (_PROG), no samples")
+    if hints.encoding is None and encoding_of(head) is None:
+        if path.suffix.lower() == ".r64":
+            return Refusal(
+                _NOT_READ,
+                f"samples of a DIAdem recording; its header {path.stem}.dat is missing or cannot"
+                " be read: give both",
+            )
+        return Refusal(_NOT_A_LOG, "binary file, no text")
+    return None

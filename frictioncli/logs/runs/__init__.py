@@ -1,0 +1,1 @@
+"""Runs: which files belong together, what lies beside them, and opening them."""

@@ -1,0 +1,143 @@
+"""Which files belong to which run, from the files and folders named by the user."""
+
+import os
+import re
+from collections import Counter
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+
+from frictioncli.errors import LogError
+from frictioncli.logs.formats.compression import ENDINGS
+from frictioncli.logs.runs import manifest
+
+Logs = Sequence[Path] | Mapping[str, Path]
+"""Log files and folders, where each folder is a run; or, by name, what each run consists of."""
+
+_SILENT = frozenset({manifest.NAME, "truth.json", "metadata.yaml", "thumbs.db", "desktop.ini"})
+
+
+@dataclass(frozen=True, eq=False)
+class LogFile:
+    """A file that may be a log, as it was named or found; no two of a call are one file."""
+
+    path: Path
+
+    @cached_property
+    def stem(self) -> str:
+        """The name without its ending, ``.csv.gz`` counting as one."""
+        packed = self.path.suffix.lower() in ENDINGS
+        return Path(self.path.stem).stem if packed else self.path.stem
+
+
+@dataclass(frozen=True, slots=True)
+class LogRun:
+    """A folder of logs: one day, one thermal history.
+
+    Attributes
+    ----------
+    name : str
+        Unique among the runs.
+    folder : Path
+        Where its manifest would be.
+    files : tuple of LogFile
+        In natural name order (s2 before s10).
+    """
+
+    name: str
+    folder: Path
+    files: tuple[LogFile, ...]
+
+
+def natural_key(name: str) -> list[tuple[int, int, str]]:
+    """Return a sort key that puts s2 before s10."""
+    parts = re.split(r"(\d+)", name.lower())
+    return [(0, int(part), "") if part.isdecimal() else (1, 0, part) for part in parts if part]
+
+
+def discover(logs: Logs, besides: Path | None = None) -> tuple[LogRun, ...]:
+    """Return the runs in the named files and folders, in the order of first mention.
+
+    Parameters
+    ----------
+    logs : Logs
+        Files and folders, or run name -> its file, or folder with all that lies below.
+    besides : Path, optional
+        A folder whose files are no logs: the work folder may lie among them.
+
+    Raises
+    ------
+    LogError
+        If a path does not exist, is no text, or no file is found.
+    """
+    paths = list(logs.values()) if isinstance(logs, Mapping) else logs
+    found = {path: _files_of(path, besides) for path in paths}
+    folders: dict[Path, dict[Path, None]] = {}
+    for files in found.values():
+        for file in files:
+            _check_name(file)
+            folders.setdefault(file.parent, {})[file] = None
+    if not folders:
+        named = ", ".join(str(path) for path in paths) or "nothing named"
+        raise LogError(f"{named}: no log files found; expected text logs of a joint's motion")
+    if isinstance(logs, Mapping):
+        return tuple(
+            LogRun(name, path if path.is_dir() else path.parent, _in_order(found[path]))
+            for name, path in logs.items()
+        )
+    names = _unique_names(list(folders))
+    return tuple(LogRun(names[folder], folder, _in_order(own)) for folder, own in folders.items())
+
+
+def _check_name(path: Path) -> None:
+    """Refuse a name whose bytes are no text: tables could not hold it."""
+    try:
+        str(path).encode()
+    except UnicodeEncodeError:
+        raise LogError(f"{path}: its name is no text in UTF-8; rename it") from None
+
+
+def _in_order(files: Iterable[Path]) -> tuple[LogFile, ...]:
+    return tuple(LogFile(path) for path in sorted(files, key=lambda path: natural_key(path.name)))
+
+
+def _files_of(path: Path, besides: Path | None) -> list[Path]:
+    if path.is_dir():
+        return _files_below(path, besides)
+    if path.is_file():
+        return [path]
+    raise LogError(f"{path}: no such file or folder; expected a log or a folder of logs")
+
+
+def _files_below(folder: Path, besides: Path | None) -> list[Path]:
+    work = None if besides is None else besides.resolve()
+    found: list[Path] = []
+    for place, folders, files in os.walk(folder):
+        inside = Path(place)
+        if work is not None and inside.resolve().is_relative_to(work):
+            folders.clear()
+            continue
+        folders[:] = [name for name in folders if not name.startswith(".")]
+        named = (one for one in files if not one.startswith(".") and one.lower() not in _SILENT)
+        found += [path for path in map(inside.joinpath, named) if path.is_file()]
+    keys = {
+        place: [natural_key(part) for part in place.parts]
+        for place in {path.parent for path in found}
+    }
+    return sorted(found, key=lambda path: [*keys[path.parent], natural_key(path.name)])
+
+
+def _unique_names(folders: list[Path]) -> dict[Path, str]:
+    """Name each folder by as many of its last parts as tell it from the others."""
+    parts = {folder: folder.resolve().parts for folder in folders}
+    names = {folder: parts[folder][-1] for folder in folders}
+    depth = 1
+    while True:
+        counts = Counter(names.values())
+        clashes = [folder for folder, name in names.items() if counts[name] > 1]
+        if not clashes or depth > max(len(own) for own in parts.values()):
+            return names
+        depth += 1
+        for folder in clashes:
+            names[folder] = "/".join(parts[folder][-depth:])

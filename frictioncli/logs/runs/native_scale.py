@@ -1,0 +1,97 @@
+"""Text that holds the raw values of a native recording, scaled as the header beside it says."""
+
+from collections.abc import Collection, Iterator
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from frictioncli.logs.channels.recognition import split_unit
+from frictioncli.logs.formats.base import OneStream, RawBatch, Source
+from frictioncli.logs.formats.compression import UnreadableLog
+from frictioncli.logs.formats.diadem import DiademRecording, open_recording
+from frictioncli.logs.formats.diadem_header import DamagedHeader
+
+_COMPARED_BYTES = 1 << 14
+_MIN_ROWS = 3
+_NO_VALUE = 9e34
+_DIGITS = 1e-5
+"""Text may hold six digits only."""
+
+
+@dataclass(frozen=True, slots=True)
+class ScaledLog(OneStream):
+    """A log whose columns are multiplied by factors: ``raw * factor + offset`` per column."""
+
+    base: Source
+    scales: tuple[tuple[float, float], ...]
+
+    @property
+    def path(self) -> Path:
+        """The file."""
+        return self.base.path
+
+    @property
+    def columns(self) -> tuple[str, ...]:
+        """Column names as they stand in the file."""
+        return self.base.columns
+
+    @property
+    def form(self) -> str:
+        """The file's form in words."""
+        return f"{self.base.form}, raw values scaled as the .dat header beside it says"
+
+    def batches(self, columns: Collection[int], size: int) -> Iterator[RawBatch]:
+        """Yield the rows in order, about ``size`` bytes of the file at a time."""
+        for batch in self.base.batches(columns, size):
+            values = {
+                column: cells * self.scales[column][0] + self.scales[column][1]
+                for column, cells in batch.values.items()
+            }
+            yield RawBatch(batch.lines, values, batch.bad_lines, batch.bad_reasons)
+
+    def texts(self, lines: NDArray[np.int64], size: int) -> Iterator[tuple[int, str]]:
+        """Yield (line, text) for the asked lines, which must be ascending."""
+        return self.base.texts(lines, size)
+
+
+def scaled(source: Source) -> Source:
+    """Return a log with its values scaled, if they are the raw ones of the recording beside it.
+
+    The first rows must be equal to the stored numbers, and differ from them scaled.
+    """
+    header = source.path.with_suffix(".dat")
+    if header == source.path or not header.is_file():
+        return source
+    try:
+        recording = open_recording(header)
+        rows = next(iter(source.batches(range(len(source.columns)), _COMPARED_BYTES)), None)
+    except (UnreadableLog, DamagedHeader):
+        return source
+    if recording is None or rows is None:
+        return source
+    stored = {split_unit(name)[0]: i for i, name in enumerate(recording.columns)}
+    scales = [(1.0, 0.0)] * len(source.columns)
+    for column, name in enumerate(source.columns):
+        index = stored.get(split_unit(name)[0])
+        if index is None or recording.channels[index].place is None:
+            continue
+        channel = recording.channels[index]
+        if not _holds_raw(rows.values[column], recording, index):
+            return source
+        scales[column] = (channel.factor, channel.offset)
+    return ScaledLog(source, tuple(scales)) if any(s != (1.0, 0.0) for s in scales) else source
+
+
+def _holds_raw(cells: NDArray[np.float64], recording: DiademRecording, index: int) -> bool:
+    """Return whether a column begins with a channel's numbers as they are stored."""
+    try:
+        numbers = recording.raw(index, 0, len(cells))
+    except OSError:
+        return False
+    numbers[np.abs(numbers) > _NO_VALUE] = np.nan  # as in text
+    n = min(len(numbers), len(cells))
+    return n >= _MIN_ROWS and bool(
+        np.allclose(cells[:n], numbers[:n], rtol=_DIGITS, atol=0, equal_nan=True)
+    )

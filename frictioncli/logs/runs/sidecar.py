@@ -1,0 +1,71 @@
+"""What files beside a log tell of it: when it began, and the payload."""
+
+from collections.abc import Collection
+from dataclasses import dataclass
+from datetime import datetime
+from pathlib import Path
+
+from frictioncli.logs.formats.compression import UnreadableLog
+from frictioncli.logs.formats.diadem_header import read_header
+from frictioncli.logs.runs.program_file import read_program
+from frictioncli.logs.runs.trace_names import PROGRAM, trace_of
+
+_PROGRAM_ENDINGS = (".TXT", ".txt")
+
+
+@dataclass(frozen=True, slots=True)
+class Sidecar:
+    """What the files beside a log tell.
+
+    Attributes
+    ----------
+    started_at : datetime or None
+        Start of the recording, by the DIAdem header or else the programme's file; UTC.
+    payload : float or None
+        Mass at the tool, by the programme's file. [kg]
+    notes : tuple of str
+        What was taken from where.
+    """
+
+    started_at: datetime | None = None
+    payload: float | None = None
+    notes: tuple[str, ...] = ()
+
+
+def sidecar(log: Path, names: Collection[str]) -> Sidecar:
+    """Return what the DIAdem header and the programme's file beside a log tell.
+
+    The log may be the header itself. The programme's file is called ``<trace>_PROG.TXT``.
+
+    Parameters
+    ----------
+    log : Path
+        The log.
+    names : collection of str
+        Names of all that is in its folder.
+    """
+    trace, header = trace_of(log.stem), f"{log.stem}.dat"
+    start = _start_by_header(log.with_name(header)) if header in names else None
+    files = (f"{trace}{PROGRAM}{ending}" for ending in _PROGRAM_ENDINGS)
+    file = next((log.with_name(name) for name in files if name in names), None)
+    if file is None or not file.is_file():
+        return Sidecar(start, None, () if start is None else ("started as its .dat header tells",))
+    program = read_program(file)
+    if program is None:
+        said = "started as its .dat header tells", "its _PROG.TXT cannot be understood: not used"
+        return Sidecar(start, None, said[start is None :])
+    if start is not None:
+        told = "started as its .dat header tells"
+    elif program.started_at is not None:
+        told = "started as its _PROG.TXT tells"
+    else:
+        told = "its _PROG.TXT has no valid date"
+    return Sidecar(start or program.started_at, program.payload, (told, f"its _PROG.TXT {program}"))
+
+
+def _start_by_header(header: Path) -> datetime | None:
+    try:
+        found = read_header(header) if header.is_file() else None
+    except UnreadableLog:
+        return None
+    return None if found is None else found.started_at

@@ -1,0 +1,1 @@
+"""Samples: rows checked, put in time order, and written."""

@@ -1,0 +1,171 @@
+"""Which parameters of equation (16) the data can tell, and what becomes of the others.
+
+A term that the experiment did not excite is not fitted: its share is then held by another term, or
+it is left out. Both are said, with the numbers that decided it.
+"""
+
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from frictioncli.model.equations import COEFFICIENTS
+from frictioncli.model.identification import Estimate, fit_terms
+from frictioncli.model.observations import Observations
+from frictioncli.model.variable_projection import DELTA_BOUNDS
+
+MIN_TEMPERATURE_SPAN = 10.0
+"""Least span of temperature that tells how friction falls with it. [°C]"""
+
+MIN_SPEED_RATIO = 1.5
+"""Least ratio of the highest to the lowest speed that tells viscous from Coulomb friction."""
+
+_VAGUE = 0.5
+"""A term whose half interval exceeds this share of the mean friction is not told by the data."""
+
+_NEGLIGIBLE = 0.05
+"""A load term that may be zero is kept if at most it makes this share of the mean friction."""
+
+
+@dataclass(frozen=True, slots=True)
+class Determination:
+    """The terms that are fitted; why others are not; what the remaining ones hold beside their own.
+
+    Attributes
+    ----------
+    terms : tuple of str
+        Coefficients that are fitted.
+    dropped : dict of str to str
+        Parameters that are not, with the reason and what was done.
+    merged : dict of str to str
+        Parameters that hold another's share, with what they hold.
+    """
+
+    terms: tuple[str, ...] = COEFFICIENTS
+    dropped: dict[str, str] = field(default_factory=dict)
+    merged: dict[str, str] = field(default_factory=dict)
+
+    def without(self, term: str, reason: str, holder: str | None, holds: str) -> "Determination":
+        """Return the same without a term, whose share ``holder`` takes over."""
+        dropped = self.dropped | {term: reason}
+        if term == "gamma":
+            dropped["delta"] = reason
+        merged = self.merged if holder is None else self.merged | {holder: holds}
+        return Determination(tuple(t for t in self.terms if t != term), dropped, merged)
+
+
+def determined_fit(observed: Observations) -> tuple[Estimate, Determination]:
+    """Fit what the data determine.
+
+    Parameters
+    ----------
+    observed : Observations
+        Friction of one joint.
+
+    Returns
+    -------
+    Estimate, Determination
+        The fit, and which terms it has and why.
+    """
+    chosen = _by_excitation(observed)
+    while True:
+        estimate = fit_terms(observed, chosen.terms)
+        fewer = _by_interval(observed, estimate, chosen)
+        if fewer is chosen:
+            return estimate, chosen
+        chosen = fewer
+
+
+def at_bound(estimate: Estimate) -> dict[str, str]:
+    """Return the fitted parameters that a physical bound holds, with the reason."""
+    flags = {
+        name: "at its lower bound 0: the data would rather have it negative"
+        for name in estimate.names
+        if name != "delta" and getattr(estimate.parameters, name) <= 0
+    }
+    if "delta" in estimate.names:
+        for bound in DELTA_BOUNDS:
+            if abs(estimate.parameters.delta / bound - 1) < 1e-3:
+                flags["delta"] = f"at the bound {bound:g} of its search range"
+    return flags
+
+
+def _by_excitation(observed: Observations) -> Determination:
+    chosen = Determination()
+    temperatures = observed.temperature[np.isfinite(observed.temperature)]
+    if not temperatures.size:
+        chosen = chosen.without(
+            "gamma",
+            "the log has no such temperature; merged with beta into one viscous coefficient",
+            "beta",
+            "holds the whole viscous coefficient at the unknown temperature of the log",
+        )
+    elif np.ptp(temperatures) < MIN_TEMPERATURE_SPAN:
+        low, high = np.min(temperatures), np.max(temperatures)
+        chosen = chosen.without(
+            "gamma",
+            f"temperature spans {high - low:.1f} °C ({low:.1f} to {high:.1f}), at least"
+            f" {MIN_TEMPERATURE_SPAN:g} °C are needed; merged with beta into one viscous"
+            " coefficient",
+            "beta",
+            f"holds the whole viscous coefficient at {low:.1f} to {high:.1f} °C",
+        )
+    slowest, fastest = np.min(observed.speed), np.max(observed.speed)
+    if fastest < MIN_SPEED_RATIO * slowest:
+        speeds = f"{slowest:.3g} to {fastest:.3g} deg/s"
+        chosen = chosen.without(
+            "beta",
+            f"speeds of {speeds} do not tell viscous from Coulomb friction; merged into tau_c",
+            "tau_c",
+            f"holds Coulomb friction and the viscous part that stays when hot, at {speeds}",
+        )
+    return chosen
+
+
+def _by_interval(
+    observed: Observations, estimate: Estimate, chosen: Determination
+) -> Determination:
+    """Return the next simpler determination if some fitted term is not told by the data."""
+    friction = float(np.mean(np.abs(observed.friction)))
+    reach = {
+        name: (high - low) / 2 for name in estimate.names for low, high in [estimate.interval(name)]
+    }
+    if "alpha" in chosen.terms:
+        squares = observed.squared_load[observed.row_pair] + observed.squared_load_within
+        low, high = estimate.interval("alpha")
+        vague = reach["alpha"] * np.ptp(squares) > _VAGUE * friction
+        # a load as great as the friction is the least that a user will ask the model about
+        asked = max(float(np.max(squares)), friction**2)
+        doubtful = low <= 0 and high * asked > _NEGLIGIBLE * friction
+        if vague or doubtful or np.ptp(squares) <= np.square(3 * estimate.noise.point):
+            return chosen.without(
+                "alpha",
+                f"load spans {np.sqrt(np.min(squares)):.3g} to {np.sqrt(np.max(squares)):.3g}, too"
+                " little to show in the friction; left out (0)",
+                None,
+                "",
+            )
+    if "delta" in reach and reach["delta"] >= estimate.parameters.delta:
+        if "beta" in chosen.terms:
+            return chosen.without(
+                "beta",
+                "the fall with temperature is too little curved to tell beta from gamma;"
+                " fixed at 0",
+                "gamma",
+                "holds the whole viscous coefficient",
+            )
+        return chosen.without(
+            "gamma",
+            "the data do not show that friction falls with temperature; left out (0)",
+            None,
+            "",
+        )
+    if "beta" in reach and "gamma" not in chosen.terms:
+        root_speed = np.sqrt(observed.speed)
+        if reach["beta"] * float(np.ptp(root_speed)) > _VAGUE * friction * 2:
+            return chosen.without(
+                "beta",
+                "too uncertain to be told from Coulomb friction; merged into tau_c",
+                "tau_c",
+                "holds Coulomb and viscous friction",
+            )
+    return chosen

@@ -1,0 +1,244 @@
+"""Figure 11: the error (21) against the number of corrections, and the error of one setting."""
+
+from typing import Any
+
+import pandas as pd
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from frictioncli.report.labels import CRITERION_WORDS, counted, number, plain, span
+from frictioncli.report.results import MOST_RUNS, JointResults
+from frictioncli.report.style import (
+    FAINT,
+    PHASE_COLOURS,
+    PHASE_WORDS,
+    PHASES,
+    legend_above,
+    panels,
+)
+from frictioncli.report.tooltips import tell
+
+BASELINES = ("none", "equal")
+"""Criteria that others are compared with."""
+
+_USUAL_BOUND = 2.0
+_MOST_GROUPS = 14
+_BAR_WIDTH = 0.38
+_DASHES = (0, (5, 3))
+_EQUAL: dict[str, Any] = {
+    "linestyle": "none",
+    "marker": "D",
+    "markersize": 5,
+    "markeredgecolor": "white",
+}
+_OTHER: dict[str, Any] = _EQUAL | {"marker": "^", "markersize": 6, "markeredgecolor": "black"}
+
+
+def error_against_corrections(results: JointResults) -> Figure:
+    """Draw Figure 11: epsilon (21) against the number of corrections, heating beside cooling.
+
+    Parameters
+    ----------
+    results : JointResults
+        One joint's results.
+    """
+    criterion = compared_criterion(results)
+    runs = sorted(results.evaluation["run"].unique())[:MOST_RUNS]
+    evaluation = results.evaluation[results.evaluation["run"].isin(runs)]
+    criteria = [criterion, *_other_criterion(criterion, evaluation)]
+    counts = counts_shown(evaluation[evaluation["criterion"].isin(criteria)])
+    figure, axes = panels(len(runs), height=3.4)
+    for run, panel in zip(runs, axes, strict=True):
+        own = evaluation[evaluation["run"] == run]
+        for side, phase in enumerate(PHASES):
+            rows = own[own["phase"] == phase]
+            _phase_bars(
+                panel, rows, criteria, counts, phase, shift=(side - 0.5) * 0.4, unit=results.unit
+            )
+        panel.plot([], [], label=CRITERION_WORDS["equal"], color=FAINT, **_EQUAL)
+        for name in criteria[1:]:
+            panel.plot([], [], label=CRITERION_WORDS[name], color=FAINT, **_OTHER)
+        panel.plot([], [], color=FAINT, linestyle=_DASHES, linewidth=1.3, label="no correction")
+        panel.set_xticks(range(len(counts)), [str(count) for count in counts])
+        panel.grid(visible=False, axis="x")
+        panel.set_title(plain(run))
+        panel.set_ylabel(f"error ε [{results.unit}]")
+        legend_above(panel)
+    # the notes of failures stand on the bars and need room; all panels share the scale
+    room = 1.3 if (evaluation["failed"] > 0).any() else 1.08
+    axes[0].set_ylim(0.0, room * axes[0].get_ylim()[1])
+    axes[-1].set_xlabel(f"number of corrections ({CRITERION_WORDS.get(criterion, criterion)})")
+    return figure
+
+
+def _phase_bars(
+    panel: Axes,
+    rows: pd.DataFrame,
+    criteria: list[str],
+    counts: list[int],
+    phase: str,
+    *,
+    shift: float,
+    unit: str,
+) -> None:
+    """Draw one phase: the first criterion as bars, others and equal spacing as marks."""
+    colour = PHASE_COLOURS[phase]
+    place = {count: index + shift for index, count in enumerate(counts)}
+    known = rows[rows["corrections"].isin(counts)]
+    # no corrections at all cannot be spaced
+    known = known[(known["criterion"] != "equal") | (known["corrections"] > 0)]
+    errors = {
+        name: error_per_count(known[known["criterion"] == name])
+        for name in (criteria[0], "equal", *criteria[1:])
+    }
+    bars = errors[criteria[0]]
+    drawn = panel.bar(
+        [place[count] for count in bars.index],
+        bars["epsilon"],
+        width=_BAR_WIDTH,
+        color=colour,
+        alpha=0.85,
+        label=PHASE_WORDS[phase],
+    )
+    for bar, text in zip(drawn, _told(bars, phase, unit), strict=True):
+        tell(bar, [text])
+    for name in list(errors)[1:]:
+        (marks,) = panel.plot(
+            [place[count] for count in errors[name].index],
+            errors[name]["epsilon"],
+            color=colour,
+            **(_EQUAL if name == "equal" else _OTHER),
+        )
+        told = _told(errors[name], phase, unit)
+        tell(marks, [f"{CRITERION_WORDS[name]}, {text}" for text in told])
+    tops = pd.concat([each["epsilon"] for each in errors.values()]).groupby(level=0).max()
+    for count, failed in zip(bars.index, bars["failed"], strict=True):
+        if failed > 0:
+            panel.annotate(
+                f"{int(failed)} failed",
+                (place[count], tops[count]),
+                xytext=(0, 6),
+                textcoords="offset points",
+                rotation=90,
+                ha="center",
+                va="bottom",
+                fontsize=9,
+                color=colour,
+            )
+    none = rows.loc[rows["criterion"] == "none", "epsilon"]
+    if len(none):
+        panel.axhline(float(none.iloc[0]), color=colour, linestyle=_DASHES, linewidth=1.3)
+
+
+def _told(errors: pd.DataFrame, phase: str, unit: str) -> list[str]:
+    return [
+        f"{PHASE_WORDS[phase]}, {counted(int(count), 'correction')}: ε = {number(error)} {unit}"
+        for count, error in errors["epsilon"].items()
+    ]
+
+
+def _other_criterion(criterion: str, evaluation: pd.DataFrame) -> list[str]:
+    """Return uncertainty beside a criterion of the paper, and one of the paper's beside it."""
+    evaluated = set(evaluation["criterion"])
+    others = [name for name in CRITERION_WORDS if name in evaluated and name not in BASELINES]
+    if criterion != "uncertainty":
+        others = [name for name in others if name == "uncertainty"]
+    return [name for name in others if name != criterion][:1]
+
+
+def error_per_count(rows: pd.DataFrame) -> pd.DataFrame:
+    """Return the mean error and the most failures over the settings of each correction count.
+
+    Parameters
+    ----------
+    rows : DataFrame
+        Rows of :data:`frictioncli.schemas.EVALUATION` of one run, phase and criterion.
+    """
+    return rows.groupby("corrections").agg(epsilon=("epsilon", "mean"), failed=("failed", "max"))
+
+
+def counts_shown(rows: pd.DataFrame) -> list[int]:
+    """Return the numbers of corrections that Figure 11 shows, at most fourteen.
+
+    Those that most runs, phases and criteria have come first, for the sake of comparison, then the
+    lowest.
+
+    Parameters
+    ----------
+    rows : DataFrame
+        Rows of :data:`frictioncli.schemas.EVALUATION` of the criteria that are drawn.
+    """
+    phases = rows[["run", "phase", "criterion", "corrections"]].drop_duplicates()
+    shared = phases.groupby("corrections").size().sort_values(ascending=False, kind="stable")
+    return sorted(int(count) for count in shared.index[:_MOST_GROUPS])
+
+
+def compared_criterion(results: JointResults, *, bounded: bool = True) -> str:
+    """Return the criterion that Figure 11 draws: the simulated one where it was evaluated.
+
+    Parameters
+    ----------
+    results : JointResults
+        One joint's results.
+    bounded : bool
+        Whether it may be one that a bound decides, not k and tmax.
+
+    Returns
+    -------
+    str
+        Name of the criterion, empty where the evaluation has none but the two baselines.
+    """
+    evaluated = {str(c) for c in results.evaluation["criterion"].unique()} - set(BASELINES)
+    if not bounded:
+        evaluated -= {"uncertainty"}
+    simulated = [] if results.schedule.empty else [str(results.schedule["criterion"].iloc[0])]
+    for criterion in (*simulated, *CRITERION_WORDS):
+        if criterion in evaluated:
+            return criterion
+    return ""
+
+
+def setting_text(results: JointResults) -> str:
+    """Return the simulated setting in words."""
+    first = results.schedule.iloc[0]
+    word = CRITERION_WORDS.get(str(first["criterion"]), str(first["criterion"]))
+    told = [f"criterion “{word}”"]
+    if pd.notna(first["k"]):
+        told.append(f"k = {first['k']:g}")
+    if pd.notna(first["tmax"]):
+        told.append(f"tmax = {first['tmax'] / 60.0:g} min")
+    if pd.notna(first["bound"]):
+        told.append(f"bound = {first['bound']:g} {results.unit}")
+    if results.simulated_extended:
+        told.append("extended model")
+    return ", ".join(told)
+
+
+def uncertainty_text(results: JointResults) -> str:
+    """Return what corrections by uncertainty reach, in a sentence; empty where not evaluated.
+
+    Parameters
+    ----------
+    results : JointResults
+        One joint's results.
+    """
+    rows = results.evaluation[results.evaluation["criterion"] == "uncertainty"]
+    if rows.empty:
+        return ""
+    bounds = rows["bound"].unique()
+    bound = float(bounds[abs(bounds - _USUAL_BOUND).argmin()])
+    told = []
+    for phase in PHASES:
+        own = rows[(rows["phase"] == phase) & (rows["bound"] == bound)]
+        if len(own):
+            counts = span([str(count) for count in sorted(own["corrections"])])
+            errors = span([number(error) for error in sorted(own["epsilon"])])
+            told.append(f"{PHASE_WORDS[phase]} {counts} corrections, ε {errors} {results.unit}")
+    return (
+        f"{_shape(results)}: corrections made where the predicted uncertainty of friction exceeds a"
+        f" bound; with {bound:g} {results.unit}, {'; '.join(told)}."
+    )
+
+
+def _shape(results: JointResults) -> str:
+    return "Bars" if compared_criterion(results) == "uncertainty" else "Triangles"

@@ -1,0 +1,154 @@
+"""The evidence of one cause: residuals without it, its fitted term, what is left, its rivals."""
+
+import numpy as np
+import pandas as pd
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from frictioncli.diagnosis.documents.reload import Reloaded
+from frictioncli.report.binning import Binned, BinnedSeries, binned, bins_of, series_of
+from frictioncli.report.labels import share_text, words
+from frictioncli.report.results import JointResults
+from frictioncli.report.style import FAINT, MODEL, WIDTH
+
+_AXES = {
+    "speed": ("speed |φ'| [deg/s]", 1.0),
+    "temperature": ("temperature T [°C]", 1.0),
+    "motor_temperature": ("motor temperature Tm [°C]", 1.0),
+    "housing_temperature": ("housing temperature Tc [°C]", 1.0),
+    "position": ("joint angle φ [deg]", 1.0),
+    "load": ("load torque L", 1.0),
+    "clock": ("time, run after run [h]", 1 / 3600.0),
+    "time": ("time in the run [h]", 1 / 3600.0),
+    "travel": ("way travelled [1000 deg]", 1e-3),
+    "rest": ("rest before [min]", 1 / 60.0),
+    "order": ("pair after the last rest", 1.0),
+}
+
+_LEVELS = ("speed", "order", "position")
+"""Axes measured at a few values, between which a line may be drawn."""
+
+_MOST_BARS = 6
+_CHOSEN = "#0072B2"
+_PANELS = ("base model", "without this cause", "extended model")
+
+
+def evidence_figure(results: JointResults, *, recalled: Reloaded, number: int) -> Figure:
+    """Draw one cause: the base model's residuals, the fitted term, what is left, its rivals.
+
+    Parameters
+    ----------
+    results : JointResults
+        One joint's results.
+    recalled : Reloaded
+        Its diagnosis.
+    number : int
+        Place of the cause, from 0.
+    """
+    seen, cause = recalled.seen, recalled.causes[number]
+    axis, channel = str(cause["seen_in"]), str(cause["channel"])
+    bars = shown_probabilities(cause["probabilities"], cause["effects"])
+    low = 0.62 + 0.24 * len(bars)
+    figure = Figure(figsize=(WIDTH, 3.3 + low), layout="constrained")
+    upper, lower = figure.subfigures(2, 1, squeeze=False, height_ratios=(3.3, low))[:, 0]
+    panels = upper.subplots(1, 3, sharey=True, sharex=True)
+    table = seen.problem.table
+    rows = pd.DataFrame(
+        {
+            "bin": bins_of(axis, getattr(table, axis)),
+            "pair": table.pair,
+            "at": getattr(table, axis) * _AXES[axis][1] + (axis == "order"),
+            "term": seen.terms[number].of(channel),
+        }
+    )
+    drawn = (seen.before[channel], seen.without(number, channel), seen.after[channel])
+    for panel, title, residual in zip(panels, _PANELS, drawn, strict=True):
+        for one in series_of(table, axis, channel):
+            found = binned(rows.assign(mean=residual)[one.rows])
+            _points(panel, one, found)
+            if title == _PANELS[1]:
+                _line(panel, found, one.colour, broken=axis not in _LEVELS)
+        panel.axhline(0.0, color=MODEL, linewidth=0.9, zorder=1)
+        panel.set_title(title)
+    panels[1].plot([], [], color=FAINT, label="fitted term")
+    if axis == "order" or (axis == "speed" and table.speed.max() > 8 * table.speed.min()):
+        _logarithmic(panels[0], rows["at"])
+    label = _AXES[axis][0] + (f" [{results.load_unit}]" if axis == "load" else "")
+    panels[1].set_xlabel(label)
+    unit = results.unit if channel == "friction" else results.load_unit
+    panels[0].set_ylabel(f"{channel}: measured − simulated [{unit}]")
+    handles, labels = panels[1].get_legend_handles_labels()
+    upper.legend(handles, labels, loc="outside lower center", ncols=len(labels))
+    _bars(lower.subplots(), bars, set(cause["effects"]))
+    return figure
+
+
+def shown_probabilities(
+    probabilities: dict[str, float], chosen: list[str]
+) -> list[tuple[str, float]]:
+    """Return the bars: the credible set, the most probable others, and what is left over.
+
+    Parameters
+    ----------
+    probabilities : dict of str to float
+        Probability of each effect.
+    chosen : list of str
+        The credible set.
+    """
+    ordered = sorted(probabilities.items(), key=lambda entry: (entry[0] not in chosen, -entry[1]))
+    shown = ordered[: max(_MOST_BARS, len(chosen))]
+    rest = 1.0 - sum(share for _, share in shown)
+    return [*shown, ("all others", rest)] if rest >= 5e-4 else shown
+
+
+def _points(panel: Axes, one: BinnedSeries, found: Binned) -> None:
+    panel.errorbar(
+        found.at,
+        found.mean,
+        yerr=2 * np.nan_to_num(found.error),
+        fmt="o",
+        color=one.colour,
+        markerfacecolor=one.colour if one.filled else "white",
+        markersize=4.5 if one.filled else 4,
+        elinewidth=1.0,
+        capsize=2,
+        label=one.name or "residual",
+    )
+
+
+def _line(panel: Axes, found: Binned, colour: str, *, broken: bool) -> None:
+    """Draw the fitted term's means; a line across empty bins would claim what was not measured."""
+    cuts = np.flatnonzero(np.diff(found.bin) > 1)[: None if broken else 0] + 1
+    parts = zip(np.split(found.at, cuts), np.split(found.term, cuts), strict=True)
+    for at, term in parts:
+        panel.plot(at, term, color=colour, marker="_" if len(at) == 1 else None, markersize=12)
+
+
+def _logarithmic(panel: Axes, values: pd.Series) -> None:
+    panel.set_xscale("log")
+    low, high = 0.8 * values.min(), 1.2 * values.max()
+    ticks = [mark for mark in (0.1, 0.3, 1, 3, 10, 30, 100, 300) if low < mark < high]
+    panel.set_xticks(ticks, [f"{value:g}" for value in ticks])
+    panel.set_xticks([], minor=True)
+
+
+def _bars(panel: Axes, bars: list[tuple[str, float]], chosen: set[str]) -> None:
+    names = [words(name) for name, _ in bars]
+    colours = [_CHOSEN if name in chosen else FAINT for name, _ in bars]
+    places = np.arange(len(bars))
+    panel.barh(places, [100 * share for _, share in bars], color=colours, height=0.65)
+    for place, (_, share) in zip(places, bars, strict=True):
+        panel.annotate(
+            share_text(share),
+            (100 * share, place),
+            xytext=(4, 0),
+            textcoords="offset points",
+            va="center",
+            fontsize=9,
+        )
+    panel.set_yticks(places, names)
+    panel.set_ylim(len(bars) - 0.3, -0.7)
+    panel.set_xlim(0, 112)
+    panel.set_xticks([0, 25, 50, 75, 100])
+    panel.grid(axis="y", visible=False)
+    panel.set_xlabel("probability [%]")

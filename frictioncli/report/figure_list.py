@@ -1,0 +1,274 @@
+"""The figures of a report in their order: title, caption, what each needs, how it is drawn."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import partial
+
+from matplotlib.figure import Figure
+
+from frictioncli.report.corrected_friction import corrected_estimates
+from frictioncli.report.epsilon_figures import (
+    error_against_corrections,
+    setting_text,
+    uncertainty_text,
+)
+from frictioncli.report.labels import (
+    TEMPERATURE_WORDS,
+    counted,
+    duration,
+    listed,
+    number,
+    speed_text,
+)
+from frictioncli.report.load_and_speed import (
+    REFERENCE_TEMPERATURE,
+    carries_temperature,
+    friction_against_load,
+    friction_against_speed,
+)
+from frictioncli.report.requirements import (
+    any_temperature_missing,
+    evaluation_missing,
+    housing_temperature_missing,
+    means_missing,
+    motor_temperature_missing,
+    nothing_missing,
+    residuals_missing,
+    schedule_missing,
+    speeds_missing,
+)
+from frictioncli.report.residuals import residual_figure, residuals
+from frictioncli.report.results import MOST_RUNS, JointResults
+from frictioncli.report.style import PHASE_WORDS
+from frictioncli.report.thermal_figures import (
+    branch_means_with_model,
+    friction_against_temperature,
+    phase_spans,
+    temperatures_over_time,
+    thermal_runs,
+)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class FigureEntry:
+    """One figure of the report.
+
+    Attributes
+    ----------
+    name : str
+        Stem of its files.
+    title : str
+        Its heading.
+    caption : callable
+        Says what to see in it.
+    missing : callable
+        Why it cannot be drawn and what would be needed; empty where it can.
+    draw : callable
+        Draws it.
+    """
+
+    name: str
+    title: str
+    caption: Callable[[JointResults], str]
+    missing: Callable[[JointResults], str]
+    draw: Callable[[JointResults], Figure]
+
+
+def _load_caption(results: JointResults) -> str:
+    return (
+        "Points: measured friction of single pairs of moves, one per angle bin. Lines: α·L² + G"
+        " with one α for all pairs and the shift G of each pair, equations (9) and (10). Below, the"
+        " same points without their shift: the load term holds where they follow the one parabola"
+        " over the whole load range."
+    )
+
+
+def _time_caption(results: JointResults) -> str:
+    told = []
+    for run in thermal_runs(results, "motor_temperature"):
+        own = results.pairs[results.pairs["run"] == run].sort_values("time")
+        phases = []
+        for start, end, phase in phase_spans(own):
+            rows = own[(own["time"] >= start) & (own["time"] <= end)]["motor_temperature"].dropna()
+            if phase in PHASE_WORDS and len(rows):
+                phases.append(
+                    f"{PHASE_WORDS[phase]} from {rows.iloc[0]:.0f} to {rows.iloc[-1]:.0f} °C in"
+                    f" {duration(end - start)}"
+                )
+        told.append(f"{run}: {listed(phases)}")
+    temperatures = f" Motor temperature, {'; '.join(told)}." if told else ""
+    return f"Temperatures at the measured pairs; the phases are shaded.{temperatures}"
+
+
+def _temperature_caption(results: JointResults, kind: str) -> str:
+    column, name = f"{kind}_temperature", f"{kind} temperature"
+    known = results.thermal_pairs.dropna(subset=[column])
+    fastest = known[known["speed"] == known["speed"].max()].sort_values(column, kind="stable")
+    cold, hot = fastest.iloc[0], fastest.iloc[-1]
+    return (
+        f"Friction torque at zero load against the {name}; heating filled, cooling hollow. At"
+        f" {speed_text(cold['speed'])} it is {number(cold['friction_torque'])} {results.unit} at"
+        f" {cold[column]:.0f} °C and {number(hot['friction_torque'])} {results.unit} at"
+        f" {hot[column]:.0f} °C. Where filled and hollow points differ at one temperature, the"
+        f" {name} alone does not tell the friction."
+    )
+
+
+def _means_caption(results: JointResults) -> str:
+    fitted = (
+        "The curves are the fitted function, which is one function of temperature and therefore"
+        " runs between the branches."
+    )
+    if results.model.temperature != "mean":
+        fitted += f" It was fitted, and is drawn here, over the {_model_temperature(results)}."
+    return (
+        "Points: mean of the heating and the cooling branch at the same temperature, equation (11)."
+        f" {fitted}"
+    )
+
+
+def _model_temperature(results: JointResults) -> str:
+    return TEMPERATURE_WORDS[results.model.temperature]
+
+
+def _speed_caption(results: JointResults) -> str:
+    if not carries_temperature(results):
+        carried = (
+            "Friction torque at zero load as measured. It could not be carried to one temperature,"
+            " because the model has no term of temperature."
+        )
+    else:
+        carried = (
+            f"Friction torque at zero load, carried to T0 = {REFERENCE_TEMPERATURE:.0f} °C by"
+            f" equation (15) with the {_model_temperature(results)}."
+        )
+    return (
+        f"{carried} A Stribeck effect would show as points that rise above the curve towards zero"
+        " speed."
+    )
+
+
+def _schedule_caption(results: JointResults, phase: str) -> str:
+    return (
+        f"Friction at zero load through {PHASE_WORDS[phase]}, {setting_text(results)}: measured"
+        " (points), smoothed (thin line), predicted by (16) with T = Tm + ΔT (dashed). Vertical"
+        " lines are corrections with the new ΔT, dotted where it could not be computed. Between"
+        " two lines the dashed curve should stay on the thin one."
+    )
+
+
+def _evaluation_caption(results: JointResults) -> str:
+    sentences = [
+        "Corrections of the extended model." if results.evaluated_extended else "",
+        "Error ε of equation (21) against the number of corrections in a phase. Where several"
+        " settings give the same number, the bar is their mean. Diamonds: the same number of"
+        " corrections, equally spaced.",
+        uncertainty_text(results),
+        "Dashed lines: no correction at all. Few corrections suffice where the bars fall quickly"
+        " and then stay level.",
+    ]
+    return " ".join(sentence for sentence in sentences if sentence)
+
+
+def _residual_caption(results: JointResults) -> str:
+    pairs = counted(residuals(results).groupby(["run", "pair"]).ngroups, "pair")
+    if thermal_runs(results, "motor_temperature", "housing_temperature"):
+        lag = "; heating and cooling on different sides of zero point to a lag of temperature."
+    else:
+        lag = "."
+    return (
+        "What the model, without temperature correction, leaves of the measured friction. Left:"
+        f" mean of each of the {pairs}. Right: mean over all pairs of a speed, by angle, in the"
+        " colours of the other figures. A trend or a wave is structure that the model does not"
+        f" have{lag}"
+    )
+
+
+FIGURES = (
+    FigureEntry(
+        name="fig3",
+        title="Figure 3. Friction against load",
+        caption=_load_caption,
+        missing=nothing_missing,
+        draw=friction_against_load,
+    ),
+    FigureEntry(
+        name="fig4",
+        title="Figure 4. Temperatures over time",
+        caption=_time_caption,
+        missing=any_temperature_missing,
+        draw=temperatures_over_time,
+    ),
+    FigureEntry(
+        name="fig5",
+        title="Figure 5. Friction against motor temperature",
+        caption=partial(_temperature_caption, kind="motor"),
+        missing=motor_temperature_missing,
+        draw=partial(friction_against_temperature, kind="motor"),
+    ),
+    FigureEntry(
+        name="fig6",
+        title="Figure 6. Friction against housing temperature",
+        caption=partial(_temperature_caption, kind="housing"),
+        missing=housing_temperature_missing,
+        draw=partial(friction_against_temperature, kind="housing"),
+    ),
+    FigureEntry(
+        name="fig7",
+        title="Figure 7. Mean of heating and cooling, with the model",
+        caption=_means_caption,
+        missing=means_missing,
+        draw=branch_means_with_model,
+    ),
+    FigureEntry(
+        name="fig8",
+        title="Figure 8. Friction against speed",
+        caption=_speed_caption,
+        missing=speeds_missing,
+        draw=friction_against_speed,
+    ),
+    FigureEntry(
+        name="fig9",
+        title="Figure 9. Corrected estimates through heating",
+        caption=partial(_schedule_caption, phase="heat-up"),
+        missing=partial(schedule_missing, phase="heat-up"),
+        draw=partial(corrected_estimates, phase="heat-up"),
+    ),
+    FigureEntry(
+        name="fig10",
+        title="Figure 10. Corrected estimates through cooling",
+        caption=partial(_schedule_caption, phase="cool-down"),
+        missing=partial(schedule_missing, phase="cool-down"),
+        draw=partial(corrected_estimates, phase="cool-down"),
+    ),
+    FigureEntry(
+        name="fig11",
+        title="Figure 11. Error against the number of corrections",
+        caption=_evaluation_caption,
+        missing=evaluation_missing,
+        draw=error_against_corrections,
+    ),
+    FigureEntry(
+        name="residuals",
+        title="What the model leaves",
+        caption=_residual_caption,
+        missing=residuals_missing,
+        draw=residual_figure,
+    ),
+)
+
+
+def runs_drawn_note(results: JointResults) -> str:
+    """Return a sentence about runs that the figures leave out, empty where they draw all.
+
+    Parameters
+    ----------
+    results : JointResults
+        One joint's results.
+    """
+    if len(results.runs) <= MOST_RUNS:
+        return ""
+    return (
+        f"Figures 3 to 11 and the explorer show the first {MOST_RUNS} of {len(results.runs)} runs"
+        " that have the data for them; the fit, the tables and the last figure use all runs."
+    )

@@ -1,0 +1,212 @@
+"""Measured against simulated torque, and how much an extension takes off what it misses."""
+
+from typing import Any
+
+import numpy as np
+import pandas as pd
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from frictioncli.diagnosis.documents.reload import Misfits, Reloaded
+from frictioncli.report.binning import bins_of, levels
+from frictioncli.report.labels import number, plain, speed_text
+from frictioncli.report.results import JointResults
+from frictioncli.report.style import FAINT, MODEL, WIDTH, SpeedStyle
+
+_CLOCK = 1 / 3600.0
+_MOST_SPEEDS = 4
+_BEFORE, _AFTER = "#D55E00", "#0072B2"
+_DIRECTIONS = (("forward", 1.0, True), ("reverse", -1.0, False))
+_LEGEND: dict[str, Any] = {"columnspacing": 1.1, "handlelength": 1.3, "handletextpad": 0.4}
+_USUAL = 0.5
+"""An angle that a smaller share of a speed's pairs reach has another mix of temperatures."""
+
+_TAIL = 99.5
+_BANDS = 61
+
+
+def simulated_rows(results: JointResults, recalled: Reloaded) -> pd.DataFrame:
+    """Return measured and simulated torque of both directions, one row per pair and angle bin.
+
+    Columns are ``time`` [h], ``run``, ``pair``, ``speed``, ``bin`` and ``position``, then per
+    direction ``forward`` and ``reverse`` what was measured, ``forward_simulated`` and
+    ``reverse_simulated``. Where the log has a load of its own, torque is the friction's part.
+
+    Parameters
+    ----------
+    results : JointResults
+        One joint's results.
+    recalled : Reloaded
+        Its diagnosis.
+    """
+    parts = [_rows_of(results, one) for one in (recalled.seen, recalled.new) if one is not None]
+    rows = pd.concat(parts, ignore_index=True)
+    return rows.assign(
+        speed=levels(rows["speed"].to_numpy()),
+        bin=bins_of("position", rows["position"].to_numpy()),
+    )
+
+
+def _rows_of(results: JointResults, one: Misfits) -> pd.DataFrame:
+    problem, table = one.problem, one.problem.table
+    names = dict(zip(np.unique(table.run), problem.runs, strict=True))
+    own_load = results.load_unit != results.unit
+    load = np.zeros_like(problem.load) if own_load else problem.load
+    load_misfit = np.zeros_like(load) if own_load else one.before["load"]
+    columns: dict[str, object] = {
+        "time": table.clock * _CLOCK,
+        "run": [names[run] for run in table.run],
+        "pair": table.pair,
+        "speed": table.speed,
+        "position": table.position,
+    }
+    for name, way, _ in _DIRECTIONS:
+        side = way * results.model.sign
+        columns[name] = load + side * problem.friction
+        missed = load_misfit + side * one.before["friction"]
+        columns[f"{name}_simulated"] = load + side * problem.friction - missed
+    return pd.DataFrame(columns)
+
+
+def simulation_figure(results: JointResults, *, recalled: Reloaded) -> Figure:
+    """Draw measured and simulated torque over time and angle, and their difference below.
+
+    Parameters
+    ----------
+    results : JointResults
+        One joint's results.
+    recalled : Reloaded
+        Its diagnosis.
+    """
+    rows = simulated_rows(results, recalled)
+    figure = Figure(figsize=(WIDTH, 6.4), layout="constrained")
+    grid = figure.subplots(2, 2, sharex="col", width_ratios=(1.25, 1), height_ratios=(1.25, 1))
+    pairs = rows.groupby(["run", "pair", "speed"], as_index=False).mean(numeric_only=True)
+    shown = _shown_speeds(pairs)
+    _both(grid[:, 0], results, pairs, shown, "time")
+    _runs(grid[0, 0], pairs, recalled)
+    reached = rows.groupby(["speed", "bin"])["time"].transform("size")
+    usual = reached >= _USUAL * reached.groupby(rows["speed"]).transform("max")
+    angles = rows[usual].groupby(["speed", "bin"], as_index=False).mean(numeric_only=True)
+    _both(grid[:, 1], results, angles, [shown[0], shown[-1]], "position")
+    shown_part = "torque u" if results.load_unit == results.unit else "friction's part of torque"
+    grid[0, 0].set_ylabel(f"{shown_part} [{results.unit}]")
+    grid[1, 0].set_ylabel(f"measured − simulated [{results.unit}]")
+    grid[1, 0].set_xlabel("time, run after run [h]")
+    grid[1, 1].set_xlabel("joint angle φ [deg]")
+    grid[0, 0].set_title("means of pairs", loc="left")
+    grid[0, 1].set_title("means over all pairs of a speed", loc="left")
+    for panel in grid[1]:
+        panel.axhline(0.0, color=MODEL, linewidth=0.9, zorder=1)
+    marks = [
+        (results.style(speed).colour, results.style(speed).marker, True, speed_text(speed))
+        for speed in shown
+    ]
+    marks += [(FAINT, "o", True, "forward"), (FAINT, "o", False, "reverse")]
+    for colour, marker, filled, label in marks:
+        look = _look(SpeedStyle(colour, marker), filled=filled)
+        grid[0, 0].plot([], [], label=label, **look)
+    grid[0, 0].plot([], [], color=MODEL, linewidth=1.2, label="simulated")
+    handles, labels = grid[0, 0].get_legend_handles_labels()
+    figure.legend(handles, labels, loc="outside lower center", ncols=len(labels), **_LEGEND)
+    return figure
+
+
+def _shown_speeds(pairs: pd.DataFrame) -> list[float]:
+    """Return the speeds measured most often, at most four, slowest first."""
+    counts = pairs["speed"].value_counts()
+    most = counts[counts >= 0.2 * counts.max()].index
+    ordered = sorted(float(speed) for speed in most)
+    if len(ordered) <= _MOST_SPEEDS:
+        return ordered
+    chosen = np.linspace(0, len(ordered) - 1, _MOST_SPEEDS).round().astype(int)
+    return [ordered[i] for i in chosen]
+
+
+def _both(
+    panels: np.ndarray, results: JointResults, rows: pd.DataFrame, speeds: list[float], along: str
+) -> None:
+    upper, lower = panels
+    for speed in speeds:
+        own = rows[rows["speed"] == speed].sort_values(along)
+        for name, _, filled in _DIRECTIONS:
+            look = _look(results.style(speed), filled=filled)
+            upper.plot(own[along], own[name], **look)
+            lower.plot(own[along], own[name] - own[f"{name}_simulated"], **look)
+            for _, run in own.groupby("run") if "run" in own else [("", own)]:
+                upper.plot(
+                    run[along], run[f"{name}_simulated"], color=MODEL, linewidth=1.0, zorder=3
+                )
+
+
+def _look(style: SpeedStyle, *, filled: bool) -> dict[str, Any]:
+    return {
+        "linestyle": "none",
+        "marker": style.marker,
+        "color": style.colour,
+        "markersize": 3.4,
+        "markeredgewidth": 0.0 if filled else 0.8,
+        "markerfacecolor": style.colour if filled else "white",
+    }
+
+
+def _runs(panel: Axes, pairs: pd.DataFrame, recalled: Reloaded) -> None:
+    """Name the runs above the panel, and say which one was kept out."""
+    spans = pairs.groupby("run")["time"].agg(["min", "max"]).sort_values("min")
+    held_out = recalled.document["held_out"]
+    for run, span in spans.iterrows():
+        new = " (new)" if run == held_out else ""
+        panel.annotate(
+            f"{plain(str(run))}{new}",
+            ((span["min"] + span["max"]) / 2, 0.995),
+            xycoords=("data", "axes fraction"),
+            ha="center",
+            va="top",
+            fontsize=9,
+        )
+    for start in spans["min"].iloc[1:]:
+        panel.axvline(start, color=FAINT, linestyle=":", linewidth=1.2)
+
+
+def gain_figure(results: JointResults, *, recalled: Reloaded) -> Figure:
+    """Draw how the misfit of the torque is distributed before and after the extension.
+
+    Parameters
+    ----------
+    results : JointResults
+        One joint's results.
+    recalled : Reloaded
+        Its diagnosis.
+    """
+    judged, floor = recalled.judged, float(recalled.document["gain"]["noise_floor"])
+    sides = (
+        ("base model", judged.torque(judged.before), _BEFORE, "--"),
+        ("extended model", judged.torque(judged.after), _AFTER, "-"),
+    )
+    reach = max(float(np.percentile(np.abs(misfit), _TAIL)) for _, misfit, _, _ in sides)
+    edges = np.linspace(-reach, reach, _BANDS)
+    figure = Figure(figsize=(WIDTH, 3.5), layout="constrained")
+    left, right = figure.subplots(1, 2)
+    for name, misfit, colour, line in sides:
+        rms = float(np.sqrt(np.mean(np.square(misfit))))
+        label = f"{name}, RMS {number(rms)} {results.unit}"
+        density = np.histogram(misfit, edges)[0] / (len(misfit) * (edges[1] - edges[0]))
+        left.stairs(density, edges, color=colour, linestyle=line, linewidth=1.6, label=label)
+        left.stairs(density, edges, color=colour, fill=True, alpha=0.12)
+        sizes = np.linspace(0, reach, 200)
+        beyond = 100 * (1 - np.searchsorted(np.sort(np.abs(misfit)), sizes, "right") / len(misfit))
+        right.plot(sizes, beyond, color=colour, linestyle=line)
+    left.axvspan(-floor, floor, color=FAINT, alpha=0.22, linewidth=0, zorder=0)
+    right.axvspan(0, floor, color=FAINT, alpha=0.22, linewidth=0, zorder=0)
+    left.fill([], [], color=FAINT, alpha=0.3, label=f"noise floor, {number(floor)} {results.unit}")
+    left.set_xlim(-reach, reach)
+    left.set_ylim(bottom=0)
+    left.set_xlabel(f"torque, measured − simulated [{results.unit}]")
+    left.set_ylabel(f"share of points per {results.unit}")
+    right.set_xlim(0, reach)
+    right.set_ylim(0, 100)
+    right.set_xlabel(f"size of the misfit [{results.unit}]")
+    right.set_ylabel("points that miss by more [%]")
+    handles, labels = left.get_legend_handles_labels()
+    figure.legend(handles, labels, loc="outside upper left", ncols=len(labels), **_LEGEND)
+    return figure

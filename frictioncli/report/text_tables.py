@@ -1,0 +1,172 @@
+"""Tables of the page, as text: errors of the corrections, pairs."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import pandas as pd
+
+from frictioncli.report.epsilon_figures import compared_criterion
+from frictioncli.report.labels import CRITERION_WORDS, number, speed_text
+from frictioncli.report.results import JointResults, by_speed
+from frictioncli.report.style import PHASE_WORDS, PHASES
+
+_NEIGHBOURS = 3
+
+_Row = tuple[tuple[str, ...], pd.DataFrame]
+"""A setting as its cells, and its rows of the evaluation."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class TextTable:
+    """A table ready to be shown.
+
+    Attributes
+    ----------
+    title : str
+        What it holds.
+    header : tuple of str
+        Column headings.
+    groups : tuple of (str, int)
+        Headings above them, each with the number of columns it spans.
+    rows : tuple of tuple of str
+        Cells.
+    texts : int
+        Number of leading columns that hold text; the others hold numbers.
+    marked : tuple of int
+        Numbers of the rows that stand out.
+    """
+
+    title: str
+    header: tuple[str, ...]
+    rows: tuple[tuple[str, ...], ...]
+    texts: int = 1
+    marked: tuple[int, ...] = ()
+    groups: tuple[tuple[str, int], ...] = ()
+
+
+def epsilon_tables(results: JointResults) -> list[TextTable]:
+    """Return the errors of the simulated setting and its neighbours, and those by bound, per run.
+
+    Parameters
+    ----------
+    results : JointResults
+        One joint's results; without an evaluation there is no table.
+    """
+    bounded = results.evaluation["bound"].notna()
+    never = results.evaluation["criterion"] == "none"
+    criterion = compared_criterion(results, bounded=False)
+    simulated, bound = _simulated_setting(results), _simulated_bound(results)
+    settings = _neighbours(
+        results.evaluation[(results.evaluation["criterion"] == criterion) & ~bounded], simulated
+    )
+    bounds = sorted(float(value) for value in results.evaluation.loc[bounded, "bound"].unique())
+    tables = []
+    for run, own in results.evaluation[~bounded].groupby("run"):
+        model = ", extended model" if results.evaluated_extended else ""
+        title = f"{run}{model}: error ε of equation (21) [{results.unit}] (number of corrections)"
+        rows: list[_Row] = [
+            ((f"k = {k:g}", f"{tmax / 60.0:g}"), own[(own["k"] == k) & (own["tmax"] == tmax)])
+            for k, tmax in settings
+        ]
+        marked = [setting == simulated for setting in settings]
+        tables.append(_table(title, ("setting", "tmax [min]"), own, rows, marked))
+    for run, own in results.evaluation[bounded | never].groupby("run"):
+        title = f"{run}: the same where the predicted uncertainty of friction decides"
+        rows = [((f"{value:g}",), own[own["bound"] == value]) for value in bounds]
+        marked = [value == bound for value in bounds]
+        if bounds:
+            tables.append(_table(title, (f"bound [{results.unit}]",), own, rows, marked))
+    return tables
+
+
+def _table(
+    title: str,
+    settings: tuple[str, ...],
+    own: pd.DataFrame,
+    rows: Sequence[_Row],
+    marked: Sequence[bool],
+) -> TextTable:
+    """Return the errors of some settings by phase and criterion, below those without correction."""
+    shown = [c for c in CRITERION_WORDS if c != "none" and (own["criterion"] == c).any()]
+    without = _cells(own[own["criterion"] == "none"], ["none"])
+    blank = [""] * (len(shown) - 1)
+    first = ("no correction", *[""] * (len(settings) - 1), without[0], *blank, without[1], *blank)
+    return TextTable(
+        title=title,
+        groups=(("", len(settings)), *((PHASE_WORDS[phase], len(shown)) for phase in PHASES)),
+        header=(*settings, *(CRITERION_WORDS[c] for c in shown * 2)),
+        rows=(first, *((*setting, *_cells(at, shown)) for setting, at in rows)),
+        marked=tuple(number + 1 for number, mark in enumerate(marked) if mark),
+    )
+
+
+def _cells(rows: pd.DataFrame, criteria: list[str]) -> list[str]:
+    return [
+        _cell(rows[(rows["phase"] == phase) & (rows["criterion"] == criterion)])
+        for phase in PHASES
+        for criterion in criteria
+    ]
+
+
+def _simulated_setting(results: JointResults) -> tuple[float, float] | None:
+    if results.schedule.empty:
+        return None
+    first = results.schedule.iloc[0]
+    return (float(first["k"]), float(first["tmax"])) if pd.notna(first["k"]) else None
+
+
+def _simulated_bound(results: JointResults) -> float | None:
+    if results.schedule.empty:
+        return None
+    first = results.schedule.iloc[0]
+    return float(first["bound"]) if pd.notna(first["bound"]) else None
+
+
+def _neighbours(
+    rows: pd.DataFrame, simulated: tuple[float, float] | None
+) -> list[tuple[float, float]]:
+    """Return the settings next to the simulated one, in k and in tmax; else a few of them."""
+    known = rows[["k", "tmax"]].dropna().drop_duplicates().sort_values(["k", "tmax"])
+    settings = [(float(k), float(tmax)) for k, tmax in zip(known["k"], known["tmax"], strict=True)]
+    if simulated not in settings or simulated is None:
+        return settings[: 2 * _NEIGHBOURS + 1]
+    same_tmax = [setting for setting in settings if setting[1] == simulated[1]]
+    same_k = [setting for setting in settings if setting[0] == simulated[0]]
+    near = {
+        setting
+        for line, reach in ((same_tmax, _NEIGHBOURS), (same_k, 1))
+        for setting in line[
+            max(line.index(simulated) - reach, 0) : line.index(simulated) + reach + 1
+        ]
+    }
+    return sorted(near)
+
+
+def _cell(rows: pd.DataFrame) -> str:
+    if rows.empty:
+        return "–"
+    row = rows.iloc[0]
+    failed = f", {int(row['failed'])} failed" if row["failed"] > 0 else ""
+    return f"{number(float(row['epsilon']))} ({int(row['corrections'])}{failed})"
+
+
+def pairs_table(results: JointResults) -> TextTable:
+    """Return how many pairs there are per speed and phase.
+
+    Parameters
+    ----------
+    results : JointResults
+        One joint's results.
+    """
+    found = sorted({str(phase) for phase in results.pairs["phase"]})
+    phases = [phase for phase in (*PHASES, "sweep") if phase in found]
+    phases += [phase for phase in found if phase not in phases]
+    rows = []
+    for speed, own in by_speed(results.pairs):
+        counts = [int((own["phase"] == phase).sum()) for phase in phases]
+        rows.append((speed_text(speed), *(str(count) for count in counts), str(len(own))))
+    return TextTable(
+        title="Pairs per speed and phase",
+        header=("speed", *(PHASE_WORDS.get(phase, phase) for phase in phases), "all"),
+        rows=tuple(rows),
+    )

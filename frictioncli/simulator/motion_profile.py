@@ -1,0 +1,160 @@
+"""A joint's move from one angle to another: trapezoidal speed as the servo really follows it."""
+
+from dataclasses import dataclass
+from itertools import pairwise
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Servo:
+    """How the joint follows a commanded speed.
+
+    Attributes
+    ----------
+    acceleration : float
+        Commanded acceleration at both ends of a move. [deg/s²]
+    frequency : float
+        Natural frequency of the position loop on the elastic arm. [Hz]
+    damping : float
+        Its damping ratio, below 1: the speed settles with a small oscillation. [-]
+    """
+
+    acceleration: float
+    frequency: float
+    damping: float
+
+
+@dataclass(frozen=True, slots=True)
+class MotionProfile:
+    """Position, velocity and acceleration at sample times [deg, deg/s, deg/s²]."""
+
+    position: NDArray[np.float64]
+    velocity: NDArray[np.float64]
+    acceleration: NDArray[np.float64]
+
+
+def move_duration(servo: Servo, *, distance: float, speed: float) -> float:
+    """Return how long a commanded move takes, from distance in deg and speed in deg/s [s]."""
+    ramp, cruise = _phases(servo, distance=distance, speed=speed)
+    return 2.0 * ramp + cruise
+
+
+def follow(
+    servo: Servo, *, time: ArrayLike, start: float, distance: float, speed: float
+) -> MotionProfile:
+    r"""Return the motion of a move that is commanded from time 0.
+
+    Parameters
+    ----------
+    servo : Servo
+        The joint's servo.
+    time : array_like
+        Sample times. [s]
+    start : float
+        Angle before the move. [deg]
+    distance : float
+        Signed angle of the move. [deg]
+    speed : float
+        Speed of its constant part, > 0. [deg/s]
+
+    Notes
+    -----
+    The command is four ramps of speed. Each passes the servo
+    :math:`H(s) = \omega^2/(s^2 + 2\zeta\omega s + \omega^2)`, whose answers to step, ramp and
+    parabola are known in closed form, so velocity is exactly the derivative of position.
+    """
+    ramp, cruise = _phases(servo, distance=abs(distance), speed=speed)
+    switches = ((0.0, 1.0), (ramp, -1.0), (ramp + cruise, -1.0), (2.0 * ramp + cruise, 1.0))
+    times = np.asarray(time, dtype=float)
+    scale = np.sign(distance) * servo.acceleration
+    total = np.zeros((3, *times.shape))
+    for switch, weight in switches:
+        total += scale * weight * _answers(servo, times - switch)
+    return MotionProfile(position=start + total[0], velocity=total[1], acceleration=total[2])
+
+
+def round_trips(
+    servo: Servo,
+    *,
+    speeds: tuple[float, ...],
+    angles: tuple[float, float],
+    lead: float,
+    dwell: float,
+    interval: float,
+) -> tuple[MotionProfile, NDArray[np.float64], NDArray[np.int64]]:
+    """Return moves there and back at each speed, sampled from standing to standing.
+
+    Parameters
+    ----------
+    servo : Servo
+        The joint's servo.
+    speeds : tuple of float
+        Speed of each round trip. [deg/s]
+    angles : tuple of float
+        Angles between which the joint turns; it starts at the first. [deg]
+    lead : float
+        Standing time before the first move. [s]
+    dwell : float
+        Standing time after each move. [s]
+    interval : float
+        Sampling interval. [s]
+
+    Returns
+    -------
+    MotionProfile
+        The sampled motion.
+    ndarray
+        Sample times. [s]
+    ndarray
+        Number of the round trip that each sample belongs to.
+    """
+    first, second = angles
+    distance = second - first
+    moves: list[tuple[float, float, float, float]] = []
+    clock = lead
+    for speed in speeds:
+        for start, way in ((first, distance), (second, -distance)):
+            moves.append((clock, start, way, speed))
+            clock += move_duration(servo, distance=abs(way), speed=speed) + dwell
+    times = np.arange(int(np.ceil(clock / interval)), dtype=np.float64) * interval
+    # A move owns the samples until the next one begins; the first also owns the lead.
+    edges = [0.0, *(begin for begin, *_ in moves[1:]), np.inf]
+    columns: list[MotionProfile] = []
+    trips = np.zeros(times.shape, dtype=np.int64)
+    for number, ((low, high), (begin, start, way, speed)) in enumerate(
+        zip(pairwise(edges), moves, strict=True)
+    ):
+        own = (times >= low) & (times < high)
+        trips[own] = number // 2
+        columns.append(
+            follow(servo, time=times[own] - begin, start=start, distance=way, speed=speed)
+        )
+    motion = MotionProfile(
+        position=np.concatenate([part.position for part in columns]),
+        velocity=np.concatenate([part.velocity for part in columns]),
+        acceleration=np.concatenate([part.acceleration for part in columns]),
+    )
+    return motion, times, trips
+
+
+def _phases(servo: Servo, *, distance: float, speed: float) -> tuple[float, float]:
+    """Return the duration of a ramp and of the constant part [s]."""
+    ramp = speed / servo.acceleration
+    if ramp * speed >= distance:  # too short to reach the speed: a triangle
+        return float(np.sqrt(distance / servo.acceleration)), 0.0
+    return ramp, distance / speed - ramp
+
+
+def _answers(servo: Servo, time: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Return the servo's answers to a unit parabola, ramp and step that begin at time 0."""
+    omega, zeta = 2.0 * np.pi * servo.frequency, servo.damping
+    pole = omega * complex(-zeta, np.sqrt(1.0 - zeta**2))
+    t = np.maximum(time, 0.0)
+    ring = np.exp(pole * t) * omega**2 / (2j * pole.imag)
+    parabola = t**2 / 2.0 - 2.0 * zeta / omega * t + (4.0 * zeta**2 - 1.0) / omega**2
+    ramp = t - 2.0 * zeta / omega
+    step = np.ones_like(t)
+    rings = 2.0 * np.real([ring / pole**3, ring / pole**2, ring / pole])
+    return np.where(time > 0.0, np.array([parabola, ramp, step]) + rings, 0.0)

@@ -1,0 +1,169 @@
+"""The motion programs: the speed sweep and the thermal cycle, run on the thermal history."""
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from frictioncli.errors import OptionError
+from frictioncli.simulator.joint import RoundTrips, SimulatedJoint
+from frictioncli.simulator.motion_profile import Servo, move_duration
+from frictioncli.simulator.thermal_history import MOTOR, History, ThermalHistory
+from frictioncli.simulator.thermal_network import Ambient
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class PaperProgram:
+    """The experiment's motion program.
+
+    Attributes
+    ----------
+    sweep_speeds : tuple of float
+        Speeds of the sweep, Algorithm 1 of the paper. [deg/s]
+    cycle_speeds : tuple of float
+        Speeds of a measuring series of the thermal cycle, Algorithm 2. [deg/s]
+    heating_speed : float
+        Speed of the moves that heat the joint between series. [deg/s]
+    angles : tuple of float
+        Angles between which the joint turns. [deg]
+    lowest, highest : int
+        Registered motor temperatures between which the cycle runs. [°C]
+    dwell : float
+        Standing time after each move. [s]
+    pre_trigger : float
+        Recorded time before the registered temperature changes. [s]
+    lead : float
+        Standing time at the start of a recording, the pre-trigger included. [s]
+    pause : float
+        Time between recordings of the sweep. [s]
+    """
+
+    sweep_speeds: tuple[float, ...]
+    cycle_speeds: tuple[float, ...]
+    heating_speed: float
+    angles: tuple[float, float]
+    lowest: int
+    highest: int
+    dwell: float
+    pre_trigger: float
+    lead: float
+    pause: float
+
+    def of(self, series: "SeriesOfMoves") -> "PaperProgram":
+        """Return the program with the angles of a series."""
+        return self if series.angles is None else replace(self, angles=series.angles)
+
+    def trips(self, speed: float) -> RoundTrips:
+        """Return the round trips at one speed."""
+        return RoundTrips(speed=speed, angles=self.angles, dwell=self.dwell)
+
+    def trip_durations(self, servo: Servo, speeds: tuple[float, ...]) -> list[float]:
+        """Return how long a round trip takes at each speed, its dwells included [s]."""
+        distance = abs(self.angles[1] - self.angles[0])
+        return [
+            2.0 * (move_duration(servo, distance=distance, speed=speed) + self.dwell)
+            for speed in speeds
+        ]
+
+    def trip_begins(self, servo: Servo, speeds: tuple[float, ...]) -> NDArray[np.float64]:
+        """Return when each round trip of a recording begins, from its first sample on [s]."""
+        durations = self.trip_durations(servo, speeds)
+        return np.asarray(self.lead + np.concatenate([[0.0], np.cumsum(durations)[:-1]]))
+
+    def move_begins(self, servo: Servo, speeds: tuple[float, ...]) -> NDArray[np.float64]:
+        """Return when each move of a recording begins, two per round trip [s]."""
+        halves = np.repeat(self.trip_durations(servo, speeds), 2) / 2.0
+        return np.asarray(self.lead + np.concatenate([[0.0], np.cumsum(halves)[:-1]]))
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class SeriesOfMoves:
+    """A recording: when it starts and which round trips it holds.
+
+    Attributes
+    ----------
+    phase : str
+        ``sweep``, ``heat-up`` or ``cool-down``.
+    start : float
+        Time of its first sample since the run's beginning, whole milliseconds. [s]
+    speeds : tuple of float
+        Speed of each round trip. [deg/s]
+    load : int
+        Number of the payload that it is measured with, among the run's.
+    angles : tuple of float or None
+        Angles between which it turns; None: the program's. [deg]
+    """
+
+    phase: str
+    start: float
+    speeds: tuple[float, ...]
+    load: int = 0
+    angles: tuple[float, float] | None = None
+
+
+def run_program(
+    joint: SimulatedJoint,
+    program: PaperProgram,
+    ambient: Ambient,
+    kind: type[History] = ThermalHistory,
+) -> tuple[History, tuple[SeriesOfMoves, ...]]:
+    """Run the sweep and then the thermal cycle from a joint at ambient temperature.
+
+    The joint is heated from ``lowest`` while it is below ``highest``, then cools while it is above
+    ``lowest``, with a measuring series at each change of the registered motor temperature.
+
+    Raises
+    ------
+    OptionError
+        If the joint cannot reach the program's temperatures, or is above them from the start.
+    """
+    history = kind(joint, ambient)
+    series = [measure(joint, program, history, "sweep", (v,)) for v in program.sweep_speeds]
+    sensor = joint.network.names.index(MOTOR)
+    if history.state[sensor] >= program.lowest - 0.5:
+        raise OptionError(
+            f"the motor is at {history.state[sensor]:.1f} °C before the thermal cycle, which "
+            f"begins at {program.lowest} °C; choose a lower ambient or a higher lowest temperature"
+        )
+    heating = program.trips(program.heating_speed)
+    # The controller registers the nearest whole degree, so it changes at the half degrees.
+    for level in range(program.lowest, program.highest + 1):
+        passed = history.state[sensor] >= level - 0.5  # while the last series was measured
+        if passed and level < program.highest:
+            continue
+        if not passed and not history.until_motor(level - 0.5, heating):
+            raise OptionError(
+                f"the motor does not reach {level} °C at {program.heating_speed} deg/s; "
+                "choose a lower highest temperature"
+            )
+        # The highest temperature is measured once, as the beginning of cooling.
+        phase = "heat-up" if level < program.highest else "cool-down"
+        series.append(measure(joint, program, history, phase, program.cycle_speeds))
+    for level in range(program.highest - 1, program.lowest, -1):
+        if history.state[sensor] <= level + 0.5:
+            continue
+        if not history.until_motor(level + 0.5):
+            raise OptionError(
+                f"the motor does not cool to {level} °C at an ambient temperature of "
+                f"{float(ambient.at(history.time)):.1f} °C; choose a lower ambient temperature"
+            )
+        series.append(measure(joint, program, history, "cool-down", program.cycle_speeds))
+    return history, tuple(series)
+
+
+def measure(
+    joint: SimulatedJoint,
+    program: PaperProgram,
+    history: History,
+    phase: str,
+    speeds: tuple[float, ...],
+) -> SeriesOfMoves:
+    """Let one recording pass in the thermal history, and return it."""
+    if phase == "sweep":
+        history.spend(program.pause)
+    start = round(history.time - program.pre_trigger, 3)
+    history.spend(program.lead - program.pre_trigger)
+    durations = program.trip_durations(joint.servo, speeds)
+    for speed, duration in zip(speeds, durations, strict=True):
+        history.spend(duration, program.trips(speed))
+    return SeriesOfMoves(phase=phase, start=start, speeds=speeds)

@@ -1,0 +1,177 @@
+"""The temperatures of a run, integrated block by block of equal motion."""
+
+from abc import ABC, abstractmethod
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+from scipy.integrate import OdeSolution, solve_ivp
+
+from frictioncli.simulator.joint import MeanPower, RoundTrips, SimulatedJoint
+from frictioncli.simulator.thermal_network import Ambient
+
+MOTOR = "motor sensor"
+HOUSING = "housing"
+"""Nodes that carry the joint's two sensors."""
+
+LONGEST_RUN = 24 * 3600.0
+"""A temperature that is not reached within this time is out of reach [s]."""
+
+
+@dataclass(frozen=True, slots=True)
+class Leg:
+    """A time of one motion.
+
+    Attributes
+    ----------
+    start, end : float
+        When it was. [s]
+    power : MeanPower or None
+        What the motion dissipates; none while standing.
+    """
+
+    start: float
+    end: float
+    power: MeanPower | None
+
+    @property
+    def turned(self) -> float:
+        """Angle turned in it [deg]."""
+        if self.power is None:
+            return 0.0
+        return float(np.degrees(self.power.turning)) * (self.end - self.start)
+
+
+class History(ABC):
+    """Temperatures from a start at ``ambient`` on; each call continues where the last one ended."""
+
+    def __init__(self, joint: SimulatedJoint, ambient: Ambient) -> None:
+        self.ambient = ambient
+        self._capacities = joint.network.capacities()
+        self._conductance = joint.network.conductance_matrix()
+        self._to_ambient = joint.network.to_ambient()
+        self._motor = joint.network.names.index(MOTOR)
+        self._legs: list[Leg] = []
+        self.time = 0.0
+        self.state = np.full(len(joint.network.nodes), float(ambient.at(0.0)))
+        self.use(joint, {})
+
+    def use(self, joint: SimulatedJoint, powers: dict[RoundTrips, MeanPower]) -> None:
+        """Continue with ``joint``: another load or entry of heat; ``powers`` may be shared."""
+        self._joint = joint
+        self._shares = joint.heat_shares()
+        self._powers = powers
+
+    def spend(self, duration: float, motion: RoundTrips | None = None) -> None:
+        """Continue for ``duration`` [s], standing or with round trips."""
+        self._continue(self.time + duration, motion, None)
+
+    def until_motor(self, temperature: float, motion: RoundTrips | None = None) -> bool:
+        """Continue until the motor reaches ``temperature`` [°C]; False if it never does."""
+        return self._continue(max(self.time, LONGEST_RUN), motion, temperature)
+
+    def legs(self) -> tuple[Leg, ...]:
+        """Return what the joint did, in order of time."""
+        return tuple(self._legs)
+
+    @abstractmethod
+    def at(self, time: ArrayLike) -> dict[str, NDArray[np.float64]]:
+        """Return the temperatures at times [s] within the history, by node name [°C]."""
+
+    def heat(self, times: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Return the power dissipated at times in s [W]."""
+        starts = np.array([leg.start for leg in self._legs])
+        owner = np.maximum(np.searchsorted(starts, times, side="right") - 1, 0)
+        temperatures = self.at(times)
+        powers = {id(leg.power): leg.power for leg in self._legs}
+        owned = np.array([id(leg.power) for leg in self._legs])[owner]
+        found = np.zeros(times.shape)
+        for key, power in powers.items():
+            if power is not None:
+                own = owned == key
+                found[own] = power.at({name: value[own] for name, value in temperatures.items()})
+        return found
+
+    @abstractmethod
+    def _integrate(self, end: float, power: MeanPower | None, temperature: float | None) -> bool:
+        """Continue until ``end`` or until the motor's temperature is reached; False if never."""
+
+    def _continue(self, end: float, motion: RoundTrips | None, temperature: float | None) -> bool:
+        power = None if motion is None else self._power(motion)
+        start = self.time
+        reached = self._integrate(end, power, temperature)
+        if reached:
+            self._legs.append(Leg(start, self.time, power))
+        return reached
+
+    def _power(self, motion: RoundTrips) -> MeanPower:
+        if motion not in self._powers:
+            self._powers[motion] = MeanPower(self._joint, motion)
+        return self._powers[motion]
+
+
+@dataclass(frozen=True, slots=True)
+class _Block:
+    start: float
+    solution: OdeSolution
+
+
+class ThermalHistory(History):
+    """The history integrated to a tolerance, known at any time."""
+
+    def __init__(self, joint: SimulatedJoint, ambient: Ambient) -> None:
+        super().__init__(joint, ambient)
+        self._blocks: list[_Block] = []
+
+    def at(self, time: ArrayLike) -> dict[str, NDArray[np.float64]]:
+        """Return the temperatures at times [s] within the history, by node name [°C]."""
+        times = np.asarray(time, dtype=float)
+        found = np.empty((len(self.state), *times.shape))
+        starts = np.array([block.start for block in self._blocks])
+        owner = np.searchsorted(starts, times, side="right") - 1
+        for number in np.unique(owner):
+            own = owner == number
+            found[:, own] = self._blocks[number].solution(times[own])
+        return dict(zip(self._joint.network.names, found, strict=True))
+
+    def _integrate(self, end: float, power: MeanPower | None, temperature: float | None) -> bool:
+        solved = solve_ivp(
+            self._slope(power),
+            (self.time, end),
+            self.state,
+            events=None if temperature is None else self._passing(temperature),
+            dense_output=True,
+            rtol=1e-7,
+            atol=1e-7,
+        )
+        assert solved.sol is not None
+        reached = solved.status == 1
+        if temperature is not None and not reached:
+            return False
+        self._blocks.append(_Block(self.time, solved.sol))
+        self.time = float(solved.t[-1])
+        self.state = np.asarray(solved.y[:, -1])
+        return True
+
+    def _slope(
+        self, power: MeanPower | None
+    ) -> Callable[[float, NDArray[np.float64]], NDArray[np.float64]]:
+        names = self._joint.network.names
+
+        def slope(time: float, state: NDArray[np.float64]) -> NDArray[np.float64]:
+            heat = self._to_ambient * self.ambient.at(time) - self._conductance @ state
+            if power is not None:
+                heat += self._shares * power(dict(zip(names, state.tolist(), strict=True)))
+            return np.asarray(heat / self._capacities)
+
+        return slope
+
+    def _passing(self, temperature: float) -> Callable[[float, NDArray[np.float64]], float]:
+        def distance(_: float, state: NDArray[np.float64]) -> float:
+            return float(state[self._motor] - temperature)
+
+        distance.terminal = True  # type: ignore[attr-defined]
+        rising = temperature > self.state[self._motor]
+        distance.direction = 1.0 if rising else -1.0  # type: ignore[attr-defined]
+        return distance

@@ -1,0 +1,214 @@
+"""The stage ``plan`` on a work folder: what it writes, says and refuses."""
+
+import json
+import shutil
+
+import numpy as np
+import pytest
+
+from frictioncli import schemas, tables
+from frictioncli.design.settings import PlanSettings
+from frictioncli.errors import FrictionError
+from frictioncli.provenance import Provenance
+from frictioncli.simulator.programme import Measured, Moved, simulate_programmes
+from frictioncli.simulator.settings import SynthesisSettings
+from frictioncli.stages.diagnose import diagnose
+from frictioncli.stages.fit import fit
+from frictioncli.stages.plan import plan, plan_new
+from frictioncli.workfiles import TORQUES
+from tests.design.axis import Arm
+from tests.design.krl import Controller
+
+FASTEST = 101.2
+
+
+@pytest.fixture(scope="session")
+def thin(tmp_path_factory):
+    """A work folder with an experiment that only heats, on a joint whose friction drifts."""
+    work = tmp_path_factory.mktemp("plan") / "run"
+    series = Measured(speeds=(20.0, 60.0, FASTEST), low=0.0, high=180.0)
+    heat = Moved(speed=FASTEST, low=0.0, high=180.0, seconds=360.0)
+    settings = SynthesisSettings(seed=3, joint_kind="plain", effects=("drift:3",))
+    (table,) = simulate_programmes(settings, [[series, heat] * 8], 1)
+    work.mkdir()
+    facts = {"torque_unit": "N·m", "torque_side": "joint", "sign": {"2": 1}}
+    tables.write(work / TORQUES, table, schemas.TORQUES, Provenance("separate"), facts)
+    fit(work)
+    diagnose(work)
+    return work
+
+
+@pytest.fixture
+def copy(thin, tmp_path):
+    """A copy of it."""
+    return shutil.copytree(thin, tmp_path / "run")
+
+
+@pytest.fixture(scope="session")
+def planned(thin, tmp_path_factory):
+    """The plan of it as a KUKA program: its folder and what was said."""
+    work = shutil.copytree(thin, tmp_path_factory.mktemp("planned") / "run")
+    done = plan(work, PlanSettings(minutes=30.0, to="krl", rated_speed=225.0))
+    return work, str(done)
+
+
+def document(work):
+    return json.loads((work / "plan.json").read_text(encoding="utf-8"))
+
+
+def test_the_set_is_the_question(thin, planned):
+    found = json.loads((thin / "diagnosis.json").read_text(encoding="utf-8"))
+    assert found["verdict"] == "ambiguous"
+    (question,) = document(planned[0])["questions"]
+    assert set(found["causes"][0]["effects"]) <= set(question["effects"])
+    assert sum(question["probabilities"].values()) == pytest.approx(1.0, abs=1e-3)
+    sure = question["right_name_alone"]
+    assert 0 <= sure["now"] <= sure["after"] <= 1
+    assert sure["after"] > 0.3
+
+
+def test_the_plan_fits_into_its_budget_and_its_parts_follow_each_other(planned):
+    told = document(planned[0])
+    whole = told["programme"]["duration_s"] + told["check"]["duration_s"]
+    assert told["budget_min"] == 30.0
+    assert whole <= 30 * 60
+    assert told["programme"]["duration_s"] > 10 * 60
+    at = 0.0
+    for block in told["programme"]["blocks"]:
+        assert block["start_s"] == pytest.approx(at, abs=0.5)
+        at += block["duration_s"]
+    assert at == pytest.approx(told["programme"]["duration_s"], abs=1.0)
+
+
+def test_intervals_only_become_narrower(planned):
+    rows = document(planned[0])["intervals"]
+    assert {row["parameter"] for row in rows} >= {"tau_c", "alpha", "beta", "gamma", "delta"}
+    for row in rows:
+        assert 0 < row["half_width_after"] <= row["half_width_now"] * 1.001
+        assert row["unit"]
+
+
+def test_the_program_does_what_the_plan_says(planned):
+    work, _ = planned
+    told = document(work)
+    for part in ("programme", "check"):
+        files = sorted(told[part]["files"])
+        data, source = ((work / name).read_text(encoding="ascii") for name in files)
+        arm = Arm([0.0, 45.0, 0.0, 0.0, 0.0, 0.0])
+        Controller(source, data, arm, 225.0).run()
+        speeds = [
+            speed
+            for block in told[part]["blocks"]
+            for step in block["steps"]
+            if step["kind"] == "series"
+            for speed in step["speeds_deg_s"]
+        ]
+        assert [m.speed for m in arm.moves if m.traced][::2] == pytest.approx(speeds, rel=1e-4)
+        limits = told["limits"]
+        for move in arm.moves:
+            assert move.axis == told["joint"]
+            assert limits["low_deg"] - 1e-6 <= move.target <= limits["high_deg"] + 1e-6
+            assert move.speed <= limits["fastest_deg_s"] * (1 + 1e-5)
+        assert arm.clock == pytest.approx(told[part]["duration_s"], rel=0.06)
+
+
+def test_the_limits_are_those_of_the_data(thin, planned):
+    torques = tables.read(thin / TORQUES, schemas.TORQUES)
+    limits = document(planned[0])["limits"]
+    assert limits["fastest_deg_s"] == pytest.approx(torques["speed"].max())
+    assert limits["low_deg"] >= torques["position"].min() - 2.5
+    assert limits["high_deg"] <= torques["position"].max() + 2.5
+    assert limits["beyond_measured"] == []
+
+
+def test_the_text_says_what_why_and_how(planned):
+    _, said = planned
+    for wanted in ("open:", "the right name alone", "next day", "reduced speed first", "within"):
+        assert wanted in said
+
+
+def test_the_same_call_gives_the_same_bytes(thin, tmp_path):
+    texts = []
+    for name in ("a", "b"):
+        work = shutil.copytree(thin, tmp_path / name)
+        plan(work, PlanSettings(minutes=8.0))
+        files = ("plan.json", "friction_a2.csv")
+        texts.append([(work / file).read_bytes() for file in files])
+    assert texts[0] == texts[1]
+
+
+@pytest.mark.parametrize(
+    ("asked", "reason"),
+    [
+        ({"low": 175.0}, "at least"),
+        ({"to": "krl", "rated_speed": 90.0}, "rated speed"),
+        ({"joint": 5}, "knows joint 2"),
+    ],
+)
+def test_what_is_refused_leaves_nothing_behind(copy, asked, reason):
+    with pytest.raises(FrictionError, match=reason):
+        plan(copy, PlanSettings(**asked))
+    assert not (copy / "plan.json").exists()
+    assert not list(copy.glob("friction_a*"))
+
+
+def test_a_payload_that_there_is_no_time_to_mount_is_left_out(copy):
+    plan(copy, PlanSettings(minutes=5.0, payload=(4.0,), high=60.0))
+    assert all("payload" not in one["name"] for one in document(copy)["programme"]["blocks"])
+
+
+def test_structure_without_a_name_gets_blocks_that_spread_over_all_inputs(copy):
+    for name, key in (("diagnosis.json", "causes"), ("extended-model.json", "effects")):
+        told = json.loads((copy / name).read_text(encoding="utf-8"))
+        for part in (told, *told.get("joints", {}).values()):
+            part[key] = []
+            if key == "causes":
+                part["verdict"] = "unnamed"
+        (copy / name).write_text(json.dumps(told), encoding="utf-8")
+    said = str(plan(copy, PlanSettings(minutes=25.0)))
+    assert "no known effect explains" in said
+    blocks = document(copy)["programme"]["blocks"]
+    steps = [step for block in blocks for step in block["steps"]]
+    # the data at hand heat the joint at three speeds from end to end, and never let it rest
+    assert {step["kind"] for step in steps} >= {"series", "rest"}
+    series = [step for step in steps if step["kind"] == "series"]
+    speeds = np.unique([speed for step in series for speed in step["speeds_deg_s"]])
+    assert len(speeds) >= 6
+    assert speeds.min() < 20.0 / 2
+    assert len({(step["low_deg"], step["high_deg"]) for step in series}) >= 2
+
+
+@pytest.mark.parametrize(
+    ("asked", "reason"),
+    [
+        ({}, "nothing tells what is safe"),
+        ({"low": 0.0, "high": 5.0, "max_speed": 50.0}, "at least"),
+        ({"low": 0.0, "high": 90.0, "max_speed": 150.0, "rated_speed": 100.0}, "at most"),
+    ],
+)
+def test_a_new_joint_needs_all_its_limits(tmp_path, asked, reason):
+    with pytest.raises(FrictionError, match=reason):
+        plan_new(tmp_path / "new", PlanSettings(joint=1, **asked))
+    assert not (tmp_path / "new").exists()
+
+
+def test_a_plan_needs_a_diagnosis_of_these_runs(copy):
+    torques = tables.read(copy / TORQUES, schemas.TORQUES).assign(run="another day")
+    tables.write(copy / TORQUES, torques, schemas.TORQUES, Provenance("separate"))
+    with pytest.raises(FrictionError, match="run 'frictioncli diagnose' again"):
+        plan(copy)
+    (copy / "diagnosis.json").unlink()
+    with pytest.raises(FrictionError, match="run 'frictioncli diagnose' first"):
+        plan(copy)
+
+
+def test_without_data_the_papers_algorithms_are_written(tmp_path):
+    work = tmp_path / "new"
+    asked = PlanSettings(joint=2, low=-100.0, high=0.0, max_speed=150.0, to="urscript")
+    assert "Algorithms 1 and 2" in str(plan_new(work, asked))
+    blocks = document(work)["programme"]["blocks"]
+    sweep = blocks[0]["steps"][0]["speeds_deg_s"]
+    assert (sweep[0], sweep[-1]) == (2.3, pytest.approx(101.2, abs=0.3))
+    heating = [step["until_degC"] for step in blocks[1]["steps"] if step["kind"] == "heat"]
+    assert heating == list(np.arange(25.0, 66.0))
+    assert (work / "friction_a2_new.script").exists()

@@ -1,0 +1,208 @@
+"""A mapping file suggested from physics alone: names say nothing, order and units are drawn."""
+
+import tomllib
+
+import numpy as np
+import pandas as pd
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from frictioncli import schemas, tables
+from frictioncli.errors import LogError
+from frictioncli.inspection.inspect import inspect
+from frictioncli.inspection.map_suggestion.measured_or_commanded import lag
+from frictioncli.inspection.map_suggestion.suggest_map import suggested_map
+from frictioncli.logs.ingest import ingest
+from frictioncli.logs.settings import IngestSettings
+from tests.logs.logs import REAL
+
+from .faulty import COLUMNS, clean_log, write
+
+TIME, POSITION, VELOCITY, TORQUE, TEMPERATURE = COLUMNS
+LAG = 3
+NAMES = ("time", "position", "velocity", "torque", "motor_temperature")
+
+
+def wide_log(seed, time_unit, position_unit, velocity_unit, kelvin, with_commands, still_joint):
+    """Return columns by what they are: a clean log, and much else that a logger writes."""
+    log = clean_log(seed, period=0.01)
+    rng = np.random.default_rng([seed, 7])
+    angle = {"deg": 1.0, "rad": np.pi / 180}
+    rate = {"deg/s": 1.0, "rad/s": np.pi / 180, "rpm": 1 / 6}
+    temperature = 25.0 + np.floor(9 * np.arange(len(log)) / len(log))
+    columns = {
+        "time": log[TIME] * {"s": 1.0, "ms": 1e3, "us": 1e6}[time_unit],
+        "position": log[POSITION] * angle[position_unit],
+        "velocity": log[VELOCITY] * rate[velocity_unit],
+        "torque": log[TORQUE],
+        "motor_temperature": temperature + (273.15 if kelvin else 0.0),
+        "zeros": np.zeros(len(log)),
+        "counter": np.arange(len(log), dtype=float),
+        "noise": rng.normal(0, 5, len(log)),
+        "state": np.repeat(rng.integers(0, 4, len(log) // 50 + 1), 50)[: len(log)].astype(float),
+        "voltage": 48 + rng.normal(0, 0.1, len(log)),
+    }
+    if with_commands:
+        ahead = np.minimum(np.arange(len(log)) + LAG, len(log) - 1)
+        smooth = clean_log(seed, period=0.01, noise=0)
+        columns["position_command"] = smooth[POSITION].to_numpy()[ahead] * angle[position_unit]
+        columns["velocity_command"] = log[VELOCITY].to_numpy()[ahead] * rate[velocity_unit]
+    if still_joint:
+        other = clean_log(seed + 1, period=0.01, speeds=(30,), reach=5)
+        still = np.pad(other[POSITION].to_numpy(), (0, len(log)), "edge")[: len(log)]
+        columns["other_position"] = still * angle[position_unit]
+        columns["other_velocity"] = np.gradient(still, 0.01) * rate[velocity_unit]
+        columns["other_torque"] = 3 * np.cos(np.radians(still)) + rng.normal(0, 0.3, len(log))
+    return log, columns
+
+
+@settings(max_examples=25, deadline=None)
+@given(
+    seed=st.integers(0, 10_000),
+    order=st.randoms(use_true_random=False),
+    time_unit=st.sampled_from(["s", "ms", "us"]),
+    position_unit=st.sampled_from(["deg", "rad"]),
+    velocity_unit=st.sampled_from(["deg/s", "rad/s", "rpm"]),
+    kelvin=st.booleans(),
+    with_commands=st.booleans(),
+    still_joint=st.booleans(),
+)
+def test_columns_without_names(tmp_path_factory, order, **drawn):
+    """Order, units and company of the columns are drawn; the map reads the log as it was."""
+    folder = tmp_path_factory.mktemp("log")
+    log, columns = wide_log(**drawn)
+    labels = list(columns)
+    order.shuffle(labels)
+    blind = {label: f"c{i + 1}" for i, label in enumerate(labels)}
+    table = pd.DataFrame({blind[label]: columns[label] for label in labels})
+    path = write(table, folder / "table.csv", digits=9)
+
+    text = suggested_map([path], IngestSettings(joints=(4,)))
+    chart = tomllib.loads(text)
+    assert chart["channels"] == {name: blind[name] for name in NAMES}
+    assert chart["units"]["time"] == drawn["time_unit"]
+    assert chart["units"]["position"] == drawn["position_unit"]
+    assert chart["units"]["velocity"] == drawn["velocity_unit"]
+    assert chart["units"]["motor_temperature"] == ("K" if drawn["kelvin"] else "°C")
+    assert chart["joint"] == {"number": 4}
+
+    map_file = folder / "channels.toml"
+    map_file.write_text(text, encoding="utf-8")
+    (found,) = inspect([path], IngestSettings(map_file=map_file)).files
+    assert found.refusal == ""
+    ingest([path], folder / "work", IngestSettings(map_file=map_file))
+    samples = tables.read(folder / "work" / "samples.parquet", schemas.SAMPLES)
+    np.testing.assert_allclose(samples["position"], log[POSITION], atol=1e-6)
+    np.testing.assert_allclose(samples["velocity"], log[VELOCITY], atol=1e-5)
+    np.testing.assert_allclose(samples["torque"], log[TORQUE], atol=1e-6)
+
+
+def test_a_log_without_velocity(tmp_path):
+    """The position is then the smoothest column; the torque still opposes its derivative."""
+    log = clean_log()
+    table = pd.DataFrame({"a": log[TORQUE], "b": log[TIME], "c": log[POSITION]})
+    chart = tomllib.loads(suggested_map([write(table, tmp_path / "log.csv")]))
+    assert chart["channels"] == {"time": "b", "position": "c", "torque": "a"}
+
+
+def test_names_of_joints_choose_among_them(tmp_path):
+    """Three joints move by turns; each is found by its number, current as torque in A."""
+    logs = [clean_log(seed, speeds=(20 + 10 * seed, 40)) for seed in range(3)]
+    n = sum(map(len, logs))
+    table = {"uhr": np.arange(n) * 0.01}
+    start = 0
+    for number, log in enumerate(logs):
+        rows = slice(start, start + len(log))
+        start += len(log)
+        for name, column in (("winkel", POSITION), ("tempo", VELOCITY), ("strom", TORQUE)):
+            values = np.full(n, float(log[column].iloc[0]))
+            values[rows] = log[column]
+            values[rows.stop :] = log[column].iloc[-1]
+            table[f"{name}_g{number}_ist"] = values
+    path = write(pd.DataFrame(table), tmp_path / "log.csv")
+    for joint in (1, 2, 3):
+        chart = tomllib.loads(suggested_map([path], IngestSettings(joints=(joint,))))
+        tail = f"_g{joint - 1}_ist"
+        assert chart["channels"]["position"] == f"winkel{tail}"
+        assert chart["channels"]["velocity"] == f"tempo{tail}"
+        assert chart["channels"]["torque"] == f"strom{tail}"
+        assert chart["units"]["torque"] == "A"
+        assert chart["joint"]["number"] == joint
+
+
+@pytest.mark.parametrize(
+    "hostile",
+    ['q"\\u0041', "a = 1 # b", "\x1b[31mred", "‮detrever", "'); DROP", "ünï côdé", "[x] 'y'"],
+)
+def test_hostile_names_stay_inside_their_strings(tmp_path, hostile):
+    """Whatever a column is called, the map is valid, names it, and shows nothing that acts."""
+    log = clean_log()
+    table = pd.DataFrame({"z": log[TIME], "p": log[POSITION], "v": log[VELOCITY]})
+    table[hostile] = log[TORQUE]
+    path = tmp_path / "log.csv"
+    table.to_csv(path, index=False)
+    text = suggested_map([path])
+    assert all(character.isprintable() or character == "\n" for character in text)
+    assert tomllib.loads(text)["channels"]["torque"] == hostile
+    map_file = tmp_path / "channels.toml"
+    map_file.write_text(text, encoding="utf-8")
+    (found,) = inspect([path], IngestSettings(map_file=map_file)).files
+    assert found.refusal == ""
+    assert found.rows_kept == len(log)
+
+
+def test_the_first_file_that_is_not_recognised_is_chosen(tmp_path):
+    log = clean_log()
+    write(log, tmp_path / "run" / "a.csv")
+    plain = log.set_axis(["c1", "c2", "c3", "c4", "c5"], axis=1)
+    write(plain, tmp_path / "run" / "b.csv")
+    text = suggested_map([tmp_path / "run"])
+    assert "b.csv" in text
+    assert tomllib.loads(text)["channels"]["position"] == "c2"
+
+
+def test_a_table_without_motion_is_refused(tmp_path):
+    rng = np.random.default_rng(3)
+    table = pd.DataFrame({"t": np.arange(500) * 0.1, "x": rng.normal(size=500)})
+    with pytest.raises(LogError, match=r"log\.csv.*no column is like a joint's position"):
+        suggested_map([write(table, tmp_path / "log.csv")])
+    table["t"] = rng.normal(size=500)
+    with pytest.raises(LogError, match="needs a time column"):
+        suggested_map([write(table, tmp_path / "log.csv")])
+
+
+@given(shift=st.floats(-6, 6), seed=st.integers(0, 100))
+@settings(max_examples=40, deadline=None)
+def test_lag_between_two_columns(shift, seed):
+    """A wave and the same wave ``shift`` samples later."""
+    phase = np.random.default_rng(seed).uniform(0, 6)
+    rows = np.arange(600.0)
+
+    def wave(t):
+        return np.sin(t / 40 + phase) + 0.5 * np.sin(t / 17)
+
+    assert lag(wave(rows), wave(rows - shift)) == pytest.approx(shift, abs=0.05)
+
+
+@pytest.mark.skipif(not REAL.is_dir(), reason=f"no real logs beside the project: {REAL}")
+def test_xarm_joint_2_of_seven(tmp_path):
+    """Torque_1 is freed of friction already and serves as load; friction is in the current."""
+    text = suggested_map([REAL / "xarm6-j2"], IngestSettings(joints=(2,)))
+    chart = tomllib.loads(text)
+    assert chart["channels"] == {
+        "time": "Time (s)",
+        "position": "Pos_1",
+        "velocity": "Velocity_1",
+        "torque": "Current_1",
+        "load": "Torque_1",
+        "motor_temperature": "Temp_1",
+    }
+    assert chart["units"]["torque"] == "A"
+    map_file = tmp_path / "channels.toml"
+    map_file.write_text(text, encoding="utf-8")
+    whole = inspect([REAL / "xarm6-j2"], IngestSettings(map_file=map_file))
+    assert sum(not file.refusal for file in whole.files) == 14
+    (joint,) = whole.joints
+    assert joint.joint == 2
+    assert {stage.name: stage.suffices for stage in joint.stages}["separate"] == "yes"

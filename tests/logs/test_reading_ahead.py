@@ -1,0 +1,144 @@
+"""Work ahead in threads, and samples on their way to the table."""
+
+import threading
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from frictioncli import schemas, tables
+from frictioncli.logs.samples.quantized_temperature import Knots
+from frictioncli.logs.samples.read_ahead import in_order
+from frictioncli.logs.samples.row_checks import RowBlock
+from frictioncli.logs.samples.sample_writer import SampleWriter
+from frictioncli.provenance import Provenance
+
+
+@given(st.lists(st.integers(), max_size=40))
+def test_results_come_in_the_order_of_the_tasks(numbers):
+    assert list(in_order([lambda n=n: 3 * n for n in numbers])) == [3 * n for n in numbers]
+
+
+def test_a_slow_first_task_does_not_let_others_overtake():
+    gate = threading.Event()
+
+    def slow():
+        assert gate.wait(10)
+        return "slow"
+
+    def fast():
+        gate.set()
+        return "fast"
+
+    assert list(in_order([slow, fast])) == ["slow", "fast"]
+
+
+def test_only_a_few_tasks_are_taken_ahead():
+    taken = []
+
+    def tasks():
+        for number in range(100):
+            taken.append(number)
+            yield lambda: None
+
+    results = in_order(tasks())
+    next(results)
+    assert len(taken) <= 8
+    results.close()
+
+
+def test_an_error_comes_where_its_result_would():
+    def wrong():
+        raise ValueError("wrong")
+
+    results = in_order([lambda: 1, wrong, lambda: 3])
+    assert next(results) == 1
+    with pytest.raises(ValueError, match="wrong"):
+        next(results)
+
+
+def block(first, n, joints):
+    """Return n rows; every value tells its joint and row."""
+    row = np.arange(first, first + n, dtype=float)
+    columns = {
+        (joint, name): 1000.0 * joint + row
+        for joint in joints
+        for name in ("position", "velocity", "torque")
+    }
+    columns |= {(joint, "motor_temperature"): np.full(n, 20.0) for joint in joints}
+    return RowBlock(row.astype(np.int64), row, columns)
+
+
+def finished(drafts, folder, temperatures):
+    target = folder / "table" / "samples.parquet"
+    target.parent.mkdir(exist_ok=True)
+    drafts.finish(target, temperatures, Provenance("ingest"), {"torque_unit": "A"})
+    assert tables.facts(target) == {"torque_unit": "A"}
+    return tables.read(target, schemas.SAMPLES)
+
+
+@settings(max_examples=20, deadline=None)
+@given(st.lists(st.integers(1, 5), min_size=1, max_size=4))
+def test_samples_are_ordered_by_run_joint_and_time(tmp_path_factory, sizes):
+    """Two runs of two recordings each, all with joints 2 and 1, handed over in small pieces."""
+    folder = Path(tmp_path_factory.mktemp("drafts"))
+    with SampleWriter(folder) as drafts:
+        for run in ("a", "b"):
+            for recording, start in (("one", 0.0), ("two", 100.0)):
+                drafts.begin(run, recording, [2, 1], start)
+                first = 0
+                for n in sizes:
+                    piece = block(first, n, [2, 1])
+                    drafts.add(piece, piece.time)
+                    first += n
+        none = {(run, joint): (None, None) for run in ("a", "b") for joint in (1, 2)}
+        table = finished(drafts, folder, none)
+    rows = np.arange(sum(sizes), dtype=float)
+    expected = pd.DataFrame(
+        [
+            (run, recording, joint, row + start, 1000 * joint + row)
+            for run in ("a", "b")
+            for joint in (1, 2)
+            for recording, start in (("one", 0.0), ("two", 100.0))
+            for row in rows
+        ],
+        columns=["run", "recording", "joint", "time", "position"],
+    )
+    pd.testing.assert_frame_equal(
+        table[list(expected)].astype({"joint": int}), expected, check_dtype=False
+    )
+
+
+def test_a_void_recording_leaves_no_sample_and_temperatures_are_rebuilt(tmp_path):
+    with SampleWriter(tmp_path) as drafts:
+        for name in ("good", "void", "last"):
+            drafts.begin("run", name, [3], 0.0)
+            piece = block(0, 5, [3])
+            drafts.add(piece, piece.time)
+            if name == "void":
+                drafts.forget([3])
+        rising = Knots(np.array([-1.0, 9.0]), np.array([19.7, 20.7]), 1.0, 2)
+        table = finished(drafts, tmp_path, {("run", 3): (rising, None)})
+    assert list(table["recording"]) == ["good"] * 5 + ["last"] * 5
+    rebuilt = table["motor_temperature"].to_numpy()
+    assert rebuilt[:5] == pytest.approx([19.8, 19.9, 20.0, 20.1, 20.2])
+    assert list(rebuilt[5:]) == [20.0] * 5
+    assert set(table["motor_temperature_reading"]) == {20.0}
+
+
+def test_short_recordings_of_different_channels_share_a_table(tmp_path):
+    with SampleWriter(tmp_path) as drafts:
+        for name, n, channels in (("warm", 4, 3), ("bare", 2, 2), ("again", 3, 3)):
+            piece = block(0, n, [1])
+            if channels == 2:
+                columns = {key: piece.columns[key] for key in piece.columns if "temp" not in key[1]}
+                piece = RowBlock(piece.lines, piece.time, columns)
+            drafts.begin("run", name, [1], 0.0)
+            drafts.add(piece, piece.time)
+        table = finished(drafts, tmp_path, {("run", 1): (None, None, None)})
+    assert list(table["recording"]) == ["warm"] * 4 + ["bare"] * 2 + ["again"] * 3
+    assert list(table["motor_temperature"].isna()) == [False] * 4 + [True] * 2 + [False] * 3
+    assert list(table["position"]) == [1000 + i for i in (0, 1, 2, 3, 0, 1, 0, 1, 2)]

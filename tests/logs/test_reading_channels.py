@@ -1,0 +1,200 @@
+"""Columns are recognised by name; the map says what names do not."""
+
+import numpy as np
+import pytest
+
+from frictioncli import schemas, tables
+from frictioncli.errors import LogError, MappingError
+from frictioncli.logs.channels.channel_map import read_map
+from frictioncli.logs.channels.recognition import assign, joint_in_name, recognise
+from frictioncli.logs.formats.base import Refusal
+from frictioncli.logs.ingest import IngestSettings, ingest
+
+from .logs import back_and_forth, kuka_columns, write
+
+
+@pytest.mark.parametrize(
+    ("column", "quantity", "joint", "side"),
+    [
+        ("Zeit[sec]", "time", None, "joint"),
+        ("Zeit [s]", "time", None, "joint"),
+        ("Time (s)", "time", None, "joint"),
+        ('"timestamp"', "time", None, "joint"),
+        ("AxisPos_Act2[°]", "position", 2, "joint"),
+        ("AxisPos_Act_A2", "position", 2, "joint"),
+        ("AxisAct_A2", "position", 2, "joint"),
+        ("q_2", "position", 2, "joint"),
+        ("Istposition[°]", "position", None, "motor"),
+        ("ROBOT_ACTUAL_JOINT_POSITIONS (J3)", "position", 3, "joint"),
+        ("A4 position [deg]", "position", 4, "joint"),
+        ("axisQMsr", None, None, None),
+        ("AxisVel_Act2[°/s]", "velocity", 2, "joint"),
+        ("Istgeschwindigkeit[°/s]", "velocity", None, "motor"),
+        ("DriveMotorTorq_Act3[Nm]", "torque", 3, "motor"),
+        ("Istdrehmoment_A5 [Nm]", "torque", 5, ""),
+        ("Iststrom_A2 (A)", "torque", 2, "motor"),
+        ("Motortemperatur2", "motor_temperature", 2, "joint"),
+        ("MOT_TEMP_A2", "motor_temperature", 2, "joint"),
+        ("Temp_1", "motor_temperature", 1, "joint"),
+        ("Gehäusetemperatur [°C]", "housing_temperature", None, "joint"),
+        ("housing_temperature_3", "housing_temperature", 3, "joint"),
+        ("AxisPos_CmdIpo2[°]", None, None, None),
+        ("Sollposition[°]", None, None, None),
+        ("DriveMotorTorq_Cmd2[Nm]", None, None, None),
+        ("ROBOT_TARGET_JOINT_TORQUES (J1)", None, None, None),
+        ("Geschwindigkeitsdifferenz[°/s]", None, None, None),
+    ],
+)
+def test_names(column, quantity, joint, side):
+    found = recognise([column])
+    if quantity is None:
+        assert found == ()
+    else:
+        meaning = found[0].meaning
+        assert (meaning.quantity, found[0].joint, meaning.side) == (quantity, joint, side)
+
+
+def test_joints_counted_from_zero_become_joints_from_one():
+    assert [c.joint for c in recognise(["t", "actual_q_0", "actual_q_5"])] == [None, 1, 6]
+
+
+def test_motor_torque_goes_before_gear_torque_and_current():
+    columns = ["Zeit", "Iststrom_A2", "GearTorq_Act2", "DriveMotorTorq_Act2", "AxisPos_Act2"]
+    (joint,) = assign(recognise(columns), columns, joints=None, file_joint=1)
+    assert joint.torque.name == "DriveMotorTorq_Act2"
+    assert "not used: GearTorq_Act2, Iststrom_A2" in joint.notes[0]
+
+
+def test_every_joint_with_a_torque_channel():
+    columns = ["t", "q_1", "q_2", "q_3", "torque_2", "torque_3"]
+    found = assign(recognise(columns), columns, joints=None, file_joint=1)
+    assert [joint.joint for joint in found] == [2, 3]
+    found = assign(recognise(columns), columns, joints=(3, 4), file_joint=1)
+    assert [joint.joint for joint in found] == [3]
+
+
+@pytest.mark.parametrize(
+    ("columns", "reason"),
+    [
+        (["t", "q_2"], "no_torque_channel"),
+        (["t", "torque_2"], "no_position_channel"),
+        (["q_2", "torque_2"], "no_time_channel"),
+    ],
+)
+def test_what_is_missing_is_named(columns, reason):
+    refusal = assign(recognise(columns), columns, joints=None, file_joint=1)
+    assert isinstance(refusal, Refusal)
+    assert refusal.reason == reason
+    assert "--map" in refusal.text
+    assert ", ".join(columns) in refusal.text
+
+
+@pytest.mark.parametrize(
+    ("stem", "joint"),
+    [("robot_NextGenDrive#3", 3), ("log_A2", 2), ("warm-up_j2", 2), ("log_2", None), ("s10", None)],
+)
+def test_joint_in_a_file_name(stem, joint):
+    assert joint_in_name(stem) == joint
+
+
+def test_columns_without_number_take_the_one_joint_asked_for(tmp_path):
+    time, position, _, torque = back_and_forth()
+    log = write(tmp_path / "log.csv", {"t": time, "position": position, "torque": torque})
+    ingest([log], tmp_path / "a", IngestSettings(joints=(5,)))
+    ingest([log], tmp_path / "b")
+    joints = [
+        set(tables.read(tmp_path / work / "samples.parquet", schemas.SAMPLES)["joint"])
+        for work in "ab"
+    ]
+    assert joints == [{5}, {1}]
+
+
+def test_duplicate_headers_take_the_first(tmp_path):
+    lines = ["t;q_1;torque_1;q_1"]
+    for t, q, _, u in np.stack(back_and_forth(), axis=1):
+        lines.append(f"{t:.4f};{q:.6f};{u:.3f};999")
+    (tmp_path / "log.csv").write_text("\n".join(lines))
+    ingest([tmp_path / "log.csv"], tmp_path / "work")
+    table = tables.read(tmp_path / "work" / "samples.parquet", schemas.SAMPLES)
+    assert table["position"].max() < 100
+
+
+def test_an_all_zero_torque_is_no_torque(tmp_path):
+    columns = kuka_columns()
+    columns["GearTorq_Act2[Nm]"] *= 0
+    with pytest.raises(LogError, match="holds only zeros"):
+        ingest([write(tmp_path / "log.csv", columns)], tmp_path / "work")
+
+
+MAP = """
+[channels]
+time = "Uhr"
+position = "Winkel-Wert"
+torque = "M"
+[units]
+time = "ms"
+position = "rad"
+torque = "mNm"
+[joint]
+number = 4
+"""
+
+
+def write_map(tmp_path, text):
+    path = tmp_path / "channels.toml"
+    path.write_text(text, encoding="utf-8")
+    return path
+
+
+def test_a_map_names_columns_units_and_joint(tmp_path):
+    time, position, _, torque = back_and_forth()
+    columns = {
+        "Uhr": time * 1000,
+        "Winkel-Wert [bogus]": np.radians(position),
+        "M": torque * 1000,
+        "torque_1": torque * 0,
+    }
+    log = write(tmp_path / "log.csv", columns, digits=12)
+    ingest([log], tmp_path / "work", IngestSettings(map_file=write_map(tmp_path, MAP)))
+    table = tables.read(tmp_path / "work" / "samples.parquet", schemas.SAMPLES)
+    assert set(table["joint"]) == {4}
+    np.testing.assert_allclose(table["time"], time, atol=1e-9)
+    np.testing.assert_allclose(table["position"], position, atol=1e-9)
+    np.testing.assert_allclose(table["torque"], torque, atol=1e-9)
+    assert "channels.toml" in tables.document(tmp_path / "work" / "samples.parquet")["inputs"]
+
+
+def test_a_mapped_column_that_is_missing(tmp_path):
+    log = write(tmp_path / "log.csv", kuka_columns())
+    chart = write_map(tmp_path, '[channels]\ntorque = "GearTorque_Act2"\nposition = "X"\n')
+    with pytest.raises(MappingError, match=r"no column 'GearTorque_Act2'.*close: GearTorq_Act2"):
+        ingest([log], tmp_path / "work", IngestSettings(map_file=chart))
+    assert not (tmp_path / "work").exists()
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        ("[channels\n", "cannot be read as a mapping file"),
+        ("[chanels]\n", "unknown section: chanels.*did you mean channels"),
+        ('[channels]\npositon = "a"\n', "unknown name in .channels.: positon.*position"),
+        ("[channels]\nposition = 3\n", "expected a column name"),
+        ('[units]\nposition = "furlong"\n', "'furlong'; expected one of deg, rad, udeg"),
+        ('[units]\ntorque = "%"\n', "expected one of N·m"),
+        ('[csv]\ndelimiter = "x"\n', "delimiter = 'x'"),
+        ('[csv]\ndecimal = "."\nencodng = "utf-8"\n', "encodng.*did you mean encoding"),
+        ('[csv]\nencoding = "klingon"\n', "'klingon'"),
+        ("[joint]\nnumber = 0\n", "number = 0"),
+        ("[joint]\ngear_ratio = 0\n", "gear_ratio = 0"),
+        ("channels = 3\n", "expected a section"),
+    ],
+)
+def test_a_bad_map_says_where_and_what(tmp_path, text, message):
+    with pytest.raises(MappingError, match=message) as caught:
+        read_map(write_map(tmp_path, text))
+    assert "channels.toml" in str(caught.value)
+
+
+def test_a_missing_map(tmp_path):
+    with pytest.raises(MappingError, match=r"nothing\.toml"):
+        read_map(tmp_path / "nothing.toml")

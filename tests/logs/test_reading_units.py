@@ -1,0 +1,267 @@
+"""Units are believed only when the numbers agree."""
+
+import numpy as np
+import pytest
+
+from frictioncli import schemas, tables
+from frictioncli.errors import LogError, OptionError
+from frictioncli.logs.channels import unit_evidence, units
+from frictioncli.logs.ingest import IngestSettings, ingest
+
+from .logs import back_and_forth, kuka_columns, write
+
+
+def samples(work):
+    return tables.read(work / "samples.parquet", schemas.SAMPLES)
+
+
+@pytest.mark.parametrize(
+    ("text", "quantity", "unit"),
+    [
+        ("sec", "time", "s"),
+        ("°", "position", "deg"),
+        ("ï¿½", "position", "deg"),
+        ("Â°", "position", "deg"),
+        ("?", "position", "deg"),
+        ("ï¿½/s", "velocity", "deg/s"),
+        ("\ufffd/s", "velocity", "deg/s"),
+        ("N·m", "torque", "N·m"),
+        ("NÂ·m", "torque", "N·m"),
+        ("Nm", "torque", "N·m"),
+        ("%", "torque", "%"),
+        ("A", "torque", "A"),
+        ("ï¿½C", "motor_temperature", "°C"),
+        ("Kelvin", "motor_temperature", "K"),
+        ("bar", "torque", None),
+        ("s", "position", None),
+    ],
+)
+def test_spellings(text, quantity, unit):
+    assert units.canonical(text, quantity) == unit
+
+
+def test_factors_by_hand():
+    assert units.FACTORS["position"]["rad"] * np.pi == pytest.approx(180)
+    assert units.FACTORS["velocity"]["rpm"] == 6
+    fahrenheit = units.plain("°F", "motor_temperature")
+    assert 212 * fahrenheit.factor + fahrenheit.offset == pytest.approx(100)
+    kelvin = units.plain("K", "motor_temperature")
+    assert 300 * kelvin.factor + kelvin.offset == pytest.approx(26.85)
+
+
+@pytest.mark.parametrize(
+    ("position_factor", "velocity_factor", "ratio"),
+    [(1, 1, 1), (np.pi / 180, 1, np.pi / 180), (1, np.pi / 180, 180 / np.pi), (1e6, 1, 1e6)],
+)
+def test_motion_ratio(position_factor, velocity_factor, ratio):
+    time, position, velocity, _ = back_and_forth()
+    motion = unit_evidence.MotionEvidence(
+        time, position * position_factor, velocity * velocity_factor
+    )
+    assert unit_evidence.motion_ratio([motion]) == pytest.approx(ratio, rel=0.01)
+
+
+def test_motion_ratio_says_nothing_of_rest_or_noise():
+    time = np.arange(0, 5, 0.01)
+    rng = np.random.default_rng(1)
+    rest = unit_evidence.MotionEvidence(time, np.zeros_like(time), np.zeros_like(time))
+    noise = unit_evidence.MotionEvidence(
+        time, rng.normal(size=len(time)), rng.normal(size=len(time))
+    )
+    assert unit_evidence.motion_ratio([rest]) is None
+    assert unit_evidence.motion_ratio([noise]) is None
+
+
+def test_lever_of_an_arm_half_a_metre_long():
+    angle = np.linspace(-1, 1, 400)  # [rad]
+    tool = 500 * np.stack([np.cos(angle), np.sin(angle), 0 * angle], axis=1)
+    assert unit_evidence.lever(tool, angle[:, None]) == pytest.approx(500, rel=1e-4)
+    in_rad = unit_evidence.possible_position_units(
+        furthest=1, span=2, on_motor=False, way_per_turn=500
+    )
+    assert in_rad[0] == {"rad"}
+    in_degrees = unit_evidence.possible_position_units(
+        furthest=5, span=4, on_motor=False, way_per_turn=500 * np.pi / 180
+    )
+    assert in_degrees[0] == {"deg"}
+
+
+def test_radians_under_a_degree_header(tmp_path):
+    columns = kuka_columns()
+    columns["AxisPos_Act2[°]"] = np.radians(columns["AxisPos_Act2[°]"])
+    log = write(tmp_path / "log.csv", columns, digits=12)
+    summary = ingest([log], tmp_path / "work")
+    table = samples(tmp_path / "work")
+    np.testing.assert_allclose(table["position"], kuka_columns()["AxisPos_Act2[°]"], atol=1e-8)
+    np.testing.assert_allclose(table["velocity"], kuka_columns()["AxisVel_Act2[°/s]"], atol=1e-8)
+    assert any("read as rad; force with --position-unit deg" in note for note in summary.notes)
+
+
+def test_radians_found_without_velocity(tmp_path):
+    columns = kuka_columns()
+    del columns["AxisVel_Act2[°/s]"]
+    columns["AxisPos_Act2[°]"] = np.radians(columns["AxisPos_Act2[°]"])
+    ingest([write(tmp_path / "log.csv", columns, digits=12)], tmp_path / "work")
+    position = samples(tmp_path / "work")["position"]
+    np.testing.assert_allclose(position, kuka_columns()["AxisPos_Act2[°]"], atol=1e-8)
+
+
+def test_a_forced_unit_wins_with_a_warning(tmp_path):
+    columns = kuka_columns()
+    del columns["AxisVel_Act2[°/s]"]
+    columns["AxisPos_Act2[°]"] /= 40
+    log = write(tmp_path / "log.csv", columns)
+    summary = ingest([log], tmp_path / "work", IngestSettings(position_unit="deg"))
+    position = samples(tmp_path / "work")["position"]
+    np.testing.assert_allclose(position, columns["AxisPos_Act2[°]"], atol=1e-8)
+    assert any("as told, but values span" in text for text in summary.warnings)
+
+
+def test_later_positions_that_contradict_radians_stop(tmp_path):
+    """30000 samples within a radian, then degrees: the survey sees only the first 20000."""
+    time = np.arange(0, 400, 0.01)
+    position = np.where(time < 300, np.sin(time), 90 * np.sin(time))
+    columns = {"time [s]": time, "q_2": position, "torque_2 [Nm]": np.cos(time)}
+    log = write(tmp_path / "log.csv", columns)
+    with pytest.raises(LogError, match=r"log\.csv line 300\d\d: q_2 is .* looked like rad"):
+        ingest([log], tmp_path / "work")
+    assert not (tmp_path / "work").exists()
+
+
+def test_velocity_that_fits_no_unit_is_not_used(tmp_path):
+    columns = kuka_columns()
+    truth = columns["AxisVel_Act2[°/s]"]
+    columns["AxisVel_Act2[°/s]"] = truth * 3.3
+    summary = ingest([write(tmp_path / "log.csv", columns)], tmp_path / "work")
+    error = samples(tmp_path / "work")["velocity"] - truth
+    assert np.quantile(np.abs(error), 0.9) < 0.01
+    assert any("is not used" in text for text in summary.warnings)
+
+
+def test_velocity_of_opposite_sign_is_turned(tmp_path):
+    columns = kuka_columns()
+    truth = columns["AxisVel_Act2[°/s]"].copy()
+    columns["AxisVel_Act2[°/s]"] = -truth
+    summary = ingest([write(tmp_path / "log.csv", columns)], tmp_path / "work")
+    np.testing.assert_allclose(samples(tmp_path / "work")["velocity"], truth, atol=1e-8)
+    assert any("opposite" in text for text in summary.warnings)
+
+
+@pytest.mark.parametrize("header", ["MOT_TEMP_A2", "Motortemperatur2[°C]", "MotorTemp_Act2[K]"])
+def test_kelvin_is_found(tmp_path, header):
+    columns = kuka_columns()
+    columns[header] = np.full(len(columns["Zeit[sec]"]), 300.0)
+    ingest([write(tmp_path / "log.csv", columns)], tmp_path / "work")
+    assert set(samples(tmp_path / "work")["motor_temperature"].round(9)) == {26.85}
+
+
+@pytest.mark.parametrize("value", [0.0, -60.0, 170.0])
+def test_what_cannot_be_a_temperature_is_left_out(tmp_path, value):
+    columns = kuka_columns()
+    columns["Motortemperatur2[°C]"] = np.full(len(columns["Zeit[sec]"]), value)
+    summary = ingest([write(tmp_path / "log.csv", columns)], tmp_path / "work")
+    assert samples(tmp_path / "work")["motor_temperature"].isna().all()
+    assert any("holds no temperature" in note for note in summary.notes)
+
+
+def test_percent_is_refused(tmp_path):
+    columns = kuka_columns()
+    columns["Drehmoment_A2[%]"] = columns.pop("GearTorq_Act2[Nm]")
+    log = write(tmp_path / "log.csv", columns)
+    with pytest.raises(LogError, match=r"Drehmoment_A2\[%\] is in percent"):
+        ingest([log], tmp_path / "work")
+    summary = ingest([log], tmp_path / "work", IngestSettings(torque_unit="A"))
+    assert summary.torque_unit == "A"
+
+
+def test_motor_current(tmp_path):
+    columns = kuka_columns()
+    columns["Iststrom_A2 (mA)"] = columns.pop("GearTorq_Act2[Nm]")
+    summary = ingest([write(tmp_path / "log.csv", columns)], tmp_path / "work")
+    path = tmp_path / "work" / "samples.parquet"
+    assert (summary.torque_unit, tables.facts(path)["torque_unit"]) == ("A", "A")
+    assert samples(tmp_path / "work")["torque"].abs().max() == pytest.approx(0.025)
+
+
+def drive_columns(ratio=-90.0):
+    """Return a log of a drive: position in 1e-6 deg of the motor, torque at the motor."""
+    time, position, velocity, torque = back_and_forth()
+    return {
+        "Zeit[sec]": time,
+        "Istposition[°]": np.round(position * ratio * 1e6),
+        "Istgeschwindigkeit[°/s]": velocity * ratio,
+        "Istmoment[Nm]": torque / ratio,
+    }
+
+
+def test_motor_side_needs_a_gear_ratio(tmp_path):
+    log = write(tmp_path / "x_NextGenDrive#3.csv", drive_columns())
+    with pytest.raises(LogError, match="--gear-ratio"):
+        ingest([log], tmp_path / "work")
+    ingest([log], tmp_path / "work", IngestSettings(gear_ratio=-90.0))
+    table = samples(tmp_path / "work")
+    _, position, velocity, torque = back_and_forth()
+    assert set(table["joint"]) == {3}
+    np.testing.assert_allclose(table["position"], position, atol=1e-7)
+    np.testing.assert_allclose(table["velocity"], velocity, atol=1e-7)
+    np.testing.assert_allclose(table["torque"], torque, atol=1e-6)
+
+
+def test_gear_ratio_found_from_both_positions(tmp_path):
+    drive = drive_columns()
+    columns = kuka_columns()
+    del columns["GearTorq_Act2[Nm]"]
+    columns["Istposition2[°]"] = drive["Istposition[°]"]
+    columns["DriveMotorTorq_Act2[Nm]"] = drive["Istmoment[Nm]"]
+    summary = ingest([write(tmp_path / "log.csv", columns)], tmp_path / "work")
+    np.testing.assert_allclose(samples(tmp_path / "work")["torque"], back_and_forth()[3], rtol=1e-3)
+    assert summary.torque_side == "joint"
+    assert any("-90" in note for note in summary.notes)
+
+
+@pytest.mark.parametrize(
+    "option",
+    [
+        {"position_unit": "furlong"},
+        {"torque_unit": "%"},
+        {"joints": ()},
+        {"joints": (0,)},
+        {"gear_ratio": 0.0},
+        {"gear_ratio": float("nan")},
+    ],
+)
+def test_options_that_make_no_sense(option):
+    with pytest.raises(OptionError, match="expected"):
+        IngestSettings(**option)
+
+
+def test_one_gear_ratio_does_not_fit_two_joints(tmp_path):
+    columns = kuka_columns()
+    columns["AxisPos_Act3[°]"] = columns["AxisPos_Act2[°]"]
+    columns["DriveMotorTorq_Act3[Nm]"] = columns["GearTorq_Act2[Nm]"]
+    log = write(tmp_path / "log.csv", columns)
+    with pytest.raises(OptionError, match=r"has joints 2, 3; expected one joint"):
+        ingest([log], tmp_path / "work", IngestSettings(gear_ratio=90.0))
+    ingest([log], tmp_path / "work", IngestSettings(gear_ratio=90.0, joints=(3,)))
+    np.testing.assert_allclose(
+        samples(tmp_path / "work")["torque"], 90 * columns["DriveMotorTorq_Act3[Nm]"]
+    )
+
+
+def test_logs_that_differ_in_side(tmp_path):
+    columns = kuka_columns()
+    columns["AxisPos_Act3[°]"] = columns["AxisPos_Act2[°]"]
+    columns["DriveMotorTorq_Act3[Nm]"] = columns["GearTorq_Act2[Nm]"]
+    with pytest.raises(LogError, match="differ in side of the torque"):
+        ingest([write(tmp_path / "log.csv", columns)], tmp_path / "work")
+
+
+@pytest.mark.parametrize("damage", [292277026596.0, -1e30, 1e308])
+def test_a_damaged_velocity_does_not_change_the_ratio(damage):
+    """It would else be the only place that moves."""
+    time, position, velocity, _ = back_and_forth()
+    broken = velocity.copy()
+    broken[len(broken) // 3] = damage
+    assert unit_evidence.motion_ratio(
+        [unit_evidence.MotionEvidence(time, position, broken)]
+    ) == pytest.approx(1.0, rel=0.01)
