@@ -11,12 +11,10 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from frictioncli.arrays import Array
 from frictioncli.comparison.day_to_day import LevelEstimate, Scatter
 from frictioncli.diagnosis.noise.significance import credible_set, probabilities
-
-Array = NDArray[np.float64]
 
 _RATES = (1.0, 2.0, 4.0)
 """Pace of running in: 63 % of it are over after the whole time divided by this."""

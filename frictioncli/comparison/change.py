@@ -15,9 +15,9 @@ from dataclasses import dataclass
 
 import numpy as np
 import pandas as pd
-from numpy.typing import NDArray
 from scipy import stats
 
+from frictioncli.arrays import Array
 from frictioncli.comparison.noise_averaged_fit import averaged_fit, estimable
 from frictioncli.logs.runs.discovery import natural_key
 from frictioncli.model.document import FrictionModel
@@ -26,8 +26,6 @@ from frictioncli.model.identification import freedom, pair_equations, pair_resid
 from frictioncli.model.noise import plausible_noise
 from frictioncli.model.observations import Observations, observations
 from frictioncli.model.zero_load import temperature_of
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

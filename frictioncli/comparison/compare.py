@@ -4,8 +4,8 @@ from dataclasses import dataclass
 
 import numpy as np
 import pandas as pd
-from numpy.typing import NDArray
 
+from frictioncli.arrays import Array
 from frictioncli.comparison.causes import CauseOfChange, cause_of, changed, with_witness
 from frictioncli.comparison.conditions import Condition, changes_at
 from frictioncli.comparison.day_to_day import LevelEstimate, Scatter
@@ -17,8 +17,6 @@ from frictioncli.comparison.settings import USUAL_MARGIN, ComparisonSettings
 from frictioncli.diagnosis.data.problem import build_problems
 from frictioncli.errors import NotEnoughData
 from frictioncli.model.zero_load import temperature_of
-
-Array = NDArray[np.float64]
 
 _LEAST_PAIRS = 3
 """Fewest pairs of a run that has a level."""

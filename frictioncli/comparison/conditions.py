@@ -3,16 +3,14 @@
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from frictioncli.arrays import Array
 from frictioncli.comparison.day_to_day import LevelEstimate, Scatter
 from frictioncli.comparison.run_levels import Levels
 from frictioncli.diagnosis.data.pair_layout import speed_level
 from frictioncli.diagnosis.data.problem import Problem
 from frictioncli.model.friction import friction_torque
 from frictioncli.schemas import REFERENCE_TEMPERATURES
-
-Array = NDArray[np.float64]
 
 _MOST_SPEEDS = 5
 

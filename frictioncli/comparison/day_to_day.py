@@ -25,10 +25,9 @@ References
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy import stats
 
-Array = NDArray[np.float64]
+from frictioncli.arrays import Array
 
 PRIOR_FREEDOM = 3.0
 """Runs' worth of trust in the assumed scatter."""

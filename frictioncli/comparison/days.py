@@ -7,14 +7,12 @@ from datetime import datetime
 
 import numpy as np
 import pandas as pd
-from numpy.typing import NDArray
 
+from frictioncli.arrays import Array
 from frictioncli.errors import NotEnoughData, OptionError
 from frictioncli.logs.runs.discovery import natural_key
 from frictioncli.model.document import FrictionModel
 from frictioncli.model.zero_load import temperature_of
-
-Array = NDArray[np.float64]
 
 _DAY = 86400.0
 

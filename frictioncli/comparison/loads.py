@@ -1,13 +1,11 @@
 """The load torque of each run against that of the others: payload, or the torque's scale."""
 
 import numpy as np
-from numpy.typing import NDArray
 
+from frictioncli.arrays import Array
 from frictioncli.comparison.day_to_day import Scatter
 from frictioncli.diagnosis.data.gravity import without_offset
 from frictioncli.diagnosis.data.problem import Problem
-
-Array = NDArray[np.float64]
 
 DAY_TO_DAY = 0.5
 """Assumed standard deviation of the load torque from day to day. [%]"""

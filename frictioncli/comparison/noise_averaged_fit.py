@@ -3,11 +3,9 @@
 from collections.abc import Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
+from frictioncli.arrays import Array, Indices
 from frictioncli.model.noise import Noise, pair_covariance
-
-Array = NDArray[np.float64]
 
 RANK = 1e-5
 """Share of a design of unit columns below which a direction counts as absent."""
@@ -22,7 +20,7 @@ def averaged_fit(
     noises: Sequence[tuple[Noise, float]],
     *,
     time: Array,
-    run: NDArray[np.intp],
+    run: Indices,
     bins: Array,
     count: int,
 ) -> tuple[Array, Array]:

@@ -11,15 +11,13 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from frictioncli.arrays import Array
 from frictioncli.comparison.noise_averaged_fit import RANK, averaged_fit, estimable
 from frictioncli.diagnosis.data.problem import Problem
 from frictioncli.effects import thermal_lag
 from frictioncli.effects.availability import missing_columns
 from frictioncli.model.noise import Noise, plausible_noise
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -1,10 +1,8 @@
 """When the temperature next changes by a degree, for every instant at once."""
 
 import numpy as np
-from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
-Indices = NDArray[np.intp]
+from frictioncli.arrays import Array, Flags, Indices
 
 DEGREE = 1.0 - 1e-9
 """Change of the motor temperature that the criterion waits for: 1 °C. Readings are whole degrees,
@@ -38,7 +36,7 @@ def _first_departures(values: Array) -> Indices:
     """
     levels = _block_extrema(values)
 
-    def clear(at: Indices, level: int) -> NDArray[np.bool_]:
+    def clear(at: Indices, level: int) -> Flags:
         highest, lowest = levels[level]
         block = at >> level
         return (highest[block] - values < DEGREE) & (values - lowest[block] < DEGREE)

@@ -20,8 +20,8 @@ data's:
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from frictioncli.arrays import Array, Indices
 from frictioncli.correction.replay import PhaseData
 from frictioncli.errors import NotEnoughData
 from frictioncli.model.friction import (
@@ -34,8 +34,6 @@ from frictioncli.model.noise import (
     plausible_noise,
     restricted_log_likelihood,
 )
-
-Array = NDArray[np.float64]
 
 LEAST_PROBES = 8
 """Pairs at the correction speed that a mean, two deviations and a correlation length need."""
@@ -91,7 +89,7 @@ class Probes:
         [torque unit/(deg/s)^0.5]
     """
 
-    run: NDArray[np.intp]
+    run: Indices
     time: Array
     travel: Array
     deviation: Array

@@ -7,11 +7,12 @@ import numpy as np
 import pandas as pd
 from numpy.typing import ArrayLike
 
+from frictioncli.arrays import Indices
 from frictioncli.correction.corrector import TemperatureCorrector
 from frictioncli.correction.deviation import Deviation, estimated_deviation, probes_of
 from frictioncli.correction.phases import CorrectionPhase, phases_of
 from frictioncli.correction.replay import PhaseData, Replay, replay, replay_online
-from frictioncli.correction.schedule import BY_READING, Indices, equally_spaced
+from frictioncli.correction.schedule import BY_READING, equally_spaced
 from frictioncli.correction.settings import CorrectionSettings, EvaluationGrid, ScheduleSettings
 from frictioncli.correction.uncertainty import follow
 from frictioncli.errors import NotEnoughData

@@ -4,16 +4,15 @@ from dataclasses import dataclass
 
 import numpy as np
 import pandas as pd
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from frictioncli.arrays import Array, Flags, Numbers
 from frictioncli.correction.corrector import TemperatureCorrector
 from frictioncli.model.friction import (
     FrictionParameters,
     friction_torque,
     temperature_from_friction,
 )
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -37,7 +36,7 @@ class PhaseData:
     reading: Array
     friction: Array
     smoothed: Array
-    probe: NDArray[np.int64]
+    probe: Numbers
 
 
 @dataclass(frozen=True, slots=True)
@@ -54,8 +53,8 @@ class Replay:
         Friction torque at zero load predicted by (16), (17). [N·m]
     """
 
-    corrected: NDArray[np.bool_]
-    failed: NDArray[np.bool_]
+    corrected: Flags
+    failed: Flags
     correction: Array
     predicted: Array
 

@@ -26,12 +26,10 @@ from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from frictioncli.arrays import Array, Indices
 from frictioncli.correction.degree_crossings import next_changes
-
-Array = NDArray[np.float64]
-Indices = NDArray[np.intp]
 
 
 def first_degree(

@@ -23,13 +23,11 @@ temperature parameter in force is the one that gives the estimate:
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from frictioncli.arrays import Array
 from frictioncli.correction.deviation import Deviation, measured_deviation, travel
 from frictioncli.correction.replay import PhaseData, Replay
 from frictioncli.model.friction import FrictionParameters, friction_torque
-
-Array = NDArray[np.float64]
 
 _BLOCK = 64
 

@@ -17,8 +17,9 @@ from dataclasses import dataclass
 
 import numpy as np
 import pandas as pd
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from frictioncli.arrays import Array
 from frictioncli.deployment.gear_temperature import GearLag
 from frictioncli.diagnosis.data.gravity import stated_gravity
 from frictioncli.diagnosis.data.problem import simulated
@@ -26,8 +27,6 @@ from frictioncli.diagnosis.documents.extended_model import ExtendedModel, Fitted
 from frictioncli.effects.base import EffectTable
 from frictioncli.effects.pair_series import pair_heads
 from frictioncli.model.friction import FrictionParameters, friction_torque
-
-Array = NDArray[np.float64]
 
 LAG = "thermal_lag"
 

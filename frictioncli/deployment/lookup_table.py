@@ -5,13 +5,12 @@ from dataclasses import dataclass
 from itertools import product
 
 import numpy as np
-from numpy.typing import NDArray
 
+from frictioncli.arrays import Array
 from frictioncli.deployment.deployed_model import DeployedModel
 from frictioncli.deployment.operating_conditions import Conditions
 from frictioncli.errors import OptionError
 
-Array = NDArray[np.float64]
 Axes = tuple[Array, Array, Array]
 
 _FINER = 4

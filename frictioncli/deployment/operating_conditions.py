@@ -3,13 +3,11 @@
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from frictioncli.deployment.deployed_model import DeployedModel
 from frictioncli.deployment.settings import ExportSettings
 from frictioncli.errors import OptionError
 
-Array = NDArray[np.float64]
 Limits = tuple[float, float]
 
 

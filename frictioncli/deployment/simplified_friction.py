@@ -3,14 +3,12 @@
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.optimize import nnls
 
+from frictioncli.arrays import Array
 from frictioncli.deployment.deployed_model import DeployedModel
 from frictioncli.deployment.operating_conditions import Conditions
 from frictioncli.errors import OptionError
-
-Array = NDArray[np.float64]
 
 _POINTS = 400
 

@@ -3,11 +3,9 @@
 from collections.abc import Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
+from frictioncli.arrays import Array
 from frictioncli.effects.base import EffectTable
-
-Array = NDArray[np.float64]
 
 
 def log_determinant(tables: Sequence[EffectTable]) -> list[float]:

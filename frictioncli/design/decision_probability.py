@@ -8,13 +8,11 @@ it exceeds ln 19, a credible set of 95 %.
 """
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.stats import norm
 
+from frictioncli.arrays import Array
 from frictioncli.design.discrimination import Discrimination
 from frictioncli.design.rivals import Question
-
-Array = NDArray[np.float64]
 
 NAMED = float(np.log(19.0))
 """Logarithm of the odds at which a credible set of 95 % has one name."""

@@ -5,8 +5,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 import pandas as pd
-from numpy.typing import NDArray
 
+from frictioncli.arrays import Array
 from frictioncli.design.d_optimality import log_determinant
 from frictioncli.design.decision_probability import chances, decided, margins
 from frictioncli.design.discrimination import Discrimination, discriminations
@@ -18,8 +18,6 @@ from frictioncli.design.steps import Step
 from frictioncli.diagnosis.data.problem import Problem, simulated
 from frictioncli.diagnosis.fit.columns import left_of_base, main_channel
 from frictioncli.model.document import PARAMETERS
-
-Array = NDArray[np.float64]
 
 PLANNED = "~"
 """Added to the name of the last run: the planned one comes after it."""

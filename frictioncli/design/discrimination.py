@@ -20,15 +20,13 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from frictioncli.arrays import Array, Indices
 from frictioncli.design.expected_evidence import Noises, noises_of
 from frictioncli.design.information import Information
 from frictioncli.design.rivals import Question
 from frictioncli.diagnosis.fit.columns import base_columns, basis_columns, joined, reduced
 from frictioncli.diagnosis.fit.judgement import Score
-
-Array = NDArray[np.float64]
 
 _NOTHING = 1e-9
 """Noncentrality of rows that tell nothing."""
@@ -130,7 +128,7 @@ def tried_shapes(score: Score, sight: Information) -> list[dict[str, float]]:
     return [_kept(score, sight.at_hand), *grid]
 
 
-def _noncentralities(gram: Array, places: Sequence[NDArray[np.intp]]) -> Array:
+def _noncentralities(gram: Array, places: Sequence[Indices]) -> Array:
     """Return noncentralities from inner products of what the base leaves.
 
     Parameters
@@ -160,7 +158,7 @@ def _off(gram: Array, known: int) -> Array:
     return np.asarray(left * np.outer(size[known:], size[known:]))
 
 
-def _left(gram: Array, columns: NDArray[np.intp], targets: NDArray[np.intp]) -> Array:
+def _left(gram: Array, columns: Indices, targets: Indices) -> Array:
     """Return squared lengths of columns that others leave, by their inner products.
 
     Parameters

@@ -23,13 +23,11 @@ References
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.linalg import orth
 
+from frictioncli.arrays import Array
 from frictioncli.diagnosis.data.pair_layout import PairLayout
 from frictioncli.model.noise import Noise, PairCovariance, pair_covariance
-
-Array = NDArray[np.float64]
 
 _STRONGER = (1.0, 2.0, 4.0)
 """Strengths of the wandering that are tried, relative to the true one."""

@@ -4,14 +4,12 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from frictioncli.arrays import Array
 from frictioncli.diagnosis.data.problem import Problem
 from frictioncli.diagnosis.fit.columns import ModelColumns
 from frictioncli.effects.base import EffectTable
 from frictioncli.model.noise import Noise, PairCovariance, pair_covariance
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, slots=True)

@@ -12,14 +12,12 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from frictioncli.arrays import Array
 from frictioncli.design.information import Information
 from frictioncli.design.rivals import OpenQuestions
 from frictioncli.diagnosis.data.problem import Problem
 from frictioncli.diagnosis.fit.columns import ModelColumns, base_columns, basis_columns, joined
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, slots=True)

@@ -6,8 +6,8 @@ from typing import NamedTuple
 
 import numpy as np
 import pandas as pd
-from numpy.typing import NDArray
 
+from frictioncli.arrays import Array
 from frictioncli.design.limits import bin_width
 from frictioncli.design.steps import (
     ACCELERATION,
@@ -23,8 +23,6 @@ from frictioncli.design.steps import (
 from frictioncli.design.thermal_model import ThermalModel
 from frictioncli.diagnosis.data.gravity import columns_of, known_payload
 from frictioncli.model.friction import FrictionParameters, friction_torque
-
-Array = NDArray[np.float64]
 
 _SETTLING = 0.2
 """Time after a ramp that is not yet constant speed. [s]"""

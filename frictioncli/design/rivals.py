@@ -6,7 +6,6 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from frictioncli.diagnosis.data.problem import Problem
 from frictioncli.diagnosis.documents.extended_model import ExtendedModel
@@ -18,8 +17,6 @@ from frictioncli.diagnosis.search.step import Step
 from frictioncli.effects import BY_NAME
 from frictioncli.effects.availability import missing_columns
 from frictioncli.model.noise import Noise
-
-Array = NDArray[np.float64]
 
 _MOST = 5
 """Rivals of one question, at most; the least likely of longer sets are left out."""

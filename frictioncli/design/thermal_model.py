@@ -10,11 +10,9 @@ from dataclasses import dataclass
 
 import numpy as np
 import pandas as pd
-from numpy.typing import NDArray
 
+from frictioncli.arrays import Array
 from frictioncli.diagnosis.data.motion_history import moved_throughout
-
-Array = NDArray[np.float64]
 
 _TIMES = np.geomspace(1200.0, 28_800.0, 25)
 """Time constants that are tried; a joint takes tens of minutes to hours. [s]"""

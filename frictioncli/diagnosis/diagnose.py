@@ -5,7 +5,6 @@ from dataclasses import dataclass
 
 import numpy as np
 import pandas as pd
-from numpy.typing import NDArray
 
 from frictioncli.diagnosis.data.problem import Problem, build_problems
 from frictioncli.diagnosis.fit.extension import Extension, Gain, extend, measured_gain
@@ -18,8 +17,6 @@ from frictioncli.diagnosis.settings import DiagnosisSettings
 from frictioncli.effects import EFFECTS
 from frictioncli.effects.base import Effect
 from frictioncli.errors import NotEnoughData
-
-Array = NDArray[np.float64]
 
 LEAST_PAIRS = 12
 """With fewer pairs noise cannot be told from structure."""

@@ -6,9 +6,9 @@ from itertools import product
 from typing import Literal, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+from frictioncli.arrays import Array, Indices
+
 Channel = Literal["friction", "load"]
 Search = Literal["linear", "logarithmic"]
 
@@ -125,8 +125,8 @@ class EffectTable:
         Place of the pair in its measuring series, from 0.
     """
 
-    run: NDArray[np.intp]
-    pair: NDArray[np.intp]
+    run: Indices
+    pair: Indices
     time: Array
     clock: Array
     speed: Array

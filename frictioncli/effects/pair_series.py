@@ -3,9 +3,9 @@
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
-from frictioncli.effects.base import Array, EffectTable
+from frictioncli.arrays import Array, Flags, Indices
+from frictioncli.effects.base import EffectTable
 
 _HALF_WINDOW = 300.0
 """How far around a moment pairs tell of its heat and of the motor's warming. [s]"""
@@ -32,8 +32,8 @@ class PairHeads:
         Place of each row's pair among the pairs.
     """
 
-    first: NDArray[np.intp]
-    of_row: NDArray[np.intp]
+    first: Indices
+    of_row: Indices
 
     def spread(self, per_pair: Array) -> Array:
         """Return one value per row from one value per pair."""
@@ -58,14 +58,12 @@ def pair_heads(table: EffectTable) -> PairHeads:
     return PairHeads(np.flatnonzero(begins), np.cumsum(begins) - 1)
 
 
-def starts(labels: NDArray[np.intp]) -> NDArray[np.bool_]:
+def starts(labels: Indices) -> Flags:
     """Return where a label differs from the one before; the first one does."""
     return np.concatenate([np.ones(min(1, len(labels)), bool), labels[1:] != labels[:-1]])
 
 
-def first_order_lag(
-    *, time: Array, value: Array, restart: NDArray[np.bool_], time_constant: float
-) -> Array:
+def first_order_lag(*, time: Array, value: Array, restart: Flags, time_constant: float) -> Array:
     r"""Return by how much a first-order follower is above the value it follows.
 
     Parameters
@@ -97,7 +95,7 @@ def first_order_lag(
 
 
 def first_order_response(
-    *, time: Array, level: Array, restart: NDArray[np.bool_], time_constant: float
+    *, time: Array, level: Array, restart: Flags, time_constant: float
 ) -> Array:
     r"""Return a first-order follower of an input that is constant between two moments.
 
@@ -125,7 +123,7 @@ def first_order_response(
     return _accumulated(np.exp(-ratio), -level * np.expm1(-ratio), restart)
 
 
-def _accumulated(decay: Array, gain: Array, restart: NDArray[np.bool_]) -> Array:
+def _accumulated(decay: Array, gain: Array, restart: Flags) -> Array:
     """Return x with ``x[i + 1] = decay[i] x[i] + gain[i]``, and 0 at each restart."""
     state = 0.0
     states = [state]

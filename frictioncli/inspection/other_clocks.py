@@ -3,15 +3,13 @@
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from frictioncli.arrays import Array
 from frictioncli.logs.channels import aliases as names
 from frictioncli.logs.channels import units
 from frictioncli.logs.channels.recognition import LogChannel, recognise
 from frictioncli.logs.channels.unit_inference import JointPlan
 from frictioncli.logs.formats.base import Source
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, slots=True)

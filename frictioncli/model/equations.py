@@ -4,11 +4,9 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from frictioncli.arrays import Array
 from frictioncli.model.friction import FrictionParameters
-
-Array = NDArray[np.float64]
 
 COEFFICIENTS = ("tau_c", "alpha", "beta", "gamma")
 """The parameters in which equation (16) is linear, in the order used throughout."""

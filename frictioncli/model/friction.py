@@ -12,7 +12,9 @@ References
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
+
+from frictioncli.arrays import Array
 
 FORM = "tau = tau_c + alpha*L^2 + (beta + gamma*exp(-delta*T))*sqrt(v)"
 """Equation (16), as ``model.json`` states it."""
@@ -53,7 +55,7 @@ def friction_torque(
     load: ArrayLike,
     speed: ArrayLike,
     temperature: ArrayLike,
-) -> NDArray[np.float64]:
+) -> Array:
     r"""Return the friction torque of equation (16).
 
     Parameters
@@ -100,7 +102,7 @@ def temperature_from_friction(
     friction: ArrayLike,
     load: ArrayLike,
     speed: ArrayLike,
-) -> NDArray[np.float64]:
+) -> Array:
     r"""Return the temperature at which equation (16) gives the measured friction torque.
 
     Parameters
@@ -146,7 +148,7 @@ def carried_to_temperature(
     speed: ArrayLike,
     temperature: ArrayLike,
     target: float,
-) -> NDArray[np.float64]:
+) -> Array:
     r"""Return friction torque carried from its own temperature to another one.
 
     Parameters

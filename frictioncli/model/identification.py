@@ -8,16 +8,14 @@ drift (see :mod:`frictioncli.model.noise`), so the intervals hold when the exper
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy import stats
 
+from frictioncli.arrays import Array
 from frictioncli.model.equations import Equations, jacobian
 from frictioncli.model.friction import FrictionParameters, friction_torque
 from frictioncli.model.noise import Noise, pair_covariance, plausible_noise
 from frictioncli.model.observations import Observations
 from frictioncli.model.variable_projection import minimise
-
-Array = NDArray[np.float64]
 
 _ROUNDS = 2
 """Rounds of fit and noise estimate; the weights hardly change after the first."""

@@ -2,7 +2,8 @@
 
 import numpy as np
 
-from frictioncli.model.equations import COEFFICIENTS, Array, Equations, jacobian
+from frictioncli.arrays import Array
+from frictioncli.model.equations import COEFFICIENTS, Equations, jacobian
 from frictioncli.model.friction import FrictionParameters
 
 _STEPS = 12

@@ -20,11 +20,10 @@ References
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.linalg import cho_solve_banded, cholesky_banded
 from scipy.optimize import minimize
 
-Array = NDArray[np.float64]
+from frictioncli.arrays import Array, Indices
 
 _DRIFT_TIMES = 12
 """Number of correlation times that are tried, from the pairs' distance to the run's length."""
@@ -107,7 +106,7 @@ def pair_covariance(
     noise: Noise,
     *,
     time: Array,
-    run: NDArray[np.intp],
+    run: Indices,
     bins: Array,
     extra: Array | float = 0.0,
 ) -> PairCovariance:
@@ -181,7 +180,7 @@ def plausible_noise(
     residual: Array,
     design: Array,
     time: Array,
-    run: NDArray[np.intp],
+    run: Indices,
     bins: Array,
     point: float,
     extra: Array | float = 0.0,

@@ -9,11 +9,9 @@ from dataclasses import dataclass
 
 import numpy as np
 import pandas as pd
-from numpy.typing import NDArray
 
+from frictioncli.arrays import Array, Indices
 from frictioncli.model.zero_load import PAIR_KEY, temperature_of
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -36,7 +34,7 @@ class Observations:
         The pair and the angle of each row. [-], [deg]
     """
 
-    run: NDArray[np.intp]
+    run: Indices
     time: Array
     speed: Array
     temperature: Array
@@ -45,7 +43,7 @@ class Observations:
     bins: Array
     friction_within: Array
     squared_load_within: Array
-    row_pair: NDArray[np.intp]
+    row_pair: Indices
     row_position: Array
 
     @property

@@ -8,7 +8,6 @@ Intervals come from repeating all of it on data disturbed by the estimated noise
 
 import numpy as np
 import pandas as pd
-from numpy.typing import NDArray
 
 from frictioncli.errors import NotEnoughData
 from frictioncli.model.equations import COEFFICIENTS, Equations, jacobian
@@ -27,8 +26,6 @@ from frictioncli.model.noise import pair_covariance, plausible_noise
 from frictioncli.model.observations import Observations
 from frictioncli.model.variable_projection import minimise
 from frictioncli.model.zero_load import friction_at_zero_load, temperature_of
-
-Array = NDArray[np.float64]
 
 _GRID_STEP = 0.5
 """Distance of the temperatures at which the branches are averaged. [°C]"""

@@ -15,7 +15,8 @@ References
 import numpy as np
 from scipy.optimize import brentq, nnls
 
-from frictioncli.model.equations import COEFFICIENTS, Array, Equations, jacobian, summarised
+from frictioncli.arrays import Array
+from frictioncli.model.equations import COEFFICIENTS, Equations, jacobian, summarised
 from frictioncli.model.friction import FrictionParameters
 from frictioncli.model.newton_refinement import settled
 

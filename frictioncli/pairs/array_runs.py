@@ -3,9 +3,7 @@
 import numpy as np
 from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
-Numbers = NDArray[np.int64]
-
+from frictioncli.arrays import Array, Flags, Numbers
 
 _ARRAY = 1 << 22
 """Values of the largest array whose memory the C library may be taught to keep: 32 MB."""
@@ -98,7 +96,7 @@ def means(values: Array, start: Numbers, stop: Numbers) -> Array:
     return np.divide(total, count, out=np.full(len(start), np.nan), where=count > 0)
 
 
-def runs(flags: NDArray[np.bool_], offset: Numbers) -> tuple[Numbers, Numbers, Numbers]:
+def runs(flags: Flags, offset: Numbers) -> tuple[Numbers, Numbers, Numbers]:
     """Return start, stop and segment of each run of true flags within one segment.
 
     Parameters

@@ -7,17 +7,14 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from frictioncli.arrays import Array, Numbers
 from frictioncli.pairs.array_runs import members
 
 try:
     from frictioncli.pairs import _bin_runs
 except ImportError:  # installed without a C compiler
     _bin_runs = None  # type: ignore[assignment]
-
-Array = NDArray[np.float64]
-Numbers = NDArray[np.int64]
 
 
 @dataclass(frozen=True, slots=True)

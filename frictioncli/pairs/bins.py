@@ -5,11 +5,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from frictioncli.arrays import Array, Numbers
 from frictioncli.pairs.array_runs import offsets
 from frictioncli.pairs.bin_runs import bin_runs
-
-Array = NDArray[np.float64]
-Numbers = NDArray[np.int64]
 
 
 @dataclass(frozen=True, slots=True)

@@ -12,8 +12,8 @@ from typing import NamedTuple
 import numpy as np
 import pyarrow as pa
 import pyarrow.compute as pc
-from numpy.typing import NDArray
 
+from frictioncli.arrays import Array, Numbers
 from frictioncli.errors import TableError
 from frictioncli.pairs.array_runs import keep_freed_memory
 from frictioncli.pairs.moves import (
@@ -27,8 +27,6 @@ from frictioncli.pairs.moves import (
 from frictioncli.pairs.settings import SteadySettings
 from frictioncli.schemas import SAMPLES
 
-Array = NDArray[np.float64]
-Numbers = NDArray[np.int64]
 Channels = dict[str, Array]
 
 BEHIND = 4096

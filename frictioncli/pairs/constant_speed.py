@@ -9,14 +9,11 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.lib.stride_tricks import as_strided
-from numpy.typing import NDArray
 
+from frictioncli.arrays import Array, Numbers
 from frictioncli.pairs.array_runs import means, members, offsets, over_samples, reduced, runs
 from frictioncli.pairs.moves import SMOOTHING, half_window
 from frictioncli.pairs.settings import SteadySettings
-
-Array = NDArray[np.float64]
-Numbers = NDArray[np.int64]
 
 REASONS = ("standing", "accelerating", "settling", "constant speed too short")
 """Why samples are in no constant-velocity part."""

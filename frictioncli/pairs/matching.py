@@ -3,13 +3,10 @@
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from frictioncli.arrays import Array, Flags, Numbers
 from frictioncli.pairs.array_runs import members
 from frictioncli.pairs.settings import PairingSettings
-
-Array = NDArray[np.float64]
-Numbers = NDArray[np.int64]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -81,9 +78,7 @@ def match_bins(arrays: SegmentArrays, groups: list[Numbers], settings: PairingSe
     return Matches(couples[:, 0], couples[:, 1], visit_couple)
 
 
-def _agree(
-    arrays: SegmentArrays, one: Numbers, other: Numbers, settings: PairingSettings
-) -> NDArray[np.bool_]:
+def _agree(arrays: SegmentArrays, one: Numbers, other: Numbers, settings: PairingSettings) -> Flags:
     ordered = arrays.start[one] <= arrays.start[other]
     first, second = np.where(ordered, one, other), np.where(ordered, other, one)
     pause = arrays.start[second] - arrays.stop[first]

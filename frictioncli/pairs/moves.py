@@ -7,10 +7,8 @@ differences between them are the same wherever they started.
 import numpy as np
 from numpy.typing import NDArray
 
+from frictioncli.arrays import Array, Numbers
 from frictioncli.pairs.settings import SteadySettings
-
-Array = NDArray[np.float64]
-Numbers = NDArray[np.int64]
 
 SMOOTHING = 0.05
 """Half width of the velocity's moving mean, at most. [s]"""

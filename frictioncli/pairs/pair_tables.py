@@ -7,13 +7,12 @@ import pandas as pd
 import pyarrow as pa
 from numpy.typing import NDArray
 
+from frictioncli.arrays import Numbers
 from frictioncli.pairs.pairing import Pairing
 from frictioncli.pairs.partitioned_store import Columns
 from frictioncli.pairs.ramps import COLUMNS, PARTS
 from frictioncli.pairs.segments import TEMPERATURES, Joint, Segments
 from frictioncli.pairs.thermal_phases import phases, phases_of
-
-Numbers = NDArray[np.int64]
 
 
 def pair_rows(found: Segments, paired: Pairing, phase: pd.Series) -> Iterator[pa.Table]:

@@ -5,8 +5,8 @@ from dataclasses import dataclass, field
 
 import numpy as np
 import pandas as pd
-from numpy.typing import NDArray
 
+from frictioncli.arrays import Array, Flags, Numbers
 from frictioncli.errors import NotEnoughData
 from frictioncli.pairs.matching import Matches, SegmentArrays, match_bins
 from frictioncli.pairs.matching_groups import MatchingGroup, matching_groups
@@ -15,8 +15,6 @@ from frictioncli.pairs.segments import TEMPERATURES, Joint, Segments
 from frictioncli.pairs.settings import PairingSettings
 from frictioncli.pairs.speed_levels import SpeedCounts, speed_levels, steps_of
 
-Array = NDArray[np.float64]
-Numbers = NDArray[np.int64]
 Level = tuple[int, int]
 
 _ALONE = "no counter-directed partner"
@@ -240,7 +238,7 @@ def _rows(visits: Columns, matches: Matches, number: Numbers) -> Columns:
     }
 
 
-def _alike(speed: Array, middle: Array | float) -> NDArray[np.bool_]:
+def _alike(speed: Array, middle: Array | float) -> Flags:
     return np.abs(speed - middle) < _ALIKE * middle
 
 

@@ -9,15 +9,12 @@ point in geometric steps, and follows the first stretch at constant velocity too
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from frictioncli.arrays import Array, Flags, Numbers
 from frictioncli.pairs.array_runs import members, reduced
 from frictioncli.pairs.chunks import BEHIND
 from frictioncli.pairs.constant_speed import ConstantSpeedParts
 from frictioncli.pairs.moves import samples_in
-
-Array = NDArray[np.float64]
-Numbers = NDArray[np.int64]
 
 EDGES = np.geomspace(0.1, 30.0, 13)
 """Edges of the bins of distance from the turning point. [deg]"""
@@ -212,7 +209,7 @@ def _halves(
     return low, np.where(cut_off, low, high), turn, time[end]
 
 
-def _turned(position: Array, parts: ConstantSpeedParts, came_from: ComingFrom) -> NDArray[np.bool_]:
+def _turned(position: Array, parts: ConstantSpeedParts, came_from: ComingFrom) -> Flags:
     """Return whether each move goes the other way than the joint came; so does one after nothing.
 
     The way it came is that of the last angle further away than :data:`_AWAY`, or else that of the

@@ -10,8 +10,8 @@ from itertools import chain
 
 import numpy as np
 import pyarrow as pa
-from numpy.typing import NDArray
 
+from frictioncli.arrays import Array
 from frictioncli.pairs.array_runs import means
 from frictioncli.pairs.bins import bin_means
 from frictioncli.pairs.chunks import Chunk, chunks
@@ -21,7 +21,6 @@ from frictioncli.pairs.ramps import MEANS, ComingFrom, ramp_rows
 from frictioncli.pairs.settings import SteadySettings
 from frictioncli.pairs.speed_levels import SpeedCounts
 
-Array = NDArray[np.float64]
 Joint = tuple[str, int]
 
 TEMPERATURES = ("motor_temperature", "housing_temperature", "motor_temperature_reading")

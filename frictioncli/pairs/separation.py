@@ -7,8 +7,9 @@ from typing import NamedTuple
 import numpy as np
 import pyarrow as pa
 import pyarrow.compute as pc
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from frictioncli.arrays import Array
 from frictioncli.errors import NotEnoughData, OptionError
 from frictioncli.pairs.array_runs import means
 
@@ -16,8 +17,8 @@ from frictioncli.pairs.array_runs import means
 class SeparatedTorques(NamedTuple):
     """Friction and load torque of the same motion, in N·m."""
 
-    friction: NDArray[np.float64]
-    load: NDArray[np.float64]
+    friction: Array
+    load: Array
 
 
 def separate_torques(
@@ -93,7 +94,7 @@ class SignTally:
     mean: float = 0.0
     squares: float = 0.0
 
-    def add(self, values: NDArray[np.float64]) -> None:
+    def add(self, values: Array) -> None:
         """Take in more values."""
         if not len(values):
             return

@@ -4,10 +4,9 @@ import math
 from dataclasses import dataclass, field
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
-Array = NDArray[np.float64]
-Numbers = NDArray[np.int64]
+from frictioncli.arrays import Array, Numbers
 
 _STEP = math.log1p(1e-4)
 """Speeds that differ by less than one part in 10,000 are counted as one."""

@@ -8,6 +8,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from frictioncli.arrays import Numbers
+
 HEAT_UP, COOL_DOWN, SWEEP = "heat-up", "cool-down", "sweep"
 
 _TURN = 3.0
@@ -54,7 +56,7 @@ def phases(temperature: Iterable[float]) -> list[ThermalPhase]:
     return found
 
 
-def phases_of(pair: NDArray[np.int64], found: list[ThermalPhase]) -> NDArray[np.object_]:
+def phases_of(pair: Numbers, found: list[ThermalPhase]) -> NDArray[np.object_]:
     """Return the name of each pair's phase.
 
     Parameters

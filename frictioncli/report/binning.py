@@ -5,12 +5,10 @@ from itertools import pairwise
 
 import numpy as np
 import pandas as pd
-from numpy.typing import NDArray
 
+from frictioncli.arrays import Array, Flags, Indices
 from frictioncli.effects.base import EffectTable
 from frictioncli.report.style import COOLING, HEATING, MODEL
-
-Array = NDArray[np.float64]
 
 _BINS = {"speed": 26, "position": 40, "load": 14, "clock": 24}
 _OTHER_BINS = 12
@@ -41,7 +39,7 @@ class BinnedSeries:
     name: str
     colour: str
     filled: bool
-    rows: NDArray[np.bool_]
+    rows: Flags
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -60,7 +58,7 @@ class Binned:
         Mean of the fitted term over the same rows. [N·m]
     """
 
-    bin: NDArray[np.intp]
+    bin: Indices
     at: Array
     mean: Array
     error: Array
@@ -95,7 +93,7 @@ def series_of(table: EffectTable, axis: str, channel: str) -> list[BinnedSeries]
     return _two(np.ones(len(table.speed), bool), "", "")
 
 
-def _two(chosen: NDArray[np.bool_], name: str, other: str) -> list[BinnedSeries]:
+def _two(chosen: Flags, name: str, other: str) -> list[BinnedSeries]:
     if chosen.all() or not chosen.any():
         return [BinnedSeries(name="", colour=MODEL, filled=True, rows=np.ones(len(chosen), bool))]
     return [
@@ -104,7 +102,7 @@ def _two(chosen: NDArray[np.bool_], name: str, other: str) -> list[BinnedSeries]
     ]
 
 
-def rises(table: EffectTable) -> NDArray[np.bool_]:
+def rises(table: EffectTable) -> Flags:
     """Return at which rows the temperature rises, over nine pairs about each row's pair."""
     pairs = pd.DataFrame(
         {"run": table.run, "pair": table.pair, "warm": table.temperature}
@@ -131,7 +129,7 @@ def levels(values: Array) -> Array:
     return np.asarray(means[group][place])
 
 
-def bins_of(axis: str, values: Array) -> NDArray[np.intp]:
+def bins_of(axis: str, values: Array) -> Indices:
     """Return the number of each row's bin along an axis.
 
     Speeds and angles are levels of their own or, if they are many, a few neighbours together;

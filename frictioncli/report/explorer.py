@@ -8,9 +8,9 @@ from typing import Any
 
 import numpy as np
 import pandas as pd
-from numpy.typing import NDArray
 
 from frictioncli import tables
+from frictioncli.arrays import Array
 from frictioncli.correction.settings import CorrectionSettings, ScheduleSettings
 from frictioncli.diagnosis.documents.apply_extension import without_effects
 from frictioncli.diagnosis.documents.extended_model import ExtendedModel, read_extended
@@ -29,8 +29,6 @@ from frictioncli.report.requirements import evaluation_missing
 from frictioncli.report.results import MOST_RUNS, JointResults
 from frictioncli.report.style import PHASE_WORDS
 from frictioncli.workfiles import EVALUATION, EXTENDED
-
-Array = NDArray[np.float64]
 
 _MOST_POINTS = 400
 """Pairs of a phase that are drawn; ε is of all of them."""

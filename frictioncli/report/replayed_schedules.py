@@ -6,16 +6,14 @@ from itertools import product
 
 import numpy as np
 import pandas as pd
-from numpy.typing import NDArray
 
+from frictioncli.arrays import Array, Flags
 from frictioncli.correction.phases import phases_of
 from frictioncli.correction.replay import PhaseData, Replay, replay
 from frictioncli.correction.schedule import BY_READING
 from frictioncli.correction.settings import CorrectionSettings
 from frictioncli.model.document import FrictionModel
 from frictioncli.model.friction import FrictionParameters
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -53,7 +51,7 @@ class Events:
 
     time: Array
     correction: Array
-    failed: NDArray[np.bool_]
+    failed: Flags
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -6,16 +6,14 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.collections import QuadMesh
 from matplotlib.figure import Figure
-from numpy.typing import NDArray
 
+from frictioncli.arrays import Array, Indices
 from frictioncli.diagnosis.documents.reload import Reloaded
 from frictioncli.effects.base import EffectTable
 from frictioncli.report.binning import levels, parting
 from frictioncli.report.labels import TEMPERATURE_SYMBOLS
 from frictioncli.report.results import JointResults
 from frictioncli.report.style import WIDTH
-
-Array = NDArray[np.float64]
 
 _COLOURS = "RdBu_r"
 _EMPTY = "#D9DBDF"
@@ -39,7 +37,7 @@ class Scale:
     names: tuple[str, ...] = ()
 
     @property
-    def cell(self) -> NDArray[np.intp]:
+    def cell(self) -> Indices:
         """Cell of each row, shape (rows,)."""
         return np.searchsorted(self.edges[1:-1], self.values, side="right")
 
@@ -89,9 +87,7 @@ def map_figure(results: JointResults, *, recalled: Reloaded) -> Figure:
     return figure
 
 
-def cell_means(
-    across: Scale, up: Scale, misfit: Array, pair: NDArray[np.intp]
-) -> tuple[Array, Array]:
+def cell_means(across: Scale, up: Scale, misfit: Array, pair: Indices) -> tuple[Array, Array]:
     """Return the mean misfit per cell and its standard error; NaN without data.
 
     Both have shape (cells up, cells across). The errors are those of the points about their pairs.

@@ -6,9 +6,10 @@ from pathlib import Path
 
 import numpy as np
 import pandas as pd
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from frictioncli import schemas, tables
+from frictioncli.arrays import Array
 from frictioncli.errors import TableError
 from frictioncli.model.document import FrictionModel, read_models
 from frictioncli.model.friction import friction_torque
@@ -81,9 +82,7 @@ class JointResults:
         """Return colour and marker of the known speed nearest to ``speed``, in deg/s."""
         return self.styles[min(self.styles, key=lambda known: abs(known - speed))]
 
-    def predict(
-        self, *, load: ArrayLike, speed: ArrayLike, temperature: ArrayLike
-    ) -> NDArray[np.float64]:
+    def predict(self, *, load: ArrayLike, speed: ArrayLike, temperature: ArrayLike) -> Array:
         """Return the modelled friction torque; a model without temperature needs none.
 
         Parameters

@@ -3,7 +3,9 @@
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
+
+from frictioncli.arrays import Array
 
 GRAVITY = 9.81
 """Acceleration of free fall [m/s²]."""
@@ -59,7 +61,7 @@ class Arm:
         sine = -sum(GRAVITY * body.mass * body.across for body in bodies)
         return cosine, sine
 
-    def gravity_torque(self, position: ArrayLike) -> NDArray[np.float64]:
+    def gravity_torque(self, position: ArrayLike) -> Array:
         """Return the torque that holds the arm at an angle in deg [N·m]."""
         cosine, sine = self.gravity_coefficients()
         angle = np.radians(np.asarray(position, dtype=float))

@@ -3,8 +3,8 @@
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from frictioncli.arrays import Array, Numbers
 from frictioncli.simulator.joint import SimulatedJoint
 from frictioncli.simulator.motion_profile import MotionProfile, Servo, move_duration
 from frictioncli.simulator.paper_protocol import PaperProgram, SeriesOfMoves
@@ -45,9 +45,9 @@ class Cells:
         cell.
     """
 
-    trip: NDArray[np.int64]
-    position: NDArray[np.float64]
-    count: NDArray[np.int64]
+    trip: Numbers
+    position: Array
+    count: Numbers
     state: State
 
 
@@ -67,10 +67,10 @@ class Trips:
         Number of the payload.
     """
 
-    series: NDArray[np.int64]
-    begin: NDArray[np.float64]
-    speed: NDArray[np.float64]
-    load: NDArray[np.int64]
+    series: Numbers
+    begin: Array
+    speed: Array
+    load: Numbers
 
 
 def trips_of(program: PaperProgram, servo: Servo, series: tuple[SeriesOfMoves, ...]) -> Trips:
@@ -149,7 +149,7 @@ def cells_of(
 
 def _bins(
     speed: float, low: float, high: float, acceleration: float, interval: float
-) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
+) -> tuple[Array, Array, Array]:
     """Return start [deg], stop [deg] and samples of the bins that are covered at ``speed``."""
     ramp = speed**2 / (2.0 * acceleration)
     plateau = max((high - low - 2.0 * ramp) / speed, 0.0)

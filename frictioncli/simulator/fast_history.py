@@ -1,8 +1,9 @@
 """The thermal history in fixed steps: within a few hundredths of a kelvin, many times faster."""
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from frictioncli.arrays import Array
 from frictioncli.simulator.joint import MeanPower, SimulatedJoint
 from frictioncli.simulator.thermal_history import History
 from frictioncli.simulator.thermal_network import Ambient
@@ -21,7 +22,7 @@ class FastHistory(History):
         self._states = [self.state]
         self._decay = -self._conductance / self._capacities[:, None]
 
-    def at(self, time: ArrayLike) -> dict[str, NDArray[np.float64]]:
+    def at(self, time: ArrayLike) -> dict[str, Array]:
         """Return the temperatures at times [s] within the history, by node name [°C]."""
         times = np.asarray(time, dtype=float)
         known = np.array(self._times)
@@ -47,7 +48,7 @@ class FastHistory(History):
             self._keep(step, state)
         return temperature is None
 
-    def _source(self, power: MeanPower | None, step: float) -> NDArray[np.float64]:
+    def _source(self, power: MeanPower | None, step: float) -> Array:
         """Return what warms the nodes apart from each other [K/s]."""
         heat = self._to_ambient * float(self.ambient.at(self.time + step / 2.0))
         if power is not None:
@@ -55,11 +56,11 @@ class FastHistory(History):
             heat = heat + self._shares * power(now)
         return np.asarray(heat / self._capacities)
 
-    def _stepped(self, source: NDArray[np.float64], step: float) -> NDArray[np.float64]:
+    def _stepped(self, source: Array, step: float) -> Array:
         middle = self.state + step / 2.0 * (source + self._decay @ self.state)
         return np.asarray(self.state + step * (source + self._decay @ middle))
 
-    def _keep(self, step: float, state: NDArray[np.float64]) -> None:
+    def _keep(self, step: float, state: Array) -> None:
         self.time += step
         self.state = state
         self._times.append(self.time)

@@ -9,7 +9,9 @@ from dataclasses import dataclass
 from typing import Protocol
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
+
+from frictioncli.arrays import Array
 
 LAW_TEMPERATURE = 40.0
 """Temperature at which a zone's ``viscous`` coefficient is stated [°C]."""
@@ -26,9 +28,7 @@ class Zone(Protocol):
     def node(self) -> str:
         """Name of the thermal node whose temperature acts here."""
 
-    def torque(
-        self, *, load: ArrayLike, speed: ArrayLike, temperature: ArrayLike
-    ) -> NDArray[np.float64]:
+    def torque(self, *, load: ArrayLike, speed: ArrayLike, temperature: ArrayLike) -> Array:
         """Return the zone's friction torque [N·m]."""
 
 
@@ -78,9 +78,7 @@ class LubricatedZone:
     thinning: float
     speed_exponent: float
 
-    def torque(
-        self, *, load: ArrayLike, speed: ArrayLike, temperature: ArrayLike
-    ) -> NDArray[np.float64]:
+    def torque(self, *, load: ArrayLike, speed: ArrayLike, temperature: ArrayLike) -> Array:
         """Return the zone's friction torque, positive where it opposes the motion [N·m].
 
         Parameters
@@ -107,7 +105,7 @@ def friction_torque(
     load: ArrayLike,
     speed: ArrayLike,
     temperatures: Mapping[str, ArrayLike],
-) -> NDArray[np.float64]:
+) -> Array:
     """Return the joint's friction torque: the sum over its zones [N·m].
 
     Parameters

@@ -4,8 +4,9 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from frictioncli.arrays import Array
 from frictioncli.simulator.arm import Arm
 from frictioncli.simulator.friction_zones import Zone, friction_torque
 from frictioncli.simulator.motion_profile import Servo, move_duration, round_trips
@@ -44,11 +45,11 @@ class SimulatedJoint:
 
     def friction(
         self, *, load: ArrayLike, speed: ArrayLike, temperatures: Mapping[str, ArrayLike]
-    ) -> NDArray[np.float64]:
+    ) -> Array:
         """Return the friction torque at node temperatures [N·m]."""
         return friction_torque(self.zones, load=load, speed=speed, temperatures=temperatures)
 
-    def heat_shares(self) -> NDArray[np.float64]:
+    def heat_shares(self) -> Array:
         """Return the share of the heat per node, in the network's order [-]."""
         return np.array([self.heat.shares.get(name, 0.0) for name in self.network.names])
 
@@ -111,7 +112,7 @@ class MeanPower:
         """Return copper loss and friction heat together at node temperatures in °C [W]."""
         return float(self.at(temperatures))
 
-    def at(self, temperatures: Mapping[str, ArrayLike]) -> NDArray[np.float64]:
+    def at(self, temperatures: Mapping[str, ArrayLike]) -> Array:
         """Return the same at many temperatures per node [W]."""
         friction = friction_torque(
             self._zones, load=self._load, speed=self._speed, temperatures=temperatures

@@ -4,7 +4,9 @@ from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
+
+from frictioncli.arrays import Array, Numbers
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -30,9 +32,9 @@ class Servo:
 class MotionProfile:
     """Position, velocity and acceleration at sample times [deg, deg/s, deg/s²]."""
 
-    position: NDArray[np.float64]
-    velocity: NDArray[np.float64]
-    acceleration: NDArray[np.float64]
+    position: Array
+    velocity: Array
+    acceleration: Array
 
 
 def move_duration(servo: Servo, *, distance: float, speed: float) -> float:
@@ -83,7 +85,7 @@ def round_trips(
     lead: float,
     dwell: float,
     interval: float,
-) -> tuple[MotionProfile, NDArray[np.float64], NDArray[np.int64]]:
+) -> tuple[MotionProfile, Array, Numbers]:
     """Return moves there and back at each speed, sampled from standing to standing.
 
     Parameters
@@ -147,7 +149,7 @@ def _phases(servo: Servo, *, distance: float, speed: float) -> tuple[float, floa
     return ramp, distance / speed - ramp
 
 
-def _answers(servo: Servo, time: NDArray[np.float64]) -> NDArray[np.float64]:
+def _answers(servo: Servo, time: Array) -> Array:
     """Return the servo's answers to a unit parabola, ramp and step that begin at time 0."""
     omega, zeta = 2.0 * np.pi * servo.frequency, servo.damping
     pole = omega * complex(-zeta, np.sqrt(1.0 - zeta**2))

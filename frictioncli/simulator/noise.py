@@ -4,8 +4,9 @@ from dataclasses import dataclass, replace
 from typing import Self
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.signal import lfilter
+
+from frictioncli.arrays import Array
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -45,9 +46,7 @@ class SimulatedNoise:
             per_pair=self.per_pair * factor,
         )
 
-    def torque(
-        self, generator: np.random.Generator, *, count: int, interval: float
-    ) -> NDArray[np.float64]:
+    def torque(self, generator: np.random.Generator, *, count: int, interval: float) -> Array:
         """Return ``count`` samples of torque noise, ``interval`` seconds apart [N·m]."""
         memory = float(np.exp(-interval / self.correlation_time))
         drive = generator.standard_normal(count) * np.sqrt(1.0 - memory**2)
@@ -61,16 +60,14 @@ class SimulatedNoise:
         self,
         generator: np.random.Generator,
         *,
-        torque: NDArray[np.float64],
-        velocity: NDArray[np.float64],
+        torque: Array,
+        velocity: Array,
         interval: float,
-    ) -> NDArray[np.float64]:
+    ) -> Array:
         """Return the noise of samples with these torques [N·m] and velocities [deg/s] [N·m]."""
         return self.torque(generator, count=len(torque), interval=interval)
 
-    def pair_offsets(
-        self, generator: np.random.Generator, times: NDArray[np.float64]
-    ) -> NDArray[np.float64]:
+    def pair_offsets(self, generator: np.random.Generator, times: Array) -> Array:
         """Return the friction offset of round trips at increasing times in s [N·m]."""
         drive = generator.standard_normal(times.shape)
         memory = np.exp(-np.diff(times) / self.slow_time)

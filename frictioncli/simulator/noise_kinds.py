@@ -3,8 +3,9 @@
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from frictioncli.arrays import Array
 from frictioncli.simulator.noise import SimulatedNoise
 
 PAIR_SPACING = 75.0
@@ -29,7 +30,7 @@ class UnevenNoise(SimulatedNoise):
     by_torque: float = 0.0
     by_speed: float = 0.0
 
-    def spread(self, torque: ArrayLike, velocity: ArrayLike) -> NDArray[np.float64]:
+    def spread(self, torque: ArrayLike, velocity: ArrayLike) -> Array:
         """Return the factor on the noise at torques in N·m and velocities in deg/s [-]."""
         grown = self.by_torque * np.abs(torque) + self.by_speed * np.abs(velocity)
         even = 1.0 if self.by_torque == self.by_speed == 0.0 else 0.4
@@ -39,10 +40,10 @@ class UnevenNoise(SimulatedNoise):
         self,
         generator: np.random.Generator,
         *,
-        torque: NDArray[np.float64],
-        velocity: NDArray[np.float64],
+        torque: Array,
+        velocity: Array,
         interval: float,
-    ) -> NDArray[np.float64]:
+    ) -> Array:
         """Return the torque noise of samples ``interval`` seconds apart [N·m]."""
         even = self.torque(generator, count=len(torque), interval=interval)
         hit = generator.random(len(torque)) < self.outliers

@@ -3,8 +3,8 @@
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
+from frictioncli.arrays import Array
 from frictioncli.errors import OptionError
 from frictioncli.simulator.joint import RoundTrips, SimulatedJoint
 from frictioncli.simulator.motion_profile import Servo, move_duration
@@ -65,12 +65,12 @@ class PaperProgram:
             for speed in speeds
         ]
 
-    def trip_begins(self, servo: Servo, speeds: tuple[float, ...]) -> NDArray[np.float64]:
+    def trip_begins(self, servo: Servo, speeds: tuple[float, ...]) -> Array:
         """Return when each round trip of a recording begins, from its first sample on [s]."""
         durations = self.trip_durations(servo, speeds)
         return np.asarray(self.lead + np.concatenate([[0.0], np.cumsum(durations)[:-1]]))
 
-    def move_begins(self, servo: Servo, speeds: tuple[float, ...]) -> NDArray[np.float64]:
+    def move_begins(self, servo: Servo, speeds: tuple[float, ...]) -> Array:
         """Return when each move of a recording begins, two per round trip [s]."""
         halves = np.repeat(self.trip_durations(servo, speeds), 2) / 2.0
         return np.asarray(self.lead + np.concatenate([[0.0], np.cumsum(halves)[:-1]]))

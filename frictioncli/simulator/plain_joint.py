@@ -3,8 +3,9 @@
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from frictioncli.arrays import Array
 from frictioncli.simulator.arm import Arm
 from frictioncli.simulator.joint import HeatEntry, SimulatedJoint
 from frictioncli.simulator.motion_profile import Servo
@@ -64,9 +65,7 @@ class WholeFriction:
     name: str = "whole joint"
     node: str = MOTOR
 
-    def torque(
-        self, *, load: ArrayLike, speed: ArrayLike, temperature: ArrayLike
-    ) -> NDArray[np.float64]:
+    def torque(self, *, load: ArrayLike, speed: ArrayLike, temperature: ArrayLike) -> Array:
         """Return the friction torque from N·m, deg/s and °C [N·m]."""
         viscous = self.beta + self.gamma * np.exp(-self.delta * np.asarray(temperature))
         square = np.square(np.asarray(load, dtype=float))

@@ -4,8 +4,9 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from frictioncli.arrays import Array
 from frictioncli.simulator.joint import SimulatedJoint
 from frictioncli.simulator.motion_profile import MotionProfile, round_trips
 from frictioncli.simulator.noise import SimulatedNoise
@@ -59,14 +60,14 @@ class Recording:
         Registered temperatures. [°C]
     """
 
-    time: NDArray[np.float64]
-    position: NDArray[np.float64]
-    torque: NDArray[np.float64]
-    motor_temperature: NDArray[np.float64]
-    housing_temperature: NDArray[np.float64]
+    time: Array
+    position: Array
+    torque: Array
+    motor_temperature: Array
+    housing_temperature: Array
 
 
-def registered(value: ArrayLike, step: float) -> NDArray[np.float64]:
+def registered(value: ArrayLike, step: float) -> Array:
     """Return ``value`` as a sensor with resolution ``step`` registers it: the nearest step."""
     return np.asarray(np.floor(np.asarray(value, dtype=float) / step + 0.5) * step)
 
@@ -75,10 +76,10 @@ def control_torque(
     joint: SimulatedJoint,
     motion: MotionProfile,
     *,
-    temperatures: dict[str, NDArray[np.float64]],
+    temperatures: dict[str, Array],
     sign: int,
-    friction_offset: NDArray[np.float64] | float = 0.0,
-) -> NDArray[np.float64]:
+    friction_offset: Array | float = 0.0,
+) -> Array:
     r"""Return the control torque of a motion, without noise [N·m].
 
     Parameters
@@ -115,7 +116,7 @@ def record(
     *,
     logger: Logger,
     noise: SimulatedNoise,
-    pair_offsets: NDArray[np.float64],
+    pair_offsets: Array,
     generator: np.random.Generator,
     hidden: Callable[[State], Extra] | None = None,
     journey: Journey | None = None,

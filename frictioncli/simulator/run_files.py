@@ -6,8 +6,8 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from frictioncli.arrays import Array
 from frictioncli.simulator.enriched_protocol import second_shares
 from frictioncli.simulator.paper_protocol import SeriesOfMoves
 from frictioncli.simulator.planted.state import Extra, State
@@ -54,8 +54,8 @@ class _Planned:
 
     file: str
     series: SeriesOfMoves
-    begins: NDArray[np.float64]
-    offsets: NDArray[np.float64]
+    begins: Array
+    offsets: Array
 
 
 def write_run(

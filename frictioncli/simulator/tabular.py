@@ -4,8 +4,8 @@ from dataclasses import dataclass
 
 import numpy as np
 import pandas as pd
-from numpy.typing import NDArray
 
+from frictioncli.arrays import Array, Flags, Numbers
 from frictioncli.simulator.cells import Cells, cells_of
 from frictioncli.simulator.fast_history import FastHistory
 from frictioncli.simulator.noise import SimulatedNoise
@@ -148,7 +148,7 @@ def table_of(
     )
 
 
-def _torque(part: Cells, planted: Planted, sign: int) -> NDArray[np.float64]:
+def _torque(part: Cells, planted: Planted, sign: int) -> Array:
     """Return the mean torque per direction and cell, without noise [N·m].
 
     A bin that was passed in part has its mean off its centre; as from traces, the mean is carried
@@ -163,7 +163,7 @@ def _torque(part: Cells, planted: Planted, sign: int) -> NDArray[np.float64]:
     return np.asarray(np.mean(torque, axis=0) + slope * away)
 
 
-def _middles(course: RunCourse) -> NDArray[np.float64]:
+def _middles(course: RunCourse) -> Array:
     """Return the time from each round trip's begin to the middle of its pair [s]."""
     run = course.run
     durations = [
@@ -173,8 +173,8 @@ def _middles(course: RunCourse) -> NDArray[np.float64]:
 
 
 def _temperatures(
-    course: RunCourse, time: NDArray[np.float64], generator: np.random.Generator, rebuilt: bool
-) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
+    course: RunCourse, time: Array, generator: np.random.Generator, rebuilt: bool
+) -> tuple[Array, Array, Array]:
     """Return motor temperature, its reading and housing temperature per round trip [°C]."""
     logger, noise = course.run.logger, course.run.noise
     true = course.history.at(time)
@@ -197,12 +197,12 @@ def _temperatures(
 def _noise(
     noise: SimulatedNoise,
     generator: np.random.Generator,
-    torque: NDArray[np.float64],
-    speed: NDArray[np.float64],
-    trip: NDArray[np.int64],
-    count: NDArray[np.int64],
+    torque: Array,
+    speed: Array,
+    trip: Numbers,
+    count: Numbers,
     interval: float,
-) -> NDArray[np.float64]:
+) -> Array:
     """Return the noise of the means per direction and cell, cells in order of trip and angle."""
     shape = torque.shape
     spread, loud = np.ones(shape), np.zeros(shape)
@@ -221,9 +221,7 @@ def _noise(
     return total + noise.correlated * np.sqrt(kept) * _remembering(generator, memory, first)
 
 
-def _remembering(
-    generator: np.random.Generator, memory: NDArray[np.float64], first: NDArray[np.bool_]
-) -> NDArray[np.float64]:
+def _remembering(generator: np.random.Generator, memory: Array, first: Flags) -> Array:
     """Return numbers of variance 1 for both directions, correlated by ``memory`` along moves."""
     drive = generator.standard_normal((2, len(memory)))
     place = np.arange(len(memory)) - np.maximum.accumulate(

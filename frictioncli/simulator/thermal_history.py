@@ -5,9 +5,10 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 from scipy.integrate import OdeSolution, solve_ivp
 
+from frictioncli.arrays import Array
 from frictioncli.simulator.joint import MeanPower, RoundTrips, SimulatedJoint
 from frictioncli.simulator.thermal_network import Ambient
 
@@ -76,10 +77,10 @@ class History(ABC):
         return tuple(self._legs)
 
     @abstractmethod
-    def at(self, time: ArrayLike) -> dict[str, NDArray[np.float64]]:
+    def at(self, time: ArrayLike) -> dict[str, Array]:
         """Return the temperatures at times [s] within the history, by node name [°C]."""
 
-    def heat(self, times: NDArray[np.float64]) -> NDArray[np.float64]:
+    def heat(self, times: Array) -> Array:
         """Return the power dissipated at times in s [W]."""
         starts = np.array([leg.start for leg in self._legs])
         owner = np.maximum(np.searchsorted(starts, times, side="right") - 1, 0)
@@ -124,7 +125,7 @@ class ThermalHistory(History):
         super().__init__(joint, ambient)
         self._blocks: list[_Block] = []
 
-    def at(self, time: ArrayLike) -> dict[str, NDArray[np.float64]]:
+    def at(self, time: ArrayLike) -> dict[str, Array]:
         """Return the temperatures at times [s] within the history, by node name [°C]."""
         times = np.asarray(time, dtype=float)
         found = np.empty((len(self.state), *times.shape))
@@ -154,12 +155,10 @@ class ThermalHistory(History):
         self.state = np.asarray(solved.y[:, -1])
         return True
 
-    def _slope(
-        self, power: MeanPower | None
-    ) -> Callable[[float, NDArray[np.float64]], NDArray[np.float64]]:
+    def _slope(self, power: MeanPower | None) -> Callable[[float, Array], Array]:
         names = self._joint.network.names
 
-        def slope(time: float, state: NDArray[np.float64]) -> NDArray[np.float64]:
+        def slope(time: float, state: Array) -> Array:
             heat = self._to_ambient * self.ambient.at(time) - self._conductance @ state
             if power is not None:
                 heat += self._shares * power(dict(zip(names, state.tolist(), strict=True)))
@@ -167,8 +166,8 @@ class ThermalHistory(History):
 
         return slope
 
-    def _passing(self, temperature: float) -> Callable[[float, NDArray[np.float64]], float]:
-        def distance(_: float, state: NDArray[np.float64]) -> float:
+    def _passing(self, temperature: float) -> Callable[[float, Array], float]:
+        def distance(_: float, state: Array) -> float:
             return float(state[self._motor] - temperature)
 
         distance.terminal = True  # type: ignore[attr-defined]

@@ -3,7 +3,9 @@
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
+
+from frictioncli.arrays import Array
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -51,15 +53,15 @@ class ThermalNetwork:
         """Names of the nodes, in the order of every vector here."""
         return tuple(node.name for node in self.nodes)
 
-    def capacities(self) -> NDArray[np.float64]:
+    def capacities(self) -> Array:
         """Return heat capacities [J/K]."""
         return np.array([node.capacity for node in self.nodes])
 
-    def to_ambient(self) -> NDArray[np.float64]:
+    def to_ambient(self) -> Array:
         """Return conductances to ambient [W/K]."""
         return np.array([node.to_ambient for node in self.nodes])
 
-    def conductance_matrix(self) -> NDArray[np.float64]:
+    def conductance_matrix(self) -> Array:
         """Return G, with ``G @ T - to_ambient * ambient`` the heat leaving the nodes [W/K]."""
         matrix = np.diag(self.to_ambient())
         index = {name: i for i, name in enumerate(self.names)}
@@ -71,7 +73,7 @@ class ThermalNetwork:
             matrix[j, i] -= link.conductance
         return matrix
 
-    def steady_state(self, *, power: ArrayLike, ambient: float) -> NDArray[np.float64]:
+    def steady_state(self, *, power: ArrayLike, ambient: float) -> Array:
         """Return the temperatures at which constant heat input and loss balance [°C].
 
         Parameters
@@ -100,6 +102,6 @@ class Ambient:
     start: float
     drift: float = 0.0
 
-    def at(self, time: ArrayLike) -> NDArray[np.float64]:
+    def at(self, time: ArrayLike) -> Array:
         """Return the ambient temperature at a time in s [°C]."""
         return np.asarray(self.start + self.drift * np.asarray(time, dtype=float) / 3600.0)

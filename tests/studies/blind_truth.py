@@ -6,14 +6,12 @@ from typing import Any
 
 import numpy as np
 import pandas as pd
-from numpy.typing import NDArray
 
+from frictioncli.arrays import Array
 from frictioncli.diagnosis.data.problem import Problem, build_problems
 from frictioncli.diagnosis.fit.columns import base_rows
 from frictioncli.simulator.tabular import simulate_world
 from tests.studies.blind_worlds import World
-
-Array = NDArray[np.float64]
 
 TEMPERATURE = "motor"
 GRAVITY = 9.80665

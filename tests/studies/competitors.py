@@ -17,6 +17,7 @@ from sklearn.gaussian_process import GaussianProcessRegressor
 from sklearn.gaussian_process.kernels import RBF, ConstantKernel, WhiteKernel
 from sklearn.preprocessing import StandardScaler
 
+from frictioncli.arrays import Array
 from frictioncli.diagnosis.data.problem import Problem
 from frictioncli.diagnosis.diagnose import diagnose_joint
 from frictioncli.diagnosis.settings import DiagnosisSettings
@@ -35,7 +36,6 @@ from tests.studies.joints import (
     visible_columns,
 )
 
-Array = NDArray[np.float64]
 Mask = NDArray[np.bool_]
 
 ALPHA = 0.05

@@ -12,12 +12,12 @@ import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
+from frictioncli.arrays import Array
 from frictioncli.diagnosis.data.problem import Problem, build_problems
 from frictioncli.effects import EFFECTS
 from frictioncli.effects.availability import judgeable
 from frictioncli.effects.base import Effect
 
-Array = NDArray[np.float64]
 Mask = NDArray[np.bool_]
 
 WORTHWHILE, SLIGHT = 0.03, 0.002

@@ -15,11 +15,9 @@ from collections.abc import Mapping
 
 import numpy as np
 import pandas as pd
-from numpy.typing import NDArray
 
+from frictioncli.arrays import Array
 from frictioncli.errors import TableError
-
-Array = NDArray[np.float64]
 
 NAMES = ("cosine", "sine", "offset")
 PER_MASS = ("cosine_per_kg", "sine_per_kg")

@@ -2,12 +2,10 @@
 
 import numpy as np
 import pandas as pd
-from numpy.typing import NDArray
 
+from frictioncli.arrays import Array, Flags
 from frictioncli.diagnosis.data.pair_layout import PairLayout
 from frictioncli.model.zero_load import PAIR_KEY
-
-Array = NDArray[np.float64]
 
 _SERIES_GAP = 120.0
 """A pause longer than this begins a new measuring series. [s]"""
@@ -86,7 +84,7 @@ def travel_of(rows: pd.DataFrame, layout: PairLayout, temperature: Array) -> Arr
     return travel - travel[np.searchsorted(layout.run, layout.run)]
 
 
-def moved_throughout(rise: Array, seconds: Array, warmed: NDArray[np.bool_]) -> NDArray[np.bool_]:
+def moved_throughout(rise: Array, seconds: Array, warmed: Flags) -> Flags:
     """Return in which of the pauses that warmed the motor the joint moved all the time.
 
     Parameters

@@ -4,10 +4,9 @@ from dataclasses import dataclass
 
 import numpy as np
 import pandas as pd
-from numpy.typing import NDArray
 from scipy.sparse import csr_array
 
-Array = NDArray[np.float64]
+from frictioncli.arrays import Array, Indices
 
 _POOLED = 5
 """Neighbouring pairs at one speed whose deviations are pooled."""
@@ -16,7 +15,7 @@ _SAME_SPEED = 0.02
 """Speeds closer than this share are one level."""
 
 
-def speed_level(speed: Array) -> NDArray[np.intp]:
+def speed_level(speed: Array) -> Indices:
     """Return the level of each speed [deg/s]; speeds of one level differ by 2 % at the most."""
     return np.round(np.log(np.maximum(speed, 1e-9)) / _SAME_SPEED).astype(np.intp)
 
@@ -42,19 +41,19 @@ class PairLayout:
         orthonormal, so white deviations stay white.
     """
 
-    row_pair: NDArray[np.intp]
+    row_pair: Indices
     bins: Array
-    run: NDArray[np.intp]
+    run: Indices
     time: Array
-    level: NDArray[np.intp]
+    level: Indices
     pooling: csr_array
 
     @classmethod
     def of(
         cls,
         *,
-        row_pair: NDArray[np.intp],
-        run: NDArray[np.intp],
+        row_pair: Indices,
+        run: Indices,
         time: Array,
         speed: Array,
         position: Array,

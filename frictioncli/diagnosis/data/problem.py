@@ -12,8 +12,8 @@ from dataclasses import dataclass, fields, replace
 
 import numpy as np
 import pandas as pd
-from numpy.typing import NDArray
 
+from frictioncli.arrays import Array, Flags, Indices
 from frictioncli.diagnosis.data.base_models import candidate_bases
 from frictioncli.diagnosis.data.gravity import (
     NAMES,
@@ -29,8 +29,6 @@ from frictioncli.effects.base import Basis, Effect, EffectTable
 from frictioncli.model.document import PARAMETERS
 from frictioncli.model.friction import FrictionParameters, friction_torque
 from frictioncli.model.zero_load import PAIR_KEY, temperature_of
-
-Array = NDArray[np.float64]
 
 _REBUILT = 0.05
 _REGISTERED = 0.29
@@ -73,7 +71,7 @@ class Problem:
 
     table: EffectTable
     whole: EffectTable
-    rows: NDArray[np.intp]
+    rows: Indices
     layout: PairLayout
     friction: Array
     load: Array
@@ -162,7 +160,7 @@ def build_problems(
     return _part(whole, ~new), _part(whole, new) if new.any() else None
 
 
-def _typical_misfit(problem: "Problem", seen: NDArray[np.bool_]) -> float:
+def _typical_misfit(problem: "Problem", seen: Flags) -> float:
     """Return the median misfit of the pairs' mean friction. [N·m]."""
     misfit = problem.layout.means(problem.friction_misfit[:, np.newaxis])[:, 0]
     return float(np.median(np.abs(misfit[np.unique(problem.layout.row_pair[seen])])))
@@ -293,7 +291,7 @@ def _modelled(table: EffectTable, parameters: FrictionParameters) -> EffectTable
     )
 
 
-def _part(whole: Problem, chosen: NDArray[np.bool_]) -> Problem:
+def _part(whole: Problem, chosen: Flags) -> Problem:
     """Return the problem of some runs; rows of whole pairs are chosen."""
     table = EffectTable(
         **{field.name: getattr(whole.table, field.name)[chosen] for field in fields(EffectTable)}

@@ -7,8 +7,8 @@ from pathlib import Path
 from typing import Any, TypeVar
 
 import numpy as np
-from numpy.typing import NDArray
 
+from frictioncli.arrays import Array
 from frictioncli.diagnosis.data.gravity import stated_gravity
 from frictioncli.diagnosis.data.problem import Problem
 from frictioncli.effects import BY_NAME
@@ -17,7 +17,6 @@ from frictioncli.errors import TableError
 from frictioncli.model.document import PARAMETERS
 from frictioncli.model.friction import FrictionParameters
 
-Array = NDArray[np.float64]
 Part = TypeVar("Part")
 
 

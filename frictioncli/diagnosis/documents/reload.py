@@ -7,8 +7,8 @@ from typing import Any
 
 import numpy as np
 import pandas as pd
-from numpy.typing import NDArray
 
+from frictioncli.arrays import Array
 from frictioncli.diagnosis.data.problem import Problem, build_problems
 from frictioncli.diagnosis.documents.extended_model import (
     ExtendedModel,
@@ -18,8 +18,6 @@ from frictioncli.diagnosis.documents.extended_model import (
 )
 from frictioncli.errors import TableError
 from frictioncli.workfiles import DIAGNOSIS, EXTENDED
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -5,8 +5,8 @@ from dataclasses import dataclass, replace
 from functools import partial
 
 import numpy as np
-from numpy.typing import NDArray
 
+from frictioncli.arrays import Array, Indices
 from frictioncli.diagnosis.fit.columns import ChannelColumns
 from frictioncli.diagnosis.fit.two_channel_fit import NormalEquations, noise_of
 from frictioncli.diagnosis.noise.likelihood_scan import (
@@ -20,8 +20,6 @@ from frictioncli.diagnosis.noise.likelihood_scan import (
 from frictioncli.diagnosis.noise.orthonormal_groups import Groups
 from frictioncli.diagnosis.noise.spectra import Modes, Spectra
 from frictioncli.model.noise import Noise
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -91,7 +89,7 @@ class ChannelLikelihood:
         return replace(alone, inside=alone.inside[0], between=alone.between[0])
 
     def equations_each(
-        self, rivals: ChannelColumns, modes: Array, columns: NDArray[np.intp], setting: Setting
+        self, rivals: ChannelColumns, modes: Array, columns: Indices, setting: Setting
     ) -> NormalEquations:
         """Return the inner products of base, each of many rivals, and misfit under one noise.
 
@@ -128,7 +126,7 @@ def _bordered(
     product: Callable[[Array, Array], Array],
     known: Array,
     rivals: Array,
-    columns: NDArray[np.intp],
+    columns: Indices,
 ) -> Array:
     """Return inner products of the base's columns, each rival's, and the misfit.
 

@@ -8,15 +8,13 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from frictioncli.arrays import Array, Indices
 from frictioncli.diagnosis.data.pair_layout import PairLayout
 from frictioncli.diagnosis.data.problem import Problem
 from frictioncli.effects.base import Basis, Effect
 from frictioncli.effects.pair_series import measured_share
 from frictioncli.quantities import TORQUE
-
-Array = NDArray[np.float64]
 
 _USUAL_FRICTION = 20.0
 """Mean friction torque up to which the catalogue's bounds in units of torque hold; those of a
@@ -64,7 +62,7 @@ class ModelColumns:
         """Number of columns."""
         return self.friction.count
 
-    def take(self, chosen: slice | Sequence[int] | NDArray[np.intp]) -> "ModelColumns":
+    def take(self, chosen: slice | Sequence[int] | Indices) -> "ModelColumns":
         """Return some of the columns."""
         return ModelColumns(
             *(

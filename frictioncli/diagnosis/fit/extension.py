@@ -4,15 +4,13 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
+from frictioncli.arrays import Array
 from frictioncli.diagnosis.data.problem import Problem
 from frictioncli.diagnosis.fit.columns import base_rows
 from frictioncli.diagnosis.fit.judgement import Score
 from frictioncli.diagnosis.fit.weighted_fit import WeightedFit
 from frictioncli.effects.base import Basis, Parameter
-
-Array = NDArray[np.float64]
 
 _BLOCK = 12
 """Pairs drawn together when the gain's interval is made: neighbours are not independent."""

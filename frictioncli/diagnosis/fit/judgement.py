@@ -2,13 +2,9 @@
 
 from dataclasses import dataclass
 
-import numpy as np
-from numpy.typing import NDArray
-
+from frictioncli.arrays import Array
 from frictioncli.diagnosis.noise.significance import Chance
 from frictioncli.effects.base import Effect
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, slots=True)

@@ -3,13 +3,11 @@
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
+from frictioncli.arrays import Array, Indices
 from frictioncli.diagnosis.noise.likelihood_scan import Setting
 from frictioncli.diagnosis.noise.spectra import STRENGTHS, Spectra
 from frictioncli.model.noise import Noise
-
-Array = NDArray[np.float64]
 
 _ROUNDS = 4
 """Rounds of fitting coefficients and noise scale in turn."""
@@ -145,7 +143,7 @@ def _square(gram: Array, combination: Array) -> Array:
     return np.asarray(np.einsum("ri,rij,rj->r", combination, gram, combination))
 
 
-def _left(gram: Array, base: int) -> tuple[Array, NDArray[np.intp]]:
+def _left(gram: Array, base: int) -> tuple[Array, Indices]:
     """Return the lengths that the base leaves of each rival's columns, and their ranks."""
     if gram.shape[1] == base:
         return np.empty((len(gram), 0)), np.zeros(len(gram), dtype=np.intp)

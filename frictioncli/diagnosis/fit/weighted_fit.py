@@ -11,12 +11,10 @@ with the weighted columns *X* and the correlation *C* of the weighted noise.
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from frictioncli.arrays import Array
 from frictioncli.diagnosis.data.pair_layout import PairLayout
 from frictioncli.model.noise import Noise, PairCovariance, pair_covariance
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, slots=True)

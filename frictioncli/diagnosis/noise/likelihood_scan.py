@@ -15,12 +15,11 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from frictioncli.arrays import Array, Indices
 from frictioncli.diagnosis.noise.orthonormal_groups import Groups, unmixing
 from frictioncli.diagnosis.noise.spectra import STRENGTHS, Spectra
 
-Array = NDArray[np.float64]
 Setting = tuple[int, int]
 """Place of a noise: of its correlation time and of its strength."""
 
@@ -37,7 +36,7 @@ class Scan:
         Twice the log likelihood ratio of each group in noise drawn from the base's.
     """
 
-    of_group: NDArray[np.intp]
+    of_group: Indices
     drawn: Array
 
     @property

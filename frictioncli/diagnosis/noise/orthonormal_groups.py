@@ -4,9 +4,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+from frictioncli.arrays import Array, Flags, Indices
 
 _VISIBLE = 1e-3
 """A column of which the base leaves less than this share says nothing of its own."""
@@ -56,8 +55,8 @@ def unmixing(inner: Array, before: Array) -> Array:
 class Groups:
     """How columns are grouped: group *i* has ``width[i]`` columns from ``start[i]``."""
 
-    start: NDArray[np.intp]
-    width: NDArray[np.intp]
+    start: Indices
+    width: Indices
 
     @classmethod
     def of(cls, widths: Sequence[int]) -> "Groups":
@@ -69,11 +68,11 @@ class Groups:
         """Return the columns of a group."""
         return slice(int(self.start[group]), int(self.start[group] + self.width[group]))
 
-    def chosen(self, wanted: NDArray[np.bool_]) -> tuple["Groups", NDArray[np.intp]]:
+    def chosen(self, wanted: Flags) -> tuple["Groups", Indices]:
         """Return some of the groups, and the places of their columns among all."""
         return Groups.of(self.width[wanted].tolist()), np.flatnonzero(np.repeat(wanted, self.width))
 
-    def alike(self) -> list[tuple[NDArray[np.intp], NDArray[np.intp]]]:
+    def alike(self) -> list[tuple[Indices, Indices]]:
         """Return the groups of each width with their columns, shapes (groups,), (groups, width)."""
         found = []
         for wide in sorted(set(self.width.tolist())):

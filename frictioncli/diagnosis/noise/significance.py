@@ -16,10 +16,9 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy import stats
 
-Array = NDArray[np.float64]
+from frictioncli.arrays import Array
 
 _PRIOR_VARIANCE = 100.0
 """Variance of a coefficient before the data, in units of its sampling variance."""

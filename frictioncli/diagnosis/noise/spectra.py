@@ -14,11 +14,10 @@ many noises can be asked what they say to many explanations.
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from frictioncli.arrays import Array
 from frictioncli.diagnosis.data.pair_layout import PairLayout
 
-Array = NDArray[np.float64]
 Modes = tuple[Array, ...]
 """Pair means in the eigenvectors of each correlation time."""
 

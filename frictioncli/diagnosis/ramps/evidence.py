@@ -25,18 +25,16 @@ from pathlib import Path
 
 import numpy as np
 import pandas as pd
-from numpy.typing import NDArray
 from scipy import stats
 from scipy.optimize import minimize_scalar
 
 from frictioncli import schemas, tables
+from frictioncli.arrays import Array
 from frictioncli.diagnosis.data.problem import Problem
 from frictioncli.diagnosis.noise.significance import log_evidence
 from frictioncli.diagnosis.ramps.misfit import RampMisfit, resolved
 from frictioncli.diagnosis.ramps.robust_fit import Fit, Projection, fitted
 from frictioncli.pairs.ramps import LAGS
-
-Array = NDArray[np.float64]
 
 DISTANCES = np.geomspace(0.3, 20.0, 15)
 """Angles over which a lack of friction may fade. [deg]"""

@@ -4,16 +4,14 @@ from dataclasses import dataclass
 
 import numpy as np
 import pandas as pd
-from numpy.typing import NDArray
 
+from frictioncli.arrays import Array, Flags
 from frictioncli.diagnosis.data.gravity import NAMES, columns_of, known_payload
 from frictioncli.diagnosis.data.problem import Problem
 from frictioncli.diagnosis.ramps.robust_fit import Labels, Projection
 from frictioncli.model.friction import friction_torque
 from frictioncli.model.zero_load import temperature_of
 from frictioncli.pairs.ramps import LAGS
-
-Array = NDArray[np.float64]
 
 _CORRELATED = 10.0
 """Neighbouring samples beyond this number add nothing to a mean."""
@@ -152,7 +150,7 @@ class RampMisfit:
         return self.sign * self.begun * height * rising * fading
 
 
-def _ramp_time(rows: pd.DataFrame, begun: NDArray[np.bool_]) -> Array:
+def _ramp_time(rows: pd.DataFrame, begun: Flags) -> Array:
     """Return how long each row's move accelerates, from speed and greatest acceleration. [s]."""
     steepest = rows["acceleration"].abs().where(begun).groupby(rows["move"]).transform("max")
     return np.asarray(rows["speed"] / np.maximum(steepest.fillna(0.0), 1.0), dtype=float)

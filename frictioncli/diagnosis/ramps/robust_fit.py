@@ -9,10 +9,10 @@ References
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
-Labels = NDArray[np.intp]
+from frictioncli.arrays import Array, Indices
+
+Labels = Indices
 
 _NOTHING = 1e-9
 

@@ -3,14 +3,13 @@
 from collections.abc import Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
+from frictioncli.arrays import Array
 from frictioncli.diagnosis.data.problem import Problem
 from frictioncli.diagnosis.fit.extension import misfits, reduction_interval, refit
 from frictioncli.diagnosis.fit.weighted_fit import WeightedFit
 from frictioncli.diagnosis.search.cause_search import Cause, Found
 
-Array = NDArray[np.float64]
 _Squares = dict[str, Array]
 
 WORTHWHILE = 0.03

@@ -7,15 +7,13 @@ name nothing; they tell that something is wrong where no effect of the catalogue
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from frictioncli.arrays import Array, Indices
 from frictioncli.diagnosis.data.problem import Problem
 from frictioncli.diagnosis.fit.columns import Hypothesis, left_of_base, reduced
 from frictioncli.diagnosis.noise.likelihood_scan import span
 from frictioncli.diagnosis.search.precomputed import Catalogue
 from frictioncli.diagnosis.search.step import DRAWS, Step
-
-Array = NDArray[np.float64]
 
 _HARMONICS = 12
 _WAVES = 6
@@ -144,7 +142,7 @@ def _levels(values: Array) -> Array:
     return np.eye(len(edges) + 1)[np.searchsorted(edges, values, side="left")]
 
 
-def _indicators(level: NDArray[np.intp]) -> Array:
+def _indicators(level: Indices) -> Array:
     """Return an indicator column per level, the rarest ones together beyond sixteen."""
     names, place, count = np.unique(level, return_inverse=True, return_counts=True)
     common = np.argsort(-count)[:_MOST_LEVELS]

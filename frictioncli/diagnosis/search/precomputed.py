@@ -4,8 +4,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from frictioncli.arrays import Array
 from frictioncli.diagnosis.data.pair_layout import PairLayout
 from frictioncli.diagnosis.data.problem import Problem
 from frictioncli.diagnosis.fit.columns import (
@@ -20,8 +20,6 @@ from frictioncli.diagnosis.fit.columns import (
 from frictioncli.diagnosis.noise.orthonormal_groups import Groups
 from frictioncli.diagnosis.noise.spectra import Modes, Spectra, spectra_of
 from frictioncli.effects.base import Basis
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

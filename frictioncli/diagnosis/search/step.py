@@ -5,9 +5,9 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.optimize import minimize
 
+from frictioncli.arrays import Array
 from frictioncli.diagnosis.data.problem import Problem
 from frictioncli.diagnosis.fit.channel_likelihood import ChannelLikelihood
 from frictioncli.diagnosis.fit.columns import (
@@ -29,7 +29,6 @@ from frictioncli.diagnosis.search.precomputed import Catalogue, Precomputed, poi
 from frictioncli.effects.base import Effect
 from frictioncli.model.noise import Noise
 
-Array = NDArray[np.float64]
 Settings = tuple[Setting, Setting]
 """Places of the noises of friction and load."""
 

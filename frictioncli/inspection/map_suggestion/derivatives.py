@@ -4,15 +4,13 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from frictioncli.arrays import Array
 from frictioncli.inspection.map_suggestion.probe import Probe
 from frictioncli.logs.channels import aliases as names
 from frictioncli.logs.channels import unit_evidence
 from frictioncli.logs.channels.unit_evidence import MotionUnits
 from frictioncli.logs.channels.units import FACTORS
-
-Array = NDArray[np.float64]
 
 _ALIKE = 0.97
 """Least cosine between the change of one column and the integral of another."""

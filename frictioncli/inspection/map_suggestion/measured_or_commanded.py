@@ -3,11 +3,9 @@
 from collections.abc import Mapping
 
 import numpy as np
-from numpy.typing import NDArray
 
+from frictioncli.arrays import Array
 from frictioncli.inspection.map_suggestion.guess import is_command, is_derived
-
-Array = NDArray[np.float64]
 
 _LONGEST_LAG = 20
 _SAME = 0.995

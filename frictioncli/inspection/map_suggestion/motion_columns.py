@@ -4,8 +4,8 @@ from collections.abc import Collection, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from frictioncli.arrays import Array
 from frictioncli.errors import NotEnoughData
 from frictioncli.inspection.map_suggestion.columns import LogColumns
 from frictioncli.inspection.map_suggestion.derivatives import Derivative
@@ -14,8 +14,6 @@ from frictioncli.inspection.map_suggestion.measured_or_commanded import measured
 from frictioncli.inspection.map_suggestion.time_columns import TimeColumn, possible_units
 from frictioncli.logs.channels import aliases as names
 from frictioncli.logs.channels import unit_evidence, units
-
-Array = NDArray[np.float64]
 
 _SURE_COSINE = 0.999
 _SMOOTH = 0.05

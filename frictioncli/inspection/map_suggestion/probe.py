@@ -5,12 +5,10 @@ from contextlib import suppress
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from frictioncli.arrays import Array
 from frictioncli.logs.formats.base import RawBatch, Source
 from frictioncli.logs.formats.compression import UnreadableLog
-
-Array = NDArray[np.float64]
 
 _FIRST_BYTES = 1 << 16
 _BATCH_BYTES = 1 << 20

@@ -4,8 +4,8 @@ from collections.abc import Collection, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from frictioncli.arrays import Array
 from frictioncli.inspection.map_suggestion.columns import OTHERS, LogColumns
 from frictioncli.inspection.map_suggestion.guess import (
     GUESS,
@@ -18,8 +18,6 @@ from frictioncli.inspection.map_suggestion.guess import (
 from frictioncli.inspection.map_suggestion.probe import Probe
 from frictioncli.logs.channels import aliases as names
 from frictioncli.logs.channels import units
-
-Array = NDArray[np.float64]
 
 _MOVES = 0.1
 _FEWEST = 20

@@ -3,13 +3,10 @@
 from dataclasses import dataclass, field
 
 import numpy as np
-from numpy.typing import NDArray
 
+from frictioncli.arrays import Array, Flags, Indices
 from frictioncli.inspection.monitors.joint_rows import JointRows
 from frictioncli.logs.channels import aliases as names
-
-Array = NDArray[np.float64]
-Flags = NDArray[np.bool_]
 
 _ALIVE = 0.8
 """Share of moving samples whose torque differs from the one before: then a constant one is odd."""
@@ -89,7 +86,7 @@ class _Standstill:
         self._count(np.array([self._open_rows]), np.array([self._last - self._open_since]))
         self._open_rows = 0
 
-    def _count(self, rows: NDArray[np.intp], seconds: Array) -> None:
+    def _count(self, rows: Indices, seconds: Array) -> None:
         long = (rows >= _LEAST_FROZEN) & (seconds >= _LEAST_SECONDS)
         self.spans += int(long.sum())
         self.seconds += float(seconds[long].sum())
@@ -144,7 +141,7 @@ class ConstantTorqueMonitor:
         return (self._standstill.spans, self._standstill.seconds) if self._alive else (0, 0.0)
 
 
-def _runs(flags: Flags) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
+def _runs(flags: Flags) -> tuple[Indices, Indices]:
     """Return lengths and beginnings of the stretches where a flag is set."""
     edges = np.flatnonzero(np.diff(np.concatenate(([False], flags, [False])).astype(np.int8)))
     return edges[1::2] - edges[::2], edges[::2]

@@ -3,15 +3,12 @@
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from frictioncli.arrays import Array, Flags
 from frictioncli.inspection.monitors.windows import Window
 from frictioncli.logs.channels import aliases as names
 from frictioncli.logs.samples.differentiation import max_gap
 from frictioncli.pairs.settings import SteadySettings
-
-Array = NDArray[np.float64]
-Flags = NDArray[np.bool_]
 
 _REACH = 4
 """Rows to either side over which a joint must move to count as moving."""

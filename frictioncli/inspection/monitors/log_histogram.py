@@ -3,9 +3,8 @@
 from dataclasses import dataclass, field
 
 import numpy as np
-from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+from frictioncli.arrays import Array, Indices, Numbers
 
 _RESOLUTION = 1e-4
 _SMALLEST, _LARGEST = 1e-12, 1e12
@@ -16,7 +15,7 @@ _HALF = 0.5
 class LogHistogram:
     """A histogram with classes of 0.01 % of the value; values up to 0 are left out."""
 
-    _keys: NDArray[np.int64] = field(default_factory=lambda: np.empty(0, np.int64))
+    _keys: Numbers = field(default_factory=lambda: np.empty(0, np.int64))
     _counts: Array = field(default_factory=lambda: np.empty(0))
     _sums: Array = field(default_factory=lambda: np.empty(0))
 
@@ -93,7 +92,7 @@ class LogHistogram:
         return self._sums / self._counts
 
 
-def _summed(index: NDArray[np.intp], values: Array) -> Array:
+def _summed(index: Indices, values: Array) -> Array:
     return np.asarray(np.bincount(index, values), np.float64)
 
 

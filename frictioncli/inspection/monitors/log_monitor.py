@@ -3,9 +3,10 @@
 from collections.abc import Collection, Iterable, Iterator
 from dataclasses import dataclass, field
 
+from frictioncli.arrays import Flags
 from frictioncli.inspection.findings import ChannelFound, JointFound, Spikes
 from frictioncli.inspection.monitors.constant_torque import ConstantTorqueMonitor
-from frictioncli.inspection.monitors.joint_rows import Flags, JointRows, joint_rows
+from frictioncli.inspection.monitors.joint_rows import JointRows, joint_rows
 from frictioncli.inspection.monitors.repeated_samples import RepeatedSamplesMonitor, changes
 from frictioncli.inspection.monitors.resolution import ResolutionMonitor
 from frictioncli.inspection.monitors.sampling import Sampling, SamplingMonitor

@@ -3,9 +3,9 @@
 from dataclasses import dataclass, field
 
 import numpy as np
-from numpy.typing import NDArray
 
-from frictioncli.inspection.monitors.joint_rows import Flags, JointRows
+from frictioncli.arrays import Array, Flags, Numbers
+from frictioncli.inspection.monitors.joint_rows import JointRows
 from frictioncli.inspection.monitors.log_histogram import LogHistogram
 from frictioncli.inspection.monitors.windows import Window
 from frictioncli.logs.channels import aliases as names
@@ -41,9 +41,9 @@ class RepeatedSamplesMonitor:
 
     _jumps: LogHistogram = field(default_factory=LogHistogram)
     _first: list[tuple[float, int]] = field(default_factory=list)
-    _position: NDArray[np.float64] = field(default_factory=lambda: np.empty(0))
-    _row: NDArray[np.int64] = field(default_factory=lambda: np.empty(0, np.int64))
-    _line: NDArray[np.int64] = field(default_factory=lambda: np.empty(0, np.int64))
+    _position: Array = field(default_factory=lambda: np.empty(0))
+    _row: Numbers = field(default_factory=lambda: np.empty(0, np.int64))
+    _line: Numbers = field(default_factory=lambda: np.empty(0, np.int64))
     _rows: int = 0
 
     def see(self, rows: JointRows, changed: Flags) -> None:

@@ -3,9 +3,8 @@
 from dataclasses import dataclass, field
 
 import numpy as np
-from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+from frictioncli.arrays import Array
 
 _ENOUGH = 20_000
 """Different values that are looked at; a step shows in far fewer."""

@@ -3,8 +3,8 @@
 from dataclasses import dataclass, field
 
 import numpy as np
-from numpy.typing import NDArray
 
+from frictioncli.arrays import Array, Indices
 from frictioncli.inspection.monitors.log_histogram import LogHistogram
 from frictioncli.inspection.monitors.windows import CONTEXT, Window
 from frictioncli.logs.samples.differentiation import max_gap
@@ -113,7 +113,7 @@ class SamplingMonitor:
         self._duration += float(steps[steps > 0].sum())
         self._resets += _resets(window, np.flatnonzero(steps < 0) + first)
 
-    def _note_longest(self, window: Window, steps: NDArray[np.float64], first: int) -> None:
+    def _note_longest(self, window: Window, steps: Array, first: int) -> None:
         since = self._duration + np.cumsum(np.maximum(steps, 0)) - np.maximum(steps, 0)
         top = np.argsort(steps, kind="stable")[::-1][:_GAPS_SHOWN]
         here = [
@@ -148,7 +148,7 @@ class SamplingMonitor:
         )
 
 
-def _resets(window: Window, where: NDArray[np.intp]) -> list[Reset]:
+def _resets(window: Window, where: Indices) -> list[Reset]:
     """Return those of the rows with a step back after which the time stays below that before."""
     time = window.rows.time
     around = np.arange(1, CONTEXT + 1)

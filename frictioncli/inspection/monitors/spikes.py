@@ -3,11 +3,9 @@
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from frictioncli.arrays import Array
 from frictioncli.inspection.monitors.joint_rows import JointRows
-
-Array = NDArray[np.float64]
 
 _FAR = 7.0
 """Times what 95 % of the samples depart from their neighbours."""

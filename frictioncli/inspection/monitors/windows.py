@@ -8,8 +8,8 @@ from collections.abc import Iterator
 from dataclasses import dataclass, field
 
 import numpy as np
-from numpy.typing import NDArray
 
+from frictioncli.arrays import Array
 from frictioncli.logs.samples.row_checks import RowBlock, joined
 
 CONTEXT = 8
@@ -33,7 +33,7 @@ class Window:
     rows: RowBlock
     new: slice
 
-    def steps(self) -> NDArray[np.float64]:
+    def steps(self) -> Array:
         """Return the time [s] from the row before to each new row; the log's first row has none."""
         time = self.rows.time
         return np.diff(time[max(self.new.start - 1, 0) : self.new.stop])

@@ -5,8 +5,8 @@ from contextlib import suppress
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from frictioncli.arrays import Array
 from frictioncli.logs.channels import aliases as names
 from frictioncli.logs.channels.recognition import LogChannel
 from frictioncli.logs.formats.base import RawBatch
@@ -34,10 +34,10 @@ class Survey:
         The recognised columns of the layout.
     """
 
-    heads: tuple[dict[int, NDArray[np.float64]], ...]
+    heads: tuple[dict[int, Array], ...]
     channels: tuple[LogChannel, ...]
 
-    def pooled(self, channel: LogChannel) -> NDArray[np.float64]:
+    def pooled(self, channel: LogChannel) -> Array:
         """Return a channel's raw values of all surveyed logs, without NaN."""
         values = np.concatenate([np.empty(0), *(head[channel.column] for head in self.heads)])
         return values[np.isfinite(values)]
@@ -79,8 +79,8 @@ def survey(logs: Sequence[OpenedLog]) -> Survey:
 
 def _head(
     log: OpenedLog, wanted: list[int], positions: list[int], time: int, enough: int
-) -> dict[int, NDArray[np.float64]]:
-    kept: list[dict[int, NDArray[np.float64]]] = []
+) -> dict[int, Array]:
+    kept: list[dict[int, Array]] = []
     rows = 0
     moved = False
     for number, batch in enumerate(_readable(log, wanted)):
@@ -106,6 +106,6 @@ def _readable(log: OpenedLog, wanted: list[int]) -> Iterator[RawBatch]:
         yield from log.source.batches(wanted, _BATCH_BYTES)
 
 
-def _spans(values: NDArray[np.float64]) -> bool:
+def _spans(values: Array) -> bool:
     finite = values[np.isfinite(values)]
     return bool(len(finite)) and float(np.ptp(finite)) > _MOVED

@@ -8,8 +8,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from frictioncli.arrays import Array
 from frictioncli.logs.channels.units import FACTORS
 
 _TURN = 180.0 / np.pi
@@ -32,9 +32,9 @@ class MotionEvidence:
     ``time`` in the raw unit, shape (n,); ``position`` and ``velocity`` raw, shape (n,).
     """
 
-    time: NDArray[np.float64]
-    position: NDArray[np.float64]
-    velocity: NDArray[np.float64]
+    time: Array
+    position: Array
+    velocity: Array
 
 
 def motion_ratio(motions: list[MotionEvidence]) -> float | None:
@@ -52,7 +52,7 @@ def motion_ratio(motions: list[MotionEvidence]) -> float | None:
     return median if median != 0 and spread < abs(median) / 3 else None
 
 
-def _window_ratios(motion: MotionEvidence) -> NDArray[np.float64]:
+def _window_ratios(motion: MotionEvidence) -> Array:
     if len(motion.velocity) != len(motion.time):
         return np.empty(0)
     # one damaged cell must not be the only place that moves
@@ -98,7 +98,7 @@ def position_range(motions: list[MotionEvidence]) -> tuple[float, float]:
     return furthest, span
 
 
-def lever(tool: NDArray[np.float64], axes: NDArray[np.float64]) -> float | None:
+def lever(tool: Array, axes: Array) -> float | None:
     """Return the median way of the tool per turn of the fastest axis [mm per raw unit].
 
     Parameters
@@ -232,7 +232,7 @@ def _differs(unit: str, declared: str | None, usual: str) -> float:
     return 0.0 if unit == declared else 1.0
 
 
-def gear_ratio(motor: NDArray[np.float64], joint: NDArray[np.float64]) -> float | None:
+def gear_ratio(motor: Array, joint: Array) -> float | None:
     """Return motor turn per joint turn from both positions.
 
     None when too little moves, or the two do not move together.
@@ -255,9 +255,7 @@ def gear_ratio(motor: NDArray[np.float64], joint: NDArray[np.float64]) -> float 
     return ratio if spread < _COUPLED * abs(ratio) else None
 
 
-def gear_offset(
-    pairs: Sequence[tuple[NDArray[np.float64], NDArray[np.float64]]], ratio: float
-) -> float:
+def gear_offset(pairs: Sequence[tuple[Array, Array]], ratio: float) -> float:
     """Return the joint's position where the motor's is 0 [deg], median over all samples.
 
     Parameters

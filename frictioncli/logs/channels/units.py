@@ -13,8 +13,7 @@ from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     # settings ask for names of units before there is work: numpy is imported where it is needed
-    import numpy as np
-    from numpy.typing import NDArray
+    from frictioncli.arrays import Array
 
 _TURN = 180.0 / math.pi
 _TEMPERATURE_FACTORS = {"°C": 1.0, "K": 1.0, "°F": 5.0 / 9.0, "m°C": 1e-3, "mK": 1e-3}
@@ -95,7 +94,7 @@ def plain(unit: str, quantity: str, note: str = "") -> UnitBelief:
     return UnitBelief(unit, FACTORS[quantity][unit], _OFFSETS.get(unit, 0.0), note)
 
 
-def time_unit(times: "list[NDArray[np.float64]]", declared: str | None) -> str:
+def time_unit(times: "list[Array]", declared: str | None) -> str:
     """Return the unit of a time column: the header's, else from the size of epoch times, else s."""
     import numpy as np
 
@@ -110,7 +109,7 @@ def time_unit(times: "list[NDArray[np.float64]]", declared: str | None) -> str:
 
 
 def temperature(
-    values: "NDArray[np.float64]", declared: str | None, forced: str | None, quantity: str
+    values: "Array", declared: str | None, forced: str | None, quantity: str
 ) -> UnitBelief | None:
     """Find the unit of a temperature channel.
 
@@ -148,7 +147,7 @@ def temperature(
     return belief if _COLDEST <= inside <= _HOTTEST else None
 
 
-def plausible_temperature(values: "NDArray[np.float64]") -> "NDArray[np.float64]":
+def plausible_temperature(values: "Array") -> "Array":
     """Return temperatures [°C] with those outside -30..150 °C replaced by NaN."""
     import numpy as np
 

@@ -10,8 +10,8 @@ import numpy as np
 import pyarrow as pa
 import pyarrow.compute as pc
 import pyarrow.parquet as pq
-from numpy.typing import NDArray
 
+from frictioncli.arrays import Array
 from frictioncli.logs.formats.base import CsvHints, Refusal
 from frictioncli.logs.formats.compression import refuse_packed
 from frictioncli.logs.formats.containers import ContainerLog, Rows, listed, readable, with_unit
@@ -188,7 +188,7 @@ def _rows(
         yield {column: _values(batch, leaves[column]) for column in columns}
 
 
-def _values(batch: pa.RecordBatch, leaf: _Leaf) -> NDArray[np.float64]:
+def _values(batch: pa.RecordBatch, leaf: _Leaf) -> Array:
     array = _column(batch, leaf.path[0])
     if len(leaf.path) > 1:
         array = pc.struct_field(array, list(leaf.path[1:]))
@@ -202,7 +202,7 @@ def _values(batch: pa.RecordBatch, leaf: _Leaf) -> NDArray[np.float64]:
     return values
 
 
-def _numbers(array: pa.Array) -> NDArray[np.float64]:
+def _numbers(array: pa.Array) -> Array:
     """Return numbers, NaN where there is none; times in seconds."""
     if pa.types.is_dictionary(array.type):
         array = array.dictionary_decode()

@@ -6,8 +6,7 @@ from functools import partial
 from pathlib import Path
 from typing import Generic, Protocol, TypeVar
 
-import numpy as np
-from numpy.typing import NDArray
+from frictioncli.arrays import Array, Numbers
 
 T = TypeVar("T")
 
@@ -55,9 +54,9 @@ class RawBatch:
         Why, one per bad line.
     """
 
-    lines: NDArray[np.int64]
-    values: dict[int, NDArray[np.float64]]
-    bad_lines: NDArray[np.int64]
+    lines: Numbers
+    values: dict[int, Array]
+    bad_lines: Numbers
     bad_reasons: tuple[str, ...]
 
 
@@ -100,7 +99,7 @@ class Source(Protocol):
         """Yield in order what makes the batches, each of at most about ``size`` bytes."""
         ...
 
-    def texts(self, lines: NDArray[np.int64], size: int) -> Iterator[tuple[int, str]]:
+    def texts(self, lines: Numbers, size: int) -> Iterator[tuple[int, str]]:
         """Yield (line, text) for the asked lines, which must be ascending."""
         ...
 

@@ -6,12 +6,12 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 
+from frictioncli.arrays import Array, Numbers
 from frictioncli.logs.formats.base import OneStream, RawBatch, Refusal
 from frictioncli.logs.formats.compression import UnreadableLog
 
-Rows = dict[int, NDArray[np.float64]]
+Rows = dict[int, Array]
 """Column index to values of consecutive rows, NaN where there is none."""
 
 _TEXT_LIMIT = 200
@@ -55,7 +55,7 @@ class ContainerLog(OneStream):
                 yield RawBatch(lines, values, np.empty(0, np.int64), ())
                 line += count
 
-    def texts(self, lines: NDArray[np.int64], size: int) -> Iterator[tuple[int, str]]:
+    def texts(self, lines: Numbers, size: int) -> Iterator[tuple[int, str]]:
         """Yield (line, text) for the asked lines, which must be ascending.
 
         A row's text is its values with their names.

@@ -1,10 +1,11 @@
 """Dates in the cells of text logs."""
 
 import numpy as np
-from numpy.typing import NDArray
+
+from frictioncli.arrays import Array
 
 
-def seconds_since_1970(texts: list[str]) -> NDArray[np.float64]:
+def seconds_since_1970(texts: list[str]) -> Array:
     """Return ISO 8601 dates as time since 1970 [s]; NaN where there is none."""
     import pandas as pd  # takes longer to import than most logs to read
 

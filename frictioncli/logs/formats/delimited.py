@@ -10,8 +10,8 @@ import numpy as np
 import pyarrow as pa
 import pyarrow.compute as pc
 import pyarrow.csv as pcsv
-from numpy.typing import NDArray
 
+from frictioncli.arrays import Array, Flags, Numbers
 from frictioncli.logs.formats.base import CsvHints, RawBatch, Refusal, Task
 from frictioncli.logs.formats.dates import seconds_since_1970
 from frictioncli.logs.formats.dialect import NOT_NUMBERS, Dialect, detect, split
@@ -119,7 +119,7 @@ class DelimitedText:
         for piece in self._rows(size):
             yield Task(partial(self._parse, piece, wanted), len(piece.content))
 
-    def texts(self, lines: NDArray[np.int64], size: int) -> Iterator[tuple[int, str]]:
+    def texts(self, lines: Numbers, size: int) -> Iterator[tuple[int, str]]:
         """Yield (line, text) for the asked lines, which must be ascending."""
         charset = "cp1252" if self.encoding == "cp1252" else "utf-8"
         position = 0
@@ -173,7 +173,7 @@ class DelimitedText:
             return _batch(table, piece.lines, wanted, np.empty(0, np.int64), ())
         return self._parse_carefully(content, piece.first_line, wanted)
 
-    def _plain(self, content: bytes, n_lines: int, wanted: list[int]) -> NDArray[np.float64] | None:
+    def _plain(self, content: bytes, n_lines: int, wanted: list[int]) -> Array | None:
         """Return the wanted columns of text that holds nothing but numbers, else None."""
         if not self.dialect.dates.isdisjoint(wanted):
             return None
@@ -200,7 +200,7 @@ class DelimitedText:
 
     def _halved(
         self, rows: list[bytes], types: dict[str, pa.DataType]
-    ) -> tuple[list[pa.Table], NDArray[np.bool_]]:
+    ) -> tuple[list[pa.Table], Flags]:
         """Parse rows, halving them where some cannot be; return tables, and which rows they hold.
 
         An open quote joins lines, or a cell only looks like a number.
@@ -227,7 +227,7 @@ class DelimitedText:
         fields = split(text.decode("utf-8", "replace").strip("\r"), self.dialect.delimiter)
         return len(fields) == len(self.columns)
 
-    def _look_like_numbers(self, rows: list[bytes], wanted: list[int]) -> NDArray[np.bool_]:
+    def _look_like_numbers(self, rows: list[bytes], wanted: list[int]) -> Flags:
         """Tell for each row whether all wanted cells look like numbers or dates or are empty."""
         good = np.ones(len(rows), bool)
         texts = self._table(b"\n".join(rows), {str(i): pa.string() for i in wanted})
@@ -236,7 +236,7 @@ class DelimitedText:
                 good &= self._number_cells(texts.column(str(column)))
         return good
 
-    def _number_cells(self, cells: pa.ChunkedArray) -> NDArray[np.bool_]:
+    def _number_cells(self, cells: pa.ChunkedArray) -> Flags:
         decimal = re.escape(self.dialect.decimal)
         number = rf"^\s*([+-]?inf|[+-]?(\d+({decimal}\d*)?|{decimal}\d+)([eE][+-]?\d+)?)\s*$"
         is_null = pc.is_in(cells, value_set=pa.array(_NULLS))
@@ -284,12 +284,12 @@ class DelimitedText:
 
 def _batch(
     table: pa.Table | None,
-    lines: NDArray[np.int64],
+    lines: Numbers,
     wanted: list[int],
-    bad_lines: NDArray[np.int64],
+    bad_lines: Numbers,
     reasons: tuple[str, ...],
 ) -> RawBatch:
-    values: dict[int, NDArray[np.float64]] = {}
+    values: dict[int, Array] = {}
     for column in wanted:
         if table is None:
             values[column] = np.empty(0)
@@ -302,7 +302,7 @@ def _batch(
     return RawBatch(lines, values, bad_lines, reasons)
 
 
-def _with_value(numbers: NDArray[np.float64]) -> NDArray[np.float64]:
+def _with_value(numbers: Array) -> Array:
     """Return numbers with NaN where one says that there is none."""
     # where one is NaN the extremes are too, and tell nothing
     if not len(numbers) or -_NO_VALUE <= numbers.min() <= numbers.max() <= _NO_VALUE:

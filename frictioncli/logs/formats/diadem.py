@@ -6,8 +6,8 @@ from functools import partial
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 
+from frictioncli.arrays import Array, Numbers
 from frictioncli.logs.formats.base import CsvHints, RawBatch, Refusal, Task
 from frictioncli.logs.formats.compression import UnreadableLog
 from frictioncli.logs.formats.diadem_header import (
@@ -156,7 +156,7 @@ class DiademRecording:
                 )
         return None
 
-    def raw(self, column: int, start: int, stop: int) -> NDArray[np.float64]:
+    def raw(self, column: int, start: int, stop: int) -> Array:
         """Return a channel's stored numbers of some samples, as many as are there.
 
         Parameters
@@ -191,7 +191,7 @@ class DiademRecording:
             stop = min(start + rows, self.n)
             yield Task(partial(self._batch, wanted, start, stop), (stop - start) * max(widths))
 
-    def texts(self, lines: NDArray[np.int64], size: int) -> Iterator[tuple[int, str]]:
+    def texts(self, lines: Numbers, size: int) -> Iterator[tuple[int, str]]:
         """Yield (sample's number, its values) for the asked samples, which must be ascending."""
         for line in lines.tolist():
             batch = self._batch(range(len(self.channels)), line - 1, line)
@@ -206,7 +206,7 @@ class DiademRecording:
             (),
         )
 
-    def _values(self, column: int, start: int, stop: int) -> NDArray[np.float64]:
+    def _values(self, column: int, start: int, stop: int) -> Array:
         channel = self.channels[column]
         try:
             numbers = self.raw(column, start, stop)

@@ -8,8 +8,8 @@ from pathlib import Path
 from typing import BinaryIO
 
 import numpy as np
-from numpy.typing import NDArray
 
+from frictioncli.arrays import Numbers
 from frictioncli.logs.formats.compression import DAMAGED, UnreadableLog, is_packed, open_bytes
 from frictioncli.logs.formats.plain_numbers import line_feeds
 
@@ -45,7 +45,7 @@ class Piece:
     content: bytes
 
     @property
-    def lines(self) -> NDArray[np.int64]:
+    def lines(self) -> Numbers:
         """The number of each line, shape (n_lines,)."""
         return np.arange(self.first_line, self.first_line + self.n_lines, dtype=np.int64)
 

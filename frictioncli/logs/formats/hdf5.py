@@ -7,8 +7,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from frictioncli.arrays import Array
 from frictioncli.logs.channels.aliases import POSITION, TIME, TORQUE
 from frictioncli.logs.formats.base import CsvHints, Refusal
 from frictioncli.logs.formats.compression import refuse_packed
@@ -227,9 +227,7 @@ def _rows(
             }
 
 
-def _block(
-    dataset: "h5py.Dataset", rows: slice, field: str, by_columns: bool
-) -> NDArray[np.float64]:
+def _block(dataset: "h5py.Dataset", rows: slice, field: str, by_columns: bool) -> Array:
     """Return some rows of a dataset, shape (rows, numbers per row)."""
     values = dataset[:, rows].T if by_columns else dataset[rows]
     if field:

@@ -23,6 +23,7 @@ import numpy as np
 import pyarrow as pa
 from numpy.typing import NDArray
 
+from frictioncli.arrays import Array
 from frictioncli.logs.channels.aliases import TORQUE
 from frictioncli.logs.formats.containers import Rows, quantities, with_unit
 
@@ -48,7 +49,7 @@ class Signal:
 class _Fragment:
     """Consecutive samples of one group: times [s], and per column the values, shape (n,)."""
 
-    times: NDArray[np.float64]
+    times: Array
     values: Rows
 
 
@@ -177,9 +178,7 @@ def _fragments(file: Any, group: int, wanted: dict[int, Signal]) -> Iterator[_Fr
         )
 
 
-def _aligned(
-    times: NDArray[np.float64], own: NDArray[np.float64], samples: NDArray[np.generic]
-) -> NDArray[np.float64]:
+def _aligned(times: Array, own: Array, samples: NDArray[np.generic]) -> Array:
     """Return a value per time, NaN where the measurement marks a sample as invalid."""
     if len(samples) == len(times):
         return np.asarray(samples, np.float64)
@@ -197,7 +196,7 @@ class _Held:
         self._longest_wait = float(np.max(np.diff(self._known.times), initial=0.0))
         self._ended = False
 
-    def at(self, times: NDArray[np.float64]) -> Rows:
+    def at(self, times: Array) -> Rows:
         """Return the values at some times [s]; NaN before the first sample and after the last.
 
         The last stands for as long as the longest wait between two samples.

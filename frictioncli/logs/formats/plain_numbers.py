@@ -6,7 +6,8 @@ It is 2.5 to 4 times as fast as pyarrow, and most logs are such texts from end t
 from collections.abc import Sequence
 
 import numpy as np
-from numpy.typing import NDArray
+
+from frictioncli.arrays import Array
 
 try:
     from frictioncli.logs.formats import _plain_numbers
@@ -16,7 +17,7 @@ except ImportError:  # installed without a C compiler
 
 def plain_columns(
     content: bytes, delimiter: str, decimal: str, n_fields: int, wanted: Sequence[int], n_rows: int
-) -> NDArray[np.float64] | None:
+) -> Array | None:
     """Return columns of numbers, or None where the text must be read with more care.
 
     Parameters

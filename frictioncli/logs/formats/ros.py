@@ -13,8 +13,8 @@ from typing import Any
 
 import numpy as np
 import pyarrow as pa
-from numpy.typing import NDArray
 
+from frictioncli.arrays import Array
 from frictioncli.logs.formats.base import CsvHints, Refusal
 from frictioncli.logs.formats.compression import refuse_packed
 from frictioncli.logs.formats.containers import ContainerLog, Rows, lacks_package, listed, readable
@@ -44,7 +44,7 @@ class _Message:
     received: float
     stamp: float
     joints: tuple[str, ...]
-    values: dict[str, NDArray[np.float64]]
+    values: dict[str, Array]
 
 
 @dataclass(slots=True)

@@ -6,9 +6,7 @@ from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
 
-import numpy as np
-from numpy.typing import NDArray
-
+from frictioncli.arrays import Numbers
 from frictioncli.logs.formats.base import RawBatch, Source, Task
 
 _SECONDS = re.compile(r"^(?P<stem>.*?)sec(?:onds|s)?$")
@@ -88,7 +86,7 @@ class JoinedTime:
         for task in self.source.tasks(self._asked(columns), size):
             yield Task(partial(self._read, task), task.size)
 
-    def texts(self, lines: NDArray[np.int64], size: int) -> Iterator[tuple[int, str]]:
+    def texts(self, lines: Numbers, size: int) -> Iterator[tuple[int, str]]:
         """Yield (line, text) for the asked lines, which must be ascending."""
         return self.source.texts(lines, size)
 

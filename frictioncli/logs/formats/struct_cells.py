@@ -11,8 +11,8 @@ from datetime import UTC, datetime
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 
+from frictioncli.arrays import Numbers
 from frictioncli.logs.formats.base import CsvHints, OneStream, RawBatch, Refusal
 from frictioncli.logs.formats.dialect import NOT_NUMBERS
 from frictioncli.logs.formats.encoding import decode_head, encoding_of, pieces
@@ -113,7 +113,7 @@ class StructCells(OneStream):
                 tuple(bad.values()),
             )
 
-    def texts(self, lines: NDArray[np.int64], size: int) -> Iterator[tuple[int, str]]:
+    def texts(self, lines: Numbers, size: int) -> Iterator[tuple[int, str]]:
         """Yield (line, text) for the asked lines, which must be ascending."""
         asked = {int(line) for line in lines}
         for part in self._lines(size):

@@ -9,13 +9,12 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 
+from frictioncli.arrays import Array, Flags, Numbers
 from frictioncli.logs.formats.base import OneStream, RawBatch, Source
 from frictioncli.logs.samples.differentiation import max_gap
 from frictioncli.logs.samples.row_checks import Faults, RowBlock, ascending
 
-Array = NDArray[np.float64]
 _OUTSIDE = "outside_other_file"
 _EDGE = 1e-3
 """A sample is within the other file up to this share of a period beyond its ends."""
@@ -102,7 +101,7 @@ class MergedLog(OneStream):
                 outside |= missing
             yield _without(batch, values, outside)
 
-    def texts(self, lines: NDArray[np.int64], size: int) -> Iterator[tuple[int, str]]:
+    def texts(self, lines: Numbers, size: int) -> Iterator[tuple[int, str]]:
         """Yield (line, text) of the base for the asked lines, which must be ascending."""
         return self.base.texts(lines, size)
 
@@ -119,7 +118,7 @@ class MergedLog(OneStream):
         return followers
 
 
-def _without(batch: RawBatch, values: dict[int, Array], outside: NDArray[np.bool_]) -> RawBatch:
+def _without(batch: RawBatch, values: dict[int, Array], outside: Flags) -> RawBatch:
     """Return the batch with other values, rows that lie outside joining the bad ones."""
     if not outside.any():
         return RawBatch(batch.lines, values, batch.bad_lines, batch.bad_reasons)
@@ -144,7 +143,7 @@ class _Alignment:
         self._size = size
         self._begin()
 
-    def at(self, time: Array) -> tuple[dict[int, Array], NDArray[np.bool_]]:
+    def at(self, time: Array) -> tuple[dict[int, Array], Flags]:
         """Return the lent columns at the base's times, and for which rows there is no value.
 
         Parameters
@@ -166,9 +165,9 @@ class _Alignment:
     def _fill(
         self,
         time: Array,
-        sought: NDArray[np.bool_],
+        sought: Flags,
         values: dict[int, Array],
-        missing: NDArray[np.bool_],
+        missing: Flags,
         *,
         last: bool,
     ) -> None:
@@ -241,7 +240,7 @@ class _Window:
         """Time of its last row."""
         return float(self.time[-1]) if len(self.time) else -np.inf
 
-    def covers(self, time: Array, beyond: float) -> NDArray[np.bool_]:
+    def covers(self, time: Array, beyond: float) -> Flags:
         """Return which times lie within, or up to some periods beyond the last row."""
         return (time >= self.begin) & (time <= self.end + beyond * self.period)
 
@@ -254,7 +253,7 @@ class _Window:
         row = np.searchsorted(self.time, time + _EDGE * self.period, side="right") - 1
         return cells[np.maximum(row, 0)]
 
-    def in_gap(self, time: Array) -> NDArray[np.bool_]:
+    def in_gap(self, time: Array) -> Flags:
         """Return which times lie inside a gap between rows."""
         if len(self.time) < 2:
             return np.zeros(len(time), bool)

@@ -5,8 +5,8 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 
+from frictioncli.arrays import Array, Numbers
 from frictioncli.logs.channels.recognition import split_unit
 from frictioncli.logs.formats.base import OneStream, RawBatch, Source
 from frictioncli.logs.formats.compression import UnreadableLog
@@ -51,7 +51,7 @@ class ScaledLog(OneStream):
             }
             yield RawBatch(batch.lines, values, batch.bad_lines, batch.bad_reasons)
 
-    def texts(self, lines: NDArray[np.int64], size: int) -> Iterator[tuple[int, str]]:
+    def texts(self, lines: Numbers, size: int) -> Iterator[tuple[int, str]]:
         """Yield (line, text) for the asked lines, which must be ascending."""
         return self.base.texts(lines, size)
 
@@ -84,7 +84,7 @@ def scaled(source: Source) -> Source:
     return ScaledLog(source, tuple(scales)) if any(s != (1.0, 0.0) for s in scales) else source
 
 
-def _holds_raw(cells: NDArray[np.float64], recording: DiademRecording, index: int) -> bool:
+def _holds_raw(cells: Array, recording: DiademRecording, index: int) -> bool:
     """Return whether a column begins with a channel's numbers as they are stored."""
     try:
         numbers = recording.raw(index, 0, len(cells))

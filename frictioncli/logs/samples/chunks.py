@@ -8,8 +8,8 @@ from itertools import chain, groupby
 from statistics import median
 
 import numpy as np
-from numpy.typing import NDArray
 
+from frictioncli.arrays import Array, Flags
 from frictioncli.errors import LogError
 from frictioncli.logs.channels import aliases as names
 from frictioncli.logs.channels.recognition import LogChannel
@@ -197,7 +197,7 @@ def _within_limits(
     return block.take(~outside)
 
 
-def _contradicted(log: OpenedLog, plan: JointPlan, batch: RawBatch, out: NDArray[np.bool_]) -> None:
+def _contradicted(log: OpenedLog, plan: JointPlan, batch: RawBatch, out: Flags) -> None:
     where = int(np.flatnonzero(out)[0])
     name = plan.channels.position.name
     value = batch.values[plan.channels.position.column][where]
@@ -214,7 +214,7 @@ def _column(plan: JointPlan, name: str) -> int:
 
 
 def _converted(batch: RawBatch, plans: Iterable[JointPlan]) -> RowBlock:
-    columns: dict[tuple[int, str], NDArray[np.float64]] = {}
+    columns: dict[tuple[int, str], Array] = {}
     for plan in plans:
         for name, belief in plan.beliefs.items():
             values = batch.values[_column(plan, name)]

@@ -3,7 +3,8 @@
 from math import floor
 
 import numpy as np
-from numpy.typing import NDArray
+
+from frictioncli.arrays import Array
 
 _HALF_SPAN = 0.03  # [s]
 _MAX_HALF_WINDOW = 4
@@ -27,12 +28,12 @@ def max_gap(period: float) -> float:
 
 
 def local_slope(
-    time: NDArray[np.float64],
-    values: NDArray[np.float64],
+    time: Array,
+    values: Array,
     *,
     half: int,
     gap: float,
-) -> NDArray[np.float64]:
+) -> Array:
     """Return the slope of a straight line fitted around each sample.
 
     Exact for a ramp, at any spacing. The window shrinks to one side at the ends of a stretch, and

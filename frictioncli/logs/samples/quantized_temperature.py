@@ -9,7 +9,8 @@ it never leaves the band of the reading.
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
+
+from frictioncli.arrays import Array, Numbers
 
 _MIN_STEP = 0.5  # [°C]
 _MAX_LEVELS = 400
@@ -30,9 +31,9 @@ class Changes:
         Readings on both sides. [°C]
     """
 
-    time: NDArray[np.float64]
-    before: NDArray[np.float64]
-    after: NDArray[np.float64]
+    time: Array
+    before: Array
+    after: Array
 
 
 @dataclass(frozen=True, slots=True)
@@ -42,8 +43,8 @@ class Knots:
     ``step`` is the register's. [°C]
     """
 
-    time: NDArray[np.float64]
-    value: NDArray[np.float64]
+    time: Array
+    value: Array
     step: float
     n_changes: int
 
@@ -53,9 +54,7 @@ def longest_wait(period: float) -> float:
     return max(_LONGEST_WAIT, _LONGEST_WAIT_PERIODS * period)
 
 
-def find_changes(
-    time: NDArray[np.float64], reading: NDArray[np.float64], *, wait: float
-) -> Changes:
+def find_changes(time: Array, reading: Array, *, wait: float) -> Changes:
     """Return the changes of a register between consecutive samples.
 
     Parameters
@@ -72,7 +71,7 @@ def find_changes(
     return Changes((time[at] + time[at + 1]) / 2, reading[at], reading[at + 1])
 
 
-def find_step(levels: NDArray[np.float64]) -> float | None:
+def find_step(levels: Array) -> float | None:
     """Return the step of a register from the distinct readings it showed.
 
     None where they lie on no grid of at least 0.5 °C, or there is only one.
@@ -91,7 +90,7 @@ def find_step(levels: NDArray[np.float64]) -> float | None:
     return step if on_grid else None
 
 
-def too_fine(levels: NDArray[np.float64]) -> bool:
+def too_fine(levels: Array) -> bool:
     """Tell whether some readings, whatever others follow, rule a register of steps out.
 
     Parameters
@@ -137,13 +136,13 @@ def knots(changes: Changes, *, step: float, span: tuple[float, float]) -> Knots 
 
 
 def _turns(
-    time: NDArray[np.float64],
-    value: NDArray[np.float64],
-    towards: NDArray[np.float64],
-    edges: NDArray[np.int64],
-    slopes: NDArray[np.float64],
+    time: Array,
+    value: Array,
+    towards: Array,
+    edges: Numbers,
+    slopes: Array,
     step: float,
-) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+) -> tuple[Array, Array]:
     """Return points where the temperature turns between two changes at the same value.
 
     There it leaves the value with the slope from before, comes back with the slope of after, and
@@ -167,9 +166,7 @@ def _turns(
     )
 
 
-def rebuild(
-    points: Knots, time: NDArray[np.float64], reading: NDArray[np.float64]
-) -> NDArray[np.float64]:
+def rebuild(points: Knots, time: Array, reading: Array) -> Array:
     """Return the rebuilt temperature [°C], always within half a step of the reading.
 
     Outside the known moments it is the reading itself.

@@ -4,8 +4,8 @@ from collections.abc import Callable, Collection, Iterable, Iterator
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from frictioncli.arrays import Array
 from frictioncli.logs.channels import aliases as names
 from frictioncli.logs.formats.base import Refusal
 from frictioncli.logs.formats.compression import UnreadableLog
@@ -95,7 +95,7 @@ def usable_rows(reading: LogReading, parts: Iterable[Chunk], faults: Faults) -> 
             yield block
 
 
-Sink = Callable[[RowBlock, NDArray[np.float64]], None]
+Sink = Callable[[RowBlock, Array], None]
 """Takes samples of all joints, and their times from the recording's first sample [s]."""
 
 

@@ -11,6 +11,7 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
+from frictioncli.arrays import Array, Flags, Numbers
 from frictioncli.logs.channels.aliases import POSITION, TIME, TORQUE, VELOCITY
 from frictioncli.logs.samples.differentiation import local_slope
 
@@ -47,14 +48,14 @@ class RowBlock:
     Names are (joint, canonical name); ``time`` is in s.
     """
 
-    lines: NDArray[np.int64]
-    time: NDArray[np.float64]
-    columns: Mapping[tuple[int, str], NDArray[np.float64]]
+    lines: Numbers
+    time: Array
+    columns: Mapping[tuple[int, str], Array]
 
     def __len__(self) -> int:
         return len(self.lines)
 
-    def take(self, which: NDArray[np.bool_] | slice) -> "RowBlock":
+    def take(self, which: Flags | slice) -> "RowBlock":
         """Return some of the rows."""
         columns = {name: values[which] for name, values in self.columns.items()}
         return RowBlock(self.lines[which], self.time[which], columns)
@@ -64,10 +65,10 @@ class RowBlock:
 class Faults:
     """Lines rejected so far, with the reason's index in ``REASONS``."""
 
-    lines: list[NDArray[np.int64]] = field(default_factory=list)
+    lines: list[Numbers] = field(default_factory=list)
     codes: list[NDArray[np.int8]] = field(default_factory=list)
 
-    def add(self, lines: NDArray[np.int64], reason: str) -> None:
+    def add(self, lines: Numbers, reason: str) -> None:
         """Note lines rejected for a reason."""
         if len(lines):
             self.lines.append(lines)
@@ -87,13 +88,13 @@ class Faults:
             numbers += np.bincount(codes, minlength=len(REASONS))
         return {reason: int(n) for reason, n in zip(REASONS, numbers, strict=True) if n}
 
-    def first(self, reason: str) -> NDArray[np.int64]:
+    def first(self, reason: str) -> Numbers:
         """Return the first line rejected for a reason, shape (1,)."""
         code = REASONS.index(reason)
         found = [lines[codes == code] for lines, codes in zip(self.lines, self.codes, strict=True)]
         return np.array([min(int(lines.min()) for lines in found if len(lines))])
 
-    def ascending(self) -> tuple[NDArray[np.int64], NDArray[np.int8]]:
+    def ascending(self) -> tuple[Numbers, NDArray[np.int8]]:
         """Return all lines in ascending order, and their codes."""
         if not self.lines:
             return np.empty(0, np.int64), np.empty(0, np.int8)
@@ -135,7 +136,7 @@ def with_values(block: RowBlock, required: Iterable[tuple[int, str]], faults: Fa
     return block.take(good)
 
 
-def _all_within(values: NDArray[np.float64], limit: float) -> bool:
+def _all_within(values: Array, limit: float) -> bool:
     """Return whether all are numbers within ±limit; the extremes tell it fast, NaN is neither."""
     return not len(values) or bool(-limit <= values.min() and values.max() <= limit)
 
@@ -166,7 +167,7 @@ def _of_some_length(blocks: Iterable[RowBlock]) -> Iterator[RowBlock]:
 
 
 def _growing(
-    block: RowBlock, following: NDArray[np.float64], last: float, faults: Faults
+    block: RowBlock, following: Array, last: float, faults: Faults
 ) -> tuple[RowBlock, float]:
     """Judge a block's rows after time ``last``; the times ``following`` it help to judge."""
     n = len(block)
@@ -191,7 +192,7 @@ def _growing(
     return block.take(keep), last
 
 
-def _grows(time: NDArray[np.float64], last: float) -> bool:
+def _grows(time: Array, last: float) -> bool:
     """Tell whether times grow from ``last`` on."""
     return not len(time) or bool(time[0] > last and np.all(time[1:] > time[:-1]))
 
@@ -223,7 +224,7 @@ def _judged_start(block: RowBlock, names: list[tuple[int, str]], faults: Faults)
     return block.take(slice(stale, None))
 
 
-def _stale_rows(time: NDArray[np.float64], position: NDArray[np.float64]) -> int:
+def _stale_rows(time: Array, position: Array) -> int:
     """Return how many first rows lie before a jump that the following motion does not explain."""
     first = position[: _STALE_ROWS + 1].tolist()
     if all(abs(after - before) <= _STALE_JUMP for before, after in pairwise(first)):

@@ -16,9 +16,9 @@ from typing import Any, Self
 
 import numpy as np
 import pyarrow as pa
-from numpy.typing import NDArray
 
 from frictioncli import schemas, tables
+from frictioncli.arrays import Array
 from frictioncli.logs.channels import aliases as names
 from frictioncli.logs.samples import quantized_temperature
 from frictioncli.logs.samples.row_checks import RowBlock
@@ -56,7 +56,7 @@ class _Piece:
 
     run: str
     recording: str
-    time: NDArray[np.float64]
+    time: Array
     block: RowBlock
 
 
@@ -121,7 +121,7 @@ class SampleWriter:
                 self._drafts[joint] = _JointDraft(joint, self._stack.enter_context(writer))
             self._drafts[joint].stretches.append(_Stretch(run))
 
-    def add(self, block: RowBlock, time: NDArray[np.float64]) -> None:
+    def add(self, block: RowBlock, time: Array) -> None:
         """Take samples of the recording begun last, ``time`` from its first sample [s]."""
         piece = _Piece(*self._label, time + self._start if self._start else time, block)
         for joint in {joint for joint, _ in block.columns}:
@@ -237,12 +237,12 @@ def _table(pieces: Sequence[_Piece], joint: int) -> pa.Table:
     )
 
 
-def _values(block: RowBlock, joint: int, name: str) -> NDArray[np.float64]:
+def _values(block: RowBlock, joint: int, name: str) -> Array:
     values = block.columns.get((joint, name))
     return values if values is not None else np.full(len(block), np.nan)
 
 
-def _column(values: NDArray[np.float64]) -> pa.Array:
+def _column(values: Array) -> pa.Array:
     """Return a column; empty where a value is NaN."""
     return pa.array(values, from_pandas=bool(len(values)) and bool(np.isnan(values.min())))
 

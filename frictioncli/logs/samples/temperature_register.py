@@ -3,8 +3,8 @@
 from dataclasses import dataclass, field
 
 import numpy as np
-from numpy.typing import NDArray
 
+from frictioncli.arrays import Array
 from frictioncli.logs.samples import quantized_temperature
 
 _FIRST_ROWS = 256
@@ -34,7 +34,7 @@ class Register:
     last: tuple[float, float] | None = None
     smooth: bool = False
 
-    def see(self, time: NDArray[np.float64], reading: NDArray[np.float64], wait: float) -> None:
+    def see(self, time: Array, reading: Array, wait: float) -> None:
         """Take in the next samples."""
         if self.smooth or not len(reading):
             return
@@ -48,9 +48,7 @@ class Register:
             self.first = float(time[0])
         self.last = (float(time[-1]), float(reading[-1]))
 
-    def _see_steps(
-        self, time: NDArray[np.float64], reading: NDArray[np.float64], wait: float
-    ) -> None:
+    def _see_steps(self, time: Array, reading: Array, wait: float) -> None:
         # a smooth one mostly shows within its first readings
         for some in (reading[:_FIRST_ROWS], reading):
             changed = some[1:][some[1:] != some[:-1]]

@@ -3,8 +3,8 @@
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from frictioncli.arrays import Array
 from frictioncli.simulator.thermal_history import History
 
 GRID = 10.0
@@ -68,28 +68,24 @@ class Journey:
 
     before: Before
     angles: tuple[float, float]
-    times: NDArray[np.float64]
-    temperatures: dict[str, NDArray[np.float64]]
-    ambient: NDArray[np.float64]
-    heat: NDArray[np.float64]
-    edges: NDArray[np.float64]
-    travel: NDArray[np.float64]
-    rest_ends: NDArray[np.float64]
-    rests: NDArray[np.float64]
+    times: Array
+    temperatures: dict[str, Array]
+    ambient: Array
+    heat: Array
+    edges: Array
+    travel: Array
+    rest_ends: Array
+    rests: Array
 
-    def on_grid(
-        self, values: NDArray[np.float64], time: NDArray[np.float64]
-    ) -> NDArray[np.float64]:
+    def on_grid(self, values: Array, time: Array) -> Array:
         """Return values of the grid at times in s."""
         return np.asarray(np.interp(time, self.times, values))
 
-    def travelled(self, time: NDArray[np.float64]) -> NDArray[np.float64]:
+    def travelled(self, time: Array) -> Array:
         """Return the angle turned since the experiment's start, at times in s [deg]."""
         return np.asarray(self.before.travelled + np.interp(time, self.edges, self.travel))
 
-    def last_rest(
-        self, time: NDArray[np.float64]
-    ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    def last_rest(self, time: Array) -> tuple[Array, Array]:
         """Return the last rest's duration [s] and the angle turned since it [deg]."""
         number = np.maximum(np.searchsorted(self.rest_ends, time, side="right") - 1, 0)
         since = self.travelled(time) - self.travelled(self.rest_ends)[number]

@@ -5,8 +5,8 @@ from dataclasses import asdict, dataclass, replace
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from frictioncli.arrays import Array
 from frictioncli.errors import OptionError
 from frictioncli.simulator.planted.catalogue import EFFECTS, Asked
 from frictioncli.simulator.planted.effect import PlantedEffect
@@ -140,7 +140,7 @@ def _sized(
 
 
 def _rms(effect: PlantedEffect, states: Sequence[State], sign: int) -> float:
-    squares: list[NDArray[np.float64]] = []
+    squares: list[Array] = []
     for state in states:
         extra = effect.torque(state)
         torque = np.mean(extra.load + sign * state.direction * extra.friction, axis=0)

@@ -4,8 +4,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from frictioncli.arrays import Array
 from frictioncli.simulator.joint import SimulatedJoint
 from frictioncli.simulator.motion_profile import MotionProfile
 from frictioncli.simulator.planted.journey import Journey
@@ -27,8 +27,8 @@ class Extra:
         Torque that the drive holds in either direction.
     """
 
-    friction: NDArray[np.float64] | float = 0.0
-    load: NDArray[np.float64] | float = 0.0
+    friction: Array | float = 0.0
+    load: Array | float = 0.0
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -55,58 +55,58 @@ class State:
 
     joint: SimulatedJoint
     journey: Journey
-    time: NDArray[np.float64]
-    position: NDArray[np.float64]
-    velocity: NDArray[np.float64]
-    acceleration: NDArray[np.float64]
-    since_reversal: NDArray[np.float64]
-    temperatures: Mapping[str, NDArray[np.float64]]
-    load: NDArray[np.float64]
-    friction: NDArray[np.float64]
-    inertial: NDArray[np.float64]
+    time: Array
+    position: Array
+    velocity: Array
+    acceleration: Array
+    since_reversal: Array
+    temperatures: Mapping[str, Array]
+    load: Array
+    friction: Array
+    inertial: Array
 
     @property
-    def speed(self) -> NDArray[np.float64]:
+    def speed(self) -> Array:
         """Absolute velocity [deg/s]."""
         return np.abs(self.velocity)
 
     @property
-    def direction(self) -> NDArray[np.float64]:
+    def direction(self) -> Array:
         """+1 forward, -1 backward, between them at rest [-]."""
         return np.clip(self.velocity / STANDING_SPEED, -1.0, 1.0)
 
     @property
-    def motor(self) -> NDArray[np.float64]:
+    def motor(self) -> Array:
         """True motor temperature, without the sensor's lag [°C]."""
         return self.temperatures.get("motor", self.temperatures[MOTOR])
 
     @property
-    def gear(self) -> NDArray[np.float64]:
+    def gear(self) -> Array:
         """Gear temperature [°C]."""
         return self.temperatures["gear"]
 
     @property
-    def housing(self) -> NDArray[np.float64]:
+    def housing(self) -> Array:
         """Housing temperature [°C]."""
         return self.temperatures[HOUSING]
 
     @property
-    def travelled(self) -> NDArray[np.float64]:
+    def travelled(self) -> Array:
         """Angle turned since the experiment's start, unrecorded moves included [deg]."""
         return self.journey.travelled(self.time)
 
     @property
-    def operated(self) -> NDArray[np.float64]:
+    def operated(self) -> Array:
         """Time that the runs lasted until now, nights left out [s]."""
         return self.journey.before.operated + self.time
 
     @property
-    def progress(self) -> NDArray[np.float64]:
+    def progress(self) -> Array:
         """Share of all runs' time that has passed [-]."""
         return self.operated / self.journey.before.total
 
     @property
-    def since_turn(self) -> NDArray[np.float64]:
+    def since_turn(self) -> Array:
         """Angle since the joint last turned round [deg]."""
         low, high = self.journey.angles
         forward = self.velocity > 0.0
@@ -118,9 +118,9 @@ def state_of(
     journey: Journey,
     motion: MotionProfile,
     *,
-    time: NDArray[np.float64],
-    since_reversal: NDArray[np.float64],
-    temperatures: Mapping[str, NDArray[np.float64]],
+    time: Array,
+    since_reversal: Array,
+    temperatures: Mapping[str, Array],
 ) -> State:
     """Return the state of a joint in motion; the parameters are the state's attributes."""
     load = joint.arm.gravity_torque(motion.position)

@@ -4,9 +4,9 @@ from dataclasses import dataclass
 from typing import ClassVar, Self
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.signal import lfilter
 
+from frictioncli.arrays import Array
 from frictioncli.simulator.planted.effect import PlantedEffect, log_uniform
 from frictioncli.simulator.planted.journey import GRID, Journey
 from frictioncli.simulator.planted.state import Extra, State
@@ -62,7 +62,7 @@ class ThermalLag(PlantedEffect):
         shown = joint.friction(load=state.load, speed=speed, temperatures=state.temperatures)
         return Extra(friction=hidden - shown)
 
-    def difference(self, journey: Journey) -> NDArray[np.float64]:
+    def difference(self, journey: Journey) -> Array:
         """Return gear minus motor temperature on the journey's grid [K]."""
         motor = journey.temperatures.get("motor", journey.temperatures["motor sensor"])
         inward, outward = 1.0 / (60.0 * self.magnitude), 1.0 / (60.0 * self.loss)
