@@ -10,8 +10,8 @@ from frictioncli.design.predicted_rows import PlannedJoint, constant_bins, fores
 from frictioncli.design.steps import HeatStep, RestStep, SeriesStep
 from frictioncli.design.thermal_model import ThermalModel, thermal_model_of
 from frictioncli.diagnosis.data.problem import build_problems
-from frictioncli.simulator.programme import Measured, Moved, Stood, simulate_programmes
 from frictioncli.simulator.settings import SynthesisSettings
+from tests.simulation.motion_programme import Measured, Moved, Stood, simulate_programmes
 
 FASTEST = 101.2
 SPEEDS = (19.1, 39.4, 67.5, FASTEST)

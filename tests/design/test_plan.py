@@ -10,7 +10,6 @@ from frictioncli import schemas, tables
 from frictioncli.design.settings import PlanSettings
 from frictioncli.errors import FrictionError
 from frictioncli.provenance import Provenance
-from frictioncli.simulator.programme import Measured, Moved, simulate_programmes
 from frictioncli.simulator.settings import SynthesisSettings
 from frictioncli.stages.diagnose import diagnose
 from frictioncli.stages.fit import fit
@@ -18,6 +17,7 @@ from frictioncli.stages.plan import plan, plan_new
 from frictioncli.workfiles import TORQUES
 from tests.design.axis import Arm
 from tests.design.krl import Controller
+from tests.simulation.motion_programme import Measured, Moved, simulate_programmes
 
 FASTEST = 101.2
 

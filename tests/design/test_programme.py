@@ -4,8 +4,8 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from frictioncli.simulator.programme import Measured, Moved, Stood, simulate_programmes
 from frictioncli.simulator.settings import SynthesisSettings
+from tests.simulation.motion_programme import Measured, Moved, Stood, simulate_programmes
 
 SERIES = Measured(speeds=(20.0, 60.0, 100.0), low=0.0, high=120.0)
 HEAT = Moved(speed=100.0, low=0.0, high=120.0, seconds=600.0)

@@ -16,8 +16,8 @@ from frictioncli.diagnosis.fit.columns import base_rows
 from frictioncli.diagnosis.fit.judgement import Score
 from frictioncli.effects import BY_NAME
 from frictioncli.model.noise import Noise
-from frictioncli.simulator.programme import Measured, Moved, simulate_programmes
 from frictioncli.simulator.settings import SynthesisSettings
+from tests.simulation.motion_programme import Measured, Moved, simulate_programmes
 
 NOISE = (
     Noise(point=0.3, pair=0.2, drift=0.4, drift_time=900.0),

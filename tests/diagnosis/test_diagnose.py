@@ -15,13 +15,13 @@ from frictioncli.effects import BY_NAME
 from frictioncli.errors import NotEnoughData, OptionError, TableError
 from frictioncli.provenance import Provenance
 from frictioncli.simulator.settings import SynthesisSettings
-from frictioncli.simulator.tabular import simulate_torques
 from frictioncli.stages.diagnose import diagnose
 from frictioncli.stages.evaluate import evaluate
 from frictioncli.stages.fit import fit
 from frictioncli.stages.simulate import simulate
 from frictioncli.workfiles import DIAGNOSIS, EVALUATION, EXTENDED, RAMPS, TORQUES
 from tests.model.worlds import cycle_temperatures, torques
+from tests.simulation.torque_table import simulate_torques
 
 
 def days(seed, **columns):

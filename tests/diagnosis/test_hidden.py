@@ -14,7 +14,7 @@ from frictioncli.diagnosis.diagnose import Diagnosis, diagnose_joint
 from frictioncli.diagnosis.settings import DiagnosisSettings
 from frictioncli.effects import BY_NAME
 from frictioncli.simulator.settings import SynthesisSettings
-from frictioncli.simulator.tabular import simulate_torques
+from tests.simulation.torque_table import simulate_torques
 
 SIZES = {
     "linear_viscous": 2.0,

@@ -1,7 +1,7 @@
 """Families that data cannot take apart."""
 
 from frictioncli.effects import BY_NAME
-from frictioncli.effects.families import FAMILIES, families_of
+from tests.effects.families import FAMILIES, families_of
 
 
 def test_members_are_effects_and_texts_are_there():

@@ -7,7 +7,7 @@ from frictioncli import schemas
 from frictioncli.errors import OptionError
 from frictioncli.simulator.planted.catalogue import EFFECTS, asked
 from frictioncli.simulator.settings import NOISE_KINDS, SynthesisSettings
-from frictioncli.simulator.tabular import simulate_torques, simulate_world
+from tests.simulation.torque_table import simulate_torques, simulate_world
 
 BOTH = ["torque_forward", "torque_reverse"]
 

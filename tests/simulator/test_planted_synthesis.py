@@ -15,11 +15,11 @@ import frictioncli.simulator
 from frictioncli.errors import OptionError
 from frictioncli.simulator.settings import SynthesisSettings
 from frictioncli.simulator.synthesize import synthesize
-from frictioncli.simulator.tabular import simulate_torques
 from frictioncli.stages.ingest import ingest
 from frictioncli.stages.pair import pair
 from frictioncli.stages.separate import separate
 from frictioncli.workfiles import TORQUES
+from tests.simulation.torque_table import simulate_torques
 
 SHORT = {"runs": 1, "seed": 3, "lowest": 25, "highest": 28}
 

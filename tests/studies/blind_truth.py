@@ -10,7 +10,7 @@ import pandas as pd
 from frictioncli.arrays import Array
 from frictioncli.diagnosis.data.problem import Problem, build_problems
 from frictioncli.diagnosis.fit.columns import base_rows
-from frictioncli.simulator.tabular import simulate_world
+from tests.simulation.torque_table import simulate_world
 from tests.studies.blind_worlds import World
 
 TEMPERATURE = "motor"

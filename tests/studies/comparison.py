@@ -22,7 +22,7 @@ import pandas as pd
 
 from frictioncli.effects import BY_NAME
 from frictioncli.simulator.settings import SynthesisSettings
-from frictioncli.simulator.tabular import simulate_world
+from tests.simulation.torque_table import simulate_world
 from tests.studies.competitors import METHODS
 from tests.studies.joints import SLIGHT, WORTHWHILE, Finding, Joint
 

@@ -21,7 +21,7 @@ from frictioncli.effects import EFFECTS
 from frictioncli.errors import OptionError
 from frictioncli.model.fitting import fit_joint
 from frictioncli.model.settings import FitSettings
-from frictioncli.simulator.programme import simulate_programmes
+from tests.simulation.motion_programme import simulate_programmes
 from tests.studies.planning_random import blocks_at_random, motions_at_random
 from tests.studies.planning_worlds import KEY, World, acts_of, beginning, thin
 

@@ -6,7 +6,7 @@ from frictioncli.design.block import Block
 from frictioncli.design.selection import seconds_of as block_seconds
 from frictioncli.design.selection import steps_of
 from frictioncli.design.steps import SeriesStep
-from frictioncli.simulator.programme import Act, Measured, Moved, Stood
+from tests.simulation.motion_programme import Act, Measured, Moved, Stood
 from tests.studies.planning_worlds import HIGH, LOW, acts_of, seconds_of
 
 SLOWEST = 3.0

@@ -8,8 +8,8 @@ from pathlib import Path
 import numpy as np
 
 from frictioncli.design.steps import MOUNTING, HeatStep, SeriesStep, Step, mountings
-from frictioncli.simulator.programme import Act, Measured, Moved, Stood
 from frictioncli.simulator.settings import SynthesisSettings
+from tests.simulation.motion_programme import Act, Measured, Moved, Stood
 
 ROOT = Path(__file__).parents[2]
 PACKAGES = ("diagnosis", "effects", "design", "simulator", "model")

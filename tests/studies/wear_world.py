@@ -11,12 +11,12 @@ import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
-from frictioncli.simulator.fast_history import FastHistory
 from frictioncli.simulator.joint import SimulatedJoint
 from frictioncli.simulator.planted.planting import Planted
 from frictioncli.simulator.run import SimulatedRun, prepare, simulate
 from frictioncli.simulator.settings import SynthesisSettings
-from frictioncli.simulator.tabular import run_cells, table_of
+from tests.simulation.fast_history import FastHistory
+from tests.simulation.torque_table import run_cells, table_of
 
 LOWEST, HIGHEST = 38, 60
 """Motor temperatures of the thermal cycle: it must be warmer than the warmest surroundings. [°C]"""

@@ -7,15 +7,15 @@ import numpy as np
 import pandas as pd
 
 from frictioncli.simulator.cells import Cells, cells_of, trips_of
-from frictioncli.simulator.fast_history import FastHistory
 from frictioncli.simulator.paper_protocol import SeriesOfMoves, measure
 from frictioncli.simulator.planted.catalogue import asked
 from frictioncli.simulator.planted.journey import Before, look_back
 from frictioncli.simulator.planted.planting import Planted, plant
 from frictioncli.simulator.run import DAY, RunCourse, SimulatedRun, joint_of, prepare
 from frictioncli.simulator.settings import SynthesisSettings
-from frictioncli.simulator.tabular import table_of
 from frictioncli.simulator.thermal_history import MOTOR, History
+from tests.simulation.fast_history import FastHistory
+from tests.simulation.torque_table import table_of
 
 _LOOK = 30.0
 """Moves that heat look at the motor's temperature so often [s]."""

@@ -7,7 +7,6 @@ import pandas as pd
 
 from frictioncli.arrays import Array, Flags, Numbers
 from frictioncli.simulator.cells import Cells, cells_of
-from frictioncli.simulator.fast_history import FastHistory
 from frictioncli.simulator.noise import SimulatedNoise
 from frictioncli.simulator.noise_kinds import OUTLIER, UnevenNoise
 from frictioncli.simulator.planted.catalogue import asked
@@ -17,6 +16,7 @@ from frictioncli.simulator.run import RunCourse, prepare, simulate
 from frictioncli.simulator.run_files import generator_of
 from frictioncli.simulator.settings import SynthesisSettings
 from frictioncli.simulator.thermal_history import HOUSING, MOTOR
+from tests.simulation.fast_history import FastHistory
 
 REBUILT = 0.05
 """Standard deviation of a motor temperature that is rebuilt from its whole degrees [K]."""
