@@ -5,7 +5,7 @@ from dataclasses import asdict
 from itertools import groupby
 from typing import Any
 
-from frictioncli.design.block import Block
+from frictioncli.design.blocks import Block
 from frictioncli.design.limits import Limits
 from frictioncli.design.plan import Expected, Plan
 from frictioncli.design.predicted_rows import Moment

@@ -9,7 +9,7 @@ References
    doi:10.1155/2019/6931563.
 """
 
-from frictioncli.design.block import Block
+from frictioncli.design.blocks import Block
 from frictioncli.design.limits import USUAL_HOTTEST, Limits
 from frictioncli.design.settings import PlanSettings
 from frictioncli.design.steps import HeatStep, RestStep, SeriesStep

@@ -7,8 +7,7 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
-from frictioncli.design.block import Block
-from frictioncli.design.blocks import all_blocks
+from frictioncli.design.blocks import Block, all_blocks
 from frictioncli.design.decision_probability import decided
 from frictioncli.design.design_criterion import DesignCriterion
 from frictioncli.design.limits import Limits, limits_of

@@ -7,7 +7,7 @@ compared, not blocks.
 import random
 from collections.abc import Callable, Sequence
 
-from frictioncli.design.block import Block
+from frictioncli.design.blocks import Block
 from frictioncli.design.steps import MOUNTING, Step, duration, mountings
 
 Worth = Callable[[Sequence[Step]], float]

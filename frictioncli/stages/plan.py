@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import Any
 
 from frictioncli import schemas, tables
-from frictioncli.design.block import Block
+from frictioncli.design.blocks import Block
 from frictioncli.design.document import block_document, limits_document, plan_document, plan_text
 from frictioncli.design.limits import Limits
 from frictioncli.design.paper_protocol import algorithms, new_limits, usual_seconds

@@ -7,8 +7,7 @@ import re
 
 import pytest
 
-from frictioncli.design.block import Block
-from frictioncli.design.blocks import all_blocks
+from frictioncli.design.blocks import Block, all_blocks
 from frictioncli.design.limits import Limits
 from frictioncli.design.paper_protocol import algorithms, new_limits
 from frictioncli.design.programs import FORMS, krl

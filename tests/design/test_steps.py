@@ -6,8 +6,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from frictioncli.design.block import Block
-from frictioncli.design.blocks import all_blocks
+from frictioncli.design.blocks import Block, all_blocks
 from frictioncli.design.limits import Limits, limits_of
 from frictioncli.design.selection import chosen, seconds_of, steps_of
 from frictioncli.design.settings import PlanSettings

@@ -2,7 +2,7 @@
 
 import random
 
-from frictioncli.design.block import Block
+from frictioncli.design.blocks import Block
 from frictioncli.design.selection import seconds_of as block_seconds
 from frictioncli.design.selection import steps_of
 from frictioncli.design.steps import SeriesStep

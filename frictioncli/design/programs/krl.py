@@ -11,7 +11,7 @@ References
 
 import math
 
-from frictioncli.design.block import Block
+from frictioncli.design.blocks import Block
 from frictioncli.design.programs.programme import MARGIN, Programme, plain_text
 from frictioncli.design.steps import DWELL, LEAD, HeatStep, RestStep, SeriesStep
 from frictioncli.errors import OptionError

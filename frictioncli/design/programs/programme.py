@@ -3,7 +3,7 @@
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-from frictioncli.design.block import Block
+from frictioncli.design.blocks import Block
 from frictioncli.design.limits import Limits
 
 APPROACH = 20.0
