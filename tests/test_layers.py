@@ -19,7 +19,7 @@ LAYERS = [
     {"pairs", "logs", "simulator"},
     {"tables"},
     {"schemas", "files", "provenance", "workfiles"},
-    {"quantities", "errors", "arrays", "__init__"},
+    {"quantities", "errors", "arrays", "plain_text", "__init__"},
 ]
 """Top to bottom; parts of one layer do not know each other."""
 

@@ -7,9 +7,9 @@ from pathlib import Path
 
 from frictioncli.inspection.findings import ChannelFound, FileFound, JointFound
 from frictioncli.inspection.inspect import Inspection
-from frictioncli.inspection.printable import printable
 from frictioncli.inspection.remarks import Remark, remarks, stands, stepped, unit_of
 from frictioncli.inspection.sufficiency import JointData
+from frictioncli.plain_text import printable
 
 WIDTH = 100
 _EXAMPLES = 3

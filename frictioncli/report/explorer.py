@@ -16,11 +16,11 @@ from frictioncli.diagnosis.documents.apply_extension import without_effects
 from frictioncli.diagnosis.documents.extended_model import ExtendedModel, read_extended
 from frictioncli.errors import NotEnoughData
 from frictioncli.model.document import FrictionModel, read_models
+from frictioncli.plain_text import without_control_characters
 from frictioncli.report.epsilon_figures import compared_criterion
 from frictioncli.report.labels import (
     CRITERION_WORDS,
     TEMPERATURE_SYMBOLS,
-    inert,
     number,
     speed_text,
 )
@@ -234,7 +234,7 @@ def _packed(phase: ReplayedPhase, results: JointResults) -> dict[str, Any]:
     speeds = sorted(results.styles)
     nearest = [int(np.argmin(np.abs(np.array(speeds) - speed))) for speed in phase.speed[shown]]
     return {
-        "run": inert(phase.run),
+        "run": without_control_characters(phase.run),
         "phase": phase.name,
         "word": PHASE_WORDS[phase.name],
         "delta": phase.delta,

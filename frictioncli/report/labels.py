@@ -1,10 +1,11 @@
 """Words and numbers as figures and tables of the report write them."""
 
 import math
-import re
 from collections.abc import Sequence
 
 from matplotlib.font_manager import FontProperties, findfont, get_font
+
+from frictioncli.plain_text import without_control_characters
 
 PARAMETER_SYMBOLS = {"tau_c": "τc", "alpha": "α", "beta": "β", "gamma": "γ", "delta": "δ"}
 
@@ -30,25 +31,8 @@ CRITERION_WORDS = {
     "uncertainty": "uncertainty",
 }
 
-# control characters but tab and line feed, marks that turn the direction of writing, and halves
-# of characters, which no encoding takes
-_ACTIVE = re.compile(
-    "[\x00-\x08\x0b-\x1f\x7f-\x9f\u061c\u200e\u200f\u202a-\u202e\u2066-\u2069\ud800-\udfff]"
-)
-
 _LONGEST_NAME = 32
 _MOST_NAMES = 5
-
-
-def inert(text: str) -> str:
-    """Return text in which nothing controls the page or turns the direction of writing.
-
-    Parameters
-    ----------
-    text : str
-        Any text; names come from logs that anyone may have written.
-    """
-    return _ACTIVE.sub("\N{REPLACEMENT CHARACTER}", text)
 
 
 def plain(text: str) -> str:
@@ -62,7 +46,10 @@ def plain(text: str) -> str:
         Any text, such as the name of a run.
     """
     font = get_font(findfont(FontProperties(family=["sans-serif"])))
-    shown = "".join(c if font.get_char_index(ord(c)) and inert(c) == c else "?" for c in text)
+    shown = "".join(
+        c if font.get_char_index(ord(c)) and without_control_characters(c) == c else "?"
+        for c in text
+    )
     if len(shown) > _LONGEST_NAME:
         shown = shown[: _LONGEST_NAME - 1] + "…"
     return shown.replace("$", r"\$")

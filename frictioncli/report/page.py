@@ -12,12 +12,13 @@ from markupsafe import Markup, escape
 
 from frictioncli import __version__
 from frictioncli.files import whole
+from frictioncli.plain_text import without_control_characters
 from frictioncli.report import style
 from frictioncli.report.diagnosis_section import DiagnosisSection, diagnosis_sections
 from frictioncli.report.explorer import Explorer, explorers
 from frictioncli.report.figure_list import FIGURES, FigureEntry, runs_drawn_note
 from frictioncli.report.formula import formula, symbols, unit_markup
-from frictioncli.report.labels import inert, listed
+from frictioncli.report.labels import listed
 from frictioncli.report.parameters import (
     ParameterRow,
     correlation_table,
@@ -130,18 +131,18 @@ def _template() -> jinja2.Template:
         autoescape=True,
         undefined=jinja2.StrictUndefined,
         keep_trailing_newline=True,
-        finalize=_inert,
+        finalize=_cleaned,
     )
     environment.policies["json.dumps_kwargs"] = {"separators": (",", ":")}
     environment.filters["unit"] = unit_markup
     return environment.from_string(_packaged("page.html.jinja"))
 
 
-def _inert(value: Any) -> Any:
-    """Whatever the template shows passes here, before it is escaped."""
+def _cleaned(value: Any) -> Any:
+    """Remove control characters from a value that the template shows, before it is escaped."""
     if isinstance(value, Markup):
-        return Markup(inert(value))
-    return inert(value) if isinstance(value, str) else value
+        return Markup(without_control_characters(value))
+    return without_control_characters(value) if isinstance(value, str) else value
 
 
 def _title(results: list[JointResults]) -> str:

@@ -7,7 +7,6 @@ import pytest
 
 from frictioncli.inspection.document import document
 from frictioncli.inspection.inspect import inspect
-from frictioncli.inspection.printable import printable
 from frictioncli.inspection.text import text
 from frictioncli.logs.settings import IngestSettings
 from frictioncli.provenance import to_json
@@ -182,15 +181,6 @@ def test_hostile_names_do_not_act_on_the_terminal(tmp_path, hostile):
     assert found.files[0].joints[0].channels[2].column == hostile
     shown = text(found)
     assert all(character.isprintable() or character == "\n" for character in shown)
-
-
-def test_printable_is_one_line_and_short():
-    assert printable("Achse °C · ü") == "Achse °C · ü"
-    assert printable("a\nb\tc\x1b") == r"a\u000ab\u0009c\u001b"
-    long = printable("begin" + "x" * 500 + "end", 30)
-    assert len(long) == 30
-    assert long.startswith("begin")
-    assert long.endswith("end")
 
 
 @pytest.mark.skipif(not REAL.is_dir(), reason=f"no real logs beside the project: {REAL}")

@@ -6,7 +6,6 @@ from html.parser import HTMLParser
 
 import pytest
 
-from frictioncli.cli.terminal import inert
 from frictioncli.stages import run as pipeline
 from tests.logs.logs import kuka_columns, text_of
 from tests.robustness.runs import finished, refused, write_warm_up
@@ -31,7 +30,7 @@ class Elements(HTMLParser):
             self.active.append((tag, attrs))
 
 
-def test_hostile_names_are_inert_in_the_report(tmp_path):
+def test_hostile_names_are_harmless_in_the_report(tmp_path):
     run = write_warm_up(tmp_path / HTML.replace("/", "|"), levels=(25, 39, 53))
     hostile = run / f"s1{HTML.replace('/', '|')}.csv"
     rows = (run / "s1.csv").read_text(encoding="cp1252").split("\n")
@@ -53,7 +52,7 @@ def test_hostile_names_are_inert_in_the_report(tmp_path):
 
 @pytest.mark.parametrize("command", ["inspect", "ingest"])
 @pytest.mark.parametrize("hostile", [ANSI, TURNED, HTML, "=cmd|' /C calc'!A0", "\x9b31m"])
-def test_hostile_headers_and_names_are_inert_on_the_terminal(tmp_path, command, hostile):
+def test_hostile_headers_and_names_are_harmless_on_the_terminal(tmp_path, command, hostile):
     """Columns, file names and texts of faults reach the terminal; nothing in them acts there."""
     columns = kuka_columns()
     columns[f"GearTorq_Act3[Nm] {hostile}"] = columns["GearTorq_Act2[Nm]"]
@@ -68,7 +67,7 @@ def test_hostile_headers_and_names_are_inert_on_the_terminal(tmp_path, command, 
     assert result.stderr == ""
 
 
-def test_messages_of_faults_are_inert_too(tmp_path):
+def test_messages_of_faults_are_harmless_too(tmp_path):
     result = finished("ingest", tmp_path / f"no{ANSI}such", "-w", tmp_path / "work")
     assert result.returncode == 2
     assert "\x1b" not in result.stderr
@@ -90,11 +89,6 @@ def test_a_terminal_that_knows_few_characters(tmp_path):
     result = finished("inspect", tmp_path, env=env)
     assert (result.returncode, result.stderr) == (0, "")
     assert "joint \\u03c4.csv" in result.stdout
-
-
-def test_what_is_harmless_stays():
-    text = "joint 2: τ = 5 N·m at 40 °C\n\tβ²; 日本"
-    assert inert(text) == text
 
 
 def test_nothing_is_written_outside_the_work_folder(tmp_path):

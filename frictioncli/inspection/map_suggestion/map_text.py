@@ -3,8 +3,8 @@
 from frictioncli.inspection.map_suggestion.guess import Guess
 from frictioncli.inspection.map_suggestion.probe import Probe
 from frictioncli.inspection.map_suggestion.suggestion import Suggestion
-from frictioncli.inspection.printable import escaped, printable
 from frictioncli.logs.channels import aliases as names
+from frictioncli.plain_text import escaped, printable
 
 _LONGEST = 90
 
