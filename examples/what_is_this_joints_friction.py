@@ -40,6 +40,10 @@ added = model.friction.alpha * load**2
 print(f"\na load of {load:g} N·m adds {added:.1f} N·m")
 
 # %% How far the data reach; beyond them the equation extrapolates
-for name in ("speed", "load", "temperature"):
-    low, high = model.range[name]
+reach = {
+    "speed": model.range.speed,
+    "load": model.range.load,
+    "temperature": model.range.temperature,
+}
+for name, (low, high) in reach.items():
     print(f"{name:12s} measured from {low:.4g} to {high:.4g}")

@@ -1,9 +1,8 @@
 """Where a result comes from: program version, stage, settings and the hashes of its inputs."""
 
 import hashlib
-import json
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import asdict, dataclass, field
 from pathlib import Path
 from typing import Any
 
@@ -15,22 +14,29 @@ _BLOCK_BYTES = 1 << 20
 
 @dataclass(frozen=True, slots=True)
 class Provenance:
-    """What made an output. ``inputs`` maps the name of each input to its SHA-256."""
+    """What made an output.
 
+    Attributes
+    ----------
+    program, version : str
+        Name and version of the program.
+    stage : str
+        The command.
+    settings : mapping
+        Its settings.
+    inputs : mapping of str to str
+        Name of each input -> its SHA-256.
+    """
+
+    program: str = field(default="frictioncli", kw_only=True)
+    version: str = field(default=__version__, kw_only=True)
     stage: str
     settings: Mapping[str, Any] = field(default_factory=dict)
     inputs: Mapping[str, str] = field(default_factory=dict)
-    version: str = __version__
 
     def as_dict(self) -> dict[str, Any]:
-        """Return plain values, ready for JSON."""
-        return {
-            "program": "frictioncli",
-            "version": self.version,
-            "stage": self.stage,
-            "settings": dict(self.settings),
-            "inputs": dict(self.inputs),
-        }
+        """Return plain values."""
+        return asdict(self)
 
 
 def sha256(path: Path) -> str:
@@ -50,8 +56,3 @@ def sha256(path: Path) -> str:
 def hashes(paths: Iterable[Path]) -> dict[str, str]:
     """Return name -> SHA-256 for the files of a work folder that a stage has read."""
     return {path.name: sha256(path) for path in paths}
-
-
-def to_json(value: Any) -> str:
-    """Return JSON as this program writes it: readable, stable, NaN refused."""
-    return json.dumps(value, indent=2, ensure_ascii=False, allow_nan=False) + "\n"

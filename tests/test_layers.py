@@ -17,7 +17,7 @@ LAYERS = [
     {"correction", "diagnosis"},
     {"model", "effects"},
     {"pairs", "logs", "simulator"},
-    {"tables"},
+    {"tables", "documents"},
     {"schemas", "files", "provenance", "workfiles"},
     {"quantities", "errors", "arrays", "plain_text", "__init__"},
 ]

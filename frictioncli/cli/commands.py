@@ -78,8 +78,8 @@ def inspect(
 
     found = look(logs, settings)
     if json:
+        from frictioncli.documents import to_json
         from frictioncli.inspection.document import document
-        from frictioncli.provenance import to_json
 
         say(to_json(document(found)).rstrip())
         return

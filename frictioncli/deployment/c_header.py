@@ -105,7 +105,7 @@ def _constants(joint: DeployedModel, extension: DeployedExtension | None) -> lis
             told = "base of the extended model"
         define(name.upper(), repr(getattr(joint.base, name)), f"[{entry.unit}] {told}")
     for name, unit in (("speed", "deg/s"), ("load", joint.load_unit), ("temperature", "°C")):
-        limits = joint.model.range.get(name)
+        limits = getattr(joint.model.range, name)
         if limits is not None:
             define(f"LOWEST_{name.upper()}", repr(limits[0]), f"of the data [{unit}]")
             define(f"HIGHEST_{name.upper()}", repr(limits[1]), f"of the data [{unit}]")
@@ -146,7 +146,7 @@ def _gear_constants(gear: GearLag | None) -> list[str]:
 def _in_range(joint: DeployedModel) -> str:
     tests = []
     for name in ("load", "speed", "temperature"):
-        if joint.model.range.get(name) is None:
+        if getattr(joint.model.range, name) is None:
             tests.append(f"({name} == {name})")
             continue
         for bound, sign in (("LOWEST", ">="), ("HIGHEST", "<=")):

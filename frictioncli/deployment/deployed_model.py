@@ -113,6 +113,6 @@ def why_no_correction(model: FrictionModel) -> str:
 
 def middle_speed(model: FrictionModel) -> float:
     """Return the speed at which to correct: two thirds of the highest in the data. [deg/s]."""
-    limits = model.range["speed"]
+    limits = model.range.speed
     assert limits is not None  # no model without speeds
     return MIDDLE_SPEED * limits[1]

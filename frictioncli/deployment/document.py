@@ -12,7 +12,7 @@ from frictioncli.deployment.extension import LAG, DeployedExtension
 from frictioncli.deployment.gear_temperature import GearLag
 from frictioncli.diagnosis.documents.extended_model import FittedEffect
 from frictioncli.errors import FrictionError, TableError
-from frictioncli.model.document import FrictionModel, model_document, read_models
+from frictioncli.model.document import FrictionModel, read_models
 from frictioncli.model.friction import FrictionParameters
 
 SCHEMA = "frictioncli-deployed/1"
@@ -32,7 +32,7 @@ def deployed_document(joint: DeployedModel) -> dict[str, Any]:
     }
     return (
         {"schema": SCHEMA}
-        | model_document(joint.model)
+        | asdict(joint.model)
         | {
             "correction": correction if joint.can_correct else None,
             "extension": None if joint.extension is None else _extension_document(joint.extension),

@@ -11,8 +11,8 @@ from frictioncli.deployment.operating_conditions import conditions
 from frictioncli.deployment.settings import ExportSettings
 from frictioncli.deployment.simplified_friction import SimpleForm, simple_form
 from frictioncli.deployment.xml_forms import mjcf, urdf
+from frictioncli.documents import to_json
 from frictioncli.model.friction import FORM
-from frictioncli.provenance import to_json
 
 _ENDINGS = {"c": "h", "urdf": "urdf", "mjcf": "xml", "json": "json", "csv": "csv"}
 

@@ -55,8 +55,8 @@ def conditions(joint: DeployedModel, settings: ExportSettings) -> Conditions:
         If the range of speeds is empty.
     """
     known = joint.model.range
-    speeds = known["speed"] or (0.0, 0.0)
-    loads, temperatures = known.get("load") or (0.0, 0.0), known.get("temperature") or (0.0, 0.0)
+    speeds = known.speed or (0.0, 0.0)
+    loads, temperatures = known.load or (0.0, 0.0), known.temperature or (0.0, 0.0)
     given = Conditions(
         speeds=(
             speeds[0] if settings.lowest is None else settings.lowest,

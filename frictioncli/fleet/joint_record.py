@@ -7,9 +7,9 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from frictioncli.documents import to_json
 from frictioncli.errors import FrictionError, TableError
 from frictioncli.files import write_text
-from frictioncli.provenance import to_json
 
 NOTE = "fleet.json"
 """Stands in each joint's work folder, from the beginning of the work on it."""

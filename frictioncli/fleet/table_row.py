@@ -67,7 +67,7 @@ def _model_columns(model: FrictionModel) -> dict[str, Any]:
 
 def _reference_columns(model: FrictionModel) -> dict[str, Any]:
     """Return friction without load at the middle speed, where the data reach the temperature."""
-    speeds, reach = model.range["speed"], model.range["temperature"]
+    speeds, reach = model.range.speed, model.range.temperature
     if speeds is None:
         return {}
     speed = sum(speeds) / 2

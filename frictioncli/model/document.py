@@ -1,17 +1,14 @@
 """The fitted model of a joint, and ``model.json`` that holds it."""
 
-import json
 from collections.abc import Mapping
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass, field
 from html import escape
 from pathlib import Path
-from typing import Any
 
-from frictioncli.errors import TableError
-from frictioncli.files import write_text
+from frictioncli import documents
 from frictioncli.model.friction import FORM, FrictionParameters
 from frictioncli.model.noise import Noise
-from frictioncli.provenance import Provenance, to_json
+from frictioncli.provenance import Provenance
 
 PARAMETERS = ("tau_c", "alpha", "beta", "gamma", "delta")
 """Names of the parameters of equation (16), in the order in which they are shown."""
@@ -43,11 +40,35 @@ class ParameterEstimate:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
+class InputRange:
+    """Least and greatest value of each input of the friction function; none where not measured.
+
+    Attributes
+    ----------
+    speed : (float, float) or None
+        Absolute joint velocity. [deg/s]
+    load : (float, float) or None
+        Load torque. [load unit]
+    temperature : (float, float) or None
+        Temperature that the friction function is given. [°C]
+    position : (float, float) or None
+        Joint angle. [deg]
+    """
+
+    speed: tuple[float, float] | None = None
+    load: tuple[float, float] | None = None
+    temperature: tuple[float, float] | None = None
+    position: tuple[float, float] | None = None
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
 class FrictionModel:
     """Equation (16) with the parameters of one joint, and how good they are.
 
     Attributes
     ----------
+    form, speed_unit : str
+        The equation, and the unit of speed in it.
     joint : int
         Joint number, from 1.
     method : {"joint", "paper"}
@@ -68,25 +89,32 @@ class FrictionModel:
         The noise of the measurements. [torque unit]
     correlation : mapping of str to mapping of str to float
         Correlations of the fitted parameters.
-    range : mapping of str to (float, float)
-        Least and greatest value of each input in the data.
+    range : InputRange
+        Range of each input in the data.
     notes : tuple of str
         What a user should know before relying on it.
     """
 
-    joint: int
-    method: str
+    form: str = FORM
+    speed_unit: str = "deg/s"
+    joint: int = 1
+    method: str = "joint"
     temperature: str
     torque_unit: str
-    torque_side: str
+    torque_side: str = "joint"
     sign: int
     parameters: Mapping[str, ParameterEstimate]
     rmse: float
     n_pairs: int
     noise: Noise
-    correlation: Mapping[str, Mapping[str, float]]
-    range: Mapping[str, tuple[float, float] | None]
+    correlation: Mapping[str, Mapping[str, float]] = field(default_factory=dict)
+    range: InputRange
     notes: tuple[str, ...] = ()
+
+    def __post_init__(self) -> None:
+        missing = [name for name in PARAMETERS if name not in self.parameters]
+        if missing:
+            raise ValueError(f"parameters: expected {', '.join(missing)} as well")
 
     @property
     def friction(self) -> FrictionParameters:
@@ -140,82 +168,23 @@ def write_models(path: Path, models: list[FrictionModel], provenance: Provenance
     provenance : Provenance
         What made them.
     """
-    chief = max(models, key=lambda model: (model.n_pairs, -model.joint)).joint
-    documents = {model.joint: model_document(model) for model in models}
-    write_text(path, to_json(by_joint(documents, chief, provenance)))
+    main_joint = max(models, key=lambda model: (model.n_pairs, -model.joint)).joint
+    documents.write_joints(path, {model.joint: model for model in models}, main_joint, provenance)
 
 
-def by_joint(
-    documents: Mapping[int, dict[str, Any]], chief: int, provenance: Provenance
-) -> dict[str, Any]:
-    """Return one document for several joints: the chief one on top, all under ``joints``.
+def read_models(path: Path, command: str = "fit") -> list[FrictionModel]:
+    """Return the models of ``model.json``, one per joint.
 
     Parameters
     ----------
-    documents : mapping of int to dict
-        Joint -> its own document.
-    chief : int
-        The joint whose document stands on top.
-    provenance : Provenance
-        What made them.
-    """
-    whole = dict(documents[chief])
-    if len(documents) > 1:
-        whole["joints"] = {str(joint): documents[joint] for joint in sorted(documents)}
-    return whole | {"provenance": provenance.as_dict()}
-
-
-def read_models(path: Path) -> list[FrictionModel]:
-    """Return the models of ``model.json``, one per joint.
+    path : Path
+        The file.
+    command : str
+        The command that makes it.
 
     Raises
     ------
     TableError
         If the file is missing or not of the form that :func:`write_models` gives it.
     """
-    if not path.exists():
-        raise TableError(f"{path} is missing; run 'frictioncli fit' first")
-    try:
-        whole = json.loads(path.read_text(encoding="utf-8"))
-        return [_model(part) for part in whole.get("joints", {"": whole}).values()]
-    except (ValueError, LookupError, TypeError, AttributeError) as error:
-        raise TableError(
-            f"{path}: is not a model of this program ({error!r}); run 'frictioncli fit' again"
-        ) from error
-
-
-def model_document(model: FrictionModel) -> dict[str, Any]:
-    """Return a model as plain values, in the form of ``model.json``."""
-    return {"form": FORM, "speed_unit": "deg/s"} | asdict(model)
-
-
-def _model(document: Mapping[str, Any]) -> FrictionModel:
-    estimates = {}
-    for name in PARAMETERS:
-        entry = document["parameters"][name]
-        interval = entry["ci95"]
-        estimates[name] = ParameterEstimate(
-            estimate=float(entry["estimate"]),
-            ci95=None if interval is None else (float(interval[0]), float(interval[1])),
-            unit=entry["unit"],
-            determined=bool(entry["determined"]),
-            reason=entry.get("reason"),
-        )
-    return FrictionModel(
-        joint=int(document.get("joint", 1)),
-        method=document.get("method", "joint"),
-        temperature=document["temperature"],
-        torque_unit=document["torque_unit"],
-        torque_side=document.get("torque_side", "joint"),
-        sign=int(document["sign"]),
-        parameters=estimates,
-        rmse=float(document["rmse"]),
-        n_pairs=int(document["n_pairs"]),
-        noise=Noise(**document["noise"]),
-        correlation=document.get("correlation", {}),
-        range={
-            name: None if limits is None else (float(limits[0]), float(limits[1]))
-            for name, limits in document["range"].items()
-        },
-        notes=tuple(document.get("notes", ())),
-    )
+    return documents.read_joints(path, FrictionModel, command)

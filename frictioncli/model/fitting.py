@@ -6,7 +6,7 @@ import numpy as np
 import pandas as pd
 
 from frictioncli.errors import NotEnoughData
-from frictioncli.model.document import PARAMETERS, FrictionModel, ParameterEstimate
+from frictioncli.model.document import PARAMETERS, FrictionModel, InputRange, ParameterEstimate
 from frictioncli.model.identifiability import Determination, at_bound, determined_fit
 from frictioncli.model.identification import Estimate
 from frictioncli.model.observations import observations
@@ -144,17 +144,15 @@ def _correlations(estimate: Estimate) -> dict[str, dict[str, float]]:
     }
 
 
-def _ranges(
-    torques: pd.DataFrame, temperature: np.ndarray
-) -> dict[str, tuple[float, float] | None]:
+def _ranges(torques: pd.DataFrame, temperature: np.ndarray) -> InputRange:
     def limits(values: Any) -> tuple[float, float] | None:
         finite = np.asarray(values, dtype=float)
         finite = finite[np.isfinite(finite)]
         return (float(finite.min()), float(finite.max())) if finite.size else None
 
-    return {
-        "speed": limits(torques["speed"]),
-        "load": limits(torques["load_torque"]),
-        "temperature": limits(temperature),
-        "position": limits(torques["position"]),
-    }
+    return InputRange(
+        speed=limits(torques["speed"]),
+        load=limits(torques["load_torque"]),
+        temperature=limits(temperature),
+        position=limits(torques["position"]),
+    )

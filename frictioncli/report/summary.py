@@ -87,7 +87,7 @@ def measured(results: JointResults) -> str:
         if len(motor)
         else ", without a motor temperature"
     )
-    load = results.model.range.get("load")
+    load = results.model.range.load
     loads = (
         f", under loads from {number(load[0])} to {number(load[1])} {results.load_unit}"
         if load

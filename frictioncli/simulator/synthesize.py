@@ -8,8 +8,8 @@ from typing import Any
 import numpy as np
 
 from frictioncli import files
+from frictioncli.documents import to_json
 from frictioncli.errors import OptionError
-from frictioncli.provenance import to_json
 from frictioncli.simulator.joint import SimulatedJoint
 from frictioncli.simulator.planted.catalogue import asked
 from frictioncli.simulator.planted.planting import Planted, plant

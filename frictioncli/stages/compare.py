@@ -14,10 +14,11 @@ from frictioncli.comparison.days import Folder, distinct_names, in_order
 from frictioncli.comparison.document import comparison_document
 from frictioncli.comparison.settings import ComparisonSettings
 from frictioncli.comparison.text import comparison_text
+from frictioncli.documents import to_json
 from frictioncli.errors import OptionError
 from frictioncli.files import whole, write_text
 from frictioncli.model.document import FrictionModel, read_models
-from frictioncli.provenance import Provenance, sha256, to_json
+from frictioncli.provenance import Provenance, sha256
 from frictioncli.report.trend_figure import trend_pictures
 from frictioncli.stages.stage import Done, stage
 from frictioncli.workfiles import COMPARISON, MODEL, RECORDINGS, TORQUES

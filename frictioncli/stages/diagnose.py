@@ -13,10 +13,10 @@ from frictioncli.diagnosis.documents.document import (
 )
 from frictioncli.diagnosis.ramps.evidence import ramp_logs
 from frictioncli.diagnosis.settings import DiagnosisSettings
+from frictioncli.documents import write_joints
 from frictioncli.errors import NotEnoughData
-from frictioncli.files import write_text
-from frictioncli.model.document import by_joint, read_models
-from frictioncli.provenance import Provenance, hashes, to_json
+from frictioncli.model.document import read_models
+from frictioncli.provenance import Provenance, hashes
 from frictioncli.stages.stage import Done, present, stage
 from frictioncli.workfiles import DIAGNOSIS, EXTENDED, MODEL, RAMPS, TORQUES
 
@@ -42,12 +42,12 @@ def diagnose(work: Path, settings: DiagnosisSettings | None = None) -> Done:
     if not found:
         raise NotEnoughData("; ".join(faults))
     provenance = Provenance("diagnose", asdict(settings), hashes(inputs))
-    chief = max(found, key=lambda pair: pair[0].n_pairs)[0].joint
+    main_joint = max(found, key=lambda pair: pair[0].n_pairs)[0].joint
     for name, documents in (
         (DIAGNOSIS, {m.joint: diagnosis_document(d, settings) for m, d in found}),
         (EXTENDED, {m.joint: extended_document(d, m) for m, d in found}),
     ):
-        write_text(work / name, to_json(by_joint(documents, chief, provenance)))
+        write_joints(work / name, documents, main_joint, provenance)
     return Done(work / DIAGNOSIS, "\n".join([*(verdict_text(d) for _, d in found), *faults]))
 
 

@@ -15,10 +15,11 @@ from frictioncli.design.programs import FORMS
 from frictioncli.design.programs.programme import REDUCED, Programme
 from frictioncli.design.settings import PlanSettings
 from frictioncli.diagnosis.documents.reload import is_current, read_documents
+from frictioncli.documents import to_json
 from frictioncli.errors import NotEnoughData, OptionError, TableError
 from frictioncli.files import write_text
 from frictioncli.model.document import read_models
-from frictioncli.provenance import Provenance, hashes, to_json
+from frictioncli.provenance import Provenance, hashes
 from frictioncli.stages.stage import Done, stage
 from frictioncli.workfiles import DIAGNOSIS, EXTENDED, MODEL, PLAN, TORQUES
 

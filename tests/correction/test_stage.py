@@ -12,7 +12,7 @@ from frictioncli.correction.settings import (
     ScheduleSettings,
 )
 from frictioncli.errors import NotEnoughData, OptionError
-from frictioncli.model.document import FrictionModel, ParameterEstimate
+from frictioncli.model.document import FrictionModel, InputRange, ParameterEstimate
 from frictioncli.model.friction import PUBLISHED
 from frictioncli.model.noise import Noise
 from frictioncli.model.zero_load import friction_at_zero_load
@@ -37,7 +37,7 @@ def published_model(**changes):
         n_pairs=1,
         noise=Noise(point=0.1, pair=0.1, drift=0.1, drift_time=1.0),
         correlation={},
-        range={},
+        range=InputRange(),
     )
 
 

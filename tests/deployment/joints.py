@@ -10,7 +10,7 @@ from frictioncli.deployment.extension import DeployedExtension
 from frictioncli.deployment.gear_temperature import GearLag
 from frictioncli.diagnosis.documents.extended_model import FittedEffect
 from frictioncli.effects import BY_NAME
-from frictioncli.model.document import ParameterEstimate
+from frictioncli.model.document import InputRange, ParameterEstimate
 from frictioncli.model.friction import PUBLISHED
 from tests.correction.test_stage import published_model
 
@@ -21,12 +21,12 @@ UNITS = {
     "gamma": "N·m/(deg/s)^0.5",
     "delta": "1/°C",
 }
-RANGE = {
-    "speed": (2.3, 101.2),
-    "load": (-95.0, 90.0),
-    "temperature": (20.0, 65.0),
-    "position": (2.5, 177.5),
-}
+RANGE = InputRange(
+    speed=(2.3, 101.2),
+    load=(-95.0, 90.0),
+    temperature=(20.0, 65.0),
+    position=(2.5, 177.5),
+)
 
 LAG = GearLag(
     time_constant=1500.0,

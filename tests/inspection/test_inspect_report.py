@@ -5,11 +5,11 @@ import json
 import numpy as np
 import pytest
 
+from frictioncli.documents import to_json
 from frictioncli.inspection.document import document
 from frictioncli.inspection.inspect import inspect
 from frictioncli.inspection.text import text
 from frictioncli.logs.settings import IngestSettings
-from frictioncli.provenance import to_json
 from tests.logs.logs import REAL, kuka_columns, text_of
 
 from .faulty import COLUMNS, clean_log, write

@@ -127,12 +127,12 @@ def examine_here(number: int) -> Finding:
 
 
 def _outcome(one: Case, folder: Path, *, inspected: bool) -> tuple[str, str]:
+    from frictioncli.documents import to_json
     from frictioncli.errors import FrictionError
     from frictioncli.inspection.document import document
     from frictioncli.inspection.inspect import inspect
     from frictioncli.inspection.text import text
     from frictioncli.logs.ingest import IngestSettings, ingest
-    from frictioncli.provenance import to_json
 
     run, work = folder / "run", folder / "work"
     run.mkdir()

@@ -11,7 +11,7 @@ from frictioncli.diagnosis.fit.extension import Extension
 from frictioncli.diagnosis.search.cause_search import Cause
 from frictioncli.diagnosis.settings import DiagnosisSettings
 from frictioncli.effects.base import Parameter
-from frictioncli.model.document import PARAMETERS, FrictionModel, model_document
+from frictioncli.model.document import PARAMETERS, FrictionModel
 from frictioncli.quantities import TORQUE
 
 _Z95 = 1.96
@@ -77,7 +77,7 @@ def _ramps_document(diagnosis: Diagnosis) -> dict[str, Any] | None:
 
 def extended_document(diagnosis: Diagnosis, model: FrictionModel) -> dict[str, Any]:
     """Return the base model with the causes found, refitted, as plain values."""
-    document = model_document(model)
+    document = asdict(model)
     document["effects"] = []
     extension = diagnosis.extension
     if extension is None:
