@@ -8,7 +8,7 @@ import numpy as np
 from frictioncli.logs.channels import aliases as names
 from frictioncli.logs.channels.recognition import split_unit
 from frictioncli.logs.channels.unit_inference import JointPlan
-from frictioncli.logs.formats.base import Source
+from frictioncli.logs.log_source import LogSource
 from frictioncli.logs.samples.row_checks import LIMITS
 
 _NAME = re.compile(r"brake|bremse", re.I)
@@ -17,7 +17,7 @@ _STILL = 0.02
 """A value that goes with less than this share of the usual speed means closed."""
 
 
-def closed_seconds(source: Source, plan: JointPlan, batch_bytes: int) -> float | None:
+def closed_seconds(source: LogSource, plan: JointPlan, batch_bytes: int) -> float | None:
     """Return how long the brake was closed [s], from one more pass over three columns of a log.
 
     Closed are the values at which the joint does not move. So 0 and 1 may mean either, and so may
@@ -25,7 +25,7 @@ def closed_seconds(source: Source, plan: JointPlan, batch_bytes: int) -> float |
 
     Parameters
     ----------
-    source : Source
+    source : LogSource
         The log.
     plan : JointPlan
         How the joint is read.

@@ -20,7 +20,7 @@ from frictioncli.inspection.unit_reasons import other_remarks
 from frictioncli.inspection.unusable_file import raw_look
 from frictioncli.logs.channels.channel_map import ChannelMap, read_map
 from frictioncli.logs.channels.reading_plan import readings
-from frictioncli.logs.formats.base import Refusal
+from frictioncli.logs.log_source import Refusal
 from frictioncli.logs.runs import manifest
 from frictioncli.logs.runs.discovery import LogRun, discover
 from frictioncli.logs.runs.opening import open_run

@@ -7,9 +7,9 @@ import numpy as np
 from frictioncli.arrays import Array
 from frictioncli.logs.channels import aliases as names
 from frictioncli.logs.channels import units
-from frictioncli.logs.channels.recognition import LogChannel, recognise
+from frictioncli.logs.channels.recognition import LogChannel, recognise_channels
 from frictioncli.logs.channels.unit_inference import JointPlan
-from frictioncli.logs.formats.base import Source
+from frictioncli.logs.log_source import LogSource
 
 
 @dataclass(frozen=True, slots=True)
@@ -25,12 +25,12 @@ class OtherClock:
     departs_s: float
 
 
-def other_clocks(source: Source, plan: JointPlan, batch_bytes: int) -> tuple[OtherClock, ...]:
+def other_clocks(source: LogSource, plan: JointPlan, batch_bytes: int) -> tuple[OtherClock, ...]:
     """Return what other time columns show, from one more pass over the time columns alone.
 
     Parameters
     ----------
-    source : Source
+    source : LogSource
         The log.
     plan : JointPlan
         How it is read.
@@ -40,7 +40,7 @@ def other_clocks(source: Source, plan: JointPlan, batch_bytes: int) -> tuple[Oth
     used = plan.channels.time.column
     others = [
         channel
-        for channel in recognise(source.columns)
+        for channel in recognise_channels(source.columns)
         if channel.quantity == names.TIME and channel.column != used
     ]
     if not others:

@@ -11,10 +11,9 @@ from frictioncli.inspection.monitors.windows import Windows
 from frictioncli.logs.channels import aliases as names
 from frictioncli.logs.channels import units
 from frictioncli.logs.channels.channel_map import ChannelMap
-from frictioncli.logs.channels.recognition import LogChannel, recognise
+from frictioncli.logs.channels.recognition import LogChannel, recognise_channels
 from frictioncli.logs.formats import open_log
-from frictioncli.logs.formats.base import Refusal, Source
-from frictioncli.logs.formats.compression import UnreadableLog
+from frictioncli.logs.log_source import LogSource, Refusal, UnreadableLog
 from frictioncli.logs.runs.discovery import LogRun
 from frictioncli.logs.samples.row_checks import RowBlock
 from frictioncli.logs.settings import IngestSettings
@@ -51,7 +50,9 @@ def raw_look(
     source = open_log(path, chart.hints) if refusal.reason in _TABLES else refusal
     if isinstance(source, Refusal):
         return FileFound(path=path, run=run.name, reason=refusal.reason, refusal=refusal.text)
-    times = [channel for channel in recognise(source.columns) if channel.quantity == names.TIME]
+    times = [
+        channel for channel in recognise_channels(source.columns) if channel.quantity == names.TIME
+    ]
     rows, sampling = 0, None
     if times:
         rows, sampling = _sampled(source, times[0], settings)
@@ -68,7 +69,7 @@ def raw_look(
 
 
 def _sampled(
-    source: Source, time: LogChannel, settings: IngestSettings
+    source: LogSource, time: LogChannel, settings: IngestSettings
 ) -> tuple[int, Sampling | None]:
     """Return how many rows a log has and how it was sampled."""
     windows, watch = Windows(), SamplingMonitor()

@@ -14,7 +14,7 @@ from frictioncli.errors import FrictionError, LogError, MappingError
 from frictioncli.files import whole
 from frictioncli.logs.channels.channel_map import ChannelMap, read_map
 from frictioncli.logs.channels.reading_plan import readings
-from frictioncli.logs.formats.base import Refusal
+from frictioncli.logs.log_source import Refusal
 from frictioncli.logs.runs import manifest
 from frictioncli.logs.runs.discovery import LogRun, Logs, discover
 from frictioncli.logs.runs.hashing import Hashing

@@ -8,9 +8,9 @@ from hypothesis import strategies as st
 from frictioncli import schemas, tables
 from frictioncli.errors import LogError
 from frictioncli.logs.formats import open_log
-from frictioncli.logs.formats.base import CsvHints, Refusal
 from frictioncli.logs.formats.diadem import DiademRecording
 from frictioncli.logs.ingest import ingest
+from frictioncli.logs.log_source import CsvHints, Refusal
 
 from .diadem_files import raw_numbers, write_diadem
 from .logs import back_and_forth, write

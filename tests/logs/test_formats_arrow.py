@@ -12,8 +12,8 @@ from hypothesis import strategies as st
 
 from frictioncli.errors import LogError
 from frictioncli.logs.formats import open_log
-from frictioncli.logs.formats.base import CsvHints, Refusal
 from frictioncli.logs.ingest import ingest
+from frictioncli.logs.log_source import CsvHints, Refusal
 
 from .containers import COLUMNS, POSITION, TEMPERATURE, TIME, TORQUE, VELOCITY, assert_same_as_csv
 from .logs import kuka_columns, write

@@ -13,9 +13,10 @@ from hypothesis import strategies as st
 
 from frictioncli import schemas, tables
 from frictioncli.errors import LogError
-from frictioncli.logs.formats.compression import UnreadableLog, open_bytes
+from frictioncli.logs.formats.compression import open_bytes
 from frictioncli.logs.formats.encoding import head_of, pieces
 from frictioncli.logs.ingest import ingest
+from frictioncli.logs.log_source import UnreadableLog
 
 from .logs import kuka_columns, text_of, write
 

@@ -10,8 +10,8 @@ from hypothesis import strategies as st
 
 from frictioncli import schemas, tables
 from frictioncli.logs.formats import open_log
-from frictioncli.logs.formats.base import CsvHints, Refusal
 from frictioncli.logs.ingest import IngestSettings, ingest
+from frictioncli.logs.log_source import CsvHints, Refusal
 
 from .containers import (
     COLUMNS,

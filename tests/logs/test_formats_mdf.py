@@ -9,9 +9,9 @@ from hypothesis import strategies as st
 
 from frictioncli.errors import LogError
 from frictioncli.logs.formats import open_log
-from frictioncli.logs.formats.base import CsvHints, Refusal
 from frictioncli.logs.formats.mdf_process import base_of, opened, rows_at, signals_of
 from frictioncli.logs.ingest import ingest
+from frictioncli.logs.log_source import CsvHints, Refusal
 
 from .containers import (
     COLUMNS,

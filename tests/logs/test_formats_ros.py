@@ -12,9 +12,9 @@ from hypothesis import strategies as st
 from frictioncli import schemas, tables
 from frictioncli.errors import LogError
 from frictioncli.logs.formats import open_log
-from frictioncli.logs.formats.base import CsvHints, Refusal
 from frictioncli.logs.formats.ros import joint_numbers
 from frictioncli.logs.ingest import ingest
+from frictioncli.logs.log_source import CsvHints, Refusal
 
 from .containers import COLUMNS, POSITION, TIME, TORQUE, VELOCITY, assert_same_as_csv, without
 

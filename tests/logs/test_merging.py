@@ -4,7 +4,7 @@ import numpy as np
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from frictioncli.logs.formats.base import RawBatch
+from frictioncli.logs.log_source import RawBatch
 from frictioncli.logs.runs.merging import Lender, MergedLog
 
 from .logs import REAL

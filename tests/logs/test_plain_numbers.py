@@ -8,9 +8,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from frictioncli.logs.formats import plain_numbers
-from frictioncli.logs.formats.base import CsvHints
 from frictioncli.logs.formats.delimited import read_delimited
 from frictioncli.logs.formats.plain_numbers import line_feeds, plain_columns
+from frictioncli.logs.log_source import CsvHints
 from tests.compiler import has_compiler
 
 CELL = re.compile(r"(-?\d+([.,]\d*)?([eE][+-]?\d+)?)?")

@@ -6,9 +6,9 @@ import pytest
 from frictioncli import schemas, tables
 from frictioncli.errors import LogError, MappingError
 from frictioncli.logs.channels.channel_map import read_map
-from frictioncli.logs.channels.recognition import assign, joint_in_name, recognise
-from frictioncli.logs.formats.base import Refusal
+from frictioncli.logs.channels.recognition import assign_channels, joint_in_name, recognise_channels
 from frictioncli.logs.ingest import IngestSettings, ingest
+from frictioncli.logs.log_source import Refusal
 
 from .logs import back_and_forth, kuka_columns, write
 
@@ -46,7 +46,7 @@ from .logs import back_and_forth, kuka_columns, write
     ],
 )
 def test_names(column, quantity, joint, side):
-    found = recognise([column])
+    found = recognise_channels([column])
     if quantity is None:
         assert found == ()
     else:
@@ -55,21 +55,21 @@ def test_names(column, quantity, joint, side):
 
 
 def test_joints_counted_from_zero_become_joints_from_one():
-    assert [c.joint for c in recognise(["t", "actual_q_0", "actual_q_5"])] == [None, 1, 6]
+    assert [c.joint for c in recognise_channels(["t", "actual_q_0", "actual_q_5"])] == [None, 1, 6]
 
 
 def test_motor_torque_goes_before_gear_torque_and_current():
     columns = ["Zeit", "Iststrom_A2", "GearTorq_Act2", "DriveMotorTorq_Act2", "AxisPos_Act2"]
-    (joint,) = assign(recognise(columns), columns, joints=None, file_joint=1)
+    (joint,) = assign_channels(recognise_channels(columns), columns, joints=None, file_joint=1)
     assert joint.torque.name == "DriveMotorTorq_Act2"
     assert "not used: GearTorq_Act2, Iststrom_A2" in joint.notes[0]
 
 
 def test_every_joint_with_a_torque_channel():
     columns = ["t", "q_1", "q_2", "q_3", "torque_2", "torque_3"]
-    found = assign(recognise(columns), columns, joints=None, file_joint=1)
+    found = assign_channels(recognise_channels(columns), columns, joints=None, file_joint=1)
     assert [joint.joint for joint in found] == [2, 3]
-    found = assign(recognise(columns), columns, joints=(3, 4), file_joint=1)
+    found = assign_channels(recognise_channels(columns), columns, joints=(3, 4), file_joint=1)
     assert [joint.joint for joint in found] == [3]
 
 
@@ -82,7 +82,7 @@ def test_every_joint_with_a_torque_channel():
     ],
 )
 def test_what_is_missing_is_named(columns, reason):
-    refusal = assign(recognise(columns), columns, joints=None, file_joint=1)
+    refusal = assign_channels(recognise_channels(columns), columns, joints=None, file_joint=1)
     assert isinstance(refusal, Refusal)
     assert refusal.reason == reason
     assert "--map" in refusal.text

@@ -8,7 +8,7 @@ from frictioncli.inspection.map_suggestion.numbering import joint_numbers
 from frictioncli.inspection.map_suggestion.probe import Probe
 from frictioncli.logs.channels import aliases as names
 from frictioncli.logs.channels import units
-from frictioncli.logs.channels.recognition import LogChannel, recognise, split_unit
+from frictioncli.logs.channels.recognition import LogChannel, recognise_channels, split_unit
 
 OTHERS = 4
 """Alternatives that are told."""
@@ -62,7 +62,7 @@ class LogColumns:
 
 def columns_of(found: Probe, time: int) -> LogColumns:
     """Return the columns of a log whose time is in a column."""
-    known = {channel.column: channel for channel in recognise(found.names)}
+    known = {channel.column: channel for channel in recognise_channels(found.names)}
     said = {column: c.joint for column, c in known.items() if c.joint is not None}
     return LogColumns(found, known, joint_numbers(found.names, time) | said)
 

@@ -7,8 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from frictioncli.arrays import Array
-from frictioncli.logs.formats.base import RawBatch, Source
-from frictioncli.logs.formats.compression import UnreadableLog
+from frictioncli.logs.log_source import LogSource, RawBatch, UnreadableLog
 
 _FIRST_BYTES = 1 << 16
 _BATCH_BYTES = 1 << 20
@@ -41,7 +40,7 @@ class Probe:
     rows: int
 
 
-def probe(source: Source) -> Probe:
+def probe(source: LogSource) -> Probe:
     """Read the beginning of a log: columns that a mapping file can name and that hold numbers.
 
     Of columns of one name only the first can be named.
@@ -70,7 +69,7 @@ def probe(source: Source) -> Probe:
     return Probe(names, changing, constants, min(int(good.sum()), enough))
 
 
-def _numeric(source: Source, column: int) -> bool:
+def _numeric(source: LogSource, column: int) -> bool:
     with suppress(UnreadableLog):
         first = next(iter(source.batches([column], _FIRST_BYTES)), None)
         if first is not None:

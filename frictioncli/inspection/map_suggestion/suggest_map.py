@@ -9,7 +9,7 @@ from frictioncli.inspection.map_suggestion.probe import probe
 from frictioncli.inspection.map_suggestion.suggestion import suggest
 from frictioncli.logs.channels.channel_map import ChannelMap, read_map
 from frictioncli.logs.formats import open_log
-from frictioncli.logs.formats.base import Refusal, Source
+from frictioncli.logs.log_source import LogSource, Refusal
 from frictioncli.logs.runs.discovery import discover
 from frictioncli.logs.runs.opening import open_run
 from frictioncli.logs.settings import IngestSettings
@@ -41,9 +41,9 @@ def suggested_map(logs: Sequence[Path], settings: IngestSettings | None = None) 
         raise LogError(f"{source.path}: {fault}") from None
 
 
-def _source(logs: Sequence[Path], settings: IngestSettings, chart: ChannelMap) -> Source:
+def _source(logs: Sequence[Path], settings: IngestSettings, chart: ChannelMap) -> LogSource:
     """Return the first log whose columns are not recognised, else the first that can be opened."""
-    first: Source | None = None
+    first: LogSource | None = None
     refusals = []
     for run in discover(logs):
         opened, refused = open_run(run, settings, chart)

@@ -7,7 +7,7 @@ import numpy as np
 from frictioncli.inspection.map_suggestion.probe import Probe
 from frictioncli.logs.channels import aliases as names
 from frictioncli.logs.channels import units
-from frictioncli.logs.channels.recognition import recognise, split_unit
+from frictioncli.logs.channels.recognition import recognise_channels, split_unit
 
 _GROWS = 0.98
 _EVEN = 0.5
@@ -32,7 +32,7 @@ def clocks(found: Probe) -> list[TimeColumn]:
     A name that says so counts most; then a step that varies a little, as measured time does: one
     that is exactly 1 may be a counter of rows.
     """
-    said = {c.column: c for c in recognise(found.names) if c.quantity == names.TIME}
+    said = {c.column: c for c in recognise_channels(found.names) if c.quantity == names.TIME}
     ranked: list[tuple[tuple[bool, bool, int], TimeColumn]] = []
     for column, values in found.values.items():
         steps = np.diff(values)

@@ -12,8 +12,8 @@ from typing import Any
 from frictioncli.errors import MappingError
 from frictioncli.logs.channels import units
 from frictioncli.logs.channels.aliases import CHANNELS, JOINT_SIDE, POSITION, TIME, TORQUE, Meaning
-from frictioncli.logs.channels.recognition import LogChannel, recognise, split_unit
-from frictioncli.logs.formats.base import CsvHints, Refusal
+from frictioncli.logs.channels.recognition import LogChannel, recognise_channels, split_unit
+from frictioncli.logs.log_source import CsvHints, Refusal
 
 _SECTIONS = ("channels", "units", "csv", "joint")
 _CSV_KEYS = ("delimiter", "decimal", "encoding")
@@ -94,7 +94,7 @@ def mapped_channels(
     tuple of Channel or Refusal
         ``mapped_column_missing`` when the file lacks a named column.
     """
-    recognised = recognise(columns)
+    recognised = recognise_channels(columns)
     if TORQUE not in chart.channels and POSITION not in chart.channels:
         kept = [c for c in recognised if c.quantity not in chart.channels]
     else:

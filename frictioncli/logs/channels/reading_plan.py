@@ -7,7 +7,7 @@ from frictioncli.errors import OptionError
 from frictioncli.logs.channels.channel_map import ChannelMap
 from frictioncli.logs.channels.survey import survey
 from frictioncli.logs.channels.unit_inference import JointPlan, plan_joint
-from frictioncli.logs.formats.base import Refusal
+from frictioncli.logs.log_source import Refusal
 from frictioncli.logs.runs.opening import OpenedLog, RefusedLog
 from frictioncli.logs.samples.chunks import LogReading, first_look
 from frictioncli.logs.settings import IngestSettings

@@ -17,7 +17,7 @@ from frictioncli.logs.channels.aliases import (
     VELOCITY,
     Meaning,
 )
-from frictioncli.logs.formats.base import Refusal
+from frictioncli.logs.log_source import Refusal
 
 _UNIT = re.compile(r"^(?P<name>.*?)\s*[\[(](?P<unit>[^\[\]()]*)[\])]\s*$")
 _TAIL = re.compile(
@@ -48,7 +48,7 @@ class LogChannel:
         Unit as written, "" where none.
     family : str
         The name without number and unit: columns of one family share their unit.
-    borrowed : bool
+    is_merged : bool
         Taken from another file of the same trace, at this file's times: second choice.
     """
 
@@ -58,7 +58,7 @@ class LogChannel:
     joint: int | None
     unit: str
     family: str
-    borrowed: bool = False
+    is_merged: bool = False
 
     @property
     def quantity(self) -> str:
@@ -97,7 +97,9 @@ def split_unit(column: str) -> tuple[str, str]:
     return found["name"], unit
 
 
-def recognise(columns: Sequence[str], borrowed_from: int | None = None) -> tuple[LogChannel, ...]:
+def recognise_channels(
+    columns: Sequence[str], first_merged: int | None = None
+) -> tuple[LogChannel, ...]:
     """Return the columns whose names tell what they are, in file order.
 
     Where a family has a column numbered 0 the file counts joints from 0 and all of its joint
@@ -107,7 +109,7 @@ def recognise(columns: Sequence[str], borrowed_from: int | None = None) -> tuple
     ----------
     columns : sequence of str
         Column names.
-    borrowed_from : int, optional
+    first_merged : int, optional
         The first column that another file lends.
     """
     found: list[LogChannel] = []
@@ -118,8 +120,8 @@ def recognise(columns: Sequence[str], borrowed_from: int | None = None) -> tuple
         seen.add(column)
         channel = _recognised(index, column)
         if channel is not None:
-            borrowed = borrowed_from is not None and index >= borrowed_from
-            found.append(replace(channel, borrowed=borrowed))
+            is_merged = first_merged is not None and index >= first_merged
+            found.append(replace(channel, is_merged=is_merged))
     from_zero = any(channel.joint == 0 for channel in found)
     if not from_zero:
         return tuple(found)
@@ -160,7 +162,7 @@ def joint_in_name(stem: str) -> int | None:
     return int(found[1] or found[2]) if found else None
 
 
-def assign(
+def assign_channels(
     channels: Sequence[LogChannel],
     columns: Sequence[str],
     *,
@@ -218,7 +220,7 @@ def _joint_channels(
     shared: Sequence[LogChannel],
 ) -> JointChannels:
     torques = _of(own, TORQUE)
-    position = min(positions, key=lambda c: (c.borrowed, c.meaning.side == MOTOR_SIDE))
+    position = min(positions, key=lambda c: (c.is_merged, c.meaning.side == MOTOR_SIDE))
     across = _first([c for c in positions if c.meaning.side != position.meaning.side])
     velocities = _of(own, VELOCITY)
     same_side = [c for c in velocities if c.meaning.side == position.meaning.side]
@@ -244,7 +246,7 @@ def _of(channels: Iterable[LogChannel], quantity: str) -> list[LogChannel]:
     """Return the channels of a quantity, preferred ones first."""
     return sorted(
         (c for c in channels if c.quantity == quantity),
-        key=lambda c: (c.borrowed, c.meaning.rank, c.column),
+        key=lambda c: (c.is_merged, c.meaning.rank, c.column),
     )
 
 

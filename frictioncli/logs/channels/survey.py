@@ -9,8 +9,7 @@ import numpy as np
 from frictioncli.arrays import Array
 from frictioncli.logs.channels import aliases as names
 from frictioncli.logs.channels.recognition import LogChannel
-from frictioncli.logs.formats.base import RawBatch
-from frictioncli.logs.formats.encoding import UnreadableLog
+from frictioncli.logs.log_source import RawBatch, UnreadableLog
 from frictioncli.logs.runs.opening import OpenedLog
 
 _MAX_FILES = 16

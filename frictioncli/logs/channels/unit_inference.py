@@ -11,7 +11,7 @@ from frictioncli.logs.channels.motion_units import JointMotion, Remarks, joint_m
 from frictioncli.logs.channels.recognition import JointChannels, LogChannel
 from frictioncli.logs.channels.survey import Survey
 from frictioncli.logs.channels.units import UnitBelief
-from frictioncli.logs.formats.base import Refusal
+from frictioncli.logs.log_source import Refusal
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -203,7 +203,7 @@ def _gear(
         )
     offset = unit_evidence.gear_offset(pairs, ratio)
     # another trace may lack the drive's file, and its torque would stay at the motor
-    return _Gear(ratio, offset, told is not None or not across.borrowed)
+    return _Gear(ratio, offset, told is not None or not across.is_merged)
 
 
 def _without_gear(

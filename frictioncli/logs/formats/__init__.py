@@ -2,10 +2,9 @@
 
 from collections.abc import Iterable
 from pathlib import Path
+from typing import Protocol
 
 from frictioncli.logs.formats.arrow_tables import read_arrow
-from frictioncli.logs.formats.base import CsvHints, Reader, Refusal, Source
-from frictioncli.logs.formats.compression import UnreadableLog
 from frictioncli.logs.formats.delimited import DelimitedText, read_delimited
 from frictioncli.logs.formats.diadem import read_diadem
 from frictioncli.logs.formats.encoding import head_of
@@ -16,6 +15,16 @@ from frictioncli.logs.formats.rtde import read_rtde
 from frictioncli.logs.formats.split_time import with_joined_time
 from frictioncli.logs.formats.struct_cells import read_struct_cells
 from frictioncli.logs.formats.unsupported import read_foreign
+from frictioncli.logs.log_source import CsvHints, LogSource, Refusal, UnreadableLog
+
+
+class Reader(Protocol):
+    """The function that opens files of one format."""
+
+    def __call__(self, path: Path, head: bytes, hints: CsvHints) -> LogSource | Refusal | None:
+        """Return the opened log, why it cannot be read, or None when it is another format."""
+        ...
+
 
 READERS: tuple[Reader, ...] = (
     read_diadem,
@@ -31,15 +40,17 @@ READERS: tuple[Reader, ...] = (
 """Asked in this order; the first that knows the file's beginning decides."""
 
 
-def open_logs(paths: Iterable[Path], hints: CsvHints) -> list[Source | Refusal]:
+def open_logs(paths: Iterable[Path], hints: CsvHints) -> list[LogSource | Refusal]:
     """Open files by their content; logs of a folder mostly look like the one before."""
-    found: list[Source | Refusal] = []
+    found: list[LogSource | Refusal] = []
     for path in paths:
         found.append(open_log(path, hints, found[-1] if found else None))
     return found
 
 
-def open_log(path: Path, hints: CsvHints, like: Source | Refusal | None = None) -> Source | Refusal:
+def open_log(
+    path: Path, hints: CsvHints, like: LogSource | Refusal | None = None
+) -> LogSource | Refusal:
     """Open a file by its content, whatever its name ends in.
 
     Parameters
@@ -48,7 +59,7 @@ def open_log(path: Path, hints: CsvHints, like: Source | Refusal | None = None) 
         The file.
     hints : CsvHints
         What the user says of a text's form.
-    like : Source or Refusal, optional
+    like : LogSource or Refusal, optional
         What another file was found to be; a text of just that form needs no search.
     """
     try:

@@ -12,9 +12,9 @@ import pyarrow.compute as pc
 import pyarrow.parquet as pq
 
 from frictioncli.arrays import Array
-from frictioncli.logs.formats.base import CsvHints, Refusal
 from frictioncli.logs.formats.compression import refuse_packed
 from frictioncli.logs.formats.containers import ContainerLog, Rows, listed, readable, with_unit
+from frictioncli.logs.log_source import CsvHints, Refusal
 
 _PARQUET = b"PAR1"
 _ARROW = b"ARROW1\0\0"

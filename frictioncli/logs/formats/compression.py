@@ -10,8 +10,7 @@ from typing import TYPE_CHECKING, BinaryIO, cast
 
 import pyarrow as pa
 
-from frictioncli.errors import LogError
-from frictioncli.logs.formats.base import Refusal
+from frictioncli.logs.log_source import Refusal
 
 if TYPE_CHECKING:
     from _typeshed import WriteableBuffer
@@ -34,10 +33,6 @@ _START = 10
 _XZ_MEMORY = 1 << 27
 """What an xz stream may ask for: twice the need of the strongest preset. [bytes]"""
 _XZ_READ = 1 << 16
-
-
-class UnreadableLog(LogError):
-    """A file that cannot be opened, or not be read to its end."""
 
 
 def packing_of(path: Path) -> str | None:

@@ -8,8 +8,8 @@ from pathlib import Path
 import numpy as np
 
 from frictioncli.arrays import Array, Numbers
-from frictioncli.logs.formats.base import OneStream, RawBatch, Refusal
-from frictioncli.logs.formats.compression import UnreadableLog
+from frictioncli.logs.channels.recognition import recognise_channels, split_unit
+from frictioncli.logs.log_source import RawBatch, Refusal, SequentialSource, UnreadableLog
 
 Rows = dict[int, Array]
 """Column index to values of consecutive rows, NaN where there is none."""
@@ -20,7 +20,7 @@ _LEAST_ROWS = 64
 
 
 @dataclass(frozen=True, slots=True)
-class ContainerLog(OneStream):
+class ContainerLog(SequentialSource):
     """A table inside a binary container.
 
     Attributes
@@ -115,16 +115,12 @@ def lacks_package(what: str, extra: str) -> Refusal:
 
 def with_unit(name: str, unit: str) -> str:
     """Return a column name with its unit in brackets, unless it is unknown or there already."""
-    from frictioncli.logs.channels.recognition import split_unit  # it knows this package, too
-
     return f"{name} [{unit}]" if unit and not split_unit(name)[1] else name
 
 
 def quantities(columns: Sequence[str]) -> set[str]:
     """Return which quantities some columns hold by their names."""
-    from frictioncli.logs.channels.recognition import recognise  # it knows this package, too
-
-    return {channel.quantity for channel in recognise(columns)}
+    return {channel.quantity for channel in recognise_channels(columns)}
 
 
 def listed(names: Sequence[str], most: int = 6) -> str:

@@ -12,7 +12,6 @@ import pyarrow.compute as pc
 import pyarrow.csv as pcsv
 
 from frictioncli.arrays import Array, Flags, Numbers
-from frictioncli.logs.formats.base import CsvHints, RawBatch, Refusal, Task
 from frictioncli.logs.formats.dates import seconds_since_1970
 from frictioncli.logs.formats.dialect import NOT_NUMBERS, Dialect, detect, split
 from frictioncli.logs.formats.encoding import (
@@ -25,6 +24,7 @@ from frictioncli.logs.formats.encoding import (
     rest_of,
 )
 from frictioncli.logs.formats.plain_numbers import plain_columns
+from frictioncli.logs.log_source import CsvHints, RawBatch, ReadTask, Refusal
 
 _TEXT_LIMIT = 200
 _SMALL = 1 << 20
@@ -109,15 +109,15 @@ class DelimitedText:
             if len(batch.lines) or len(batch.bad_lines):
                 yield batch
 
-    def tasks(self, columns: Collection[int], size: int) -> Iterator[Task[RawBatch]]:
+    def tasks(self, columns: Collection[int], size: int) -> Iterator[ReadTask[RawBatch]]:
         """Yield in order what makes the batches, each of at most about ``size`` bytes."""
         wanted = sorted(columns)
         if self.rows_bytes is not None and self.rows_bytes <= size:
             # read in the thread, too: with many small files that is much of the work
-            yield Task(partial(self._parse_whole, self.rows_bytes, wanted), self.rows_bytes)
+            yield ReadTask(partial(self._parse_whole, self.rows_bytes, wanted), self.rows_bytes)
             return
         for piece in self._rows(size):
-            yield Task(partial(self._parse, piece, wanted), len(piece.content))
+            yield ReadTask(partial(self._parse, piece, wanted), len(piece.content))
 
     def texts(self, lines: Numbers, size: int) -> Iterator[tuple[int, str]]:
         """Yield (line, text) for the asked lines, which must be ascending."""

@@ -8,8 +8,6 @@ from pathlib import Path
 import numpy as np
 
 from frictioncli.arrays import Array, Numbers
-from frictioncli.logs.formats.base import CsvHints, RawBatch, Refusal, Task
-from frictioncli.logs.formats.compression import UnreadableLog
 from frictioncli.logs.formats.diadem_header import (
     DamagedHeader,
     Header,
@@ -18,6 +16,7 @@ from frictioncli.logs.formats.diadem_header import (
     read_header,
 )
 from frictioncli.logs.formats.diadem_layout import Place, is_file, places
+from frictioncli.logs.log_source import CsvHints, RawBatch, ReadTask, Refusal, UnreadableLog
 
 _NAME, _UNIT, _KIND, _LENGTH, _OFFSET, _FACTOR = 200, 202, 210, 220, 240, 241
 _NO_VALUE = 111
@@ -182,14 +181,14 @@ class DiademRecording:
         for task in self.tasks(columns, size):
             yield task.read()
 
-    def tasks(self, columns: Collection[int], size: int) -> Iterator[Task[RawBatch]]:
+    def tasks(self, columns: Collection[int], size: int) -> Iterator[ReadTask[RawBatch]]:
         """Yield in order what makes the batches, each of at most about ``size`` bytes."""
         wanted = sorted(columns)
         widths = [c.place.step for c in self.channels if c.place is not None]
         rows = max(size // max(widths), 1)
         for start in range(0, self.n, rows):
             stop = min(start + rows, self.n)
-            yield Task(partial(self._batch, wanted, start, stop), (stop - start) * max(widths))
+            yield ReadTask(partial(self._batch, wanted, start, stop), (stop - start) * max(widths))
 
     def texts(self, lines: Numbers, size: int) -> Iterator[tuple[int, str]]:
         """Yield (sample's number, its values) for the asked samples, which must be ascending."""

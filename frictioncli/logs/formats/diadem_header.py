@@ -8,7 +8,8 @@ from datetime import UTC, datetime, timedelta
 from pathlib import Path
 
 from frictioncli.errors import LogError
-from frictioncli.logs.formats.compression import DAMAGED, UnreadableLog, open_bytes
+from frictioncli.logs.formats.compression import DAMAGED, open_bytes
+from frictioncli.logs.log_source import UnreadableLog
 
 MAGIC = b"DIAEXTENDED"
 _MARKS = b"\xef\xbb\xbf \t\r\n"

@@ -6,7 +6,7 @@ from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from frictioncli.logs.formats.base import CsvHints, Refusal
+from frictioncli.logs.log_source import CsvHints, Refusal
 
 _DELIMITERS = (";", "\t", ",", " ")
 _NAMES = {";": "';'", "\t": "tab", ",": "','", " ": "blanks"}

@@ -10,8 +10,9 @@ from typing import BinaryIO
 import numpy as np
 
 from frictioncli.arrays import Numbers
-from frictioncli.logs.formats.compression import DAMAGED, UnreadableLog, is_packed, open_bytes
+from frictioncli.logs.formats.compression import DAMAGED, is_packed, open_bytes
 from frictioncli.logs.formats.plain_numbers import line_feeds
+from frictioncli.logs.log_source import UnreadableLog
 
 _BOMS = (
     (codecs.BOM_UTF8, "utf-8-sig"),

@@ -10,7 +10,6 @@ import numpy as np
 
 from frictioncli.arrays import Array
 from frictioncli.logs.channels.aliases import POSITION, TIME, TORQUE
-from frictioncli.logs.formats.base import CsvHints, Refusal
 from frictioncli.logs.formats.compression import refuse_packed
 from frictioncli.logs.formats.containers import (
     ContainerLog,
@@ -21,6 +20,7 @@ from frictioncli.logs.formats.containers import (
     readable,
     with_unit,
 )
+from frictioncli.logs.log_source import CsvHints, Refusal
 
 if TYPE_CHECKING:
     import h5py

@@ -12,9 +12,9 @@ from typing import IO, Any
 
 import pyarrow as pa
 
-from frictioncli.logs.formats.base import CsvHints, Refusal
-from frictioncli.logs.formats.compression import UnreadableLog, refuse_packed
+from frictioncli.logs.formats.compression import refuse_packed
 from frictioncli.logs.formats.containers import ContainerLog, Rows, lacks_package, listed
+from frictioncli.logs.log_source import CsvHints, Refusal, UnreadableLog
 
 _MAGICS = (b"MDF     ", b"UnFinMF ")
 _WHAT = "an MDF measurement"

@@ -15,9 +15,9 @@ import numpy as np
 import pyarrow as pa
 
 from frictioncli.arrays import Array
-from frictioncli.logs.formats.base import CsvHints, Refusal
 from frictioncli.logs.formats.compression import refuse_packed
 from frictioncli.logs.formats.containers import ContainerLog, Rows, lacks_package, listed, readable
+from frictioncli.logs.log_source import CsvHints, Refusal
 
 _MCAP, _SQLITE, _BAG_1 = b"\x89MCAP0\r\n", b"SQLite format 3\0", b"#ROSBAG V2.0"
 _PROFILE = re.compile(rb"\x89MCAP0\r\n\x01.{8}(?P<length>.)\0\0\0", re.DOTALL)

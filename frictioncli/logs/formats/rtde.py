@@ -6,9 +6,9 @@ from pathlib import Path
 
 import numpy as np
 
-from frictioncli.logs.formats.base import CsvHints, Refusal
 from frictioncli.logs.formats.compression import open_bytes
 from frictioncli.logs.formats.containers import ContainerLog, Rows, listed
+from frictioncli.logs.log_source import CsvHints, Refusal
 
 _WHAT = "an RTDE recording (binary)"
 _TYPES = {

@@ -7,13 +7,13 @@ from functools import partial
 from pathlib import Path
 
 from frictioncli.arrays import Numbers
-from frictioncli.logs.formats.base import RawBatch, Source, Task
+from frictioncli.logs.log_source import LogSource, RawBatch, ReadTask
 
 _SECONDS = re.compile(r"^(?P<stem>.*?)sec(?:onds|s)?$")
 _NANOSECONDS = re.compile(r"^(?P<stem>.*?)n(?:ano)?sec(?:onds|s)?$")
 
 
-def with_joined_time(source: Source) -> Source:
+def with_joined_time(source: LogSource) -> LogSource:
     """Return a source whose first pair of seconds and nanoseconds is one time.
 
     Pairs are named alike: ``tsec`` and ``tnsec``, ``ZeitInSec`` and ``ZeitInNanoSec``,
@@ -43,13 +43,13 @@ class JoinedTime:
 
     Attributes
     ----------
-    source : Source
+    source : LogSource
         The log as it stands.
     seconds, nanoseconds : int
         The two columns. The first becomes the time, the second loses its name.
     """
 
-    source: Source
+    source: LogSource
     seconds: int
     nanoseconds: int
 
@@ -81,10 +81,10 @@ class JoinedTime:
         for batch in self.source.batches(self._asked(columns), size):
             yield self._joined(batch)
 
-    def tasks(self, columns: Collection[int], size: int) -> Iterator[Task[RawBatch]]:
+    def tasks(self, columns: Collection[int], size: int) -> Iterator[ReadTask[RawBatch]]:
         """Yield in order what makes the batches, each of at most about ``size`` bytes."""
         for task in self.source.tasks(self._asked(columns), size):
-            yield Task(partial(self._read, task), task.size)
+            yield ReadTask(partial(self._read, task), task.size)
 
     def texts(self, lines: Numbers, size: int) -> Iterator[tuple[int, str]]:
         """Yield (line, text) for the asked lines, which must be ascending."""
@@ -93,7 +93,7 @@ class JoinedTime:
     def _asked(self, columns: Collection[int]) -> set[int]:
         return {*columns, *([self.nanoseconds] if self.seconds in columns else [])}
 
-    def _read(self, task: Task[RawBatch]) -> RawBatch:
+    def _read(self, task: ReadTask[RawBatch]) -> RawBatch:
         return self._joined(task.read())
 
     def _joined(self, batch: RawBatch) -> RawBatch:

@@ -13,9 +13,9 @@ from pathlib import Path
 import numpy as np
 
 from frictioncli.arrays import Numbers
-from frictioncli.logs.formats.base import CsvHints, OneStream, RawBatch, Refusal
 from frictioncli.logs.formats.dialect import NOT_NUMBERS
 from frictioncli.logs.formats.encoding import decode_head, encoding_of, pieces
+from frictioncli.logs.log_source import CsvHints, RawBatch, Refusal, SequentialSource
 
 _NUMBER = r"[+-]?\d+(?:[.,]\d+)?(?:[eE][+-]?\d+)?"
 _MEMBER = re.compile(rf"\b([A-Z]\d?)\s+({_NUMBER})")
@@ -55,7 +55,7 @@ def read_struct_cells(path: Path, head: bytes, hints: CsvHints) -> "StructCells 
 
 
 @dataclass(frozen=True, slots=True)
-class StructCells(OneStream):
+class StructCells(SequentialSource):
     """A log with structures in its cells.
 
     Attributes

@@ -2,8 +2,8 @@
 
 from pathlib import Path
 
-from frictioncli.logs.formats.base import CsvHints, Refusal
 from frictioncli.logs.formats.encoding import encoding_of
+from frictioncli.logs.log_source import CsvHints, Refusal
 
 _NOT_READ = "format_not_read"
 _NOT_A_LOG = "not_a_log"

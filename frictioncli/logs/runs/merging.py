@@ -11,7 +11,7 @@ from pathlib import Path
 import numpy as np
 
 from frictioncli.arrays import Array, Flags, Numbers
-from frictioncli.logs.formats.base import OneStream, RawBatch, Source
+from frictioncli.logs.log_source import LogSource, RawBatch, SequentialSource
 from frictioncli.logs.samples.differentiation import max_gap
 from frictioncli.logs.samples.row_checks import Faults, RowBlock, ascending
 
@@ -26,7 +26,7 @@ class Lender:
 
     Attributes
     ----------
-    source : Source
+    source : LogSource
         The file.
     time : int
         Its column of time.
@@ -41,7 +41,7 @@ class Lender:
         interpolated.
     """
 
-    source: Source
+    source: LogSource
     time: int
     scale: float
     period: float
@@ -50,12 +50,12 @@ class Lender:
 
 
 @dataclass(frozen=True, slots=True)
-class MergedLog(OneStream):
+class MergedLog(SequentialSource):
     """The rows of ``base`` with columns of its lenders behind its own.
 
     Attributes
     ----------
-    base : Source
+    base : LogSource
         The file whose rows are the samples; line numbers and texts are its own.
     time : int
         Its column of time.
@@ -65,7 +65,7 @@ class MergedLog(OneStream):
         Names of the base's columns, then of those lent.
     """
 
-    base: Source
+    base: LogSource
     time: int
     lenders: tuple[Lender, ...]
     columns: tuple[str, ...]

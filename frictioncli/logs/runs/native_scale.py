@@ -8,10 +8,9 @@ import numpy as np
 
 from frictioncli.arrays import Array, Numbers
 from frictioncli.logs.channels.recognition import split_unit
-from frictioncli.logs.formats.base import OneStream, RawBatch, Source
-from frictioncli.logs.formats.compression import UnreadableLog
 from frictioncli.logs.formats.diadem import DiademRecording, open_recording
 from frictioncli.logs.formats.diadem_header import DamagedHeader
+from frictioncli.logs.log_source import LogSource, RawBatch, SequentialSource, UnreadableLog
 
 _COMPARED_BYTES = 1 << 14
 _MIN_ROWS = 3
@@ -21,10 +20,10 @@ _DIGITS = 1e-5
 
 
 @dataclass(frozen=True, slots=True)
-class ScaledLog(OneStream):
+class ScaledLog(SequentialSource):
     """A log whose columns are multiplied by factors: ``raw * factor + offset`` per column."""
 
-    base: Source
+    base: LogSource
     scales: tuple[tuple[float, float], ...]
 
     @property
@@ -56,7 +55,7 @@ class ScaledLog(OneStream):
         return self.base.texts(lines, size)
 
 
-def scaled(source: Source) -> Source:
+def scaled(source: LogSource) -> LogSource:
     """Return a log with its values scaled, if they are the raw ones of the recording beside it.
 
     The first rows must be equal to the stored numbers, and differ from them scaled.

@@ -9,12 +9,12 @@ from frictioncli.logs.channels.channel_map import ChannelMap, mapped_channels
 from frictioncli.logs.channels.recognition import (
     JointChannels,
     LogChannel,
-    assign,
+    assign_channels,
     joint_in_name,
-    recognise,
+    recognise_channels,
 )
 from frictioncli.logs.formats import open_logs
-from frictioncli.logs.formats.base import Refusal, Source
+from frictioncli.logs.log_source import LogSource, Refusal
 from frictioncli.logs.runs.discovery import LogFile, LogRun
 from frictioncli.logs.runs.native_scale import scaled
 from frictioncli.logs.runs.sidecar import Sidecar, sidecar
@@ -36,7 +36,7 @@ class OpenedLog:
     recording : str
         Name of the recording, unique in the run; logs of one trace that hold different joints
         share it.
-    source : Source
+    source : LogSource
         Its raw columns, which may come from several files.
     channels : tuple of LogChannel
         All recognised columns.
@@ -49,7 +49,7 @@ class OpenedLog:
     run: LogRun
     file: LogFile
     recording: str
-    source: Source
+    source: LogSource
     channels: tuple[LogChannel, ...]
     joints: tuple[JointChannels, ...]
     beside: Sidecar
@@ -122,13 +122,13 @@ def open_run(
 class _Choice:
     """What is read of a file: the columns of its own and others' files, chosen per joint."""
 
-    source: Source
+    source: LogSource
     channels: tuple[LogChannel, ...]
     joints: tuple[JointChannels, ...]
 
 
 def _choices(
-    sources: Mapping[LogFile, Source], settings: IngestSettings, chart: ChannelMap
+    sources: Mapping[LogFile, LogSource], settings: IngestSettings, chart: ChannelMap
 ) -> dict[LogFile, _Choice | Refusal]:
     """Return what is read of each file, files of a trace merged, or why nothing can be."""
     traces = _traces(sources) if not chart.channels else []
@@ -153,7 +153,7 @@ def _choices(
 
 
 def _chosen(
-    source: Source,
+    source: LogSource,
     channels: tuple[LogChannel, ...] | Refusal,
     joints: tuple[int, ...] | None,
     *,
@@ -161,7 +161,7 @@ def _chosen(
 ) -> _Choice | Refusal:
     if isinstance(channels, Refusal):
         return channels
-    chosen = assign(channels, source.columns, joints=joints, file_joint=file_joint)
+    chosen = assign_channels(channels, source.columns, joints=joints, file_joint=file_joint)
     return chosen if isinstance(chosen, Refusal) else _Choice(source, channels, chosen)
 
 
@@ -170,9 +170,9 @@ def _trace(file: LogFile) -> tuple[Path, str]:
     return file.path.parent, trace_of(file.stem)
 
 
-def _traces(sources: Mapping[LogFile, Source]) -> list[list[tuple[LogFile, Source]]]:
+def _traces(sources: Mapping[LogFile, LogSource]) -> list[list[tuple[LogFile, LogSource]]]:
     """Return the files of each trace, one per module."""
-    traces: dict[tuple[Path, str], dict[str, tuple[LogFile, Source]]] = {}
+    traces: dict[tuple[Path, str], dict[str, tuple[LogFile, LogSource]]] = {}
     for file, source in sources.items():
         if is_module(file.stem):
             traces.setdefault(_trace(file), {}).setdefault(file.stem, (file, source))
@@ -228,4 +228,4 @@ def _channels(
 ) -> tuple[LogChannel, ...] | Refusal:
     if chart.channels:
         return mapped_channels(chart, columns, joint)
-    return recognise(columns)
+    return recognise_channels(columns)

@@ -5,8 +5,8 @@ from dataclasses import dataclass
 from datetime import datetime
 from pathlib import Path
 
-from frictioncli.logs.formats.compression import UnreadableLog
 from frictioncli.logs.formats.diadem_header import read_header
+from frictioncli.logs.log_source import UnreadableLog
 from frictioncli.logs.runs.program_file import read_program
 from frictioncli.logs.runs.trace_names import PROGRAM, trace_of
 

@@ -8,10 +8,9 @@ import numpy as np
 
 from frictioncli.logs.channels import aliases as names
 from frictioncli.logs.channels import units
-from frictioncli.logs.channels.recognition import LogChannel, recognise, split_unit
-from frictioncli.logs.formats.base import Source
-from frictioncli.logs.formats.compression import UnreadableLog
+from frictioncli.logs.channels.recognition import LogChannel, recognise_channels, split_unit
 from frictioncli.logs.formats.diadem import DiademRecording
+from frictioncli.logs.log_source import LogSource, UnreadableLog
 from frictioncli.logs.runs.discovery import LogFile
 from frictioncli.logs.runs.merging import Lender, MergedLog
 from frictioncli.logs.runs.trace_names import drive_of
@@ -20,7 +19,7 @@ _HELD = (names.MOTOR_TEMPERATURE, names.HOUSING_TEMPERATURE)
 _PERIOD_BYTES = 1 << 16
 
 
-def told_twice(sources: Mapping[LogFile, Source]) -> dict[LogFile, LogFile]:
+def told_twice(sources: Mapping[LogFile, LogSource]) -> dict[LogFile, LogFile]:
     """Return the files that hold nothing beside a native recording of the same name.
 
     Returns
@@ -52,7 +51,7 @@ class _Module:
     """A file of a trace; ``drive`` is the axis of a drive's file, None for the interpolator's."""
 
     file: LogFile
-    source: Source
+    source: LogSource
     drive: int | None
     channels: tuple[LogChannel, ...]
     time: LogChannel | None
@@ -77,7 +76,7 @@ class MergedTrace:
     """A file of a trace, with columns that others lend, for the joints whose torque it holds."""
 
     file: LogFile
-    source: Source
+    source: LogSource
     joints: tuple[int, ...]
 
     @property
@@ -86,11 +85,11 @@ class MergedTrace:
         own = (
             self.source.base.columns if isinstance(self.source, MergedLog) else self.source.columns
         )
-        return recognise(self.source.columns, borrowed_from=len(own))
+        return recognise_channels(self.source.columns, first_merged=len(own))
 
 
 def merged(
-    files: Iterable[tuple[LogFile, Source]], joints: Collection[int] | None
+    files: Iterable[tuple[LogFile, LogSource]], joints: Collection[int] | None
 ) -> list[MergedTrace]:
     """Put the files of one trace together.
 
@@ -99,7 +98,7 @@ def merged(
 
     Parameters
     ----------
-    files : iterable of (LogFile, Source)
+    files : iterable of (LogFile, LogSource)
         The files of the trace, each of one module.
     joints : collection of int or None
         The joints wanted; None for all.
@@ -118,7 +117,7 @@ def merged(
     return found if any(isinstance(one.source, MergedLog) for one in found) else []
 
 
-def _with(base: _Module, lent: Sequence[tuple[_Module, Lender]]) -> Source:
+def _with(base: _Module, lent: Sequence[tuple[_Module, Lender]]) -> LogSource:
     """Return a file with the columns that others lend."""
     if base.time is None or not lent:
         return base.source
@@ -129,8 +128,8 @@ def _with(base: _Module, lent: Sequence[tuple[_Module, Lender]]) -> Source:
     return MergedLog(base.source, base.time.column, lenders, columns)
 
 
-def _module(file: LogFile, source: Source) -> _Module:
-    channels = recognise(source.columns)
+def _module(file: LogFile, source: LogSource) -> _Module:
+    channels = recognise_channels(source.columns)
     times = [channel for channel in channels if channel.quantity == names.TIME]
     time = min(times, key=lambda channel: channel.meaning.rank, default=None)
     return _Module(file, source, drive_of(file.stem), channels, time)
@@ -181,7 +180,7 @@ def _seconds(time: LogChannel) -> float:
     return units.FACTORS[names.TIME][unit or "s"]
 
 
-def _period(source: Source, time: int) -> float:
+def _period(source: LogSource, time: int) -> float:
     """Return the median time between the first rows; 0 where they do not tell. [raw]."""
     with suppress(UnreadableLog):  # reading it will tell
         for batch in source.batches([time], _PERIOD_BYTES):

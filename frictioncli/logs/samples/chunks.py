@@ -15,8 +15,7 @@ from frictioncli.logs.channels import aliases as names
 from frictioncli.logs.channels.recognition import LogChannel
 from frictioncli.logs.channels.unit_inference import JointPlan
 from frictioncli.logs.channels.units import plausible_temperature
-from frictioncli.logs.formats.base import RawBatch, Task
-from frictioncli.logs.formats.compression import UnreadableLog
+from frictioncli.logs.log_source import RawBatch, ReadTask, UnreadableLog
 from frictioncli.logs.runs.opening import OpenedLog
 from frictioncli.logs.samples.read_ahead import in_order
 from frictioncli.logs.samples.row_checks import Faults, RowBlock, with_values
@@ -107,7 +106,7 @@ class _Result:
     part: Chunk | UnreadableLog
 
 
-def _tasks(readings: Iterable[LogReading], batch_bytes: int) -> Iterator[Task[_Result]]:
+def _tasks(readings: Iterable[LogReading], batch_bytes: int) -> Iterator[ReadTask[_Result]]:
     """Yield the tasks of all logs one after the other; each log has at least one."""
     for number, reading in enumerate(readings):
         end: Chunk | UnreadableLog | None = Chunk(_no_rows(reading.plans), Faults(), 0)
@@ -116,17 +115,17 @@ def _tasks(readings: Iterable[LogReading], batch_bytes: int) -> Iterator[Task[_R
             columns.update(_column(plan, name) for name in plan.beliefs)
         try:
             for task in reading.log.source.tasks(columns, batch_bytes):
-                yield Task(partial(_done, number, reading, task), task.size)
+                yield ReadTask(partial(_done, number, reading, task), task.size)
                 end = None
         except UnreadableLog as error:
             end = error
         if end is not None:
-            yield Task(partial(_Result, number, end), 0)
+            yield ReadTask(partial(_Result, number, end), 0)
 
 
-def _together(tasks: Iterable[Task[_Result]]) -> Iterator[Callable[[], list[_Result]]]:
+def _together(tasks: Iterable[ReadTask[_Result]]) -> Iterator[Callable[[], list[_Result]]]:
     """Yield the tasks, small ones together."""
-    held: list[Task[_Result]] = []
+    held: list[ReadTask[_Result]] = []
     held_bytes = 0
     for task in tasks:
         if held and held_bytes + task.size > _HANDED_OVER:
@@ -137,11 +136,11 @@ def _together(tasks: Iterable[Task[_Result]]) -> Iterator[Callable[[], list[_Res
     yield partial(_all, held)
 
 
-def _all(tasks: Iterable[Task[_Result]]) -> list[_Result]:
+def _all(tasks: Iterable[ReadTask[_Result]]) -> list[_Result]:
     return [task.read() for task in tasks]
 
 
-def _done(number: int, reading: LogReading, task: Task[RawBatch]) -> _Result:
+def _done(number: int, reading: LogReading, task: ReadTask[RawBatch]) -> _Result:
     try:
         return _Result(number, _part(task.read(), reading))
     except UnreadableLog as error:

@@ -7,8 +7,7 @@ import numpy as np
 
 from frictioncli.arrays import Array
 from frictioncli.logs.channels import aliases as names
-from frictioncli.logs.formats.base import Refusal
-from frictioncli.logs.formats.compression import UnreadableLog
+from frictioncli.logs.log_source import Refusal, UnreadableLog
 from frictioncli.logs.runs.opening import OpenedLog
 from frictioncli.logs.samples import quantized_temperature
 from frictioncli.logs.samples.chunks import Chunk, LogReading
