@@ -22,7 +22,7 @@ from frictioncli.stages.fit import fit
 from frictioncli.stages.ingest import ingest
 from frictioncli.stages.pair import pair as pair_stage
 from frictioncli.stages.separate import separate
-from tests.deployment.test_extended_corrector import pairs_of, powers
+from tests.deployment.logged_pairs import pairs_of, powers
 
 ROOT = Path(__file__).parents[1]
 EXAMPLES = sorted((ROOT / "examples").glob("*.py"))

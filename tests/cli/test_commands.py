@@ -12,6 +12,7 @@ import pytest
 from frictioncli import schemas, tables
 from frictioncli.cli.commands import app
 from frictioncli.stages.run import RunSettings
+from tests.equation_16 import friction, write_recording
 from tests.moves import journey
 
 COMMANDS = (
@@ -51,20 +52,12 @@ def write_log(
     """Write a KUKA-style trace whose friction is 5 + 2 sqrt(v) N·m."""
     motion = journey(list(turns), list(speeds))
     direction = np.sign(motion["velocity"])
-    friction = 5 + 2 * np.sqrt(motion["velocity"].abs())
+    truth = {"tau_c": 5.0, "alpha": 0.0, "beta": 2.0, "gamma": 0.0, "delta": 0.0}
+    speed = motion["velocity"].abs()
+    opposing = friction(truth, load=0.0, speed=speed, temperature=40.0)
     gravity = 80 * np.cos(np.radians(motion["position"]))
-    torque = gravity + direction * friction + 5 * np.radians(motion["acceleration"])
-    frame = pd.DataFrame(
-        {
-            "Zeit[sec]": motion["time"].round(3),
-            "AxisPos_Act2[°]": motion["position"].round(4),
-            "GearTorq_Act2[Nm]": torque.round(3),
-        }
-        | {name: np.full(len(motion), value) for name, value in columns.items()}
-    )
-    path.parent.mkdir(parents=True, exist_ok=True)
-    frame.to_csv(path, sep=";", index=False, encoding="cp1252")
-    return path
+    torque = gravity + direction * opposing + 5 * np.radians(motion["acceleration"])
+    return write_recording(path, motion, torque, **columns)
 
 
 @pytest.fixture(scope="module")

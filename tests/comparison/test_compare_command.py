@@ -11,7 +11,7 @@ from frictioncli.comparison.settings import ComparisonSettings
 from frictioncli.errors import OptionError, TableError
 from frictioncli.stages.compare import compare as stage
 from tests.comparison.folders import FIRST, one_each, write_folder
-from tests.comparison.worlds import torques
+from tests.equation_16 import daily_torques
 
 
 def called_with(runs, out, threshold):
@@ -27,7 +27,7 @@ def called_with(runs, out, threshold):
 def worn(tmp_path_factory):
     """Five work folders a week apart; friction grows by 20 %."""
     root = tmp_path_factory.mktemp("worn")
-    return one_each(root, torques(5, share=np.linspace(0, 0.2, 5), seed=3))
+    return one_each(root, daily_torques(5, share=np.linspace(0, 0.2, 5), seed=3))
 
 
 @pytest.fixture(scope="module")
@@ -96,7 +96,7 @@ def test_below_the_threshold_the_status_is_0_and_the_text_says_so(worn, tmp_path
 
 
 def test_runs_of_one_folder_and_a_motor_current(tmp_path):
-    table = torques(3, seed=4)
+    table = daily_torques(3, seed=4)
     begun = {run: FIRST + timedelta(days=n) for n, run in enumerate(sorted(table["run"].unique()))}
     folder = write_folder(tmp_path / "joint=2", table, begun=begun, unit="A")
     done = stage([folder], tmp_path / "out")
@@ -109,7 +109,7 @@ def test_runs_of_one_folder_and_a_motor_current(tmp_path):
 
 
 def test_joints_must_be_the_same(tmp_path):
-    table = torques(2)
+    table = daily_torques(2)
     one = write_folder(tmp_path / "one", table[table["run"] == "d01"])
     two = write_folder(tmp_path / "two", table[table["run"] == "d02"].assign(joint=3))
     with pytest.raises(OptionError, match="one: 2; two: 3; compare folders of one joint"):

@@ -11,7 +11,7 @@ from frictioncli.comparison.text import comparison_text
 from frictioncli.errors import NotEnoughData, OptionError
 from frictioncli.model.fitting import fit_joint
 from frictioncli.model.settings import FitSettings
-from tests.comparison.worlds import friction, torques
+from tests.equation_16 import DAILY_TRUTH, daily_torques, friction
 from tests.studies.wear_world import Life, torques_of
 
 
@@ -24,7 +24,7 @@ def compared(table, **settings):
 
 @pytest.fixture(scope="module")
 def worn():
-    table = torques(8, share=np.linspace(0, 0.08, 8), day_to_day=0.1, seed=5)
+    table = daily_torques(8, share=np.linspace(0, 0.08, 8), day_to_day=0.1, seed=5)
     return compared(table, fail_above=Threshold(3.0, "%"))
 
 
@@ -40,7 +40,9 @@ def test_wear_is_found_with_its_size(worn):
 def test_wear_shows_at_every_condition_as_its_share_of_the_friction_there(worn):
     assert {one.temperature for one in worn.conditions} == {20.0, 40.0, 60.0}
     for one in worn.conditions:
-        truth = float(friction(one.load, one.speed, one.temperature))
+        truth = float(
+            friction(DAILY_TRUTH, load=one.load, speed=one.speed, temperature=one.temperature)
+        )
         assert one.change.low < 8 / 1.04 < one.change.high
         if one.temperature < 50:  # measured up to 48 °C
             assert one.friction == pytest.approx(1.04 * truth, rel=0.02)
@@ -68,19 +70,19 @@ def test_the_text_says_what_and_how_sure(worn):
 
 
 def test_an_unchanged_joint_gives_no_finding():
-    found = compared(torques(8, day_to_day=0.1, seed=6), fail_above=Threshold(1.0, "%"))
+    found = compared(daily_torques(8, day_to_day=0.1, seed=6), fail_above=Threshold(1.0, "%"))
     assert found.trend.low < 0 < found.trend.high
     assert not found.causes
     assert not found.exceeded
 
 
 def test_a_threshold_in_torque_is_one_of_the_mean_friction():
-    found = compared(torques(3, seed=7), fail_above=Threshold(2.0, "torque"))
+    found = compared(daily_torques(3, seed=7), fail_above=Threshold(2.0, "torque"))
     assert found.margin == pytest.approx(200 / found.mean_friction)
 
 
 def test_two_runs_are_weak_and_do_not_claim_a_small_change():
-    found = compared(torques(2, share=[0, 0.03], seed=8))
+    found = compared(daily_torques(2, share=[0, 0.03], seed=8))
     assert found.weak
     assert found.last_run is None
     assert found.verdict == "undetermined"
@@ -88,13 +90,13 @@ def test_two_runs_are_weak_and_do_not_claim_a_small_change():
 
 
 def test_two_runs_show_what_no_day_makes():
-    found = compared(torques(2, share=[0, 0.4], seed=8))
+    found = compared(daily_torques(2, share=[0, 0.4], seed=8))
     assert found.verdict == "changed"
     assert set(found.causes[0].effects) == {"drift", "step_change"}
 
 
 def test_all_torques_greater_by_a_share_are_the_scale_of_the_log():
-    found = compared(torques(6, logged=np.linspace(0, 0.1, 6), seed=9))
+    found = compared(daily_torques(6, logged=np.linspace(0, 0.1, 6), seed=9))
     assert found.causes[0].effects == ("torque_constant",)
     assert found.load.low < 100 * 0.1 / 1.05 < found.load.high
 
@@ -102,11 +104,11 @@ def test_all_torques_greater_by_a_share_are_the_scale_of_the_log():
 def test_runs_apart_in_temperature_are_refused():
     cold, hot = np.linspace(15, 20, 8), np.linspace(40, 45, 8)
     with pytest.raises(NotEnoughData, match=r"d02: measured at 40 to 45 °C, where no other run"):
-        compared(torques(3, warmth=[cold, hot, cold]))
+        compared(daily_torques(3, warmth=[cold, hot, cold]))
 
 
 def test_a_run_of_two_pairs_is_refused():
-    table = torques(3)
+    table = daily_torques(3)
     short = (table["run"] == "d02") & (table["pair"] > 1)
     with pytest.raises(NotEnoughData, match=r"d02: 2 pair\(s\)"):
         compared(table[~short])

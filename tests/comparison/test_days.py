@@ -10,14 +10,14 @@ from frictioncli.comparison.days import Folder, distinct_names, in_order
 from frictioncli.errors import NotEnoughData, OptionError
 from frictioncli.model.fitting import fit_joint
 from frictioncli.model.settings import FitSettings
-from tests.comparison.worlds import torques
+from tests.equation_16 import daily_torques
 
 MONDAY = datetime(2026, 1, 5, 8)
 
 
 @pytest.fixture(scope="module")
 def table():
-    return torques(3)
+    return daily_torques(3)
 
 
 @pytest.fixture(scope="module")

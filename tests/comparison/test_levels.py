@@ -6,7 +6,7 @@ import pytest
 from frictioncli.comparison.loads import load_scales
 from frictioncli.comparison.run_levels import constant, constant_and_viscous, noises_of, run_levels
 from frictioncli.diagnosis.data.problem import build_problems
-from tests.comparison.worlds import torques
+from tests.equation_16 import daily_torques
 
 
 def problem_of(table):
@@ -24,7 +24,7 @@ def differences(levels):
 
 def test_offsets_come_back_without_noise():
     offset = [0.0, 0.5, -0.3, 1.2]
-    problem = problem_of(torques(4, offset=offset, noise=1e-4))
+    problem = problem_of(daily_torques(4, offset=offset, noise=1e-4))
     found = levels_of(problem, constant(problem))
     assert found.comparable
     np.testing.assert_allclose(differences(found), offset, atol=2e-3)
@@ -33,7 +33,7 @@ def test_offsets_come_back_without_noise():
 def test_errors_are_what_the_spread_over_repetitions_shows():
     found = []
     for seed in range(8):
-        problem = problem_of(torques(3, seed=seed, noise=0.3))
+        problem = problem_of(daily_torques(3, seed=seed, noise=0.3))
         levels = levels_of(problem, constant(problem))
         covariance = levels.covariance
         variance = covariance[0, 0] + covariance[2, 2] - 2 * covariance[0, 2]
@@ -44,13 +44,13 @@ def test_errors_are_what_the_spread_over_repetitions_shows():
 
 def test_other_temperatures_are_no_change():
     winter, summer = np.linspace(18, 40, 8), np.linspace(30, 55, 8)
-    problem = problem_of(torques(3, warmth=[winter, winter, summer], noise=1e-3))
+    problem = problem_of(daily_torques(3, warmth=[winter, winter, summer], noise=1e-3))
     found = levels_of(problem, constant(problem))
     np.testing.assert_allclose(differences(found), 0.0, atol=0.1)
 
 
 def test_the_viscous_part_is_told_from_the_constant_one():
-    table = torques(2, noise=1e-4)
+    table = daily_torques(2, noise=1e-4)
     last = table["run"] == "d02"
     # 10 % more viscous friction in the second run, by the formula of the world
     viscous = (3 + 15 * np.exp(-0.05 * table["motor_temperature"])) * np.sqrt(table["speed"])
@@ -65,14 +65,14 @@ def test_the_viscous_part_is_told_from_the_constant_one():
 
 
 def test_runs_at_temperatures_of_their_own_cannot_be_compared():
-    table = torques(3, warmth=[np.full(8, 20.0), np.full(8, 20.0), np.full(8, 45.0)])
+    table = daily_torques(3, warmth=[np.full(8, 20.0), np.full(8, 20.0), np.full(8, 45.0)])
     problem = problem_of(table[table["speed"] == 45.0])
     found = levels_of(problem, constant_and_viscous(problem))
     assert not found.comparable
 
 
 def test_a_heavier_payload_is_seen_in_the_load_and_not_in_the_friction():
-    problem = problem_of(torques(4, carried=[0.0, 0.0, 0.3, 0.3], noise=0.01))
+    problem = problem_of(daily_torques(4, carried=[0.0, 0.0, 0.3, 0.3], noise=0.01))
     scales, _ = load_scales(problem)
     assert (1 + scales[3] / 100) / (1 + scales[0] / 100) == pytest.approx(1.3, rel=1e-3)
     blind = levels_of(problem, constant(problem))
@@ -82,5 +82,5 @@ def test_a_heavier_payload_is_seen_in_the_load_and_not_in_the_friction():
 
 
 def test_a_joint_without_gravity_has_no_load_to_compare():
-    table = torques(2)
+    table = daily_torques(2)
     assert load_scales(problem_of(table.assign(load_torque=0.01 * table["load_torque"]))) is None

@@ -81,7 +81,7 @@ def test_false_alarms_keep_to_their_rate_under_the_assumption(runs):
     assert 70 <= alarms <= 130  # 100 expected, standard deviation 10
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=60)
 @given(
     st.lists(st.floats(-20, 20), min_size=3, max_size=12),
     st.floats(-50, 50),

@@ -38,7 +38,7 @@ def phase(seed, *, length, rounded, failing, still):
     )
 
 
-@settings(max_examples=150, deadline=None)
+@settings(max_examples=150)
 @given(
     seed=st.integers(0, 10**6),
     length=st.integers(1, 200),

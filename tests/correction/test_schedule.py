@@ -31,7 +31,7 @@ SCALES = np.array([0.5, 1.0, 2.5, 5.0, 20.0])
 READINGS = ((first_degree, False), (latest_degree, True))
 
 
-@settings(max_examples=200, deadline=None)
+@settings(max_examples=200)
 @given(
     seed=st.integers(0, 10**6),
     period=st.sampled_from([0.004, 0.012, 1.0, 60.0]),
@@ -54,7 +54,6 @@ def test_events_are_those_of_the_plain_loop(seed, period, gaps, rounded, length)
             assert events.tolist() == expected
 
 
-@settings(deadline=None)
 @given(st.lists(st.floats(20, 26), min_size=1, max_size=200))
 def test_next_change_is_the_first_departure_by_a_degree(readings):
     values = np.array(readings)

@@ -18,8 +18,8 @@ from frictioncli.correction.settings import CorrectionSettings, EvaluationGrid, 
 from frictioncli.correction.uncertainty import FilterState, follow
 from frictioncli.errors import NotEnoughData, OptionError
 from frictioncli.model.friction import PUBLISHED, friction_torque
-from tests.correction.test_stage import published_model, shifted, simulated
-from tests.model.worlds import torques
+from tests.correction.models import published_model, shifted, simulated
+from tests.equation_16 import torques
 
 SPEED, HIGHEST, SPREAD, NOISE, SECONDS = 60.0, 135.0, 1.5, 0.3, 1800.0
 """Speeds [deg/s], process and noise [N·m], correlation time [s]; 135/60 makes errors 1.5 times."""
@@ -166,7 +166,7 @@ def test_a_correction_without_noise_gives_the_measured_friction():
 
 
 @given(seed=st.integers(0, 10**6), bounds=st.tuples(st.floats(0.2, 4), st.floats(0.2, 4)))
-@settings(max_examples=30, deadline=None)
+@settings(max_examples=30)
 def test_a_smaller_bound_makes_no_fewer_corrections(seed, bounds):
     data = at_rest(seed, count=400)
     small, large = (int(followed(data, bound).corrected.sum()) for bound in sorted(bounds))

@@ -12,7 +12,7 @@ from frictioncli.diagnosis.documents.extended_model import FittedEffect
 from frictioncli.effects import BY_NAME
 from frictioncli.model.document import InputRange, ParameterEstimate
 from frictioncli.model.friction import PUBLISHED
-from tests.correction.test_stage import published_model
+from tests.correction.models import published_model
 
 UNITS = {
     "tau_c": "N·m",

@@ -15,7 +15,7 @@ from frictioncli.deployment.settings import ExportSettings
 from frictioncli.model.friction import temperature_from_friction
 from frictioncli.model.zero_load import friction_at_zero_load
 from tests.deployment.joints import LAG, TERMS, day, effect, extended, joint
-from tests.model.worlds import torques
+from tests.equation_16 import torques
 
 COMPILER = shutil.which("cc") or shutil.which("gcc") or shutil.which("clang")
 FLAGS = ["-std=c99", "-O2", "-Wall", "-Wextra", "-Werror", "-pedantic", "-Wconversion", "-Wshadow"]

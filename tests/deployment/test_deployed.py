@@ -122,9 +122,7 @@ def places(value, path=()):
 DOCUMENT = json.loads(export(joint(extension=extended()), ExportSettings(to="json")).text)
 
 
-@settings(
-    max_examples=150, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture]
-)
+@settings(max_examples=150, suppress_health_check=[HealthCheck.function_scoped_fixture])
 @given(st.sampled_from(sorted(places(DOCUMENT), key=str)), st.sampled_from(["gone", "text", None]))
 def test_a_damaged_document_is_refused_or_still_a_joint(tmp_path, place, damage):
     document = json.loads(json.dumps(DOCUMENT))

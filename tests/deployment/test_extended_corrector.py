@@ -17,8 +17,6 @@ from frictioncli.correction.settings import CorrectionSettings, ScheduleSettings
 from frictioncli.deployment.extended_corrector import ExtendedCorrector
 from frictioncli.deployment.extension import MEMORYLESS, carried
 from frictioncli.deployment.gear_temperature import GearTemperature
-from frictioncli.diagnosis.data.gravity import stated_gravity
-from frictioncli.diagnosis.data.problem import simulated
 from frictioncli.diagnosis.documents.apply_extension import (
     friction_beyond,
     with_effects,
@@ -26,11 +24,11 @@ from frictioncli.diagnosis.documents.apply_extension import (
 )
 from frictioncli.diagnosis.documents.extended_model import ExtendedModel, FittedEffect
 from frictioncli.effects import BY_NAME
-from frictioncli.effects.pair_series import friction_power, pair_heads
 from frictioncli.model.friction import PUBLISHED
-from tests.correction.test_stage import published_model
+from tests.correction.models import published_model
 from tests.deployment.joints import LAG, effect
-from tests.model.worlds import torques
+from tests.deployment.logged_pairs import pairs_of, powers
+from tests.equation_16 import torques
 
 GRAVITY = {"cosine": 95.0, "sine": 0.0, "offset": 0.0}
 LAGGING = FittedEffect(
@@ -58,27 +56,6 @@ def two_days(speeds=(67.5,)):
     rows = pd.concat(days, ignore_index=True)
     housing = rows["motor_temperature"] - 4 * np.sin(rows["time"] / 3000)
     return rows.assign(load=np.nan, housing_temperature=housing)
-
-
-def pairs_of(rows, added):
-    """One row per pair: its means, its effective load, and what warms the gear before it."""
-    squared = rows["load_torque"] ** 2
-    grouped = rows.assign(squared=squared, added=added).groupby(["run", "pair"], sort=True)
-    means = grouped[["time", "speed", "motor_temperature", "housing_temperature"]].first()
-    means["registered"] = grouped["motor_temperature_reading"].first()
-    means["phase"] = grouped["phase"].first()
-    means[["friction", "squared", "added"]] = grouped[
-        ["friction_torque", "squared", "added"]
-    ].mean()
-    return means.reset_index()
-
-
-def powers(rows, model, extension):
-    """Mean friction power from the pair before to each pair, as the batch sees it."""
-    _, problem = simulated(rows, "motor", model.about, stated_gravity(model.gravity_about))
-    heads = pair_heads(problem.table)
-    level = friction_power(problem.table, heads) * extension.gear.reference_power
-    return np.concatenate([[0.0], level])
 
 
 def replayed(rows, model, schedule):
@@ -208,7 +185,7 @@ def test_uneven_samples_are_stepped_exactly():
     assert gear.excess == pytest.approx(integrated(time, motor, power), abs=1e-6)
 
 
-@settings(max_examples=50, deadline=None)
+@settings(max_examples=50)
 @given(
     cuts=st.lists(st.floats(0.01, 0.99), min_size=1, max_size=6, unique=True),
     duration=st.floats(10, 5000),

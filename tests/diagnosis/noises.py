@@ -8,7 +8,7 @@ from frictioncli.diagnosis.data.pair_layout import PairLayout
 from frictioncli.diagnosis.data.problem import simulated
 from frictioncli.diagnosis.noise.spectra import STRENGTHS
 from frictioncli.model.friction import FrictionParameters
-from tests.model.worlds import TRUTH, cycle_temperatures, torques
+from tests.equation_16 import TRUTH, cycle_temperatures, torques
 
 
 def layout(*sizes, bins=3, gap=20.0, seed=0):

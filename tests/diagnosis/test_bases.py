@@ -8,7 +8,7 @@ from frictioncli.diagnosis.data.problem import build_problems
 from frictioncli.diagnosis.search.cause_search import find_causes
 from frictioncli.diagnosis.settings import DiagnosisSettings
 from frictioncli.effects import EFFECTS
-from tests.model.worlds import TRUTH, torques
+from tests.equation_16 import TRUTH, torques
 
 RATE = 6.0  # [N·m/h]
 

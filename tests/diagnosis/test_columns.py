@@ -36,7 +36,7 @@ def squares(columns, part="friction"):
 
 
 @given(arrays(float, (4, 2), elements=VALUES), arrays(float, (17, 2), elements=VALUES))
-@settings(max_examples=40, deadline=None, derandomize=True)
+@settings(max_examples=40)
 def test_what_is_alike_in_neighbouring_pairs_loses_nothing(over_angle, over_pairs):
     """Any function of the angle plus any function of the pair keeps all its inner products."""
     rows = np.tile(over_angle, (17, 1)) + np.repeat(over_pairs, 4, axis=0)
@@ -47,7 +47,7 @@ def test_what_is_alike_in_neighbouring_pairs_loses_nothing(over_angle, over_pair
 
 
 @given(arrays(float, (4,), elements=VALUES), arrays(float, (ROWS,), elements=VALUES))
-@settings(max_examples=40, deadline=None, derandomize=True)
+@settings(max_examples=40)
 def test_data_are_asked_by_such_a_column_without_loss(over_angle, data):
     """The inner product of the column with whatever data is that of all rows."""
     column = np.tile(over_angle, 17)
@@ -57,7 +57,7 @@ def test_data_are_asked_by_such_a_column_without_loss(over_angle, data):
 
 
 @given(arrays(float, (ROWS, 2), elements=VALUES), st.floats(-5, 5))
-@settings(max_examples=40, deadline=None, derandomize=True)
+@settings(max_examples=40)
 def test_splitting_is_linear_and_means_and_deviations_stay_apart(rows, factor):
     load = rows[::-1]
     found = reduced(PAIRS, rows, load)
@@ -122,7 +122,7 @@ def test_bounds_may_be_missed_by_two_standard_errors(coefficients, allowed):
 
 
 @given(arrays(float, (2,), elements=VALUES), arrays(float, (2, 2), elements=st.floats(-3, 3)))
-@settings(max_examples=60, deadline=None, derandomize=True)
+@settings(max_examples=60)
 def test_what_lies_within_its_bounds_is_always_allowed(coefficients, root):
     inside = np.clip(coefficients, [0.0, -5.0], [10.0, 5.0])
     assert bounded([0.0, -5.0], [10.0, 5.0]).allows(inside, root @ root.T)

@@ -20,7 +20,7 @@ from frictioncli.stages.evaluate import evaluate
 from frictioncli.stages.fit import fit
 from frictioncli.stages.simulate import simulate
 from frictioncli.workfiles import DIAGNOSIS, EVALUATION, EXTENDED, RAMPS, TORQUES
-from tests.model.worlds import cycle_temperatures, torques
+from tests.equation_16 import cycle_temperatures, torques
 from tests.simulation.torque_table import simulate_torques
 
 

@@ -20,7 +20,7 @@ from frictioncli.provenance import Provenance
 from frictioncli.stages.diagnose import diagnose
 from frictioncli.stages.fit import fit
 from frictioncli.workfiles import EXTENDED, TORQUES
-from tests.model.worlds import cycle_temperatures, torques
+from tests.equation_16 import cycle_temperatures, torques
 
 P, Q, C, PER_KG, ASIDE = 70.0, 5.0, -2.0, 8.3, 0.6
 GRAVITY = [P, Q, C, PER_KG, ASIDE]

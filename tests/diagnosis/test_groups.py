@@ -17,7 +17,7 @@ def squares(columns):
 
 
 @given(st.integers(1, 6), st.integers(0, 10_000), st.floats(-6, 6))
-@settings(max_examples=60, deadline=None, derandomize=True)
+@settings(max_examples=60)
 def test_unmixing_is_the_inverse_triangle_of_a_qr_decomposition(width, seed, power):
     """X = QR, so Q' = (R')^-1 X'; signs are such that R's diagonal is positive."""
     generator = np.random.default_rng(seed)
@@ -49,7 +49,7 @@ def test_a_column_needs_a_ten_thousandth_beside_the_others_of_its_group(share, t
 
 
 @given(st.lists(st.integers(1, 4), min_size=1, max_size=6), st.integers(0, 10_000))
-@settings(max_examples=40, deadline=None, derandomize=True)
+@settings(max_examples=40)
 def test_what_a_group_takes_is_what_least_squares_takes(widths, seed):
     generator = np.random.default_rng(seed)
     groups = Groups.of(widths)

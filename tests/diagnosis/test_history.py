@@ -58,7 +58,7 @@ def test_a_run_begins_after_a_rest_of_unknown_length():
     st.lists(st.tuples(st.floats(1, 1000), st.floats(-5, 5)), min_size=1, max_size=30),
     st.integers(1, 3),
 )
-@settings(max_examples=60, deadline=None, derandomize=True)
+@settings(max_examples=60)
 def test_rests_are_alike_within_a_series_and_places_count_up(steps, runs):
     time = np.cumsum([step for step, _ in steps])
     warm = 40 + np.cumsum([change for _, change in steps])

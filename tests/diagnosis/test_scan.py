@@ -209,7 +209,7 @@ def test_without_drift_none_is_found():
     st.lists(st.integers(1, 4), min_size=1, max_size=6),
     st.integers(0, 10_000),
 )
-@settings(max_examples=60, deadline=None, derandomize=True)
+@settings(max_examples=60)
 def test_orthonormal_is_a_qr_decomposition_of_each_group(widths, seed):
     groups = Groups.of(widths)
     columns = np.random.default_rng(seed).normal(size=(15, sum(widths)))
@@ -222,7 +222,7 @@ def test_orthonormal_is_a_qr_decomposition_of_each_group(widths, seed):
 
 
 @given(st.integers(0, 10_000), st.sampled_from([1, 2, 3]))
-@settings(max_examples=30, deadline=None, derandomize=True)
+@settings(max_examples=30)
 def test_orthonormal_columns_span_no_more_than_their_group(seed, rank):
     """Of three columns of a lower rank the others become zero."""
     generator = np.random.default_rng(seed)
@@ -250,7 +250,7 @@ def test_sums_are_by_group():
 
 
 @given(st.integers(0, 10_000), st.integers(1, 4), st.integers(1, 6))
-@settings(max_examples=40, deadline=None, derandomize=True)
+@settings(max_examples=40)
 def test_span_is_orthonormal_and_holds_every_column(seed, rank, count):
     generator = np.random.default_rng(seed)
     columns = generator.normal(size=(10, rank)) @ generator.normal(size=(rank, count))

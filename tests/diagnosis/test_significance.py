@@ -44,7 +44,7 @@ def test_the_greatest_of_many_passes_as_often_as_its_chance_says(tries):
 
 
 @given(st.floats(0.3, 20.0), st.floats(0.1, 10.0), st.floats(1e-9, 0.9))
-@settings(max_examples=60, deadline=None, derandomize=True)
+@settings(max_examples=60)
 def test_limit_and_beyond_are_inverse(shape, scale, probability):
     chance = Chance(shape, scale)
     assert chance.beyond(chance.limit(probability)) == pytest.approx(probability, rel=1e-6)
@@ -107,7 +107,7 @@ def test_credible_set_is_the_least_that_reaches_its_level():
 
 
 @given(st.dictionaries(st.sampled_from("abcdefgh"), st.floats(-1e4, 1e4), min_size=1))
-@settings(max_examples=60, deadline=None, derandomize=True)
+@settings(max_examples=60)
 def test_probabilities_add_up_and_the_credible_set_cannot_be_smaller(evidence):
     share = probabilities(evidence)
     assert set(share) == set(evidence)

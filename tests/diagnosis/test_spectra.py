@@ -33,7 +33,7 @@ def test_eigenvectors_and_values_give_back_the_covariance(number, strength):
     arrays(float, (12, 3), elements=st.floats(-1e3, 1e3)),
     st.integers(0, len(SPECTRA.spectra) - 1),
 )
-@settings(max_examples=50, deadline=None, derandomize=True)
+@settings(max_examples=50)
 def test_modes_can_be_undone_and_keep_lengths(means, number):
     spectrum = SPECTRA.spectra[number]
     scaled = SPECTRA.scaled(means)

@@ -4,8 +4,8 @@ from dataclasses import dataclass
 from datetime import datetime, timedelta
 
 import numpy as np
-import pandas as pd
 
+from tests.equation_16 import friction, write_recording
 from tests.moves import journey
 
 SPEEDS = (20.0, 45.0, 90.0)
@@ -62,13 +62,6 @@ class Joint:
         }
 
 
-def friction(joint, *, load, speed, temperature):
-    """Return friction of equation (16), term by term. [N·m]."""
-    p = joint.parameters
-    falling = p["gamma"] * np.exp(-p["delta"] * temperature)
-    return p["tau_c"] + p["alpha"] * load**2 + (p["beta"] + falling) * np.sqrt(speed)
-
-
 def write_joint(folder, joint, *, axis=2):
     """Write the runs of a joint as ``folder/run=D`` with a manifest each."""
     turns = [-STROKE, *[STROKE, -STROKE] * len(SPEEDS)]
@@ -88,21 +81,14 @@ def write_joint(folder, joint, *, axis=2):
         felt = _lagging(warmth) if joint.lags else warmth
         started = []
         for part, (shown, true) in enumerate(zip(warmth, felt, strict=True)):
-            own = friction(joint, load=load, speed=speed, temperature=true) + offset
+            own = friction(joint.parameters, load=load, speed=speed, temperature=true) + offset
             # what a pair shares, and what a sample has for itself
             own = own + 0.15 * generator.standard_normal(len(SPEEDS))[_move_of(motion) // 2]
             torque = load + direction * own + inertia
             torque = torque + 0.4 * generator.standard_normal(len(torque))
-            frame = pd.DataFrame(
-                {
-                    "Zeit[sec]": motion["time"].round(3),
-                    f"AxisPos_Act{axis}[°]": motion["position"].round(4),
-                    f"GearTorq_Act{axis}[Nm]": torque.round(3),
-                    f"Motortemperatur{axis}[°C]": np.full(len(torque), round(shown, 2)),
-                }
-            )
+            warm = {f"Motortemperatur{axis}[°C]": round(shown, 2)}
             name = f"{part:03d}.csv"
-            frame.to_csv(place / name, sep=";", index=False, encoding="cp1252")
+            write_recording(place / name, motion, torque, axis=axis, **warm)
             started.append(f"{name};{(began + part * _PAUSE).isoformat()}")
         text = "\n".join(["file;started_at", *started])
         (place / "manifest.csv").write_text(text, encoding="utf-8")

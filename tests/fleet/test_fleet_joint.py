@@ -14,8 +14,9 @@ from frictioncli.fleet.layout import JointLogs
 from frictioncli.fleet.table_row import causes_text
 from frictioncli.model.settings import FitSettings
 from frictioncli.stages.run import RunSettings
+from tests.equation_16 import friction
 from tests.fleet.fleets import contents
-from tests.fleet.joints import Joint, friction, write_joint
+from tests.fleet.joints import Joint, write_joint
 
 WORN = Joint(seed=5, runs=5, cycle=6, wear=1.5)
 QUICK = RunSettings(diagnosis=None)
@@ -50,7 +51,7 @@ def test_a_row_tells_the_joint_that_made_the_logs(finished):
     assert row["torque_unit"] == row["tau_c_unit"] == "N·m"
     assert row["reference_speed"] == pytest.approx(55, abs=0.5)
     # the fit of all runs holds a fifth of what the last one has more
-    true = friction(WORN, load=0.0, speed=55.0, temperature=40.0) + WORN.wear / 5
+    true = friction(WORN.parameters, load=0.0, speed=55.0, temperature=40.0) + WORN.wear / 5
     assert row["friction_40"] == pytest.approx(true, abs=0.5)
     # the logs reach from 25 to 45 °C
     assert {"friction_20", "friction_60"}.isdisjoint(row)

@@ -270,7 +270,7 @@ def test_a_constant_channel(tmp_path):
     assert "constant" in kinds(found)
 
 
-@settings(max_examples=12, deadline=None)
+@settings(max_examples=12)
 @given(size=st.integers(300, 60_000), seed=st.integers(0, 5))
 def test_what_is_found_does_not_depend_on_batches(tmp_path_factory, size, seed):
     log = clean_log(seed)

@@ -57,7 +57,7 @@ def wide_log(seed, time_unit, position_unit, velocity_unit, kelvin, with_command
     return log, columns
 
 
-@settings(max_examples=25, deadline=None)
+@settings(max_examples=25)
 @given(
     seed=st.integers(0, 10_000),
     order=st.randoms(use_true_random=False),
@@ -173,7 +173,7 @@ def test_a_table_without_motion_is_refused(tmp_path):
 
 
 @given(shift=st.floats(-6, 6), seed=st.integers(0, 100))
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=40)
 def test_lag_between_two_columns(shift, seed):
     """A wave and the same wave ``shift`` samples later."""
     phase = np.random.default_rng(seed).uniform(0, 6)

@@ -129,7 +129,7 @@ def test_krl_data_with_the_same_ending_is_no_recording(tmp_path):
     assert found.text == "KRL program"
 
 
-@settings(max_examples=25, deadline=None)
+@settings(max_examples=25)
 @given(size=st.integers(1, 5000), storage=st.sampled_from(["BLOCK", "CHANNEL"]))
 def test_batches_of_any_size_hold_the_same(tmp_path_factory, size, storage):
     header = tmp_path_factory.mktemp("any") / "log.dat"
@@ -247,7 +247,7 @@ def test_samples_without_a_header_are_refused_by_name(tmp_path):
     assert "header log.dat is missing" in refused.text
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=60)
 @given(
     at=st.integers(0, 1300),
     new=st.binary(min_size=0, max_size=6),

@@ -91,7 +91,7 @@ def test_time_stamps_lists_structures_and_decimals(tmp_path, ending):
     np.testing.assert_allclose(values["temperature_1"], TEMPERATURE, atol=1e-12)
 
 
-@settings(deadline=None, max_examples=40)
+@settings(max_examples=40)
 @given(
     values=st.lists(st.none() | st.integers(-(2**40), 2**40), min_size=2, max_size=60),
     rows=st.integers(1, 70),

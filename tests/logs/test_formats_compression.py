@@ -30,7 +30,7 @@ packed = pytest.mark.parametrize("ending", PACKERS)
 
 
 @packed
-@settings(deadline=None, max_examples=15)
+@settings(max_examples=15)
 @given(
     parts=st.lists(st.binary(min_size=1, max_size=3000), min_size=1, max_size=3),
     size=st.integers(1, 4000),

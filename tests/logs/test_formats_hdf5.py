@@ -81,7 +81,7 @@ def test_matlab_files_run_along_the_second_axis(tmp_path):
     assert_same_as_csv(tmp_path / "log.mat", tmp_path)
 
 
-@settings(deadline=None, max_examples=25)
+@settings(max_examples=25)
 @given(
     values=st.lists(st.floats(allow_nan=True, width=32), min_size=2, max_size=300),
     chunk=st.integers(1, 70),

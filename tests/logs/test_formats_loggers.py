@@ -149,7 +149,7 @@ def test_a_header_that_names_other_fields_is_refused(tmp_path):
     assert "header names 3 columns but the rows have 6 fields" in found.text
 
 
-@settings(deadline=None, max_examples=60)
+@settings(max_examples=60)
 @given(
     angles=st.lists(st.floats(-360, 360), min_size=2, max_size=8),
     form=st.sampled_from(["{{E6AXIS: {}}}", "{{{}}}", "{}"]),

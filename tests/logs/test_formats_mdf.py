@@ -89,7 +89,7 @@ def test_before_and_after_its_samples_a_group_has_no_values(tmp_path):
     assert summary.rows_rejected == {"missing_value": len(TIME) - part.sum() - 1}
 
 
-@settings(deadline=None, max_examples=30)
+@settings(max_examples=30)
 @given(
     slow=st.lists(st.floats(0, 7), min_size=2, max_size=60, unique=True).map(sorted),
     rows=st.integers(1, 600),

@@ -43,7 +43,7 @@ def rows_of(log, size):
     return lines, bad, values
 
 
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=40)
 @given(
     size=st.integers(1, 400),
     shift=st.floats(-0.003, 0.003),

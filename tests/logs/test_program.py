@@ -119,7 +119,7 @@ def test_a_payload_told_for_some_recordings_is_taken_for_none(tmp_path):
     assert any("1 of 2 recordings: taken for none" in text for text in summary.warnings)
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=60)
 @given(at=st.integers(0, len(PROGRAM)), new=st.binary(max_size=8), count=st.integers(0, 200))
 def test_a_damaged_programme_is_never_fatal(tmp_path_factory, at, new, count):
     path = tmp_path_factory.mktemp("any") / "t_PROG.TXT"

@@ -80,7 +80,7 @@ def finished(drafts, folder, temperatures):
     return tables.read(target, schemas.SAMPLES)
 
 
-@settings(max_examples=20, deadline=None)
+@settings(max_examples=20)
 @given(st.lists(st.integers(1, 5), min_size=1, max_size=4))
 def test_samples_are_ordered_by_run_joint_and_time(tmp_path_factory, sizes):
     """Two runs of two recordings each, all with joints 2 and 1, handed over in small pieces."""

@@ -71,7 +71,7 @@ def test_step(levels, step):
     assert found == (None if step is None else pytest.approx(step))
 
 
-@settings(max_examples=60, deadline=None, derandomize=True)
+@settings(max_examples=60)
 @given(
     slope=st.floats(0.002, 0.02),
     start=st.floats(15, 60),

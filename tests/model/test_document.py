@@ -9,7 +9,7 @@ from frictioncli.model.document import read_models, write_models
 from frictioncli.model.fitting import fit_joint
 from frictioncli.model.settings import FitSettings
 from frictioncli.provenance import Provenance
-from tests.model.worlds import torques
+from tests.equation_16 import torques
 
 
 def model(joint=2, rows=slice(None)):

@@ -6,7 +6,7 @@ import pytest
 from frictioncli.errors import NotEnoughData, OptionError
 from frictioncli.model.fitting import fit_joint
 from frictioncli.model.settings import FitSettings
-from tests.model.worlds import SPEEDS, TRUTH, cycle_temperatures, torques
+from tests.equation_16 import SPEEDS, TRUTH, cycle_temperatures, torques
 
 FACTS = {"torque_unit": "N·m", "sign": {"2": -1}}
 

@@ -96,7 +96,7 @@ def test_some_terms_only():
     assert found.alpha == found.gamma == found.delta == 0.0
 
 
-@settings(max_examples=50, deadline=None)
+@settings(max_examples=50)
 @given(
     seed=st.integers(0, 10**6),
     levels=st.integers(1, 6),

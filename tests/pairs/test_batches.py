@@ -62,7 +62,6 @@ def small_blocks(monkeypatch):
 # the fixture is set once for all examples, as it should be
 shared = settings(
     max_examples=30,
-    deadline=None,
     suppress_health_check=[HealthCheck.function_scoped_fixture],
 )
 

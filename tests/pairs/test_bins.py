@@ -23,7 +23,7 @@ def alone(position, torque, width):
     return numbers, counts, means
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=60)
 @given(
     seed=st.integers(0, 10**6),
     noise=st.sampled_from([0.0, 0.02, 2.0]),

@@ -56,7 +56,7 @@ def plain(arrays, settings):
     return partner
 
 
-@settings(max_examples=80, deadline=None)
+@settings(max_examples=80)
 @given(seed=st.integers(0, 10**6), count=st.integers(1, 25))
 def test_matches_are_those_of_plain_loops(seed, count):
     generator = np.random.default_rng(seed)

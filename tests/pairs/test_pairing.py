@@ -55,7 +55,7 @@ def test_strokes_that_creep_forward_find_partners_on_the_way_back():
     assert {22.5, 32.5, 72.5, 82.5, 132.5, 152.5} <= covered
 
 
-@settings(max_examples=20, deadline=None)
+@settings(max_examples=20)
 @given(seed=st.integers(0, 10**6))
 def test_every_sample_is_kept_or_counted_as_dropped(seed):
     generator = np.random.default_rng(seed)

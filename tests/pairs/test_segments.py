@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 from frictioncli.pairs import array_runs
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=60)
 @given(
     lengths=st.lists(st.tuples(st.integers(0, 3), st.integers(1, 5)), max_size=6),
     behind=st.integers(0, 3),

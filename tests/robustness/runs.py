@@ -9,41 +9,35 @@ from collections.abc import Iterator, Mapping
 from pathlib import Path
 
 import numpy as np
-import pandas as pd
 import pyarrow.parquet as pq
 
+from tests.equation_16 import friction, write_recording
 from tests.moves import journey
 
 PROGRAM = (sys.executable, "-c", "from frictioncli.cli import main; main()")
 SPEEDS = (20.0, 50.0, 90.0)
+TRUTH = {"tau_c": 5.0, "alpha": 0.0, "beta": 2.0, "gamma": 8.0, "delta": 0.05}
 
 
 def write_warm_up(folder: Path, *, levels=(25, 32, 39, 46, 53, 60, 67), seed=0) -> Path:
     """Write a run that makes every table: pairs at three speeds, warmer from file to file.
 
-    Friction is 5 + (2 + 8 exp(-0.05 T)) sqrt(v) N·m, gravity 80 cos(q) N·m.
+    Friction is that of equation (16) with ``TRUTH``, gravity 80 cos(q) N·m.
     """
     rng = np.random.default_rng(seed)
     folder.mkdir(parents=True)
     rows = ["file;started_at;phase"]
     for number, celsius in enumerate(levels):
         motion = journey([0, 100] * len(SPEEDS) + [0], np.repeat(SPEEDS, 2))
-        warmth = 2 + 8 * np.exp(-0.05 * celsius)
-        friction = 5 + warmth * np.sqrt(motion["velocity"].abs())
+        speed = motion["velocity"].abs()
         torque = (
             80 * np.cos(np.radians(motion["position"]))
-            + np.sign(motion["velocity"]) * friction
+            + np.sign(motion["velocity"])
+            * friction(TRUTH, load=0.0, speed=speed, temperature=celsius)
             + rng.normal(0, 0.1, len(motion))
         )
-        frame = pd.DataFrame(
-            {
-                "Zeit[sec]": motion["time"].round(3),
-                "AxisPos_Act2[°]": motion["position"].round(4),
-                "GearTorq_Act2[Nm]": torque.round(3),
-                "Motortemperatur2[°C]": float(celsius),
-            }
-        )
-        frame.to_csv(folder / f"s{number}.csv", sep=";", index=False, encoding="cp1252")
+        warmth = {"Motortemperatur2[°C]": float(celsius)}
+        write_recording(folder / f"s{number}.csv", motion, torque, **warmth)
         rows.append(f"s{number}.csv;2024-05-17T{8 + number:02d}:00:00;heat-up")
     (folder / "manifest.csv").write_text("\n".join(rows) + "\n", encoding="utf-8")
     return folder

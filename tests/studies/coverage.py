@@ -12,7 +12,7 @@ import numpy as np
 
 from frictioncli.model.fitting import fit_joint
 from frictioncli.model.settings import FitSettings
-from tests.model.worlds import TRUTH, torques
+from tests.equation_16 import TRUTH, torques
 
 WORLDS: Mapping[str, Mapping[str, float]] = {
     "points only": {"pair": 0.0, "drift": 0.0},
@@ -67,7 +67,7 @@ def main(repetitions: int) -> None:
         "",
         "Share of 95 % intervals of `fit` that hold the truth, and the same for the textbook",
         f"formula that takes all rows as independent. {repetitions} simulated thermal cycles per",
-        "line, made by `tests/model/worlds.py`: the paper's cycle at four speeds with 34 angle",
+        "line, made by `tests/equation_16.py`: the paper's cycle at four speeds with 34 angle",
         "bins, points of 0.3 N·m, pairs of 0.25 N·m where not said otherwise. Widths are relative",
         "to the truth, in the order of the columns. `make coverage` writes this page.",
         "",

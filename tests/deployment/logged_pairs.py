@@ -1,0 +1,28 @@
+"""Pairs of a table of torques as an online corrector meets them: one row each, in time order."""
+
+import numpy as np
+
+from frictioncli.diagnosis.data.gravity import stated_gravity
+from frictioncli.diagnosis.data.problem import simulated
+from frictioncli.effects.pair_series import friction_power, pair_heads
+
+
+def pairs_of(rows, added):
+    """One row per pair: its means, its effective load, and what warms the gear before it."""
+    squared = rows["load_torque"] ** 2
+    grouped = rows.assign(squared=squared, added=added).groupby(["run", "pair"], sort=True)
+    means = grouped[["time", "speed", "motor_temperature", "housing_temperature"]].first()
+    means["registered"] = grouped["motor_temperature_reading"].first()
+    means["phase"] = grouped["phase"].first()
+    means[["friction", "squared", "added"]] = grouped[
+        ["friction_torque", "squared", "added"]
+    ].mean()
+    return means.reset_index()
+
+
+def powers(rows, model, extension):
+    """Mean friction power from the pair before to each pair, as the batch sees it."""
+    _, problem = simulated(rows, "motor", model.about, stated_gravity(model.gravity_about))
+    heads = pair_heads(problem.table)
+    level = friction_power(problem.table, heads) * extension.gear.reference_power
+    return np.concatenate([[0.0], level])
