@@ -6,10 +6,10 @@ from pathlib import Path
 from typing import Any
 
 from frictioncli import __version__
-from frictioncli.inspection.findings import FileFound
+from frictioncli.inspection.findings import FileInspection
 from frictioncli.inspection.inspect import Inspection
 from frictioncli.inspection.remarks import remarks, unit_of
-from frictioncli.inspection.sufficiency import JointData
+from frictioncli.inspection.sufficiency import JointSummary
 
 
 def document(found: Inspection) -> dict[str, Any]:
@@ -27,7 +27,7 @@ def document(found: Inspection) -> dict[str, Any]:
     return {key: _plain(value) for key, value in whole.items()}
 
 
-def _file(found: FileFound) -> dict[str, Any]:
+def _file(found: FileInspection) -> dict[str, Any]:
     values = asdict(found)
     for joint in values["joints"]:
         for channel in joint["channels"]:
@@ -38,7 +38,7 @@ def _file(found: FileFound) -> dict[str, Any]:
     return values | {"usable": not found.refusal, "remarks": odd}
 
 
-def _data(found: JointData) -> dict[str, Any]:
+def _data(found: JointSummary) -> dict[str, Any]:
     values = asdict(found)
     stages = {stage.pop("name"): stage for stage in values.pop("stages")}
     values["speeds_deg_per_s"] = values.pop("speeds")

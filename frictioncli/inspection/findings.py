@@ -11,7 +11,7 @@ from frictioncli.inspection.other_clocks import OtherClock
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class ChannelFound:
+class ChannelInspection:
     """A column that is read.
 
     Attributes
@@ -57,7 +57,7 @@ class Spikes:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class JointFound:
+class JointInspection:
     """What a file holds of one joint.
 
     Attributes
@@ -68,7 +68,7 @@ class JointFound:
         Unit and side of the torque as it is read.
     gear_ratio : float or None
         Motor turns per joint turn, where it is used.
-    channels : tuple of ChannelFound
+    channels : tuple of ChannelInspection
         Its columns.
     velocity_agreement : float or None
         Change of position per integrated velocity, 1 where they agree. [-]
@@ -90,7 +90,7 @@ class JointFound:
     torque_unit: str
     torque_side: str
     gear_ratio: float | None
-    channels: tuple[ChannelFound, ...]
+    channels: tuple[ChannelInspection, ...]
     velocity_agreement: float | None = None
     held_samples: int = 0
     held_line: int | None = None
@@ -103,7 +103,7 @@ class JointFound:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class FileFound:
+class FileInspection:
     """What a file holds.
 
     Attributes
@@ -126,7 +126,7 @@ class FileFound:
         How it was sampled; None where no row could be read.
     clocks : tuple of OtherClock
         Time columns that are not used.
-    joints : tuple of JointFound
+    joints : tuple of JointInspection
         What it holds of each joint.
     notes : tuple of str
         What reading believes against or beyond the header.
@@ -144,5 +144,5 @@ class FileFound:
     rejected: Mapping[str, int] = field(default_factory=dict)
     sampling: Sampling | None = None
     clocks: tuple[OtherClock, ...] = ()
-    joints: tuple[JointFound, ...] = ()
+    joints: tuple[JointInspection, ...] = ()
     notes: tuple[str, ...] = ()

@@ -10,24 +10,24 @@ import pyarrow as pa
 
 from frictioncli.errors import LogError, MappingError
 from frictioncli.inspection.brakes import closed_seconds
-from frictioncli.inspection.findings import FileFound
+from frictioncli.inspection.findings import FileInspection
 from frictioncli.inspection.monitors.log_monitor import LogMonitor
 from frictioncli.inspection.other_clocks import other_clocks
-from frictioncli.inspection.pair_check import NO_MOVES, Moves, moves_and_pairs
+from frictioncli.inspection.pair_check import NO_MOVES, Moves, segments_and_pairs
 from frictioncli.inspection.sample_buffer import SampleBuffer, gathered
-from frictioncli.inspection.sufficiency import JointData, Recordings, joint_data
+from frictioncli.inspection.sufficiency import JointSummary, Recordings, joint_data
 from frictioncli.inspection.unit_reasons import other_remarks
-from frictioncli.inspection.unusable_file import raw_look
+from frictioncli.inspection.unusable_file import inspect_unusable
 from frictioncli.logs.channels.channel_map import ChannelMap, read_map
-from frictioncli.logs.channels.reading_plan import readings
+from frictioncli.logs.channels.reading_plan import planned_logs
 from frictioncli.logs.log_source import Refusal
 from frictioncli.logs.runs import manifest
 from frictioncli.logs.runs.discovery import LogRun, discover
 from frictioncli.logs.runs.opening import open_run
-from frictioncli.logs.samples.chunks import Chunk, LogReading, chunks_of
-from frictioncli.logs.samples.recording import Recorded, record
-from frictioncli.logs.samples.row_checks import Faults
-from frictioncli.logs.samples.timeline import Dated, RunClock, in_time_order
+from frictioncli.logs.samples.chunks import Chunk, PlannedLog, chunks_of
+from frictioncli.logs.samples.recording import RecordingSummary, record
+from frictioncli.logs.samples.row_checks import RejectedRows
+from frictioncli.logs.samples.timeline import DatedLog, RunClock, in_time_order
 from frictioncli.logs.settings import IngestSettings
 from frictioncli.pairs.settings import PairingSettings
 
@@ -40,16 +40,16 @@ class Inspection:
 
     Attributes
     ----------
-    files : tuple of FileFound
+    files : tuple of FileInspection
         One per file, in the order of runs and names.
-    joints : tuple of JointData
+    joints : tuple of JointSummary
         What all of them together hold of each joint, and for which stages it suffices.
     remarks : tuple of str
         What is to be said of runs as a whole.
     """
 
-    files: tuple[FileFound, ...]
-    joints: tuple[JointData, ...]
+    files: tuple[FileInspection, ...]
+    joints: tuple[JointSummary, ...]
     remarks: tuple[str, ...]
 
 
@@ -88,7 +88,7 @@ def inspect(
     with tempfile.TemporaryDirectory(prefix="frictioncli-") as name:
         folder = Path(name)
         samples = _samples(discover(logs), settings, chart, folder / _SPOOL, harvest)
-        moves, pairs = moves_and_pairs(gathered(samples), harvest.said, pairing, folder)
+        moves, pairs = segments_and_pairs(gathered(samples), harvest.said, pairing, folder)
     return Inspection(
         files=tuple(_with_moves(file, moves) for file in harvest.files),
         joints=tuple(
@@ -108,8 +108,8 @@ def inspect(
 class _State:
     """What has been seen so far."""
 
-    files: list[FileFound] = field(default_factory=list)
-    dated: list[Dated] = field(default_factory=list)
+    files: list[FileInspection] = field(default_factory=list)
+    dated: list[DatedLog] = field(default_factory=list)
     remarks: list[str] = field(default_factory=list)
     time_known: bool = True
 
@@ -146,11 +146,13 @@ def _samples(
 ) -> Iterator[pa.RecordBatch]:
     """Yield the samples of all logs, run by run in order of time; what is seen goes to harvest."""
     for run in runs:
-        found: dict[Path, FileFound] = {}
+        found: dict[Path, FileInspection] = {}
         opened, refused = open_run(run, settings, chart)
-        usable, unusable = readings(opened, settings, chart)
+        usable, unusable = planned_logs(opened, settings, chart)
         for log in (*refused, *unusable):
-            found[log.file.path] = raw_look(run, log.file.path, log.refusal, chart, settings)
+            found[log.file.path] = inspect_unusable(
+                run, log.file.path, log.refusal, chart, settings
+            )
         clock = RunClock(run.name)
         queue = _in_time_order(run, usable, harvest)
         in_turn = chunks_of([dated.reading for dated in queue], settings.batch_bytes)
@@ -170,7 +172,7 @@ def _samples(
         harvest.files += [found[file.path] for file in run.files if file.path in found]
 
 
-def _in_time_order(run: LogRun, usable: Sequence[LogReading], harvest: _State) -> list[Dated]:
+def _in_time_order(run: LogRun, usable: Sequence[PlannedLog], harvest: _State) -> list[DatedLog]:
     """Return the logs of a run in the order of their starts."""
     entries: Mapping[str, manifest.Entry] = {}
     path = run.folder / manifest.NAME
@@ -184,17 +186,17 @@ def _in_time_order(run: LogRun, usable: Sequence[LogReading], harvest: _State) -
 
 
 def _look(
-    reading: LogReading, parts: Iterator[Chunk], samples: SampleBuffer, settings: IngestSettings
-) -> tuple[FileFound, Recorded | None]:
+    reading: PlannedLog, parts: Iterator[Chunk], samples: SampleBuffer, settings: IngestSettings
+) -> tuple[FileInspection, RecordingSummary | None]:
     """Return what one log holds; its samples go to the spool."""
-    watch, faults = LogMonitor(reading), Faults()
+    watch, faults = LogMonitor(reading), RejectedRows()
     try:
         result = record(reading, watch.over(parts), faults, samples.add)
     except LogError as error:
         result = Refusal("contradicts_survey", str(error))
     samples.close()
     log = reading.log
-    found = FileFound(
+    found = FileInspection(
         path=log.file.path,
         run=log.run.name,
         recording=log.recording,
@@ -216,7 +218,7 @@ def _look(
     return replace(found, rows_kept=result.rows_kept, joints=joints, clocks=clocks), result
 
 
-def _with_moves(file: FileFound, moves: Moves) -> FileFound:
+def _with_moves(file: FileInspection, moves: Moves) -> FileInspection:
     """Return the same with the constant-speed parts of each joint."""
     joints = tuple(
         replace(joint, moves=dict(moves.get((file.run, file.recording, joint.joint), NO_MOVES)))

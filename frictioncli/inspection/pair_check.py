@@ -35,7 +35,7 @@ Moves = dict[tuple[str, str, int], dict[str, int]]
 """Run, recording and joint -> constant-speed parts forward and in reverse."""
 
 
-def moves_and_pairs(
+def segments_and_pairs(
     samples: Iterable[pa.RecordBatch],
     said: Callable[[], pd.DataFrame],
     settings: PairingSettings,

@@ -3,7 +3,7 @@
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-from frictioncli.inspection.findings import ChannelFound, FileFound, JointFound
+from frictioncli.inspection.findings import ChannelInspection, FileInspection, JointInspection
 from frictioncli.inspection.monitors.sampling import Sampling
 from frictioncli.inspection.other_clocks import OtherClock
 from frictioncli.quantities import TORQUE
@@ -47,7 +47,7 @@ class Remark:
     text: str
 
 
-def remarks(found: FileFound) -> tuple[Remark, ...]:
+def remarks(found: FileInspection) -> tuple[Remark, ...]:
     """Return what is odd in a file."""
     return (
         *(
@@ -65,7 +65,7 @@ def remarks(found: FileFound) -> tuple[Remark, ...]:
     )
 
 
-def stands(found: JointFound) -> bool:
+def stands(found: JointInspection) -> bool:
     """Return whether a joint does not move in a file."""
     position = next(c for c in found.channels if c.quantity == "position")
     return position.highest - position.lowest < _STANDS
@@ -125,7 +125,7 @@ def _of_sampling(found: Sampling) -> Iterator[Remark]:
         yield Remark("uptime", f"the clock starts at {found.begins_s:.3f} s, not at 0")
 
 
-def _of_joint(found: JointFound) -> Iterator[Remark]:
+def _of_joint(found: JointInspection) -> Iterator[Remark]:
     if stands(found):
         return
     for channel in found.channels:
@@ -166,7 +166,7 @@ def _of_joint(found: JointFound) -> Iterator[Remark]:
         yield Remark("brake", f"brake closed for {found.brake_closed_s:.3g} s")
 
 
-def stepped(channel: ChannelFound) -> bool:
+def stepped(channel: ChannelInspection) -> bool:
     """Return whether a channel's steps are coarse enough to be mentioned."""
     if channel.grid is None:
         return False

@@ -8,7 +8,7 @@ import pyarrow as pa
 
 from frictioncli.arrays import Array
 from frictioncli.logs.channels import aliases as names
-from frictioncli.logs.samples.row_checks import RowBlock
+from frictioncli.logs.samples.row_checks import LogRows
 
 _CHANNELS = (
     names.POSITION,
@@ -50,7 +50,7 @@ class SampleBuffer:
         self._sink = pa.OSFile(str(path), "wb")
         self._stream = pa.ipc.new_stream(self._sink, _SCHEMA)
 
-    def add(self, block: RowBlock, time: Array) -> None:
+    def add(self, block: LogRows, time: Array) -> None:
         """Take samples of all joints, ``time`` from the recording's first sample [s]."""
         n = len(block)
         missing = np.full(n, np.nan)

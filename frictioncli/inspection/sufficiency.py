@@ -31,7 +31,7 @@ class Stage:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class JointData:
+class JointSummary:
     """What all logs together hold of one joint, and what they suffice for.
 
     Attributes
@@ -78,7 +78,7 @@ class Recordings:
 
 def joint_data(
     joint: int, moves: Mapping[str, int], recordings: Recordings, pairs: pd.DataFrame
-) -> JointData:
+) -> JointSummary:
     """Return what the logs hold of a joint and for which stages it suffices.
 
     Parameters
@@ -101,7 +101,7 @@ def joint_data(
         stages += [_with_doubt(stage) if doubtful else stage for stage in later]
     missing = STAGES[len(stages) :]
     stages += [Stage(name, NO, f"needs what {stages[-1].name} gives") for name in missing]
-    return JointData(
+    return JointSummary(
         joint=joint,
         runs=recordings.runs,
         recordings=recordings.count,

@@ -5,10 +5,10 @@ from collections.abc import Iterable, Iterator, Sequence
 from itertools import groupby
 from pathlib import Path
 
-from frictioncli.inspection.findings import ChannelFound, FileFound, JointFound
+from frictioncli.inspection.findings import ChannelInspection, FileInspection, JointInspection
 from frictioncli.inspection.inspect import Inspection
 from frictioncli.inspection.remarks import Remark, remarks, stands, stepped, unit_of
-from frictioncli.inspection.sufficiency import JointData
+from frictioncli.inspection.sufficiency import JointSummary
 from frictioncli.plain_text import printable
 
 WIDTH = 100
@@ -31,9 +31,9 @@ def text(found: Inspection) -> str:
     return "\n\n".join("\n".join(block) for block in blocks)
 
 
-def _alike(files: Iterable[FileFound]) -> list[list[FileFound]]:
+def _alike(files: Iterable[FileInspection]) -> list[list[FileInspection]]:
     """Group files of one form whose channels are read alike."""
-    groups: dict[object, list[FileFound]] = {}
+    groups: dict[object, list[FileInspection]] = {}
     for file in files:
         channels = tuple(
             (joint.joint, c.quantity, c.column, c.unit_found, c.unit_believed)
@@ -44,15 +44,15 @@ def _alike(files: Iterable[FileFound]) -> list[list[FileFound]]:
     return list(groups.values())
 
 
-def _alike_refused(files: Iterable[FileFound]) -> list[list[FileFound]]:
+def _alike_refused(files: Iterable[FileInspection]) -> list[list[FileInspection]]:
     """Group files of one form that are refused for one reason."""
-    groups: dict[object, list[FileFound]] = {}
+    groups: dict[object, list[FileInspection]] = {}
     for file in files:
         groups.setdefault((file.run, file.reason, file.form), []).append(file)
     return list(groups.values())
 
 
-def _block(files: list[FileFound]) -> list[str]:
+def _block(files: list[FileInspection]) -> list[str]:
     first = files[0]
     form = f"{printable(first.form)}; {first.columns} columns"
     if len(files) == 1:
@@ -68,7 +68,7 @@ def _block(files: list[FileFound]) -> list[str]:
     return [*head, *(line for lines in joints for line in lines), *table, *_remarks(files)]
 
 
-def _refused(files: list[FileFound]) -> list[str]:
+def _refused(files: list[FileInspection]) -> list[str]:
     first = files[0]
     if len(files) == 1:
         lines = [printable(str(first.path), WIDTH)]
@@ -89,7 +89,7 @@ def _refused(files: list[FileFound]) -> list[str]:
     return [*lines, *(_marked(f"{rest} more files: {first.reason}") if rest else [])]
 
 
-def _sampled(file: FileFound) -> str:
+def _sampled(file: FileInspection) -> str:
     found = file.sampling
     kept = "" if file.refusal else f", {file.rows_kept:,} usable"
     if found is None:
@@ -101,7 +101,7 @@ def _sampled(file: FileFound) -> str:
     )
 
 
-def _joint(joints: Sequence[JointFound]) -> list[str]:
+def _joint(joints: Sequence[JointInspection]) -> list[str]:
     """Return the lines of one joint in files alike; none where it stands in all of them."""
     if all(stands(joint) for joint in joints):
         return []
@@ -120,7 +120,7 @@ def _joint(joints: Sequence[JointFound]) -> list[str]:
     return lines
 
 
-def _standing(files: Sequence[FileFound]) -> list[str]:
+def _standing(files: Sequence[FileInspection]) -> list[str]:
     numbers = [
         joint.joint
         for i, joint in enumerate(files[0].joints)
@@ -133,7 +133,7 @@ def _joints(numbers: Sequence[int]) -> str:
     return f"joint{'s' * (len(numbers) > 1)} {', '.join(map(str, numbers))}"
 
 
-def _channel(channels: Sequence[ChannelFound], joints: Sequence[JointFound]) -> list[str]:
+def _channel(channels: Sequence[ChannelInspection], joints: Sequence[JointInspection]) -> list[str]:
     first = channels[0]
     unit = unit_of(first.quantity, joints[0].torque_unit)
     low, high = min(c.lowest for c in channels), max(c.highest for c in channels)
@@ -153,14 +153,14 @@ def _channel(channels: Sequence[ChannelFound], joints: Sequence[JointFound]) -> 
     return [*_wrapped(line, " " * 24, first="    "), *_wrapped(why, " " * 24, first=" " * 24)]
 
 
-def _steps(channels: Sequence[ChannelFound], unit: str) -> str:
+def _steps(channels: Sequence[ChannelInspection], unit: str) -> str:
     grids = [c.grid for c in channels if c.grid is not None]
     best = max(grids, key=lambda grid: grid.levels)
     sure = "" if best.certainty > 0.9 else f", {100 * best.certainty:.0f} % sure"
     return f"in steps of {best.step:.3g} {unit} ({best.levels} levels{sure})"
 
 
-def _agreement(channel: ChannelFound, joints: Sequence[JointFound]) -> str:
+def _agreement(channel: ChannelInspection, joints: Sequence[JointInspection]) -> str:
     """Return how the velocity agrees with the change of position."""
     found = [j.velocity_agreement for j in joints if j.velocity_agreement is not None]
     if channel.quantity != "velocity" or not found:
@@ -173,7 +173,7 @@ def _agreement(channel: ChannelFound, joints: Sequence[JointFound]) -> str:
 _COLUMNS = ("rows", "usable", "s", "period s", "Hz", "jitter s", "gaps", "held", "spikes", "moves")
 
 
-def _table(files: Sequence[FileFound]) -> list[str]:
+def _table(files: Sequence[FileInspection]) -> list[str]:
     """Return a line per file."""
     names = _short([file.path.name for file in files])
     rows = [_COLUMNS, *(_cells(file) for file in files)]
@@ -196,7 +196,7 @@ def _short(names: Sequence[str]) -> list[str]:
     return [printable(name, _NAME_WIDTH) for name in names]
 
 
-def _cells(file: FileFound) -> tuple[str, ...]:
+def _cells(file: FileInspection) -> tuple[str, ...]:
     found = file.sampling
     timing = (
         ("-",) * 4
@@ -222,7 +222,7 @@ def _cells(file: FileFound) -> tuple[str, ...]:
     )
 
 
-def _remarks(files: Sequence[FileFound]) -> list[str]:
+def _remarks(files: Sequence[FileInspection]) -> list[str]:
     """Return what is odd: what holds in all files once, the rest with where it was seen."""
     seen: dict[Remark, list[Path]] = {}
     for file in files:
@@ -254,7 +254,7 @@ def _marked(remark: str) -> list[str]:
     return _wrapped(printable(remark, 8 * WIDTH), "    ", first="  - ")
 
 
-def _data(joint: JointData) -> list[str]:
+def _data(joint: JointSummary) -> list[str]:
     """Return what all logs suffice for."""
     lines = [
         f"joint {joint.joint} in all logs: moves at constant speed: {joint.forward} forward,"
@@ -267,7 +267,7 @@ def _data(joint: JointData) -> list[str]:
     return lines
 
 
-def _motionless(joints: Iterable[JointData]) -> list[list[str]]:
+def _motionless(joints: Iterable[JointSummary]) -> list[list[str]]:
     """Return the joints of which nothing can be paired, all in one line."""
     numbers = [joint.joint for joint in joints if not joint.forward and not joint.reverse]
     told = f"{_joints(numbers)} in all logs: no motion at constant speed, so nothing to pair"

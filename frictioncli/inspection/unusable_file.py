@@ -5,7 +5,7 @@ from pathlib import Path
 
 import numpy as np
 
-from frictioncli.inspection.findings import FileFound
+from frictioncli.inspection.findings import FileInspection
 from frictioncli.inspection.monitors.sampling import Sampling, SamplingMonitor
 from frictioncli.inspection.monitors.windows import Windows
 from frictioncli.logs.channels import aliases as names
@@ -15,7 +15,7 @@ from frictioncli.logs.channels.recognition import LogChannel, recognise_channels
 from frictioncli.logs.formats import open_log
 from frictioncli.logs.log_source import LogSource, Refusal, UnreadableLog
 from frictioncli.logs.runs.discovery import LogRun
-from frictioncli.logs.samples.row_checks import RowBlock
+from frictioncli.logs.samples.row_checks import LogRows
 from frictioncli.logs.settings import IngestSettings
 
 _TABLES = (
@@ -29,9 +29,9 @@ _TABLES = (
 """Why a log is refused that has rows and columns all the same."""
 
 
-def raw_look(
+def inspect_unusable(
     run: LogRun, path: Path, refusal: Refusal, chart: ChannelMap, settings: IngestSettings
-) -> FileFound:
+) -> FileInspection:
     """Return what can be told of a file that is not used.
 
     Parameters
@@ -49,14 +49,14 @@ def raw_look(
     """
     source = open_log(path, chart.hints) if refusal.reason in _TABLES else refusal
     if isinstance(source, Refusal):
-        return FileFound(path=path, run=run.name, reason=refusal.reason, refusal=refusal.text)
+        return FileInspection(path=path, run=run.name, reason=refusal.reason, refusal=refusal.text)
     times = [
         channel for channel in recognise_channels(source.columns) if channel.quantity == names.TIME
     ]
     rows, sampling = 0, None
     if times:
         rows, sampling = _sampled(source, times[0], settings)
-    return FileFound(
+    return FileInspection(
         path=path,
         run=run.name,
         form=source.form,
@@ -81,7 +81,7 @@ def _sampled(
             good = np.isfinite(values)
             if np.isnan(factor):
                 factor = units.FACTORS[names.TIME][_unit(time, values[good], settings)]
-            for window in windows.see(RowBlock(batch.lines[good], values[good] * factor, {})):
+            for window in windows.see(LogRows(batch.lines[good], values[good] * factor, {})):
                 watch.see(window)
     for window in windows.rest():
         watch.see(window)

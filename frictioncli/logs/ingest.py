@@ -13,7 +13,7 @@ from frictioncli import schemas
 from frictioncli.errors import FrictionError, LogError, MappingError
 from frictioncli.files import whole
 from frictioncli.logs.channels.channel_map import ChannelMap, read_map
-from frictioncli.logs.channels.reading_plan import readings
+from frictioncli.logs.channels.reading_plan import planned_logs
 from frictioncli.logs.log_source import Refusal
 from frictioncli.logs.runs import manifest
 from frictioncli.logs.runs.discovery import LogRun, Logs, discover
@@ -22,11 +22,11 @@ from frictioncli.logs.runs.opening import RefusedLog, open_run
 from frictioncli.logs.samples.chunks import chunks_of
 from frictioncli.logs.samples.log_tables import recording_rows, rejected_files, rejected_rows
 from frictioncli.logs.samples.quantized_temperature import Knots
-from frictioncli.logs.samples.recording import Recorded, record
-from frictioncli.logs.samples.row_checks import Faults
+from frictioncli.logs.samples.recording import RecordingSummary, record
+from frictioncli.logs.samples.row_checks import RejectedRows
 from frictioncli.logs.samples.sample_writer import SampleWriter
-from frictioncli.logs.samples.temperature_history import known_temperatures
-from frictioncli.logs.samples.timeline import Dated, RunClock, Timeline, in_time_order
+from frictioncli.logs.samples.temperature_history import run_knots
+from frictioncli.logs.samples.timeline import DatedLog, RunClock, Timeline, in_time_order
 from frictioncli.logs.settings import IngestSettings
 from frictioncli.logs.summary import IngestSummary, RejectedFile, grouped
 from frictioncli.provenance import Provenance, sha256
@@ -65,7 +65,7 @@ def ingest(logs: Logs, work: Path, settings: IngestSettings | None = None) -> In
     """
     settings = settings or IngestSettings()
     chart = read_map(settings.map_file) if settings.map_file is not None else ChannelMap()
-    runs = discover(logs, besides=work)
+    runs = discover(logs, excluded=work)
     with _spool_folder(work) as name, ExitStack() as stack:
         desk = _Context(
             settings,
@@ -107,7 +107,7 @@ class _State:
     warnings: list[str] = field(default_factory=list)
 
     @property
-    def recordings(self) -> list[Recorded]:
+    def recordings(self) -> list[RecordingSummary]:
         """All recordings, run by run, in order of time."""
         return [placed.recorded for line in self.timelines.values() for placed in line.placed]
 
@@ -177,7 +177,7 @@ def _read_run(run: LogRun, desk: _Context, harvest: _State) -> None:
     opened, refused = open_run(run, desk.settings, desk.chart)
     # hashed while the logs are looked at and read
     desk.hashing.ask(file for log in opened for file in log.source.files)
-    found, unusable = readings(opened, desk.settings, desk.chart)
+    found, unusable = planned_logs(opened, desk.settings, desk.chart)
     harvest.refused += refused + unusable
     clock = _read_logs(run, in_time_order(found, entries), desk, harvest)
     timeline = clock.timeline(has_manifest=has_manifest)
@@ -186,7 +186,7 @@ def _read_run(run: LogRun, desk: _Context, harvest: _State) -> None:
     harvest.timelines[run.name] = timeline
     harvest.warnings += timeline.warnings
     for joint in timeline.joints:
-        points = known_temperatures(timeline, joint)
+        points = run_knots(timeline, joint)
         harvest.temperatures[run.name, joint] = points
         distinct = {id(known): known for known in points if known is not None}.values()
         if distinct:
@@ -197,7 +197,7 @@ def _read_run(run: LogRun, desk: _Context, harvest: _State) -> None:
             )
 
 
-def _read_logs(run: LogRun, queue: Sequence[Dated], desk: _Context, harvest: _State) -> RunClock:
+def _read_logs(run: LogRun, queue: Sequence[DatedLog], desk: _Context, harvest: _State) -> RunClock:
     """Read logs one after the other; those that cannot be used join the refused."""
     clock = RunClock(run.name)
     size = desk.settings.batch_bytes
@@ -206,7 +206,7 @@ def _read_logs(run: LogRun, queue: Sequence[Dated], desk: _Context, harvest: _St
     for dated, (reading, parts) in zip(queue, in_turn, strict=True):
         log, joints = reading.log, [plan.channels.joint for plan in reading.plans]
         desk.drafts.begin(run.name, log.recording, joints, clock.start_of(dated))
-        faults = Faults()
+        faults = RejectedRows()
         result = record(reading, parts, faults, desk.drafts.add, smooth)
         if isinstance(result, Refusal):
             desk.drafts.forget(joints)

@@ -5,7 +5,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from frictioncli.logs.log_source import RawBatch
-from frictioncli.logs.runs.merging import Lender, MergedLog
+from frictioncli.logs.runs.merging import MergedLog, SecondaryFile
 
 from .logs import REAL
 
@@ -31,7 +31,7 @@ class Columns:
 
 def merged(base, other, *, held=()):
     lent = tuple(range(1, len(other.columns)))
-    lender = Lender(other, 0, 1.0, 0.004, lent, frozenset(held))
+    lender = SecondaryFile(other, 0, 1.0, 0.004, lent, frozenset(held))
     return MergedLog(base, 0, (lender,), (*base.columns, *other.columns[1:]))
 
 

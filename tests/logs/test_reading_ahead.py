@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 from frictioncli import schemas, tables
 from frictioncli.logs.samples.quantized_temperature import Knots
 from frictioncli.logs.samples.read_ahead import in_order
-from frictioncli.logs.samples.row_checks import RowBlock
+from frictioncli.logs.samples.row_checks import LogRows
 from frictioncli.logs.samples.sample_writer import SampleWriter
 from frictioncli.provenance import Provenance
 
@@ -69,7 +69,7 @@ def block(first, n, joints):
         for name in ("position", "velocity", "torque")
     }
     columns |= {(joint, "motor_temperature"): np.full(n, 20.0) for joint in joints}
-    return RowBlock(row.astype(np.int64), row, columns)
+    return LogRows(row.astype(np.int64), row, columns)
 
 
 def finished(drafts, folder, temperatures):
@@ -135,7 +135,7 @@ def test_short_recordings_of_different_channels_share_a_table(tmp_path):
             piece = block(0, n, [1])
             if channels == 2:
                 columns = {key: piece.columns[key] for key in piece.columns if "temp" not in key[1]}
-                piece = RowBlock(piece.lines, piece.time, columns)
+                piece = LogRows(piece.lines, piece.time, columns)
             drafts.begin("run", name, [1], 0.0)
             drafts.add(piece, piece.time)
         table = finished(drafts, tmp_path, {("run", 1): (None, None, None)})

@@ -4,7 +4,7 @@ from collections.abc import Collection, Iterable, Iterator
 from dataclasses import dataclass, field
 
 from frictioncli.arrays import Flags
-from frictioncli.inspection.findings import ChannelFound, JointFound, Spikes
+from frictioncli.inspection.findings import ChannelInspection, JointInspection, Spikes
 from frictioncli.inspection.monitors.constant_torque import ConstantTorqueMonitor
 from frictioncli.inspection.monitors.joint_rows import JointRows, joint_rows
 from frictioncli.inspection.monitors.repeated_samples import RepeatedSamplesMonitor, changes
@@ -17,7 +17,7 @@ from frictioncli.inspection.unit_reasons import evidence, gear_ratio
 from frictioncli.logs.channels import aliases as names
 from frictioncli.logs.channels.recognition import LogChannel
 from frictioncli.logs.channels.unit_inference import JointPlan
-from frictioncli.logs.samples.chunks import Chunk, LogReading
+from frictioncli.logs.samples.chunks import Chunk, PlannedLog
 
 _SPIKY = (names.POSITION, names.VELOCITY, names.TORQUE)
 
@@ -46,11 +46,11 @@ class _JointMonitor:
         self.torque.see(rows)
         self.agreement.see(rows)
 
-    def result(self, plan: JointPlan, told: Collection[str]) -> JointFound:
+    def result(self, plan: JointPlan, told: Collection[str]) -> JointInspection:
         position = self.channels.get(names.POSITION)
         held, line = self.held.result(0.0 if position is None else _step(position))
         frozen_spans, frozen_s = self.torque.frozen()
-        return JointFound(
+        return JointInspection(
             joint=plan.channels.joint,
             torque_unit=plan.torque_unit,
             torque_side=plan.torque_side,
@@ -71,10 +71,10 @@ class _JointMonitor:
             frozen_s=frozen_s,
         )
 
-    def _channel(self, plan: JointPlan, name: str, told: Collection[str]) -> ChannelFound:
+    def _channel(self, plan: JointPlan, name: str, told: Collection[str]) -> ChannelInspection:
         channel: LogChannel = getattr(plan.channels, name)
         watch = self.channels.get(name, ResolutionMonitor())
-        return ChannelFound(
+        return ChannelInspection(
             quantity=name,
             column=channel.name,
             side=channel.meaning.side if name in _SPIKY else "",
@@ -97,11 +97,11 @@ class LogMonitor:
 
     Parameters
     ----------
-    reading : LogReading
+    reading : PlannedLog
         The log about to be read.
     """
 
-    def __init__(self, reading: LogReading) -> None:
+    def __init__(self, reading: PlannedLog) -> None:
         self._reading = reading
         self._windows = Windows()
         self._sampling = SamplingMonitor()
@@ -128,7 +128,7 @@ class LogMonitor:
         """Return how the log was sampled; None where it has no usable row."""
         return self._sampling.result()
 
-    def joints(self, told: Collection[str]) -> tuple[JointFound, ...]:
+    def joints(self, told: Collection[str]) -> tuple[JointInspection, ...]:
         """Return what the log holds of each joint.
 
         Parameters

@@ -10,7 +10,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from frictioncli.arrays import Array
-from frictioncli.logs.samples.row_checks import RowBlock, joined
+from frictioncli.logs.samples.row_checks import LogRows, joined
 
 CONTEXT = 8
 """Rows before and after a window that are shown with it."""
@@ -24,13 +24,13 @@ class Window:
 
     Attributes
     ----------
-    rows : RowBlock
+    rows : LogRows
         The rows, with up to ``CONTEXT`` neighbours on either side.
     new : slice
         Those of them that no other window counts.
     """
 
-    rows: RowBlock
+    rows: LogRows
     new: slice
 
     def steps(self) -> Array:
@@ -43,11 +43,11 @@ class Window:
 class Windows:
     """Cuts blocks of any size into windows."""
 
-    _held: list[RowBlock] = field(default_factory=list)
+    _held: list[LogRows] = field(default_factory=list)
     _length: int = 0
     _before: int = 0
 
-    def see(self, block: RowBlock) -> Iterator[Window]:
+    def see(self, block: LogRows) -> Iterator[Window]:
         """Take the next rows and yield the windows that are complete."""
         if not len(block):
             return

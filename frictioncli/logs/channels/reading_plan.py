@@ -9,13 +9,13 @@ from frictioncli.logs.channels.survey import survey
 from frictioncli.logs.channels.unit_inference import JointPlan, plan_joint
 from frictioncli.logs.log_source import Refusal
 from frictioncli.logs.runs.opening import OpenedLog, RefusedLog
-from frictioncli.logs.samples.chunks import LogReading, first_look
+from frictioncli.logs.samples.chunks import PlannedLog, plan_log
 from frictioncli.logs.settings import IngestSettings
 
 
-def readings(
+def planned_logs(
     opened: Iterable[OpenedLog], settings: IngestSettings, chart: ChannelMap
-) -> tuple[list[LogReading], list[RefusedLog]]:
+) -> tuple[list[PlannedLog], list[RefusedLog]]:
     """Return how each log is going to be read, and the logs that cannot be.
 
     Raises
@@ -24,15 +24,15 @@ def readings(
         If one gear ratio is given for several joints.
     """
     found, refused = [], []
-    for log, plans in planned(opened, settings, chart):
+    for log, plans in plans_by_log(opened, settings, chart):
         if isinstance(plans, Refusal):
             refused.append(RefusedLog(log.run, log.file, log.recording, plans))
         else:
-            found.append(first_look(log, plans))
+            found.append(plan_log(log, plans))
     return found, refused
 
 
-def planned(
+def plans_by_log(
     logs: Iterable[OpenedLog], settings: IngestSettings, chart: ChannelMap
 ) -> Iterator[tuple[OpenedLog, list[JointPlan] | Refusal]]:
     """Yield each log with how to read its joints, or why none of them can be read.
@@ -53,9 +53,9 @@ def planned(
 
 def _with_notes(plans: list[JointPlan], log: OpenedLog) -> list[JointPlan]:
     """Return the plans with what only this log has to say."""
-    if not log.beside.notes:
+    if not log.sidecar.notes:
         return plans
-    return [replace(plans[0], notes=(*plans[0].notes, *log.beside.notes)), *plans[1:]]
+    return [replace(plans[0], notes=(*plans[0].notes, *log.sidecar.notes)), *plans[1:]]
 
 
 def _plans(

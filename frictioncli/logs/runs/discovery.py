@@ -56,14 +56,14 @@ def natural_key(name: str) -> list[tuple[int, int, str]]:
     return [(0, int(part), "") if part.isdecimal() else (1, 0, part) for part in parts if part]
 
 
-def discover(logs: Logs, besides: Path | None = None) -> tuple[LogRun, ...]:
+def discover(logs: Logs, excluded: Path | None = None) -> tuple[LogRun, ...]:
     """Return the runs in the named files and folders, in the order of first mention.
 
     Parameters
     ----------
     logs : Logs
         Files and folders, or run name -> its file, or folder with all that lies below.
-    besides : Path, optional
+    excluded : Path, optional
         A folder whose files are no logs: the work folder may lie among them.
 
     Raises
@@ -72,7 +72,7 @@ def discover(logs: Logs, besides: Path | None = None) -> tuple[LogRun, ...]:
         If a path does not exist, is no text, or no file is found.
     """
     paths = list(logs.values()) if isinstance(logs, Mapping) else logs
-    found = {path: _files_of(path, besides) for path in paths}
+    found = {path: _files_of(path, excluded) for path in paths}
     folders: dict[Path, dict[Path, None]] = {}
     for files in found.values():
         for file in files:
@@ -102,16 +102,16 @@ def _in_order(files: Iterable[Path]) -> tuple[LogFile, ...]:
     return tuple(LogFile(path) for path in sorted(files, key=lambda path: natural_key(path.name)))
 
 
-def _files_of(path: Path, besides: Path | None) -> list[Path]:
+def _files_of(path: Path, excluded: Path | None) -> list[Path]:
     if path.is_dir():
-        return _files_below(path, besides)
+        return _files_below(path, excluded)
     if path.is_file():
         return [path]
     raise LogError(f"{path}: no such file or folder; expected a log or a folder of logs")
 
 
-def _files_below(folder: Path, besides: Path | None) -> list[Path]:
-    work = None if besides is None else besides.resolve()
+def _files_below(folder: Path, excluded: Path | None) -> list[Path]:
+    work = None if excluded is None else excluded.resolve()
     found: list[Path] = []
     for place, folders, files in os.walk(folder):
         inside = Path(place)

@@ -13,7 +13,7 @@ import numpy as np
 from frictioncli.arrays import Array, Flags, Numbers
 from frictioncli.logs.log_source import LogSource, RawBatch, SequentialSource
 from frictioncli.logs.samples.differentiation import max_gap
-from frictioncli.logs.samples.row_checks import Faults, RowBlock, ascending
+from frictioncli.logs.samples.row_checks import LogRows, RejectedRows, ascending
 
 _OUTSIDE = "outside_other_file"
 _EDGE = 1e-3
@@ -21,7 +21,7 @@ _EDGE = 1e-3
 
 
 @dataclass(frozen=True, slots=True)
-class Lender:
+class SecondaryFile:
     """A file whose columns are given at the times of another.
 
     Attributes
@@ -59,7 +59,7 @@ class MergedLog(SequentialSource):
         The file whose rows are the samples; line numbers and texts are its own.
     time : int
         Its column of time.
-    lenders : tuple of Lender
+    lenders : tuple of SecondaryFile
         The other files.
     columns : tuple of str
         Names of the base's columns, then of those lent.
@@ -67,7 +67,7 @@ class MergedLog(SequentialSource):
 
     base: LogSource
     time: int
-    lenders: tuple[Lender, ...]
+    lenders: tuple[SecondaryFile, ...]
     columns: tuple[str, ...]
 
     @property
@@ -136,7 +136,7 @@ def _without(batch: RawBatch, values: dict[int, Array], outside: Flags) -> RawBa
 class _Alignment:
     """Walks through a lender in step with the base; holds one batch of it at a time."""
 
-    def __init__(self, lender: Lender, lent: dict[int, int], size: int) -> None:
+    def __init__(self, lender: SecondaryFile, lent: dict[int, int], size: int) -> None:
         self._lender = lender
         self._lent = lent
         self._held = frozenset(c for c, own in lent.items() if own in lender.held)
@@ -198,7 +198,7 @@ class _Alignment:
         """Yield the lender's rows; each window begins with the last row of the one before."""
         period = self._lender.period
         last: _Window | None = None
-        for block in ascending(self._blocks(), Faults()):
+        for block in ascending(self._blocks(), RejectedRows()):
             if not len(block):
                 continue
             time = block.time
@@ -211,13 +211,13 @@ class _Alignment:
             last = _Window(time, columns, period, first=last is None)
             yield last
 
-    def _blocks(self) -> Iterator[RowBlock]:
+    def _blocks(self) -> Iterator[LogRows]:
         lender = self._lender
         for batch in lender.source.batches({lender.time, *self._lent.values()}, self._size):
             time = batch.values[lender.time] * lender.scale
             good = np.isfinite(time)
             columns = {(0, str(c)): batch.values[own][good] for c, own in self._lent.items()}
-            yield RowBlock(batch.lines[good], time[good], columns)
+            yield LogRows(batch.lines[good], time[good], columns)
 
 
 @dataclass(frozen=True, slots=True)

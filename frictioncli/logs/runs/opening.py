@@ -17,8 +17,8 @@ from frictioncli.logs.formats import open_logs
 from frictioncli.logs.log_source import LogSource, Refusal
 from frictioncli.logs.runs.discovery import LogFile, LogRun
 from frictioncli.logs.runs.native_scale import scaled
-from frictioncli.logs.runs.sidecar import Sidecar, sidecar
-from frictioncli.logs.runs.trace_files import merged, told_twice
+from frictioncli.logs.runs.sidecar import Sidecar, read_sidecar
+from frictioncli.logs.runs.trace_files import duplicates_of_native, merged
 from frictioncli.logs.runs.trace_names import is_module, is_program, trace_of
 from frictioncli.logs.settings import IngestSettings
 
@@ -42,7 +42,7 @@ class OpenedLog:
         All recognised columns.
     joints : tuple of JointChannels
         The ones chosen per joint.
-    beside : Sidecar
+    sidecar : Sidecar
         What files beside it tell.
     """
 
@@ -52,7 +52,7 @@ class OpenedLog:
     source: LogSource
     channels: tuple[LogChannel, ...]
     joints: tuple[JointChannels, ...]
-    beside: Sidecar
+    sidecar: Sidecar
 
     @property
     def layout(self) -> tuple[str, ...]:
@@ -82,7 +82,7 @@ def open_run(
     found = dict(zip(run.files, open_logs(paths, chart.hints), strict=True))
     sources = {file: one for file, one in found.items() if not isinstance(one, Refusal)}
     refusals = {file: one for file, one in found.items() if isinstance(one, Refusal)}
-    for file, native in told_twice(sources).items():
+    for file, native in duplicates_of_native(sources).items():
         del sources[file]
         refusals[file] = Refusal(
             "same_recording",
@@ -102,7 +102,7 @@ def open_run(
             source=choice.source,
             channels=choice.channels,
             joints=choice.joints,
-            beside=sidecar(file.path, names[file.path.parent]),
+            sidecar=read_sidecar(file.path, names[file.path.parent]),
         )
         for file, choice in usable.items()
     ]

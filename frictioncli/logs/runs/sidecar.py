@@ -32,7 +32,7 @@ class Sidecar:
     notes: tuple[str, ...] = ()
 
 
-def sidecar(log: Path, names: Collection[str]) -> Sidecar:
+def read_sidecar(log: Path, names: Collection[str]) -> Sidecar:
     """Return what the DIAdem header and the programme's file beside a log tell.
 
     The log may be the header itself. The programme's file is called ``<trace>_PROG.TXT``.

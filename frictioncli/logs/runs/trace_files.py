@@ -12,14 +12,14 @@ from frictioncli.logs.channels.recognition import LogChannel, recognise_channels
 from frictioncli.logs.formats.diadem import DiademRecording
 from frictioncli.logs.log_source import LogSource, UnreadableLog
 from frictioncli.logs.runs.discovery import LogFile
-from frictioncli.logs.runs.merging import Lender, MergedLog
+from frictioncli.logs.runs.merging import MergedLog, SecondaryFile
 from frictioncli.logs.runs.trace_names import drive_of
 
 _HELD = (names.MOTOR_TEMPERATURE, names.HOUSING_TEMPERATURE)
 _PERIOD_BYTES = 1 << 16
 
 
-def told_twice(sources: Mapping[LogFile, LogSource]) -> dict[LogFile, LogFile]:
+def duplicates_of_native(sources: Mapping[LogFile, LogSource]) -> dict[LogFile, LogFile]:
     """Return the files that hold nothing beside a native recording of the same name.
 
     Returns
@@ -117,7 +117,7 @@ def merged(
     return found if any(isinstance(one.source, MergedLog) for one in found) else []
 
 
-def _with(base: _Module, lent: Sequence[tuple[_Module, Lender]]) -> LogSource:
+def _with(base: _Module, lent: Sequence[tuple[_Module, SecondaryFile]]) -> LogSource:
     """Return a file with the columns that others lend."""
     if base.time is None or not lent:
         return base.source
@@ -161,7 +161,7 @@ def _lends(module: _Module, base: _Module, joints: Collection[int]) -> bool:
     return module.drive is None
 
 
-def _lender(module: _Module, base: _Module) -> Lender | None:
+def _lender(module: _Module, base: _Module) -> SecondaryFile | None:
     """Return what a file lends to another; None where either has no times."""
     time = module.time
     if time is None or base.time is None:
@@ -172,7 +172,7 @@ def _lender(module: _Module, base: _Module) -> Lender | None:
         return None
     columns = tuple(i for i in range(len(module.source.columns)) if i != time.column)
     held = frozenset(c.column for c in module.channels if c.quantity in _HELD)
-    return Lender(module.source, time.column, scale, period, columns, held)
+    return SecondaryFile(module.source, time.column, scale, period, columns, held)
 
 
 def _seconds(time: LogChannel) -> float:

@@ -18,7 +18,7 @@ from frictioncli.logs.channels.units import plausible_temperature
 from frictioncli.logs.log_source import RawBatch, ReadTask, UnreadableLog
 from frictioncli.logs.runs.opening import OpenedLog
 from frictioncli.logs.samples.read_ahead import in_order
-from frictioncli.logs.samples.row_checks import Faults, RowBlock, with_values
+from frictioncli.logs.samples.row_checks import LogRows, RejectedRows, with_values
 
 _FIRST_BYTES = 1 << 12
 _HANDED_OVER = 1 << 21
@@ -28,7 +28,7 @@ _BEYOND_SHARE = 0.01
 
 
 @dataclass(frozen=True, slots=True)
-class LogReading:
+class PlannedLog:
     """A log about to be read.
 
     Attributes
@@ -53,12 +53,12 @@ class LogReading:
 class Chunk:
     """Consecutive rows of a log: converted usable ones, faults of the others, rows in all."""
 
-    block: RowBlock
-    faults: Faults
+    block: LogRows
+    faults: RejectedRows
     rows: int
 
 
-def first_look(log: OpenedLog, plans: Iterable[JointPlan]) -> LogReading:
+def plan_log(log: OpenedLog, plans: Iterable[JointPlan]) -> PlannedLog:
     """Return how a log will be read, with what its first rows tell of time."""
     plans = tuple(plans)
     belief = plans[0].beliefs[names.TIME]
@@ -71,7 +71,7 @@ def first_look(log: OpenedLog, plans: Iterable[JointPlan]) -> LogReading:
             time = first.values[at][np.isfinite(first.values[where])]
     steps = np.diff(time)
     steps = steps[steps > 0]
-    return LogReading(
+    return PlannedLog(
         log,
         plans,
         begin=float(known[0]) * belief.factor if len(known) else np.nan,
@@ -80,15 +80,15 @@ def first_look(log: OpenedLog, plans: Iterable[JointPlan]) -> LogReading:
 
 
 def chunks_of(
-    readings: Sequence[LogReading], batch_bytes: int
-) -> Iterator[tuple[LogReading, Iterator[Chunk]]]:
+    readings: Sequence[PlannedLog], batch_bytes: int
+) -> Iterator[tuple[PlannedLog, Iterator[Chunk]]]:
     """Yield each log with its rows in order; parsing goes ahead in threads, across logs too.
 
     Taking the parts of a log that cannot be read to its end raises ``UnreadableLog``.
 
     Parameters
     ----------
-    readings : sequence of LogReading
+    readings : sequence of PlannedLog
         The logs.
     batch_bytes : int
         How much of a log makes a part. [byte]
@@ -106,10 +106,10 @@ class _Result:
     part: Chunk | UnreadableLog
 
 
-def _tasks(readings: Iterable[LogReading], batch_bytes: int) -> Iterator[ReadTask[_Result]]:
+def _tasks(readings: Iterable[PlannedLog], batch_bytes: int) -> Iterator[ReadTask[_Result]]:
     """Yield the tasks of all logs one after the other; each log has at least one."""
     for number, reading in enumerate(readings):
-        end: Chunk | UnreadableLog | None = Chunk(_no_rows(reading.plans), Faults(), 0)
+        end: Chunk | UnreadableLog | None = Chunk(_no_rows(reading.plans), RejectedRows(), 0)
         columns = {reading.plans[0].channels.time.column}
         for plan in reading.plans:
             columns.update(_column(plan, name) for name in plan.beliefs)
@@ -140,7 +140,7 @@ def _all(tasks: Iterable[ReadTask[_Result]]) -> list[_Result]:
     return [task.read() for task in tasks]
 
 
-def _done(number: int, reading: LogReading, task: ReadTask[RawBatch]) -> _Result:
+def _done(number: int, reading: PlannedLog, task: ReadTask[RawBatch]) -> _Result:
     try:
         return _Result(number, _part(task.read(), reading))
     except UnreadableLog as error:
@@ -154,9 +154,9 @@ def _parts(results: Iterable[_Result]) -> Iterator[Chunk]:
         yield result.part
 
 
-def _part(batch: RawBatch, reading: LogReading) -> Chunk:
+def _part(batch: RawBatch, reading: PlannedLog) -> Chunk:
     """Return converted rows; unreadable ones and those without the required values go out."""
-    faults = Faults()
+    faults = RejectedRows()
     for reason in sorted(set(batch.bad_reasons)):
         faults.add(batch.bad_lines[np.array(batch.bad_reasons) == reason], reason)
     block = _within_limits(_converted(batch, reading.plans), batch, reading, faults)
@@ -170,14 +170,14 @@ def _part(batch: RawBatch, reading: LogReading) -> Chunk:
     return Chunk(block, faults, len(batch.lines) + len(batch.bad_lines))
 
 
-def _no_rows(plans: Iterable[JointPlan]) -> RowBlock:
+def _no_rows(plans: Iterable[JointPlan]) -> LogRows:
     columns = {(plan.channels.joint, name): np.empty(0) for plan in plans for name in plan.beliefs}
-    return RowBlock(np.empty(0, np.int64), np.empty(0), columns)
+    return LogRows(np.empty(0, np.int64), np.empty(0), columns)
 
 
 def _within_limits(
-    block: RowBlock, batch: RawBatch, reading: LogReading, faults: Faults
-) -> RowBlock:
+    block: LogRows, batch: RawBatch, reading: PlannedLog, faults: RejectedRows
+) -> LogRows:
     """Return the rows without positions that contradict the belief in radians."""
     outside = np.zeros(len(block), bool)
     for plan in reading.plans:
@@ -212,7 +212,7 @@ def _column(plan: JointPlan, name: str) -> int:
     return channel.column
 
 
-def _converted(batch: RawBatch, plans: Iterable[JointPlan]) -> RowBlock:
+def _converted(batch: RawBatch, plans: Iterable[JointPlan]) -> LogRows:
     columns: dict[tuple[int, str], Array] = {}
     for plan in plans:
         for name, belief in plan.beliefs.items():
@@ -224,4 +224,4 @@ def _converted(batch: RawBatch, plans: Iterable[JointPlan]) -> RowBlock:
                 values = plausible_temperature(values)
             columns[plan.channels.joint, name] = values
     time = next(values for (_, name), values in columns.items() if name == names.TIME)
-    return RowBlock(batch.lines, time, columns)
+    return LogRows(batch.lines, time, columns)

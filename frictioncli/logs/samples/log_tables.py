@@ -6,13 +6,13 @@ from itertools import islice
 import pyarrow as pa
 
 from frictioncli.logs.runs.opening import OpenedLog, RefusedLog
-from frictioncli.logs.samples.row_checks import REASONS, Faults
-from frictioncli.logs.samples.timeline import Placed
+from frictioncli.logs.samples.row_checks import REASONS, RejectedRows
+from frictioncli.logs.samples.timeline import PlacedRecording
 
 _REJECTED_ROWS = 1 << 15
 
 
-def recording_rows(run: str, recordings: Sequence[Placed]) -> pa.Table:
+def recording_rows(run: str, recordings: Sequence[PlacedRecording]) -> pa.Table:
     """Return the rows of ``recordings`` for a run: one per recording and joint."""
     rows = []
     for placed in recordings:
@@ -39,7 +39,7 @@ def recording_rows(run: str, recordings: Sequence[Placed]) -> pa.Table:
     return pa.Table.from_pylist(rows)
 
 
-def rejected_rows(log: OpenedLog, faults: Faults, batch_bytes: int) -> Iterator[pa.Table]:
+def rejected_rows(log: OpenedLog, faults: RejectedRows, batch_bytes: int) -> Iterator[pa.Table]:
     """Yield the rows of ``rejected`` for the lines of a log that were not kept."""
     lines, codes = faults.ascending()
     texts = log.source.texts(lines, batch_bytes)

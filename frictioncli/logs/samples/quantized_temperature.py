@@ -49,7 +49,7 @@ class Knots:
     n_changes: int
 
 
-def longest_wait(period: float) -> float:
+def longest_change_interval(period: float) -> float:
     """Return the longest time [s] between two samples that still tells when a change was."""
     return max(_LONGEST_WAIT, _LONGEST_WAIT_PERIODS * period)
 
@@ -82,7 +82,7 @@ def find_step(levels: Array) -> float | None:
         Distinct readings. [°C]
     """
     levels = np.unique(np.round(levels, 6))
-    if len(levels) < 2 or too_fine(levels):
+    if len(levels) < 2 or is_continuous(levels):
         return None
     step = float(np.min(np.diff(levels)))
     steps = (levels - levels[0]) / step
@@ -90,7 +90,7 @@ def find_step(levels: Array) -> float | None:
     return step if on_grid else None
 
 
-def too_fine(levels: Array) -> bool:
+def is_continuous(levels: Array) -> bool:
     """Tell whether some readings, whatever others follow, rule a register of steps out.
 
     Parameters

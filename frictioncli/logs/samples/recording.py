@@ -10,32 +10,32 @@ from frictioncli.logs.channels import aliases as names
 from frictioncli.logs.log_source import Refusal, UnreadableLog
 from frictioncli.logs.runs.opening import OpenedLog
 from frictioncli.logs.samples import quantized_temperature
-from frictioncli.logs.samples.chunks import Chunk, LogReading
+from frictioncli.logs.samples.chunks import Chunk, PlannedLog
 from frictioncli.logs.samples.differentiation import half_window, max_gap
 from frictioncli.logs.samples.row_checks import (
     EMPTY,
     REASONS,
-    Faults,
-    RowBlock,
+    LogRows,
+    RejectedRows,
     ascending,
+    drop_stale_first_rows,
     with_velocity,
-    without_stale_start,
 )
-from frictioncli.logs.samples.temperature_register import Register
+from frictioncli.logs.samples.temperature_register import TemperatureRegister
 
 _EXAMPLE_BYTES = 1 << 16
 _MIN_ROWS = 3
 
 
 @dataclass(frozen=True, slots=True)
-class Recorded:
+class RecordingSummary:
     """A log that was read to its end.
 
     Attributes
     ----------
-    reading : LogReading
+    reading : PlannedLog
         Which, and how.
-    registers : dict of int to Register
+    registers : dict of int to TemperatureRegister
         Joint -> what its temperature register showed.
     rows_read, rows_kept : int
         Rows of the file.
@@ -45,8 +45,8 @@ class Recorded:
         Last sample's time from the first. [s]
     """
 
-    reading: LogReading
-    registers: dict[int, Register]
+    reading: PlannedLog
+    registers: dict[int, TemperatureRegister]
     rows_read: int
     rows_kept: int
     rejected: dict[str, int]
@@ -63,22 +63,24 @@ class Recorded:
         return tuple(self.registers)
 
 
-def usable_rows(reading: LogReading, parts: Iterable[Chunk], faults: Faults) -> Iterator[RowBlock]:
+def usable_rows(
+    reading: PlannedLog, parts: Iterable[Chunk], faults: RejectedRows
+) -> Iterator[LogRows]:
     """Yield the rows that become samples, all channels present, in ascending time.
 
     Parameters
     ----------
-    reading : LogReading
+    reading : PlannedLog
         The log.
     parts : iterable of Chunk
         Its rows.
-    faults : Faults
+    faults : RejectedRows
         Takes the lines of all others.
     """
 
-    def blocks() -> Iterator[RowBlock]:
+    def blocks() -> Iterator[LogRows]:
         for part in parts:
-            faults.take_over(part.faults)
+            faults.extend(part.faults)
             yield part.block
 
     positions = [(plan.channels.joint, names.POSITION) for plan in reading.plans]
@@ -87,33 +89,33 @@ def usable_rows(reading: LogReading, parts: Iterable[Chunk], faults: Faults) -> 
         for plan in reading.plans
         if names.VELOCITY not in plan.beliefs
     }
-    growing = without_stale_start(ascending(blocks(), faults), positions, faults)
+    growing = drop_stale_first_rows(ascending(blocks(), faults), positions, faults)
     half, gap = half_window(reading.period), max_gap(reading.period)
     for block in with_velocity(growing, derived, faults, half=half, gap=gap):
         if len(block):
             yield block
 
 
-Sink = Callable[[RowBlock, Array], None]
+Sink = Callable[[LogRows, Array], None]
 """Takes samples of all joints, and their times from the recording's first sample [s]."""
 
 
 def record(
-    reading: LogReading,
+    reading: PlannedLog,
     parts: Iterable[Chunk],
-    faults: Faults,
+    faults: RejectedRows,
     sink: Sink,
     smooth: Collection[int] = (),
-) -> Recorded | Refusal:
+) -> RecordingSummary | Refusal:
     """Hand all samples of a log to ``sink``.
 
     Parameters
     ----------
-    reading : LogReading
+    reading : PlannedLog
         The log.
     parts : iterable of Chunk
         Its rows.
-    faults : Faults
+    faults : RejectedRows
         Takes the lines that are rejected.
     sink : callable
         Takes the samples.
@@ -122,7 +124,7 @@ def record(
 
     Returns
     -------
-    Recorded or Refusal
+    RecordingSummary or Refusal
         ``too_few_rows``, ``unreadable_file``, or the most frequent reason when more than half
         of the rows are bad. Samples that went to the sink are then void.
 
@@ -140,8 +142,8 @@ def record(
             yield part
 
     joints = [plan.channels.joint for plan in reading.plans]
-    registers = {joint: Register(smooth=joint in smooth) for joint in joints}
-    wait = quantized_temperature.longest_wait(reading.period)
+    registers = {joint: TemperatureRegister(smooth=joint in smooth) for joint in joints}
+    wait = quantized_temperature.longest_change_interval(reading.period)
     kept, begin, time = 0, 0.0, np.zeros(1)
     try:
         for block in usable_rows(reading, counted(), faults):
@@ -157,11 +159,11 @@ def record(
         return Refusal("unreadable_file", str(error))
     counts = faults.counts()
     refusal = _refusal(reading.log, rows, kept, counts, faults)
-    return refusal or Recorded(reading, registers, rows, kept, counts, float(time[-1]))
+    return refusal or RecordingSummary(reading, registers, rows, kept, counts, float(time[-1]))
 
 
 def _refusal(
-    log: OpenedLog, rows: int, kept: int, counts: dict[str, int], faults: Faults
+    log: OpenedLog, rows: int, kept: int, counts: dict[str, int], faults: RejectedRows
 ) -> Refusal | None:
     counts = {reason: n for reason, n in counts.items() if reason != EMPTY}
     rejected = sum(counts.values())

@@ -42,7 +42,7 @@ LIMITS = {TIME: 1e11, POSITION: 1e6, VELOCITY: 1e6, TORQUE: 1e6}
 
 
 @dataclass(frozen=True, slots=True)
-class RowBlock:
+class LogRows:
     """Consecutive rows: line numbers, time and named columns, all of shape (n,).
 
     Names are (joint, canonical name); ``time`` is in s.
@@ -55,14 +55,14 @@ class RowBlock:
     def __len__(self) -> int:
         return len(self.lines)
 
-    def take(self, which: Flags | slice) -> "RowBlock":
+    def take(self, which: Flags | slice) -> "LogRows":
         """Return some of the rows."""
         columns = {name: values[which] for name, values in self.columns.items()}
-        return RowBlock(self.lines[which], self.time[which], columns)
+        return LogRows(self.lines[which], self.time[which], columns)
 
 
 @dataclass(slots=True)
-class Faults:
+class RejectedRows:
     """Lines rejected so far, with the reason's index in ``REASONS``."""
 
     lines: list[Numbers] = field(default_factory=list)
@@ -74,7 +74,7 @@ class Faults:
             self.lines.append(lines)
             self.codes.append(np.full(len(lines), REASONS.index(reason), np.int8))
 
-    def take_over(self, others: "Faults") -> None:
+    def extend(self, others: "RejectedRows") -> None:
         """Note what was noted elsewhere too."""
         self.lines += others.lines
         self.codes += others.codes
@@ -103,9 +103,9 @@ class Faults:
         return lines[order], codes[order]
 
 
-def joined(first: RowBlock, second: RowBlock) -> RowBlock:
+def joined(first: LogRows, second: LogRows) -> LogRows:
     """Return the rows of two blocks, one after the other."""
-    return RowBlock(
+    return LogRows(
         np.concatenate((first.lines, second.lines)),
         np.concatenate((first.time, second.time)),
         {
@@ -115,7 +115,9 @@ def joined(first: RowBlock, second: RowBlock) -> RowBlock:
     )
 
 
-def with_values(block: RowBlock, required: Iterable[tuple[int, str]], faults: Faults) -> RowBlock:
+def with_values(
+    block: LogRows, required: Iterable[tuple[int, str]], faults: RejectedRows
+) -> LogRows:
     """Return the rows whose time and required columns are numbers that a joint can have."""
     names = [TIME, *(name for _, name in required)]
     needed = [block.time, *(block.columns[column] for column in required)]
@@ -141,10 +143,10 @@ def _all_within(values: Array, limit: float) -> bool:
     return not len(values) or bool(-limit <= values.min() and values.max() <= limit)
 
 
-def ascending(blocks: Iterable[RowBlock], faults: Faults) -> Iterator[RowBlock]:
+def ascending(blocks: Iterable[LogRows], faults: RejectedRows) -> Iterator[LogRows]:
     """Yield rows whose time grows; a few wild time stamps cost their own rows only."""
     last = -np.inf
-    held: RowBlock | None = None
+    held: LogRows | None = None
     for block in _of_some_length(blocks):
         if held is not None:
             kept, last = _growing(held, block.time[:LOOK_AHEAD], last, faults)
@@ -154,9 +156,9 @@ def ascending(blocks: Iterable[RowBlock], faults: Faults) -> Iterator[RowBlock]:
         yield _growing(held, np.empty(0), last, faults)[0]
 
 
-def _of_some_length(blocks: Iterable[RowBlock]) -> Iterator[RowBlock]:
+def _of_some_length(blocks: Iterable[LogRows]) -> Iterator[LogRows]:
     """Yield the rows in blocks long enough to judge the one before."""
-    held: RowBlock | None = None
+    held: LogRows | None = None
     for block in blocks:
         held = block if held is None else joined(held, block)
         if len(held) >= LOOK_AHEAD:
@@ -167,8 +169,8 @@ def _of_some_length(blocks: Iterable[RowBlock]) -> Iterator[RowBlock]:
 
 
 def _growing(
-    block: RowBlock, following: Array, last: float, faults: Faults
-) -> tuple[RowBlock, float]:
+    block: LogRows, following: Array, last: float, faults: RejectedRows
+) -> tuple[LogRows, float]:
     """Judge a block's rows after time ``last``; the times ``following`` it help to judge."""
     n = len(block)
     if n and _grows(block.time, last) and _grows(following, block.time[-1]):
@@ -197,12 +199,12 @@ def _grows(time: Array, last: float) -> bool:
     return not len(time) or bool(time[0] > last and np.all(time[1:] > time[:-1]))
 
 
-def without_stale_start(
-    blocks: Iterable[RowBlock], positions: Iterable[tuple[int, str]], faults: Faults
-) -> Iterator[RowBlock]:
+def drop_stale_first_rows(
+    blocks: Iterable[LogRows], positions: Iterable[tuple[int, str]], faults: RejectedRows
+) -> Iterator[LogRows]:
     """Drop up to three first rows left over from before: a jump unlike the motion that follows."""
     names = list(positions)
-    start: RowBlock | None = None
+    start: LogRows | None = None
     judged = False
     for incoming in blocks:
         if judged:
@@ -216,7 +218,7 @@ def without_stale_start(
         yield _judged_start(start, names, faults)
 
 
-def _judged_start(block: RowBlock, names: list[tuple[int, str]], faults: Faults) -> RowBlock:
+def _judged_start(block: LogRows, names: list[tuple[int, str]], faults: RejectedRows) -> LogRows:
     stale = max((_stale_rows(block.time, block.columns[name]) for name in names), default=0)
     if not stale:
         return block
@@ -240,22 +242,22 @@ def _stale_rows(time: Array, position: Array) -> int:
 
 
 def with_velocity(
-    blocks: Iterable[RowBlock],
+    blocks: Iterable[LogRows],
     derived: Mapping[tuple[int, str], tuple[int, str]],
-    faults: Faults,
+    faults: RejectedRows,
     *,
     half: int,
     gap: float,
-) -> Iterator[RowBlock]:
+) -> Iterator[LogRows]:
     """Add velocities differentiated from positions.
 
     Parameters
     ----------
-    blocks : iterable of RowBlock
+    blocks : iterable of LogRows
         Rows in ascending time.
     derived : mapping
         Name of each velocity to make -> name of its position.
-    faults : Faults
+    faults : RejectedRows
         Takes the rows that have no neighbour within the gap.
     half, gap : int, float
         See :func:`derivative.local_slope`.
@@ -263,7 +265,7 @@ def with_velocity(
     if not derived:
         yield from blocks
         return
-    held: RowBlock | None = None
+    held: LogRows | None = None
     done = 0  # rows of ``held`` that went out already and stay as neighbours of what follows
     for incoming in blocks:
         block = incoming if held is None else joined(held, incoming)
@@ -276,18 +278,18 @@ def with_velocity(
 
 
 def _differentiated(
-    block: RowBlock,
+    block: LogRows,
     which: slice,
     derived: Mapping[tuple[int, str], tuple[int, str]],
-    faults: Faults,
+    faults: RejectedRows,
     half: int,
     gap: float,
-) -> RowBlock:
+) -> LogRows:
     slopes = {
         velocity: local_slope(block.time, block.columns[position], half=half, gap=gap)
         for velocity, position in derived.items()
     }
-    out = RowBlock(block.lines, block.time, {**block.columns, **slopes}).take(which)
+    out = LogRows(block.lines, block.time, {**block.columns, **slopes}).take(which)
     alone = np.zeros(len(out), bool)
     for velocity in derived:
         alone |= np.isnan(out.columns[velocity])

@@ -21,7 +21,7 @@ from frictioncli import schemas, tables
 from frictioncli.arrays import Array
 from frictioncli.logs.channels import aliases as names
 from frictioncli.logs.samples import quantized_temperature
-from frictioncli.logs.samples.row_checks import RowBlock
+from frictioncli.logs.samples.row_checks import LogRows
 from frictioncli.provenance import Provenance
 from frictioncli.tables import TableWriter
 
@@ -57,7 +57,7 @@ class _Piece:
     run: str
     recording: str
     time: Array
-    block: RowBlock
+    block: LogRows
 
 
 @dataclass(slots=True)
@@ -121,7 +121,7 @@ class SampleWriter:
                 self._drafts[joint] = _JointDraft(joint, self._stack.enter_context(writer))
             self._drafts[joint].stretches.append(_Stretch(run))
 
-    def add(self, block: RowBlock, time: Array) -> None:
+    def add(self, block: LogRows, time: Array) -> None:
         """Take samples of the recording begun last, ``time`` from its first sample [s]."""
         piece = _Piece(*self._label, time + self._start if self._start else time, block)
         for joint in {joint for joint, _ in block.columns}:
@@ -237,7 +237,7 @@ def _table(pieces: Sequence[_Piece], joint: int) -> pa.Table:
     )
 
 
-def _values(block: RowBlock, joint: int, name: str) -> Array:
+def _values(block: LogRows, joint: int, name: str) -> Array:
     values = block.columns.get((joint, name))
     return values if values is not None else np.full(len(block), np.nan)
 

@@ -6,11 +6,11 @@ import numpy as np
 
 from frictioncli.logs.samples import quantized_temperature
 from frictioncli.logs.samples.quantized_temperature import Changes, Knots
-from frictioncli.logs.samples.temperature_register import Register
+from frictioncli.logs.samples.temperature_register import TemperatureRegister
 from frictioncli.logs.samples.timeline import Timeline
 
 
-def known_temperatures(timeline: Timeline, joint: int) -> tuple[Knots | None, ...]:
+def run_knots(timeline: Timeline, joint: int) -> tuple[Knots | None, ...]:
     """Return, for each recording of a joint, the known temperatures to interpolate between.
 
     Where start times are known the whole run serves every recording; where they were invented each
@@ -30,7 +30,7 @@ def known_temperatures(timeline: Timeline, joint: int) -> tuple[Knots | None, ..
     return tuple(_knots([one], step) for one in shown)
 
 
-def _knots(shown: Sequence[tuple[float, Register]], step: float) -> Knots | None:
+def _knots(shown: Sequence[tuple[float, TemperatureRegister]], step: float) -> Knots | None:
     parts = [(start, change) for start, register in shown for change in register.changes]
     begins = [start + register.first for start, register in shown if register.first is not None]
     ends = [start + register.last[0] for start, register in shown if register.last is not None]

@@ -11,7 +11,7 @@ _FIRST_ROWS = 256
 
 
 @dataclass(slots=True)
-class Register:
+class TemperatureRegister:
     """What a joint's motor temperature register showed in one recording.
 
     Attributes
@@ -54,7 +54,7 @@ class Register:
             changed = some[1:][some[1:] != some[:-1]]
             levels = np.append(changed, [some[0], *self.levels])
             levels = np.unique(np.round(levels, 6))
-            if quantized_temperature.too_fine(levels):
+            if quantized_temperature.is_continuous(levels):
                 self.smooth = True
                 # two of them are enough to rule it out for the whole run
                 close = int(np.argmin(np.diff(levels)))

@@ -6,8 +6,8 @@ from datetime import UTC, datetime
 
 from frictioncli.logs.runs.discovery import natural_key
 from frictioncli.logs.runs.manifest import Entry
-from frictioncli.logs.samples.chunks import LogReading
-from frictioncli.logs.samples.recording import Recorded
+from frictioncli.logs.samples.chunks import PlannedLog
+from frictioncli.logs.samples.recording import RecordingSummary
 
 _PAUSE = 1.0  # [s]
 _TOLERATED_OVERLAP = 1.0  # [s]
@@ -16,23 +16,23 @@ _EPOCH_TIME = (1e9, 1e11)
 
 
 @dataclass(frozen=True, slots=True)
-class Dated:
+class DatedLog:
     """A log about to be read, when it started, and what the manifest says of it.
 
     ``payload`` is the manifest's, else what the files beside the log tell. [kg]
     """
 
-    reading: LogReading
+    reading: PlannedLog
     started_at: datetime | None
     entry: Entry | None
     payload: float | None
 
 
 @dataclass(frozen=True, slots=True)
-class Placed:
+class PlacedRecording:
     """A recording with its start since the run's first sample [s] and what is known of it."""
 
-    recorded: Recorded
+    recorded: RecordingSummary
     start: float
     started_at: datetime | None
     entry: Entry | None
@@ -43,7 +43,7 @@ class Placed:
 class Timeline:
     """The recordings of a run in order; ``known`` is false where starts had to be invented."""
 
-    placed: tuple[Placed, ...]
+    placed: tuple[PlacedRecording, ...]
     known: bool
     warnings: tuple[str, ...]
 
@@ -53,7 +53,7 @@ class Timeline:
         return tuple(sorted({joint for p in self.placed for joint in p.recorded.joints}))
 
 
-def in_time_order(readings: Sequence[LogReading], entries: Mapping[str, Entry]) -> list[Dated]:
+def in_time_order(readings: Sequence[PlannedLog], entries: Mapping[str, Entry]) -> list[DatedLog]:
     """Return the logs of a run in the order of their starts; those without one come last, by name.
 
     Start and payload are the manifest's, else what the files beside a log tell. Of payloads the
@@ -62,7 +62,7 @@ def in_time_order(readings: Sequence[LogReading], entries: Mapping[str, Entry]) 
 
     Parameters
     ----------
-    readings : sequence of LogReading
+    readings : sequence of PlannedLog
         The logs.
     entries : mapping of str to Entry
         File name -> row of the manifest.
@@ -70,7 +70,7 @@ def in_time_order(readings: Sequence[LogReading], entries: Mapping[str, Entry]) 
     listed = [entries.get(reading.log.file.path.name) for reading in readings]
     payloads = [one.payload if one is not None else None for one in listed]
     known = [
-        reading.log.beside.payload if payload is None else payload
+        reading.log.sidecar.payload if payload is None else payload
         for reading, payload in zip(readings, payloads, strict=True)
     ]
     if None not in known:
@@ -81,7 +81,7 @@ def in_time_order(readings: Sequence[LogReading], entries: Mapping[str, Entry]) 
         if start is not None:
             starts[name] = min(start, starts.get(name, start))
     dated = [
-        Dated(reading, starts.get(reading.log.recording), entry, payload)
+        DatedLog(reading, starts.get(reading.log.recording), entry, payload)
         for reading, entry, payload in zip(readings, listed, payloads, strict=True)
     ]
     return sorted(
@@ -103,17 +103,17 @@ class RunClock:
     ----------
     run : str
         The run's name, for warnings.
-    placed : list of Placed
+    placed : list of PlacedRecording
         The recordings so far.
     """
 
     run: str
-    placed: list[Placed] = field(default_factory=list)
+    placed: list[PlacedRecording] = field(default_factory=list)
     _origin: datetime | None = None
     _end: float = -_PAUSE
     _warnings: list[str] = field(default_factory=list)
 
-    def start_of(self, log: Dated) -> float:
+    def start_of(self, log: DatedLog) -> float:
         """Return when the next recording starts, since the run's first sample [s]."""
         together = self._together(log)
         if together is not None:
@@ -126,7 +126,7 @@ class RunClock:
             return told
         return self._end + log.reading.period
 
-    def place(self, log: Dated, recorded: Recorded) -> None:
+    def place(self, log: DatedLog, recorded: RecordingSummary) -> None:
         """Place the recording that was read from the next log."""
         start, told = self.start_of(log), self._told(log)
         late = told is not None and self._end - told > _TOLERATED_OVERLAP
@@ -137,7 +137,7 @@ class RunClock:
             )
         if not self.placed:
             self._origin = log.started_at
-        self.placed.append(Placed(recorded, start, log.started_at, log.entry, log.payload))
+        self.placed.append(PlacedRecording(recorded, start, log.started_at, log.entry, log.payload))
         self._end = max(self._end, start + recorded.duration)
 
     def timeline(self, *, has_manifest: bool) -> Timeline:
@@ -165,7 +165,7 @@ class RunClock:
         known = not undated or len(recordings) == 1
         return Timeline(tuple(self.placed), known, (*said, *self._warnings))
 
-    def _together(self, log: Dated) -> Placed | None:
+    def _together(self, log: DatedLog) -> PlacedRecording | None:
         """Return the log placed last where the next is of the same recording."""
         last = self.placed[-1] if self.placed else None
         same = last is not None and last.recorded.log.recording == log.reading.log.recording
@@ -173,7 +173,7 @@ class RunClock:
 
     def _of_payloads(self) -> list[str]:
         """Return warnings of payloads that files beside the logs tell and that are not taken."""
-        beside = [(p.payload, p.recorded.log.beside.payload) for p in self.placed]
+        beside = [(p.payload, p.recorded.log.sidecar.payload) for p in self.placed]
         told = [(taken, other) for taken, other in beside if other not in (None, taken)]
         if any(taken is None for taken, _ in told):
             return [
@@ -187,18 +187,18 @@ class RunClock:
             ]
         return []
 
-    def _told(self, log: Dated) -> float | None:
+    def _told(self, log: DatedLog) -> float | None:
         """Return the start by manifest or header, since the run's first sample [s]."""
         if log.started_at is None:
             return None
         return (log.started_at - (self._origin or log.started_at)).total_seconds()
 
 
-def _start(reading: LogReading, entry: Entry | None) -> datetime | None:
+def _start(reading: PlannedLog, entry: Entry | None) -> datetime | None:
     if entry is not None:
         return entry.started_at
-    if reading.log.beside.started_at is not None:
-        return reading.log.beside.started_at
+    if reading.log.sidecar.started_at is not None:
+        return reading.log.sidecar.started_at
     if _EPOCH_TIME[0] < reading.begin < _EPOCH_TIME[1]:
         return datetime.fromtimestamp(reading.begin, UTC)
     return None
