@@ -9,14 +9,17 @@ LARGEST ?= 1e8
 export OMP_NUM_THREADS := 1
 export OPENBLAS_NUM_THREADS := 1
 
-.PHONY: reproduce test lint same coverage blind comparison fleet planning wear bench fuzz kill clean
+.PHONY: reproduce test test-all lint same coverage blind comparison fleet planning wear bench fuzz kill clean
 
 reproduce: $(VENV)/installed
 	$(BIN)/frictioncli run sample_logs/kr10 -w $(RUN)
 	$(BIN)/python docs/compare_with_paper.py $(RUN)
 
 test: $(VENV)/tested
-	$(BIN)/pytest -n 2 --dist worksteal
+	$(BIN)/pytest -n 2 --dist worksteal -m "not slow"
+
+test-all: $(VENV)/tested
+	$(BIN)/pytest -n 2 --dist worksteal --durations 20
 
 coverage: $(VENV)/tested
 	$(BIN)/python -m tests.studies.coverage

@@ -110,6 +110,7 @@ def test_a_lagging_gear_is_named_and_pays_on_a_new_day():
     assert diagnosis.gain.interval[0] > 0.2
 
 
+@pytest.mark.slow
 def test_a_lag_does_not_hide_a_ripple():
     rows = lagging(days(9))
     ripple = 1.0 * np.sin(6.7 * np.radians(rows["position"]))
@@ -119,6 +120,7 @@ def test_a_lag_does_not_hide_a_ripple():
     assert ("position_ripple",) in names
 
 
+@pytest.mark.slow
 def test_a_planted_effect_of_the_simulator_is_found_blind():
     settings = SynthesisSettings(seed=11, joint_kind="plain", effects=("dress_pack:1.0",))
     diagnosis = diagnosed(simulate_torques(settings))

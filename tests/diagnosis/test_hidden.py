@@ -37,6 +37,21 @@ BESIDE_A_LAG = ("coulomb_temperature", "payload_change", "position_ripple")
 """One effect of each channel, and one of the stroke; docs/blind.md has them all."""
 
 
+QUICK = (
+    "thermal_lag",
+    "stribeck",
+    "velocity_exponent",
+    "linear_viscous",
+    "quadratic_drag",
+    "coulomb_temperature",
+    "load_linear",
+    "load_velocity",
+    "load_temperature",
+    "payload_change",
+)
+"""Effects that are found in a few seconds; thermal_lag takes longer, and is the most important."""
+
+
 @functools.cache
 def diagnosed(
     effects: tuple[str, ...],
@@ -65,7 +80,10 @@ def sets(diagnosis: Diagnosis) -> list[tuple[str, ...]]:
     return [cause.effects for cause in diagnosis.causes]
 
 
-@pytest.mark.parametrize("name", BY_NAME)
+@pytest.mark.parametrize(
+    "name",
+    [one if one in QUICK else pytest.param(one, marks=pytest.mark.slow) for one in BY_NAME],
+)
 def test_a_hidden_effect_is_in_a_set_of_few(name):
     effect, seed = hidden(name)
     diagnosis = diagnosed((effect,), seed, days=DAYS.get(name, 2))
@@ -74,6 +92,7 @@ def test_a_hidden_effect_is_in_a_set_of_few(name):
     assert len(holding[0]) <= 3
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", BESIDE_A_LAG)
 def test_a_lag_and_another_effect_are_both_found(name):
     effect, seed = hidden(name)
@@ -86,11 +105,11 @@ def test_a_lag_and_another_effect_are_both_found(name):
     ("noise", "protocol"),
     [
         ("default", "paper"),
-        ("white", "paper"),
-        ("drift97", "paper"),
+        pytest.param("white", "paper", marks=pytest.mark.slow),
+        pytest.param("drift97", "paper", marks=pytest.mark.slow),
         ("outliers", "paper"),
         ("default", "enriched"),
-        ("heteroscedastic", "enriched"),
+        pytest.param("heteroscedastic", "enriched", marks=pytest.mark.slow),
     ],
 )
 def test_nothing_is_found_in_a_clean_joint(noise, protocol):
@@ -106,6 +125,7 @@ def test_what_the_catalogue_does_not_list_gets_no_name(name):
     assert diagnosis.structure is not None
 
 
+@pytest.mark.slow
 def test_the_experiment_of_the_catalogue_resolves_what_four_speeds_cannot():
     """Four speeds leave a viscous term and a drag undecided; ten in random order decide."""
     before = diagnosed(("linear_viscous:2",), 73)

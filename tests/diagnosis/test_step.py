@@ -50,6 +50,7 @@ def test_noise_passes_no_more_often_than_its_p_values_say():
 BOTH_WAYS = ("linear_viscous", "load_linear", "direction_asymmetry", "dress_pack")
 
 
+@pytest.mark.slow
 def test_draws_give_what_fresh_noise_gives():
     """Mean of 100 statistics beside that of the draws; more than a quarter above is no chance.
 

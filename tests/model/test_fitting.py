@@ -23,7 +23,7 @@ def test_noise_free_data_give_the_parameters_exactly():
     assert model.sign == -1
 
 
-@pytest.mark.parametrize("method", ["joint", "paper"])
+@pytest.mark.parametrize("method", ["joint", pytest.param("paper", marks=pytest.mark.slow)])
 def test_known_parameters_come_back_within_their_intervals(method):
     """Four noisy days: of 20 intervals of 95 % at least 17 hold the truth, and none is vast."""
     held = 0

@@ -25,6 +25,7 @@ def worlds(tmp_path_factory):
     return Worlds(tmp_path_factory.mktemp("kill"), levels=(25, 39, 53, 67))
 
 
+@pytest.mark.slow
 def test_a_run_killed_at_random_times(worlds):
     draw = random.Random(7)
     hits = 0
@@ -37,7 +38,10 @@ def test_a_run_killed_at_random_times(worlds):
     assert hits  # else nothing was killed at all
 
 
-@pytest.mark.parametrize("stage", STAGES)
+@pytest.mark.parametrize(
+    "stage",
+    [one if one == "pair" else pytest.param(one, marks=pytest.mark.slow) for one in STAGES],
+)
 def test_a_stage_killed_before_each_of_its_changes_on_disk(worlds, stage):
     number = 0
     while True:

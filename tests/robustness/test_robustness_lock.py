@@ -41,6 +41,7 @@ def waits_for(path, process):
         time.sleep(0.005)
 
 
+@pytest.mark.slow
 def test_of_two_runs_into_one_folder_the_second_is_refused(done, tmp_path):
     first = started("run", done / "logs", "-w", tmp_path / "work")
     waits_for(tmp_path / "work" / ".lock", first)
@@ -106,6 +107,7 @@ def test_tables_that_belong_together_need_no_warning(work):
     assert "warning" not in fit(copied).text
 
 
+@pytest.mark.slow
 def test_a_table_made_from_a_replaced_one_is_told(work):
     pairs = digests(work)["pairs.parquet"]
     pair(work, pipeline.PairingSettings(bin_width=2.0))
