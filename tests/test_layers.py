@@ -19,6 +19,7 @@ LAYERS = [
     {"pairs", "logs", "simulator"},
     {"tables", "documents"},
     {"schemas", "files", "provenance", "workfiles"},
+    {"linear_algebra"},
     {"quantities", "errors", "arrays", "plain_text", "__init__"},
 ]
 """Top to bottom; parts of one layer do not know each other."""

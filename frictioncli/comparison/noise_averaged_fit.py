@@ -5,6 +5,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from frictioncli.arrays import Array, Indices
+from frictioncli.linear_algebra import gram_inverse
 from frictioncli.model.noise import Noise, pair_covariance
 
 RANK = 1e-5
@@ -49,7 +50,7 @@ def averaged_fit(
     for noise, _ in likely:
         truth = pair_covariance(noise, time=time, run=run, bins=bins)
         solved = truth.solve(design)
-        inverse = np.linalg.pinv(design.T @ solved, rcond=RANK**2, hermitian=True)
+        inverse = gram_inverse(design.T @ solved, tolerance=RANK**2)
         found.append((inverse @ (solved.T @ residual))[:count])
         spread.append(inverse[:count, :count])
     weights = np.array([weight for _, weight in likely])

@@ -17,6 +17,7 @@ from frictioncli.comparison.noise_averaged_fit import RANK, averaged_fit, estima
 from frictioncli.diagnosis.data.problem import Problem
 from frictioncli.effects import thermal_lag
 from frictioncli.effects.availability import missing_columns
+from frictioncli.linear_algebra import least_squares_residual
 from frictioncli.model.noise import Noise, plausible_noise
 
 
@@ -151,8 +152,7 @@ def _shared(problem: Problem, changing: Array, misfit: Array) -> Array:
 
 def _left(design: Array, misfit: Array) -> float:
     """Return the sum of squares that a least-squares fit leaves. [(N·m)²]."""
-    design = design / np.maximum(np.linalg.norm(design, axis=0), 1e-300)
-    left = misfit - design @ np.linalg.lstsq(design, misfit, rcond=RANK)[0]
+    left = least_squares_residual(design, misfit, tolerance=RANK)
     return float(left @ left)
 
 

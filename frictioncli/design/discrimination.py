@@ -27,6 +27,7 @@ from frictioncli.design.information import Information
 from frictioncli.design.rivals import Question
 from frictioncli.diagnosis.fit.columns import base_columns, basis_columns, joined, reduced
 from frictioncli.diagnosis.fit.judgement import Score
+from frictioncli.linear_algebra import schur_complement
 
 _NOTHING = 1e-9
 """Noncentrality of rows that tell nothing."""
@@ -150,12 +151,8 @@ def _noncentralities(gram: Array, places: Sequence[Indices]) -> Array:
 
 def _off(gram: Array, known: int) -> Array:
     """Return inner products of what the first columns leave of the others."""
-    size = np.sqrt(np.maximum(np.diag(gram), 1e-300))
-    unit = gram / np.outer(size, size)
-    inner = np.linalg.pinv(unit[:known, :known], rcond=1e-9, hermitian=True)
-    across = unit[:known, known:]
-    left = unit[known:, known:] - across.T @ inner @ across
-    return np.asarray(left * np.outer(size[known:], size[known:]))
+    left, size = schur_complement(gram, known, tolerance=1e-9)
+    return np.asarray(left * np.outer(size, size))
 
 
 def _left(gram: Array, columns: Indices, targets: Indices) -> Array:

@@ -18,6 +18,7 @@ from frictioncli.design.information import Information
 from frictioncli.design.rivals import OpenQuestions
 from frictioncli.diagnosis.data.problem import Problem
 from frictioncli.diagnosis.fit.columns import ModelColumns, base_columns, basis_columns, joined
+from frictioncli.linear_algebra import scaled_gram_inverse
 
 
 @dataclass(frozen=True, slots=True)
@@ -76,9 +77,7 @@ def precision(
     """
     gram = sight.gram(_model(sight.problem, opening))
     total = gram + np.diag(prior)
-    size = np.sqrt(np.diag(total))
-    inverse = np.linalg.pinv(total / np.outer(size, size), rcond=1e-13, hermitian=True)
-    covariance = inverse / np.outer(size, size)
+    covariance = scaled_gram_inverse(total, tolerance=1e-13)
     chosen = [list(names).index(name) for name in told]
     return Precision(tuple(told), covariance[np.ix_(chosen, chosen)])
 

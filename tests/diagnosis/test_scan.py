@@ -10,7 +10,7 @@ from scipy import stats
 from scipy.linalg import null_space
 
 from frictioncli.diagnosis.noise import likelihood_scan as scanning
-from frictioncli.diagnosis.noise.likelihood_scan import null_of, scan, span, weighted_gram
+from frictioncli.diagnosis.noise.likelihood_scan import null_of, scan, weighted_gram
 from frictioncli.diagnosis.noise.orthonormal_groups import Groups
 from frictioncli.diagnosis.noise.spectra import STRENGTHS, spectra_of
 from tests.diagnosis import noises
@@ -247,24 +247,6 @@ def test_sums_are_by_group():
     values = np.arange(12.0).reshape(6, 2)
     np.testing.assert_array_equal(groups.sums(values), [[0, 1], [12, 15], [18, 20]])
     assert Groups.of([]).sums(np.zeros((0, 5))).shape == (0, 5)
-
-
-@given(st.integers(0, 10_000), st.integers(1, 4), st.integers(1, 6))
-@settings(max_examples=40)
-def test_span_is_orthonormal_and_holds_every_column(seed, rank, count):
-    generator = np.random.default_rng(seed)
-    columns = generator.normal(size=(10, rank)) @ generator.normal(size=(rank, count))
-    columns = columns * 10.0 ** generator.integers(-6, 6, count)
-    unit = span(columns)
-    assert unit.shape[1] == min(rank, count)
-    np.testing.assert_allclose(unit.T @ unit, np.eye(unit.shape[1]), atol=1e-10)
-    left = columns - unit @ (unit.T @ columns)
-    assert (np.linalg.norm(left, axis=0) <= 1e-6 * np.linalg.norm(columns, axis=0)).all()
-
-
-def test_the_span_of_nothing_is_nothing():
-    assert span(np.zeros((5, 2))).shape == (5, 0)
-    assert span(np.empty((5, 0))).shape == (5, 0)
 
 
 @pytest.mark.parametrize("setting", [(0, 0), (2, 4), (5, 7)])

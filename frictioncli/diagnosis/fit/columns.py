@@ -14,7 +14,11 @@ from frictioncli.diagnosis.data.pair_layout import PairLayout
 from frictioncli.diagnosis.data.problem import Problem
 from frictioncli.effects.base import Basis, Effect
 from frictioncli.effects.pair_series import measured_share
+from frictioncli.linear_algebra import least_squares_residual
 from frictioncli.quantities import TORQUE
+
+RANK = 1e-9
+"""Singular values of unit columns below this share of the greatest count as zero."""
 
 _USUAL_FRICTION = 20.0
 """Mean friction torque up to which the catalogue's bounds in units of torque hold; those of a
@@ -213,19 +217,4 @@ def left_of_base(
     number = ("friction", "load").index(channel)
     base = [base_rows(problem)[number], *(basis[number] for basis in accepted)]
     # column after column in memory, as least squares works
-    return left_of(np.asfortranarray(np.hstack(base)), torque)
-
-
-def left_of(columns: Array, torque: Array) -> Array:
-    """Return what columns leave of a torque by least squares, shape (rows,). [N·m].
-
-    Parameters
-    ----------
-    columns : ndarray, shape (rows, columns)
-        The columns, in any units; those of zeros take nothing.
-    torque : ndarray, shape (rows,)
-        A torque. [N·m]
-    """
-    size = np.linalg.norm(columns, axis=0)
-    unit = columns[:, size > 0] / size[size > 0]
-    return np.asarray(torque - unit @ np.linalg.lstsq(unit, torque, rcond=1e-9)[0])
+    return least_squares_residual(np.asfortranarray(np.hstack(base)), torque, tolerance=RANK)

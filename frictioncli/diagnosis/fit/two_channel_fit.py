@@ -7,10 +7,14 @@ import numpy as np
 from frictioncli.arrays import Array, Indices
 from frictioncli.diagnosis.noise.likelihood_scan import Setting
 from frictioncli.diagnosis.noise.spectra import STRENGTHS, Spectra
+from frictioncli.linear_algebra import scaled_gram_inverse, schur_complement
 from frictioncli.model.noise import Noise
 
 _ROUNDS = 4
 """Rounds of fitting coefficients and noise scale in turn."""
+
+_TOLERANCE = 1e-11
+"""Directions of unit columns with less than this share of the squared length are undetermined."""
 
 _ABSENT = 1e-200
 """A column of less squared length is not there: its share of the torque is no number any more."""
@@ -106,10 +110,7 @@ def solved_each(
     for _ in range(_ROUNDS):
         gram = inside + (friction.between.T / scales[0]).T + (load.between.T / scales[1]).T
         own = gram[:, :-1, :-1]
-        squared = np.diagonal(own, axis1=1, axis2=2)
-        size = np.where(squared > _ABSENT, np.sqrt(np.maximum(squared, 0.0)), np.inf)
-        sizes = _outer(size)
-        inverse = np.linalg.pinv(own / sizes, rcond=1e-11, hermitian=True) / sizes
+        inverse = scaled_gram_inverse(own, tolerance=_TOLERANCE, absent=_ABSENT)
         coefficients = np.einsum("rij,rj->ri", inverse, gram[:, :-1, -1])
         rest = np.append(-coefficients, np.ones((len(gram), 1)), axis=1)
         squares = [np.maximum(_square(one.between, rest), 1e-300) for one in channels]
@@ -133,11 +134,6 @@ def solved_each(
     ]
 
 
-def _outer(size: Array) -> Array:
-    """Return products of the columns' sizes, shape (rivals, columns, columns)."""
-    return size[:, :, np.newaxis] * size[:, np.newaxis, :]
-
-
 def _square(gram: Array, combination: Array) -> Array:
     """Return squared lengths of a combination of each rival's columns, shape (rivals,)."""
     return np.asarray(np.einsum("ri,rij,rj->r", combination, gram, combination))
@@ -147,15 +143,12 @@ def _left(gram: Array, base: int) -> tuple[Array, Indices]:
     """Return the lengths that the base leaves of each rival's columns, and their ranks."""
     if gram.shape[1] == base:
         return np.empty((len(gram), 0)), np.zeros(len(gram), dtype=np.intp)
-    size = np.sqrt(np.maximum(np.diagonal(gram, axis1=1, axis2=2), 1e-300))
-    scaled = gram / _outer(size)
-    inner = np.linalg.pinv(scaled[:, :base, :base], rcond=1e-11, hermitian=True)
-    rest = scaled[:, base:, base:] - scaled[:, base:, :base] @ inner @ scaled[:, :base, base:]
+    rest, size = schur_complement(gram, base, tolerance=_TOLERANCE)
     own = np.maximum(np.diagonal(rest, axis1=1, axis2=2), 0.0)
-    seen = (own > 1e-6) & (size[:, base:] > 1e-6)
+    seen = (own > 1e-6) & (size > 1e-6)
     told = np.where(seen[:, :, np.newaxis] & seen[:, np.newaxis, :], rest, 0.0)
     rank = np.linalg.matrix_rank(told, tol=1e-7, hermitian=True)
-    return np.where(seen, np.sqrt(own) * size[:, base:], 0.0), rank
+    return np.where(seen, np.sqrt(own) * size, 0.0), rank
 
 
 def noise_of(spectra: Spectra, setting: Setting, scale: float, point: float) -> Noise:

@@ -14,7 +14,11 @@ import numpy as np
 
 from frictioncli.arrays import Array
 from frictioncli.diagnosis.data.pair_layout import PairLayout
+from frictioncli.linear_algebra import scaled_gram_inverse
 from frictioncli.model.noise import Noise, PairCovariance, pair_covariance
+
+_TOLERANCE = 1e-10
+"""Directions of unit columns with less than this share of the squared length are undetermined."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -95,18 +99,13 @@ class WeightedFit:
         own, other = self.friction.rows(friction), self.load.rows(load)
         right = own.T @ self.friction.rows(targets[0][:, np.newaxis])
         right += other.T @ self.load.rows(targets[1][:, np.newaxis])
-        return (_inverse(own.T @ own + other.T @ other) @ right)[:, 0]
+        return (scaled_gram_inverse(own.T @ own + other.T @ other, tolerance=_TOLERANCE) @ right)[
+            :, 0
+        ]
 
     def error_covariance(self, friction: Array, load: Array) -> Array:
         """Return the covariance of such coefficients, shape (columns, columns)."""
         own, other = self.friction.rows(friction), self.load.rows(load)
-        bread = _inverse(own.T @ own + other.T @ other)
+        bread = scaled_gram_inverse(own.T @ own + other.T @ other, tolerance=_TOLERANCE)
         meat = own.T @ self.friction.correlated(own) + other.T @ self.load.correlated(other)
         return np.asarray(bread @ meat @ bread)
-
-
-def _inverse(gram: Array) -> Array:
-    """Return the inverse of inner products in any units; what says nothing has 0 there."""
-    size = np.sqrt(np.where(np.diag(gram) > 0, np.diag(gram), 1.0))
-    scaled = np.linalg.pinv(gram / np.outer(size, size), rcond=1e-10, hermitian=True)
-    return np.asarray(scaled / np.outer(size, size))

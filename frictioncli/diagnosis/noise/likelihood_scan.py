@@ -19,9 +19,13 @@ import numpy as np
 from frictioncli.arrays import Array, Indices
 from frictioncli.diagnosis.noise.orthonormal_groups import Groups, unmixing
 from frictioncli.diagnosis.noise.spectra import STRENGTHS, Spectra
+from frictioncli.linear_algebra import orthonormal_basis
 
 Setting = tuple[int, int]
 """Place of a noise: of its correlation time and of its strength."""
+
+_RANK = 1e-7
+"""Singular values of unit columns below this share of the greatest count as zero."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -88,7 +92,7 @@ def null_of(spectra: Spectra, base: Array, misfit: Array) -> Null:
     misfit : ndarray, shape (pairs, 1)
         Pair means of the misfit.
     """
-    known, data = span(spectra.scaled(base)), spectra.scaled(misfit)
+    known, data = orthonormal_basis(spectra.scaled(base), tolerance=_RANK), spectra.scaled(misfit)
     freedom = len(data) - known.shape[1]
     likelihood = np.full((len(spectra.spectra), len(STRENGTHS)), -np.inf)
     scale, determinant = np.ones_like(likelihood), np.zeros_like(likelihood)
@@ -250,16 +254,6 @@ class _Fit:
         return weighted - self.basis @ (self.basis.T @ weighted)
 
 
-def span(columns: Array) -> Array:
-    """Return an orthonormal basis of the span of columns, shape (rows, rank)."""
-    size = np.linalg.norm(columns, axis=0)
-    kept = columns[:, size > 1e-12] / size[size > 1e-12]
-    if not kept.shape[1]:
-        return np.empty((len(columns), 0))
-    left, strength, _ = np.linalg.svd(kept, full_matrices=False)
-    return np.asarray(left[:, strength > 1e-7 * strength[0]])
-
-
 def weighted_gram(
     spectra: Spectra, setting: Setting, modes: Array, others: Array | None = None
 ) -> Array:
@@ -283,7 +277,7 @@ def drawn_inside(
     base: Array, rivals: Array, groups: Groups, draws: int, generator: np.random.Generator
 ) -> Array:
     """Return what each group takes of noise inside pairs, shape (groups, draws)."""
-    known = span(base)
+    known = orthonormal_basis(base, tolerance=_RANK)
     left = rivals - known @ (known.T @ rivals)
     unit = groups.orthonormal(rivals, left)
     noise = generator.standard_normal((len(unit), draws))

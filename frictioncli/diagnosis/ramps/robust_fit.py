@@ -11,6 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from frictioncli.arrays import Array, Indices
+from frictioncli.linear_algebra import gram_inverse
 
 Labels = Indices
 
@@ -128,7 +129,7 @@ def fitted(columns: Array, misfit: Array, clusters: tuple[Labels, ...]) -> Fit:
     """
     size = np.linalg.norm(columns, axis=0)
     scaled = columns / np.where(size > 0, size, 1.0)
-    inverse = np.linalg.pinv(scaled.T @ scaled, rcond=1e-10, hermitian=True)
+    inverse = gram_inverse(scaled.T @ scaled, tolerance=1e-10)
     coefficients = inverse @ (scaled.T @ misfit)
     residual = misfit - scaled @ coefficients
     scores = scaled * residual[:, np.newaxis]

@@ -11,9 +11,9 @@ import numpy as np
 from frictioncli.arrays import Array, Indices
 from frictioncli.diagnosis.data.problem import Problem
 from frictioncli.diagnosis.fit.columns import Hypothesis, left_of_base, reduced
-from frictioncli.diagnosis.noise.likelihood_scan import span
 from frictioncli.diagnosis.search.precomputed import Catalogue
 from frictioncli.diagnosis.search.step import DRAWS, Step
+from frictioncli.linear_algebra import orthonormal_basis
 
 _HARMONICS = 12
 _WAVES = 6
@@ -85,7 +85,7 @@ def structures(step: Step, seed: int) -> list[Structure]:
 
 def _even(raw: Array) -> Array:
     """Return orthonormal columns of the same span: waves over part of a turn are much alike."""
-    return span(raw) * np.sqrt(len(raw))
+    return orthonormal_basis(raw, tolerance=1e-7) * np.sqrt(len(raw))
 
 
 def _hypothesis(problem: Problem, axis: str, channel: str, raw: Array) -> Hypothesis:

@@ -9,17 +9,18 @@ from frictioncli.arrays import Array
 from frictioncli.diagnosis.data.pair_layout import PairLayout
 from frictioncli.diagnosis.data.problem import Problem
 from frictioncli.diagnosis.fit.columns import (
+    RANK,
     Hypothesis,
     ModelColumns,
     base_columns,
     joined,
-    left_of,
     left_of_base,
     misfit_column,
 )
 from frictioncli.diagnosis.noise.orthonormal_groups import Groups
 from frictioncli.diagnosis.noise.spectra import Modes, Spectra, spectra_of
 from frictioncli.effects.base import Basis
+from frictioncli.linear_algebra import least_squares_residual
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -50,7 +51,12 @@ class Precomputed:
         base, misfit = base_columns(problem), misfit_column(problem)
         extra = (problem.temperature_variance, np.zeros_like(layout.time))
         friction, load = (
-            spectra_of(layout, point, known, left_of(part.means, own.means[:, 0]))
+            spectra_of(
+                layout,
+                point,
+                known,
+                least_squares_residual(part.means, own.means[:, 0], tolerance=RANK),
+            )
             for point, known, part, own in zip(
                 point_noise(problem), extra, base.channels, misfit.channels, strict=True
             )
