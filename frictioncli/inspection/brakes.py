@@ -6,8 +6,8 @@ from collections.abc import Sequence
 import numpy as np
 
 from frictioncli.logs.channels import aliases as names
+from frictioncli.logs.channels.joint_plan import JointPlan
 from frictioncli.logs.channels.recognition import split_unit
-from frictioncli.logs.channels.unit_inference import JointPlan
 from frictioncli.logs.log_source import LogSource
 from frictioncli.logs.samples.row_checks import LIMITS
 
@@ -41,7 +41,7 @@ def closed_seconds(source: LogSource, plan: JointPlan, batch_bytes: int) -> floa
     if brake is None:
         return None
     time, position = plan.channels.time.column, plan.channels.position.column
-    factor = plan.beliefs[names.TIME].factor
+    factor = plan.conversions[names.TIME].factor
     seconds: dict[float, float] = {}
     ways: dict[float, float] = {}
     last: dict[int, float] = {}
@@ -52,7 +52,7 @@ def closed_seconds(source: LogSource, plan: JointPlan, batch_bytes: int) -> floa
         last = {column: float(values[-1]) for column, values in rows.items()}
         with np.errstate(over="ignore"):  # damaged cells may be of any size
             elapsed = np.diff(rows[time]) * factor
-            way = np.abs(np.diff(rows[position]) * plan.beliefs[names.POSITION].factor)
+            way = np.abs(np.diff(rows[position]) * plan.conversions[names.POSITION].factor)
         plausible = (elapsed < LIMITS[names.TIME]) & (way < LIMITS[names.POSITION])
         good = (elapsed > 0) & plausible & np.isfinite(rows[brake][1:])
         for value in np.unique(rows[brake][1:][good]).tolist():

@@ -19,8 +19,8 @@ from frictioncli.inspection.sufficiency import JointSummary, Recordings, joint_d
 from frictioncli.inspection.unit_reasons import other_remarks
 from frictioncli.inspection.unusable_file import inspect_unusable
 from frictioncli.logs.channels.channel_map import ChannelMap, read_map
-from frictioncli.logs.channels.reading_plan import planned_logs
 from frictioncli.logs.log_source import Refusal
+from frictioncli.logs.reading_plan import planned_logs
 from frictioncli.logs.runs import manifest
 from frictioncli.logs.runs.discovery import LogRun, discover
 from frictioncli.logs.runs.opening import open_run
@@ -83,11 +83,11 @@ def inspect(
     """
     settings = settings or IngestSettings()
     pairing = pairing or PairingSettings()
-    chart = read_map(settings.map_file) if settings.map_file is not None else ChannelMap()
+    channel_map = read_map(settings.map_file) if settings.map_file is not None else ChannelMap()
     harvest = _State()
     with tempfile.TemporaryDirectory(prefix="frictioncli-") as name:
         folder = Path(name)
-        samples = _samples(discover(logs), settings, chart, folder / _SPOOL, harvest)
+        samples = _samples(discover(logs), settings, channel_map, folder / _SPOOL, harvest)
         moves, pairs = segments_and_pairs(gathered(samples), harvest.said, pairing, folder)
     return Inspection(
         files=tuple(_with_moves(file, moves) for file in harvest.files),
@@ -140,18 +140,18 @@ class _State:
 def _samples(
     runs: Sequence[LogRun],
     settings: IngestSettings,
-    chart: ChannelMap,
+    channel_map: ChannelMap,
     spool: Path,
     harvest: _State,
 ) -> Iterator[pa.RecordBatch]:
     """Yield the samples of all logs, run by run in order of time; what is seen goes to harvest."""
     for run in runs:
         found: dict[Path, FileInspection] = {}
-        opened, refused = open_run(run, settings, chart)
-        usable, unusable = planned_logs(opened, settings, chart)
+        opened, refused = open_run(run, settings, channel_map)
+        usable, unusable = planned_logs(opened, settings, channel_map)
         for log in (*refused, *unusable):
             found[log.file.path] = inspect_unusable(
-                run, log.file.path, log.refusal, chart, settings
+                run, log.file.path, log.refusal, channel_map, settings
             )
         clock = RunClock(run.name)
         queue = _in_time_order(run, usable, harvest)

@@ -7,8 +7,8 @@ import numpy as np
 from frictioncli.arrays import Array
 from frictioncli.logs.channels import aliases as names
 from frictioncli.logs.channels import units
+from frictioncli.logs.channels.joint_plan import JointPlan
 from frictioncli.logs.channels.recognition import LogChannel, recognise_channels
-from frictioncli.logs.channels.unit_inference import JointPlan
 from frictioncli.logs.log_source import LogSource
 
 
@@ -45,7 +45,7 @@ def other_clocks(source: LogSource, plan: JointPlan, batch_bytes: int) -> tuple[
     ]
     if not others:
         return ()
-    comparisons = [_Comparison(channel, plan.beliefs[names.TIME].factor) for channel in others]
+    comparisons = [_Comparison(channel, plan.conversions[names.TIME].factor) for channel in others]
     for batch in source.batches([used, *(channel.column for channel in others)], batch_bytes):
         for comparison in comparisons:
             comparison.see(batch.values[used], batch.values[comparison.channel.column])
@@ -72,7 +72,7 @@ class _Comparison:
             return
         if np.isnan(self._start):
             written = units.canonical(self.channel.unit or self.channel.meaning.unit, names.TIME)
-            self._other_factor = units.FACTORS[names.TIME][units.time_unit([other], written)]
+            self._other_factor = units.FACTORS[names.TIME][units.infer_time_unit([other], written)]
             self._start = float(used[0])
             self._apart = float(other[0] * self._other_factor - used[0])
         since = used - self._start

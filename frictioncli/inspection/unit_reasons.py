@@ -5,8 +5,8 @@ from collections.abc import Collection
 
 from frictioncli.logs.channels import aliases as names
 from frictioncli.logs.channels import units
+from frictioncli.logs.channels.joint_plan import JointPlan
 from frictioncli.logs.channels.recognition import LogChannel
-from frictioncli.logs.channels.unit_inference import JointPlan
 
 _TURN = 6.9
 
@@ -49,7 +49,7 @@ def remarks_on(plan: JointPlan, channel: LogChannel) -> tuple[str, ...]:
 
 def other_remarks(plan: JointPlan) -> tuple[str, ...]:
     """Return what reading notes and warns beyond single channels that are read."""
-    read = tuple(getattr(plan.channels, name).name for name in plan.beliefs)
+    read = tuple(getattr(plan.channels, name).name for name in plan.conversions)
     return tuple(text for text in (*plan.notes, *plan.warnings) if not text.startswith(read))
 
 
@@ -59,10 +59,10 @@ def gear_ratio(plan: JointPlan) -> float | None:
     Without its sign; None where no channel is brought there.
     """
     for name in (names.POSITION, names.VELOCITY, names.TORQUE):
-        belief = plan.beliefs.get(name)
-        if belief is None:
+        conversion = plan.conversions.get(name)
+        if conversion is None:
             continue
-        scale = abs(belief.factor) / units.plain(belief.unit, name).factor
+        scale = abs(conversion.factor) / units.conversion_from(conversion.unit, name).factor
         if not math.isclose(scale, 1.0):
             return scale if name == names.TORQUE else 1 / scale
     return None

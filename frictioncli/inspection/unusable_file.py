@@ -30,7 +30,7 @@ _TABLES = (
 
 
 def inspect_unusable(
-    run: LogRun, path: Path, refusal: Refusal, chart: ChannelMap, settings: IngestSettings
+    run: LogRun, path: Path, refusal: Refusal, channel_map: ChannelMap, settings: IngestSettings
 ) -> FileInspection:
     """Return what can be told of a file that is not used.
 
@@ -42,12 +42,12 @@ def inspect_unusable(
         The file.
     refusal : Refusal
         Why it is not used.
-    chart : ChannelMap
+    channel_map : ChannelMap
         What the user says of its form.
     settings : IngestSettings
         What the user says of the unit of time.
     """
-    source = open_log(path, chart.hints) if refusal.reason in _TABLES else refusal
+    source = open_log(path, channel_map.hints) if refusal.reason in _TABLES else refusal
     if isinstance(source, Refusal):
         return FileInspection(path=path, run=run.name, reason=refusal.reason, refusal=refusal.text)
     times = [
@@ -90,4 +90,4 @@ def _sampled(
 
 def _unit(time: LogChannel, values: np.ndarray, settings: IngestSettings) -> str:
     written = units.canonical(time.unit or time.meaning.unit, names.TIME)
-    return settings.forced_units().get(names.TIME) or units.time_unit([values], written)
+    return settings.forced_units().get(names.TIME) or units.infer_time_unit([values], written)

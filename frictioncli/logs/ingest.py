@@ -13,8 +13,8 @@ from frictioncli import schemas
 from frictioncli.errors import FrictionError, LogError, MappingError
 from frictioncli.files import whole
 from frictioncli.logs.channels.channel_map import ChannelMap, read_map
-from frictioncli.logs.channels.reading_plan import planned_logs
 from frictioncli.logs.log_source import Refusal
+from frictioncli.logs.reading_plan import planned_logs
 from frictioncli.logs.runs import manifest
 from frictioncli.logs.runs.discovery import LogRun, Logs, discover
 from frictioncli.logs.runs.hashing import Hashing
@@ -64,12 +64,12 @@ def ingest(logs: Logs, work: Path, settings: IngestSettings | None = None) -> In
         If the mapping file or a manifest cannot be followed.
     """
     settings = settings or IngestSettings()
-    chart = read_map(settings.map_file) if settings.map_file is not None else ChannelMap()
+    channel_map = read_map(settings.map_file) if settings.map_file is not None else ChannelMap()
     runs = discover(logs, excluded=work)
     with _spool_folder(work) as name, ExitStack() as stack:
         desk = _Context(
             settings,
-            chart,
+            channel_map,
             stack.enter_context(SampleWriter(Path(name))),
             stack.enter_context(_writer(Path(name), schemas.REJECTED)),
             stack.enter_context(Hashing()),
@@ -90,7 +90,7 @@ class _Context:
     """What reading works with: settings, and where samples, rejected rows and hashes go."""
 
     settings: IngestSettings
-    chart: ChannelMap
+    channel_map: ChannelMap
     drafts: SampleWriter
     rejected: TableWriter
     hashing: Hashing
@@ -174,10 +174,10 @@ def _read_run(run: LogRun, desk: _Context, harvest: _State) -> None:
     """Read all logs of a run in order of time."""
     entries, has_manifest, said = _manifest(run)
     harvest.warnings += said
-    opened, refused = open_run(run, desk.settings, desk.chart)
+    opened, refused = open_run(run, desk.settings, desk.channel_map)
     # hashed while the logs are looked at and read
     desk.hashing.ask(file for log in opened for file in log.source.files)
-    found, unusable = planned_logs(opened, desk.settings, desk.chart)
+    found, unusable = planned_logs(opened, desk.settings, desk.channel_map)
     harvest.refused += refused + unusable
     clock = _read_logs(run, in_time_order(found, entries), desk, harvest)
     timeline = clock.timeline(has_manifest=has_manifest)

@@ -166,9 +166,9 @@ def test_a_map_names_columns_units_and_joint(tmp_path):
 
 def test_a_mapped_column_that_is_missing(tmp_path):
     log = write(tmp_path / "log.csv", kuka_columns())
-    chart = write_map(tmp_path, '[channels]\ntorque = "GearTorque_Act2"\nposition = "X"\n')
+    channel_map = write_map(tmp_path, '[channels]\ntorque = "GearTorque_Act2"\nposition = "X"\n')
     with pytest.raises(MappingError, match=r"no column 'GearTorque_Act2'.*close: GearTorq_Act2"):
-        ingest([log], tmp_path / "work", IngestSettings(map_file=chart))
+        ingest([log], tmp_path / "work", IngestSettings(map_file=channel_map))
     assert not (tmp_path / "work").exists()
 
 

@@ -83,9 +83,9 @@ number = 2
 
 
 def test_xarm_with_a_map(tmp_path):
-    chart = tmp_path / "channels.toml"
-    chart.write_text(XARM, encoding="utf-8")
-    summary = ingest([REAL / "xarm6-j2"], tmp_path / "work", IngestSettings(map_file=chart))
+    channel_map = tmp_path / "channels.toml"
+    channel_map.write_text(XARM, encoding="utf-8")
+    summary = ingest([REAL / "xarm6-j2"], tmp_path / "work", IngestSettings(map_file=channel_map))
     table = samples(tmp_path / "work")
     assert (summary.files_read, summary.rows_read, summary.torque_unit) == (14, 8400, "A")
     assert [file.reason for file in summary.files_rejected] == ["empty_file"]

@@ -43,9 +43,9 @@ def test_spellings(text, quantity, unit):
 def test_factors_by_hand():
     assert units.FACTORS["position"]["rad"] * np.pi == pytest.approx(180)
     assert units.FACTORS["velocity"]["rpm"] == 6
-    fahrenheit = units.plain("°F", "motor_temperature")
+    fahrenheit = units.conversion_from("°F", "motor_temperature")
     assert 212 * fahrenheit.factor + fahrenheit.offset == pytest.approx(100)
-    kelvin = units.plain("K", "motor_temperature")
+    kelvin = units.conversion_from("K", "motor_temperature")
     assert 300 * kelvin.factor + kelvin.offset == pytest.approx(26.85)
 
 

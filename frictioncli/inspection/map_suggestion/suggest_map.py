@@ -31,8 +31,8 @@ def suggested_map(logs: Sequence[Path], settings: IngestSettings | None = None) 
         If no log can be opened, or none of its columns is like a time or a position.
     """
     settings = settings or IngestSettings()
-    chart = read_map(settings.map_file) if settings.map_file is not None else ChannelMap()
-    source = _source(logs, settings, chart)
+    channel_map = read_map(settings.map_file) if settings.map_file is not None else ChannelMap()
+    source = _source(logs, settings, channel_map)
     joint = settings.joints[0] if settings.joints else None
     found = probe(source)
     try:
@@ -41,21 +41,21 @@ def suggested_map(logs: Sequence[Path], settings: IngestSettings | None = None) 
         raise LogError(f"{source.path}: {fault}") from None
 
 
-def _source(logs: Sequence[Path], settings: IngestSettings, chart: ChannelMap) -> LogSource:
+def _source(logs: Sequence[Path], settings: IngestSettings, channel_map: ChannelMap) -> LogSource:
     """Return the first log whose columns are not recognised, else the first that can be opened."""
     first: LogSource | None = None
     refusals = []
     for run in discover(logs):
-        opened, refused = open_run(run, settings, chart)
+        opened, refused = open_run(run, settings, channel_map)
         for log in refused:
-            source = open_log(log.file.path, chart.hints)
+            source = open_log(log.file.path, channel_map.hints)
             if isinstance(source, Refusal):
                 refusals.append(f"{log.file.path}: {source.text}")
             elif log.refusal.reason.startswith("no_"):
                 return source
         if first is None and opened:
             # alone: with a map the files of one trace are not put together
-            alone = open_log(opened[0].file.path, chart.hints)
+            alone = open_log(opened[0].file.path, channel_map.hints)
             first = None if isinstance(alone, Refusal) else alone
     if first is None:
         raise LogError("no log can be opened; " + "; ".join(refusals[:4]))

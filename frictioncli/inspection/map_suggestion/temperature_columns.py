@@ -68,9 +68,9 @@ def temperature_guess(columns: LogColumns, joint: int, apart: Collection[int]) -
             column, np.array([columns.found.constants.get(column, 0.0)])
         )
         written = units.canonical(columns.known[column].unit, names.MOTOR_TEMPERATURE)
-        belief = units.temperature(values, written, None, names.MOTOR_TEMPERATURE)
-        if belief is not None:
-            return Guess(column, "its name says so", SURE, belief.unit)
+        conversion = units.infer_temperature_unit(values, written, None, names.MOTOR_TEMPERATURE)
+        if conversion is not None:
+            return Guess(column, "its name says so", SURE, conversion.unit)
     if not behaving:
         return None
     column, unit, why = behaving[0]

@@ -15,8 +15,8 @@ from frictioncli.inspection.monitors.velocity_agreement import VelocityAgreement
 from frictioncli.inspection.monitors.windows import Window, Windows
 from frictioncli.inspection.unit_reasons import evidence, gear_ratio
 from frictioncli.logs.channels import aliases as names
+from frictioncli.logs.channels.joint_plan import JointPlan
 from frictioncli.logs.channels.recognition import LogChannel
-from frictioncli.logs.channels.unit_inference import JointPlan
 from frictioncli.logs.samples.chunks import Chunk, PlannedLog
 
 _SPIKY = (names.POSITION, names.VELOCITY, names.TORQUE)
@@ -56,7 +56,7 @@ class _JointMonitor:
             torque_side=plan.torque_side,
             gear_ratio=gear_ratio(plan),
             channels=tuple(
-                self._channel(plan, name, told) for name in plan.beliefs if name != names.TIME
+                self._channel(plan, name, told) for name in plan.conversions if name != names.TIME
             ),
             velocity_agreement=self.agreement.result(),
             held_samples=held,
@@ -79,7 +79,7 @@ class _JointMonitor:
             column=channel.name,
             side=channel.meaning.side if name in _SPIKY else "",
             unit_found=channel.unit,
-            unit_believed=plan.beliefs[name].unit,
+            unit_believed=plan.conversions[name].unit,
             evidence=evidence(plan, name, told, max(abs(watch.lowest), abs(watch.highest))),
             lowest=watch.lowest,
             highest=watch.highest,

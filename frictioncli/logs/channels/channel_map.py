@@ -85,7 +85,7 @@ def read_map(path: Path) -> ChannelMap:
 
 
 def mapped_channels(
-    chart: ChannelMap, columns: Sequence[str], joint: int
+    channel_map: ChannelMap, columns: Sequence[str], joint: int
 ) -> tuple[LogChannel, ...] | Refusal:
     """Return the channels that the map names, with time recognised where it names none.
 
@@ -95,11 +95,11 @@ def mapped_channels(
         ``mapped_column_missing`` when the file lacks a named column.
     """
     recognised = recognise_channels(columns)
-    if TORQUE not in chart.channels and POSITION not in chart.channels:
-        kept = [c for c in recognised if c.quantity not in chart.channels]
+    if TORQUE not in channel_map.channels and POSITION not in channel_map.channels:
+        kept = [c for c in recognised if c.quantity not in channel_map.channels]
     else:
-        kept = [c for c in recognised if c.quantity == TIME and TIME not in chart.channels]
-    for quantity, wanted in chart.channels.items():
+        kept = [c for c in recognised if c.quantity == TIME and TIME not in channel_map.channels]
+    for quantity, wanted in channel_map.channels.items():
         index = _find(columns, wanted)
         if index is None:
             names = [column for column in columns if column]

@@ -30,13 +30,13 @@ class JointMotion:
         Of time, position and velocity.
     furthest : float
         Greatest distance of the position from zero. [raw]
-    across : str or None
+    other_position : str or None
         Unit of the position on the other side of the gear.
     """
 
     units: MotionUnits
     furthest: float
-    across: str | None
+    other_position: str | None
 
 
 @dataclass(frozen=True, slots=True)
@@ -54,15 +54,15 @@ def joint_motion(
 ) -> JointMotion:
     """Find the units of time, of both positions, and of the velocity on whichever side it is."""
     time, position, velocity = channels.time, channels.position, channels.velocity
-    across = channels.across
+    other_position = channels.other_position
     beside = velocity is None or velocity.meaning.side == position.meaning.side
     axis = _Axis(time, position, velocity if beside else None, "; force with --position-unit {}")
     found, furthest = _axis_units(axis, survey, forced, remarks)
     elsewhere = None
-    if across is not None:
+    if other_position is not None:
         # a forced position unit is the other channel's
         others = {name: unit for name, unit in forced.items() if name != names.POSITION}
-        axis = _Axis(time, across, None if beside else velocity, "")
+        axis = _Axis(time, other_position, None if beside else velocity, "")
         beyond, _ = _axis_units(axis, survey, others, remarks)
         elsewhere = beyond.position
         if not beside:
@@ -99,7 +99,7 @@ def _axis_units(
             )
     times = [head[axis.time.column] for head in survey.heads]
     written_time = units.canonical(axis.time.unit or axis.time.meaning.unit, names.TIME)
-    declared_time = forced.get(names.TIME) or units.time_unit(times, written_time)
+    declared_time = forced.get(names.TIME) or units.infer_time_unit(times, written_time)
     declared_position = forced.get(names.POSITION) or units.canonical(position.unit, names.POSITION)
     declared_velocity = forced.get(names.VELOCITY)
     ratio = None

@@ -70,8 +70,8 @@ class LogChannel:
 class JointChannels:
     """The columns used for one joint of a file.
 
-    ``across`` is the position on the other side of the gear: the two tell its ratio. The velocity
-    is on the side of either of them.
+    ``other_position`` is the position on the other side of the gear; the two positions determine
+    the gear ratio. The velocity may be measured on either side.
     """
 
     joint: int
@@ -79,7 +79,7 @@ class JointChannels:
     position: LogChannel
     torque: LogChannel
     velocity: LogChannel | None = None
-    across: LogChannel | None = None
+    other_position: LogChannel | None = None
     motor_temperature: LogChannel | None = None
     housing_temperature: LogChannel | None = None
     load: LogChannel | None = None
@@ -221,7 +221,7 @@ def _joint_channels(
 ) -> JointChannels:
     torques = _of(own, TORQUE)
     position = min(positions, key=lambda c: (c.is_merged, c.meaning.side == MOTOR_SIDE))
-    across = _first([c for c in positions if c.meaning.side != position.meaning.side])
+    other_position = _first([c for c in positions if c.meaning.side != position.meaning.side])
     velocities = _of(own, VELOCITY)
     same_side = [c for c in velocities if c.meaning.side == position.meaning.side]
     notes = []
@@ -233,8 +233,8 @@ def _joint_channels(
         time=time,
         position=position,
         torque=torques[0],
-        velocity=_first(same_side or (velocities if across else [])),
-        across=across,
+        velocity=_first(same_side or (velocities if other_position else [])),
+        other_position=other_position,
         motor_temperature=_first(_of(shared, MOTOR_TEMPERATURE)),
         housing_temperature=_first(_of(shared, HOUSING_TEMPERATURE)),
         load=_first(_of(own, LOAD)),

@@ -1,4 +1,4 @@
-"""The beginnings of logs of one layout, looked at before reading: they tell the units."""
+"""The first rows of logs with one layout, from which their units are inferred."""
 
 from collections.abc import Iterator, Sequence
 from contextlib import suppress
@@ -9,8 +9,7 @@ import numpy as np
 from frictioncli.arrays import Array
 from frictioncli.logs.channels import aliases as names
 from frictioncli.logs.channels.recognition import LogChannel
-from frictioncli.logs.log_source import RawBatch, UnreadableLog
-from frictioncli.logs.runs.opening import OpenedLog
+from frictioncli.logs.log_source import LogSource, RawBatch, UnreadableLog
 
 _MAX_FILES = 16
 _MAX_ROWS = 20_000
@@ -18,17 +17,18 @@ _MIN_ROWS = 2_000
 _MAX_VALUES = 4_000_000
 _MAX_BATCHES = 64
 _BATCH_BYTES = 1 << 20
-_MOVED = 0.01
+_LEAST_MOTION = 0.01
+"""Position range above which an axis counts as moving. [raw]"""
 
 
 @dataclass(frozen=True, slots=True)
 class Survey:
-    """Raw samples from the beginnings of some logs of one layout.
+    """Raw samples from the beginnings of several logs with one layout.
 
     Attributes
     ----------
-    heads : tuple of dict of int to ndarray
-        Per log: column to raw values, rows without time left out.
+    heads : tuple of dict of int to ndarray, shape (n,)
+        Raw values by column, one dict per log; rows without time are left out.
     channels : tuple of LogChannel
         The recognised columns of the layout.
     """
@@ -36,18 +36,18 @@ class Survey:
     heads: tuple[dict[int, Array], ...]
     channels: tuple[LogChannel, ...]
 
+    @property
+    def n_rows(self) -> int:
+        """Number of rows; 0 where none could be read."""
+        return sum(len(next(iter(head.values()))) for head in self.heads)
+
     def pooled(self, channel: LogChannel) -> Array:
-        """Return a channel's raw values of all surveyed logs, without NaN."""
+        """Return a channel's raw values of all logs without NaN, shape (n,)."""
         values = np.concatenate([np.empty(0), *(head[channel.column] for head in self.heads)])
         return values[np.isfinite(values)]
 
-    @property
-    def n_rows(self) -> int:
-        """Rows surveyed; 0 where none could be read."""
-        return sum(len(next(iter(head.values()))) for head in self.heads)
-
     def family(self, channel: LogChannel) -> list[LogChannel]:
-        """Return the columns that share a channel's unit: same name but for the joint number."""
+        """Return the columns that share a channel's unit: the same name for any joint."""
         return [
             other
             for other in self.channels
@@ -57,54 +57,62 @@ class Survey:
         ]
 
     def tool(self) -> list[LogChannel]:
-        """Return the columns x, y, z of the tool, empty when not all three are there."""
+        """Return the columns of the tool's x, y and z; empty where one is missing."""
         axes = {c.meaning.rank: c for c in self.channels if c.quantity == names.TOOL}
         return [axes[i] for i in range(3)] if len(axes) == 3 else []
 
 
-def survey(logs: Sequence[OpenedLog]) -> Survey:
-    """Read the beginnings of up to 16 logs of one layout, evenly picked.
+def survey(sources: Sequence[LogSource], channels: Sequence[LogChannel], time: int) -> Survey:
+    """Read the beginnings of up to 16 logs with one layout, evenly spaced among them.
 
-    Of a log that begins at rest, the rest is passed over until something moves.
+    Where a log begins at rest, the batches after the first are skipped until an axis moves.
+
+    Parameters
+    ----------
+    sources : sequence of LogSource
+        The logs.
+    channels : sequence of LogChannel
+        The recognised columns, the same in all logs.
+    time : int
+        Column of the time.
     """
-    picked = [logs[i] for i in np.unique(np.linspace(0, len(logs) - 1, _MAX_FILES).astype(int))]
-    wanted = sorted({c.column for c in logs[0].channels})
-    positions = [c.column for c in logs[0].channels if c.quantity == names.POSITION]
-    time = logs[0].joints[0].time.column
-    rows = int(np.clip(_MAX_VALUES // (len(picked) * len(wanted)), _MIN_ROWS, _MAX_ROWS))
-    heads = [_head(log, wanted, positions, time, rows) for log in picked]
-    return Survey(tuple(head for head in heads if head), logs[0].channels)
+    spaced = np.unique(np.linspace(0, len(sources) - 1, _MAX_FILES).astype(int))
+    wanted = sorted({channel.column for channel in channels})
+    positions = [channel.column for channel in channels if channel.quantity == names.POSITION]
+    rows = int(np.clip(_MAX_VALUES // (len(spaced) * len(wanted)), _MIN_ROWS, _MAX_ROWS))
+    heads = [_head(sources[i], wanted, positions, time, rows) for i in spaced]
+    return Survey(tuple(head for head in heads if head), tuple(channels))
 
 
 def _head(
-    log: OpenedLog, wanted: list[int], positions: list[int], time: int, enough: int
+    source: LogSource, wanted: list[int], positions: list[int], time: int, least_rows: int
 ) -> dict[int, Array]:
     kept: list[dict[int, Array]] = []
     rows = 0
-    moved = False
-    for number, batch in enumerate(_readable(log, wanted)):
-        moves = any(_spans(batch.values[column]) for column in positions)
-        if kept and not moves and not moved:
+    has_moved = False
+    for number, batch in enumerate(_readable_batches(source, wanted)):
+        moves = any(_moves(batch.values[column]) for column in positions)
+        if kept and not moves and not has_moved:
             if number >= _MAX_BATCHES:
                 break
             continue
-        moved = moved or moves
+        has_moved = has_moved or moves
         good = np.isfinite(batch.values[time])
         kept.append({column: values[good] for column, values in batch.values.items()})
         rows += int(good.sum())
-        if rows >= enough and moved:
+        if rows >= least_rows and has_moved:
             break
     if not kept:
         return {}
     return {column: np.concatenate([part[column] for part in kept]) for column in wanted}
 
 
-def _readable(log: OpenedLog, wanted: list[int]) -> Iterator[RawBatch]:
-    """Yield batches up to where the file ends or cannot be read; reading it tells of that."""
+def _readable_batches(source: LogSource, wanted: list[int]) -> Iterator[RawBatch]:
+    """Yield batches up to the end of the readable part; reading the samples reports the damage."""
     with suppress(UnreadableLog):
-        yield from log.source.batches(wanted, _BATCH_BYTES)
+        yield from source.batches(wanted, _BATCH_BYTES)
 
 
-def _spans(values: Array) -> bool:
+def _moves(values: Array) -> bool:
     finite = values[np.isfinite(values)]
-    return bool(len(finite)) and float(np.ptp(finite)) > _MOVED
+    return bool(len(finite)) and float(np.ptp(finite)) > _LEAST_MOTION

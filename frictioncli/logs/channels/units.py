@@ -1,7 +1,7 @@
-"""Units: how logs spell them, the factor to deg, deg/s, s, N·m and °C, and temperatures.
+"""Units in logs: their spellings and their conversion to deg, deg/s, s, N·m and °C.
 
-A unit in a header is a claim; :mod:`frictioncli.logs.channels.unit_evidence` checks those of
-motion.
+The unit in a header may be wrong. :mod:`frictioncli.logs.channels.unit_evidence` checks those of
+time, position and velocity against the values.
 """
 
 import math
@@ -12,25 +12,25 @@ from types import MappingProxyType
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    # settings ask for names of units before there is work: numpy is imported where it is needed
+    # settings import this module for unit names at start-up; numpy is imported where it is used
     from frictioncli.arrays import Array
 
-_TURN = 180.0 / math.pi
+_DEGREES_PER_RADIAN = 180.0 / math.pi
 _TEMPERATURE_FACTORS = {"°C": 1.0, "K": 1.0, "°F": 5.0 / 9.0, "m°C": 1e-3, "mK": 1e-3}
 _OFFSETS = {"K": -273.15, "°F": -32.0 * 5.0 / 9.0, "mK": -273.15}
 
 FACTORS: Mapping[str, Mapping[str, float]] = MappingProxyType(
     {
         "time": {"s": 1.0, "ms": 1e-3, "us": 1e-6, "ns": 1e-9, "min": 60.0},
-        "position": {"deg": 1.0, "rad": _TURN, "udeg": 1e-6},
-        "velocity": {"deg/s": 1.0, "rad/s": _TURN, "rpm": 6.0, "mdeg/s": 1e-3},
+        "position": {"deg": 1.0, "rad": _DEGREES_PER_RADIAN, "udeg": 1e-6},
+        "velocity": {"deg/s": 1.0, "rad/s": _DEGREES_PER_RADIAN, "rpm": 6.0, "mdeg/s": 1e-3},
         "torque": {"N·m": 1.0, "mN·m": 1e-3, "A": 1.0, "mA": 1e-3},
         "motor_temperature": _TEMPERATURE_FACTORS,
         "housing_temperature": _TEMPERATURE_FACTORS,
         "load": {"N·m": 1.0, "mN·m": 1e-3},
     }
 )
-"""Factor from each unit to the one used inside, by quantity."""
+"""Factor from each unit to the internal unit, by quantity."""
 
 _SPELLINGS = {
     "s": "s sec sek second seconds sekunden sekunde",
@@ -58,14 +58,21 @@ _SPELLINGS = {
 }
 _CANONICAL = {text: unit for unit, texts in _SPELLINGS.items() for text in texts.split()}
 
-_COLDEST, _HOTTEST = -30.0, 150.0  # [°C]
+_LOWEST_TEMPERATURE, _HIGHEST_TEMPERATURE = -30.0, 150.0  # [°C]
 
 
 @dataclass(frozen=True, slots=True)
-class UnitBelief:
-    """What is believed of a channel: ``value = raw * factor + offset`` in the unit used inside.
+class UnitConversion:
+    """Conversion of a channel's raw values: ``value = raw * factor + offset``.
 
-    ``note`` says why where the belief is not simply what the header says, else it is "".
+    Attributes
+    ----------
+    unit : str
+        Unit of the raw values.
+    factor, offset : float
+        Slope and intercept of the conversion to the internal unit.
+    note : str
+        Why the unit differs from the one in the header; "" where it does not.
     """
 
     unit: str
@@ -75,9 +82,25 @@ class UnitBelief:
 
 
 def canonical(text: str, quantity: str) -> str | None:
-    """Return the unit that a text means for a quantity, None when it means none of its units.
+    """Return the unit of a quantity that a text names, None where it names none.
 
-    A degree sign broken by a wrong encoding is mended.
+    A degree sign that a wrong encoding has damaged is recognised.
+
+    Parameters
+    ----------
+    text : str
+        The unit as written in a log, with or without brackets.
+    quantity : str
+        A key of :data:`FACTORS`.
+
+    Examples
+    --------
+    >>> canonical("[Nm]", "torque")
+    'N·m'
+    >>> canonical("?/s", "velocity")
+    'deg/s'
+    >>> canonical("furlong", "position") is None
+    True
     """
     bare = text.strip().strip("[]()").lower().replace(" ", "")
     # "°", "Â°", "ï¿½" and "?" are all a degree sign once; "Â·" and "·" are both a dot
@@ -89,13 +112,36 @@ def canonical(text: str, quantity: str) -> str | None:
     return None
 
 
-def plain(unit: str, quantity: str, note: str = "") -> UnitBelief:
-    """Return the belief in a unit as it is named."""
-    return UnitBelief(unit, FACTORS[quantity][unit], _OFFSETS.get(unit, 0.0), note)
+def conversion_from(unit: str, quantity: str, note: str = "") -> UnitConversion:
+    """Return the conversion from a unit to the internal unit of its quantity.
+
+    Examples
+    --------
+    >>> conversion_from("K", "motor_temperature").offset
+    -273.15
+    """
+    return UnitConversion(unit, FACTORS[quantity][unit], _OFFSETS.get(unit, 0.0), note)
 
 
-def time_unit(times: "list[Array]", declared: str | None) -> str:
-    """Return the unit of a time column: the header's, else from the size of epoch times, else s."""
+def infer_time_unit(times: "list[Array]", declared: str | None) -> str:
+    """Return the unit of a time column.
+
+    The header's unit is taken where it names one. Otherwise times since 1970 are recognised by
+    their size; other times are taken as seconds.
+
+    Parameters
+    ----------
+    times : list of ndarray, shape (n,)
+        Raw times of each log.
+    declared : str or None
+        Unit in the header.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> infer_time_unit([np.array([1.7e12, 1.7e12 + 4])], None)
+    'ms'
+    """
     import numpy as np
 
     if declared is not None:
@@ -108,24 +154,33 @@ def time_unit(times: "list[Array]", declared: str | None) -> str:
     return "s"
 
 
-def temperature(
+def infer_temperature_unit(
     values: "Array", declared: str | None, forced: str | None, quantity: str
-) -> UnitBelief | None:
+) -> UnitConversion | None:
     """Find the unit of a temperature channel.
 
     Parameters
     ----------
     values : ndarray, shape (n,)
         Raw values without NaN.
-    declared, forced : str or None
-        Unit by the header; unit by the user, which wins.
+    declared : str or None
+        Unit in the header.
+    forced : str or None
+        Unit given by the user, which takes precedence.
     quantity : str
         ``motor_temperature`` or ``housing_temperature``.
 
     Returns
     -------
-    Belief or None
-        None where the channel cannot be a temperature: empty, always 0, or outside -30..150 °C.
+    UnitConversion or None
+        None where the channel cannot be a temperature: it is empty, always 0, or its median lies
+        outside -30..150 °C.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> infer_temperature_unit(np.array([300.0, 305.0]), "°C", None, "motor_temperature").unit
+    'K'
     """
     import numpy as np
 
@@ -135,22 +190,41 @@ def temperature(
     unit = forced or declared or "°C"
     note = ""
     if forced is None and unit not in ("m°C", "mK") and middle > 1000:
-        # raw values that lack the scale of their native header
-        unit = "mK" if middle > 1000 * _HOTTEST else "m°C"
+        # unscaled values: the scale of the native header is missing
+        unit = "mK" if middle > 1000 * _HIGHEST_TEMPERATURE else "m°C"
         note = f"values of {middle:.0f} are read as {unit}"
     elif forced is None and unit in ("°C", "°F") and middle > 200:
         unit, note = "K", f"values of {middle:.0f} are read as K"
-    elif forced is None and unit == "K" and middle < _HOTTEST:
+    elif forced is None and unit == "K" and middle < _HIGHEST_TEMPERATURE:
         unit, note = "°C", f"values of {middle:.0f} cannot be K: read as °C"
-    belief = plain(unit, quantity, note)
-    inside = middle * belief.factor + belief.offset
-    return belief if _COLDEST <= inside <= _HOTTEST else None
+    conversion = conversion_from(unit, quantity, note)
+    converted = middle * conversion.factor + conversion.offset
+    return conversion if _LOWEST_TEMPERATURE <= converted <= _HIGHEST_TEMPERATURE else None
 
 
 def plausible_temperature(values: "Array") -> "Array":
-    """Return temperatures [°C] with those outside -30..150 °C replaced by NaN."""
+    """Return temperatures with those outside -30..150 °C replaced by NaN.
+
+    Parameters
+    ----------
+    values : ndarray, shape (n,)
+        Temperatures. [°C]
+
+    Returns
+    -------
+    ndarray, shape (n,)
+        Temperatures. [°C]
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> plausible_temperature(np.array([25.0, 655.35]))
+    array([25., nan])
+    """
     import numpy as np
 
-    if len(values) and _COLDEST <= values.min() <= values.max() <= _HOTTEST:
+    if len(values) and _LOWEST_TEMPERATURE <= values.min() <= values.max() <= _HIGHEST_TEMPERATURE:
         return values
-    return np.where((values >= _COLDEST) & (values <= _HOTTEST), values, np.nan)
+    return np.where(
+        (values >= _LOWEST_TEMPERATURE) & (values <= _HIGHEST_TEMPERATURE), values, np.nan
+    )

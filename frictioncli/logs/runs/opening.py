@@ -71,7 +71,7 @@ class RefusedLog:
 
 
 def open_run(
-    run: LogRun, settings: IngestSettings, chart: ChannelMap
+    run: LogRun, settings: IngestSettings, channel_map: ChannelMap
 ) -> tuple[list[OpenedLog], list[RefusedLog]]:
     """Open all files of a run; those that cannot be used come back with the reason.
 
@@ -79,7 +79,7 @@ def open_run(
     information of a trace, and what was merged. With columns named by a map nothing is merged.
     """
     paths = [file.path for file in run.files]
-    found = dict(zip(run.files, open_logs(paths, chart.hints), strict=True))
+    found = dict(zip(run.files, open_logs(paths, channel_map.hints), strict=True))
     sources = {file: one for file, one in found.items() if not isinstance(one, Refusal)}
     refusals = {file: one for file, one in found.items() if isinstance(one, Refusal)}
     for file, native in duplicates_of_native(sources).items():
@@ -89,7 +89,7 @@ def open_run(
             f"the {native.path.suffix} of the same name holds the same recording and is read",
         )
     sources = {file: scaled(source) for file, source in sources.items()}
-    choices = _choices(sources, settings, chart)
+    choices = _choices(sources, settings, channel_map)
     refusals |= {file: one for file, one in choices.items() if isinstance(one, Refusal)}
     usable = {file: one for file, one in choices.items() if not isinstance(one, Refusal)}
     labels = _labels(run, usable)
@@ -128,16 +128,16 @@ class _Choice:
 
 
 def _choices(
-    sources: Mapping[LogFile, LogSource], settings: IngestSettings, chart: ChannelMap
+    sources: Mapping[LogFile, LogSource], settings: IngestSettings, channel_map: ChannelMap
 ) -> dict[LogFile, _Choice | Refusal]:
     """Return what is read of each file, files of a trace merged, or why nothing can be."""
-    traces = _traces(sources) if not chart.channels else []
+    traces = _traces(sources) if not channel_map.channels else []
     together = {one.file: one for files in traces for one in merged(files, settings.joints)}
     used = {path for one in together.values() for path in one.source.files}
     found: dict[LogFile, _Choice | Refusal] = {}
     alike: dict[tuple[tuple[str, ...], int], _Choice | Refusal] = {}
     for file, source in sources.items():
-        joint = _file_joint(file, settings, chart)
+        joint = _file_joint(file, settings, channel_map)
         if file in together:
             one = together[file]
             found[file] = _chosen(one.source, one.channels, one.joints, file_joint=joint)
@@ -145,7 +145,7 @@ def _choices(
             # logs of a folder mostly have the same columns
             key = source.columns, joint
             if key not in alike:
-                channels = _channels(source.columns, chart, joint)
+                channels = _channels(source.columns, channel_map, joint)
                 alike[key] = _chosen(source, channels, settings.joints, file_joint=joint)
             choice = alike[key]
             found[file] = choice if isinstance(choice, Refusal) else replace(choice, source=source)
@@ -211,10 +211,10 @@ def _distinct(files: Sequence[LogFile], choices: Mapping[LogFile, _Choice]) -> b
     return len(files) == 1 or (one_trace and len(set(joints)) == len(joints))
 
 
-def _file_joint(file: LogFile, settings: IngestSettings, chart: ChannelMap) -> int:
+def _file_joint(file: LogFile, settings: IngestSettings, channel_map: ChannelMap) -> int:
     """Return the joint of columns that name none."""
-    if chart.joint is not None:
-        return chart.joint
+    if channel_map.joint is not None:
+        return channel_map.joint
     in_name = joint_in_name(file.stem)
     if in_name is not None:
         return in_name
@@ -224,8 +224,8 @@ def _file_joint(file: LogFile, settings: IngestSettings, chart: ChannelMap) -> i
 
 
 def _channels(
-    columns: Sequence[str], chart: ChannelMap, joint: int
+    columns: Sequence[str], channel_map: ChannelMap, joint: int
 ) -> tuple[LogChannel, ...] | Refusal:
-    if chart.channels:
-        return mapped_channels(chart, columns, joint)
+    if channel_map.channels:
+        return mapped_channels(channel_map, columns, joint)
     return recognise_channels(columns)

@@ -12,8 +12,8 @@ import numpy as np
 from frictioncli.arrays import Array, Flags
 from frictioncli.errors import LogError
 from frictioncli.logs.channels import aliases as names
+from frictioncli.logs.channels.joint_plan import JointPlan
 from frictioncli.logs.channels.recognition import LogChannel
-from frictioncli.logs.channels.unit_inference import JointPlan
 from frictioncli.logs.channels.units import plausible_temperature
 from frictioncli.logs.log_source import RawBatch, ReadTask, UnreadableLog
 from frictioncli.logs.runs.opening import OpenedLog
@@ -61,7 +61,7 @@ class Chunk:
 def plan_log(log: OpenedLog, plans: Iterable[JointPlan]) -> PlannedLog:
     """Return how a log will be read, with what its first rows tell of time."""
     plans = tuple(plans)
-    belief = plans[0].beliefs[names.TIME]
+    conversion = plans[0].conversions[names.TIME]
     at, where = _column(plans[0], names.TIME), _column(plans[0], names.POSITION)
     known = time = np.empty(0)
     with suppress(UnreadableLog):  # reading it will tell
@@ -74,8 +74,8 @@ def plan_log(log: OpenedLog, plans: Iterable[JointPlan]) -> PlannedLog:
     return PlannedLog(
         log,
         plans,
-        begin=float(known[0]) * belief.factor if len(known) else np.nan,
-        period=median(steps.tolist()) * belief.factor if len(steps) else 1.0,
+        begin=float(known[0]) * conversion.factor if len(known) else np.nan,
+        period=median(steps.tolist()) * conversion.factor if len(steps) else 1.0,
     )
 
 
@@ -112,7 +112,7 @@ def _tasks(readings: Iterable[PlannedLog], batch_bytes: int) -> Iterator[ReadTas
         end: Chunk | UnreadableLog | None = Chunk(_no_rows(reading.plans), RejectedRows(), 0)
         columns = {reading.plans[0].channels.time.column}
         for plan in reading.plans:
-            columns.update(_column(plan, name) for name in plan.beliefs)
+            columns.update(_column(plan, name) for name in plan.conversions)
         try:
             for task in reading.log.source.tasks(columns, batch_bytes):
                 yield ReadTask(partial(_done, number, reading, task), task.size)
@@ -164,21 +164,23 @@ def _part(batch: RawBatch, reading: PlannedLog) -> Chunk:
         (plan.channels.joint, name)
         for plan in reading.plans
         for name in (names.POSITION, names.TORQUE, names.VELOCITY)
-        if name in plan.beliefs
+        if name in plan.conversions
     ]
     block = with_values(block, required, faults)
     return Chunk(block, faults, len(batch.lines) + len(batch.bad_lines))
 
 
 def _no_rows(plans: Iterable[JointPlan]) -> LogRows:
-    columns = {(plan.channels.joint, name): np.empty(0) for plan in plans for name in plan.beliefs}
+    columns = {
+        (plan.channels.joint, name): np.empty(0) for plan in plans for name in plan.conversions
+    }
     return LogRows(np.empty(0, np.int64), np.empty(0), columns)
 
 
 def _within_limits(
     block: LogRows, batch: RawBatch, reading: PlannedLog, faults: RejectedRows
 ) -> LogRows:
-    """Return the rows without positions that contradict the belief in radians."""
+    """Return the rows without positions that contradict radians as the unit."""
     outside = np.zeros(len(block), bool)
     for plan in reading.plans:
         if plan.position_limit is None or not len(block):
@@ -215,11 +217,11 @@ def _column(plan: JointPlan, name: str) -> int:
 def _converted(batch: RawBatch, plans: Iterable[JointPlan]) -> LogRows:
     columns: dict[tuple[int, str], Array] = {}
     for plan in plans:
-        for name, belief in plan.beliefs.items():
+        for name, conversion in plan.conversions.items():
             values = batch.values[_column(plan, name)]
-            if (belief.factor, belief.offset) != (1.0, 0.0):
+            if (conversion.factor, conversion.offset) != (1.0, 0.0):
                 with np.errstate(over="ignore"):  # infinite ones are rejected
-                    values = values * belief.factor + belief.offset
+                    values = values * conversion.factor + conversion.offset
             if name in (names.MOTOR_TEMPERATURE, names.HOUSING_TEMPERATURE):
                 values = plausible_temperature(values)
             columns[plan.channels.joint, name] = values

@@ -87,7 +87,7 @@ def usable_rows(
     derived = {
         (plan.channels.joint, names.VELOCITY): (plan.channels.joint, names.POSITION)
         for plan in reading.plans
-        if names.VELOCITY not in plan.beliefs
+        if names.VELOCITY not in plan.conversions
     }
     growing = drop_stale_first_rows(ascending(blocks(), faults), positions, faults)
     half, gap = half_window(reading.period), max_gap(reading.period)

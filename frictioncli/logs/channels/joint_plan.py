@@ -10,7 +10,7 @@ from frictioncli.logs.channels import unit_evidence, units
 from frictioncli.logs.channels.motion_units import JointMotion, Remarks, joint_motion
 from frictioncli.logs.channels.recognition import JointChannels, LogChannel
 from frictioncli.logs.channels.survey import Survey
-from frictioncli.logs.channels.units import UnitBelief
+from frictioncli.logs.channels.units import UnitConversion
 from frictioncli.logs.log_source import Refusal
 
 
@@ -22,10 +22,10 @@ class JointPlan:
     ----------
     channels : JointChannels
         The columns.
-    beliefs : dict of str to UnitBelief
+    conversions : dict of str to UnitConversion
         Canonical name to factor and offset; a name that is missing is not read.
     position_limit : float or None
-        Raw positions beyond this contradict the belief in radians. [rad]
+        Raw positions beyond this contradict radians as the unit. [rad]
     torque_unit : str
         ``N·m`` or ``A``.
     torque_side : str
@@ -35,7 +35,7 @@ class JointPlan:
     """
 
     channels: JointChannels
-    beliefs: Mapping[str, UnitBelief]
+    conversions: Mapping[str, UnitConversion]
     position_limit: float | None
     torque_unit: str
     torque_side: str
@@ -94,24 +94,26 @@ def plan_joint(
             )
         channels, motion = seen
     found = motion.units
-    beliefs = {
-        names.TIME: units.plain(found.time, names.TIME),
+    conversions = {
+        names.TIME: units.conversion_from(found.time, names.TIME),
         names.POSITION: _at_joint(found.position, channels.position, gear),
     }
     if channels.velocity is not None and found.velocity is not None:
         velocity = _at_joint(found.velocity, channels.velocity, gear)
-        beliefs[names.VELOCITY] = _scaled(velocity, -1.0 if found.reversed_velocity else 1.0)
+        conversions[names.VELOCITY] = _scaled(velocity, -1.0 if found.reversed_velocity else 1.0)
     side, factor = _torque_side(channels, torque_unit, gear, remarks)
-    beliefs[names.TORQUE] = _scaled(units.plain(torque_unit, names.TORQUE), factor)
-    _add_temperatures(channels, survey, forced, beliefs, remarks)
+    conversions[names.TORQUE] = _scaled(units.conversion_from(torque_unit, names.TORQUE), factor)
+    _add_temperatures(channels, survey, forced, conversions, remarks)
     if channels.load is not None:
         written = units.canonical(channels.load.unit, names.LOAD)
-        beliefs[names.LOAD] = units.plain(forced.get(names.LOAD) or written or "N·m", names.LOAD)
+        conversions[names.LOAD] = units.conversion_from(
+            forced.get(names.LOAD) or written or "N·m", names.LOAD
+        )
     at_joint = channels.position.meaning.side != names.MOTOR_SIDE
     limited = found.position == "rad" and at_joint and motion.furthest <= unit_evidence.RADIAN_LIMIT
     return JointPlan(
         channels=channels,
-        beliefs=beliefs,
+        conversions=conversions,
         position_limit=unit_evidence.RADIAN_LIMIT if limited else None,
         torque_unit="A" if torque_unit in ("A", "mA") else "N·m",
         torque_side=side,
@@ -131,8 +133,10 @@ def _with_moving_velocity(
     return replace(channels, velocity=None)
 
 
-def _scaled(belief: UnitBelief, factor: float) -> UnitBelief:
-    return UnitBelief(belief.unit, belief.factor * factor, belief.offset, belief.note)
+def _scaled(conversion: UnitConversion, factor: float) -> UnitConversion:
+    return UnitConversion(
+        conversion.unit, conversion.factor * factor, conversion.offset, conversion.note
+    )
 
 
 def _torque_unit(channel: LogChannel, forced: Mapping[str, str], remarks: Remarks) -> str | Refusal:
@@ -180,11 +184,11 @@ def _gear(
     remarks: Remarks,
 ) -> _Gear | None:
     """Return the gear by what the user says, else by the positions on both sides."""
-    position, across = channels.position, channels.across
-    if across is None or motion.across is None:
+    position, other_position = channels.position, channels.other_position
+    if other_position is None or motion.other_position is None:
         return None if told is None else _Gear(told, 0.0, True)
     joint = (position, units.FACTORS[names.POSITION][motion.units.position])
-    motor = (across, units.FACTORS[names.POSITION][motion.across])
+    motor = (other_position, units.FACTORS[names.POSITION][motion.other_position])
     if position.meaning.side == names.MOTOR_SIDE:
         joint, motor = motor, joint
     pairs = [
@@ -203,23 +207,27 @@ def _gear(
         )
     offset = unit_evidence.gear_offset(pairs, ratio)
     # another trace may lack the drive's file, and its torque would stay at the motor
-    return _Gear(ratio, offset, told is not None or not across.is_merged)
+    return _Gear(ratio, offset, told is not None or not other_position.is_merged)
 
 
 def _without_gear(
     channels: JointChannels, motion: JointMotion, remarks: Remarks
 ) -> tuple[JointChannels, JointMotion] | None:
     """Return the channels that do without a gear ratio; None where the position needs it."""
-    position, velocity, across = channels.position, channels.velocity, channels.across
+    position, velocity, other_position = (
+        channels.position,
+        channels.velocity,
+        channels.other_position,
+    )
     if position.meaning.side == names.MOTOR_SIDE:
-        if across is None or motion.across is None:
+        if other_position is None or motion.other_position is None:
             return None
         remarks.notes.append(
             f"joint {channels.joint} does not move, which would tell the gear ratio: its position"
-            f" is {across.name}"
+            f" is {other_position.name}"
         )
-        channels = replace(channels, position=across, across=position)
-        own = replace(motion.units, position=motion.across)
+        channels = replace(channels, position=other_position, other_position=position)
+        own = replace(motion.units, position=motion.other_position)
         motion = JointMotion(own, np.inf, motion.units.position)
     if velocity is not None and velocity.meaning.side == names.MOTOR_SIDE:
         remarks.notes.append(
@@ -230,13 +238,13 @@ def _without_gear(
     return channels, motion
 
 
-def _at_joint(unit: str, channel: LogChannel, gear: _Gear | None) -> UnitBelief:
-    """Return the belief of a position or velocity, through the gear if it is the motor's."""
-    belief = units.plain(unit, channel.quantity)
+def _at_joint(unit: str, channel: LogChannel, gear: _Gear | None) -> UnitConversion:
+    """Return the conversion of a position or velocity, through the gear if it is the motor's."""
+    conversion = units.conversion_from(unit, channel.quantity)
     if gear is None or channel.meaning.side != names.MOTOR_SIDE:
-        return belief
+        return conversion
     offset = gear.offset if channel.quantity == names.POSITION else 0.0
-    return replace(_scaled(belief, 1 / gear.ratio), offset=offset)
+    return replace(_scaled(conversion, 1 / gear.ratio), offset=offset)
 
 
 def _torque_side(
@@ -247,7 +255,7 @@ def _torque_side(
     if unit in ("A", "mA"):
         return names.MOTOR_SIDE, 1.0
     if not side:
-        of_drive = channels.across is not None
+        of_drive = channels.other_position is not None
         at_motor = channels.position.meaning.side == names.MOTOR_SIDE or of_drive
         side = names.MOTOR_SIDE if at_motor else names.JOINT_SIDE
         remarks.notes.append(f"{name} does not say its side of the gear: taken as {side} side")
@@ -267,7 +275,7 @@ def _add_temperatures(
     channels: JointChannels,
     survey: Survey,
     forced: Mapping[str, str],
-    beliefs: dict[str, UnitBelief],
+    conversions: dict[str, UnitConversion],
     remarks: Remarks,
 ) -> None:
     for quantity, channel in (
@@ -276,18 +284,18 @@ def _add_temperatures(
     ):
         if channel is None:
             continue
-        belief = units.temperature(
+        conversion = units.infer_temperature_unit(
             survey.pooled(channel),
             units.canonical(channel.unit, quantity),
             forced.get(quantity),
             quantity,
         )
-        if belief is None:
+        if conversion is None:
             remarks.notes.append(
                 f"{channel.name} holds no temperature (empty, zero, or outside -30..150 °C):"
                 " left out"
             )
             continue
-        beliefs[quantity] = belief
-        if belief.note:
-            remarks.notes.append(f"{channel.name}: {belief.note}")
+        conversions[quantity] = conversion
+        if conversion.note:
+            remarks.notes.append(f"{channel.name}: {conversion.note}")

@@ -1,12 +1,12 @@
-"""Logs that share a header are surveyed together and read by one plan."""
+"""How each log is read: logs with the same header are surveyed together and share one plan."""
 
 from collections.abc import Iterable, Iterator
 from dataclasses import replace
 
 from frictioncli.errors import OptionError
 from frictioncli.logs.channels.channel_map import ChannelMap
+from frictioncli.logs.channels.joint_plan import JointPlan, plan_joint
 from frictioncli.logs.channels.survey import survey
-from frictioncli.logs.channels.unit_inference import JointPlan, plan_joint
 from frictioncli.logs.log_source import Refusal
 from frictioncli.logs.runs.opening import OpenedLog, RefusedLog
 from frictioncli.logs.samples.chunks import PlannedLog, plan_log
@@ -14,9 +14,18 @@ from frictioncli.logs.settings import IngestSettings
 
 
 def planned_logs(
-    opened: Iterable[OpenedLog], settings: IngestSettings, chart: ChannelMap
+    opened: Iterable[OpenedLog], settings: IngestSettings, channel_map: ChannelMap
 ) -> tuple[list[PlannedLog], list[RefusedLog]]:
-    """Return how each log is going to be read, and the logs that cannot be.
+    """Return how each log is to be read, and the logs that cannot be read.
+
+    Parameters
+    ----------
+    opened : iterable of OpenedLog
+        The logs of one run.
+    settings : IngestSettings
+        Units and gear ratio given by option, which take precedence over the map's.
+    channel_map : ChannelMap
+        Units and gear ratio given by the mapping file.
 
     Raises
     ------
@@ -24,7 +33,7 @@ def planned_logs(
         If one gear ratio is given for several joints.
     """
     found, refused = [], []
-    for log, plans in plans_by_log(opened, settings, chart):
+    for log, plans in _joint_plans(opened, settings, channel_map):
         if isinstance(plans, Refusal):
             refused.append(RefusedLog(log.run, log.file, log.recording, plans))
         else:
@@ -32,45 +41,40 @@ def planned_logs(
     return found, refused
 
 
-def plans_by_log(
-    logs: Iterable[OpenedLog], settings: IngestSettings, chart: ChannelMap
+def _joint_plans(
+    logs: Iterable[OpenedLog], settings: IngestSettings, channel_map: ChannelMap
 ) -> Iterator[tuple[OpenedLog, list[JointPlan] | Refusal]]:
-    """Yield each log with how to read its joints, or why none of them can be read.
-
-    Raises
-    ------
-    OptionError
-        If one gear ratio is given for several joints.
-    """
+    """Yield each log with the plans of its joints, or why none of them can be read."""
     layouts: dict[tuple[str, ...], list[OpenedLog]] = {}
     for log in logs:
         layouts.setdefault(log.layout, []).append(log)
-    for same in layouts.values():
-        plans = _plans(same, settings, chart)
-        for log in same:
+    for same_layout in layouts.values():
+        plans = _plans_of_layout(same_layout, settings, channel_map)
+        for log in same_layout:
             yield log, plans if isinstance(plans, Refusal) else _with_notes(plans, log)
 
 
 def _with_notes(plans: list[JointPlan], log: OpenedLog) -> list[JointPlan]:
-    """Return the plans with what only this log has to say."""
+    """Return the plans with the notes of one log's companion files."""
     if not log.sidecar.notes:
         return plans
     return [replace(plans[0], notes=(*plans[0].notes, *log.sidecar.notes)), *plans[1:]]
 
 
-def _plans(
-    logs: list[OpenedLog], settings: IngestSettings, chart: ChannelMap
+def _plans_of_layout(
+    logs: list[OpenedLog], settings: IngestSettings, channel_map: ChannelMap
 ) -> list[JointPlan] | Refusal:
-    seen = survey(logs)
-    forced = {**chart.units, **settings.forced_units()}
-    ratio = settings.gear_ratio if settings.gear_ratio is not None else chart.gear_ratio
-    if ratio is not None and len(logs[0].joints) > 1:
-        joints = ", ".join(str(own.joint) for own in logs[0].joints)
+    first = logs[0]
+    surveyed = survey([log.source for log in logs], first.channels, first.joints[0].time.column)
+    forced = {**channel_map.units, **settings.forced_units()}
+    ratio = settings.gear_ratio if settings.gear_ratio is not None else channel_map.gear_ratio
+    if ratio is not None and len(first.joints) > 1:
+        joints = ", ".join(str(channels.joint) for channels in first.joints)
         raise OptionError(
-            f"gear ratio {ratio:g} is given, but {logs[0].file.path} has joints {joints};"
+            f"gear ratio {ratio:g} is given, but {first.file.path} has joints {joints};"
             " expected one joint: choose it with --joint"
         )
-    found = [plan_joint(joint, seen, forced=forced, gear_ratio=ratio) for joint in logs[0].joints]
+    found = [plan_joint(joint, surveyed, forced=forced, gear_ratio=ratio) for joint in first.joints]
     plans = [plan for plan in found if isinstance(plan, JointPlan)]
     refusals = [plan for plan in found if isinstance(plan, Refusal)]
     if not plans:
