@@ -43,7 +43,7 @@ class BinnedSeries:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Binned:
+class BinnedMeans:
     """Means in bins, shape (bins,) each; bins without data are left out.
 
     Attributes
@@ -65,7 +65,7 @@ class Binned:
     term: Array
 
 
-def series_of(table: EffectTable, axis: str, channel: str) -> list[BinnedSeries]:
+def residual_series(table: EffectTable, axis: str, channel: str) -> list[BinnedSeries]:
     """Return how the rows are split, so that an effect's evidence does not cancel in the mean.
 
     Parameters
@@ -80,7 +80,7 @@ def series_of(table: EffectTable, axis: str, channel: str) -> list[BinnedSeries]
     if channel == "load" and axis in (*_WARM_AXES, "clock") and np.ptp(np.sign(table.load)) > 0:
         return _two(table.load > 0, "load above 0", "load below 0")
     if axis in _WARM_AXES:
-        rising = rises(table)
+        rising = is_warming(table)
         return _two(rising, "warming up", "cooling down")
     if axis == "speed":
         if np.ptp(table.temperature) == 0:
@@ -88,7 +88,7 @@ def series_of(table: EffectTable, axis: str, channel: str) -> list[BinnedSeries]
         middle = float(np.median(table.temperature))
         return _two(table.temperature > middle, f"above {middle:.0f} °C", f"up to {middle:.0f} °C")
     if axis in ("position", "load"):
-        middle = float(np.median(np.unique(levels(table.speed))))
+        middle = float(np.median(np.unique(merge_close_values(table.speed))))
         return _two(table.speed > middle, f"above {middle:.3g} deg/s", f"up to {middle:.3g} deg/s")
     return _two(np.ones(len(table.speed), bool), "", "")
 
@@ -102,7 +102,7 @@ def _two(chosen: Flags, name: str, other: str) -> list[BinnedSeries]:
     ]
 
 
-def rises(table: EffectTable) -> Flags:
+def is_warming(table: EffectTable) -> Flags:
     """Return at which rows the temperature rises, over nine pairs about each row's pair."""
     pairs = pd.DataFrame(
         {"run": table.run, "pair": table.pair, "warm": table.temperature}
@@ -119,7 +119,7 @@ def rises(table: EffectTable) -> Flags:
     return np.array([by_pair[pair] for pair in table.pair])
 
 
-def levels(values: Array) -> Array:
+def merge_close_values(values: Array) -> Array:
     """Return values with those that lie closer than two per cent made equal."""
     ordered, place = np.unique(values, return_inverse=True)
     new = np.diff(ordered, prepend=ordered[0]) > _SAME_LEVEL * np.maximum(np.abs(ordered), 1e-9)
@@ -129,7 +129,7 @@ def levels(values: Array) -> Array:
     return np.asarray(means[group][place])
 
 
-def bins_of(axis: str, values: Array) -> Indices:
+def bin_numbers(axis: str, values: Array) -> Indices:
     """Return the number of each row's bin along an axis.
 
     Speeds and angles are levels of their own or, if they are many, a few neighbours together;
@@ -138,19 +138,19 @@ def bins_of(axis: str, values: Array) -> Indices:
     if axis == "order":
         return np.searchsorted(_PLACES, values, side="right")
     if axis in ("speed", "position"):
-        known = np.unique(levels(values) if axis == "speed" else values)
-        return np.searchsorted(parting(known, _BINS[axis]), values, side="right")
+        known = np.unique(merge_close_values(values) if axis == "speed" else values)
+        return np.searchsorted(group_boundaries(known, _BINS[axis]), values, side="right")
     edges = np.linspace(values.min(), values.max(), _BINS.get(axis, _OTHER_BINS) + 1)[1:-1]
     return np.searchsorted(edges, values, side="right")
 
 
-def parting(known: Array, most: int) -> Array:
+def group_boundaries(known: Array, most: int) -> Array:
     """Return the values that part ascending levels into at most so many groups of even size."""
     groups = np.array_split(known, min(len(known), most))
     return np.array([(one[-1] + other[0]) / 2 for one, other in pairwise(groups)])
 
 
-def binned(rows: pd.DataFrame) -> Binned:
+def bin_means(rows: pd.DataFrame) -> BinnedMeans:
     """Return means per bin. Rows of a pair share its noise, so errors are taken over pairs.
 
     Parameters
@@ -163,7 +163,7 @@ def binned(rows: pd.DataFrame) -> Binned:
     rows = rows[rows["bin"].isin(sizes.index[sizes >= _LEAST_SHARE * len(rows)])]
     of_pairs = rows.groupby(["bin", "pair"])[["at", "mean", "term"]].mean().groupby("bin")
     means = of_pairs.mean()
-    return Binned(
+    return BinnedMeans(
         bin=means.index.to_numpy(),
         at=means["at"].to_numpy(),
         mean=means["mean"].to_numpy(),

@@ -25,13 +25,13 @@ from frictioncli.report.diagnosis_text import (
     worst_table,
 )
 from frictioncli.report.evidence_figure import evidence_figure
-from frictioncli.report.figure_list import FigureEntry
-from frictioncli.report.labels import words
-from frictioncli.report.requirements import nothing_missing
-from frictioncli.report.residual_maps import map_figure
+from frictioncli.report.figures import FigureSpec
+from frictioncli.report.labels import in_words
+from frictioncli.report.missing_data import nothing_missing
+from frictioncli.report.page_tables import TextTable
+from frictioncli.report.residual_maps import residual_map_figure
 from frictioncli.report.results import JointResults
-from frictioncli.report.simulated_torque import gain_figure, simulation_figure
-from frictioncli.report.text_tables import TextTable
+from frictioncli.report.simulation_figures import gain_figure, simulation_figure
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -52,7 +52,7 @@ class DiagnosisSection:
         What stands out of the noise but is not worth modelling.
     worst, detectable : TextTable or None
         Where the simulation misses most; how large an effect must be to be found.
-    entries : tuple of FigureEntry
+    entries : tuple of FigureSpec
         The pictures.
     """
 
@@ -65,7 +65,7 @@ class DiagnosisSection:
     gain: str = ""
     worst: TextTable | None = None
     detectable: TextTable | None = None
-    entries: tuple[FigureEntry, ...] = ()
+    entries: tuple[FigureSpec, ...] = ()
 
 
 def diagnosis_sections(work: Path, results: list[JointResults]) -> dict[int, DiagnosisSection]:
@@ -123,11 +123,11 @@ def section(results: JointResults, recalled: Reloaded) -> DiagnosisSection:
         gain=gain_sentence(document, unit),
         worst=worst if worst.rows else None,
         detectable=detectable_table(document, unit),
-        entries=tuple(entries(recalled)),
+        entries=tuple(diagnosis_figures(recalled)),
     )
 
 
-def entries(recalled: Reloaded) -> list[FigureEntry]:
+def diagnosis_figures(recalled: Reloaded) -> list[FigureSpec]:
     """Return the pictures of a diagnosis: simulation, maps, one per cause, gain.
 
     Parameters
@@ -147,11 +147,11 @@ def entries(recalled: Reloaded) -> list[FigureEntry]:
             "diagnosis-maps",
             "Where the simulated torque is wrong",
             partial(map_caption, extended=bool(recalled.seen.terms)),
-            partial(map_figure, recalled=recalled),
+            partial(residual_map_figure, recalled=recalled),
         ),
     ]
     for number, cause in enumerate(recalled.causes):
-        fitted = words(recalled.seen.terms[number].effect.name)
+        fitted = in_words(recalled.seen.terms[number].effect.name)
         pictures.append(
             _entry(
                 f"diagnosis-{number + 1}",
@@ -177,5 +177,5 @@ def _entry(
     title: str,
     caption: Callable[[JointResults], str],
     draw: Callable[[JointResults], Figure],
-) -> FigureEntry:
-    return FigureEntry(name=name, title=title, caption=caption, missing=nothing_missing, draw=draw)
+) -> FigureSpec:
+    return FigureSpec(name=name, title=title, caption=caption, missing=nothing_missing, draw=draw)

@@ -5,9 +5,16 @@ from dataclasses import dataclass
 from typing import Any
 
 from frictioncli.effects import BY_NAME
-from frictioncli.report.labels import counted, listed, number, share_text, speed_text, words
+from frictioncli.report.labels import (
+    count_text,
+    in_words,
+    list_text,
+    number_text,
+    probability_text,
+    speed_text,
+)
+from frictioncli.report.page_tables import TextTable
 from frictioncli.report.results import JointResults
-from frictioncli.report.text_tables import TextTable
 
 UNDETECTABLE = "cannot be shown by these data"
 
@@ -41,7 +48,8 @@ def verdict_sentence(document: Mapping[str, Any], unit: str) -> str:
     named = [cause["effects"] for cause in document["causes"] if cause["effects"]]
     missed = (
         f"The simulated torque misses the measured one by"
-        f" {number(document['simulation']['rmse'])} {unit} (RMS, {listed(document['runs'])})."
+        f" {number_text(document['simulation']['rmse'])} {unit} (RMS,"
+        f" {list_text(document['runs'])})."
     )
     if document["verdict"] == "no_evidence":
         return (
@@ -49,11 +57,12 @@ def verdict_sentence(document: Mapping[str, Any], unit: str) -> str:
             " structure. The table below says how large each effect would have to be to be found."
         )
     found = []
-    sure = [words(one[0]) for one in named if len(one) == 1]
+    sure = [in_words(one[0]) for one in named if len(one) == 1]
     if sure:
-        found.append(f"The model lacks {listed(sure)}.")
+        found.append(f"The model lacks {list_text(sure)}.")
     found += [
-        f"The model lacks one of {listed([words(name) for name in several])}: these data cannot"
+        f"The model lacks one of {list_text([in_words(name) for name in several])}: these data"
+        " cannot"
         " tell them apart."
         for several in named
         if len(several) > 1
@@ -78,14 +87,14 @@ def _cause(cause: Mapping[str, Any], unit: str) -> CauseText:
     probabilities = cause["probabilities"]
     return CauseText(
         effects=" or ".join(
-            f"{words(name)} {share_text(probabilities[name])}"
+            f"{in_words(name)} {probability_text(probabilities[name])}"
             if name in probabilities
-            else words(name)
+            else in_words(name)
             for name in cause["effects"]
         ),
         channel=cause["channel"],
-        size=f"{number(cause['size'], 2)} {unit}",
-        chance=chance_text(cause["p_value"]),
+        size=f"{number_text(cause['size'], 2)} {unit}",
+        chance=p_value_text(cause["p_value"]),
         claim=cause["claim"],
         equation=cause["equation"],
         parameters="; ".join(
@@ -95,25 +104,26 @@ def _cause(cause: Mapping[str, Any], unit: str) -> CauseText:
     )
 
 
-def chance_text(chance: float) -> str:
+def p_value_text(chance: float) -> str:
     """Return the probability that noise alone gives as much."""
     if chance < 1e-300:
         return "below 1e−300"
-    return f"{chance:.0e}".replace("-", "−") if chance < 1e-3 else number(chance, 2)
+    return f"{chance:.0e}".replace("-", "−") if chance < 1e-3 else number_text(chance, 2)
 
 
 def _parameter(name: str, stated: Mapping[str, Any]) -> str:
     unit = "" if stated["unit"] == "1" else f" {stated['unit']}"
     interval = stated["ci95"]
-    span = f" ({number(interval[0])} to {number(interval[1])})" if interval else ""
-    return f"{words(name)} {number(stated['estimate'])}{unit}{span}"
+    span = f" ({number_text(interval[0])} to {number_text(interval[1])})" if interval else ""
+    return f"{in_words(name)} {number_text(stated['estimate'])}{unit}{span}"
 
 
 def visible_sentences(document: Mapping[str, Any], unit: str) -> tuple[str, ...]:
     """Return what stands out of the noise but is too small to be worth modelling."""
     return tuple(
-        f"{' or '.join(words(name) for name in one['effects'])} stands out of the noise"
-        f" ({number(one['size'], 2)} {unit} RMS, chance {chance_text(one['p_value'])}), but the"
+        f"{' or '.join(in_words(name) for name in one['effects'])} stands out of the noise"
+        f" ({number_text(one['size'], 2)} {unit} RMS, chance {p_value_text(one['p_value'])}), but"
+        " the"
         " extended model is no better with it: it is not worth modelling."
         for one in document.get("visible", ())
     )
@@ -138,10 +148,11 @@ def gain_sentence(document: Mapping[str, Any], unit: str) -> str:
     else:
         where = "On the same data that it was fitted to"
     changed = (
-        f"{where} the extended model misses the torque by {number(gain['rmse_after'])} {unit} (RMS)"
-        f" instead of {number(gain['rmse_before'])} {unit}: {_less(gain['reduction'])}"
+        f"{where} the extended model misses the torque by {number_text(gain['rmse_after'])}"
+        f" {unit} (RMS)"
+        f" instead of {number_text(gain['rmse_before'])} {unit}: {_less(gain['reduction'])}"
         f" (95 % interval: {_less(low)} to {_less(high)}). Noise that no model can predict is"
-        f" {number(gain['noise_floor'])} {unit}."
+        f" {number_text(gain['noise_floor'])} {unit}."
     )
     if gain["basis"] != "new_run":
         changed += " A gain on data already used flatters; log a second run to know it."
@@ -174,9 +185,9 @@ def detectable_table(document: Mapping[str, Any], unit: str) -> TextTable:
         header=("effect", "what it is", f"RMS [{unit}]"),
         rows=tuple(
             (
-                words(name),
+                in_words(name),
                 BY_NAME[name].summary if name in BY_NAME else "",
-                UNDETECTABLE if sizes[name] is None else number(sizes[name], 2),
+                UNDETECTABLE if sizes[name] is None else number_text(sizes[name], 2),
             )
             for name in names
         ),
@@ -191,11 +202,11 @@ def worst_table(document: Mapping[str, Any], unit: str) -> TextTable:
         header=("where", "speed", "channel", f"measured − simulated, mean [{unit}]"),
         rows=tuple(
             (
-                f"{place['axis']} {number(place['low'])} to {number(place['high'])}"
+                f"{place['axis']} {number_text(place['low'])} to {number_text(place['high'])}"
                 f" {_AXIS_UNITS.get(place['axis'], '')}".rstrip(),
                 speed_text(place["speed"]),
                 place["channel"],
-                number(place["misfit"]),
+                number_text(place["misfit"]),
             )
             for place in document["simulation"].get("worst") or ()
         ),
@@ -248,6 +259,6 @@ def gain_caption(results: JointResults, *, document: Mapping[str, Any]) -> str:
 
 def section_title(cause: Mapping[str, Any], number_: int) -> str:
     """Return the heading of a cause's picture."""
-    return f"Cause {number_}. {' or '.join(words(name) for name in cause['effects'][:3])}" + (
-        f" or {counted(len(cause['effects']) - 3, 'other')}" if len(cause["effects"]) > 3 else ""
+    return f"Cause {number_}. {' or '.join(in_words(name) for name in cause['effects'][:3])}" + (
+        f" or {count_text(len(cause['effects']) - 3, 'other')}" if len(cause["effects"]) > 3 else ""
     )

@@ -6,8 +6,14 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from frictioncli.diagnosis.documents.reload import Reloaded
-from frictioncli.report.binning import Binned, BinnedSeries, binned, bins_of, series_of
-from frictioncli.report.labels import share_text, words
+from frictioncli.report.binning import (
+    BinnedMeans,
+    BinnedSeries,
+    bin_means,
+    bin_numbers,
+    residual_series,
+)
+from frictioncli.report.labels import in_words, probability_text
 from frictioncli.report.results import JointResults
 from frictioncli.report.style import FAINT, MODEL, WIDTH
 
@@ -55,7 +61,7 @@ def evidence_figure(results: JointResults, *, recalled: Reloaded, number: int) -
     table = seen.problem.table
     rows = pd.DataFrame(
         {
-            "bin": bins_of(axis, getattr(table, axis)),
+            "bin": bin_numbers(axis, getattr(table, axis)),
             "pair": table.pair,
             "at": getattr(table, axis) * _AXES[axis][1] + (axis == "order"),
             "term": seen.terms[number].of(channel),
@@ -63,8 +69,8 @@ def evidence_figure(results: JointResults, *, recalled: Reloaded, number: int) -
     )
     drawn = (seen.before[channel], seen.without(number, channel), seen.after[channel])
     for panel, title, residual in zip(panels, _PANELS, drawn, strict=True):
-        for one in series_of(table, axis, channel):
-            found = binned(rows.assign(mean=residual)[one.rows])
+        for one in residual_series(table, axis, channel):
+            found = bin_means(rows.assign(mean=residual)[one.rows])
             _points(panel, one, found)
             if title == _PANELS[1]:
                 _line(panel, found, one.colour, broken=axis not in _LEVELS)
@@ -101,7 +107,7 @@ def shown_probabilities(
     return [*shown, ("all others", rest)] if rest >= 5e-4 else shown
 
 
-def _points(panel: Axes, one: BinnedSeries, found: Binned) -> None:
+def _points(panel: Axes, one: BinnedSeries, found: BinnedMeans) -> None:
     panel.errorbar(
         found.at,
         found.mean,
@@ -116,7 +122,7 @@ def _points(panel: Axes, one: BinnedSeries, found: Binned) -> None:
     )
 
 
-def _line(panel: Axes, found: Binned, colour: str, *, broken: bool) -> None:
+def _line(panel: Axes, found: BinnedMeans, colour: str, *, broken: bool) -> None:
     """Draw the fitted term's means; a line across empty bins would claim what was not measured."""
     cuts = np.flatnonzero(np.diff(found.bin) > 1)[: None if broken else 0] + 1
     parts = zip(np.split(found.at, cuts), np.split(found.term, cuts), strict=True)
@@ -133,13 +139,13 @@ def _logarithmic(panel: Axes, values: pd.Series) -> None:
 
 
 def _bars(panel: Axes, bars: list[tuple[str, float]], chosen: set[str]) -> None:
-    names = [words(name) for name, _ in bars]
+    names = [in_words(name) for name, _ in bars]
     colours = [_CHOSEN if name in chosen else FAINT for name, _ in bars]
     places = np.arange(len(bars))
     panel.barh(places, [100 * share for _, share in bars], color=colours, height=0.65)
     for place, (_, share) in zip(places, bars, strict=True):
         panel.annotate(
-            share_text(share),
+            probability_text(share),
             (100 * share, place),
             xytext=(4, 0),
             textcoords="offset points",

@@ -17,15 +17,15 @@ from frictioncli.diagnosis.documents.extended_model import ExtendedModel, read_e
 from frictioncli.errors import NotEnoughData
 from frictioncli.model.document import FrictionModel, read_models
 from frictioncli.plain_text import without_control_characters
-from frictioncli.report.epsilon_figures import compared_criterion
+from frictioncli.report.evaluation_figure import compared_criterion
+from frictioncli.report.grid_replay import ReplayedPhase, ScheduleGrid, replayed_phases
 from frictioncli.report.labels import (
     CRITERION_WORDS,
     TEMPERATURE_SYMBOLS,
-    number,
+    number_text,
     speed_text,
 )
-from frictioncli.report.replayed_schedules import ReplayedPhase, ScheduleGrid, replayed_phases
-from frictioncli.report.requirements import evaluation_missing
+from frictioncli.report.missing_data import evaluation_missing
 from frictioncli.report.results import MOST_RUNS, JointResults
 from frictioncli.report.style import PHASE_WORDS
 from frictioncli.workfiles import EVALUATION, EXTENDED
@@ -243,8 +243,8 @@ def _packed(phase: ReplayedPhase, results: JointResults) -> dict[str, Any]:
         "temperature": _rounded(phase.temperature[shown], 2),
         "term": _rounded(phase.term[shown], 4),
         "error": _rounded(phase.error[shown], 4),
-        "none": number(phase.uncorrected),
-        "epsilon": [number(float(value)) for value in phase.epsilon],
+        "none": number_text(phase.uncorrected),
+        "epsilon": [number_text(float(value)) for value in phase.epsilon],
         "settings": settings,
         "schedules": schedules,
     }

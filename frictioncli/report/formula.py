@@ -4,7 +4,7 @@ import re
 
 from markupsafe import Markup, escape
 
-from frictioncli.report.labels import TEMPERATURE_WORDS, number
+from frictioncli.report.labels import TEMPERATURE_WORDS, number_text
 from frictioncli.report.results import JointResults
 
 _DIGITS = 4
@@ -23,7 +23,7 @@ def unit_markup(unit: str) -> Markup:
     return Markup("").join(_POWERS.get(part, escape(part)) for part in parts)
 
 
-def formula(results: JointResults) -> Markup:
+def friction_formula(results: JointResults) -> Markup:
     """Return equation (16) of a joint; terms that are zero are left out.
 
     Parameters
@@ -36,7 +36,7 @@ def formula(results: JointResults) -> Markup:
     def stated(name: str) -> Markup:
         found = results.model.parameters[name]
         unit = found.unit.removeprefix("1") if found.unit.startswith("1/") else f" {found.unit}"
-        return Markup("<b>{}</b>{}").format(number(found.estimate, _DIGITS), unit_markup(unit))
+        return Markup("<b>{}</b>{}").format(number_text(found.estimate, _DIGITS), unit_markup(unit))
 
     terms = []
     if values.tau_c:
@@ -57,7 +57,7 @@ def formula(results: JointResults) -> Markup:
     return Markup("<i>τ</i> = {}").format(whole or "0")
 
 
-def symbols(results: JointResults) -> str:
+def formula_symbols(results: JointResults) -> str:
     """Return what the formula's symbols stand for, with units.
 
     Parameters

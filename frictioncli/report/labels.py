@@ -35,7 +35,7 @@ _LONGEST_NAME = 32
 _MOST_NAMES = 5
 
 
-def plain(text: str) -> str:
+def figure_text(text: str) -> str:
     """Return a name from the input as text that a figure can show as it is.
 
     Dollar signs would start a formula, and characters that the font lacks a warning.
@@ -72,7 +72,7 @@ def speed_text(speed: float) -> str:
     return f"{shown} deg/s"
 
 
-def number(value: float | None, digits: int = 3) -> str:
+def number_text(value: float | None, digits: int = 3) -> str:
     """Return a number with so many significant digits, a dash where there is none.
 
     Whole digits before the point are never rounded away.
@@ -95,19 +95,19 @@ def number(value: float | None, digits: int = 3) -> str:
     return shown.replace("-", "−")
 
 
-def share_text(share: float) -> str:
+def probability_text(share: float) -> str:
     """Return a probability in per cent, which never reaches 100."""
     if share >= 0.995:
         return "over 99 %"
     return f"{100 * share:.0f} %" if share >= 0.015 else f"{100 * share:.1f} %"
 
 
-def words(name: str) -> str:
+def in_words(name: str) -> str:
     """Return an identifier, such as an effect's name, in words."""
     return name.replace("_", " ")
 
 
-def counted(count: int, singular: str, plural: str = "") -> str:
+def count_text(count: int, singular: str, plural: str = "") -> str:
     """Return a count with its noun, thousands set apart.
 
     Parameters
@@ -118,15 +118,15 @@ def counted(count: int, singular: str, plural: str = "") -> str:
         The noun; the plural is the singular with an s if not given.
     """
     noun = singular if count == 1 else plural or singular + "s"
-    return f"{grouped(count)} {noun}"
+    return f"{thousands_text(count)} {noun}"
 
 
-def grouped(count: int) -> str:
+def thousands_text(count: int) -> str:
     """Return a count with its thousands set apart by thin spaces."""
     return f"{count:,}".replace(",", "\u202f")
 
 
-def duration(seconds: float) -> str:
+def duration_text(seconds: float) -> str:
     """Return a duration in minutes, or in hours and minutes from three hours."""
     minutes = seconds / 60.0
     if minutes >= 180.0:
@@ -135,7 +135,7 @@ def duration(seconds: float) -> str:
     return f"{minutes:.0f} min"
 
 
-def listed(names: Sequence[str]) -> str:
+def list_text(names: Sequence[str]) -> str:
     """Return names as a list in words, cut after five.
 
     Parameters
@@ -149,7 +149,7 @@ def listed(names: Sequence[str]) -> str:
     return shown[0] if len(shown) == 1 else f"{', '.join(shown[:-1])} and {shown[-1]}"
 
 
-def span(ascending: Sequence[str]) -> str:
+def range_text(ascending: Sequence[str]) -> str:
     """Return the first and the last of ascending values as text, or one where they read the same.
 
     Parameters

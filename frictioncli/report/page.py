@@ -14,24 +14,24 @@ from frictioncli import __version__
 from frictioncli.files import whole
 from frictioncli.plain_text import without_control_characters
 from frictioncli.report import style
+from frictioncli.report.data_section import data_section
 from frictioncli.report.diagnosis_section import DiagnosisSection, diagnosis_sections
 from frictioncli.report.explorer import Explorer, explorers
-from frictioncli.report.figure_list import FIGURES, FigureEntry, runs_drawn_note
-from frictioncli.report.formula import formula, symbols, unit_markup
-from frictioncli.report.labels import listed
+from frictioncli.report.figures import FIGURES, FigureSpec, runs_drawn_note
+from frictioncli.report.formula import formula_symbols, friction_formula, unit_markup
+from frictioncli.report.labels import list_text
+from frictioncli.report.missing_data import evaluation_missing
+from frictioncli.report.page_tables import TextTable, epsilon_tables, pairs_table
 from frictioncli.report.parameters import (
     ParameterRow,
     correlation_table,
     is_published_joint,
+    limitations,
     parameter_rows,
-    unknowns,
 )
-from frictioncli.report.quality import data_quality
-from frictioncli.report.quality_lights import Light, LightReading, lights
-from frictioncli.report.requirements import evaluation_missing
+from frictioncli.report.quality_ratings import IngestCounts, QualityRating, quality_ratings
 from frictioncli.report.results import JointResults, read_results
-from frictioncli.report.summary import KeyFigure, key_figures, measured, summary
-from frictioncli.report.text_tables import TextTable, epsilon_tables, pairs_table
+from frictioncli.report.summary import KeyNumber, key_numbers, measurement_text, summary_text
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -54,8 +54,8 @@ class PageJoint:
     measured: str
     formula: Markup
     symbols: str
-    key_figures: list[KeyFigure]
-    lights: list[Light]
+    key_numbers: list[KeyNumber]
+    lights: list[QualityRating]
     parameters: list[ParameterRow]
     published: bool
     remarks: bool
@@ -93,13 +93,13 @@ def write_report(work: Path) -> Path:
         If a needed file is missing, or a file is damaged.
     """
     results = read_results(work)
-    quality = data_quality(work, results)
+    quality = data_section(work, results)
     shown = _page_joints(work, results, quality.reading, " ".join(quality.files))
     runs = sorted({run for joint in results for run in joint.runs})
     script = _packaged("explorer.js")
     page = _template().render(
         title=_title(results),
-        runs=f"{'Run' if len(runs) == 1 else 'Runs'}: {listed(runs)}",
+        runs=f"{'Run' if len(runs) == 1 else 'Runs'}: {list_text(runs)}",
         css=Markup(_packaged("style.css")),
         script=Markup(script),
         script_digest=b64encode(sha256(script.encode()).digest()).decode(),
@@ -149,11 +149,11 @@ def _title(results: list[JointResults]) -> str:
     numbers = [str(joint.joint) for joint in results]
     if len(numbers) == 1:
         return f"Friction of joint {numbers[0]}"
-    return f"Friction of joints {listed(numbers)}"
+    return f"Friction of joints {list_text(numbers)}"
 
 
 def _page_joints(
-    work: Path, results: list[JointResults], reading: LightReading, traces: str
+    work: Path, results: list[JointResults], reading: IngestCounts, traces: str
 ) -> list[PageJoint]:
     diagnoses, explored = diagnosis_sections(work, results), explorers(work, results)
     return [
@@ -161,7 +161,7 @@ def _page_joints(
             own,
             diagnoses[own.joint],
             explored[own.joint],
-            lights(own, reading, diagnoses[own.joint].document),
+            quality_ratings(own, reading, diagnoses[own.joint].document),
             published=is_published_joint(own, traces),
             prefix="" if len(results) == 1 else f"joint{own.joint}-",
         )
@@ -173,7 +173,7 @@ def _page_joint(
     results: JointResults,
     diagnosis: DiagnosisSection,
     explorer: Explorer,
-    judged: list[Light],
+    judged: list[QualityRating],
     *,
     published: bool,
     prefix: str,
@@ -182,17 +182,17 @@ def _page_joint(
     figures = [page_figure(entry, results, prefix) for entry in FIGURES]
     return PageJoint(
         number=results.joint,
-        summary=summary(results, diagnosis.document),
-        measured=measured(results),
-        formula=formula(results),
-        symbols=symbols(results),
-        key_figures=key_figures(results, diagnosis.document),
+        summary=summary_text(results, diagnosis.document),
+        measured=measurement_text(results),
+        formula=friction_formula(results),
+        symbols=formula_symbols(results),
+        key_numbers=key_numbers(results, diagnosis.document),
         lights=judged,
         parameters=parameters,
         published=published,
         remarks=any(row.remark for row in parameters),
         correlations=correlation_table(results),
-        unknowns=unknowns(results, diagnosis.document),
+        unknowns=limitations(results, diagnosis.document),
         epsilon=epsilon_tables(results),
         epsilon_missing=evaluation_missing(results),
         explorer=explorer,
@@ -214,12 +214,12 @@ def _undrawn(figures: list[PageFigure]) -> list[tuple[str, str]]:
     return [("; ".join(own), reason) for reason, own in titles.items()]
 
 
-def page_figure(entry: FigureEntry, results: JointResults, prefix: str = "") -> PageFigure:
+def page_figure(entry: FigureSpec, results: JointResults, prefix: str = "") -> PageFigure:
     """Draw one figure, or state why it cannot be drawn.
 
     Parameters
     ----------
-    entry : FigureEntry
+    entry : FigureSpec
         The figure.
     results : JointResults
         One joint's results.
@@ -229,7 +229,7 @@ def page_figure(entry: FigureEntry, results: JointResults, prefix: str = "") -> 
     name = f"{prefix}{entry.name}"
     if missing := entry.missing(results):
         return PageFigure(name=name, title=entry.title, text=missing, svg=Markup(""), png=b"")
-    with style.styled(name):
+    with style.style_context(name):
         figure = entry.draw(results)
         return PageFigure(
             name=name,

@@ -7,10 +7,10 @@ from typing import Any
 
 from frictioncli.model.document import PARAMETERS
 from frictioncli.model.friction import PUBLISHED
-from frictioncli.report.labels import PARAMETER_SYMBOLS, listed, number, words
-from frictioncli.report.quality_lights import vague_parameters
+from frictioncli.report.labels import PARAMETER_SYMBOLS, in_words, list_text, number_text
+from frictioncli.report.page_tables import TextTable
+from frictioncli.report.quality_ratings import imprecise_parameters
 from frictioncli.report.results import JointResults
-from frictioncli.report.text_tables import TextTable
 
 _MEANINGS = {
     "tau_c": "Coulomb friction",
@@ -56,8 +56,10 @@ def parameter_rows(results: JointResults) -> list[ParameterRow]:
             ParameterRow(
                 symbol=PARAMETER_SYMBOLS[name],
                 meaning=_MEANINGS[name],
-                estimate=number(stated.estimate, 4),
-                interval=f"{number(interval[0])} to {number(interval[1])}" if interval else "–",
+                estimate=number_text(stated.estimate, 4),
+                interval=f"{number_text(interval[0])} to {number_text(interval[1])}"
+                if interval
+                else "–",
                 unit=stated.unit,
                 published=f"{getattr(PUBLISHED, name):g}",
                 remark=remark,
@@ -118,7 +120,7 @@ def correlation_text(value: float) -> str:
     return "0" if float(shown) == 0 else shown.replace("-", "−")
 
 
-def unknowns(results: JointResults, diagnosis: Mapping[str, Any] | None) -> list[str]:
+def limitations(results: JointResults, diagnosis: Mapping[str, Any] | None) -> list[str]:
     """Return what the data cannot determine, a sentence each.
 
     Parameters
@@ -134,10 +136,11 @@ def unknowns(results: JointResults, diagnosis: Mapping[str, Any] | None) -> list
         for name in PARAMETERS
         if not model.parameters[name].determined
     ]
-    for name in vague_parameters(results):
+    for name in imprecise_parameters(results):
         low, high = model.parameters[name].ci95 or (0.0, 0.0)
         told.append(
-            f"{PARAMETER_SYMBOLS[name]} is known only roughly: {number(low)} to {number(high)}"
+            f"{PARAMETER_SYMBOLS[name]} is known only roughly: {number_text(low)} to"
+            f" {number_text(high)}"
             f" {model.parameters[name].unit}."
         )
     for first, second in combinations(
@@ -157,12 +160,13 @@ def _open_causes(results: JointResults, diagnosis: Mapping[str, Any] | None) -> 
     if diagnosis is None:
         return ["What the simulated torque misses, and why, has not been judged."]
     told = [
-        f"Which of {listed([words(name) for name in cause['effects']])} is at work: these data"
+        f"Which of {list_text([in_words(name) for name in cause['effects']])} is at work: these"
+        " data"
         f" cannot tell them apart. {cause['experiment']}"
         for cause in diagnosis["causes"]
         if len(cause["effects"]) > 1
     ]
-    blind = [words(name) for name, size in diagnosis["detectable"].items() if size is None]
+    blind = [in_words(name) for name, size in diagnosis["detectable"].items() if size is None]
     if blind:
         told.append(f"Whether there is {' or '.join(blind)}: these data cannot show it.")
     if len(results.runs) == 1:

@@ -10,7 +10,7 @@ from matplotlib.figure import Figure
 from frictioncli.arrays import Array, Indices
 from frictioncli.diagnosis.documents.reload import Reloaded
 from frictioncli.effects.base import EffectTable
-from frictioncli.report.binning import levels, parting
+from frictioncli.report.binning import group_boundaries, merge_close_values
 from frictioncli.report.labels import TEMPERATURE_SYMBOLS
 from frictioncli.report.results import JointResults
 from frictioncli.report.style import WIDTH
@@ -28,7 +28,7 @@ _CELLS = {"temperature": 9, "position": 18, "clock": 24}
 
 
 @dataclass(frozen=True, slots=True)
-class Scale:
+class MapAxis:
     """One axis of a map: its label and the edges of its cells."""
 
     label: str
@@ -42,7 +42,7 @@ class Scale:
         return np.searchsorted(self.edges[1:-1], self.values, side="right")
 
 
-def map_figure(results: JointResults, *, recalled: Reloaded) -> Figure:
+def residual_map_figure(results: JointResults, *, recalled: Reloaded) -> Figure:
     """Draw the misfit of both channels over speed, temperature, angle and time.
 
     Parameters
@@ -87,14 +87,14 @@ def map_figure(results: JointResults, *, recalled: Reloaded) -> Figure:
     return figure
 
 
-def cell_means(across: Scale, up: Scale, misfit: Array, pair: Indices) -> tuple[Array, Array]:
+def cell_means(across: MapAxis, up: MapAxis, misfit: Array, pair: Indices) -> tuple[Array, Array]:
     """Return the mean misfit per cell and its standard error; NaN without data.
 
     Both have shape (cells up, cells across). The errors are those of the points about their pairs.
 
     Parameters
     ----------
-    across, up : Scale
+    across, up : MapAxis
         The axes.
     misfit : ndarray, shape (rows,)
         Measured minus simulated. [N·m]
@@ -120,7 +120,7 @@ def colour_limit(maps: list[tuple[Array, Array]]) -> float:
     return max(*map(float, widest), 1e-9)
 
 
-def _map(panel: Axes, across: Scale, up: Scale, mean: Array, limit: float) -> QuadMesh:
+def _map(panel: Axes, across: MapAxis, up: MapAxis, mean: Array, limit: float) -> QuadMesh:
     high = np.arange(len(up.edges)) if up.names else up.edges
     mesh = panel.pcolormesh(
         across.edges, high, mean, cmap=_COLOURS, vmin=-limit, vmax=limit, rasterized=True
@@ -134,33 +134,33 @@ def _map(panel: Axes, across: Scale, up: Scale, mean: Array, limit: float) -> Qu
     return mesh
 
 
-def _scales(table: EffectTable, temperature: str) -> dict[str, Scale]:
+def _scales(table: EffectTable, temperature: str) -> dict[str, MapAxis]:
     symbol = TEMPERATURE_SYMBOLS[temperature]
     wanted = {
         "temperature": (f"temperature {symbol} [°C]", table.temperature),
         "clock": ("time [h]", table.clock / 3600.0),
     }
     scales = {
-        name: Scale(label, values, np.linspace(values.min(), values.max(), _CELLS[name] + 1))
+        name: MapAxis(label, values, np.linspace(values.min(), values.max(), _CELLS[name] + 1))
         for name, (label, values) in wanted.items()
         if np.ptp(values) > 0
     }
     angles = np.unique(table.position)
     half = float(np.min(np.diff(angles), initial=10.0)) / 2
     ends = angles[:1] - half, angles[-1:] + half
-    edges = np.concatenate([ends[0], parting(angles, _CELLS["position"]), ends[1]])
-    scales["position"] = Scale("joint angle φ [deg]", table.position, edges)
+    edges = np.concatenate([ends[0], group_boundaries(angles, _CELLS["position"]), ends[1]])
+    scales["position"] = MapAxis("joint angle φ [deg]", table.position, edges)
     scales["speed"] = _speed_scale(table.speed)
     return scales
 
 
-def _speed_scale(speed: Array) -> Scale:
+def _speed_scale(speed: Array) -> MapAxis:
     """Return the speeds as rows of equal height; many of them are put together."""
-    known = np.unique(levels(speed))
+    known = np.unique(merge_close_values(speed))
     groups = np.array_split(known, min(len(known), _MOST_SPEEDS))
     names = tuple(
         f"{group[0]:.3g}" if len(group) == 1 else f"{group[0]:.3g}–{group[-1]:.3g}"
         for group in groups
     )
-    edges = np.array([0.0, *parting(known, _MOST_SPEEDS), np.inf])
-    return Scale("speed [deg/s]", speed, edges, names)
+    edges = np.array([0.0, *group_boundaries(known, _MOST_SPEEDS), np.inf])
+    return MapAxis("speed [deg/s]", speed, edges, names)

@@ -1,7 +1,7 @@
-"""How the figures look: one style, one colour per speed, labels that do not overlap.
+"""Appearance of the figures: one style, one colour per speed, labels that do not overlap.
 
-Nothing here changes matplotlib's global settings: :func:`styled` applies the style for the time of
-a ``with`` block.
+matplotlib's global settings stay as they are: :func:`style_context` applies the style within a
+``with`` block only.
 """
 
 import io
@@ -21,7 +21,7 @@ from matplotlib.colors import to_hex, to_rgb
 from matplotlib.figure import Figure
 from numpy.typing import ArrayLike
 
-from frictioncli.report.tooltips import tell, with_titles
+from frictioncli.report.tooltips import set_tooltips, tooltips_as_titles
 
 WIDTH = 8.0
 """Width of every figure, so that its text has one size on the page. [inch]"""
@@ -32,7 +32,7 @@ RASTER_FROM = 3000
 """More points than this are stored as a picture inside the SVG, which would else grow large."""
 
 _TOLD_UP_TO = 1000
-"""Points of a series that tell their values; more would make the page large."""
+"""Points of a series that set_tooltips their values; more would make the page large."""
 
 _LINE_HEIGHT = 0.18
 """Height of a line of the smallest text. [inch]"""
@@ -89,7 +89,7 @@ class SpeedStyle:
     marker: str
 
 
-def styled(salt: str = "frictioncli") -> AbstractContextManager[None]:
+def style_context(salt: str = "frictioncli") -> AbstractContextManager[None]:
     """Return a context in which figures are drawn and saved in this style.
 
     Parameters
@@ -195,7 +195,7 @@ def points(
         rasterized=np.size(x) > RASTER_FROM,
     )
     if 0 < len(told) <= _TOLD_UP_TO:
-        tell(drawn, told)
+        set_tooltips(drawn, told)
 
 
 def legend_above(axes: Axes) -> None:
@@ -281,7 +281,7 @@ def svg(figure: Figure, name: str, title: str) -> str:
     )
     # the layout is found now: the next drawing need not find it again
     figure.set_layout_engine("none")
-    text = with_titles(stream.getvalue())
+    text = tooltips_as_titles(stream.getvalue())
     text = text[text.index("<svg") :]
     # two pictures of the same content would have one identifier, and nothing refers to them
     text = re.sub(r' id="image[0-9a-f]+"', "", text)

@@ -8,17 +8,17 @@ import numpy as np
 import pandas as pd
 
 from frictioncli.model.document import PARAMETERS
-from frictioncli.report.epsilon_figures import compared_criterion, setting_text
+from frictioncli.report.evaluation_figure import compared_criterion, setting_text
 from frictioncli.report.labels import (
     CRITERION_WORDS,
     PARAMETER_SYMBOLS,
     TEMPERATURE_WORDS,
-    counted,
-    listed,
-    number,
-    span,
+    count_text,
+    in_words,
+    list_text,
+    number_text,
+    range_text,
     speed_text,
-    words,
 )
 from frictioncli.report.results import JointResults
 from frictioncli.report.style import PHASE_WORDS, PHASES
@@ -31,7 +31,7 @@ _REMAINS = 0.25
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class KeyFigure:
+class KeyNumber:
     """A figure that matters: its name, value with unit, and what it is to be read with."""
 
     name: str
@@ -48,7 +48,7 @@ class _Gained:
     never: str
 
 
-def summary(results: JointResults, diagnosis: Mapping[str, Any] | None = None) -> str:
+def summary_text(results: JointResults, diagnosis: Mapping[str, Any] | None = None) -> str:
     """Return the verdict on one joint.
 
     Parameters
@@ -67,7 +67,7 @@ def summary(results: JointResults, diagnosis: Mapping[str, Any] | None = None) -
     return " ".join(sentence for sentence in sentences if sentence)
 
 
-def measured(results: JointResults) -> str:
+def measurement_text(results: JointResults) -> str:
     """Return what was measured.
 
     Parameters
@@ -89,18 +89,19 @@ def measured(results: JointResults) -> str:
     )
     load = results.model.range.load
     loads = (
-        f", under loads from {number(load[0])} to {number(load[1])} {results.load_unit}"
+        f", under loads from {number_text(load[0])} to {number_text(load[1])} {results.load_unit}"
         if load
         else ""
     )
     return (
-        f"Joint {results.joint} was measured in {counted(len(results.runs), 'run')}"
-        f" ({listed(results.runs)}): {counted(len(results.pairs), 'pair')} of counter-directed"
+        f"Joint {results.joint} was measured in {count_text(len(results.runs), 'run')}"
+        f" ({list_text(results.runs)}): {count_text(len(results.pairs), 'pair')} of"
+        " counter-directed"
         f" moves {at}{warm}{loads}."
     )
 
 
-def key_figures(results: JointResults, diagnosis: Mapping[str, Any] | None) -> list[KeyFigure]:
+def key_numbers(results: JointResults, diagnosis: Mapping[str, Any] | None) -> list[KeyNumber]:
     """Return the figures that matter, those that there are.
 
     Parameters
@@ -115,7 +116,7 @@ def key_figures(results: JointResults, diagnosis: Mapping[str, Any] | None) -> l
         if gained := _gained(results, phase):
             never = f"; without correction {gained.never} {results.unit}" if gained.never else ""
             found.append(
-                KeyFigure(
+                KeyNumber(
                     name=f"error ε in {PHASE_WORDS[phase]}",
                     value=f"{gained.error} {results.unit}",
                     beside=f"with {gained.tried}{never}",
@@ -124,11 +125,11 @@ def key_figures(results: JointResults, diagnosis: Mapping[str, Any] | None) -> l
     if needed := corrections_needed(results):
         found.append(needed)
     found.append(
-        KeyFigure(
+        KeyNumber(
             name="misfit of the fitted function",
-            value=f"{number(results.model.rmse)} {results.unit}",
+            value=f"{number_text(results.model.rmse)} {results.unit}",
             beside=f"RMS without correction; single points scatter by"
-            f" {number(results.model.noise.point)} {results.unit}",
+            f" {number_text(results.model.noise.point)} {results.unit}",
         )
     )
     gain = (diagnosis or {}).get("gain")
@@ -139,17 +140,17 @@ def key_figures(results: JointResults, diagnosis: Mapping[str, Any] | None) -> l
             else "on the data that it was fitted to"
         )
         found.append(
-            KeyFigure(
+            KeyNumber(
                 name="misfit of the extended model",
-                value=f"{number(gain['rmse_after'])} {results.unit}",
+                value=f"{number_text(gain['rmse_after'])} {results.unit}",
                 beside=f"RMS of the torque without correction, {new}; base model"
-                f" {number(gain['rmse_before'])} {results.unit}",
+                f" {number_text(gain['rmse_before'])} {results.unit}",
             )
         )
     return found
 
 
-def corrections_needed(results: JointResults) -> KeyFigure | None:
+def corrections_needed(results: JointResults) -> KeyNumber | None:
     """Return the fewest corrections per phase that make the error small; none if not evaluated.
 
     Small is 2 N·m, the error that the source paper reaches; in another unit, a quarter of the error
@@ -173,14 +174,14 @@ def corrections_needed(results: JointResults) -> KeyFigure | None:
             counts.append(int(enough["corrections"].min()) if len(enough) else None)
         if reached := sorted(count for count in counts if count is not None):
             missed = counts.count(None)
-            not_all = f" ({counted(missed, 'run')} never)" if missed else ""
-            told.append(f"{span([str(n) for n in reached])} in {PHASE_WORDS[phase]}{not_all}")
+            not_all = f" ({count_text(missed, 'run')} never)" if missed else ""
+            told.append(f"{range_text([str(n) for n in reached])} in {PHASE_WORDS[phase]}{not_all}")
         elif counts:
             told.append(f"never enough in {PHASE_WORDS[phase]}")
     if not told or not criterion:
         return None
     small = "2 N·m, as in the paper" if in_torque else "a quarter of that without correction"
-    return KeyFigure(
+    return KeyNumber(
         name="corrections needed",
         value=", ".join(told),
         beside=f"fewest of all settings tried whose ε is at most {small}; criterion"
@@ -194,8 +195,8 @@ def _fitted(results: JointResults) -> str:
     if results.model.knows_temperature:
         inputs.append(TEMPERATURE_WORDS[results.model.temperature])
     return (
-        f"Equation (16), a function of {listed(inputs)}, gives the friction of joint"
-        f" {results.joint} to {number(results.model.rmse)} {results.unit} (RMS)."
+        f"Equation (16), a function of {list_text(inputs)}, gives the friction of joint"
+        f" {results.joint} to {number_text(results.model.rmse)} {results.unit} (RMS)."
     )
 
 
@@ -232,9 +233,9 @@ def _gained(results: JointResults, phase: str) -> _Gained | None:
     if results.simulated_extended != results.evaluated_extended or not any(tried):
         never = never[:0]
     return _Gained(
-        error=span([number(error) for error in sorted(errors)]),
-        tried=f"{span([str(n) for n in tried])} correction{'' if tried[-1] == 1 else 's'}",
-        never=span([number(error) for error in sorted(never)]) if len(never) else "",
+        error=range_text([number_text(error) for error in sorted(errors)]),
+        tried=f"{range_text([str(n) for n in tried])} correction{'' if tried[-1] == 1 else 's'}",
+        never=range_text([number_text(error) for error in sorted(never)]) if len(never) else "",
     )
 
 
@@ -247,13 +248,13 @@ def _judged(results: JointResults, diagnosis: Mapping[str, Any] | None) -> str:
     if diagnosis is None:
         return ""
     lacking = [
-        " or ".join(words(n) for n in one["effects"])
+        " or ".join(in_words(n) for n in one["effects"])
         for one in diagnosis["causes"]
         if one["effects"]
     ]
     if diagnosis["verdict"] == "no_evidence":
         return "No cause was found in what the function misses."
-    told = f"The function lacks {listed(lacking)}" if lacking else "No known effect is named"
+    told = f"The function lacks {list_text(lacking)}" if lacking else "No known effect is named"
     if diagnosis["verdict"] == "unnamed":
         told += ", and structure is left that no known effect explains"
     gain = diagnosis["gain"]
@@ -263,8 +264,9 @@ def _judged(results: JointResults, diagnosis: Mapping[str, Any] | None) -> str:
         f" on {diagnosis['held_out']}, which it has not seen," if gain["basis"] == "new_run" else ""
     )
     return (
-        f"{told}; extended by that, it misses the torque{where} by {number(gain['rmse_after'])}"
-        f" {results.unit} instead of {number(gain['rmse_before'])} {results.unit}, without any"
+        f"{told}; extended by that, it misses the torque{where} by"
+        f" {number_text(gain['rmse_after'])}"
+        f" {results.unit} instead of {number_text(gain['rmse_before'])} {results.unit}, without any"
         " correction."
     )
 
@@ -273,5 +275,5 @@ def _undetermined(results: JointResults) -> str:
     names = [name for name in PARAMETERS if not results.model.parameters[name].determined]
     if not names:
         return ""
-    symbols = listed([PARAMETER_SYMBOLS[name] for name in names])
+    symbols = list_text([PARAMETER_SYMBOLS[name] for name in names])
     return f"These data do not determine {symbols}; the table of parameters says why."

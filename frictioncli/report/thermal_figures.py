@@ -8,10 +8,10 @@ from matplotlib.figure import Figure
 from frictioncli.model.paper_method import branch_means
 from frictioncli.report.labels import (
     TEMPERATURE_LABELS,
-    duration,
+    duration_text,
+    figure_text,
     friction_label,
-    number,
-    plain,
+    number_text,
     speed_text,
 )
 from frictioncli.report.results import MOST_RUNS, JointResults, by_speed
@@ -50,7 +50,7 @@ def thermal_runs(results: JointResults, *columns: str) -> list[str]:
     return sorted(known["run"].unique())[:MOST_RUNS]
 
 
-def temperatures_over_time(results: JointResults) -> Figure:
+def temperature_figure(results: JointResults) -> Figure:
     """Draw Figure 4: motor and housing temperature over time, phases shaded.
 
     Parameters
@@ -77,7 +77,7 @@ def temperatures_over_time(results: JointResults) -> Figure:
             # a label wider than its phase would cover the next one's
             if phase in PHASE_WORDS and end - start > _LABEL_SPACE * own["time"].iloc[-1]:
                 panel.annotate(
-                    f"{PHASE_WORDS[phase]}, {duration(end - start)}",
+                    f"{PHASE_WORDS[phase]}, {duration_text(end - start)}",
                     ((start + end) / 120.0, 0.97),
                     xycoords=("data", "axes fraction"),
                     ha="center",
@@ -86,7 +86,7 @@ def temperatures_over_time(results: JointResults) -> Figure:
                     fontsize=9,
                     fontweight="bold",
                 )
-        panel.set_title(plain(run))
+        panel.set_title(figure_text(run))
         panel.set_ylabel("temperature [°C]")
         legend_above(panel)
     axes[-1].set_xlabel("time t [min]")
@@ -108,7 +108,7 @@ def phase_spans(pairs: pd.DataFrame) -> list[tuple[float, float, str]]:
     ]
 
 
-def friction_against_temperature(results: JointResults, kind: str) -> Figure:
+def friction_temperature_figure(results: JointResults, kind: str) -> Figure:
     """Draw Figure 5 or 6: friction at zero load against a measured temperature, per speed.
 
     Parameters
@@ -142,7 +142,7 @@ def friction_against_temperature(results: JointResults, kind: str) -> Figure:
             at_hottest = group.sort_values(column, kind="stable")["friction_torque"].iloc[-1]
             labels.append((float(at_hottest), speed_text(speed), style.colour))
         _phase_legend(panel)
-        panel.set_title(plain(run))
+        panel.set_title(figure_text(run))
         panel.set_ylabel(friction_label(results.unit))
         label_right(panel, labels, height=_PANEL_HEIGHT)
     axes[-1].set_xlabel(TEMPERATURE_LABELS[kind])
@@ -151,7 +151,7 @@ def friction_against_temperature(results: JointResults, kind: str) -> Figure:
 
 def _told(rows: pd.DataFrame, column: str, speed: float, what: str, unit: str) -> list[str]:
     return [
-        f"{speed_text(speed)}, {what}, {warm:.1f} °C: {number(friction)} {unit}"
+        f"{speed_text(speed)}, {what}, {warm:.1f} °C: {number_text(friction)} {unit}"
         for warm, friction in zip(rows[column], rows["friction_torque"], strict=True)
     ]
 
@@ -162,7 +162,7 @@ def _phase_legend(panel: Axes) -> None:
     legend_above(panel)
 
 
-def branch_means_with_model(results: JointResults) -> Figure:
+def branch_means_figure(results: JointResults) -> Figure:
     """Draw Figure 7: the mean of both branches (11) per speed, with the model (12), (13).
 
     Parameters
@@ -187,7 +187,7 @@ def branch_means_with_model(results: JointResults) -> Figure:
         panel.plot([], [], "o", color=FAINT, markersize=3.5, label="mean of heating and cooling")
         panel.plot([], [], "-", color=FAINT, label="model (12), (13)")
         legend_above(panel)
-        panel.set_title(plain(run))
+        panel.set_title(figure_text(run))
         panel.set_ylabel(friction_label(results.unit).replace("τ", "τ*"))
         label_right(panel, labels, height=_PANEL_HEIGHT)
     axes[-1].set_xlabel(TEMPERATURE_LABELS[kind])

@@ -12,8 +12,8 @@ _GROUP = re.compile(rf' id="{_MARK}([^"]*)"')
 _MARKER = re.compile(r"<use ([^>]*)/>")
 
 
-def tell(artist: Artist, texts: Sequence[str]) -> None:
-    """Let a drawn artist carry what its points tell, until the figure becomes an SVG.
+def set_tooltips(artist: Artist, texts: Sequence[str]) -> None:
+    """Let a drawn artist carry what its points set_tooltips, until the figure becomes an SVG.
 
     Parameters
     ----------
@@ -27,7 +27,7 @@ def tell(artist: Artist, texts: Sequence[str]) -> None:
     artist.set_gid(_MARK + ",".join(quote(text) for text in texts))
 
 
-def with_titles(svg: str) -> str:
+def tooltips_as_titles(svg: str) -> str:
     """Return an SVG in which what its artists carry are titles of their points.
 
     Parameters

@@ -11,7 +11,7 @@ from matplotlib.axes import Axes
 from matplotlib.dates import AutoDateLocator, ConciseDateFormatter
 from matplotlib.figure import Figure
 
-from frictioncli.report.labels import number, plain, speed_text
+from frictioncli.report.labels import figure_text, number_text, speed_text
 from frictioncli.report.style import (
     FAINT,
     MODEL,
@@ -19,7 +19,7 @@ from frictioncli.report.style import (
     legend_above,
     png,
     speed_styles,
-    styled,
+    style_context,
     svg,
 )
 
@@ -31,7 +31,7 @@ _ROW = 0.24
 _NAME = "trend"
 
 
-def trend_pictures(document: Mapping[str, Any]) -> tuple[str, bytes]:
+def trend_files(document: Mapping[str, Any]) -> tuple[str, bytes]:
     """Return the figure of a comparison as an SVG file's text and as a PNG.
 
     Parameters
@@ -40,7 +40,7 @@ def trend_pictures(document: Mapping[str, Any]) -> tuple[str, bytes]:
         ``comparison.json``.
     """
     title = f"Friction of joint {document['joint']} over {len(document['runs'])} runs"
-    with styled(_NAME):
+    with style_context(_NAME):
         figure = trend_figure(document)
         drawn = svg(figure, _NAME, escape(title))
         return f'<?xml version="1.0" encoding="utf-8"?>\n{drawn}', png(figure)
@@ -153,7 +153,7 @@ def _draw_conditions(axes: Axes, rows: Sequence[Mapping[str, Any]]) -> None:
     axes.axvline(0.0, color=MODEL, linewidth=1.0)
     axes.set_yticks(
         range(len(rows)),
-        [plain(f"{row['temperature']:.0f} °C, {speed_text(row['speed'])}") for row in rows],
+        [figure_text(f"{row['temperature']:.0f} °C, {speed_text(row['speed'])}") for row in rows],
     )
     axes.invert_yaxis()
     axes.grid(visible=False, axis="y")
@@ -164,4 +164,4 @@ def _draw_conditions(axes: Axes, rows: Sequence[Mapping[str, Any]]) -> None:
 
 
 def _signed(value: float) -> str:
-    return f"{'+' if value > 0 else ''}{number(value, 2)}"
+    return f"{'+' if value > 0 else ''}{number_text(value, 2)}"

@@ -19,7 +19,7 @@ from frictioncli.errors import OptionError
 from frictioncli.files import whole, write_text
 from frictioncli.model.document import FrictionModel, read_models
 from frictioncli.provenance import Provenance, sha256
-from frictioncli.report.trend_figure import trend_pictures
+from frictioncli.report.trend_figure import trend_files
 from frictioncli.stages.stage import Done, stage
 from frictioncli.workfiles import COMPARISON, MODEL, RECORDINGS, TORQUES
 from frictioncli.workfolder import outdated
@@ -66,7 +66,7 @@ def compare(runs: Sequence[Path], work: Path, settings: ComparisonSettings | Non
     }
     provenance = Provenance("compare", asdict(settings), inputs)
     document = comparison_document(comparison) | {"provenance": provenance.as_dict()}
-    svg, png = trend_pictures(document)
+    svg, png = trend_files(document)
     write_text(work / f"{TREND}.svg", svg)
     with whole(work / f"{TREND}.png") as draft:
         draft.write_bytes(png)

@@ -10,8 +10,8 @@ import pytest
 from frictioncli.diagnosis.documents.extended_model import extended_model
 from frictioncli.diagnosis.documents.reload import is_current, read_documents, reload
 from frictioncli.errors import TableError
-from frictioncli.report.diagnosis_section import diagnosis_sections, entries, section
-from frictioncli.report.diagnosis_text import UNDETECTABLE, chance_text, gain_sentence
+from frictioncli.report.diagnosis_section import diagnosis_figures, diagnosis_sections, section
+from frictioncli.report.diagnosis_text import UNDETECTABLE, gain_sentence, p_value_text
 from frictioncli.report.page import page_figure, write_report
 from frictioncli.report.results import read_results
 from tests.report.planted import EXPONENT, OFFSET, SHIFT, TORQUE, VELOCITY, extended
@@ -159,7 +159,7 @@ def test_section_says_what_was_found(results, recalled):
     assert told.detectable.rows[0][2] == "0.40"
     assert told.detectable.rows[1][2] == UNDETECTABLE
     assert told.worst.rows[0] == ("temperature 25.0 to 31.0 °C", "67.5 deg/s", "friction", "−4.50")
-    names = [entry.name for entry in entries(recalled)]
+    names = [entry.name for entry in diagnosis_figures(recalled)]
     assert names == [
         "diagnosis-simulation",
         "diagnosis-maps",
@@ -182,8 +182,8 @@ def test_a_gain_that_is_none_is_said_to_be_none():
     assert "N·m" not in gain_sentence(document, "A")
     document["gain"] = None
     assert gain_sentence(document, "A") == ""
-    assert chance_text(0.0) == "below 1e−300"
-    assert chance_text(0.031) == "0.031"
+    assert p_value_text(0.0) == "below 1e−300"
+    assert p_value_text(0.031) == "0.031"
 
 
 def test_silence_is_explained_and_draws_no_gain(results, work):

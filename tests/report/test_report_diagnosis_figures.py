@@ -13,11 +13,17 @@ from matplotlib.text import Text
 
 from frictioncli.diagnosis.documents.reload import read_documents, reload
 from frictioncli.report import style
-from frictioncli.report.binning import binned, bins_of, levels, parting, series_of
+from frictioncli.report.binning import (
+    bin_means,
+    bin_numbers,
+    group_boundaries,
+    merge_close_values,
+    residual_series,
+)
 from frictioncli.report.evidence_figure import evidence_figure, shown_probabilities
-from frictioncli.report.residual_maps import Scale, cell_means, colour_limit, map_figure
+from frictioncli.report.residual_maps import MapAxis, cell_means, colour_limit, residual_map_figure
 from frictioncli.report.results import read_results
-from frictioncli.report.simulated_torque import gain_figure, simulated_rows, simulation_figure
+from frictioncli.report.simulation_figures import gain_figure, simulated_rows, simulation_figure
 from tests.report.test_report_diagnosis import SHIFT, boundary, diagnosed
 
 
@@ -48,7 +54,7 @@ def points_of(panel):
 
 
 def test_evidence_shows_residuals_the_term_and_what_is_left(results, recalled):
-    with style.styled():
+    with style.style_context():
         figure = evidence_figure(results, recalled=recalled, number=0)
     left, middle, right, bars = figure.axes
     table, raw = recalled.seen.problem.table, recalled.seen.before["friction"]
@@ -92,7 +98,7 @@ def test_errors_are_taken_over_pairs():
             "term": [0.5] * 8,
         }
     )
-    found = binned(rows)
+    found = bin_means(rows)
     np.testing.assert_allclose(found.mean, [4.0, 1.0])
     assert found.error[0] == pytest.approx(np.std([2, 4, 6], ddof=1) / np.sqrt(3))
     assert np.isnan(found.error[1])
@@ -101,34 +107,34 @@ def test_errors_are_taken_over_pairs():
 
 def test_bins_follow_what_was_measured():
     speed = np.array([10.0, 10.05, 50.0, 99.0])
-    assert bins_of("speed", speed).tolist() == [0, 0, 1, 2]
-    assert levels(speed)[0] == levels(speed)[1] == pytest.approx(10.025)
-    assert bins_of("order", np.arange(10.0)).tolist() == [0, 1, 2, 3, 4, 4, 5, 5, 6, 6]
-    assert parting(np.arange(5.0), 2).tolist() == [2.5]
-    assert set(bins_of("temperature", np.linspace(20, 60, 500))) == set(range(12))
+    assert bin_numbers("speed", speed).tolist() == [0, 0, 1, 2]
+    assert merge_close_values(speed)[0] == merge_close_values(speed)[1] == pytest.approx(10.025)
+    assert bin_numbers("order", np.arange(10.0)).tolist() == [0, 1, 2, 3, 4, 4, 5, 5, 6, 6]
+    assert group_boundaries(np.arange(5.0), 2).tolist() == [2.5]
+    assert set(bin_numbers("temperature", np.linspace(20, 60, 500))) == set(range(12))
 
 
 def test_rows_are_split_where_an_effect_would_cancel(recalled):
     table = recalled.seen.problem.table
-    warm, cool = series_of(table, "motor_temperature", "friction")
+    warm, cool = residual_series(table, "motor_temperature", "friction")
     assert not (warm.rows & cool.rows).any()
     hours = table.time / 3600
     assert warm.rows[(hours > 0.6) & (hours < 1.6)].all()
     assert cool.rows[(hours > 2.4) & (hours < 6.0)].all()
-    above, below = series_of(table, "clock", "load")
+    above, below = residual_series(table, "clock", "load")
     assert (table.load[above.rows] > 0).all()
     assert (table.load[below.rows] <= 0).all()
-    assert len(series_of(table, "clock", "friction")) == 1
+    assert len(residual_series(table, "clock", "friction")) == 1
 
 
 def test_maps_hold_cell_means_about_zero(results, recalled):
-    with style.styled():
-        figure = map_figure(results, recalled=recalled)
+    with style.style_context():
+        figure = residual_map_figure(results, recalled=recalled)
     table, missed = recalled.seen.problem.table, recalled.seen.before["friction"]
     mesh = figure.axes[0].collections[0]
     assert mesh.norm.vmin == -mesh.norm.vmax
     shown = np.ma.filled(mesh.get_array().astype(float), np.nan)
-    assert shown.shape[0] == len(np.unique(levels(table.speed)))
+    assert shown.shape[0] == len(np.unique(merge_close_values(table.speed)))
     edges = np.linspace(table.temperature.min(), table.temperature.max(), 10)
     for speed, row in ((19.1, 3), (101.2, 8)):
         for column, (low, high) in enumerate(pairwise(edges)):
@@ -143,8 +149,8 @@ def test_maps_hold_cell_means_about_zero(results, recalled):
 
 
 def test_empty_cells_are_not_zero_and_noise_is_pale():
-    across = Scale("a", np.array([0.5, 0.6, 2.5, 2.6]), np.arange(4.0))
-    up = Scale("b", np.zeros(4), np.array([0.0, 1.0]))
+    across = MapAxis("a", np.array([0.5, 0.6, 2.5, 2.6]), np.arange(4.0))
+    up = MapAxis("b", np.zeros(4), np.array([0.0, 1.0]))
     mean, error = cell_means(across, up, np.array([1.0, 3.0, -1.0, 1.0]), np.array([0, 0, 1, 1]))
     np.testing.assert_allclose(mean, [[2.0, np.nan, 0.0]])
     scatter = np.sqrt(4 / 2)
@@ -162,7 +168,7 @@ def test_simulated_torque_is_measured_less_the_misfit(results, recalled):
         [rows[name] - rows[f"{name}_simulated"] for name in ("forward", "reverse")]
     )
     np.testing.assert_allclose(np.sort(shown), np.sort(missed), atol=1e-9)
-    with style.styled():
+    with style.style_context():
         figure = simulation_figure(results, recalled=recalled)
     said = texts(figure)
     assert "torque u [N·m]" in said
@@ -176,7 +182,7 @@ def test_simulated_torque_is_measured_less_the_misfit(results, recalled):
 
 
 def test_gain_shows_the_new_run_and_the_noise_floor(results, recalled):
-    with style.styled():
+    with style.style_context():
         figure = gain_figure(results, recalled=recalled)
     new = recalled.new
     label = next(text for text in texts(figure) if text.startswith("base model"))

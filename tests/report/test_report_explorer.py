@@ -12,7 +12,7 @@ from frictioncli import schemas, tables
 from frictioncli.correction.settings import EvaluationGrid, ScheduleSettings
 from frictioncli.provenance import Provenance
 from frictioncli.report.explorer import explorers
-from frictioncli.report.labels import number
+from frictioncli.report.labels import number_text
 from frictioncli.report.page import write_report
 from frictioncli.report.results import read_results
 from frictioncli.stages.evaluate import evaluate
@@ -70,8 +70,8 @@ def test_every_cell_says_what_the_evaluation_says(copied, flavour):
     seen = 0
     for phase, k, tmax, place, schedule in every_cell(data, data["models"][flavour]):
         row = first.loc[(phase["run"], phase["phase"], k, tmax)]
-        assert phase["epsilon"][place] == number(row["epsilon"])
-        assert phase["none"] == number(never[phase["run"], phase["phase"]])
+        assert phase["epsilon"][place] == number_text(row["epsilon"])
+        assert phase["none"] == number_text(never[phase["run"], phase["phase"]])
         assert len(schedule["time"]) == row["corrections"]
         assert len(schedule["failed"]) == row["failed"]
         drawn = np.sqrt(np.mean(np.square(errors(phase, schedule)[0])))
@@ -124,7 +124,7 @@ def test_two_cycles_of_a_run_are_one_phase_each(copied):
     assert [phase["phase"] for phase in phases] == ["heat-up", "cool-down"]
     for phase, k, tmax, place, schedule in every_cell(found.data, phases):
         row = first.loc[(phase["phase"], k, tmax)]
-        assert phase["epsilon"][place] == number(row["epsilon"])
+        assert phase["epsilon"][place] == number_text(row["epsilon"])
         assert len(schedule["time"]) == row["corrections"]
         drawn = np.sqrt(np.mean(np.square(errors(phase, schedule)[0])))
         assert drawn == pytest.approx(row["epsilon"], abs=2e-3)

@@ -11,26 +11,26 @@ from matplotlib.colors import to_hex
 from matplotlib.text import Text
 
 from frictioncli.report import style
-from frictioncli.report.corrected_friction import corrected_estimates
-from frictioncli.report.epsilon_figures import (
-    counts_shown,
-    error_against_corrections,
+from frictioncli.report.correction_figures import corrected_friction_figure
+from frictioncli.report.evaluation_figure import (
+    error_figure,
     setting_text,
+    shown_counts,
     uncertainty_text,
 )
-from frictioncli.report.figure_list import FIGURES
-from frictioncli.report.labels import plain
-from frictioncli.report.load_and_speed import (
-    at_reference_temperature,
-    friction_against_load,
-    friction_against_speed,
-    telling_pairs,
+from frictioncli.report.figures import FIGURES
+from frictioncli.report.labels import figure_text
+from frictioncli.report.load_speed_figures import (
+    friction_at_reference_temperature,
+    load_figure,
+    representative_pairs,
+    speed_figure,
 )
-from frictioncli.report.residuals import residual_figure, residuals
+from frictioncli.report.residual_figure import residual_figure, residuals
 from frictioncli.report.thermal_figures import (
-    branch_means_with_model,
-    friction_against_temperature,
-    temperatures_over_time,
+    branch_means_figure,
+    friction_temperature_figure,
+    temperature_figure,
 )
 
 ENTRIES = {entry.name: entry for entry in FIGURES}
@@ -51,7 +51,7 @@ def at_zero_load(speed, temperature):
 
 
 def test_load_figure_shows_the_parabola_and_takes_the_shift_away(two_runs):
-    figure = friction_against_load(two_runs)
+    figure = load_figure(two_runs)
     curves, shifted = figure.axes[0], figure.axes[1]
     parabola = next(line for line in shifted.lines if line.get_label() == "α L²")
     load = np.asarray(parabola.get_xdata())
@@ -64,21 +64,21 @@ def test_load_figure_shows_the_parabola_and_takes_the_shift_away(two_runs):
 
 
 def test_load_figure_names_speed_and_temperature_of_each_curve(two_runs):
-    shown = texts(friction_against_load(two_runs))
+    shown = texts(load_figure(two_runs))
     assert "2.3 deg/s, 25 °C" in shown
     assert "19.1 deg/s, 65 °C" in shown
 
 
 def test_curves_span_cold_and_hot_where_there_is_no_sweep(two_runs):
     pairs = two_runs.thermal_pairs
-    chosen = telling_pairs(pairs[pairs["run"] == "day-1"])
+    chosen = representative_pairs(pairs[pairs["run"] == "day-1"])
     assert len(chosen) == 8
     assert chosen.groupby("speed")["motor_temperature"].agg(np.ptp).min() > 35
 
 
 def test_temperature_figure_writes_the_duration_of_each_phase(two_runs):
     """Heating pairs lie 5490 s apart, cooling pairs 17490 s: 92 min, and 4 h 52 min."""
-    figure = temperatures_over_time(two_runs)
+    figure = temperature_figure(two_runs)
     shown = texts(figure)
     assert "heating, 92 min" in shown
     assert "cooling, 4 h 52 min" in shown
@@ -90,7 +90,7 @@ def test_temperature_figure_writes_the_duration_of_each_phase(two_runs):
 
 @pytest.mark.parametrize("kind", ["motor", "housing"])
 def test_heating_is_filled_and_cooling_hollow(two_runs, kind):
-    axes = friction_against_temperature(two_runs, kind).axes[0]
+    axes = friction_temperature_figure(two_runs, kind).axes[0]
     lines = data_lines(axes)
     assert [len(line.get_xdata()) for line in lines] == [10, 30] * 4
     for heating, cooling in zip(lines[::2], lines[1::2], strict=True):
@@ -104,7 +104,7 @@ def test_heating_is_filled_and_cooling_hollow(two_runs, kind):
 
 
 def test_model_curve_of_the_means_follows_the_equation(two_runs):
-    axes = branch_means_with_model(two_runs).axes[0]
+    axes = branch_means_figure(two_runs).axes[0]
     points, curve = data_lines(axes)[-2:]
     np.testing.assert_allclose(
         curve.get_ydata(), at_zero_load(101.2, np.asarray(curve.get_xdata())), rtol=1e-12
@@ -116,12 +116,12 @@ def test_model_curve_of_the_means_follows_the_equation(two_runs):
 def test_friction_is_carried_to_20_degrees_by_equation_15(two_runs):
     """40 N·m at 65 °C and 67.5 deg/s is 40 + 15.66 (e^-1.12 - e^-3.64) 8.2158 = 78.60 N·m."""
     one = two_runs.pairs.iloc[:1].assign(speed=67.5, temperature=65.0, friction_torque=40.0)
-    carried = at_reference_temperature(replace(two_runs, pairs=one))
+    carried = friction_at_reference_temperature(replace(two_runs, pairs=one))
     assert carried["carried"].iloc[0] == pytest.approx(78.60, abs=0.01)
 
 
 def test_speed_figure_shows_all_speeds_and_the_model(two_runs):
-    axes = friction_against_speed(two_runs).axes[0]
+    axes = speed_figure(two_runs).axes[0]
     means = next(line for line in axes.lines if line.get_label() == "mean of the pairs at a speed")
     np.testing.assert_allclose(
         sorted(means.get_xdata()), [2.3, 5, 10, 19.1, 30, 43, 67.5, 85, 101.2]
@@ -132,7 +132,7 @@ def test_speed_figure_shows_all_speeds_and_the_model(two_runs):
 
 @pytest.mark.parametrize("phase", ["heat-up", "cool-down"])
 def test_every_correction_has_its_line_and_value(two_runs, phase):
-    figure = corrected_estimates(two_runs, phase)
+    figure = corrected_friction_figure(two_runs, phase)
     schedule = two_runs.schedule
     own = schedule[(schedule["run"] == "day-1") & (schedule["phase"] == phase)]
     own = own.sort_values("time")
@@ -149,7 +149,7 @@ def test_every_correction_has_its_line_and_value(two_runs, phase):
 
 def test_bars_are_as_high_as_the_errors(two_runs):
     """The made errors are 4/n in heating and 5/n in cooling; equal: 1.3, uncertainty: 0.9 times."""
-    axes, lowest = error_against_corrections(two_runs).axes
+    axes, lowest = error_figure(two_runs).axes
     heating, cooling = axes.containers
     counts = np.array([2, 3, 6, 14, 25])
     np.testing.assert_allclose([bar.get_height() for bar in heating], 4 / counts)
@@ -170,14 +170,14 @@ def test_of_many_counts_the_shared_and_then_the_lowest_are_shown(two_runs):
     row = two_runs.evaluation.iloc[[0]]
     many = row.loc[row.index.repeat(60)].assign(corrections=range(1, 61))
     both = pd.concat([many, row.assign(corrections=40, phase="cool-down")])
-    assert counts_shown(many) == list(range(1, 15))
-    assert counts_shown(both) == [*range(1, 14), 40]
+    assert shown_counts(many) == list(range(1, 15))
+    assert shown_counts(both) == [*range(1, 14), 40]
 
 
 def test_runs_share_the_counts_of_the_axis(two_runs):
     table = two_runs.evaluation
     fewer = table[(table["run"] == "day-1") | (table["corrections"] < 10)]
-    upper, lower = error_against_corrections(replace(two_runs, evaluation=fewer)).axes
+    upper, lower = error_figure(replace(two_runs, evaluation=fewer)).axes
     shown = ["0", "2", "3", "6", "14", "25"]
     assert [tick.get_text() for tick in lower.get_xticklabels()] == shown
     assert [len(bars) for bars in upper.containers] == [5, 5]
@@ -196,7 +196,7 @@ def by_uncertainty(results):
 
 
 def test_a_simulated_bound_takes_the_bars_and_the_paper_the_marks(two_runs):
-    axes, lowest = error_against_corrections(by_uncertainty(two_runs)).axes
+    axes, lowest = error_figure(by_uncertainty(two_runs)).axes
     heating, _ = axes.containers
     np.testing.assert_allclose(
         [bar.get_height() for bar in heating], 0.9 * 4 / np.array([1, 6, 14])
@@ -241,7 +241,7 @@ def test_axes_say_ampere_where_the_log_has_current(current_log, name):
 
 @pytest.mark.parametrize("name", list(ENTRIES))
 def test_axes_have_units_and_text_is_readable(current_log, name):
-    with style.styled():
+    with style.style_context():
         figure = ENTRIES[name].draw(current_log)
     labels = [axes.get_ylabel() for axes in figure.axes] + [
         axes.get_xlabel() for axes in figure.axes
@@ -254,10 +254,10 @@ def test_axes_have_units_and_text_is_readable(current_log, name):
 def test_a_speed_has_one_colour_in_all_figures(two_runs):
     wanted = two_runs.style(67.5).colour
     for draw in (
-        friction_against_load,
-        branch_means_with_model,
-        lambda r: friction_against_temperature(r, "motor"),
-        lambda r: corrected_estimates(r, "cool-down"),
+        load_figure,
+        branch_means_figure,
+        lambda r: friction_temperature_figure(r, "motor"),
+        lambda r: corrected_friction_figure(r, "cool-down"),
     ):
         figure = draw(two_runs)
         named = [t for t in figure.findobj(Text) if t.get_text().startswith("67.5 deg/s")]
@@ -284,10 +284,10 @@ def test_without_temperature_there_is_a_statement(without_temperature, name):
 
 
 def test_without_temperature_speed_is_drawn_as_measured(without_temperature):
-    carried = at_reference_temperature(without_temperature)
+    carried = friction_at_reference_temperature(without_temperature)
     assert (carried["carried"] == carried["friction_torque"]).all()
     assert "could not be carried" in ENTRIES["fig8"].caption(without_temperature)
-    friction_against_speed(without_temperature)
+    speed_figure(without_temperature)
 
 
 def test_without_a_schedule_the_statement_names_the_command(two_runs):
@@ -306,7 +306,7 @@ def test_sweep_alone_has_no_phases(two_runs):
 
 
 def test_labels_are_moved_apart_and_keep_their_order():
-    with style.styled():
+    with style.style_context():
         _, (axes,) = style.panels(1, height=3.0)
         axes.plot([0, 1], [0, 100])
         style.label_right(axes, [(50.1, "b", "k"), (50.0, "a", "k"), (50.2, "c", "k")], height=3.0)
@@ -318,14 +318,14 @@ def test_labels_are_moved_apart_and_keep_their_order():
 
 
 def test_names_are_drawn_as_they_are():
-    assert plain("a$b") == r"a\$b"
-    assert plain("x\x01日") == "x??"
-    assert len(plain("n" * 500)) == 32
+    assert figure_text("a$b") == r"a\$b"
+    assert figure_text("x\x01日") == "x??"
+    assert len(figure_text("n" * 500)) == 32
 
 
 def test_drawing_leaves_global_settings_alone(two_runs):
     before = dict(matplotlib.rcParams)
-    with style.styled("salt"):
+    with style.style_context("salt"):
         ENTRIES["fig5"].draw(two_runs)
     assert dict(matplotlib.rcParams) == before
 

@@ -5,23 +5,23 @@ from dataclasses import replace
 import pytest
 
 from frictioncli.model.document import ParameterEstimate
-from frictioncli.report.quality_lights import (
+from frictioncli.report.quality_ratings import (
     FAIR,
     GOOD,
     POOR,
-    LightReading,
-    clock_light,
-    lights,
-    model_light,
-    pairs_light,
-    parameters_light,
-    reading_light,
-    runs_light,
-    speeds_light,
-    temperature_light,
+    IngestCounts,
+    model_rating,
+    pairs_rating,
+    parameters_rating,
+    quality_ratings,
+    reading_rating,
+    runs_rating,
+    speeds_rating,
+    temperature_rating,
+    time_rating,
 )
 
-CLEAN = LightReading(rows=10_000, rejected=0, files=8, lost=0, time_known=True, warnings=0)
+CLEAN = IngestCounts(rows=10_000, rejected=0, files=8, lost=0, time_known=True, warnings=0)
 
 
 @pytest.mark.parametrize(
@@ -36,61 +36,61 @@ CLEAN = LightReading(rows=10_000, rejected=0, files=8, lost=0, time_known=True, 
     ],
 )
 def test_reading_goes_by_the_share_of_rejected_rows(changed, level):
-    assert reading_light(replace(CLEAN, **changed)).level == level
+    assert reading_rating(replace(CLEAN, **changed)).level == level
 
 
 def test_reading_tells_its_numbers():
-    told = reading_light(replace(CLEAN, rejected=11, lost=2)).reason.replace("\u202f", " ")
+    told = reading_rating(replace(CLEAN, rejected=11, lost=2)).reason.replace("\u202f", " ")
     assert told == "11 of 10 000 rows in 8 files rejected; 2 files could not be used at all."
 
 
 def test_an_unknown_clock_is_poor_and_a_warning_fair():
-    assert clock_light(CLEAN).level == GOOD
-    assert clock_light(replace(CLEAN, warnings=1)).level == FAIR
-    poor = clock_light(replace(CLEAN, time_known=False))
+    assert time_rating(CLEAN).level == GOOD
+    assert time_rating(replace(CLEAN, warnings=1)).level == FAIR
+    poor = time_rating(replace(CLEAN, time_known=False))
     assert (poor.level, "manifest.csv" in poor.reason) == (POOR, True)
 
 
 def test_runs_pairs_and_speeds(two_runs, without_temperature):
-    assert runs_light(two_runs).level == GOOD
-    assert runs_light(without_temperature).level == FAIR
-    assert pairs_light(two_runs).level == GOOD
-    assert pairs_light(replace(two_runs, pairs=two_runs.pairs[:99])).level == FAIR
-    assert pairs_light(replace(two_runs, pairs=two_runs.pairs[:29])).level == POOR
-    assert speeds_light(two_runs).level == GOOD
+    assert runs_rating(two_runs).level == GOOD
+    assert runs_rating(without_temperature).level == FAIR
+    assert pairs_rating(two_runs).level == GOOD
+    assert pairs_rating(replace(two_runs, pairs=two_runs.pairs[:99])).level == FAIR
+    assert pairs_rating(replace(two_runs, pairs=two_runs.pairs[:29])).level == POOR
+    assert speeds_rating(two_runs).level == GOOD
     styles = two_runs.styles
     near = replace(two_runs, styles={s: styles[s] for s in (30.0, 43.0, 67.5, 85.0)})
-    assert speeds_light(near).level == FAIR
+    assert speeds_rating(near).level == FAIR
     one = replace(two_runs, styles={30.0: styles[30.0]})
-    assert speeds_light(one).level == POOR
-    assert speeds_light(one).reason.startswith("30 deg/s; good from 4 speeds")
+    assert speeds_rating(one).level == POOR
+    assert speeds_rating(one).reason.startswith("30 deg/s; good from 4 speeds")
 
 
 def test_temperature_goes_by_span_and_by_phases(two_runs, without_temperature):
-    good = temperature_light(two_runs)
+    good = temperature_rating(two_runs)
     assert good.level == GOOD
     assert "in heating and cooling" in good.reason
     pairs = two_runs.pairs
     heated = replace(two_runs, pairs=pairs[pairs["phase"] != "cool-down"])
-    assert temperature_light(heated).level == FAIR
-    assert "Only heating was measured" in temperature_light(heated).reason
+    assert temperature_rating(heated).level == FAIR
+    assert "Only heating was measured" in temperature_rating(heated).reason
     warm = replace(two_runs, pairs=pairs[pairs["motor_temperature"].between(30.0, 45.0)])
-    assert temperature_light(warm).level == FAIR
+    assert temperature_rating(warm).level == FAIR
     tepid = replace(two_runs, pairs=pairs[pairs["motor_temperature"].between(30.0, 35.0)])
-    assert temperature_light(tepid).level == POOR
-    assert "no motor temperature" in temperature_light(without_temperature).reason
+    assert temperature_rating(tepid).level == POOR
+    assert "no motor temperature" in temperature_rating(without_temperature).reason
     swept = replace(two_runs, pairs=pairs[pairs["phase"] == "sweep"])
-    assert "No heating or cooling" in temperature_light(swept).reason
+    assert "No heating or cooling" in temperature_rating(swept).reason
 
 
 def test_parameters(two_runs, without_temperature):
-    assert parameters_light(two_runs).level == GOOD
+    assert parameters_rating(two_runs).level == GOOD
     wide = ParameterEstimate(estimate=2.0, ci95=(0.9, 3.1), unit="N·m", determined=True)
     model = two_runs.model
     rough = replace(model, parameters=dict(model.parameters) | {"tau_c": wide})
-    light = parameters_light(replace(two_runs, model=rough))
+    light = parameters_rating(replace(two_runs, model=rough))
     assert (light.level, "but τc only" in light.reason) == (FAIR, True)
-    light = parameters_light(without_temperature)
+    light = parameters_rating(without_temperature)
     assert (light.level, light.reason) == (POOR, "The data do not determine γ and δ.")
 
 
@@ -105,16 +105,16 @@ def test_parameters(two_runs, without_temperature):
 )
 def test_model_goes_by_the_verdict(two_runs, verdict, effects, level, word):
     document = {"verdict": verdict, "causes": [{"effects": effects}], "simulation": {"rmse": 3.0}}
-    light = model_light(two_runs, document)
+    light = model_rating(two_runs, document)
     assert light.level == level
     assert word in light.reason
     assert "3.00 N·m (RMS)" in light.reason
 
 
 def test_every_light_has_a_reason(two_runs):
-    found = lights(two_runs, CLEAN, None)
+    found = quality_ratings(two_runs, CLEAN, None)
     assert len(found) == 8
     assert all(light.level in (GOOD, FAIR, POOR) for light in found)
     assert all(light.reason.endswith(".") for light in found)
-    unread = lights(two_runs, replace(CLEAN, files=0, time_known=None), None)
+    unread = quality_ratings(two_runs, replace(CLEAN, files=0, time_known=None), None)
     assert len(unread) == 6

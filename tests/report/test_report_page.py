@@ -8,10 +8,10 @@ from itertools import pairwise
 import pytest
 
 from frictioncli.errors import TableError
-from frictioncli.report.labels import listed
+from frictioncli.report.labels import list_text
 from frictioncli.report.page import write_report
+from frictioncli.report.page_tables import epsilon_tables
 from frictioncli.report.parameters import is_published_joint, parameter_rows
-from frictioncli.report.text_tables import epsilon_tables
 
 HOSTILE = "<script>alert(1)</script>&\"'$\\frac{kr10$\u202e=1+1\x1b"
 
@@ -160,5 +160,5 @@ def test_errors_stand_beside_the_number_of_corrections(two_runs):
 
 
 def test_long_lists_are_cut():
-    assert listed(["a"]) == "a"
-    assert listed(list("abcdefg")) == "a, b, c, d, e and 2 more"
+    assert list_text(["a"]) == "a"
+    assert list_text(list("abcdefg")) == "a, b, c, d, e and 2 more"

@@ -7,11 +7,16 @@ import numpy as np
 import pytest
 
 from frictioncli.model.document import ParameterEstimate
-from frictioncli.report.formula import formula, symbols, unit_markup
-from frictioncli.report.parameters import correlation_table, correlation_text, unknowns
+from frictioncli.report.formula import formula_symbols, friction_formula, unit_markup
+from frictioncli.report.page_tables import epsilon_tables
+from frictioncli.report.parameters import correlation_table, correlation_text, limitations
 from frictioncli.report.results import read_results
-from frictioncli.report.summary import corrections_needed, key_figures, measured, summary
-from frictioncli.report.text_tables import epsilon_tables
+from frictioncli.report.summary import (
+    corrections_needed,
+    key_numbers,
+    measurement_text,
+    summary_text,
+)
 
 DIAGNOSIS = {
     "verdict": "named",
@@ -36,20 +41,20 @@ def error(results, run, phase):
 
 
 def test_formula_has_the_numbers_with_their_units(two_runs, without_temperature):
-    assert formula(two_runs).striptags() == (
+    assert friction_formula(two_runs).striptags() == (
         "τ = 10.57 N·m + 0.001400/(N·m) · L² + (3.480 N·m/(deg/s)½ + 15.66 N·m/(deg/s)½"
         " · e−0.05600/°C · T) · √v"
     )
-    assert formula(without_temperature).striptags() == (
+    assert friction_formula(without_temperature).striptags() == (
         "τ = 10.57 N·m + 0.001400/(N·m) · L² + 6.500 N·m/(deg/s)½ · √v"
     )
-    assert "T: motor temperature Tm in °C" in symbols(two_runs)
-    assert "T:" not in symbols(without_temperature)
+    assert "T: motor temperature Tm in °C" in formula_symbols(two_runs)
+    assert "T:" not in formula_symbols(without_temperature)
     assert unit_markup("<b>^2") == "&lt;b&gt;²"
 
 
 def test_verdict_gives_error_corrections_and_what_they_bring(two_runs):
-    text = summary(two_runs)
+    text = summary_text(two_runs)
     heating = sorted(error(two_runs, run, "heat-up") for run in two_runs.runs)
     cooling = sorted(error(two_runs, run, "cool-down") for run in two_runs.runs)
     # both made runs have the same zone temperatures
@@ -62,7 +67,7 @@ def test_verdict_gives_error_corrections_and_what_they_bring(two_runs):
 
 
 def test_errors_of_two_models_are_not_set_against_each_other(two_runs):
-    text = summary(replace(two_runs, simulated_extended=True))
+    text = summary_text(replace(two_runs, simulated_extended=True))
     assert "extended model" in text
     assert "against" not in text
 
@@ -72,33 +77,33 @@ def test_what_was_evaluated_with_the_extended_model_says_so(two_runs):
     assert corrections_needed(extended).beside.endswith(", extended model")
     assert epsilon_tables(extended)[0].title.startswith("day-1, extended model: error")
     never = replace(two_runs, schedule=two_runs.schedule.assign(corrected=False, failed=False))
-    assert "(0 corrections)" in summary(never)
-    assert "against" not in summary(never)
+    assert "(0 corrections)" in summary_text(never)
+    assert "against" not in summary_text(never)
 
 
 def test_verdict_tells_the_causes_and_their_worth(two_runs):
-    text = summary(two_runs, DIAGNOSIS)
+    text = summary_text(two_runs, DIAGNOSIS)
     assert "The function lacks thermal lag; extended by that" in text
     assert "on day-2, which it has not seen, by 1.00 N·m instead of 5.00 N·m" in text
     unsure = deepcopy(DIAGNOSIS)
     unsure["gain"]["ci95"] = [-0.1, 0.9]
-    assert summary(two_runs, unsure).endswith("The function lacks thermal lag.")
+    assert summary_text(two_runs, unsure).endswith("The function lacks thermal lag.")
     unsure |= {"verdict": "unnamed", "causes": [{"effects": []}], "gain": None}
-    assert "No known effect is named, and structure is left" in summary(two_runs, unsure)
+    assert "No known effect is named, and structure is left" in summary_text(two_runs, unsure)
     silent = unsure | {"verdict": "no_evidence", "causes": []}
-    assert "No cause was found" in summary(two_runs, silent)
+    assert "No cause was found" in summary_text(two_runs, silent)
 
 
 def test_verdict_says_what_is_not_determined(without_temperature):
-    assert "do not determine γ and δ" in summary(without_temperature)
+    assert "do not determine γ and δ" in summary_text(without_temperature)
 
 
 def test_what_was_measured(two_runs, without_temperature):
-    text = measured(two_runs)
+    text = measurement_text(two_runs)
     assert "2 runs (day-1 and day-2): 338 pairs" in text
     assert "9 speeds from 2.3 deg/s to 101.2 deg/s" in text
     assert "under loads from −39.8 to 38.6 N·m" in text
-    assert "without a motor temperature" in measured(without_temperature)
+    assert "without a motor temperature" in measurement_text(without_temperature)
 
 
 def test_fewest_corrections_that_suffice(two_runs, tmp_path, write_work):
@@ -115,7 +120,7 @@ def test_fewest_corrections_that_suffice(two_runs, tmp_path, write_work):
 
 
 def test_key_figures_have_units_and_what_to_read_them_with(two_runs, without_temperature):
-    names = [figure.name for figure in key_figures(two_runs, DIAGNOSIS)]
+    names = [figure.name for figure in key_numbers(two_runs, DIAGNOSIS)]
     assert names == [
         "error ε in heating",
         "error ε in cooling",
@@ -123,10 +128,10 @@ def test_key_figures_have_units_and_what_to_read_them_with(two_runs, without_tem
         "misfit of the fitted function",
         "misfit of the extended model",
     ]
-    last = key_figures(two_runs, DIAGNOSIS)[-1]
+    last = key_numbers(two_runs, DIAGNOSIS)[-1]
     assert last.value == "1.00 N·m"
     assert "on day-2, a run it has not seen; base model 5.00 N·m" in last.beside
-    assert [figure.name for figure in key_figures(without_temperature, None)] == [names[3]]
+    assert [figure.name for figure in key_numbers(without_temperature, None)] == [names[3]]
 
 
 @pytest.fixture
@@ -154,7 +159,7 @@ def test_correlations_stand_once(correlated, two_runs):
 def test_unknowns_are_told(correlated, without_temperature):
     vague = ParameterEstimate(estimate=2.0, ci95=(0.5, 3.5), unit="N·m", determined=True)
     parameters = dict(correlated.model.parameters) | {"beta": vague}
-    told = unknowns(
+    told = limitations(
         replace(correlated, model=replace(correlated.model, parameters=parameters)),
         DIAGNOSIS | {"causes": [{"effects": ["run_in", "drift"], "experiment": "Rest a day."}]},
     )
@@ -165,6 +170,6 @@ def test_unknowns_are_told(correlated, without_temperature):
         "Which of run in and drift is at work: these data cannot tell them apart. Rest a day.",
         "Whether there is drift: these data cannot show it.",
     ]
-    alone = unknowns(without_temperature, None)
+    alone = limitations(without_temperature, None)
     assert alone[0] == ("γ is not determined: the log has no temperature; merged into beta.")
     assert "has not been judged" in alone[-1]

@@ -5,8 +5,8 @@ from datetime import datetime, timedelta
 import numpy as np
 import pytest
 
-from frictioncli.report.style import styled
-from frictioncli.report.trend_figure import trend_figure, trend_pictures
+from frictioncli.report.style import style_context
+from frictioncli.report.trend_figure import trend_figure, trend_files
 
 
 def percent(value, half):
@@ -40,7 +40,7 @@ def document(*, dated=True, conditions=True, threshold=True):
 
 
 def drawn(**how):
-    with styled("trend"):
+    with style_context("trend"):
         return trend_figure(document(**how))
 
 
@@ -83,7 +83,7 @@ def test_without_conditions_or_dates_there_is_one_panel_over_the_order():
 
 
 def test_pictures_are_the_same_bytes_again():
-    assert trend_pictures(document()) == trend_pictures(document())
-    text, picture = trend_pictures(document())
+    assert trend_files(document()) == trend_files(document())
+    text, picture = trend_files(document())
     assert text.startswith('<?xml version="1.0" encoding="utf-8"?>\n<svg')
     assert picture.startswith(b"\x89PNG")

@@ -8,7 +8,7 @@ import pytest
 
 from frictioncli import schemas, tables
 from frictioncli.correction.settings import EvaluationGrid
-from frictioncli.report.labels import number
+from frictioncli.report.labels import number_text
 from frictioncli.report.page import write_report
 from frictioncli.report.results import read_results
 from frictioncli.stages.evaluate import evaluate
@@ -138,7 +138,7 @@ def assert_shown(driver, rows, k, tmax):
     shown = cells(driver)
     for phase, word in (("heat-up", "heating"), ("cool-down", "cooling")):
         row = rows.loc[(phase, k, tmax)]
-        assert shown[f"day-1, {word}"][:2] == [str(row["corrections"]), number(row["epsilon"])]
+        assert shown[f"day-1, {word}"][:2] == [str(row["corrections"]), number_text(row["epsilon"])]
     for phase, missed in zip(("heat-up", "cool-down"), drawn_errors(driver, "day-1"), strict=True):
         rms = np.sqrt(np.mean(np.square(missed)))
         assert rms == pytest.approx(rows.loc[(phase, k, tmax), "epsilon"], abs=0.01)

@@ -6,7 +6,13 @@ import pandas as pd
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from frictioncli.report.labels import CRITERION_WORDS, counted, number, plain, span
+from frictioncli.report.labels import (
+    CRITERION_WORDS,
+    count_text,
+    figure_text,
+    number_text,
+    range_text,
+)
 from frictioncli.report.results import MOST_RUNS, JointResults
 from frictioncli.report.style import (
     FAINT,
@@ -16,7 +22,7 @@ from frictioncli.report.style import (
     legend_above,
     panels,
 )
-from frictioncli.report.tooltips import tell
+from frictioncli.report.tooltips import set_tooltips
 
 BASELINES = ("none", "equal")
 """Criteria that others are compared with."""
@@ -34,7 +40,7 @@ _EQUAL: dict[str, Any] = {
 _OTHER: dict[str, Any] = _EQUAL | {"marker": "^", "markersize": 6, "markeredgecolor": "black"}
 
 
-def error_against_corrections(results: JointResults) -> Figure:
+def error_figure(results: JointResults) -> Figure:
     """Draw Figure 11: epsilon (21) against the number of corrections, heating beside cooling.
 
     Parameters
@@ -46,7 +52,7 @@ def error_against_corrections(results: JointResults) -> Figure:
     runs = sorted(results.evaluation["run"].unique())[:MOST_RUNS]
     evaluation = results.evaluation[results.evaluation["run"].isin(runs)]
     criteria = [criterion, *_other_criterion(criterion, evaluation)]
-    counts = counts_shown(evaluation[evaluation["criterion"].isin(criteria)])
+    counts = shown_counts(evaluation[evaluation["criterion"].isin(criteria)])
     figure, axes = panels(len(runs), height=3.4)
     for run, panel in zip(runs, axes, strict=True):
         own = evaluation[evaluation["run"] == run]
@@ -61,7 +67,7 @@ def error_against_corrections(results: JointResults) -> Figure:
         panel.plot([], [], color=FAINT, linestyle=_DASHES, linewidth=1.3, label="no correction")
         panel.set_xticks(range(len(counts)), [str(count) for count in counts])
         panel.grid(visible=False, axis="x")
-        panel.set_title(plain(run))
+        panel.set_title(figure_text(run))
         panel.set_ylabel(f"error ε [{results.unit}]")
         legend_above(panel)
     # the notes of failures stand on the bars and need room; all panels share the scale
@@ -88,7 +94,7 @@ def _phase_bars(
     # no corrections at all cannot be spaced
     known = known[(known["criterion"] != "equal") | (known["corrections"] > 0)]
     errors = {
-        name: error_per_count(known[known["criterion"] == name])
+        name: mean_error_per_count(known[known["criterion"] == name])
         for name in (criteria[0], "equal", *criteria[1:])
     }
     bars = errors[criteria[0]]
@@ -101,7 +107,7 @@ def _phase_bars(
         label=PHASE_WORDS[phase],
     )
     for bar, text in zip(drawn, _told(bars, phase, unit), strict=True):
-        tell(bar, [text])
+        set_tooltips(bar, [text])
     for name in list(errors)[1:]:
         (marks,) = panel.plot(
             [place[count] for count in errors[name].index],
@@ -110,7 +116,7 @@ def _phase_bars(
             **(_EQUAL if name == "equal" else _OTHER),
         )
         told = _told(errors[name], phase, unit)
-        tell(marks, [f"{CRITERION_WORDS[name]}, {text}" for text in told])
+        set_tooltips(marks, [f"{CRITERION_WORDS[name]}, {text}" for text in told])
     tops = pd.concat([each["epsilon"] for each in errors.values()]).groupby(level=0).max()
     for count, failed in zip(bars.index, bars["failed"], strict=True):
         if failed > 0:
@@ -132,7 +138,8 @@ def _phase_bars(
 
 def _told(errors: pd.DataFrame, phase: str, unit: str) -> list[str]:
     return [
-        f"{PHASE_WORDS[phase]}, {counted(int(count), 'correction')}: ε = {number(error)} {unit}"
+        f"{PHASE_WORDS[phase]}, {count_text(int(count), 'correction')}: ε = {number_text(error)}"
+        f" {unit}"
         for count, error in errors["epsilon"].items()
     ]
 
@@ -146,7 +153,7 @@ def _other_criterion(criterion: str, evaluation: pd.DataFrame) -> list[str]:
     return [name for name in others if name != criterion][:1]
 
 
-def error_per_count(rows: pd.DataFrame) -> pd.DataFrame:
+def mean_error_per_count(rows: pd.DataFrame) -> pd.DataFrame:
     """Return the mean error and the most failures over the settings of each correction count.
 
     Parameters
@@ -157,7 +164,7 @@ def error_per_count(rows: pd.DataFrame) -> pd.DataFrame:
     return rows.groupby("corrections").agg(epsilon=("epsilon", "mean"), failed=("failed", "max"))
 
 
-def counts_shown(rows: pd.DataFrame) -> list[int]:
+def shown_counts(rows: pd.DataFrame) -> list[int]:
     """Return the numbers of corrections that Figure 11 shows, at most fourteen.
 
     Those that most runs, phases and criteria have come first, for the sake of comparison, then the
@@ -231,8 +238,8 @@ def uncertainty_text(results: JointResults) -> str:
     for phase in PHASES:
         own = rows[(rows["phase"] == phase) & (rows["bound"] == bound)]
         if len(own):
-            counts = span([str(count) for count in sorted(own["corrections"])])
-            errors = span([number(error) for error in sorted(own["epsilon"])])
+            counts = range_text([str(count) for count in sorted(own["corrections"])])
+            errors = range_text([number_text(error) for error in sorted(own["epsilon"])])
             told.append(f"{PHASE_WORDS[phase]} {counts} corrections, ε {errors} {results.unit}")
     return (
         f"{_shape(results)}: corrections made where the predicted uncertainty of friction exceeds a"

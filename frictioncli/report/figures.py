@@ -6,27 +6,27 @@ from functools import partial
 
 from matplotlib.figure import Figure
 
-from frictioncli.report.corrected_friction import corrected_estimates
-from frictioncli.report.epsilon_figures import (
-    error_against_corrections,
+from frictioncli.report.correction_figures import corrected_friction_figure
+from frictioncli.report.evaluation_figure import (
+    error_figure,
     setting_text,
     uncertainty_text,
 )
 from frictioncli.report.labels import (
     TEMPERATURE_WORDS,
-    counted,
-    duration,
-    listed,
-    number,
+    count_text,
+    duration_text,
+    list_text,
+    number_text,
     speed_text,
 )
-from frictioncli.report.load_and_speed import (
+from frictioncli.report.load_speed_figures import (
     REFERENCE_TEMPERATURE,
-    carries_temperature,
-    friction_against_load,
-    friction_against_speed,
+    has_temperature_term,
+    load_figure,
+    speed_figure,
 )
-from frictioncli.report.requirements import (
+from frictioncli.report.missing_data import (
     any_temperature_missing,
     evaluation_missing,
     housing_temperature_missing,
@@ -37,20 +37,20 @@ from frictioncli.report.requirements import (
     schedule_missing,
     speeds_missing,
 )
-from frictioncli.report.residuals import residual_figure, residuals
+from frictioncli.report.residual_figure import residual_figure, residuals
 from frictioncli.report.results import MOST_RUNS, JointResults
 from frictioncli.report.style import PHASE_WORDS
 from frictioncli.report.thermal_figures import (
-    branch_means_with_model,
-    friction_against_temperature,
+    branch_means_figure,
+    friction_temperature_figure,
     phase_spans,
-    temperatures_over_time,
+    temperature_figure,
     thermal_runs,
 )
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class FigureEntry:
+class FigureSpec:
     """One figure of the report.
 
     Attributes
@@ -93,9 +93,9 @@ def _time_caption(results: JointResults) -> str:
             if phase in PHASE_WORDS and len(rows):
                 phases.append(
                     f"{PHASE_WORDS[phase]} from {rows.iloc[0]:.0f} to {rows.iloc[-1]:.0f} °C in"
-                    f" {duration(end - start)}"
+                    f" {duration_text(end - start)}"
                 )
-        told.append(f"{run}: {listed(phases)}")
+        told.append(f"{run}: {list_text(phases)}")
     temperatures = f" Motor temperature, {'; '.join(told)}." if told else ""
     return f"Temperatures at the measured pairs; the phases are shaded.{temperatures}"
 
@@ -107,8 +107,9 @@ def _temperature_caption(results: JointResults, kind: str) -> str:
     cold, hot = fastest.iloc[0], fastest.iloc[-1]
     return (
         f"Friction torque at zero load against the {name}; heating filled, cooling hollow. At"
-        f" {speed_text(cold['speed'])} it is {number(cold['friction_torque'])} {results.unit} at"
-        f" {cold[column]:.0f} °C and {number(hot['friction_torque'])} {results.unit} at"
+        f" {speed_text(cold['speed'])} it is {number_text(cold['friction_torque'])}"
+        f" {results.unit} at"
+        f" {cold[column]:.0f} °C and {number_text(hot['friction_torque'])} {results.unit} at"
         f" {hot[column]:.0f} °C. Where filled and hollow points differ at one temperature, the"
         f" {name} alone does not tell the friction."
     )
@@ -132,7 +133,7 @@ def _model_temperature(results: JointResults) -> str:
 
 
 def _speed_caption(results: JointResults) -> str:
-    if not carries_temperature(results):
+    if not has_temperature_term(results):
         carried = (
             "Friction torque at zero load as measured. It could not be carried to one temperature,"
             " because the model has no term of temperature."
@@ -171,7 +172,7 @@ def _evaluation_caption(results: JointResults) -> str:
 
 
 def _residual_caption(results: JointResults) -> str:
-    pairs = counted(residuals(results).groupby(["run", "pair"]).ngroups, "pair")
+    pairs = count_text(residuals(results).groupby(["run", "pair"]).ngroups, "pair")
     if thermal_runs(results, "motor_temperature", "housing_temperature"):
         lag = "; heating and cooling on different sides of zero point to a lag of temperature."
     else:
@@ -185,70 +186,70 @@ def _residual_caption(results: JointResults) -> str:
 
 
 FIGURES = (
-    FigureEntry(
+    FigureSpec(
         name="fig3",
         title="Figure 3. Friction against load",
         caption=_load_caption,
         missing=nothing_missing,
-        draw=friction_against_load,
+        draw=load_figure,
     ),
-    FigureEntry(
+    FigureSpec(
         name="fig4",
         title="Figure 4. Temperatures over time",
         caption=_time_caption,
         missing=any_temperature_missing,
-        draw=temperatures_over_time,
+        draw=temperature_figure,
     ),
-    FigureEntry(
+    FigureSpec(
         name="fig5",
         title="Figure 5. Friction against motor temperature",
         caption=partial(_temperature_caption, kind="motor"),
         missing=motor_temperature_missing,
-        draw=partial(friction_against_temperature, kind="motor"),
+        draw=partial(friction_temperature_figure, kind="motor"),
     ),
-    FigureEntry(
+    FigureSpec(
         name="fig6",
         title="Figure 6. Friction against housing temperature",
         caption=partial(_temperature_caption, kind="housing"),
         missing=housing_temperature_missing,
-        draw=partial(friction_against_temperature, kind="housing"),
+        draw=partial(friction_temperature_figure, kind="housing"),
     ),
-    FigureEntry(
+    FigureSpec(
         name="fig7",
         title="Figure 7. Mean of heating and cooling, with the model",
         caption=_means_caption,
         missing=means_missing,
-        draw=branch_means_with_model,
+        draw=branch_means_figure,
     ),
-    FigureEntry(
+    FigureSpec(
         name="fig8",
         title="Figure 8. Friction against speed",
         caption=_speed_caption,
         missing=speeds_missing,
-        draw=friction_against_speed,
+        draw=speed_figure,
     ),
-    FigureEntry(
+    FigureSpec(
         name="fig9",
         title="Figure 9. Corrected estimates through heating",
         caption=partial(_schedule_caption, phase="heat-up"),
         missing=partial(schedule_missing, phase="heat-up"),
-        draw=partial(corrected_estimates, phase="heat-up"),
+        draw=partial(corrected_friction_figure, phase="heat-up"),
     ),
-    FigureEntry(
+    FigureSpec(
         name="fig10",
         title="Figure 10. Corrected estimates through cooling",
         caption=partial(_schedule_caption, phase="cool-down"),
         missing=partial(schedule_missing, phase="cool-down"),
-        draw=partial(corrected_estimates, phase="cool-down"),
+        draw=partial(corrected_friction_figure, phase="cool-down"),
     ),
-    FigureEntry(
+    FigureSpec(
         name="fig11",
         title="Figure 11. Error against the number of corrections",
         caption=_evaluation_caption,
         missing=evaluation_missing,
-        draw=error_against_corrections,
+        draw=error_figure,
     ),
-    FigureEntry(
+    FigureSpec(
         name="residuals",
         title="What the model leaves",
         caption=_residual_caption,

@@ -10,10 +10,10 @@ from typing import Any
 import pandas as pd
 
 from frictioncli import schemas, tables
-from frictioncli.report.labels import counted, grouped
-from frictioncli.report.quality_lights import LightReading
+from frictioncli.report.labels import count_text, thousands_text
+from frictioncli.report.page_tables import TextTable
+from frictioncli.report.quality_ratings import IngestCounts
 from frictioncli.report.results import JointResults, read_optional
-from frictioncli.report.text_tables import TextTable
 
 _STORED = ("samples", "recordings", "rejected", "pairs", "torques", "schedule", "evaluation")
 
@@ -23,7 +23,7 @@ _MOST_INPUTS = 200
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Origin:
+class FileOrigin:
     """Where one file of the work folder comes from.
 
     Attributes
@@ -50,7 +50,7 @@ class Origin:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Quality:
+class DataSection:
     """What became of the data.
 
     Attributes
@@ -59,25 +59,25 @@ class Quality:
         Rows read, rejected and left out by pairing.
     notes : tuple of (str, str)
         Stage and what it noted.
-    origins : tuple of Origin
+    origins : tuple of FileOrigin
         Settings, versions and inputs per file.
     sentence : str
         The counts in a sentence.
     files : tuple of str
         The logs that were read.
-    reading : LightReading
+    reading : IngestCounts
         The counts that the lights judge.
     """
 
     counts: tuple[TextTable, ...]
     notes: tuple[tuple[str, str], ...]
-    origins: tuple[Origin, ...]
+    origins: tuple[FileOrigin, ...]
     sentence: str
     files: tuple[str, ...]
-    reading: LightReading
+    reading: IngestCounts
 
 
-def data_quality(work: Path, results: list[JointResults]) -> Quality:
+def data_section(work: Path, results: list[JointResults]) -> DataSection:
     """Collect counts, notes and provenance from the files of a work folder.
 
     Parameters
@@ -105,7 +105,7 @@ def data_quality(work: Path, results: list[JointResults]) -> Quality:
         if (work / name).exists():
             model = json.loads((work / name).read_text(encoding="utf-8"))
             origins.append(_origin(name, model.get("provenance") or {}))
-    return Quality(
+    return DataSection(
         counts=tuple(table for table in counts if table.rows),
         notes=(*_left_out(torques, results), *_notes(documents, recordings, results)),
         origins=_listed_once(origins),
@@ -115,8 +115,8 @@ def data_quality(work: Path, results: list[JointResults]) -> Quality:
     )
 
 
-def _reading(files: pd.DataFrame, rejected: pd.DataFrame, facts: Mapping[str, Any]) -> LightReading:
-    return LightReading(
+def _reading(files: pd.DataFrame, rejected: pd.DataFrame, facts: Mapping[str, Any]) -> IngestCounts:
+    return IngestCounts(
         rows=int(files["rows_read"].sum()),
         rejected=int(files["rows_rejected"].sum()),
         files=len(files),
@@ -139,7 +139,10 @@ def _read_table(files: pd.DataFrame) -> TextTable:
         (
             str(run),
             str(len(own)),
-            *(grouped(int(own[c].sum())) for c in ("rows_read", "rows_kept", "rows_rejected")),
+            *(
+                thousands_text(int(own[c].sum()))
+                for c in ("rows_read", "rows_kept", "rows_rejected")
+            ),
         )
         for run, own in files.groupby("run")
     ]
@@ -155,15 +158,15 @@ def _rejected_table(rejected: pd.DataFrame) -> TextTable:
     return TextTable(
         title="Rejected rows and files",
         header=("reason", "count"),
-        rows=tuple((_words(reason), grouped(int(n))) for reason, n in reasons.items()),
+        rows=tuple((_words(reason), thousands_text(int(n))) for reason, n in reasons.items()),
     )
 
 
 def _dropped_table(pairing: Mapping[str, Any], used: int) -> TextTable:
     dropped = pairing.get("dropped") or {}
-    rows = [(_words(reason), grouped(int(n))) for reason, n in dropped.items() if n]
+    rows = [(_words(reason), thousands_text(int(n))) for reason, n in dropped.items() if n]
     if rows:
-        rows.append(("used in pairs", grouped(used)))
+        rows.append(("used in pairs", thousands_text(used)))
     return TextTable(
         title="Samples left out by pairing", header=("reason", "samples"), rows=tuple(rows)
     )
@@ -180,12 +183,12 @@ def _sentence(
     if len(files):
         gone = int(files["rows_rejected"].sum())
         parts.append(
-            f"{counted(int(files['rows_read'].sum()), 'row')} were read from"
-            f" {counted(len(files), 'file')}, {counted(gone, 'row')} rejected"
+            f"{count_text(int(files['rows_read'].sum()), 'row')} were read from"
+            f" {count_text(len(files), 'file')}, {count_text(gone, 'row')} rejected"
         )
     whole_files = int(rejected["row"].isna().sum())
     if whole_files:
-        parts.append(f"{counted(whole_files, 'file')} could not be used at all")
+        parts.append(f"{count_text(whole_files, 'file')} could not be used at all")
     if pairing.get("samples"):
         share = 100.0 * used / float(pairing["samples"])
         parts.append(f"{share:.0f} % of the samples went into pairs")
@@ -206,7 +209,7 @@ def _notes(
     if not found:
         told = [n for notes in recordings["notes"].dropna() for n in str(notes).splitlines() if n]
         for note, count in Counter(told).items():
-            where = "" if count == len(recordings) else f" ({counted(count, 'recording')})"
+            where = "" if count == len(recordings) else f" ({count_text(count, 'recording')})"
             found[f"{note}{where}"] = "ingest"
     for joint in results:
         where = f"joint {joint.joint}: " if len(results) > 1 else ""
@@ -221,10 +224,10 @@ def _as_list(notes: Any) -> list[str]:
     return [str(note) for note in notes or ()]
 
 
-def _origin(file: str, document: Mapping[str, Any]) -> Origin:
+def _origin(file: str, document: Mapping[str, Any]) -> FileOrigin:
     settings = document.get("settings") or {}
     inputs = sorted((document.get("inputs") or {}).items())
-    return Origin(
+    return FileOrigin(
         file=file,
         stage=str(document.get("stage", "unknown")),
         version=str(document.get("version", "unknown")),
@@ -234,7 +237,7 @@ def _origin(file: str, document: Mapping[str, Any]) -> Origin:
     )
 
 
-def _listed_once(origins: list[Origin]) -> tuple[Origin, ...]:
+def _listed_once(origins: list[FileOrigin]) -> tuple[FileOrigin, ...]:
     """Let a file refer to the first one with the same inputs, where those are many."""
     first: dict[tuple[tuple[str, str], ...], str] = {}
     told = []

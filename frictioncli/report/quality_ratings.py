@@ -7,12 +7,12 @@ from typing import Any
 from frictioncli.model.document import PARAMETERS
 from frictioncli.report.labels import (
     PARAMETER_SYMBOLS,
-    counted,
-    grouped,
-    listed,
-    number,
+    count_text,
+    in_words,
+    list_text,
+    number_text,
     speed_text,
-    words,
+    thousands_text,
 )
 from frictioncli.report.results import JointResults
 from frictioncli.report.style import PHASE_WORDS, PHASES
@@ -31,7 +31,7 @@ _VAGUE = 0.5
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Light:
+class QualityRating:
     """One light.
 
     Attributes
@@ -50,7 +50,7 @@ class Light:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class LightReading:
+class IngestCounts:
     """What became of the logs.
 
     Attributes
@@ -73,77 +73,77 @@ class LightReading:
     warnings: int
 
 
-def lights(
-    results: JointResults, reading: LightReading, diagnosis: Mapping[str, Any] | None
-) -> list[Light]:
+def quality_ratings(
+    results: JointResults, reading: IngestCounts, diagnosis: Mapping[str, Any] | None
+) -> list[QualityRating]:
     """Return all lights of one joint.
 
     Parameters
     ----------
     results : JointResults
         The joint's results.
-    reading : LightReading
+    reading : IngestCounts
         What became of the logs.
     diagnosis : dict or None
         The joint's part of ``diagnosis.json``, if there is one.
     """
     return [
-        *([reading_light(reading)] if reading.files else []),
-        *([clock_light(reading)] if reading.time_known is not None else []),
-        runs_light(results),
-        pairs_light(results),
-        speeds_light(results),
-        temperature_light(results),
-        parameters_light(results),
-        model_light(results, diagnosis),
+        *([reading_rating(reading)] if reading.files else []),
+        *([time_rating(reading)] if reading.time_known is not None else []),
+        runs_rating(results),
+        pairs_rating(results),
+        speeds_rating(results),
+        temperature_rating(results),
+        parameters_rating(results),
+        model_rating(results, diagnosis),
     ]
 
 
-def reading_light(reading: LightReading) -> Light:
+def reading_rating(reading: IngestCounts) -> QualityRating:
     """Judge how much of the logs could be read."""
     share = reading.rejected / max(reading.rows, 1)
     level = _at_most(share, _REJECTED)
     if reading.lost and level == GOOD:
         level = FAIR
-    lost = f"; {counted(reading.lost, 'file')} could not be used at all" if reading.lost else ""
-    return Light(
+    lost = f"; {count_text(reading.lost, 'file')} could not be used at all" if reading.lost else ""
+    return QualityRating(
         level=level,
         name="Reading",
-        reason=f"{grouped(reading.rejected)} of {counted(reading.rows, 'row')} in"
-        f" {counted(reading.files, 'file')} rejected{lost}.",
+        reason=f"{thousands_text(reading.rejected)} of {count_text(reading.rows, 'row')} in"
+        f" {count_text(reading.files, 'file')} rejected{lost}.",
     )
 
 
-def clock_light(reading: LightReading) -> Light:
+def time_rating(reading: IngestCounts) -> QualityRating:
     """Judge whether times and units of the logs are sure."""
     if not reading.time_known:
-        return Light(
+        return QualityRating(
             level=POOR,
             name="Time",
             reason="The logs do not tell when each recording began, so effects of time and of"
             " temperature history cannot be judged. A manifest.csv tells it.",
         )
     if reading.warnings:
-        return Light(
+        return QualityRating(
             level=FAIR,
             name="Time and units",
-            reason=f"{counted(reading.warnings, 'warning')} of reading; see the notes below.",
+            reason=f"{count_text(reading.warnings, 'warning')} of reading; see the notes below.",
         )
-    return Light(
+    return QualityRating(
         level=GOOD, name="Time and units", reason="Start times are known; reading gave no warning."
     )
 
 
-def runs_light(results: JointResults) -> Light:
+def runs_rating(results: JointResults) -> QualityRating:
     """Judge whether there are runs enough to try the model on new data."""
     count = len(results.runs)
     if count > 1:
-        return Light(
+        return QualityRating(
             level=GOOD,
             name="Runs",
-            reason=f"{counted(count, 'run')}: a model can be tried on one that it has not seen.",
+            reason=f"{count_text(count, 'run')}: a model can be tried on one that it has not seen.",
         )
-    return Light(
+    return QualityRating(
         level=FAIR,
         name="Runs",
         reason="One run only: a slow drift cannot be told from an offset, and no other run is left"
@@ -151,17 +151,17 @@ def runs_light(results: JointResults) -> Light:
     )
 
 
-def pairs_light(results: JointResults) -> Light:
+def pairs_rating(results: JointResults) -> QualityRating:
     """Judge the number of pairs of counter-directed moves."""
     count = len(results.pairs)
-    return Light(
+    return QualityRating(
         level=_at_least(count, _PAIRS),
         name="Pairs",
-        reason=f"{counted(count, 'pair')} of counter-directed moves; good from {_PAIRS[0]}.",
+        reason=f"{count_text(count, 'pair')} of counter-directed moves; good from {_PAIRS[0]}.",
     )
 
 
-def speeds_light(results: JointResults) -> Light:
+def speeds_rating(results: JointResults) -> QualityRating:
     """Judge whether the speeds tell Coulomb from viscous friction."""
     speeds = sorted(results.styles)
     level = _worst(
@@ -172,14 +172,14 @@ def speeds_light(results: JointResults) -> Light:
         if len(speeds) == 1
         else f"{len(speeds)} speeds, {speed_text(speeds[0])} to {speed_text(speeds[-1])}"
     )
-    return Light(
+    return QualityRating(
         level=level,
         name="Speeds",
         reason=f"{told}; good from {_SPEEDS[0]} speeds over a ratio of {_SPEED_RATIOS[0]:g}.",
     )
 
 
-def temperature_light(results: JointResults) -> Light:
+def temperature_rating(results: JointResults) -> QualityRating:
     """Judge whether the joint was heated and cooled far enough, in every run."""
     warm = results.thermal_pairs["motor_temperature"].dropna()
     if warm.empty:
@@ -188,7 +188,7 @@ def temperature_light(results: JointResults) -> Light:
             if results.has("motor_temperature")
             else "The log has no motor temperature"
         )
-        return Light(
+        return QualityRating(
             level=POOR,
             name="Temperature",
             reason=f"{lacking}: what temperature does to friction stays unknown.",
@@ -200,41 +200,41 @@ def temperature_light(results: JointResults) -> Light:
     if len(found) == 1:
         level = _worst(level, FAIR)
         alone = f" Only {PHASE_WORDS[found[0]]} was measured, so a lag cannot be seen."
-    return Light(
+    return QualityRating(
         level=level,
         name="Temperature",
         reason=f"Motor from {warm.min():.0f} to {warm.max():.0f} °C in"
-        f" {listed([PHASE_WORDS[phase] for phase in found])}; good from a span of"
+        f" {list_text([PHASE_WORDS[phase] for phase in found])}; good from a span of"
         f" {_TEMPERATURE_SPANS[0]:.0f} °C.{alone}",
     )
 
 
-def parameters_light(results: JointResults) -> Light:
+def parameters_rating(results: JointResults) -> QualityRating:
     """Judge how well the data determine the model's parameters."""
     stated = results.model.parameters
     unknown = [PARAMETER_SYMBOLS[name] for name in PARAMETERS if not stated[name].determined]
     if unknown:
-        return Light(
+        return QualityRating(
             level=POOR,
             name="Parameters",
-            reason=f"The data do not determine {listed(unknown)}.",
+            reason=f"The data do not determine {list_text(unknown)}.",
         )
-    rough = [PARAMETER_SYMBOLS[name] for name in vague_parameters(results)]
+    rough = [PARAMETER_SYMBOLS[name] for name in imprecise_parameters(results)]
     if rough:
-        return Light(
+        return QualityRating(
             level=FAIR,
             name="Parameters",
-            reason=f"All determined, but {listed(rough)} only to within more than"
+            reason=f"All determined, but {list_text(rough)} only to within more than"
             f" ±{100 * _VAGUE:.0f} %.",
         )
-    return Light(
+    return QualityRating(
         level=GOOD,
         name="Parameters",
         reason=f"All determined to within ±{100 * _VAGUE:.0f} % or better.",
     )
 
 
-def vague_parameters(results: JointResults) -> list[str]:
+def imprecise_parameters(results: JointResults) -> list[str]:
     """Return the parameters whose interval is wider than ±50 % of the estimate."""
     rough = []
     for name in PARAMETERS:
@@ -246,29 +246,29 @@ def vague_parameters(results: JointResults) -> list[str]:
     return rough
 
 
-def model_light(results: JointResults, diagnosis: Mapping[str, Any] | None) -> Light:
+def model_rating(results: JointResults, diagnosis: Mapping[str, Any] | None) -> QualityRating:
     """Judge whether the friction function describes the joint."""
     if diagnosis is None:
-        return Light(
+        return QualityRating(
             level=FAIR, name="Model", reason="What the model misses has not been judged yet."
         )
-    missed = f"{number(diagnosis['simulation']['rmse'])} {results.unit} (RMS)"
-    causes = [[words(name) for name in cause["effects"]] for cause in diagnosis["causes"]]
-    told = listed([" or ".join(names) for names in causes if names] or ["nothing"])
+    missed = f"{number_text(diagnosis['simulation']['rmse'])} {results.unit} (RMS)"
+    causes = [[in_words(name) for name in cause["effects"]] for cause in diagnosis["causes"]]
+    told = list_text([" or ".join(names) for names in causes if names] or ["nothing"])
     if diagnosis["verdict"] == "no_evidence":
-        return Light(
+        return QualityRating(
             level=GOOD,
             name="Model",
             reason=f"No cause was found in what the simulated torque misses, {missed}.",
         )
     if diagnosis["verdict"] == "unnamed":
-        return Light(
+        return QualityRating(
             level=POOR,
             name="Model",
             reason=f"The simulated torque misses {missed}, with structure that no known effect"
             " explains.",
         )
-    return Light(
+    return QualityRating(
         level=FAIR,
         name="Model",
         reason=f"Equation (16) lacks {told}: alone it misses {missed}. The extended model has it.",

@@ -5,8 +5,8 @@ from dataclasses import dataclass
 
 import pandas as pd
 
-from frictioncli.report.epsilon_figures import compared_criterion
-from frictioncli.report.labels import CRITERION_WORDS, number, speed_text
+from frictioncli.report.evaluation_figure import compared_criterion
+from frictioncli.report.labels import CRITERION_WORDS, number_text, speed_text
 from frictioncli.report.results import JointResults, by_speed
 from frictioncli.report.style import PHASE_WORDS, PHASES
 
@@ -147,7 +147,7 @@ def _cell(rows: pd.DataFrame) -> str:
         return "–"
     row = rows.iloc[0]
     failed = f", {int(row['failed'])} failed" if row["failed"] > 0 else ""
-    return f"{number(float(row['epsilon']))} ({int(row['corrections'])}{failed})"
+    return f"{number_text(float(row['epsilon']))} ({int(row['corrections'])}{failed})"
 
 
 def pairs_table(results: JointResults) -> TextTable:

@@ -3,9 +3,9 @@
 An empty text means that nothing is missing.
 """
 
-from frictioncli.report.epsilon_figures import compared_criterion
+from frictioncli.report.evaluation_figure import compared_criterion
 from frictioncli.report.labels import TEMPERATURE_WORDS
-from frictioncli.report.residuals import residuals
+from frictioncli.report.residual_figure import residuals
 from frictioncli.report.results import JointResults
 from frictioncli.report.style import PHASE_WORDS
 from frictioncli.report.thermal_figures import means_per_run, thermal_runs

@@ -8,8 +8,8 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from frictioncli.diagnosis.documents.reload import Misfits, Reloaded
-from frictioncli.report.binning import bins_of, levels
-from frictioncli.report.labels import number, plain, speed_text
+from frictioncli.report.binning import bin_numbers, merge_close_values
+from frictioncli.report.labels import figure_text, number_text, speed_text
 from frictioncli.report.results import JointResults
 from frictioncli.report.style import FAINT, MODEL, WIDTH, SpeedStyle
 
@@ -42,8 +42,8 @@ def simulated_rows(results: JointResults, recalled: Reloaded) -> pd.DataFrame:
     parts = [_rows_of(results, one) for one in (recalled.seen, recalled.new) if one is not None]
     rows = pd.concat(parts, ignore_index=True)
     return rows.assign(
-        speed=levels(rows["speed"].to_numpy()),
-        bin=bins_of("position", rows["position"].to_numpy()),
+        speed=merge_close_values(rows["speed"].to_numpy()),
+        bin=bin_numbers("position", rows["position"].to_numpy()),
     )
 
 
@@ -157,7 +157,7 @@ def _runs(panel: Axes, pairs: pd.DataFrame, recalled: Reloaded) -> None:
     for run, span in spans.iterrows():
         new = " (new)" if run == held_out else ""
         panel.annotate(
-            f"{plain(str(run))}{new}",
+            f"{figure_text(str(run))}{new}",
             ((span["min"] + span["max"]) / 2, 0.995),
             xycoords=("data", "axes fraction"),
             ha="center",
@@ -189,7 +189,7 @@ def gain_figure(results: JointResults, *, recalled: Reloaded) -> Figure:
     left, right = figure.subplots(1, 2)
     for name, misfit, colour, line in sides:
         rms = float(np.sqrt(np.mean(np.square(misfit))))
-        label = f"{name}, RMS {number(rms)} {results.unit}"
+        label = f"{name}, RMS {number_text(rms)} {results.unit}"
         density = np.histogram(misfit, edges)[0] / (len(misfit) * (edges[1] - edges[0]))
         left.stairs(density, edges, color=colour, linestyle=line, linewidth=1.6, label=label)
         left.stairs(density, edges, color=colour, fill=True, alpha=0.12)
@@ -198,7 +198,9 @@ def gain_figure(results: JointResults, *, recalled: Reloaded) -> Figure:
         right.plot(sizes, beyond, color=colour, linestyle=line)
     left.axvspan(-floor, floor, color=FAINT, alpha=0.22, linewidth=0, zorder=0)
     right.axvspan(0, floor, color=FAINT, alpha=0.22, linewidth=0, zorder=0)
-    left.fill([], [], color=FAINT, alpha=0.3, label=f"noise floor, {number(floor)} {results.unit}")
+    left.fill(
+        [], [], color=FAINT, alpha=0.3, label=f"noise floor, {number_text(floor)} {results.unit}"
+    )
     left.set_xlim(-reach, reach)
     left.set_ylim(bottom=0)
     left.set_xlabel(f"torque, measured − simulated [{results.unit}]")

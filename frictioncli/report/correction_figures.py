@@ -4,7 +4,13 @@ import pandas as pd
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from frictioncli.report.labels import TEMPERATURE_SYMBOLS, friction_label, number, plain, speed_text
+from frictioncli.report.labels import (
+    TEMPERATURE_SYMBOLS,
+    figure_text,
+    friction_label,
+    number_text,
+    speed_text,
+)
 from frictioncli.report.results import MOST_RUNS, JointResults, by_speed
 from frictioncli.report.style import FAINT, MODEL, WIDTH, label_right, legend_above, points
 
@@ -15,7 +21,7 @@ _FRICTION_HEIGHT = 3.6
 _STRIP_HEIGHT = 1.5
 
 
-def corrected_estimates(results: JointResults, phase: str) -> Figure:
+def corrected_friction_figure(results: JointResults, phase: str) -> Figure:
     """Draw Figure 9 or 10: measured, smoothed and predicted friction through one phase.
 
     Below each panel runs the measured temperature with the temperature parameter of (17).
@@ -43,7 +49,7 @@ def corrected_estimates(results: JointResults, phase: str) -> Figure:
         _friction_through_phase(friction, own, results)
         _temperature_through_phase(temperature, own, results)
         _mark_corrections(friction, temperature, own)
-        friction.set_title(plain(run))
+        friction.set_title(figure_text(run))
         friction.tick_params(labelbottom=False)
         friction.sharex(temperature)
         temperature.set_xlabel("time t [min]")
@@ -57,8 +63,8 @@ def _friction_through_phase(panel: Axes, own: pd.DataFrame, results: JointResult
         minutes = group["time"] / 60.0
         told = [
             f"{speed_text(speed)}, {row['time'] / 60.0:.0f} min: measured"
-            f" {number(row['friction_torque'])} {results.unit}, predicted"
-            f" {number(row['friction_predicted'])} {results.unit}"
+            f" {number_text(row['friction_torque'])} {results.unit}, predicted"
+            f" {number_text(row['friction_predicted'])} {results.unit}"
             for row in group.to_dict("records")
         ]
         points(panel, minutes, group["friction_torque"], style, opacity=0.5, told=told)
@@ -103,7 +109,7 @@ def _mark_corrections(friction: Axes, temperature: Axes, own: pd.DataFrame) -> N
             continue
         labelled = at
         friction.annotate(
-            "failed" if row["failed"] else signed(row["temperature_correction"]),
+            "failed" if row["failed"] else correction_text(row["temperature_correction"]),
             (at, 0.985),
             xycoords=("data", "axes fraction"),
             xytext=(2, 0),
@@ -116,7 +122,7 @@ def _mark_corrections(friction: Axes, temperature: Axes, own: pd.DataFrame) -> N
         )
 
 
-def signed(correction: float) -> str:
+def correction_text(correction: float) -> str:
     """Return a temperature correction with its sign and unit."""
     # adding zero makes -0.0 positive
     return f"{round(correction, 1) + 0.0:+.1f} °C".replace("-", "−")

@@ -5,7 +5,7 @@ import pandas as pd
 from matplotlib.figure import Figure
 
 from frictioncli.model.friction import carried_to_temperature
-from frictioncli.report.labels import friction_label, number, plain, speed_text
+from frictioncli.report.labels import figure_text, friction_label, number_text, speed_text
 from frictioncli.report.results import MOST_RUNS, JointResults, by_speed
 from frictioncli.report.style import (
     FAINT,
@@ -27,7 +27,7 @@ _CURVES_HEIGHT = 3.6
 _SHIFTED_HEIGHT = 1.7
 
 
-def friction_against_load(results: JointResults) -> Figure:
+def load_figure(results: JointResults) -> Figure:
     """Draw Figure 3: the friction of single pairs against load, with alpha L² + G.
 
     The panel below takes the shift G away, which leaves the load term alone.
@@ -52,7 +52,7 @@ def friction_against_load(results: JointResults) -> Figure:
     for index, run in enumerate(runs):
         panel, shifted = grid[2 * index], grid[2 * index + 1]
         labels = []
-        chosen = telling_pairs(results.pairs[results.pairs["run"] == run])
+        chosen = representative_pairs(results.pairs[results.pairs["run"] == run])
         for pair in chosen.to_dict("records"):
             style = results.style(pair["speed"])
             rows = results.torques[
@@ -68,7 +68,7 @@ def friction_against_load(results: JointResults) -> Figure:
             motor = pair["motor_temperature"]
             known = "" if pd.isna(motor) else f", {motor:.0f} °C"
             labels.append((float(fitted[-1]), speed_text(pair["speed"]) + known, style.colour))
-        panel.set_title(plain(run))
+        panel.set_title(figure_text(run))
         panel.set_ylabel(friction_label(results.unit))
         panel.margins(y=0.08)
         label_right(panel, labels, height=_CURVES_HEIGHT)
@@ -80,7 +80,7 @@ def friction_against_load(results: JointResults) -> Figure:
     return figure
 
 
-def telling_pairs(pairs: pd.DataFrame) -> pd.DataFrame:
+def representative_pairs(pairs: pd.DataFrame) -> pd.DataFrame:
     """Return at most eight pairs of a run that span its speeds and temperatures.
 
     A speed sweep gives one pair per speed, a thermal cycle the coldest and the hottest of each;
@@ -114,7 +114,7 @@ def _spread(pairs: pd.DataFrame, most: int) -> pd.DataFrame:
     return pairs.iloc[np.linspace(0, len(pairs) - 1, most).round().astype(int)]
 
 
-def friction_against_speed(results: JointResults) -> Figure:
+def speed_figure(results: JointResults) -> Figure:
     """Draw Figure 8: friction at zero load against speed, carried to 20 °C by (15), and the model.
 
     Without a temperature the friction is drawn as measured.
@@ -126,7 +126,7 @@ def friction_against_speed(results: JointResults) -> Figure:
     """
     runs = results.runs[:MOST_RUNS]
     figure, axes = panels(len(runs), height=3.6)
-    carried = at_reference_temperature(results)
+    carried = friction_at_reference_temperature(results)
     fastest = carried["speed"].max()
     # square-root spacing resolves the low speeds, where a Stribeck rise would be
     speeds = np.linspace(0.0, np.sqrt(fastest * 1.03), 200) ** 2
@@ -142,7 +142,8 @@ def friction_against_speed(results: JointResults) -> Figure:
                 results.style(speed),
                 opacity=0.35,
                 told=[
-                    f"{speed_text(speed)}: {number(one)} {results.unit}" for one in group["carried"]
+                    f"{speed_text(speed)}: {number_text(one)} {results.unit}"
+                    for one in group["carried"]
                 ],
             )
         means = own.groupby("speed")["carried"].mean()
@@ -158,7 +159,7 @@ def friction_against_speed(results: JointResults) -> Figure:
             label="mean of the pairs at a speed",
         )
         panel.plot([], [], "o", color=FAINT, markersize=3.5, label="one pair")
-        panel.set_title(plain(run))
+        panel.set_title(figure_text(run))
         panel.set_ylabel(friction_label(results.unit))
         panel.set_ylim(bottom=min(0.0, panel.get_ylim()[0]))
         panel.set_xlim(left=0.0)
@@ -167,7 +168,7 @@ def friction_against_speed(results: JointResults) -> Figure:
     return figure
 
 
-def carries_temperature(results: JointResults) -> bool:
+def has_temperature_term(results: JointResults) -> bool:
     """Return whether friction can be carried from one temperature to another.
 
     Parameters
@@ -178,7 +179,7 @@ def carries_temperature(results: JointResults) -> bool:
     return results.model.knows_temperature and results.has("temperature")
 
 
-def at_reference_temperature(results: JointResults) -> pd.DataFrame:
+def friction_at_reference_temperature(results: JointResults) -> pd.DataFrame:
     """Return the pairs with ``carried``: their friction torque at 20 °C by equation (15).
 
     Parameters
@@ -187,7 +188,7 @@ def at_reference_temperature(results: JointResults) -> pd.DataFrame:
         One joint's results.
     """
     pairs = results.pairs
-    if not carries_temperature(results):
+    if not has_temperature_term(results):
         return pairs.assign(carried=pairs["friction_torque"])
     known = pairs.dropna(subset=["temperature"])
     return known.assign(
