@@ -1,4 +1,4 @@
-"""A richer experiment than the paper's: it tells effects apart that one thermal cycle cannot."""
+"""Enriched experiment: it separates effects that one thermal cycle cannot."""
 
 from collections.abc import Mapping
 from dataclasses import replace
@@ -6,8 +6,8 @@ from dataclasses import replace
 import numpy as np
 
 from frictioncli.errors import OptionError
-from frictioncli.simulator.joint import MeanPower, RoundTrips, SimulatedJoint
-from frictioncli.simulator.paper_protocol import PaperProgram, SeriesOfMoves, measure
+from frictioncli.simulator.joint import MeanPower, RoundTripMotion, SimulatedJoint
+from frictioncli.simulator.paper_protocol import MeasuringSeries, PaperProgram, measure
 from frictioncli.simulator.thermal_history import MOTOR, History
 from frictioncli.simulator.thermal_network import Ambient
 
@@ -15,19 +15,19 @@ SPEEDS = (2.3, 4.5, 8.2, 13.0, 21.0, 33.0, 50.0, 72.0, 101.2, 200.0)
 """Speeds of each series, in random order [deg/s]."""
 
 PAYLOADS = (0.0, 2.0, 4.0)
-"""Payloads above the one that is asked for; each series has another one at random [kg]."""
+"""Payloads added to that of the settings; each series has one of them at random [kg]."""
 
 OTHER_HEAT_SHARE = (0.3, 0.9)
-"""Share of the heat that enters at the motor in the second cycle: whichever is further away [-]."""
+"""Shares of heat at the motor for the second cycle; the one further from the first is taken [-]."""
 
-LEVELS = 5
-"""Series are measured at each so many-th degree of the motor [K]."""
+LEVEL_STEP = 5
+"""Step of the motor temperature between series [K]."""
 
 PAUSES = (120.0, 900.0)
 """Shortest and longest pause before a series [s]."""
 
-PAUSED = 0.4
-"""Share of the series with a pause before [-]."""
+PAUSE_SHARE = 0.4
+"""Share of the series that follow a pause [-]."""
 
 
 def run_enriched(
@@ -35,8 +35,8 @@ def run_enriched(
     program: PaperProgram,
     ambient: Ambient,
     generator: np.random.Generator,
-    kind: type[History],
-) -> tuple[History, tuple[SeriesOfMoves, ...]]:
+    history_type: type[History],
+) -> tuple[History, tuple[MeasuringSeries, ...]]:
     """Run two thermal cycles, the second with another entry of heat.
 
     Parameters
@@ -48,20 +48,20 @@ def run_enriched(
     ambient : Ambient
         Ambient temperature.
     generator : numpy.random.Generator
-        Source of orders, payloads and pauses.
-    kind : type of History
-        How the temperatures are integrated.
+        Source of speed orders, payloads and pauses.
+    history_type : type of History
+        Integrator of the temperatures.
 
     Raises
     ------
     OptionError
         If the joint cannot reach the program's temperatures.
     """
-    experiment = _Experiment(joints, program, ambient, generator, kind)
+    experiment = _Experiment(joints, program, ambient, generator, history_type)
     experiment.series_at("sweep")
     for cycle in range(2):
-        experiment.enter_heat(cycle)
-        levels = [*range(program.lowest, program.highest, LEVELS), program.highest]
+        experiment.set_heat_entry(cycle)
+        levels = [*range(program.lowest, program.highest, LEVEL_STEP), program.highest]
         for level in levels:
             experiment.heat_to(level)
             experiment.series_at("heat-up" if level < levels[-1] else "cool-down")
@@ -85,7 +85,7 @@ def second_shares(shares: Mapping[str, float]) -> dict[str, float]:
 
 
 class _Experiment:
-    """The experiment while it runs."""
+    """State of the experiment while it runs."""
 
     def __init__(
         self,
@@ -93,34 +93,34 @@ class _Experiment:
         program: PaperProgram,
         ambient: Ambient,
         generator: np.random.Generator,
-        kind: type[History],
+        history_type: type[History],
     ) -> None:
-        self.history = kind(joints[0], ambient)
-        self.series: list[SeriesOfMoves] = []
+        self.history = history_type(joints[0], ambient)
+        self.series: list[MeasuringSeries] = []
         self._joints = joints
         self._program = program
         self._generator = generator
         self._sensor = joints[0].network.names.index(MOTOR)
-        self._powers: list[dict[RoundTrips, MeanPower]] = [{} for _ in joints]
-        self._loads: list[int] = []
-        self._carried = 0
+        self._powers: list[dict[RoundTripMotion, MeanPower]] = [{} for _ in joints]
+        self._payload_order: list[int] = []
+        self._payload = 0
 
-    def enter_heat(self, cycle: int) -> None:
-        """Change where heat enters, for the second cycle."""
+    def set_heat_entry(self, cycle: int) -> None:
+        """Set where heat enters: in the second cycle elsewhere than in the first."""
         if cycle == 0:
             return
         shares = second_shares(self._joints[0].heat.shares)
         self._joints = tuple(
             replace(joint, heat=replace(joint.heat, shares=shares)) for joint in self._joints
         )
-        self._carry(self._carried)
+        self._set_payload(self._payload)
 
     def heat_to(self, level: int) -> None:
         """Move until the motor is registered at ``level`` [°C]."""
         if self.history.state[self._sensor] >= level - 0.5:
             return
         heating = self._program.trips(self._program.heating_speed)
-        if not self.history.until_motor(level - 0.5, heating):
+        if not self.history.continue_until(level - 0.5, heating):
             raise OptionError(
                 f"the motor does not reach {level} °C at {self._program.heating_speed} deg/s; "
                 "choose a lower highest temperature"
@@ -130,24 +130,24 @@ class _Experiment:
         """Stand until the motor is registered at ``level`` [°C]."""
         if self.history.state[self._sensor] <= level + 0.5:
             return
-        if not self.history.until_motor(level + 0.5):
+        if not self.history.continue_until(level + 0.5):
             raise OptionError(
                 f"the motor does not cool to {level} °C; choose a lower ambient temperature"
             )
 
     def series_at(self, phase: str) -> None:
-        """Measure all speeds in random order, perhaps after a pause, with a random payload."""
-        paused = self._generator.random() < PAUSED
+        """Measure all speeds in random order with a random payload, at random after a pause."""
+        paused = self._generator.random() < PAUSE_SHARE
         pause = float(self._generator.uniform(*PAUSES)) if paused else self._program.pause
-        self.history.spend(pause)
-        if not self._loads:
-            self._loads = self._generator.permutation(len(self._joints)).tolist()
-        self._carry(self._loads.pop())
+        self.history.continue_for(pause)
+        if not self._payload_order:
+            self._payload_order = self._generator.permutation(len(self._joints)).tolist()
+        self._set_payload(self._payload_order.pop())
         speeds = tuple(self._generator.permutation(self._program.cycle_speeds).tolist())
-        joint = self._joints[self._carried]
-        one = measure(joint, self._program, self.history, phase, speeds)
-        self.series.append(replace(one, load=self._carried))
+        joint = self._joints[self._payload]
+        series = measure(joint, self._program, self.history, phase, speeds)
+        self.series.append(replace(series, payload_index=self._payload))
 
-    def _carry(self, load: int) -> None:
-        self._carried = load
-        self.history.use(self._joints[load], self._powers[load])
+    def _set_payload(self, index: int) -> None:
+        self._payload = index
+        self.history.use(self._joints[index], self._powers[index])

@@ -55,7 +55,7 @@ class SimulatedJoint:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class RoundTrips:
+class RoundTripMotion:
     """Continued moves there and back at one speed, as the thermal network sees them.
 
     Attributes
@@ -86,7 +86,7 @@ class MeanPower:
         Absolute velocity, averaged with the standing times. [rad/s]
     """
 
-    def __init__(self, joint: SimulatedJoint, trips: RoundTrips) -> None:
+    def __init__(self, joint: SimulatedJoint, trips: RoundTripMotion) -> None:
         distance = abs(trips.angles[1] - trips.angles[0])
         moving = move_duration(joint.servo, distance=distance, speed=trips.speed)
         motion, _, _ = round_trips(

@@ -1,4 +1,4 @@
-"""The motion programs: the speed sweep and the thermal cycle, run on the thermal history."""
+"""Motion program of the paper: the speed sweep and the thermal cycle."""
 
 from dataclasses import dataclass, replace
 
@@ -6,7 +6,7 @@ import numpy as np
 
 from frictioncli.arrays import Array
 from frictioncli.errors import OptionError
-from frictioncli.simulator.joint import RoundTrips, SimulatedJoint
+from frictioncli.simulator.joint import RoundTripMotion, SimulatedJoint
 from frictioncli.simulator.motion_profile import Servo, move_duration
 from frictioncli.simulator.thermal_history import MOTOR, History, ThermalHistory
 from frictioncli.simulator.thermal_network import Ambient
@@ -49,13 +49,13 @@ class PaperProgram:
     lead: float
     pause: float
 
-    def of(self, series: "SeriesOfMoves") -> "PaperProgram":
-        """Return the program with the angles of a series."""
+    def for_series(self, series: "MeasuringSeries") -> "PaperProgram":
+        """Return the program with the angles of ``series``."""
         return self if series.angles is None else replace(self, angles=series.angles)
 
-    def trips(self, speed: float) -> RoundTrips:
+    def trips(self, speed: float) -> RoundTripMotion:
         """Return the round trips at one speed."""
-        return RoundTrips(speed=speed, angles=self.angles, dwell=self.dwell)
+        return RoundTripMotion(speed=speed, angles=self.angles, dwell=self.dwell)
 
     def trip_durations(self, servo: Servo, speeds: tuple[float, ...]) -> list[float]:
         """Return how long a round trip takes at each speed, its dwells included [s]."""
@@ -77,8 +77,8 @@ class PaperProgram:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class SeriesOfMoves:
-    """A recording: when it starts and which round trips it holds.
+class MeasuringSeries:
+    """A recording: its start and its round trips.
 
     Attributes
     ----------
@@ -88,8 +88,8 @@ class SeriesOfMoves:
         Time of its first sample since the run's beginning, whole milliseconds. [s]
     speeds : tuple of float
         Speed of each round trip. [deg/s]
-    load : int
-        Number of the payload that it is measured with, among the run's.
+    payload_index : int
+        Which of the run's payloads it is measured with.
     angles : tuple of float or None
         Angles between which it turns; None: the program's. [deg]
     """
@@ -97,7 +97,7 @@ class SeriesOfMoves:
     phase: str
     start: float
     speeds: tuple[float, ...]
-    load: int = 0
+    payload_index: int = 0
     angles: tuple[float, float] | None = None
 
 
@@ -105,19 +105,37 @@ def run_program(
     joint: SimulatedJoint,
     program: PaperProgram,
     ambient: Ambient,
-    kind: type[History] = ThermalHistory,
-) -> tuple[History, tuple[SeriesOfMoves, ...]]:
+    history_type: type[History] = ThermalHistory,
+) -> tuple[History, tuple[MeasuringSeries, ...]]:
     """Run the sweep and then the thermal cycle from a joint at ambient temperature.
 
     The joint is heated from ``lowest`` while it is below ``highest``, then cools while it is above
     ``lowest``, with a measuring series at each change of the registered motor temperature.
+
+    Parameters
+    ----------
+    joint : SimulatedJoint
+        The joint.
+    program : PaperProgram
+        Speeds, angles and temperatures.
+    ambient : Ambient
+        Ambient temperature.
+    history_type : type of History
+        Integrator of the temperatures.
+
+    Returns
+    -------
+    History
+        Temperatures of the run.
+    tuple of MeasuringSeries
+        Its recordings, in order of time.
 
     Raises
     ------
     OptionError
         If the joint cannot reach the program's temperatures, or is above them from the start.
     """
-    history = kind(joint, ambient)
+    history = history_type(joint, ambient)
     series = [measure(joint, program, history, "sweep", (v,)) for v in program.sweep_speeds]
     sensor = joint.network.names.index(MOTOR)
     if history.state[sensor] >= program.lowest - 0.5:
@@ -131,7 +149,7 @@ def run_program(
         passed = history.state[sensor] >= level - 0.5  # while the last series was measured
         if passed and level < program.highest:
             continue
-        if not passed and not history.until_motor(level - 0.5, heating):
+        if not passed and not history.continue_until(level - 0.5, heating):
             raise OptionError(
                 f"the motor does not reach {level} °C at {program.heating_speed} deg/s; "
                 "choose a lower highest temperature"
@@ -142,7 +160,7 @@ def run_program(
     for level in range(program.highest - 1, program.lowest, -1):
         if history.state[sensor] <= level + 0.5:
             continue
-        if not history.until_motor(level + 0.5):
+        if not history.continue_until(level + 0.5):
             raise OptionError(
                 f"the motor does not cool to {level} °C at an ambient temperature of "
                 f"{float(ambient.at(history.time)):.1f} °C; choose a lower ambient temperature"
@@ -157,13 +175,13 @@ def measure(
     history: History,
     phase: str,
     speeds: tuple[float, ...],
-) -> SeriesOfMoves:
-    """Let one recording pass in the thermal history, and return it."""
+) -> MeasuringSeries:
+    """Continue the thermal history by one recording, and return the recording."""
     if phase == "sweep":
-        history.spend(program.pause)
+        history.continue_for(program.pause)
     start = round(history.time - program.pre_trigger, 3)
-    history.spend(program.lead - program.pre_trigger)
+    history.continue_for(program.lead - program.pre_trigger)
     durations = program.trip_durations(joint.servo, speeds)
     for speed, duration in zip(speeds, durations, strict=True):
-        history.spend(duration, program.trips(speed))
-    return SeriesOfMoves(phase=phase, start=start, speeds=speeds)
+        history.continue_for(duration, program.trips(speed))
+    return MeasuringSeries(phase=phase, start=start, speeds=speeds)

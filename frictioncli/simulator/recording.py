@@ -1,6 +1,5 @@
-"""What the controller logs of a series: equation (1) for the torque, and the registered signals."""
+"""Recording of a measuring series: control torque by equation (1), and the registered signals."""
 
-from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -10,15 +9,16 @@ from frictioncli.arrays import Array
 from frictioncli.simulator.joint import SimulatedJoint
 from frictioncli.simulator.motion_profile import MotionProfile, round_trips
 from frictioncli.simulator.noise import SimulatedNoise
-from frictioncli.simulator.paper_protocol import PaperProgram, SeriesOfMoves
-from frictioncli.simulator.planted.journey import Journey
-from frictioncli.simulator.planted.state import STANDING_SPEED, Extra, State, state_of
+from frictioncli.simulator.paper_protocol import MeasuringSeries, PaperProgram
+from frictioncli.simulator.planted.operating_history import OperatingHistory
+from frictioncli.simulator.planted.planting import PlantedEffects
+from frictioncli.simulator.planted.state import STANDING_SPEED, state_of
 from frictioncli.simulator.thermal_history import HOUSING, MOTOR, History
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Logger:
-    """How the controller samples and logs.
+    """Sampling and resolutions of the controller's log.
 
     Attributes
     ----------
@@ -46,7 +46,7 @@ class Logger:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Recording:
-    """The logged signals of one series.
+    """Logged signals of one series.
 
     Attributes
     ----------
@@ -112,23 +112,27 @@ def record(
     joint: SimulatedJoint,
     program: PaperProgram,
     history: History,
-    series: SeriesOfMoves,
+    series: MeasuringSeries,
     *,
     logger: Logger,
     noise: SimulatedNoise,
     pair_offsets: Array,
     generator: np.random.Generator,
-    hidden: Callable[[State], Extra] | None = None,
-    journey: Journey | None = None,
+    planted: PlantedEffects | None = None,
+    operation: OperatingHistory | None = None,
 ) -> Recording:
-    """Return what the controller logs of ``series``.
+    """Return the recording of a series.
 
     Parameters
     ----------
-    joint, program, history : SimulatedJoint, PaperProgram, History
-        What moves, how, and at which temperatures.
-    series : SeriesOfMoves
-        The series to log.
+    joint : SimulatedJoint
+        The joint.
+    program : PaperProgram
+        Its moves.
+    history : History
+        Its temperatures.
+    series : MeasuringSeries
+        The series to record.
     logger : Logger
         Sampling and resolutions.
     noise : SimulatedNoise
@@ -137,10 +141,10 @@ def record(
         Friction offset of each of the series' round trips. [N·m]
     generator : numpy.random.Generator
         Source of the torque noise.
-    hidden : callable, optional
-        Returns what planted effects add at a state.
-    journey : Journey, optional
-        What the joint went through, for the effects.
+    planted : PlantedEffects, optional
+        Effects that add torque.
+    operation : OperatingHistory, optional
+        Operating history on which the effects depend.
     """
     motion, time, trips = round_trips(
         joint.servo,
@@ -158,19 +162,19 @@ def record(
         sign=logger.sign,
         friction_offset=pair_offsets[trips],
     )
-    if hidden is not None and journey is not None:
+    if planted is not None and operation is not None:
         begins = program.move_begins(joint.servo, series.speeds)
         move = np.maximum(np.searchsorted(begins, time, side="right") - 1, 0)
         state = state_of(
             joint,
-            journey,
+            operation,
             motion,
             time=series.start + time,
             since_reversal=np.maximum(time - begins[move], 0.0),
             temperatures=temperatures,
         )
-        extra = hidden(state)
-        torque = torque + extra.load + logger.sign * state.direction * extra.friction
+        added = planted.torque(state)
+        torque = torque + added.load + logger.sign * state.direction * added.friction
     torque = torque + noise.on(
         generator, torque=torque, velocity=motion.velocity, interval=logger.interval
     )

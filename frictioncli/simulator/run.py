@@ -1,4 +1,4 @@
-"""One run: what it is simulated with, and its course."""
+"""Setup and simulation of one run."""
 
 from dataclasses import dataclass, replace
 from datetime import datetime, timedelta
@@ -6,14 +6,18 @@ from datetime import datetime, timedelta
 import numpy as np
 
 from frictioncli.simulator import default_joint
-from frictioncli.simulator.cells import Trips, cells_of, trips_of
+from frictioncli.simulator.cells import RoundTrips, cells_of, round_trips_of
 from frictioncli.simulator.enriched_protocol import PAYLOADS, SPEEDS, run_enriched
 from frictioncli.simulator.joint import SimulatedJoint
 from frictioncli.simulator.noise import SimulatedNoise
 from frictioncli.simulator.noise_kinds import noise_of_kind
-from frictioncli.simulator.paper_protocol import PaperProgram, SeriesOfMoves, run_program
+from frictioncli.simulator.paper_protocol import MeasuringSeries, PaperProgram, run_program
 from frictioncli.simulator.plain_joint import plain_joint
-from frictioncli.simulator.planted.journey import Before, Journey, look_back
+from frictioncli.simulator.planted.operating_history import (
+    EarlierRuns,
+    OperatingHistory,
+    operating_history,
+)
 from frictioncli.simulator.planted.state import State
 from frictioncli.simulator.recording import Logger
 from frictioncli.simulator.settings import SynthesisSettings
@@ -31,8 +35,8 @@ _ORDER_STREAM = 1_000_000
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class SimulatedRun:
-    """Everything that one run is simulated with.
+class RunSetup:
+    """Setup of one run.
 
     Attributes
     ----------
@@ -45,13 +49,19 @@ class SimulatedRun:
     axis : int
         Number of the joint in the traces' channel names.
     payloads : tuple of float
-        Masses at the flange that its series have. [kg]
+        Masses at the flange in its series. [kg]
     joints : tuple of SimulatedJoint
         The joint with each of them.
-    program, ambient, logger, noise : PaperProgram, Ambient, Logger, SimulatedNoise
-        Motion, surroundings and recording.
+    program : PaperProgram
+        Motion program.
+    ambient : Ambient
+        Ambient temperature.
+    logger : Logger
+        Sampling and resolutions.
+    noise : SimulatedNoise
+        Random parts of torque and friction.
     seeds : numpy.random.SeedSequence
-        Source of all its random parts.
+        Seeds of all its random parts.
     enriched : bool
         Whether the protocol is the enriched one.
     """
@@ -76,53 +86,66 @@ class SimulatedRun:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class RunCourse:
-    """How a run went: its temperatures and series, and what lies behind each moment."""
+class SimulatedRun:
+    """A run that has been simulated.
 
-    run: SimulatedRun
+    Attributes
+    ----------
+    setup : RunSetup
+        What it was simulated with.
+    history : History
+        Temperatures.
+    series : tuple of MeasuringSeries
+        Recordings, in order of time.
+    trips : RoundTrips
+        Round trips of all recordings.
+    operation : OperatingHistory
+        Heat, travel and rests, earlier runs included.
+    """
+
+    setup: RunSetup
     history: History
-    series: tuple[SeriesOfMoves, ...]
-    trips: Trips
-    journey: Journey
+    series: tuple[MeasuringSeries, ...]
+    trips: RoundTrips
+    operation: OperatingHistory
 
     def states(self) -> list[State]:
         """Return the states in the run's cells, for each payload."""
         return [
             cells_of(
                 joint,
-                self.run.program,
+                self.setup.program,
                 self.history,
-                self.journey,
+                self.operation,
                 self.trips,
-                load=load,
-                interval=self.run.logger.interval,
+                payload_index=index,
+                interval=self.setup.logger.interval,
             ).state
-            for load, joint in enumerate(self.run.joints)
+            for index, joint in enumerate(self.setup.joints)
         ]
 
 
-def prepare(
-    settings: SynthesisSettings, number: int, seeds: np.random.SeedSequence
-) -> SimulatedRun:
-    """Return run ``number``, counted from 0, of a synthesis."""
+def run_setup(settings: SynthesisSettings, number: int, seeds: np.random.SeedSequence) -> RunSetup:
+    """Return the setup of run ``number``, counted from 0, of a synthesis."""
 
-    def own(values: tuple[float, ...]) -> float:
+    def of_run(values: tuple[float, ...]) -> float:
         return values[number % len(values)]
 
     enriched = settings.protocol == "enriched"
     payloads = tuple(settings.payload + more for more in (PAYLOADS if enriched else (0.0,)))
     program = replace(default_joint.PROGRAM, lowest=settings.lowest, highest=settings.highest)
-    return SimulatedRun(
+    return RunSetup(
         name=f"day{number + 1}",
         number=number,
         day=FIRST_DAY + timedelta(days=number),
         axis=settings.joint,
         payloads=payloads,
         joints=tuple(
-            joint_of(settings.joint_kind, one, own(settings.motor_heat_share)) for one in payloads
+            joint_of(settings.joint_kind, payload, of_run(settings.motor_heat_share))
+            for payload in payloads
         ),
         program=replace(program, sweep_speeds=(), cycle_speeds=SPEEDS) if enriched else program,
-        ambient=Ambient(start=own(settings.ambient), drift=own(settings.ambient_drift)),
+        ambient=Ambient(start=of_run(settings.ambient), drift=of_run(settings.ambient_drift)),
         logger=replace(
             default_joint.LOGGER,
             sign=settings.sign,
@@ -134,49 +157,57 @@ def prepare(
     )
 
 
-def simulate(runs: list[SimulatedRun], kind: type[History] = ThermalHistory) -> list[RunCourse]:
-    """Let runs take their course, one after the other on the same joint.
+def simulate(
+    setups: list[RunSetup], history_type: type[History] = ThermalHistory
+) -> list[SimulatedRun]:
+    """Simulate runs, one after the other on the same joint.
 
     Parameters
     ----------
-    runs : list of SimulatedRun
-        The runs.
-    kind : type of History
-        How temperatures are integrated.
+    setups : list of RunSetup
+        Setups of the runs, in order of time.
+    history_type : type of History
+        Integrator of the temperatures.
     """
-    gone = [_run(run, kind) for run in runs]
-    total = sum(history.time for history, _ in gone)
+    simulated = [_run(setup, history_type) for setup in setups]
+    total = sum(history.time for history, _ in simulated)
     operated = travelled = 0.0
-    courses = []
-    for run, (history, series) in zip(runs, gone, strict=True):
-        before = Before(
-            run=run.number,
-            clock=run.number * DAY,
+    runs = []
+    for setup, (history, series) in zip(setups, simulated, strict=True):
+        earlier = EarlierRuns(
+            run=setup.number,
+            clock=setup.number * DAY,
             operated=operated,
             travelled=travelled,
             total=total,
         )
-        journey = look_back(history, run.program.angles, first=series[0].start, before=before)
-        courses.append(
-            RunCourse(
-                run=run,
+        operation = operating_history(
+            history, setup.program.angles, first=series[0].start, earlier=earlier
+        )
+        runs.append(
+            SimulatedRun(
+                setup=setup,
                 history=history,
                 series=series,
-                trips=trips_of(run.program, run.joint.servo, series),
-                journey=journey,
+                trips=round_trips_of(setup.program, setup.joint.servo, series),
+                operation=operation,
             )
         )
         operated += history.time
-        travelled += float(journey.travel[-1])
-    return courses
+        travelled += float(operation.travel[-1])
+    return runs
 
 
-def _run(run: SimulatedRun, kind: type[History]) -> tuple[History, tuple[SeriesOfMoves, ...]]:
-    if not run.enriched:
-        return run_program(run.joint, run.program, run.ambient, kind)
-    own = np.random.SeedSequence(run.seeds.entropy, spawn_key=(*run.seeds.spawn_key, _ORDER_STREAM))
-    generator = np.random.Generator(np.random.PCG64(own))
-    return run_enriched(run.joints, run.program, run.ambient, generator, kind)
+def _run(
+    setup: RunSetup, history_type: type[History]
+) -> tuple[History, tuple[MeasuringSeries, ...]]:
+    if not setup.enriched:
+        return run_program(setup.joint, setup.program, setup.ambient, history_type)
+    seed = np.random.SeedSequence(
+        setup.seeds.entropy, spawn_key=(*setup.seeds.spawn_key, _ORDER_STREAM)
+    )
+    generator = np.random.Generator(np.random.PCG64(seed))
+    return run_enriched(setup.joints, setup.program, setup.ambient, generator, history_type)
 
 
 def joint_of(kind: str, payload: float, motor_heat_share: float) -> SimulatedJoint:

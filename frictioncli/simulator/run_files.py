@@ -1,6 +1,5 @@
-"""A run written as a trace folder, and what is true about it."""
+"""Trace folder of a simulated run, and the truth about it."""
 
-from collections.abc import Callable
 from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
@@ -9,19 +8,19 @@ import numpy as np
 
 from frictioncli.arrays import Array
 from frictioncli.simulator.enriched_protocol import second_shares
-from frictioncli.simulator.paper_protocol import SeriesOfMoves
-from frictioncli.simulator.planted.state import Extra, State
+from frictioncli.simulator.paper_protocol import MeasuringSeries
+from frictioncli.simulator.planted.planting import PlantedEffects
 from frictioncli.simulator.recording import record
-from frictioncli.simulator.run import RunCourse
+from frictioncli.simulator.run import SimulatedRun
 from frictioncli.simulator.trace_writer import ManifestRow, manifest_text, moment, write_trace
 
 MANIFEST = "manifest.csv"
-"""File that tells when each recording started."""
+"""File with the start of each recording."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class RunSummary:
-    """What was made for one run.
+    """Summary of the files of one run.
 
     Attributes
     ----------
@@ -49,17 +48,17 @@ class RunSummary:
 
 
 @dataclass(frozen=True, slots=True)
-class _Planned:
-    """A series with its file name and, for each round trip, begin and friction offset."""
+class _Recording:
+    """A series with its file name and, for each round trip, start [s] and friction offset [N·m]."""
 
     file: str
-    series: SeriesOfMoves
+    series: MeasuringSeries
     begins: Array
     offsets: Array
 
 
 def write_run(
-    folder: Path, course: RunCourse, hidden: Callable[[State], Extra] | None = None
+    folder: Path, run: SimulatedRun, planted: PlantedEffects | None = None
 ) -> tuple[RunSummary, dict[str, Any]]:
     """Write a run's traces and manifest.
 
@@ -67,59 +66,59 @@ def write_run(
     ----------
     folder : Path
         Folder to make.
-    course : RunCourse
-        How the run went.
-    hidden : callable, optional
-        Returns what planted effects add at a state.
+    run : SimulatedRun
+        The run.
+    planted : PlantedEffects, optional
+        Effects that add torque.
 
     Returns
     -------
     RunSummary
-        What was made.
+        Summary of the files.
     dict
-        What is true about it, ready for JSON.
+        Truth about the run, ready for JSON.
     """
-    run, series = course.run, course.series
-    offset_seed, *torque_seeds = run.seeds.spawn(1 + len(series))
-    planned = _plan(course, generator_of(offset_seed))
+    setup, series = run.setup, run.series
+    offset_seed, *torque_seeds = setup.seeds.spawn(1 + len(series))
+    recordings = _recordings(run, generator_of(offset_seed))
     folder.mkdir(parents=True)
     rows = 0
-    for one, seed in zip(planned, torque_seeds, strict=True):
-        recording = record(
-            run.joints[one.series.load],
-            run.program,
-            course.history,
+    for one, seed in zip(recordings, torque_seeds, strict=True):
+        logged = record(
+            setup.joints[one.series.payload_index],
+            setup.program,
+            run.history,
             one.series,
-            logger=run.logger,
-            noise=run.noise,
+            logger=setup.logger,
+            noise=setup.noise,
             pair_offsets=one.offsets,
             generator=generator_of(seed),
-            hidden=hidden,
-            journey=course.journey,
+            planted=planted,
+            operation=run.operation,
         )
-        write_trace(folder / one.file, recording, joint=run.axis)
-        rows += len(recording.time)
-    manifest = manifest_text(_manifest_row(course, one) for one in planned)
+        write_trace(folder / one.file, logged, joint=setup.axis)
+        rows += len(logged.time)
+    manifest = manifest_text(_manifest_row(run, one) for one in recordings)
     (folder / MANIFEST).write_text(manifest, encoding="utf-8", newline="\n")
     heating, cooling = _durations(series)
     summary = RunSummary(
-        name=run.name,
+        name=setup.name,
         recordings=len(series),
         rows=rows,
         heating=heating,
         cooling=cooling,
-        ambient=run.ambient.start,
-        motor_heat_share=next(iter(run.joint.heat.shares.values())),
+        ambient=setup.ambient.start,
+        motor_heat_share=next(iter(setup.joint.heat.shares.values())),
     )
-    return summary, _truth(course, planned)
+    return summary, _truth(run, recordings)
 
 
 def generator_of(seed: np.random.SeedSequence) -> np.random.Generator:
-    """Return the generator of random numbers that every random part uses."""
+    """Return the random number generator of a seed."""
     return np.random.Generator(np.random.PCG64(seed))
 
 
-def _durations(series: tuple[SeriesOfMoves, ...]) -> tuple[float, float]:
+def _durations(series: tuple[MeasuringSeries, ...]) -> tuple[float, float]:
     """Return how long the first heat-up and the first cool-down took [s]."""
     phases = [one.phase for one in series]
     hot = phases.index("heat-up")
@@ -128,36 +127,36 @@ def _durations(series: tuple[SeriesOfMoves, ...]) -> tuple[float, float]:
     return series[cool].start - series[hot].start, series[end - 1].start - series[cool].start
 
 
-def _plan(course: RunCourse, generator: np.random.Generator) -> tuple[_Planned, ...]:
-    """Name the series so that they sort by time, and draw their friction offsets."""
-    series, begins = course.series, course.trips.begin
-    offsets = course.run.noise.pair_offsets(generator, begins)
+def _recordings(run: SimulatedRun, generator: np.random.Generator) -> tuple[_Recording, ...]:
+    """Return the series with file names that sort by time, and with drawn friction offsets."""
+    series, begins = run.series, run.trips.begin
+    offsets = run.setup.noise.pair_offsets(generator, begins)
     cuts = np.cumsum([len(one.speeds) for one in series])[:-1]
     parts = zip(series, np.split(begins, cuts), np.split(offsets, cuts), strict=True)
     return tuple(
-        _Planned(f"{number:03d}_{one.phase}_KRCIpo.csv", one, own, drawn)
-        for number, (one, own, drawn) in enumerate(parts, start=1)
+        _Recording(f"{number:03d}_{one.phase}_KRCIpo.csv", one, start, offset)
+        for number, (one, start, offset) in enumerate(parts, start=1)
     )
 
 
-def _manifest_row(course: RunCourse, planned: _Planned) -> ManifestRow:
-    run, series = course.run, planned.series
+def _manifest_row(run: SimulatedRun, recording: _Recording) -> ManifestRow:
+    setup, series = run.setup, recording.series
     return ManifestRow(
-        file=planned.file,
-        started_at=moment(run.day, series.start),
+        file=recording.file,
+        started_at=moment(setup.day, series.start),
         phase=series.phase,
-        payload=run.payloads[series.load],
-        ambient=float(run.ambient.at(series.start)),
+        payload=setup.payloads[series.payload_index],
+        ambient=float(setup.ambient.at(series.start)),
     )
 
 
-def _truth(course: RunCourse, planned: tuple[_Planned, ...]) -> dict[str, Any]:
-    """Return every parameter of a run, and its true temperatures at each round trip's begin."""
-    run = course.run
-    recordings = []
-    for one in planned:
-        temperatures = course.history.at(one.begins)
-        recordings.append(
+def _truth(run: SimulatedRun, recordings: tuple[_Recording, ...]) -> dict[str, Any]:
+    """Return all parameters of a run, and its true temperatures at the start of each round trip."""
+    setup = run.setup
+    documents = []
+    for one in recordings:
+        temperatures = run.history.at(one.begins)
+        documents.append(
             {
                 "file": one.file,
                 "phase": one.series.phase,
@@ -165,32 +164,32 @@ def _truth(course: RunCourse, planned: tuple[_Planned, ...]) -> dict[str, Any]:
                 "round_trips": [
                     {
                         "speed": speed,
-                        "begin": _stable(one.begins[number]),
-                        "friction_offset": _stable(one.offsets[number]),
+                        "begin": _rounded(one.begins[number]),
+                        "friction_offset": _rounded(one.offsets[number]),
                         "temperatures": {
-                            node: _stable(values[number]) for node, values in temperatures.items()
+                            node: _rounded(values[number]) for node, values in temperatures.items()
                         },
                     }
                     for number, speed in enumerate(one.series.speeds)
                 ],
             }
         )
-    told: dict[str, Any] = {
-        "name": run.name,
-        "started_at": run.day.isoformat(),
-        "joint": asdict(run.joint),
-        "program": asdict(run.program),
-        "ambient": asdict(run.ambient),
-        "logger": asdict(run.logger),
-        "noise": asdict(run.noise),
-        "recordings": recordings,
+    truth: dict[str, Any] = {
+        "name": setup.name,
+        "started_at": setup.day.isoformat(),
+        "joint": asdict(setup.joint),
+        "program": asdict(setup.program),
+        "ambient": asdict(setup.ambient),
+        "logger": asdict(setup.logger),
+        "noise": asdict(setup.noise),
+        "recordings": documents,
     }
-    if run.enriched:
-        told["payloads"] = [run.payloads[one.series.load] for one in planned]
-        told["second_heat_shares"] = dict(second_shares(run.joint.heat.shares))
-    return told
+    if setup.enriched:
+        truth["payloads"] = [setup.payloads[one.series.payload_index] for one in recordings]
+        truth["second_heat_shares"] = dict(second_shares(setup.joint.heat.shares))
+    return truth
 
 
-def _stable(value: float) -> float:
-    """Return a value rounded so far that it does not depend on the processor's last bit."""
+def _rounded(value: float) -> float:
+    """Return a value rounded to 1e-6, so that it does not depend on the processor's last bit."""
     return round(float(value), 6)

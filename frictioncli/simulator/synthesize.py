@@ -1,4 +1,4 @@
-"""Trace folders from the joint simulator, with everything that is hidden in them beside."""
+"""Command ``synthesize``: simulated trace folders and the truth about them."""
 
 import json
 from dataclasses import asdict, dataclass, fields
@@ -11,24 +11,24 @@ from frictioncli import files
 from frictioncli.documents import to_json
 from frictioncli.errors import OptionError
 from frictioncli.simulator.joint import SimulatedJoint
-from frictioncli.simulator.planted.catalogue import asked
-from frictioncli.simulator.planted.planting import Planted, plant
-from frictioncli.simulator.run import prepare, simulate
+from frictioncli.simulator.planted.catalogue import requested_effects
+from frictioncli.simulator.planted.planting import PlantedEffects, plant
+from frictioncli.simulator.run import run_setup, simulate
 from frictioncli.simulator.run_files import MANIFEST, RunSummary, write_run
 from frictioncli.simulator.settings import SynthesisSettings
 
 __all__ = ["TRUTH", "SynthesisSettings", "SynthesisSummary", "synthesize"]
 
 TRUTH = "truth.json"
-"""File that holds what the traces hide."""
+"""File with the truth about the traces."""
 
-_EXTENDING = ("effects", "blind", "joint_kind", "noise_kind", "protocol", "thin")
-"""Settings that a truth tells only where they are used."""
+_OPTIONAL_SETTINGS = ("effects", "blind", "joint_kind", "noise_kind", "protocol", "thin")
+"""Settings that the truth holds only where they differ from the default."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class SynthesisSummary:
-    """What was made, and what is hidden in it; ``str`` gives both, unless it is blind."""
+    """Files that were written, and the truth about them; ``str`` omits the truth if it is blind."""
 
     folder: Path
     seed: int
@@ -36,10 +36,10 @@ class SynthesisSummary:
     truth: Path
     blind: bool
     friction: str
-    planted: Planted
+    planted: PlantedEffects
 
-    def made(self) -> str:
-        """Return what was made."""
+    def files_text(self) -> str:
+        """Return the text about the files."""
         lines = [f"{self.folder}: {len(self.runs)} simulated run(s), seed {self.seed}"]
         lines += [
             f"  {run.name}: {run.recordings} recordings, {run.rows} samples; "
@@ -48,8 +48,8 @@ class SynthesisSummary:
         ]
         return "\n".join(lines)
 
-    def hidden(self) -> str:
-        """Return what the traces hide."""
+    def truth_text(self) -> str:
+        """Return the text about what the traces hide."""
         lines = [f"hidden (all of it in {self.truth}):"]
         lines += [
             f"  {run.name}: {run.motor_heat_share:.0%} of the heat enters at the motor, "
@@ -58,13 +58,13 @@ class SynthesisSummary:
         ]
         lines += [f"  {self.friction}"]
         lines += [
-            f"  {one.effect.name}, {one.rms:.2f} N·m: {one.effect.equation}"
-            for one in self.planted.buried
+            f"  {one.effect.name}, {one.rms:.2f} N·m: {one.effect.definition.equation}"
+            for one in self.planted.effects
         ]
         return "\n".join(lines)
 
     def __str__(self) -> str:
-        return self.made() if self.blind else f"{self.made()}\n{self.hidden()}"
+        return self.files_text() if self.blind else f"{self.files_text()}\n{self.truth_text()}"
 
 
 def synthesize(folder: Path, settings: SynthesisSettings | None = None) -> SynthesisSummary:
@@ -86,33 +86,32 @@ def synthesize(folder: Path, settings: SynthesisSettings | None = None) -> Synth
         synthesis.
     """
     settings = SynthesisSettings() if settings is None else settings
-    effects = asked(settings.effects)
+    effects = requested_effects(settings.effects)
     beside = folder.absolute().with_name(f"{folder.absolute().name}-{TRUTH}")
     _refuse_foreign(folder, beside)
     if settings.blind and beside.exists() and not _files_of_synthesis(beside):
         raise OptionError(f"{beside}: is no truth of a former synthesis; choose another folder")
     seeds = np.random.SeedSequence(settings.seed).spawn(settings.runs)
-    courses = simulate([prepare(settings, number, seed) for number, seed in enumerate(seeds)])
-    planted = Planted()
+    runs = simulate([run_setup(settings, number, seed) for number, seed in enumerate(seeds)])
+    planted = PlantedEffects()
     if effects:
-        states = [state for course in courses for state in course.states()]
+        states = [state for run in runs for state in run.states()]
         planted = plant(effects, settings.seed, states, settings.sign)
-    hidden = planted.extra if effects else None
     summaries: list[RunSummary] = []
     truths: list[dict[str, Any]] = []
     with files.whole(folder) as draft:
-        for course in courses:
-            summary, truth = write_run(draft / course.run.name, course, hidden)
+        for run in runs:
+            summary, truth = write_run(draft / run.setup.name, run, planted if effects else None)
             summaries.append(summary)
             truths.append(truth)
-        whole_truth = {
+        document = {
             "program": "frictioncli synthesize",
-            "settings": _told(settings),
+            "settings": _settings_document(settings),
             "runs": truths,
         }
         if effects:
-            whole_truth["effects"] = [one.truth() for one in planted.buried]
-        text = to_json(whole_truth)
+            document["effects"] = [one.truth() for one in planted.effects]
+        text = to_json(document)
         if not settings.blind:
             (draft / TRUTH).write_text(text, encoding="utf-8", newline="\n")
     if settings.blind:
@@ -124,7 +123,7 @@ def synthesize(folder: Path, settings: SynthesisSettings | None = None) -> Synth
         runs=tuple(summaries),
         truth=beside if settings.blind else folder / TRUTH,
         blind=settings.blind,
-        friction=_friction(courses[0].run.joint, settings.joint_kind),
+        friction=_friction(runs[0].setup.joint, settings.joint_kind),
         planted=planted,
     )
 
@@ -136,17 +135,17 @@ def _friction(joint: SimulatedJoint, kind: str) -> str:
     return f"friction of three zones at three temperatures: {zones}"
 
 
-def _told(settings: SynthesisSettings) -> dict[str, Any]:
-    """Return the settings; of those that only extend the sample experiment, what is not default."""
-    told = asdict(settings)
+def _settings_document(settings: SynthesisSettings) -> dict[str, Any]:
+    """Return the settings; optional ones only where they differ from the default."""
+    document = asdict(settings)
     for field in fields(settings):
-        if field.name in _EXTENDING and told[field.name] == field.default:
-            del told[field.name]
-    return told
+        if field.name in _OPTIONAL_SETTINGS and document[field.name] == field.default:
+            del document[field.name]
+    return document
 
 
 def _refuse_foreign(folder: Path, beside: Path) -> None:
-    """Raise OptionError if ``folder`` holds anything that no synthesis, blind or not, wrote."""
+    """Raise OptionError if ``folder`` holds a file that no synthesis wrote."""
     if not folder.exists():
         return
     if not folder.is_dir():
@@ -161,7 +160,7 @@ def _refuse_foreign(folder: Path, beside: Path) -> None:
 
 
 def _files_of_synthesis(truth: Path) -> set[str]:
-    """Return the files that a former synthesis wrote, none if ``truth`` does not tell."""
+    """Return the files that a former synthesis wrote; none if ``truth`` cannot be read."""
     try:
         runs = json.loads(truth.read_text(encoding="utf-8"))["runs"]
         named = {f"{run['name']}/{one['file']}" for run in runs for one in run["recordings"]}

@@ -9,7 +9,7 @@ from numpy.typing import ArrayLike
 from scipy.integrate import OdeSolution, solve_ivp
 
 from frictioncli.arrays import Array
-from frictioncli.simulator.joint import MeanPower, RoundTrips, SimulatedJoint
+from frictioncli.simulator.joint import MeanPower, RoundTripMotion, SimulatedJoint
 from frictioncli.simulator.thermal_network import Ambient
 
 MOTOR = "motor sensor"
@@ -21,7 +21,7 @@ LONGEST_RUN = 24 * 3600.0
 
 
 @dataclass(frozen=True, slots=True)
-class Leg:
+class MotionInterval:
     """A time of one motion.
 
     Attributes
@@ -53,28 +53,28 @@ class History(ABC):
         self._conductance = joint.network.conductance_matrix()
         self._to_ambient = joint.network.to_ambient()
         self._motor = joint.network.names.index(MOTOR)
-        self._legs: list[Leg] = []
+        self._intervals: list[MotionInterval] = []
         self.time = 0.0
         self.state = np.full(len(joint.network.nodes), float(ambient.at(0.0)))
         self.use(joint, {})
 
-    def use(self, joint: SimulatedJoint, powers: dict[RoundTrips, MeanPower]) -> None:
+    def use(self, joint: SimulatedJoint, powers: dict[RoundTripMotion, MeanPower]) -> None:
         """Continue with ``joint``: another load or entry of heat; ``powers`` may be shared."""
         self._joint = joint
         self._shares = joint.heat_shares()
         self._powers = powers
 
-    def spend(self, duration: float, motion: RoundTrips | None = None) -> None:
+    def continue_for(self, duration: float, motion: RoundTripMotion | None = None) -> None:
         """Continue for ``duration`` [s], standing or with round trips."""
         self._continue(self.time + duration, motion, None)
 
-    def until_motor(self, temperature: float, motion: RoundTrips | None = None) -> bool:
+    def continue_until(self, temperature: float, motion: RoundTripMotion | None = None) -> bool:
         """Continue until the motor reaches ``temperature`` [°C]; False if it never does."""
         return self._continue(max(self.time, LONGEST_RUN), motion, temperature)
 
-    def legs(self) -> tuple[Leg, ...]:
+    def intervals(self) -> tuple[MotionInterval, ...]:
         """Return what the joint did, in order of time."""
-        return tuple(self._legs)
+        return tuple(self._intervals)
 
     @abstractmethod
     def at(self, time: ArrayLike) -> dict[str, Array]:
@@ -82,11 +82,11 @@ class History(ABC):
 
     def heat(self, times: Array) -> Array:
         """Return the power dissipated at times in s [W]."""
-        starts = np.array([leg.start for leg in self._legs])
+        starts = np.array([interval.start for interval in self._intervals])
         owner = np.maximum(np.searchsorted(starts, times, side="right") - 1, 0)
         temperatures = self.at(times)
-        powers = {id(leg.power): leg.power for leg in self._legs}
-        owned = np.array([id(leg.power) for leg in self._legs])[owner]
+        powers = {id(interval.power): interval.power for interval in self._intervals}
+        owned = np.array([id(interval.power) for interval in self._intervals])[owner]
         found = np.zeros(times.shape)
         for key, power in powers.items():
             if power is not None:
@@ -98,15 +98,17 @@ class History(ABC):
     def _integrate(self, end: float, power: MeanPower | None, temperature: float | None) -> bool:
         """Continue until ``end`` or until the motor's temperature is reached; False if never."""
 
-    def _continue(self, end: float, motion: RoundTrips | None, temperature: float | None) -> bool:
+    def _continue(
+        self, end: float, motion: RoundTripMotion | None, temperature: float | None
+    ) -> bool:
         power = None if motion is None else self._power(motion)
         start = self.time
         reached = self._integrate(end, power, temperature)
         if reached:
-            self._legs.append(Leg(start, self.time, power))
+            self._intervals.append(MotionInterval(start, self.time, power))
         return reached
 
-    def _power(self, motion: RoundTrips) -> MeanPower:
+    def _power(self, motion: RoundTripMotion) -> MeanPower:
         if motion not in self._powers:
             self._powers[motion] = MeanPower(self._joint, motion)
         return self._powers[motion]

@@ -11,7 +11,12 @@ from frictioncli.design.steps import HeatStep, RestStep, SeriesStep
 from frictioncli.design.thermal_model import ThermalModel, thermal_model_of
 from frictioncli.diagnosis.data.problem import build_problems
 from frictioncli.simulator.settings import SynthesisSettings
-from tests.simulation.motion_programme import Measured, Moved, Stood, simulate_programmes
+from tests.simulation.motion_programme import (
+    MeasuredMoves,
+    Standstill,
+    UnrecordedMoves,
+    simulate_programmes,
+)
 
 FASTEST = 101.2
 SPEEDS = (19.1, 39.4, 67.5, FASTEST)
@@ -20,10 +25,10 @@ SPEEDS = (19.1, 39.4, 67.5, FASTEST)
 @pytest.fixture(scope="module")
 def runs():
     """A thin experiment with heating and cooling, and another programme on the same joint."""
-    series = Measured(speeds=SPEEDS, low=0.0, high=180.0)
-    heat = Moved(speed=FASTEST, low=0.0, high=180.0, seconds=300.0)
-    first = [*[series, heat] * 8, *[Stood(900.0), series] * 4]
-    other = [series, *[heat] * 4, series, Stood(1500.0), series]
+    series = MeasuredMoves(speeds=SPEEDS, low=0.0, high=180.0)
+    heat = UnrecordedMoves(speed=FASTEST, low=0.0, high=180.0, seconds=300.0)
+    first = [*[series, heat] * 8, *[Standstill(900.0), series] * 4]
+    other = [series, *[heat] * 4, series, Standstill(1500.0), series]
     settings = SynthesisSettings(seed=11, joint_kind="plain", noise_scale=0.0)
     return simulate_programmes(settings, [first, other], 1)
 

@@ -17,7 +17,7 @@ from frictioncli.stages.plan import plan, plan_new
 from frictioncli.workfiles import TORQUES
 from tests.design.axis import Arm
 from tests.design.krl import Controller
-from tests.simulation.motion_programme import Measured, Moved, simulate_programmes
+from tests.simulation.motion_programme import MeasuredMoves, UnrecordedMoves, simulate_programmes
 
 FASTEST = 101.2
 
@@ -26,8 +26,8 @@ FASTEST = 101.2
 def thin(tmp_path_factory):
     """A work folder with an experiment that only heats, on a joint whose friction drifts."""
     work = tmp_path_factory.mktemp("plan") / "run"
-    series = Measured(speeds=(20.0, 60.0, FASTEST), low=0.0, high=180.0)
-    heat = Moved(speed=FASTEST, low=0.0, high=180.0, seconds=360.0)
+    series = MeasuredMoves(speeds=(20.0, 60.0, FASTEST), low=0.0, high=180.0)
+    heat = UnrecordedMoves(speed=FASTEST, low=0.0, high=180.0, seconds=360.0)
     settings = SynthesisSettings(seed=3, joint_kind="plain", effects=("drift:3",))
     (table,) = simulate_programmes(settings, [[series, heat] * 8], 1)
     work.mkdir()

@@ -5,10 +5,15 @@ import pandas as pd
 import pytest
 
 from frictioncli.simulator.settings import SynthesisSettings
-from tests.simulation.motion_programme import Measured, Moved, Stood, simulate_programmes
+from tests.simulation.motion_programme import (
+    MeasuredMoves,
+    Standstill,
+    UnrecordedMoves,
+    simulate_programmes,
+)
 
-SERIES = Measured(speeds=(20.0, 60.0, 100.0), low=0.0, high=120.0)
-HEAT = Moved(speed=100.0, low=0.0, high=120.0, seconds=600.0)
+SERIES = MeasuredMoves(speeds=(20.0, 60.0, 100.0), low=0.0, high=120.0)
+HEAT = UnrecordedMoves(speed=100.0, low=0.0, high=120.0, seconds=600.0)
 
 
 def test_what_comes_next_does_not_change_what_was():
@@ -33,7 +38,7 @@ def test_friction_is_equation_16_of_the_motor_temperature():
 
 def test_payloads_and_angles_are_those_asked_for():
     settings = SynthesisSettings(joint_kind="plain", noise_scale=0.0, payload=1.0)
-    heavy = Measured(speeds=(50.0,), low=30.0, high=90.0, more=4.0)
+    heavy = MeasuredMoves(speeds=(50.0,), low=30.0, high=90.0, more=4.0)
     (table,) = simulate_programmes(settings, [[SERIES, heavy]], 1)
     last = table[table["pair"] == table["pair"].max()]
     assert set(last["payload"]) == {5.0}
@@ -47,8 +52,10 @@ def test_payloads_and_angles_are_those_asked_for():
 
 def test_heating_ends_at_its_temperature_and_standing_cools():
     settings = SynthesisSettings(joint_kind="plain", noise_scale=0.0)
-    until = Moved(speed=100.0, low=0.0, high=120.0, seconds=20_000.0, until=30.0)
-    (table,) = simulate_programmes(settings, [[SERIES, until, SERIES, Stood(3600.0), SERIES]], 1)
+    until = UnrecordedMoves(speed=100.0, low=0.0, high=120.0, seconds=20_000.0, until=30.0)
+    (table,) = simulate_programmes(
+        settings, [[SERIES, until, SERIES, Standstill(3600.0), SERIES]], 1
+    )
     warm = pd.Series(table.groupby("pair")["motor_temperature"].first())
     assert warm[3] == pytest.approx(30.0, abs=0.6)
     assert warm[6] < warm[5] - 1.0

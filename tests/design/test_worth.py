@@ -17,7 +17,7 @@ from frictioncli.diagnosis.fit.judgement import Score
 from frictioncli.effects import BY_NAME
 from frictioncli.model.noise import Noise
 from frictioncli.simulator.settings import SynthesisSettings
-from tests.simulation.motion_programme import Measured, Moved, simulate_programmes
+from tests.simulation.motion_programme import MeasuredMoves, UnrecordedMoves, simulate_programmes
 
 NOISE = (
     Noise(point=0.3, pair=0.2, drift=0.4, drift_time=900.0),
@@ -28,8 +28,8 @@ NOISE = (
 @pytest.fixture(scope="module")
 def problem():
     """Few pairs, so that dense covariance matrices stay small."""
-    series = Measured(speeds=(30.0, 90.0), low=0.0, high=90.0)
-    heat = Moved(speed=90.0, low=0.0, high=90.0, seconds=300.0)
+    series = MeasuredMoves(speeds=(30.0, 90.0), low=0.0, high=90.0)
+    heat = UnrecordedMoves(speed=90.0, low=0.0, high=90.0, seconds=300.0)
     (table,) = simulate_programmes(
         SynthesisSettings(seed=3, joint_kind="plain"), [[series, heat] * 6], 1
     )

@@ -1,4 +1,4 @@
-"""Any sequence of motions, run after run on one joint: what a planned experiment would find."""
+"""Simulation of any sequence of motions, run after run on one joint."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -6,23 +6,23 @@ from dataclasses import dataclass, replace
 import numpy as np
 import pandas as pd
 
-from frictioncli.simulator.cells import Cells, cells_of, trips_of
-from frictioncli.simulator.paper_protocol import SeriesOfMoves, measure
-from frictioncli.simulator.planted.catalogue import asked
-from frictioncli.simulator.planted.journey import Before, look_back
-from frictioncli.simulator.planted.planting import Planted, plant
-from frictioncli.simulator.run import DAY, RunCourse, SimulatedRun, joint_of, prepare
+from frictioncli.simulator.cells import Cells, cells_of, round_trips_of
+from frictioncli.simulator.paper_protocol import MeasuringSeries, measure
+from frictioncli.simulator.planted.catalogue import requested_effects
+from frictioncli.simulator.planted.operating_history import EarlierRuns, operating_history
+from frictioncli.simulator.planted.planting import PlantedEffects, plant
+from frictioncli.simulator.run import DAY, RunSetup, SimulatedRun, joint_of, run_setup
 from frictioncli.simulator.settings import SynthesisSettings
 from frictioncli.simulator.thermal_history import MOTOR, History
 from tests.simulation.fast_history import FastHistory
 from tests.simulation.torque_table import table_of
 
-_LOOK = 30.0
-"""Moves that heat look at the motor's temperature so often [s]."""
+_CHECK_INTERVAL = 30.0
+"""Interval at which heating moves check the motor temperature [s]."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Measured:
+class MeasuredMoves:
     """Recorded moves there and back, one round trip per speed.
 
     Attributes
@@ -42,7 +42,7 @@ class Measured:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Moved:
+class UnrecordedMoves:
     """Unrecorded moves there and back for a time [s], or until the motor has a temperature [°C]."""
 
     speed: float
@@ -53,121 +53,131 @@ class Moved:
 
 
 @dataclass(frozen=True, slots=True)
-class Stood:
+class Standstill:
     """Standing for a time [s]."""
 
     seconds: float
 
 
-Act = Measured | Moved | Stood
-Setup = tuple[float, float, float]
+Motion = MeasuredMoves | UnrecordedMoves | Standstill
+Configuration = tuple[float, float, float]
 """Payload above that of the settings [kg], and the angles [deg]: what a measured series needs."""
 
 
 def simulate_programmes(
-    settings: SynthesisSettings, programmes: Sequence[Sequence[Act]], hidden_in: int
+    settings: SynthesisSettings, programmes: Sequence[Sequence[Motion]], sizing_runs: int
 ) -> list[pd.DataFrame]:
     """Simulate runs of given motions, one per day, and return the table of torques of each.
 
-    Effects are hidden as in the first runs: they get their sizes there, and keep them. So the same
-    joint can be asked what another experiment would have shown of it.
+    Planted effects are sized in the first runs and keep that size, so that further runs show what
+    another experiment finds on the same joint.
 
     Parameters
     ----------
     settings : SynthesisSettings
-        The joint, its surroundings and noise, and what is hidden; its protocol and the number of
-        its runs have no meaning here.
-    programmes : sequence of sequence of Act
+        Joint, surroundings, noise and planted effects; the protocol and the number of runs are
+        not used.
+    programmes : sequence of sequence of Motion
         Motions of each run.
-    hidden_in : int
-        Number of runs, from the first, that the sizes of hidden effects hold in.
+    sizing_runs : int
+        Number of runs, from the first, in which planted effects are sized.
 
     Raises
     ------
     OptionError
-        If an effect is unknown, or cannot be hidden in these runs.
+        If an effect is unknown, or cannot be planted in these runs.
     """
     seeds = np.random.SeedSequence(settings.seed).spawn(len(programmes))
     plain = replace(settings, protocol="paper", runs=len(programmes))
-    gone = [
-        _run(plain, prepare(plain, number, seed), acts)
-        for number, (seed, acts) in enumerate(zip(seeds, programmes, strict=True))
+    simulated = [
+        _run(plain, run_setup(plain, number, seed), motions)
+        for number, (seed, motions) in enumerate(zip(seeds, programmes, strict=True))
     ]
-    total = sum(history.time for _, history, _, _ in gone[:hidden_in])
+    total = sum(history.time for _, history, _, _ in simulated[:sizing_runs])
     operated = travelled = 0.0
-    courses, cells = [], []
-    for run, history, series, setups in gone:
-        before = Before(
-            run=run.number,
-            clock=run.number * DAY,
+    runs, cells = [], []
+    for setup, history, series, configurations in simulated:
+        earlier = EarlierRuns(
+            run=setup.number,
+            clock=setup.number * DAY,
             operated=operated,
             travelled=travelled,
             total=total,
         )
-        journey = look_back(history, run.program.angles, first=series[0].start, before=before)
-        trips = trips_of(run.program, run.joint.servo, series)
-        course = RunCourse(run=run, history=history, series=series, trips=trips, journey=journey)
-        courses.append(course)
-        cells.append(_cells(course, setups))
+        operation = operating_history(
+            history, setup.program.angles, first=series[0].start, earlier=earlier
+        )
+        trips = round_trips_of(setup.program, setup.joint.servo, series)
+        run = SimulatedRun(
+            setup=setup, history=history, series=series, trips=trips, operation=operation
+        )
+        runs.append(run)
+        cells.append(_cells(run, configurations))
         operated += history.time
-        travelled += float(journey.travel[-1])
-    planted = Planted()
-    effects = asked(settings.effects)
+        travelled += float(operation.travel[-1])
+    planted = PlantedEffects()
+    effects = requested_effects(settings.effects)
     if effects:
-        states = [part.state for parts in cells[:hidden_in] for part in parts]
+        states = [part.state for parts in cells[:sizing_runs] for part in parts]
         planted = plant(effects, settings.seed, states, settings.sign)
-    return [table_of(course, parts, planted) for course, parts in zip(courses, cells, strict=True)]
+    return [table_of(run, parts, planted) for run, parts in zip(runs, cells, strict=True)]
 
 
 def _run(
-    settings: SynthesisSettings, run: SimulatedRun, acts: Sequence[Act]
-) -> tuple[SimulatedRun, History, tuple[SeriesOfMoves, ...], tuple[Setup, ...]]:
-    """Let one run take its course; its payloads are then its setups'."""
-    setups = tuple(dict.fromkeys(_setup(act) for act in acts if isinstance(act, Measured)))
-    share = settings.motor_heat_share[run.number % len(settings.motor_heat_share)]
-    masses = tuple(settings.payload + more for more, _, _ in setups)
+    settings: SynthesisSettings, setup: RunSetup, motions: Sequence[Motion]
+) -> tuple[RunSetup, History, tuple[MeasuringSeries, ...], tuple[Configuration, ...]]:
+    """Simulate one run; the payloads of the returned setup are those of its configurations."""
+    configurations = tuple(
+        dict.fromkeys(
+            _configuration(motion) for motion in motions if isinstance(motion, MeasuredMoves)
+        )
+    )
+    share = settings.motor_heat_share[setup.number % len(settings.motor_heat_share)]
+    masses = tuple(settings.payload + more for more, _, _ in configurations)
     joints = tuple(joint_of(settings.joint_kind, mass, share) for mass in masses)
-    history = FastHistory(joints[0], run.ambient)
+    history = FastHistory(joints[0], setup.ambient)
     series = []
-    for act in acts:
-        if isinstance(act, Stood):
-            history.spend(act.seconds)
-        elif isinstance(act, Moved):
-            _move(history, run, act)
+    for motion in motions:
+        if isinstance(motion, Standstill):
+            history.continue_for(motion.seconds)
+        elif isinstance(motion, UnrecordedMoves):
+            _move(history, setup, motion)
         else:
-            number = setups.index(_setup(act))
+            number = configurations.index(_configuration(motion))
             history.use(joints[number], {})
-            program = replace(run.program, angles=(act.low, act.high))
-            one = measure(joints[number], program, history, "sweep", act.speeds)
-            series.append(replace(one, load=number, angles=program.angles))
-    used = replace(run, payloads=masses, joints=joints)
-    return used, history, tuple(series), setups
+            program = replace(setup.program, angles=(motion.low, motion.high))
+            one = measure(joints[number], program, history, "sweep", motion.speeds)
+            series.append(replace(one, payload_index=number, angles=program.angles))
+    used = replace(setup, payloads=masses, joints=joints)
+    return used, history, tuple(series), configurations
 
 
-def _setup(act: Measured) -> Setup:
-    return act.more, act.low, act.high
+def _configuration(motion: MeasuredMoves) -> Configuration:
+    return motion.more, motion.low, motion.high
 
 
-def _move(history: History, run: SimulatedRun, act: Moved) -> None:
-    trips = replace(run.program, angles=(act.low, act.high)).trips(act.speed)
-    sensor = run.joint.network.names.index(MOTOR)
-    left = act.seconds
-    while left > 0 and (act.until is None or history.state[sensor] < act.until):
-        history.spend(min(_LOOK, left), trips)
-        left -= _LOOK
+def _move(history: History, setup: RunSetup, motion: UnrecordedMoves) -> None:
+    trips = replace(setup.program, angles=(motion.low, motion.high)).trips(motion.speed)
+    sensor = setup.joint.network.names.index(MOTOR)
+    remaining = motion.seconds
+    while remaining > 0 and (motion.until is None or history.state[sensor] < motion.until):
+        history.continue_for(min(_CHECK_INTERVAL, remaining), trips)
+        remaining -= _CHECK_INTERVAL
 
 
-def _cells(course: RunCourse, setups: Sequence[Setup]) -> list[Cells]:
-    run = course.run
+def _cells(run: SimulatedRun, configurations: Sequence[Configuration]) -> list[Cells]:
+    setup = run.setup
     return [
         cells_of(
             joint,
-            replace(run.program, angles=(low, high)),
-            course.history,
-            replace(course.journey, angles=(low, high)),
-            course.trips,
-            load=number,
-            interval=run.logger.interval,
+            replace(setup.program, angles=(low, high)),
+            run.history,
+            replace(run.operation, angles=(low, high)),
+            run.trips,
+            payload_index=number,
+            interval=setup.logger.interval,
         )
-        for number, (joint, (_, low, high)) in enumerate(zip(run.joints, setups, strict=True))
+        for number, (joint, (_, low, high)) in enumerate(
+            zip(setup.joints, configurations, strict=True)
+        )
     ]

@@ -1,4 +1,4 @@
-"""Simulated runs as a table of torques, computed per bin without traces: for studies of many."""
+"""Simulated table of torques, computed per angle bin without traces, for many runs."""
 
 from dataclasses import dataclass
 
@@ -9,10 +9,10 @@ from frictioncli.arrays import Array, Flags, Numbers
 from frictioncli.simulator.cells import Cells, cells_of
 from frictioncli.simulator.noise import SimulatedNoise
 from frictioncli.simulator.noise_kinds import OUTLIER, UnevenNoise
-from frictioncli.simulator.planted.catalogue import asked
-from frictioncli.simulator.planted.planting import Planted, plant
+from frictioncli.simulator.planted.catalogue import requested_effects
+from frictioncli.simulator.planted.planting import PlantedEffects, plant
 from frictioncli.simulator.recording import registered
-from frictioncli.simulator.run import RunCourse, prepare, simulate
+from frictioncli.simulator.run import SimulatedRun, run_setup, simulate
 from frictioncli.simulator.run_files import generator_of
 from frictioncli.simulator.settings import SynthesisSettings
 from frictioncli.simulator.thermal_history import HOUSING, MOTOR
@@ -21,7 +21,7 @@ from tests.simulation.fast_history import FastHistory
 REBUILT = 0.05
 """Standard deviation of a motor temperature that is rebuilt from its whole degrees [K]."""
 
-REBUILT_MEMORY = 600.0
+REBUILT_CORRELATION_TIME = 600.0
 """Correlation time of that error [s]."""
 
 
@@ -33,12 +33,12 @@ class World:
     ----------
     torques : DataFrame
         A row per round trip and angle bin, with the columns of the table ``torques``.
-    planted : Planted
-        What is hidden in it.
+    planted : PlantedEffects
+        Planted effects.
     """
 
     torques: pd.DataFrame
-    planted: Planted
+    planted: PlantedEffects
 
 
 def simulate_torques(settings: SynthesisSettings, *, rebuilt: bool = True) -> pd.DataFrame:
@@ -64,53 +64,52 @@ def simulate_world(settings: SynthesisSettings, *, rebuilt: bool = True) -> Worl
     OptionError
         If an effect is unknown or cannot be planted.
     """
-    effects = asked(settings.effects)
+    effects = requested_effects(settings.effects)
     seeds = np.random.SeedSequence(settings.seed).spawn(settings.runs)
-    runs = [prepare(settings, number, seed) for number, seed in enumerate(seeds)]
-    courses = simulate(runs, FastHistory)
-    cells = [run_cells(course) for course in courses]
-    planted = Planted()
+    setups = [run_setup(settings, number, seed) for number, seed in enumerate(seeds)]
+    runs = simulate(setups, FastHistory)
+    cells = [run_cells(run) for run in runs]
+    planted = PlantedEffects()
     if effects:
         states = [part.state for parts in cells for part in parts]
         planted = plant(effects, settings.seed, states, settings.sign)
     tables = [
-        table_of(course, parts, planted, rebuilt)
-        for course, parts in zip(courses, cells, strict=True)
+        table_of(run, parts, planted, rebuilt) for run, parts in zip(runs, cells, strict=True)
     ]
     together = pd.concat(tables, ignore_index=True)
     for name, values in (
-        ("run", [course.run.name for course in courses]),
+        ("run", [run.setup.name for run in runs]),
         ("phase", ["cool-down", "heat-up", "sweep"]),
     ):
         together[name] = pd.Categorical(together[name], categories=values)
     return World(together, planted)
 
 
-def run_cells(course: RunCourse) -> list[Cells]:
-    """Return the angle bins of one run, payload by payload."""
-    run = course.run
+def run_cells(run: SimulatedRun) -> list[Cells]:
+    """Return the cells of one run, payload by payload."""
+    setup = run.setup
     return [
         cells_of(
             joint,
-            run.program,
-            course.history,
-            course.journey,
-            course.trips,
-            load=load,
-            interval=run.logger.interval,
+            setup.program,
+            run.history,
+            run.operation,
+            run.trips,
+            payload_index=index,
+            interval=setup.logger.interval,
         )
-        for load, joint in enumerate(run.joints)
+        for index, joint in enumerate(setup.joints)
     ]
 
 
 def table_of(
-    course: RunCourse, parts: list[Cells], planted: Planted, rebuilt: bool = True
+    run: SimulatedRun, parts: list[Cells], planted: PlantedEffects, rebuilt: bool = True
 ) -> pd.DataFrame:
     """Return the torques of one run from its cells."""
-    run, trips = course.run, course.trips
-    sign = run.logger.sign
-    offset_seed, noise_seed, register_seed = (generator_of(seed) for seed in run.seeds.spawn(3))
-    offsets = run.noise.pair_offsets(offset_seed, trips.begin)
+    setup, trips = run.setup, run.trips
+    sign = setup.logger.sign
+    offset_seed, noise_seed, register_seed = (generator_of(seed) for seed in setup.seeds.spawn(3))
+    offsets = setup.noise.pair_offsets(offset_seed, trips.begin)
     trip = np.concatenate([part.trip for part in parts])
     order = np.lexsort((np.concatenate([part.position for part in parts]), trip))
     torque = np.concatenate([_torque(part, planted, sign) for part in parts], axis=1)[:, order]
@@ -119,18 +118,18 @@ def table_of(
     way = sign * np.array([1.0, -1.0])[:, None]
     torque = torque + way * offsets[trip]
     torque = torque + _noise(
-        run.noise, noise_seed, torque, trips.speed[trip], trip, count, run.logger.interval
+        setup.noise, noise_seed, torque, trips.speed[trip], trip, count, setup.logger.interval
     )
-    middle = trips.begin + _middles(course)
-    motor, reading, housing = _temperatures(course, middle, register_seed, rebuilt)
-    phases = np.array([one.phase for one in course.series])[trips.series]
+    middle = trips.begin + _middles(run)
+    motor, reading, housing = _temperatures(run, middle, register_seed, rebuilt)
+    phases = np.array([one.phase for one in run.series])[trips.series]
     return pd.DataFrame(
         {
-            "run": run.name,
-            "joint": np.int16(run.axis),
+            "run": setup.name,
+            "joint": np.int16(setup.axis),
             "pair": trip,
             "speed": trips.speed[trip],
-            "time": (middle - course.series[0].start)[trip],
+            "time": (middle - run.series[0].start)[trip],
             "phase": phases[trip],
             "motor_temperature": motor[trip],
             "housing_temperature": housing[trip],
@@ -141,43 +140,44 @@ def table_of(
             "n_reverse": count,
             "motor_temperature_reading": reading[trip],
             "load": np.nan,
-            "payload": np.array(run.payloads)[trips.load][trip],
+            "payload": np.array(setup.payloads)[trips.payload_index][trip],
             "friction_torque": sign * (torque[0] - torque[1]) / 2.0,
             "load_torque": (torque[0] + torque[1]) / 2.0,
         }
     )
 
 
-def _torque(part: Cells, planted: Planted, sign: int) -> Array:
+def _torque(part: Cells, planted: PlantedEffects, sign: int) -> Array:
     """Return the mean torque per direction and cell, without noise [N·m].
 
     A bin that was passed in part has its mean off its centre; as from traces, the mean is carried
     there along the slope.
     """
     state = part.state
-    extra = planted.extra(state)
-    friction = state.friction + extra.friction
-    torque = state.load + extra.load + sign * state.direction * friction
+    added = planted.torque(state)
+    friction = state.friction + added.friction
+    torque = state.load + added.load + sign * state.direction * friction
     slope = np.diff(torque, axis=0)[0] / np.diff(state.position, axis=0)[0]
     away = part.position - np.mean(state.position, axis=0)
     return np.asarray(np.mean(torque, axis=0) + slope * away)
 
 
-def _middles(course: RunCourse) -> Array:
+def _middles(run: SimulatedRun) -> Array:
     """Return the time from each round trip's begin to the middle of its pair [s]."""
-    run = course.run
+    setup = run.setup
     durations = [
-        run.program.of(one).trip_durations(run.joint.servo, one.speeds) for one in course.series
+        setup.program.for_series(one).trip_durations(setup.joint.servo, one.speeds)
+        for one in run.series
     ]
-    return np.asarray((np.concatenate(durations) - run.program.dwell) / 2.0 + 0.1)
+    return np.asarray((np.concatenate(durations) - setup.program.dwell) / 2.0 + 0.1)
 
 
 def _temperatures(
-    course: RunCourse, time: Array, generator: np.random.Generator, rebuilt: bool
+    run: SimulatedRun, time: Array, generator: np.random.Generator, rebuilt: bool
 ) -> tuple[Array, Array, Array]:
     """Return motor temperature, its reading and housing temperature per round trip [°C]."""
-    logger, noise = course.run.logger, course.run.noise
-    true = course.history.at(time)
+    logger, noise = run.setup.logger, run.setup.noise
+    true = run.history.at(time)
     reading = registered(true[MOTOR], logger.motor_step)
     housing = registered(true[HOUSING], logger.housing_step)
     if not rebuilt:
@@ -188,7 +188,7 @@ def _temperatures(
         correlated=0.0,
         correlation_time=1.0,
         slow=0.0 if quiet else REBUILT,
-        slow_time=REBUILT_MEMORY,
+        slow_time=REBUILT_CORRELATION_TIME,
         per_pair=0.0,
     )
     return true[MOTOR] + error.pair_offsets(generator, time), reading, housing
@@ -218,10 +218,10 @@ def _noise(
     memory = np.exp(-bins)
     kept = 2.0 / bins * (1.0 - (1.0 - memory) / bins)
     first = np.concatenate([[True], trip[1:] != trip[:-1]])
-    return total + noise.correlated * np.sqrt(kept) * _remembering(generator, memory, first)
+    return total + noise.correlated * np.sqrt(kept) * _correlated(generator, memory, first)
 
 
-def _remembering(generator: np.random.Generator, memory: Array, first: Flags) -> Array:
+def _correlated(generator: np.random.Generator, memory: Array, first: Flags) -> Array:
     """Return numbers of variance 1 for both directions, correlated by ``memory`` along moves."""
     drive = generator.standard_normal((2, len(memory)))
     place = np.arange(len(memory)) - np.maximum.accumulate(

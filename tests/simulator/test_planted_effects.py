@@ -9,7 +9,8 @@ import pytest
 from frictioncli.simulator import default_joint
 from frictioncli.simulator.plain_joint import plain_joint
 from frictioncli.simulator.planted.catalogue import EFFECTS
-from frictioncli.simulator.planted.journey import Before, Journey
+from frictioncli.simulator.planted.listed_speed_and_load import gear_minus_motor
+from frictioncli.simulator.planted.operating_history import EarlierRuns, OperatingHistory
 from frictioncli.simulator.planted.state import State
 
 # q 30 deg, v -50 deg/s, motor 60, gear 50, housing 45 degC, load 80 and friction 40 N·m,
@@ -17,8 +18,8 @@ from frictioncli.simulator.planted.state import State
 ARM = default_joint.joint(payload=2.0, motor_heat_share=0.5).arm
 JOINT = plain_joint(arm=ARM, servo=default_joint.SERVO, motor_heat_share=0.5)
 GRID = np.arange(0.0, 14401.0, 10.0)
-JOURNEY = Journey(
-    before=Before(run=1, clock=86400.0, operated=14400.0, travelled=36000.0, total=28800.0),
+OPERATION = OperatingHistory(
+    earlier=EarlierRuns(run=1, clock=86400.0, operated=14400.0, travelled=36000.0, total=28800.0),
     angles=(0.0, 180.0),
     times=GRID,
     temperatures={name: np.full(GRID.shape, 60.0) for name in ("motor sensor", "gear", "housing")},
@@ -37,7 +38,7 @@ def one(value: float) -> np.ndarray:
 
 STATE = State(
     joint=JOINT,
-    journey=JOURNEY,
+    operation=OPERATION,
     time=one(7200.0),
     position=one(30.0),
     velocity=one(-50.0),
@@ -144,8 +145,8 @@ CASES = {
 
 
 def torque(name: str, state: State = STATE, **parameters: float) -> tuple[float, float]:
-    extra = EFFECTS[name](**parameters).torque(state)
-    return float(np.sum(extra.friction)), float(np.sum(extra.load))
+    added = EFFECTS[name].law(state, **parameters)
+    return float(np.sum(added.friction)), float(np.sum(added.load))
 
 
 @pytest.mark.parametrize("name", CASES)
@@ -163,22 +164,22 @@ def test_weak_magnet_multiplies_the_whole_torque():
 
 def test_gear_that_lags_keeps_the_motor_s_old_temperature():
     # The motor rises by 0.01 K/s; after long the gear is 0.01 K/s times 300 s behind.
-    ramp = replace(JOURNEY, temperatures={"motor sensor": 20.0 + 0.01 * GRID})
-    effect = EFFECTS["thermal_lag"](magnitude=5.0, heating=0.0, loss=1e12)
-    assert effect.difference(ramp)[720] == pytest.approx(-3.0, abs=0.01)
+    ramp = replace(OPERATION, temperatures={"motor sensor": 20.0 + 0.01 * GRID})
+    gear = {"magnitude": 5.0, "heating": 0.0, "loss": 1e12}
+    assert gear_minus_motor(ramp, **gear)[720] == pytest.approx(-3.0, abs=0.01)
     viscous = 15.66 * (exp(-0.056 * 57.0) - exp(-0.056 * 60.0)) * sqrt(50.0)
-    extra = effect.torque(replace(STATE, journey=ramp))
-    assert float(extra.friction[0]) == pytest.approx(viscous, rel=0.01)
+    lagging = torque("thermal_lag", replace(STATE, operation=ramp), **gear)
+    assert lagging[0] == pytest.approx(viscous, rel=0.01)
 
 
 def test_gear_that_is_heated_is_warmer_than_its_motor():
     # 0.1 K/kJ times 100 W is 0.01 K/s, in equilibrium with a difference of 3 K over 300 s.
-    effect = EFFECTS["thermal_lag"](magnitude=5.0, heating=0.1, loss=1e12)
-    assert effect.difference(JOURNEY)[720] == pytest.approx(3.0, abs=0.01)
-    assert float(effect.torque(STATE).friction[0]) < 0.0
-    cooled = EFFECTS["thermal_lag"](magnitude=5.0, heating=0.0, loss=45.0)
+    heated = {"magnitude": 5.0, "heating": 0.1, "loss": 1e12}
+    assert gear_minus_motor(OPERATION, **heated)[720] == pytest.approx(3.0, abs=0.01)
+    assert torque("thermal_lag", **heated)[0] < 0.0
+    cooled = {"magnitude": 5.0, "heating": 0.0, "loss": 45.0}
     # A tenth of the conductance leads to an ambient that is 40 K colder.
-    assert cooled.difference(JOURNEY)[720] == pytest.approx(-4.0, abs=0.01)
+    assert gear_minus_motor(OPERATION, **cooled)[720] == pytest.approx(-4.0, abs=0.01)
 
 
 def test_plain_joint_is_equation_16_with_the_published_numbers():
@@ -198,6 +199,7 @@ def test_shapes_differ_from_seed_to_seed_and_repeat(name):
     draws = [EFFECTS[name].draw(np.random.default_rng(seed)) for seed in (1, 2, 1)]
     assert draws[0] == draws[2] != draws[1]
     assert draws[0].magnitude == 1.0
+    assert draws[0].scaled(2.0).magnitude == 2.0
 
 
 def test_catalogue_has_the_contract_s_names_and_more():
@@ -205,4 +207,7 @@ def test_catalogue_has_the_contract_s_names_and_more():
     assert len(listed) == 20
     assert len(EFFECTS) - len(listed) >= 4
     assert {"thermal_lag", "position_ripple", "reversal_transient"} <= set(listed)
-    assert all(effect.name == name and effect.equation for name, effect in EFFECTS.items())
+    assert all(
+        effect.name == name and effect.equation and effect.source
+        for name, effect in EFFECTS.items()
+    )

@@ -5,7 +5,7 @@ import pytest
 
 from frictioncli import schemas
 from frictioncli.errors import OptionError
-from frictioncli.simulator.planted.catalogue import EFFECTS, asked
+from frictioncli.simulator.planted.catalogue import EFFECTS, requested_effects
 from frictioncli.simulator.settings import NOISE_KINDS, SynthesisSettings
 from tests.simulation.torque_table import simulate_torques, simulate_world
 
@@ -51,13 +51,13 @@ def test_two_effects_add_and_a_weak_magnet_multiplies_both(clean):
         ripple + pack
     )
     world = simulate_world(settings(effects=("torque_constant:1", "dress_pack:3")))
-    assert [one.effect.name for one in world.planted.buried] == ["dress_pack", "torque_constant"]
-    assert [one.rms for one in world.planted.buried] == pytest.approx([3.0, 1.0], rel=0.001)
+    assert [one.effect.name for one in world.planted.effects] == ["dress_pack", "torque_constant"]
+    assert [one.rms for one in world.planted.effects] == pytest.approx([3.0, 1.0], rel=0.001)
 
 
 def test_size_is_drawn_where_none_is_given():
     sizes = [
-        simulate_world(settings(seed=seed, effects=("drift",))).planted.buried[0].rms
+        simulate_world(settings(seed=seed, effects=("drift",))).planted.effects[0].rms
         for seed in range(4)
     ]
     assert len(set(sizes)) == 4
@@ -141,7 +141,7 @@ def test_motor_temperature_is_rebuilt_or_raw():
 )
 def test_wrong_effects_are_refused(texts, told):
     with pytest.raises(OptionError, match=told):
-        asked(texts)
+        requested_effects(texts)
 
 
 @pytest.mark.parametrize(

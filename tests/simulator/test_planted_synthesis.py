@@ -1,6 +1,5 @@
 """Planted effects in traces: what the folder tells, and that the tables agree with the traces."""
 
-import ast
 import csv
 import json
 import subprocess
@@ -11,7 +10,6 @@ import numpy as np
 import pandas as pd
 import pytest
 
-import frictioncli.simulator
 from frictioncli.errors import OptionError
 from frictioncli.simulator.settings import SynthesisSettings
 from frictioncli.simulator.synthesize import synthesize
@@ -188,17 +186,3 @@ def test_command_line_plants_and_refuses(tmp_path):
     assert "reversal_transient" in wrong.stderr
     assert len(wrong.stderr.splitlines()) == 1
     assert not (tmp_path / "never").exists()
-
-
-def test_no_part_of_the_simulator_imports_the_analysis():
-    package = Path(frictioncli.simulator.__file__).parent
-    modules = list(package.rglob("*.py"))
-    assert len(modules) > 40
-    for module in modules:
-        for node in ast.walk(ast.parse(module.read_text(encoding="utf-8"))):
-            names = [alias.name for alias in getattr(node, "names", [])]
-            source = node.module or "" if isinstance(node, ast.ImportFrom) else ""
-            for name in (*names, source):
-                for forbidden in ("effects", "model", "diagnosis", "motion", "correction"):
-                    assert not name.startswith(f"frictioncli.{forbidden}")
-                    assert (source, name) != ("frictioncli", forbidden)

@@ -98,9 +98,9 @@ def test_summary_counts_the_rows(short):
     assert summary.runs[0].rows == sum(
         len(table(folder / "day1" / row["file"])) for row in manifest(folder)
     )
-    assert "day1" in summary.made()
-    assert "heat" in summary.hidden()
-    assert str(summary) == f"{summary.made()}\n{summary.hidden()}"
+    assert "day1" in summary.files_text()
+    assert "heat" in summary.truth_text()
+    assert str(summary) == f"{summary.files_text()}\n{summary.truth_text()}"
 
 
 def test_sweep_holds_each_speed_of_the_paper(short):

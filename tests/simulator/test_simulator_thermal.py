@@ -6,12 +6,12 @@ from scipy.integrate import trapezoid
 
 from frictioncli.simulator.arm import Arm, Body
 from frictioncli.simulator.friction_zones import LubricatedZone
-from frictioncli.simulator.joint import HeatEntry, MeanPower, RoundTrips, SimulatedJoint
+from frictioncli.simulator.joint import HeatEntry, MeanPower, RoundTripMotion, SimulatedJoint
 from frictioncli.simulator.motion_profile import Servo
 from frictioncli.simulator.thermal_history import MOTOR, ThermalHistory
 from frictioncli.simulator.thermal_network import Ambient, ThermalLink, ThermalNetwork, ThermalNode
 
-TRIPS = RoundTrips(speed=90.0, angles=(0.0, 180.0), dwell=0.5)
+TRIPS = RoundTripMotion(speed=90.0, angles=(0.0, 180.0), dwell=0.5)
 # 180 deg at 90 deg/s with ramps at 180 deg/s² take 2.5 s, the dwell makes it 3 s: pi rad each 3 s.
 HEAT = 30.0 * np.pi / 3.0
 
@@ -70,22 +70,22 @@ def test_copper_loss_is_added_while_torque_acts():
 
 def test_one_node_heats_and_cools_exponentially():
     history = ThermalHistory(dry_joint(ONE_NODE, {MOTOR: 1.0}), Ambient(start=20.0))
-    history.spend(2000.0, TRIPS)
+    history.continue_for(2000.0, TRIPS)
     rise = HEAT / 0.5 * (1.0 - np.exp(-2000.0 / 1600.0))
     assert history.state[0] == pytest.approx(20.0 + rise, abs=1e-4)
-    history.spend(1000.0)
+    history.continue_for(1000.0)
     assert history.state[0] == pytest.approx(20.0 + rise * np.exp(-1000.0 / 1600.0), abs=1e-4)
 
 
 def test_event_falls_on_the_exponential():
     history = ThermalHistory(dry_joint(ONE_NODE, {MOTOR: 1.0}), Ambient(start=20.0))
-    assert history.until_motor(40.5, TRIPS)
+    assert history.continue_until(40.5, TRIPS)
     assert history.time == pytest.approx(-1600.0 * np.log(1.0 - 20.5 * 0.5 / HEAT), abs=0.01)
 
 
 def test_temperature_out_of_reach_is_told():
     history = ThermalHistory(dry_joint(ONE_NODE, {MOTOR: 1.0}), Ambient(start=20.0))
-    assert not history.until_motor(20.0 + HEAT / 0.5 + 1.0, TRIPS)
+    assert not history.continue_until(20.0 + HEAT / 0.5 + 1.0, TRIPS)
     assert history.time == 0.0
 
 
@@ -103,7 +103,7 @@ def test_steady_state_of_a_chain_by_hand():
 
 def test_network_integrates_to_its_steady_state():
     history = ThermalHistory(dry_joint(CHAIN, {MOTOR: 0.6, "end": 0.4}), Ambient(start=15.0))
-    history.spend(100_000.0, TRIPS)
+    history.continue_for(100_000.0, TRIPS)
     expected = CHAIN.steady_state(power=[0.6 * HEAT, 0.0, 0.4 * HEAT], ambient=15.0)
     assert history.state == pytest.approx(expected, abs=1e-3)
 
@@ -111,8 +111,8 @@ def test_network_integrates_to_its_steady_state():
 def test_energy_is_conserved():
     ambient = Ambient(start=15.0, drift=-1.5)
     history = ThermalHistory(dry_joint(CHAIN, {MOTOR: 0.6, "end": 0.4}), ambient)
-    history.spend(3000.0, TRIPS)
-    history.spend(2000.0)
+    history.continue_for(3000.0, TRIPS)
+    history.continue_for(2000.0)
     time = np.linspace(0.0, 5000.0, 20_001)
     temperatures = history.at(time)
     loss = sum(

@@ -26,9 +26,12 @@ COUNTERPARTS: Mapping[str, tuple[str, Callable[[Any], float]]] = {
     # planted m (x + c x³) with x in quarter turns, fitted k (x + c x³) with x in rad
     "dress_pack": ("stiffness", lambda one: one.magnitude * 2.0 / np.pi),
     # gravity of the mass gained at 0 deg
-    "payload_change": ("cosine", lambda one: GRAVITY * one.way * one.magnitude * one.along),
+    "payload_change": (
+        "cosine",
+        lambda one: GRAVITY * one.parameters["way"] * one.magnitude * one.parameters["along"],
+    ),
     # planted with a width of up to two minutes, fitted without
-    "step_change": ("change", lambda one: one.way * one.magnitude),
+    "step_change": ("change", lambda one: one.parameters["way"] * one.magnitude),
 }
 """Coefficients of the catalogue that mean what a planted parameter means, and its value."""
 
@@ -96,7 +99,7 @@ def truth_of(world: World) -> Truth:
     coefficient, value = "", float("nan")
     if world.kind == "single" and world.hidden in COUNTERPARTS:
         coefficient, planted = COUNTERPARTS[world.hidden]
-        value = planted(simulated.planted.buried[0].effect)
+        value = planted(simulated.planted.effects[0].effect)
     return Truth(
         torques=torques,
         before=_rms_misfit(new),

@@ -6,7 +6,7 @@ from frictioncli.design.blocks import Block
 from frictioncli.design.selection import seconds_of as block_seconds
 from frictioncli.design.selection import steps_of
 from frictioncli.design.steps import SeriesStep
-from tests.simulation.motion_programme import Act, Measured, Moved, Stood
+from tests.simulation.motion_programme import MeasuredMoves, Motion, Standstill, UnrecordedMoves
 from tests.studies.planning_worlds import HIGH, LOW, acts_of, seconds_of
 
 SLOWEST = 3.0
@@ -22,7 +22,7 @@ LONGEST = 480.0
 
 def blocks_at_random(
     generator: random.Random, blocks: tuple[Block, ...], budget: float
-) -> list[Act]:
+) -> list[Motion]:
     """Return blocks drawn one by one as long as any fits into a time [s].
 
     The first measures something: without any series there is nothing to diagnose.
@@ -38,12 +38,12 @@ def blocks_at_random(
     return acts_of(steps_of(taken))
 
 
-def motions_at_random(generator: random.Random, fastest: float, budget: float) -> list[Act]:
+def motions_at_random(generator: random.Random, fastest: float, budget: float) -> list[Motion]:
     """Return measured series, unrecorded moves and rests at random, until a time [s] is filled.
 
     The first is a series.
     """
-    taken: list[Act] = []
+    taken: list[Motion] = []
     left = budget
     while True:
         low = generator.uniform(LOW, HIGH - LEAST_STROKE)
@@ -52,10 +52,10 @@ def motions_at_random(generator: random.Random, fastest: float, budget: float) -
             generator.uniform(SLOWEST, fastest) for _ in range(generator.randint(1, MOST_SPEEDS))
         ]
         seconds = generator.uniform(60.0, LONGEST)
-        kinds: list[Act] = [
-            Measured(speeds=tuple(speeds), low=low, high=high),
-            Moved(speed=speeds[0], low=low, high=high, seconds=seconds),
-            Stood(seconds),
+        kinds: list[Motion] = [
+            MeasuredMoves(speeds=tuple(speeds), low=low, high=high),
+            UnrecordedMoves(speed=speeds[0], low=low, high=high, seconds=seconds),
+            Standstill(seconds),
         ]
         act = generator.choice(kinds) if taken else kinds[0]
         if seconds_of(act) <= left:

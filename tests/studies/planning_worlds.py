@@ -9,7 +9,7 @@ import numpy as np
 
 from frictioncli.design.steps import MOUNTING, HeatStep, SeriesStep, Step, mountings
 from frictioncli.simulator.settings import SynthesisSettings
-from tests.simulation.motion_programme import Act, Measured, Moved, Stood
+from tests.simulation.motion_programme import MeasuredMoves, Motion, Standstill, UnrecordedMoves
 
 ROOT = Path(__file__).parents[2]
 PACKAGES = ("diagnosis", "effects", "design", "simulator", "model")
@@ -84,9 +84,9 @@ def worlds(seeds: int) -> list[World]:
     return found
 
 
-def thin(design: str) -> list[Act]:
+def thin(design: str) -> list[Motion]:
     """Return the motions of a thin experiment."""
-    heat = Moved(speed=FASTEST, low=LOW, high=HIGH, seconds=180.0)
+    heat = UnrecordedMoves(speed=FASTEST, low=LOW, high=HIGH, seconds=180.0)
     if design == "heating":
         one = _series(19.1, 39.4, 67.5, FASTEST)
         return [act for _ in range(12) for act in (one, heat)]
@@ -96,23 +96,25 @@ def thin(design: str) -> list[Act]:
     raise ValueError(design)
 
 
-def _series(*speeds: float) -> Measured:
-    return Measured(speeds=speeds, low=LOW, high=HIGH)
+def _series(*speeds: float) -> MeasuredMoves:
+    return MeasuredMoves(speeds=speeds, low=LOW, high=HIGH)
 
 
-def acts_of(steps: Sequence[Step]) -> list[Act]:
+def acts_of(steps: Sequence[Step]) -> list[Motion]:
     """Return what the simulator is to do for the steps of a plan."""
-    found: list[Act] = []
+    found: list[Motion] = []
     for step, change in zip(steps, mountings(steps, None), strict=True):
         if change:
-            found.append(Stood(MOUNTING))
+            found.append(Standstill(MOUNTING))
         if isinstance(step, SeriesStep):
             found.append(
-                Measured(speeds=step.speeds, low=step.low, high=step.high, more=step.payload or 0.0)
+                MeasuredMoves(
+                    speeds=step.speeds, low=step.low, high=step.high, more=step.payload or 0.0
+                )
             )
         elif isinstance(step, HeatStep):
             found.append(
-                Moved(
+                UnrecordedMoves(
                     speed=step.speed,
                     low=step.low,
                     high=step.high,
@@ -121,20 +123,20 @@ def acts_of(steps: Sequence[Step]) -> list[Act]:
                 )
             )
         else:
-            found.append(Stood(step.seconds))
+            found.append(Standstill(step.seconds))
     return found
 
 
-def seconds_of(act: Act) -> float:
+def seconds_of(act: Motion) -> float:
     """Return about how long a motion takes [s]."""
-    if isinstance(act, Measured):
+    if isinstance(act, MeasuredMoves):
         return sum(2 * (act.high - act.low) / speed + 2.0 for speed in act.speeds)
     return act.seconds
 
 
-def beginning(acts: Sequence[Act], seconds: float) -> list[Act]:
+def beginning(acts: Sequence[Motion], seconds: float) -> list[Motion]:
     """Return motions, begun again where they end, that fit into a time [s]."""
-    found: list[Act] = []
+    found: list[Motion] = []
     left, place = seconds, 0
     while seconds_of(acts[place % len(acts)]) <= left:
         found.append(acts[place % len(acts)])

@@ -12,8 +12,8 @@ import pandas as pd
 from numpy.typing import NDArray
 
 from frictioncli.simulator.joint import SimulatedJoint
-from frictioncli.simulator.planted.planting import Planted
-from frictioncli.simulator.run import SimulatedRun, prepare, simulate
+from frictioncli.simulator.planted.planting import PlantedEffects
+from frictioncli.simulator.run import RunSetup, run_setup, simulate
 from frictioncli.simulator.settings import SynthesisSettings
 from tests.simulation.fast_history import FastHistory
 from tests.simulation.torque_table import run_cells, table_of
@@ -82,11 +82,11 @@ def torques_of(life: Life) -> pd.DataFrame:
     courses = _course(life)
     seeds = np.random.SeedSequence(settings.seed).spawn(life.runs)
     runs = [
-        _changed(prepare(settings, number, seed), life, float(course))
+        _changed(run_setup(settings, number, seed), life, float(course))
         for number, (seed, course) in enumerate(zip(seeds, courses, strict=True))
     ]
     tables = [
-        table_of(course, run_cells(course), Planted()) for course in simulate(runs, FastHistory)
+        table_of(run, run_cells(run), PlantedEffects()) for run in simulate(runs, FastHistory)
     ]
     for number, table in enumerate(tables):
         table["run"] = f"day{number + 1:02d}"
@@ -104,7 +104,7 @@ def _course(life: Life) -> NDArray[np.float64]:
     return np.round(steady) if life.kind in ("sudden", "payload") else steady
 
 
-def _changed(run: SimulatedRun, life: Life, course: float) -> SimulatedRun:
+def _changed(run: RunSetup, life: Life, course: float) -> RunSetup:
     more = life.change * course
     program = replace(run.program, sweep_speeds=SPEEDS)
     joints = run.joints

@@ -1,5 +1,5 @@
-"""Effects that can be hidden in simulated logs, each by its own formula.
+"""Effects that are planted in simulated logs, each by a law of its own.
 
-No formula here is taken from what a diagnosis tries: time is continuous, parameters are drawn off
-any grid, and some effects are in no catalogue.
+No law is taken from the effects that the diagnosis tries: time is continuous, parameters are drawn
+off every search grid, and some effects are in no catalogue.
 """

@@ -1,54 +1,142 @@
-"""What every planted effect is: parameters drawn from a seed, a magnitude, and its torque."""
+"""Definition of a planted effect, and an effect with drawn parameters."""
 
-from abc import ABC, abstractmethod
-from dataclasses import dataclass, replace
-from typing import ClassVar, Self
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field, replace
+from typing import Any
 
 import numpy as np
 
-from frictioncli.simulator.planted.state import Extra, State
+from frictioncli.simulator.planted.state import AddedTorque, State
+
+Draw = Callable[[np.random.Generator], float]
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class PlantedEffect(ABC):
-    """A planted effect.
+@dataclass(frozen=True, slots=True)
+class Parameter:
+    """A shape parameter of a planted effect.
 
     Attributes
     ----------
-    magnitude : float
-        Factor that sets the effect's size; its unit is told by each effect.
+    name : str
+        Name of the law's argument.
+    draw : callable
+        Draws a value from a random number generator.
+    unit : str
+        Its unit.
+    description : str
+        What it is.
     """
 
-    name: ClassVar[str]
-    equation: ClassVar[str]
-    listed: ClassVar[bool] = True
-    """Whether the public catalogue of effects has the name."""
-    at_reversal: ClassVar[bool] = False
-    """Whether its size is counted within the first 20 deg after a reversal only."""
-    scales_torque: ClassVar[bool] = False
-    """Whether it acts on the torque of all other effects as well."""
+    name: str
+    draw: Draw
+    unit: str
+    description: str
 
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class EffectDefinition:
+    """A kind of planted effect.
+
+    Attributes
+    ----------
+    name : str
+        Its name.
+    equation : str
+        Its law in one line, as the truth document prints it.
+    magnitude : str
+        What the factor ``magnitude`` of the law is, with its unit in brackets.
+    parameters : tuple of Parameter
+        Shape parameters in the order in which they are drawn.
+    law : callable
+        Pure function of a :class:`State`, ``magnitude`` and the shape parameters that returns the
+        :class:`AddedTorque`.
+    source : str
+        Where the law comes from.
+    listed : bool
+        Whether the diagnosis has an effect of this name in its catalogue.
+    at_reversal : bool
+        Whether its size is taken within the first 20 deg after a reversal only.
+    scales_torque : bool
+        Whether it acts on the torque of all other effects as well.
+    """
+
+    name: str
+    equation: str
+    magnitude: str
+    parameters: tuple[Parameter, ...]
+    law: Callable[..., AddedTorque]
+    source: str
+    listed: bool = True
+    at_reversal: bool = False
+    scales_torque: bool = False
+
+    def draw(self, generator: np.random.Generator) -> "PlantedEffect":
+        """Return the effect with random shape parameters and magnitude 1."""
+        return PlantedEffect(self, 1.0, {one.name: one.draw(generator) for one in self.parameters})
+
+
+@dataclass(frozen=True, slots=True)
+class PlantedEffect:
+    """A planted effect with the values of its parameters.
+
+    Attributes
+    ----------
+    definition : EffectDefinition
+        Its kind.
+    magnitude : float
+        Factor that sets its size; the definition states its unit.
+    parameters : mapping of str to float
+        Values of the shape parameters.
+    """
+
+    definition: EffectDefinition
     magnitude: float = 1.0
+    parameters: Mapping[str, float] = field(default_factory=dict)
 
-    @classmethod
-    @abstractmethod
-    def draw(cls, generator: np.random.Generator) -> Self:
-        """Return the effect with random shape parameters."""
+    @property
+    def name(self) -> str:
+        """Name of the effect."""
+        return self.definition.name
 
-    def scaled(self, factor: float) -> Self:
+    def scaled(self, factor: float) -> "PlantedEffect":
         """Return the effect with its magnitude multiplied by ``factor``."""
         return replace(self, magnitude=self.magnitude * factor)
 
-    @abstractmethod
-    def torque(self, state: State) -> Extra:
+    def torque(self, state: State) -> AddedTorque:
         """Return the torque that the effect adds at each sample [N·m]."""
+        return self.definition.law(state, magnitude=self.magnitude, **self.parameters)
+
+    def truth(self) -> dict[str, Any]:
+        """Return name, equation and parameter values, ready for JSON."""
+        values = {"magnitude": self.magnitude, **self.parameters}
+        return {
+            "name": self.name,
+            "listed": self.definition.listed,
+            "equation": self.definition.equation,
+            "parameters": {name: float(f"{value:.9g}") for name, value in values.items()},
+        }
 
 
-def sign(generator: np.random.Generator) -> float:
+def uniform(low: float, high: float) -> Draw:
+    """Return a draw from the uniform distribution between ``low`` and ``high``."""
+    return lambda generator: float(generator.uniform(low, high))
+
+
+def log_uniform(low: float, high: float) -> Draw:
+    """Return a draw between ``low`` and ``high`` whose logarithm is uniform."""
+    return lambda generator: float(np.exp(generator.uniform(np.log(low), np.log(high))))
+
+
+def either(first: Draw, second: Draw) -> Draw:
+    """Return a draw from one of two distributions with equal probability."""
+    return lambda generator: float(generator.choice((first(generator), second(generator))))
+
+
+def zero_or(other: Draw) -> Draw:
+    """Return a draw that is 0 with probability one half, and else comes from ``other``."""
+    return lambda generator: float(generator.integers(2)) * other(generator)
+
+
+def random_sign(generator: np.random.Generator) -> float:
     """Return -1 or +1 with equal probability."""
     return float(generator.choice((-1.0, 1.0)))
-
-
-def log_uniform(generator: np.random.Generator, low: float, high: float) -> float:
-    """Return a number between ``low`` and ``high`` whose logarithm is uniform."""
-    return float(np.exp(generator.uniform(np.log(low), np.log(high))))

@@ -1,32 +1,32 @@
-"""Drawing effects from a seed and scaling them to the size that is asked for."""
+"""Drawing planted effects from a seed and scaling them to the requested size."""
 
 from collections.abc import Iterable, Sequence
-from dataclasses import asdict, dataclass, replace
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
 
 from frictioncli.arrays import Array
 from frictioncli.errors import OptionError
-from frictioncli.simulator.planted.catalogue import EFFECTS, Asked
+from frictioncli.simulator.planted.catalogue import EFFECTS, RequestedEffect
 from frictioncli.simulator.planted.effect import PlantedEffect
-from frictioncli.simulator.planted.state import Extra, State
+from frictioncli.simulator.planted.state import AddedTorque, State
 
 SIZES = (0.5, 2.0)
 """Range from which a size is drawn [N·m]."""
 
 REVERSAL = 20.0
-"""Angle after a reversal within which some effects are sized [deg]."""
+"""Angle after a reversal within which the size of some effects is taken [deg]."""
 
 _STREAM = 1_000_000
-"""Keeps the effects' random numbers apart from those of the runs."""
+"""Keeps the random numbers of the effects apart from those of the runs."""
 
-_ENOUGH = 1e-4
-"""Relative error at which an effect has its size."""
+_SIZE_TOLERANCE = 1e-4
+"""Relative error at which an effect has the requested size."""
 
 
 @dataclass(frozen=True, slots=True)
-class Buried:
+class SizedEffect:
     """An effect with its final magnitude.
 
     Attributes
@@ -34,104 +34,109 @@ class Buried:
     effect : PlantedEffect
         The effect.
     rms : float
-        Root mean square of its torque over the cells that count. [N·m]
+        Root mean square of its torque over the cells in which sizes are taken. [N·m]
     """
 
     effect: PlantedEffect
     rms: float
 
     def truth(self) -> dict[str, Any]:
-        """Return all that is true about it, ready for JSON."""
-        return {
-            "name": self.effect.name,
-            "listed": self.effect.listed,
-            "equation": self.effect.equation,
-            "parameters": {
-                name: float(f"{value:.9g}") for name, value in asdict(self.effect).items()
-            },
+        """Return the true description of the effect, ready for JSON."""
+        return self.effect.truth() | {
             "rms": round(self.rms, 6),
             "rms_over": f"first {REVERSAL:g} deg after a reversal"
-            if self.effect.at_reversal
+            if self.effect.definition.at_reversal
             else "all constant velocity",
         }
 
 
 @dataclass(frozen=True, slots=True)
-class Planted:
-    """The effects that are hidden in a synthesis."""
+class PlantedEffects:
+    """All effects that are planted in a synthesis."""
 
-    buried: tuple[Buried, ...] = ()
+    effects: tuple[SizedEffect, ...] = ()
 
-    def extra(self, state: State) -> Extra:
-        """Return what all effects add together [N·m]."""
-        return added((one.effect for one in self.buried), state)
+    def torque(self, state: State) -> AddedTorque:
+        """Return the torque that all effects add together [N·m]."""
+        return added_torque((one.effect for one in self.effects), state)
 
 
-def added(effects: Iterable[PlantedEffect], state: State) -> Extra:
-    """Return what effects add, each that scales the torque seeing those before it [N·m]."""
+def added_torque(effects: Iterable[PlantedEffect], state: State) -> AddedTorque:
+    """Return the torque that effects add together [N·m].
+
+    An effect that scales the torque acts on the effects before it, too.
+    """
     friction, load = np.zeros(state.position.shape), np.zeros(state.position.shape)
     for effect in effects:
         seen = state
-        if effect.scales_torque:
+        if effect.definition.scales_torque:
             seen = replace(state, friction=state.friction + friction, load=state.load + load)
-        extra = effect.torque(seen)
-        friction, load = friction + extra.friction, load + extra.load
-    return Extra(friction, load)
+        added = effect.torque(seen)
+        friction, load = friction + added.friction, load + added.load
+    return AddedTorque(friction, load)
 
 
-def plant(asked: Sequence[Asked], seed: int, states: Sequence[State], sign: int) -> Planted:
-    """Draw the effects that are asked for and give them their sizes.
+def plant(
+    requests: Sequence[RequestedEffect], seed: int, states: Sequence[State], sign: int
+) -> PlantedEffects:
+    """Draw the requested effects and scale them to their sizes.
 
     Parameters
     ----------
-    asked : sequence of Asked
+    requests : sequence of RequestedEffect
         Names and sizes.
     seed : int
         Source of shapes, and of sizes not given.
     states : sequence of State
-        Of each run, the state in the cells over which sizes count; the first axis of every array is
-        averaged, the others are cells.
-    sign : int
+        For each run, the state in the cells over which sizes are taken. The first axis of every
+        array is averaged, the others are cells.
+    sign : {+1, -1}
         Sign convention of the log.
+
+    Returns
+    -------
+    PlantedEffects
+        The effects, those that scale the torque last.
 
     Raises
     ------
     OptionError
         If the motion cannot show an effect, or not in that size.
     """
-    buried: list[Buried] = []
-    for one in sorted(asked, key=lambda one: EFFECTS[one.name].scales_torque):
-        key = (_STREAM, list(EFFECTS).index(one.name))
+    planted: list[SizedEffect] = []
+    for request in sorted(requests, key=lambda one: EFFECTS[one.name].scales_torque):
+        key = (_STREAM, list(EFFECTS).index(request.name))
         generator = np.random.Generator(
             np.random.PCG64(np.random.SeedSequence(seed, spawn_key=key))
         )
-        drawn = float(generator.uniform(*SIZES))
-        effect = EFFECTS[one.name].draw(generator)
-        before = [other.effect for other in buried]
-        buried.append(_sized(effect, before, states, sign, drawn if one.size is None else one.size))
-    return Planted(tuple(buried))
+        drawn_size = float(generator.uniform(*SIZES))
+        effect = EFFECTS[request.name].draw(generator)
+        before = [other.effect for other in planted]
+        size = drawn_size if request.size is None else request.size
+        planted.append(_scaled_to_size(effect, before, states, sign, size))
+    return PlantedEffects(tuple(planted))
 
 
-def _sized(
+def _scaled_to_size(
     effect: PlantedEffect,
     before: Sequence[PlantedEffect],
     states: Sequence[State],
     sign: int,
     size: float,
-) -> Buried:
-    """Scale ``effect`` until its torque has root mean square ``size``."""
-    if effect.scales_torque:
-        extras = [added(before, state) for state in states]
+) -> SizedEffect:
+    """Scale ``effect`` until the root mean square of its torque is ``size``."""
+    if effect.definition.scales_torque:
+        torques = [added_torque(before, state) for state in states]
         states = [
-            replace(state, friction=state.friction + extra.friction, load=state.load + extra.load)
-            for state, extra in zip(states, extras, strict=True)
+            replace(state, friction=state.friction + added.friction, load=state.load + added.load)
+            for state, added in zip(states, torques, strict=True)
         ]
     for _ in range(100):
         rms = _rms(effect, states, sign)
         if not rms > 0.0:
             raise OptionError(f"effect {effect.name}: the motion of this protocol cannot show it")
-        if abs(rms / size - 1.0) < _ENOUGH:
-            return Buried(effect, rms)
+        if abs(rms / size - 1.0) < _SIZE_TOLERANCE:
+            return SizedEffect(effect, rms)
         effect = effect.scaled(float(np.clip(size / rms, 0.1, 10.0)))
     raise OptionError(
         f"effect {effect.name}: {size:g} N·m is out of its reach in this protocol, "
@@ -142,9 +147,9 @@ def _sized(
 def _rms(effect: PlantedEffect, states: Sequence[State], sign: int) -> float:
     squares: list[Array] = []
     for state in states:
-        extra = effect.torque(state)
-        torque = np.mean(extra.load + sign * state.direction * extra.friction, axis=0)
-        if effect.at_reversal:
+        added = effect.torque(state)
+        torque = np.mean(added.load + sign * state.direction * added.friction, axis=0)
+        if effect.definition.at_reversal:
             torque = torque[np.mean(state.since_turn, axis=0) <= REVERSAL]
         squares.append(np.ravel(torque) ** 2)
     together = np.concatenate(squares)

@@ -8,7 +8,7 @@ import numpy as np
 from frictioncli.arrays import Array
 from frictioncli.simulator.joint import SimulatedJoint
 from frictioncli.simulator.motion_profile import MotionProfile
-from frictioncli.simulator.planted.journey import Journey
+from frictioncli.simulator.planted.operating_history import OperatingHistory
 from frictioncli.simulator.thermal_history import HOUSING, MOTOR
 
 STANDING_SPEED = 0.2
@@ -16,7 +16,7 @@ STANDING_SPEED = 0.2
 
 
 @dataclass(frozen=True, slots=True)
-class Extra:
+class AddedTorque:
     """Torque that an effect adds, all in N·m.
 
     Attributes
@@ -39,8 +39,8 @@ class State:
     ----------
     joint : SimulatedJoint
         The joint without planted effects.
-    journey : Journey
-        What it went through.
+    operation : OperatingHistory
+        Its operating history.
     time : ndarray
         Time in the run's thermal history. [s]
     position, velocity, acceleration : ndarray
@@ -54,7 +54,7 @@ class State:
     """
 
     joint: SimulatedJoint
-    journey: Journey
+    operation: OperatingHistory
     time: Array
     position: Array
     velocity: Array
@@ -93,29 +93,29 @@ class State:
     @property
     def travelled(self) -> Array:
         """Angle turned since the experiment's start, unrecorded moves included [deg]."""
-        return self.journey.travelled(self.time)
+        return self.operation.travelled(self.time)
 
     @property
     def operated(self) -> Array:
         """Time that the runs lasted until now, nights left out [s]."""
-        return self.journey.before.operated + self.time
+        return self.operation.earlier.operated + self.time
 
     @property
     def progress(self) -> Array:
         """Share of all runs' time that has passed [-]."""
-        return self.operated / self.journey.before.total
+        return self.operated / self.operation.earlier.total
 
     @property
     def since_turn(self) -> Array:
         """Angle since the joint last turned round [deg]."""
-        low, high = self.journey.angles
+        low, high = self.operation.angles
         forward = self.velocity > 0.0
         return np.maximum(np.where(forward, self.position - low, high - self.position), 0.0)
 
 
 def state_of(
     joint: SimulatedJoint,
-    journey: Journey,
+    operation: OperatingHistory,
     motion: MotionProfile,
     *,
     time: Array,
@@ -126,7 +126,7 @@ def state_of(
     load = joint.arm.gravity_torque(motion.position)
     return State(
         joint=joint,
-        journey=journey,
+        operation=operation,
         time=time,
         position=motion.position,
         velocity=motion.velocity,
