@@ -1,6 +1,7 @@
-"""Imports go only downwards, and the simulator shares no code with what it tests."""
+"""Imports go only downwards, never in circles; the simulator shares no code with the analysis."""
 
 import ast
+from graphlib import CycleError, TopologicalSorter
 from pathlib import Path
 
 import pytest
@@ -66,10 +67,66 @@ def test_every_part_has_a_layer():
     assert {part_of(module) for module in MODULES} == set().union(*LAYERS)
 
 
-def test_simulator_knows_nothing_of_the_model_it_tests():
-    for module in (PACKAGE / "simulator").glob("*.py"):
-        forbidden = {"model", "pairs", "correction", "logs", "report", "stages"}
-        assert not imported_parts(module) & forbidden, module
+SIMULATOR = sorted((PACKAGE / "simulator").rglob("*.py"))
+
+
+@pytest.mark.parametrize("module", SIMULATOR, ids=lambda path: str(path.relative_to(PACKAGE)))
+def test_simulator_shares_no_code_with_the_analysis(module):
+    assert imported_parts(module) <= {
+        "simulator",
+        "errors",
+        "files",
+        "provenance",
+        "documents",
+        "arrays",
+        "__init__",
+    }
+
+
+def test_subfolders_of_the_simulator_are_examined():
+    assert {module.parent.name for module in SIMULATOR} == {"simulator", "planted"}
+
+
+def module_name(module: Path) -> str:
+    parts = module.relative_to(PACKAGE.parent).with_suffix("").parts
+    return ".".join(parts[:-1] if parts[-1] == "__init__" else parts)
+
+
+def imported_modules(code: str, known: set[str]) -> set[str]:
+    """Return modules that are imported by name, at the top or inside a function."""
+    found = set()
+    for node in ast.walk(ast.parse(code)):
+        if isinstance(node, ast.ImportFrom):
+            names = {f"{node.module}.{alias.name}" for alias in node.names}
+            found |= {name if name in known else node.module or "" for name in names}
+        elif isinstance(node, ast.Import):
+            found |= {alias.name for alias in node.names}
+    return found & known
+
+
+def import_graph(modules: list[Path]) -> dict[str, set[str]]:
+    # compiled modules are known by their stubs
+    known = {module_name(module) for module in [*modules, *PACKAGE.rglob("*.pyi")]}
+    return {
+        module_name(module): imported_modules(module.read_text(encoding="utf-8"), known)
+        for module in modules
+    }
+
+
+def test_no_modules_import_each_other_in_a_circle():
+    # raises CycleError, which names the modules of a circle
+    order = [*TopologicalSorter(import_graph(MODULES)).static_order()]
+    assert {*map(module_name, MODULES)} <= {*order}
+
+
+def test_an_import_circle_inside_a_function_would_be_seen():
+    graph = import_graph(MODULES)
+    code = "def f():\n    from frictioncli.files import whole\n    from frictioncli import cli\n"
+    seen = imported_modules(code, set(graph))
+    assert seen == {"frictioncli.files", "frictioncli.cli"}
+    graph["frictioncli.errors"] |= seen
+    with pytest.raises(CycleError):
+        [*TopologicalSorter(graph).static_order()]
 
 
 def test_an_upward_import_would_be_seen(tmp_path):
