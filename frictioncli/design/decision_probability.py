@@ -1,10 +1,10 @@
-r"""How surely a programme names the cause.
+r"""Probability that a programme identifies the cause.
 
-New rows add to the evidence of rival A against B, less that of A against itself
-(:mod:`frictioncli.design.discrimination`, :mod:`frictioncli.design.expected_evidence`). If A is at
-work, the logarithm of its odds, known by the data at hand, becomes normal with a mean that is
-greater by that. Its variance is that of the evidence, as far as new rows make it. A is named where
-it exceeds ln 19, a credible set of 95 %.
+New rows increase the expected log odds of the true rival A over rival B by their log likelihood
+ratio, less the loss that A itself has because its shape must be estimated
+(:mod:`frictioncli.design.discrimination`, :mod:`frictioncli.design.expected_evidence`). If A is the
+cause, the log odds are taken as normal about that mean, with the variance that the new rows add. A
+is named where they exceed ln 19: a 95 % credible set then has one member.
 """
 
 import numpy as np
@@ -14,81 +14,106 @@ from frictioncli.arrays import Array
 from frictioncli.design.discrimination import Discrimination
 from frictioncli.design.rivals import Question
 
-NAMED = float(np.log(19.0))
-"""Logarithm of the odds at which a credible set of 95 % has one name."""
+DECISIVE_LOG_ODDS = float(np.log(19.0))
+"""Log odds at which a credible set of 95 % has one member."""
 
 _LEAST_VARIANCE = 1e-9
-"""Variance of the odds by rows that tell nothing."""
+"""Variance of the log odds where new rows carry no information."""
 
 _NODES = ((-(3**0.5), 1 / 6), (0.0, 2 / 3), (3**0.5, 1 / 6))
-"""Places and weights of a mean over a normal distribution (Gauss and Hermite, three points)."""
+"""Nodes and weights of the three-point Gauss-Hermite rule for a standard normal variable."""
 
 
-def chances(question: Question, before: Discrimination, after: Discrimination) -> Array:
-    """Return the probability that i, if it is at work, leaves j behind.
+def rule_out_probabilities(
+    question: Question, before: Discrimination, after: Discrimination
+) -> Array:
+    """Return the probability that rival j is ruled out if rival i is the cause.
 
-    Shape (rivals, rivals + others + 1); the last column is the base alone. The size of what is at
-    work is as uncertain as the data at hand leave it.
+    Averaged over the uncertainty of the size of rival i in the observed rows.
 
     Parameters
     ----------
     question : Question
-        The rivals with what the data at hand say.
+        Rivals with their evidence in the observed rows.
     before, after : Discrimination
-        How far apart they are in the rows at hand, and in those with the programme's.
+        Noncentralities in the observed rows, and in observed and planned rows.
+
+    Returns
+    -------
+    ndarray, shape (rivals, rivals + confounders + 1)
+        Probabilities; the last column is the base model alone.
     """
-    found = np.zeros(after.left.shape[1:])
-    odds, error = _odds(question), _size_error(question)
-    for place, weight in _NODES:
-        size = np.maximum(1 + place * error, 0.0)
-        mean, variance = _added(before, after, size)
-        found += weight * norm.cdf((odds + mean - NAMED) / np.sqrt(variance))
-    np.fill_diagonal(found, 1.0)
-    return found
+    probability = np.zeros(after.noncentrality.shape[1:])
+    log_odds, error = _log_odds(question), _relative_size_errors(question)
+    for node, weight in _NODES:
+        size = np.maximum(1 + node * error, 0.0)
+        mean, variance = _log_odds_gain(before, after, size)
+        probability += weight * norm.cdf((log_odds + mean - DECISIVE_LOG_ODDS) / np.sqrt(variance))
+    np.fill_diagonal(probability, 1.0)
+    return probability
 
 
-def margins(
-    question: Question, before: Discrimination, after: Discrimination, enough: float
+def log_odds_margins(
+    question: Question, before: Discrimination, after: Discrimination, bound: float
 ) -> Array:
-    """Return by how much odds exceed what a name needs, in the mean over all rivals.
+    """Return by how much the expected log odds exceed the decisive ones.
 
-    Logarithms, for each rival as the one at work; beyond ``enough`` they count no more. Other
-    parameters are as of :func:`chances`.
+    Parameters
+    ----------
+    question : Question
+        Rivals with their evidence in the observed rows.
+    before, after : Discrimination
+        Noncentralities in the observed rows, and in observed and planned rows.
+    bound : float
+        Margins are clipped to ±bound.
+
+    Returns
+    -------
+    ndarray, shape (rivals,)
+        For each rival as the cause, the mean margin over all others.
     """
-    margin = _odds(question) + _added(before, after)[0] - NAMED
+    margin = _log_odds(question) + _log_odds_gain(before, after)[0] - DECISIVE_LOG_ODDS
     np.fill_diagonal(margin, np.nan)
-    return np.asarray(np.nanmean(np.clip(margin, -enough, enough), axis=1))
+    return np.asarray(np.nanmean(np.clip(margin, -bound, bound), axis=1))
 
 
-def _odds(question: Question) -> Array:
-    """Return logarithms of the odds by the data at hand, shape (rivals, rivals + others + 1)."""
-    evidence = [rival.evidence for rival in (*question.rivals, *question.others)]
-    own = np.array(evidence[: len(question.rivals)])
-    return np.asarray(own[:, np.newaxis] - np.array([*evidence, 0.0]))
+def decision_probability(question: Question, rule_out: Array) -> float:
+    """Return the probability that only the right name remains.
+
+    Parameters
+    ----------
+    question : Question
+        Rivals with their probabilities.
+    rule_out : ndarray, shape (rivals, rivals + confounders + 1)
+        Result of :func:`rule_out_probabilities`.
+    """
+    probabilities = question.probabilities
+    weight = np.array([probabilities[rival.name] for rival in question.rivals])
+    return float(weight @ np.prod(rule_out, axis=1))
 
 
-def _added(
+def _log_odds(question: Question) -> Array:
+    """Return log odds in the observed rows, shape (rivals, rivals + confounders + 1)."""
+    evidence = [rival.evidence for rival in (*question.rivals, *question.confounders)]
+    of_rivals = np.array(evidence[: len(question.rivals)])
+    return np.asarray(of_rivals[:, np.newaxis] - np.array([*evidence, 0.0]))
+
+
+def _log_odds_gain(
     before: Discrimination, after: Discrimination, size: Array | float = 1.0
 ) -> tuple[Array, Array]:
-    """Return what rows add to the odds in the mean, and the variance of that.
+    """Return the mean and variance of the log odds that the new rows add.
 
-    What is at work has to find its own shape among many, as its rivals have.
+    The cause has to find its own shape among many, as its rivals have: its own loss is subtracted.
     """
-    known, _ = before.evidence(size)
-    whole, variance = after.evidence(size)
-    gained, fresh = whole - known, variance * (1 - after.share_of(before))
-    mean, scatter = (each - np.diag(each)[:, np.newaxis] for each in (gained, fresh))
-    return mean / 2, np.maximum(scatter, _LEAST_VARIANCE)
+    known, _ = before.log_likelihood_ratio(size)
+    ratio, variance = after.log_likelihood_ratio(size)
+    gain, new_variance = ratio - known, variance * (1 - after.share_from(before))
+    mean, spread = (one - np.diag(one)[:, np.newaxis] for one in (gain, new_variance))
+    return mean / 2, np.maximum(spread, _LEAST_VARIANCE)
 
 
-def _size_error(question: Question) -> Array:
-    """Return the relative standard error of each rival's size."""
+def _relative_size_errors(question: Question) -> Array:
+    """Return the relative standard error of each rival's size, shape (rivals,)."""
     statistic = np.array([max(rival.score.statistic, 1.0) for rival in question.rivals])
     return np.asarray(1 / np.sqrt(statistic))
-
-
-def decided(question: Question, chance: Array) -> float:
-    """Return the probability that the question ends with the right name alone."""
-    share = question.probabilities
-    weight = np.array([share[rival.name] for rival in question.rivals])
-    return float(weight @ np.prod(chance, axis=1))

@@ -1,4 +1,4 @@
-"""What a programme is expected to do: questions decided, intervals narrowed."""
+"""Design criterion: the expected gain of a programme in decisions and in precision."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -7,12 +7,19 @@ import numpy as np
 import pandas as pd
 
 from frictioncli.arrays import Array
-from frictioncli.design.d_optimality import log_determinant
-from frictioncli.design.decision_probability import chances, decided, margins
-from frictioncli.design.discrimination import Discrimination, discriminations
+from frictioncli.design.decision_probability import (
+    decision_probability,
+    log_odds_margins,
+    rule_out_probabilities,
+)
+from frictioncli.design.discrimination import Discrimination, discrimination_of
 from frictioncli.design.information import Information
-from frictioncli.design.precision import Precision, precision
-from frictioncli.design.predicted_rows import PlannedJoint, foreseen, together
+from frictioncli.design.precision import (
+    Precision,
+    precision,
+    response_surface_log_determinants,
+)
+from frictioncli.design.predicted_rows import PlannedJoint, append_run, predict_rows
 from frictioncli.design.rivals import OpenQuestions
 from frictioncli.design.steps import Step
 from frictioncli.diagnosis.data.problem import Problem, simulated
@@ -20,155 +27,178 @@ from frictioncli.diagnosis.fit.columns import left_of_base, main_channel
 from frictioncli.model.document import PARAMETERS
 
 PLANNED = "~"
-"""Added to the name of the last run: the planned one comes after it."""
+"""Suffix to the name of the last run: the planned run sorts after it."""
 
 _THERMAL = ("gamma", "delta")
-"""Parameters that no experiment tells where the motor temperature is not known."""
+"""Parameters that cannot be determined without a motor temperature."""
 
 WIDE = 0.2
-"""An interval whose half is more than this share of the estimate is wide."""
+"""An interval is wide if its half-width is more than this share of the estimate."""
 
-_ENOUGH = 15.0
-"""Margin of the odds' logarithm beyond which more is worth nothing."""
+_MARGIN_BOUND = 15.0
+"""Margins of the log odds count up to this value."""
 
-_PULL = 0.3
-_NARROW = 0.01
-_SPREAD = 0.004
-_SPREAD_ALONE = 0.02
-"""Weights of evidence beyond what decides, where it is enough; per nat, of precision, and of rows
-that spread over all inputs, beside open questions and beside precision: a plan should meet what no
-one thought of."""
+_MARGIN_WEIGHT = 0.3
+"""Weight of the mean margin of the log odds, relative to a decided question."""
 
-_LOOSE = 10.0
-"""How many times its usual size a parameter may have before any data."""
+_PRECISION_WEIGHT = 0.01
+"""Weight of precision beside open questions. [1/nat]"""
+
+_COVERAGE_WEIGHT = 0.004
+"""Weight of input coverage beside open questions: the cause may be none of the rivals. [1/nat]"""
+
+_COVERAGE_WEIGHT_ALONE = 0.02
+"""Weight of input coverage beside precision, without open questions. [nat/nat]"""
+
+_PRIOR_FACTOR = 10.0
+"""Prior standard deviation of a parameter, relative to its usual size."""
 
 _USUAL_DELTA = 0.05
-"""A usual rate of the fall with temperature. [1/°C]"""
+"""Usual rate of the decay with temperature. [1/°C]"""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class DesignCriterion:
-    """One joint's open questions and wide intervals, and what programmes do about them.
+    """One joint's open questions and wide intervals, and the value of programmes for them.
 
     Attributes
     ----------
     joint : PlannedJoint
         The joint.
-    opening : OpenQuestions
-        What is open.
+    open_questions : OpenQuestions
+        Settled causes, open questions and noise.
     unnamed : bool
         Whether there is structure that no effect explains.
-    before : Information
-        The rows at hand.
-    apart : tuple of Discrimination
-        How far apart the rivals of each question are in them.
+    observed : Information
+        The observed rows.
+    observed_discriminations : tuple of Discrimination
+        Noncentralities in them, per question.
     precision : Precision
-        Covariance of all parameters by them.
-    matter : tuple of str
-        Parameters whose intervals are wide.
+        Covariance of all parameters in them.
+    of_interest : tuple of str
+        Parameters with wide intervals; all base parameters if none is wide.
     """
 
     joint: PlannedJoint
-    opening: OpenQuestions
+    open_questions: OpenQuestions
     unnamed: bool
-    before: Information
-    apart: tuple[Discrimination, ...]
+    observed: Information
+    observed_discriminations: tuple[Discrimination, ...]
     precision: Precision
-    matter: tuple[str, ...]
+    of_interest: tuple[str, ...]
 
     @classmethod
-    def of(cls, joint: PlannedJoint, opening: OpenQuestions, *, unnamed: bool) -> "DesignCriterion":
-        """Return the outlook on one joint's data at hand."""
+    def of(
+        cls, joint: PlannedJoint, open_questions: OpenQuestions, *, unnamed: bool
+    ) -> "DesignCriterion":
+        """Return the criterion for one joint, given its observed rows."""
         problem = _problem(joint, joint.torques)
-        before = Information(problem, opening.noise, problem.whole)
-        names, prior = _names(opening, before.problem), _prior(joint, opening, before.problem)
-        whole = precision(before, opening, prior, names, _told(names))
-        values = _estimates(joint, opening)
+        observed = Information(problem, open_questions.noise, problem.whole)
+        covariance = _precision(joint, open_questions, observed)
+        values = _estimates(joint, open_questions)
         wide = tuple(
             name
-            for name, half in whole.half_widths.items()
-            if half > WIDE * abs(values[name]) and (joint.warmth or name not in _THERMAL)
+            for name, half in covariance.half_widths.items()
+            if half > WIDE * abs(values[name]) and (joint.thermal_model or name not in _THERMAL)
         )
         return cls(
             joint=joint,
-            opening=opening,
+            open_questions=open_questions,
             unnamed=unnamed,
-            before=before,
-            apart=_apart(before, opening),
-            precision=whole,
-            matter=wide or PARAMETERS,
+            observed=observed,
+            observed_discriminations=_discriminations(observed, open_questions),
+            precision=covariance,
+            of_interest=wide or PARAMETERS,
         )
 
     @property
     def estimates(self) -> Mapping[str, float]:
-        """Estimates of the parameters by name: the base's, and causes' as ``effect.name``."""
-        return _estimates(self.joint, self.opening)
+        """Estimates by name: parameters of the base model, and of causes as ``effect.name``."""
+        return _estimates(self.joint, self.open_questions)
 
-    def after(self, *days: Sequence[Step]) -> Information:
-        """Return the rows at hand together with those that steps, day after day, would add."""
+    def information_after(self, *days: Sequence[Step]) -> Information:
+        """Return the observed rows together with those that steps, day after day, would add."""
         last = str(self.joint.torques["run"].max())
         runs = [
-            foreseen(self.joint, steps, f"{last}{PLANNED * number}")[0]
+            predict_rows(self.joint, steps, f"{last}{PLANNED * number}")[0]
             for number, steps in enumerate(days, 1)
         ]
         new = pd.concat([run for run in runs if len(run)] or runs[:1], ignore_index=True)
-        problem = _problem(self.joint, together(self.joint.torques, new))
+        problem = _problem(self.joint, append_run(self.joint.torques, new))
         travel = problem.whole.travel.copy()
         if len(new):
-            travel[-len(new) :] = new["way"]
-        at_hand = len(self.before.problem.layout.bins) / len(problem.layout.bins)
-        whole = replace(problem.whole, travel=travel)
-        return Information(problem, self.opening.noise, whole, at_hand)
+            travel[-len(new) :] = new["travel"]
+        observed_share = len(self.observed.problem.layout.bins) / len(problem.layout.bins)
+        true_inputs = replace(problem.whole, travel=travel)
+        return Information(problem, self.open_questions.noise, true_inputs, observed_share)
 
-    def chances(self, sight: Information) -> tuple[Array, ...]:
-        """Return, per question, the probability that i, if at work, leaves j behind."""
+    def rule_out_probabilities(self, information: Information) -> tuple[Array, ...]:
+        """Return, per question, the probability that rival j is ruled out if i is the cause."""
         return tuple(
-            chances(question, before, after)
+            rule_out_probabilities(question, before, after)
             for question, before, after in zip(
-                self.opening.questions, self.apart, _apart(sight, self.opening), strict=True
+                self.open_questions.questions,
+                self.observed_discriminations,
+                _discriminations(information, self.open_questions),
+                strict=True,
             )
         )
 
-    def narrowed(self, sight: Information) -> Precision:
-        """Return the covariance of all parameters by some rows."""
-        problem = sight.problem
-        names = _names(self.opening, problem)
-        prior = _prior(self.joint, self.opening, problem)
-        return precision(sight, self.opening, prior, names, _told(names))
+    def precision_with(self, information: Information) -> Precision:
+        """Return the covariance of all parameters in some rows."""
+        return _precision(self.joint, self.open_questions, information)
 
-    def worth(self, *days: Sequence[Step]) -> float:
-        """Return what steps, day after day, are worth: names decided, intervals narrowed."""
+    def value(self, *days: Sequence[Step]) -> float:
+        """Return the value of steps, day after day.
+
+        With open questions it is mainly the expected number of decided questions; without, the gain
+        in precision; with unexplained structure, the gain in input coverage.
+        """
         if not any(days):
             return 0.0
-        sight = self.after(*days)
-        narrow = self.precision.of(self.matter).volume
-        narrow -= self.narrowed(sight).of(self.matter).volume
-        low, high = log_determinant([self.before.problem.table, sight.problem.table])
+        information = self.information_after(*days)
+        precision_gain = self.precision.subset(self.of_interest).log_volume
+        precision_gain -= self.precision_with(information).subset(self.of_interest).log_volume
+        before_coverage, after_coverage = response_surface_log_determinants(
+            [self.observed.problem.table, information.problem.table]
+        )
+        coverage_gain = after_coverage - before_coverage
         if self.unnamed:
-            return high - low + _NARROW * narrow
-        if not self.opening.questions:
-            return narrow + _SPREAD_ALONE * (high - low)
-        total = _NARROW * narrow + _SPREAD * (high - low)
-        now_apart = _apart(sight, self.opening)
+            return coverage_gain + _PRECISION_WEIGHT * precision_gain
+        if not self.open_questions.questions:
+            return precision_gain + _COVERAGE_WEIGHT_ALONE * coverage_gain
+        total = _PRECISION_WEIGHT * precision_gain + _COVERAGE_WEIGHT * coverage_gain
+        discriminations = _discriminations(information, self.open_questions)
         for question, before, after in zip(
-            self.opening.questions, self.apart, now_apart, strict=True
+            self.open_questions.questions,
+            self.observed_discriminations,
+            discriminations,
+            strict=True,
         ):
-            total += decided(question, chances(question, before, after))
+            total += decision_probability(question, rule_out_probabilities(question, before, after))
             share = np.array([question.probabilities[rival.name] for rival in question.rivals])
-            margin = margins(question, before, after, _ENOUGH)
-            total += _PULL * float(share @ margin) / _ENOUGH
+            margin = log_odds_margins(question, before, after, _MARGIN_BOUND)
+            total += _MARGIN_WEIGHT * float(share @ margin) / _MARGIN_BOUND
         return total
 
-    def shown(self, steps: Sequence[Step]) -> float:
-        """Return how much steps show of the likely causes, RMS of what the base leaves. [N·m].
+    def lack_of_fit(self, steps: Sequence[Step]) -> float:
+        """Return the expected lack of fit of the base model in steps, by the likely causes.
 
-        Without any likely cause it is the number of pairs: the base itself is checked.
+        Parameters
+        ----------
+        steps : sequence of Step
+            The steps.
+
+        Returns
+        -------
+        float
+            RMS of the torque that the base model cannot fit, summed over causes [N·m]. Without a
+            likely cause it is the number of pairs: then the base model itself is checked.
         """
-        sight = self.after(steps)
-        problem = sight.problem
-        new = slice(len(self.before.problem.friction), None)
-        weighted = [(1.0, score) for score in self.opening.settled]
-        for question in self.opening.questions:
+        problem = self.information_after(steps).problem
+        new = slice(len(self.observed.problem.friction), None)
+        weighted = [(1.0, score) for score in self.open_questions.settled]
+        for question in self.open_questions.questions:
             share = question.probabilities
             weighted += [(share[rival.name], rival.score) for rival in question.rivals]
         if not weighted:
@@ -177,20 +207,22 @@ class DesignCriterion:
         for weight, score in weighted:
             basis = problem.basis(score.effect, score.shape)
             torque = main_channel(basis, score.effect) @ score.coefficients
-            left = left_of_base(problem, torque, score.effect.channel)[new]
-            total += weight * float(np.sqrt(np.mean(np.square(left))))
+            residual = left_of_base(problem, torque, score.effect.channel)[new]
+            total += weight * float(np.sqrt(np.mean(np.square(residual))))
         return total
 
 
-def _apart(sight: Information, opening: OpenQuestions) -> tuple[Discrimination, ...]:
-    """Return how far apart the rivals of each question are."""
+def _discriminations(
+    information: Information, open_questions: OpenQuestions
+) -> tuple[Discrimination, ...]:
+    """Return the noncentralities of the rivals of each question."""
     found = []
-    for question in opening.questions:
-        others = [
-            *opening.settled,
-            *(other.leading.score for other in opening.questions if other is not question),
+    for question in open_questions.questions:
+        other_causes = [
+            *open_questions.settled,
+            *(other.leading.score for other in open_questions.questions if other is not question),
         ]
-        found.append(discriminations(sight, question, others))
+        found.append(discrimination_of(information, question, other_causes))
     return tuple(found)
 
 
@@ -198,32 +230,32 @@ def _problem(joint: PlannedJoint, torques: pd.DataFrame) -> Problem:
     return simulated(torques, joint.temperature, joint.parameters, joint.gravity)[1]
 
 
-def _names(opening: OpenQuestions, problem: Problem) -> tuple[str, ...]:
-    """Return names of all columns: friction, gravity, causes."""
+def _precision(
+    joint: PlannedJoint, open_questions: OpenQuestions, information: Information
+) -> Precision:
+    """Return the covariance of all parameters; those of gravity are nuisance parameters."""
+    problem = information.problem
     gravity = [f"gravity {number}" for number in range(len(problem.gravity))]
     causes = [
         f"{one.effect.name}.{parameter.name}"
-        for one in opening.causes
+        for one in open_questions.causes
         for parameter in one.effect.coefficients
     ]
-    return (*PARAMETERS, *gravity, *causes)
+    prior = _prior_precision(joint, open_questions, problem)
+    names = (*PARAMETERS, *gravity, *causes)
+    return precision(information, open_questions, prior, names, (*PARAMETERS, *causes))
 
 
-def _told(names: Sequence[str]) -> tuple[str, ...]:
-    """Return the names of what is told: gravity is not asked for."""
-    return tuple(name for name in names if not name.startswith("gravity "))
-
-
-def _estimates(joint: PlannedJoint, opening: OpenQuestions) -> dict[str, float]:
+def _estimates(joint: PlannedJoint, open_questions: OpenQuestions) -> dict[str, float]:
     found = {name: float(getattr(joint.parameters, name)) for name in PARAMETERS}
-    for one in opening.causes:
+    for one in open_questions.causes:
         for parameter, value in zip(one.effect.coefficients, one.coefficients, strict=True):
             found[f"{one.effect.name}.{parameter.name}"] = float(value)
     return found
 
 
-def _prior(joint: PlannedJoint, opening: OpenQuestions, problem: Problem) -> Array:
-    """Return weak weights of what is believed beforehand, so that no interval is endless."""
+def _prior_precision(joint: PlannedJoint, open_questions: OpenQuestions, problem: Problem) -> Array:
+    """Return the weak prior precision of all coefficients, which keeps every interval finite."""
     friction = max(float(np.mean(np.abs(problem.table.friction))), 1e-6)
     load = max(float(np.max(np.abs(problem.load_base @ problem.gravity))), 1e-6)
     size = {
@@ -236,13 +268,14 @@ def _prior(joint: PlannedJoint, opening: OpenQuestions, problem: Problem) -> Arr
     usual = [*(size[name] for name in PARAMETERS), *(load for _ in problem.gravity)]
     bounds = [
         parameter.upper - parameter.lower
-        for one in opening.causes
+        for one in open_questions.causes
         for parameter in one.effect.coefficients
     ]
-    return np.asarray(1 / np.square(np.array([*(_LOOSE * one for one in usual), *bounds])))
+    deviations = np.array([*(_PRIOR_FACTOR * one for one in usual), *bounds])
+    return np.asarray(1 / np.square(deviations))
 
 
 def _mean_temperature(joint: PlannedJoint) -> float:
-    """Return the mean motor temperature at hand, 20 °C where it is not known [°C]."""
-    warm = float(joint.torques["motor_temperature"].mean())
-    return warm if np.isfinite(warm) else 20.0
+    """Return the mean observed motor temperature, 20 °C where it is not known [°C]."""
+    mean = float(joint.torques["motor_temperature"].mean())
+    return mean if np.isfinite(mean) else 20.0

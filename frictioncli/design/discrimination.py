@@ -1,14 +1,14 @@
-r"""How far apart rivals are in some rows.
+r"""Discrimination of rival models: noncentralities in observed or planned rows.
 
-All of it follows from inner products :math:`G = C' V^{-1} C` of columns under a noise :math:`V`. If
-rival A is at work, its torque :math:`s_A` is there. B with any coefficients, and the base refitted,
-leaves the noncentrality
+All follows from information matrices :math:`G = C' V^{-1} C` of columns :math:`C` under a noise
+covariance :math:`V`. If rival A is the cause, the torque :math:`s_A` is present. A fit of the base
+model and rival B leaves of it the noncentrality
 
 .. math::
     \lambda_{AB} = -2 \ln \operatorname{mean}_\theta
     \exp\left(-\tfrac12 \min_c \lVert s_A - X_B(\theta) c \rVert^2_{V^{-1}}\right)
 
-of it [1]_, the likelihood averaged over B's shapes :math:`\theta`.
+(the criterion of T-optimality [1]_), with the likelihood averaged over B's shapes :math:`\theta`.
 
 References
 ----------
@@ -22,150 +22,171 @@ from dataclasses import dataclass
 import numpy as np
 
 from frictioncli.arrays import Array, Indices
-from frictioncli.design.expected_evidence import Noises, noises_of
+from frictioncli.design.expected_evidence import CandidateNoises, candidate_noises
 from frictioncli.design.information import Information
 from frictioncli.design.rivals import Question
 from frictioncli.diagnosis.fit.columns import base_columns, basis_columns, joined, reduced
 from frictioncli.diagnosis.fit.judgement import Score
 from frictioncli.linear_algebra import schur_complement
 
-_NOTHING = 1e-9
-"""Noncentrality of rows that tell nothing."""
+_NEGLIGIBLE = 1e-9
+"""Noncentrality of rows without information."""
 
-_LEAST_SHARE = 0.25
-"""What is left, at the least, of a squared size when noise is taken off."""
+_LEAST_SHRINKAGE = 0.25
+"""Least share of a squared size that remains when the contribution of noise is subtracted."""
 
-_SHAPES = 12
-"""Shapes of a rival that are tried on the rows to come, at most."""
+_MOST_SHAPES = 12
+"""Greatest number of shapes of a rival that are tried on planned rows."""
 
 
 @dataclass(frozen=True, slots=True)
 class Discrimination:
-    """How far apart rivals are in some rows.
+    """Noncentralities of rivals against each other in some rows.
 
     Attributes
     ----------
-    left : ndarray, shape (noises, rivals, rivals + others + 1)
-        Noncentrality of each rival against each, under each noise that a diagnosis may find.
-    noises : Noises
-        These noises.
+    noncentrality : ndarray, shape (noises, rivals, rivals + confounders + 1)
+        Of each rival as the cause, against each alternative, under each candidate noise.
+    noises : CandidateNoises
+        The candidate noises.
     """
 
-    left: Array
-    noises: Noises
+    noncentrality: Array
+    noises: CandidateNoises
 
-    def evidence(self, size: Array | float = 1.0) -> tuple[Array, Array]:
-        """Return the evidence of each rival against each, in the mean, doubled, and its variance.
+    def log_likelihood_ratio(self, size: Array | float = 1.0) -> tuple[Array, Array]:
+        """Return twice the mean, and the variance, of the log likelihood ratio of each to each.
 
         Parameters
         ----------
         size : float or ndarray, shape (rivals,)
-            Size of what is at work, relative to the fitted one.
+            Size of each rival as the cause, relative to the fitted one.
+
+        Returns
+        -------
+        twice_mean, variance : ndarray, shape (rivals, rivals + confounders + 1)
+            Row: the cause; column: the alternative.
         """
-        square = np.square(np.broadcast_to(size, self.left.shape[1:2]))
-        return self.noises.fall(square[:, np.newaxis] * self.left)
+        square = np.square(np.broadcast_to(size, self.noncentrality.shape[1:2]))
+        return self.noises.log_likelihood_ratio(square[:, np.newaxis] * self.noncentrality)
 
-    def share_of(self, before: "Discrimination") -> Array:
-        """Return the share of the noncentralities that the rows before have."""
-        return np.asarray(np.clip(before.left[0] / np.maximum(self.left[0], _NOTHING), 0.0, 1.0))
+    def share_from(self, before: "Discrimination") -> Array:
+        """Return the share of the noncentralities that the rows of ``before`` contribute."""
+        total = np.maximum(self.noncentrality[0], _NEGLIGIBLE)
+        return np.asarray(np.clip(before.noncentrality[0] / total, 0.0, 1.0))
 
 
-def discriminations(
-    sight: Information, question: Question, others: Sequence[Score]
+def discrimination_of(
+    information: Information, question: Question, other_causes: Sequence[Score]
 ) -> Discrimination:
-    """Return how far apart the rivals of a question are in some rows.
+    """Return the noncentralities of the rivals of a question in some rows.
 
-    Entry (i, j): how far rival i, if it is at work, is from all that rival j can do. The question's
-    other effects follow the rivals. The last column is the base alone: a cause that better data
-    leave to the base loses its name, too.
+    Entry (i, j) is what rival j cannot fit of the torque of rival i. The confounders follow the
+    rivals. The last column is the base model alone: a cause that it can fit in better data loses
+    its name, too.
 
     Parameters
     ----------
-    sight : Information
+    information : Information
         Rows and noise.
     question : Question
         The rivals.
-    others : sequence of Score
-        Causes beside them.
+    other_causes : sequence of Score
+        Causes that are fitted beside the rivals.
+
+    Returns
+    -------
+    Discrimination
+        Noncentralities under each candidate noise.
     """
-    problem = sight.problem
-    known = joined(
+    problem = information.problem
+    nuisance = joined(
         [
             base_columns(problem),
-            *(basis_columns(problem, problem.basis(one.effect, one.shape)) for one in others),
+            *(basis_columns(problem, problem.basis(one.effect, one.shape)) for one in other_causes),
         ]
     )
-    parts, places = [known], []
+    parts, places = [nuisance], []
     first = 0
-    for rival in (*question.rivals, *question.others):
+    for rival in (*question.rivals, *question.confounders):
         own = []
-        for shape in tried_shapes(rival.score, sight):
+        for shape in tried_shapes(rival.score, information):
             columns = basis_columns(problem, problem.basis(rival.score.effect, shape))
             own.append(np.arange(first, first + columns.count))
             parts.append(columns)
             first += columns.count
         places.append(np.array(own))
     for rival in question.rivals:
-        basis = rival.score.effect.evaluate(sight.gone, _kept(rival.score, sight.at_hand))
-        coefficients = _shrunk(rival.score)
+        shape = _rescaled_shape(rival.score, information.observed_share)
+        basis = rival.score.effect.evaluate(information.true_inputs, shape)
+        coefficients = _shrunken_coefficients(rival.score)
         torque = [(part @ coefficients)[:, np.newaxis] for part in basis]
         parts.append(reduced(problem.layout, *torque))
     columns = joined(parts)
-    noises = noises_of(
-        problem.layout, sight.noise[0], problem.temperature_variance, known.friction.means
+    noises = candidate_noises(
+        problem.layout, information.noise[0], problem.temperature_variance, nuisance.friction.means
     )
-    grams = [_off(gram, known.count) for gram in sight.grams(columns, noises.friction)]
-    return Discrimination(_noncentralities(np.array(grams), places), noises)
+    matrices = [
+        _eliminate(matrix, nuisance.count)
+        for matrix in information.matrices(columns, noises.noises)
+    ]
+    return Discrimination(_noncentralities(np.array(matrices), places), noises)
 
 
-def tried_shapes(score: Score, sight: Information) -> list[dict[str, float]]:
-    """Return the shapes of a rival that are tried on rows to come, the fitted one among them."""
-    grid = score.effect.shapes(sight.problem.whole)
-    if len(grid) > _SHAPES:
-        chosen = np.unique(np.linspace(0, len(grid) - 1, _SHAPES).round().astype(int))
+def tried_shapes(score: Score, information: Information) -> list[dict[str, float]]:
+    """Return the shapes of a rival that are tried on planned rows, the fitted one first."""
+    grid = score.effect.shapes(information.problem.whole)
+    if len(grid) > _MOST_SHAPES:
+        chosen = np.unique(np.linspace(0, len(grid) - 1, _MOST_SHAPES).round().astype(int))
         grid = [grid[place] for place in chosen]
-    if score.effect.moments is not None and sight.at_hand < 1:
-        grid.append({"moment": sight.at_hand})
-    return [_kept(score, sight.at_hand), *grid]
+    if score.effect.moments is not None and information.observed_share < 1:
+        grid.append({"moment": information.observed_share})
+    return [_rescaled_shape(score, information.observed_share), *grid]
 
 
-def _noncentralities(gram: Array, places: Sequence[Indices]) -> Array:
-    """Return noncentralities from inner products of what the base leaves.
+def _noncentralities(matrices: Array, places: Sequence[Indices]) -> Array:
+    """Return noncentralities from information matrices without the nuisance columns.
 
     Parameters
     ----------
-    gram : ndarray, shape (noises, columns, columns)
-        Inner products of the columns of all shapes, then of each rival's torque.
+    matrices : ndarray, shape (noises, columns, columns)
+        Information on the columns of all shapes, then on each rival's torque.
     places : sequence of ndarray, shape (shapes, width)
-        Where the columns of each rival's shapes are.
+        Columns of each rival's shapes.
+
+    Returns
+    -------
+    ndarray, shape (noises, torques, rivals + confounders + 1)
+        Noncentralities.
     """
-    targets = np.arange(1 + places[-1].max(), gram.shape[1])
-    alone = np.maximum(gram[:, targets, targets], 0.0)
-    found = np.empty((*alone.shape, len(places) + 1))
-    found[..., -1] = alone
+    targets = np.arange(1 + places[-1].max(), matrices.shape[1])
+    alone = np.maximum(matrices[:, targets, targets], 0.0)
+    noncentrality = np.empty((*alone.shape, len(places) + 1))
+    noncentrality[..., -1] = alone
     for j, shapes in enumerate(places):
-        left = _left(gram, shapes, targets)
-        found[..., j] = -2 * (np.logaddexp.reduce(-left / 2, axis=1) - np.log(len(shapes)))
-    return found
+        squares = _residual_squares(matrices, shapes, targets)
+        likelihood = np.logaddexp.reduce(-squares / 2, axis=1)
+        noncentrality[..., j] = -2 * (likelihood - np.log(len(shapes)))
+    return noncentrality
 
 
-def _off(gram: Array, known: int) -> Array:
-    """Return inner products of what the first columns leave of the others."""
+def _eliminate(gram: Array, known: int) -> Array:
+    """Return the information on the other columns when the first ones are nuisance columns."""
     left, size = schur_complement(gram, known, tolerance=1e-9)
     return np.asarray(left * np.outer(size, size))
 
 
-def _left(gram: Array, columns: Indices, targets: Indices) -> Array:
-    """Return squared lengths of columns that others leave, by their inner products.
+def _residual_squares(matrices: Array, columns: Indices, targets: Indices) -> Array:
+    """Return squared lengths of targets that a fit of each shape's columns leaves.
 
     Parameters
     ----------
-    gram : ndarray, shape (noises, columns, columns)
-        Inner products.
+    matrices : ndarray, shape (noises, columns, columns)
+        Information matrices.
     columns : ndarray of int, shape (shapes, width)
-        The others, shape by shape.
+        Columns of each shape.
     targets : ndarray of int, shape (targets,)
-        The columns.
+        Columns to be fitted.
 
     Returns
     -------
@@ -173,28 +194,28 @@ def _left(gram: Array, columns: Indices, targets: Indices) -> Array:
         Squared lengths.
     """
     rows = columns[:, :, np.newaxis]
-    size = np.sqrt(np.maximum(gram[:, columns, columns], 1e-300))[..., np.newaxis]
-    inner = gram[:, rows, columns[:, np.newaxis]] / (size * size.swapaxes(-1, -2))
-    across = gram[:, rows, targets] / size
-    # what the base leaves next to nothing of explains nothing
+    size = np.sqrt(np.maximum(matrices[:, columns, columns], 1e-300))[..., np.newaxis]
+    inner = matrices[:, rows, columns[:, np.newaxis]] / (size * size.swapaxes(-1, -2))
+    across = matrices[:, rows, targets] / size
+    # the ridge removes columns of which the base model leaves next to nothing
     taken = np.linalg.solve(inner + 1e-9 * np.eye(columns.shape[1]), across)
-    alone = gram[:, np.newaxis, targets, targets]
+    alone = matrices[:, np.newaxis, targets, targets]
     return np.asarray(np.maximum(alone - np.sum(across * taken, axis=-2), 0.0))
 
 
-def _shrunk(score: Score) -> Array:
-    """Return coefficients less what noise adds to them in the mean.
+def _shrunken_coefficients(score: Score) -> Array:
+    """Return coefficients without the mean contribution of noise.
 
     A statistic is expected to be its noncentrality plus the number of coefficients: an effect that
-    was chosen because it stands out is smaller than it looks.
+    was selected because it stands out is smaller than its estimate.
     """
     count = len(score.coefficients)
     share = max(score.statistic - count, 0.0) / max(score.statistic, 1e-9)
-    return np.asarray(score.coefficients * np.sqrt(max(share, _LEAST_SHARE)))
+    return np.asarray(score.coefficients * np.sqrt(max(share, _LEAST_SHRINKAGE)))
 
 
-def _kept(score: Score, at_hand: float) -> dict[str, float]:
-    """Return a fitted shape among all rows: moments are shares of the pairs, which are more now."""
+def _rescaled_shape(score: Score, observed_share: float) -> dict[str, float]:
+    """Return a fitted shape in terms of all rows: moments are shares of a greater number now."""
     if score.effect.moments is None:
         return score.shape
-    return {name: value * at_hand for name, value in score.shape.items()}
+    return {name: value * observed_share for name, value in score.shape.items()}

@@ -7,9 +7,9 @@ from typing import Any
 
 from frictioncli.design.blocks import Block
 from frictioncli.design.limits import Limits
-from frictioncli.design.plan import Expected, Plan
-from frictioncli.design.predicted_rows import Moment
-from frictioncli.design.programs.programme import REDUCED
+from frictioncli.design.plan import Expectation, Plan
+from frictioncli.design.predicted_rows import Timing
+from frictioncli.design.programs.robot_program import SAFETY_NOTE
 from frictioncli.design.rivals import Question
 from frictioncli.design.steps import HeatStep, RestStep, SeriesStep, Step
 from frictioncli.quantities import TORQUE
@@ -42,21 +42,21 @@ def plan_document(
         "limits": limits_document(plan.limits),
         "programme": {
             "files": list(files),
-            "duration_s": _rounded(plan.moments[-1].end),
+            "duration_s": _rounded(plan.timings[-1].end),
             "blocks": [
-                block_document(block, moment) | {"expected": _expected(plan, number)}
-                for number, (block, moment) in enumerate(
-                    zip(plan.blocks, plan.moments, strict=True)
+                block_document(block, timing) | {"expected": _expected(plan, number)}
+                for number, (block, timing) in enumerate(
+                    zip(plan.blocks, plan.timings, strict=True)
                 )
             ],
         },
         "check": {
             "when": "on the next day, from cold, as a run of its own",
             "files": list(check_files),
-            "duration_s": _rounded(plan.check_moments[-1].end) if plan.check else 0.0,
+            "duration_s": _rounded(plan.check_timings[-1].end) if plan.check else 0.0,
             "blocks": [
-                block_document(block, moment)
-                for block, moment in zip(plan.check, plan.check_moments, strict=True)
+                block_document(block, timing)
+                for block, timing in zip(plan.check, plan.check_timings, strict=True)
             ],
         },
         "questions": [
@@ -64,20 +64,20 @@ def plan_document(
                 "effects": [rival.name for rival in question.rivals],
                 "probabilities": _shares(question),
                 "right_name_alone": {
-                    "now": _rounded(plan.expected[0].decided[number]),
-                    "after": _rounded(plan.expected[-1].decided[number]),
-                    "after_check": _rounded(plan.settled.decided[number]),
+                    "now": _rounded(plan.expected[0].decision[number]),
+                    "after": _rounded(plan.expected[-1].decision[number]),
+                    "after_check": _rounded(plan.after_check.decision[number]),
                 },
                 "rules_out": _ruled_out(question, plan.expected[-1], number),
             }
-            for number, question in enumerate(plan.outlook.opening.questions)
+            for number, question in enumerate(plan.criterion.open_questions.questions)
         ],
         "intervals": _intervals(plan, units),
         "thermal": None
-        if plan.outlook.joint.warmth is None
+        if plan.criterion.joint.thermal_model is None
         else {
-            "ambient_degC": _rounded(plan.outlook.joint.warmth.ambient),
-            "time_constant_s": _rounded(plan.outlook.joint.warmth.time_constant),
+            "ambient_degC": _rounded(plan.criterion.joint.thermal_model.ambient),
+            "time_constant_s": _rounded(plan.criterion.joint.thermal_model.time_constant),
         },
     }
 
@@ -96,14 +96,14 @@ def limits_document(limits: Limits) -> dict[str, Any]:
     }
 
 
-def block_document(block: Block, moment: Moment | None) -> dict[str, Any]:
+def block_document(block: Block, timing: Timing | None) -> dict[str, Any]:
     """Return a block as plain values, with what is foreseen of it."""
     told: dict[str, Any] = {"name": block.name, "reason": block.reason}
-    if moment is not None:
-        warm = [_rounded(one) if one == one else None for one in moment.temperatures]
+    if timing is not None:
+        warm = [_rounded(one) if one == one else None for one in timing.temperatures]
         told |= {
-            "start_s": _rounded(moment.start),
-            "duration_s": _rounded(moment.end - moment.start),
+            "start_s": _rounded(timing.start),
+            "duration_s": _rounded(timing.end - timing.start),
             "motor_temperature_degC": warm,
         }
     return told | {"steps": [_step(step) for step in block.steps]}
@@ -127,33 +127,38 @@ def _expected(plan: Plan, number: int) -> dict[str, Any]:
     """Return what is expected after a block, and which rivals it helps to rule out."""
     before, after = plan.expected[number], plan.expected[number + 1]
     return {
-        "right_name_alone": [_rounded(one) for one in after.decided],
+        "right_name_alone": [_rounded(one) for one in after.decision],
         "rules_out": [
             {"rival": rival, "if": truth, "chance_before": old, "chance_after": new}
-            for place, question in enumerate(plan.outlook.opening.questions)
+            for place, question in enumerate(plan.criterion.open_questions.questions)
             for truth, rival, old, new in _raised(question, before, after, place)
         ],
     }
 
 
 def _raised(
-    question: Question, before: Expected, after: Expected, place: int
+    question: Question, before: Expectation, after: Expectation, place: int
 ) -> list[tuple[str, str, float, float]]:
     """Return what a block does for the chance that a rival is ruled out, most first."""
     names = [rival.name for rival in question.rivals]
     found = [
-        (truth, rival, _rounded(before.chances[place][i, j]), _rounded(after.chances[place][i, j]))
+        (
+            truth,
+            rival,
+            _rounded(before.rule_out[place][i, j]),
+            _rounded(after.rule_out[place][i, j]),
+        )
         for i, truth in enumerate(names)
         for j, rival in enumerate(names)
-        if i != j and after.chances[place][i, j] - before.chances[place][i, j] > _NOTABLE
+        if i != j and after.rule_out[place][i, j] - before.rule_out[place][i, j] > _NOTABLE
     ]
     return sorted(found, key=lambda one: one[2] - one[3])
 
 
-def _ruled_out(question: Question, after: Expected, place: int) -> list[dict[str, Any]]:
+def _ruled_out(question: Question, after: Expectation, place: int) -> list[dict[str, Any]]:
     names = [rival.name for rival in question.rivals]
     return [
-        {"if": truth, "rival": rival, "chance": _rounded(after.chances[place][i, j])}
+        {"if": truth, "rival": rival, "chance": _rounded(after.rule_out[place][i, j])}
         for i, truth in enumerate(names)
         for j, rival in enumerate(names)
         if i != j
@@ -162,7 +167,7 @@ def _ruled_out(question: Question, after: Expected, place: int) -> list[dict[str
 
 def _intervals(plan: Plan, units: Mapping[str, str]) -> list[dict[str, Any]]:
     known = dict(units)
-    for one in plan.outlook.opening.causes:
+    for one in plan.criterion.open_questions.causes:
         for parameter in one.effect.coefficients:
             unit = parameter.unit.replace(TORQUE, plan.torque_unit)
             known[f"{one.effect.name}.{parameter.name}"] = unit
@@ -170,11 +175,11 @@ def _intervals(plan: Plan, units: Mapping[str, str]) -> list[dict[str, Any]]:
     return [
         {
             "parameter": name,
-            "estimate": _rounded(plan.outlook.estimates[name]),
+            "estimate": _rounded(plan.criterion.estimates[name]),
             "half_width_now": _rounded(first[name]),
             "half_width_after": _rounded(last[name]),
             "unit": known.get(name, ""),
-            "wide": name in plan.outlook.matter,
+            "wide": name in plan.criterion.of_interest,
         }
         for name in first
     ]
@@ -187,16 +192,16 @@ def _rounded(value: float) -> float:
 
 def plan_text(plan: Plan, units: Mapping[str, str], files: Sequence[str]) -> str:
     """Return the plan in plain words."""
-    whole = plan.moments[-1].end
+    whole = plan.timings[-1].end
     lines = [
         f"joint {plan.joint}: {plan.verdict}; next: {whole / 60:.0f} min"
-        + (f", and {plan.check_moments[-1].end / 60:.0f} min on the next day" if plan.check else "")
+        + (f", and {plan.check_timings[-1].end / 60:.0f} min on the next day" if plan.check else "")
     ]
-    for number, question in enumerate(plan.outlook.opening.questions):
+    for number, question in enumerate(plan.criterion.open_questions.questions):
         shares = ", ".join(f"{name} {share:.0%}" for name, share in question.probabilities.items())
-        now, after = plan.expected[0].decided[number], plan.expected[-1].decided[number]
+        now, after = plan.expected[0].decision[number], plan.expected[-1].decision[number]
         lines.append(f"  open: {shares}; the right name alone: {_chance(now)} now,")
-        last = plan.settled.decided[number]
+        last = plan.after_check.decision[number]
         checked = f", {_chance(last)} with the check" if plan.check else ""
         lines.append(f"    {_chance(after)} after it{checked}{_too_little(last)}")
     if plan.verdict == "unnamed":
@@ -222,10 +227,10 @@ def plan_text(plan: Plan, units: Mapping[str, str], files: Sequence[str]) -> str
     lines.append(
         f"  within {limits.low:g} to {limits.high:g} deg, {limits.slowest:.3g} to"
         f" {limits.fastest:.4g} deg/s"
-        + (f", motor up to {limits.hottest:.0f} °C" if plan.outlook.joint.warmth else "")
+        + (f", motor up to {limits.hottest:.0f} °C" if plan.criterion.joint.thermal_model else "")
         + (f"; beyond the data: {'; '.join(limits.beyond)}" if limits.beyond else "")
     )
-    lines.append(f"  program: {', '.join(files)}. {REDUCED}")
+    lines.append(f"  program: {', '.join(files)}. {SAFETY_NOTE}")
     return "\n".join(lines)
 
 
@@ -238,7 +243,7 @@ def _alike(plan: Plan) -> list[tuple[int, int]]:
 
 def _blocks_text(plan: Plan, first: int, last: int, *, tell: bool) -> list[str]:
     """Return what there is to say of blocks of one kind in a row; their reason where asked."""
-    block, start, end = plan.blocks[first], plan.moments[first], plan.moments[last]
+    block, start, end = plan.blocks[first], plan.timings[first], plan.timings[last]
     count = last - first + 1
     number = f"{first + 1}." if count == 1 else f"{first + 1}-{last + 1}."
     low, high = start.temperatures[0], end.temperatures[1]
@@ -251,7 +256,7 @@ def _blocks_text(plan: Plan, first: int, last: int, *, tell: bool) -> list[str]:
     if tell:
         lines.append(f"         {block.reason}")
     before, after = plan.expected[first], plan.expected[last + 1]
-    for place, question in enumerate(plan.outlook.opening.questions):
+    for place, question in enumerate(plan.criterion.open_questions.questions):
         likely = question.probabilities
         raised = _raised(question, before, after, place)
         for truth, rival, old, new in [one for one in raised if likely[one[0]] >= _LIKELY][:2]:

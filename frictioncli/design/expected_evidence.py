@@ -1,16 +1,16 @@
-r"""What a torque that a rival leaves is worth, where the noise is estimated anew.
+r"""Expected evidence against a rival where the noise is estimated together with the model.
 
-A diagnosis does not know the noise. Where a rival leaves some of the torque, a stronger or slower
-wandering may take it, which a slow torque suits better than a quick one. So the doubled log
-likelihood falls only by
+A diagnosis does not know the noise. A torque that a rival cannot fit may be absorbed by a stronger
+or slower drift of the noise; this suits a slow torque better than a fast one. Twice the log
+likelihood therefore falls only by
 
 .. math:: \ell = \min_k \; n \ln \frac{t_k + \lambda_k}{n} + d_k
 
-over noises :math:`V_k` of any scale: :math:`\lambda_k` is what is left of the torque under
-:math:`V_k`, :math:`n` the pairs less what the base fits, :math:`t_k = \operatorname{tr} P_k V_0`
-the square of the true noise that is expected under it, and :math:`d_k` the rise of the restricted
-log determinant [1]_. Without a torque each term is twice a Kullback-Leibler divergence [2]_: the
-price of a noise that is not the true one.
+over noise covariances :math:`V_k` of any scale: :math:`\lambda_k` is the noncentrality of the
+torque under :math:`V_k`, :math:`n` the residual degrees of freedom,
+:math:`t_k = \operatorname{tr} P_k V_0` the expected sum of squares of the true noise under
+:math:`V_k`, and :math:`d_k` the rise of the restricted log determinant [1]_. Without a torque each
+term is twice a Kullback-Leibler divergence [2]_, the cost of a wrong noise.
 
 References
 ----------
@@ -29,98 +29,110 @@ from frictioncli.arrays import Array
 from frictioncli.diagnosis.data.pair_layout import PairLayout
 from frictioncli.model.noise import Noise, PairCovariance, pair_covariance
 
-_STRONGER = (1.0, 2.0, 4.0)
-"""Strengths of the wandering that are tried, relative to the true one."""
+_DRIFT_FACTORS = (1.0, 2.0, 4.0)
+"""Strengths of the drift that a diagnosis may find, relative to the true one."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Noises:
+class CandidateNoises:
     """Noises of friction that a diagnosis may find, the true one first.
 
     Attributes
     ----------
-    friction : tuple of Noise
-        The noises. [N·m]
-    square : ndarray, shape (noises,)
-        Square of the true noise that is expected under each.
-    determinant : ndarray, shape (noises,)
-        Restricted log determinant above that of the true one.
-    freedom : int
-        Pairs less what the base fits of their means.
+    noises : tuple of Noise
+        The noises [N·m].
+    expected_squares : ndarray, shape (noises,)
+        Expected sum of squares of the true noise, whitened by each noise.
+    log_determinants : ndarray, shape (noises,)
+        Restricted log determinants, relative to that of the true noise.
+    degrees_of_freedom : int
+        Number of pairs less the rank of the base model in their means.
     """
 
-    friction: tuple[Noise, ...]
-    square: Array
-    determinant: Array
-    freedom: int
+    noises: tuple[Noise, ...]
+    expected_squares: Array
+    log_determinants: Array
+    degrees_of_freedom: int
 
-    def fall(self, left: Array) -> tuple[Array, Array]:
-        """Return by how much the log likelihood falls, in the mean, doubled, and its variance.
+    def log_likelihood_ratio(self, noncentrality: Array) -> tuple[Array, Array]:
+        """Return twice the mean, and the variance, of the log likelihood ratio of truth and rival.
 
-        The variance is that of the fall itself. It is less than under a known noise, too: what
-        chance adds to the torque is also taken for noise in part.
+        The variance, too, is less than under a known noise, because part of the random component
+        along the torque is taken for noise.
 
         Parameters
         ----------
-        left : ndarray, shape (noises, ...)
-            Squared length of what is left of the torque under each noise.
+        noncentrality : ndarray, shape (noises, ...)
+            Squared length of the torque that the rival cannot fit, whitened by each noise.
+
+        Returns
+        -------
+        twice_mean, variance : ndarray, shape (...)
+            Under the noise with the highest likelihood.
         """
-        shape = (-1, *(1 for _ in left.shape[1:]))
-        square, determinant = self.square.reshape(shape), self.determinant.reshape(shape)
-        each = self.freedom * np.log((square + left) / self.freedom) + determinant
-        best = np.argmin(each, axis=0)[np.newaxis]
-        slope = self.freedom / (square + left)
-        variance = left * np.square(slope)
-        return tuple(np.take_along_axis(one, best, axis=0)[0] for one in (each, variance))
+        shape = (-1, *(1 for _ in noncentrality.shape[1:]))
+        squares = self.expected_squares.reshape(shape)
+        log_determinants = self.log_determinants.reshape(shape)
+        count = self.degrees_of_freedom
+        twice_mean = count * np.log((squares + noncentrality) / count) + log_determinants
+        best = np.argmin(twice_mean, axis=0)[np.newaxis]
+        slope = count / (squares + noncentrality)
+        variance = noncentrality * np.square(slope)
+        return tuple(np.take_along_axis(one, best, axis=0)[0] for one in (twice_mean, variance))
 
 
-def noises_of(layout: PairLayout, true: Noise, extra: Array, base: Array) -> Noises:
-    """Return noises that a diagnosis of rows may find, beside the true one.
+def candidate_noises(layout: PairLayout, true: Noise, extra: Array, base: Array) -> CandidateNoises:
+    """Return the noises that a diagnosis of some rows may find beside the true one.
 
     Parameters
     ----------
     layout : PairLayout
         The pairs.
     true : Noise
-        Noise of friction that the rows have. [N·m]
+        True noise of friction [N·m].
     extra : ndarray, shape (pairs,)
-        Variance that is known beforehand. [(N·m)²]
+        Additional variance of the pair means that is known [(N·m)²].
     base : ndarray, shape (pairs, columns)
-        Pair means of the base's columns.
+        Pair means of the base model's columns.
+
+    Returns
+    -------
+    CandidateNoises
+        Noises with stronger and slower drift.
     """
     length = np.linalg.norm(base, axis=0)
-    known = orth(base / np.where(length > 0, length, 1.0), rcond=1e-9)
+    nuisance = orth(base / np.where(length > 0, length, 1.0), rcond=1e-9)
     spans = [np.ptp(layout.time[layout.run == run]) for run in np.unique(layout.run)]
     times = {true.drift_time, max(true.drift_time, *spans)}
-    tried = [
-        replace(true, drift=strength * true.drift, drift_time=time)
+    # the true noise comes first: its drift time is the shortest, its factor the least
+    noises = [
+        replace(true, drift=factor * true.drift, drift_time=time)
         for time in sorted(times)
-        for strength in _STRONGER
+        for factor in _DRIFT_FACTORS
     ]
     covariances = [
         pair_covariance(noise, time=layout.time, run=layout.run, bins=layout.bins, extra=extra)
-        for noise in tried
+        for noise in noises
     ]
-    # the true noise comes first: its time is the shortest, its strength the least
-    whole = covariances[0].times(np.eye(len(layout.time)))
-    expected = [_expected(one, whole, known) for one in covariances]
-    square, determinant = np.array(expected).T
-    return Noises(
-        friction=tuple(tried),
-        square=square,
-        determinant=determinant - determinant[0],
-        freedom=len(layout.time) - known.shape[1],
+    true_covariance = covariances[0].times(np.eye(len(layout.time)))
+    expected = [_restricted(one, true_covariance, nuisance) for one in covariances]
+    squares, log_determinants = np.array(expected).T
+    return CandidateNoises(
+        noises=tuple(noises),
+        expected_squares=squares,
+        log_determinants=log_determinants - log_determinants[0],
+        degrees_of_freedom=len(layout.time) - nuisance.shape[1],
     )
 
 
-def _expected(covariance: PairCovariance, true: Array, known: Array) -> tuple[float, float]:
-    """Return the square of true noise expected under a covariance, and its log determinant.
+def _restricted(covariance: PairCovariance, true: Array, nuisance: Array) -> tuple[float, float]:
+    """Return the expected square of the true noise under a covariance, and its log determinant.
 
-    Both are restricted to what the columns ``known`` leave.
+    Both are restricted to the space orthogonal to the nuisance columns.
     """
-    solved = covariance.solve(known)
-    information = known.T @ solved
-    taken = np.trace(np.linalg.solve(information, solved.T @ true @ solved))
-    square = np.trace(covariance.solve(true)) - taken
-    determinant = covariance.log_determinant + np.linalg.slogdet(information)[1]
-    return float(square), float(determinant)
+    solved = covariance.solve(nuisance)
+    information = nuisance.T @ solved
+    fitted = np.trace(np.linalg.solve(information, solved.T @ true @ solved))
+    square = np.trace(covariance.solve(true)) - fitted
+    log_determinant = covariance.log_determinant + np.linalg.slogdet(information)[1]
+    return float(square), float(log_determinant)

@@ -1,4 +1,4 @@
-"""Rows at hand, or with those to come, and the noise that columns are seen through in them."""
+"""Fisher information of model columns in observed and planned rows."""
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
@@ -14,47 +14,51 @@ from frictioncli.model.noise import Noise, PairCovariance, pair_covariance
 
 @dataclass(frozen=True, slots=True)
 class Information:
-    """Rows with the noise that they have, to take inner products of columns in.
+    """Observed and planned rows with their noise model.
 
     Attributes
     ----------
     problem : Problem
         The rows.
     noise : (Noise, Noise)
-        Noise of friction and load. [N·m]
-    gone : EffectTable
-        The rows of all runs with the way that the joint really travels in a planned run. A
-        diagnosis guesses the way of moves that are not recorded, and a cause that goes with the
-        way may look as if it went with another.
-    at_hand : float
-        Share of the pairs at hand in all: where they end, something may have happened.
+        Noise of friction and of load [N·m].
+    true_inputs : EffectTable
+        Inputs of the rows with the true travel of planned runs. A diagnosis estimates the travel of
+        unrecorded moves, and so may take a cause that depends on travel for another one.
+    observed_share : float
+        Share of the pairs that are observed; at this place in the sequence a step change may lie.
     """
 
     problem: Problem
     noise: tuple[Noise, Noise]
-    gone: EffectTable
-    at_hand: float = 1.0
+    true_inputs: EffectTable
+    observed_share: float = 1.0
 
-    def gram(self, columns: ModelColumns) -> Array:
-        """Return inner products of columns under the noise of both channels."""
-        return next(self.grams(columns, self.noise[:1]))
+    def matrix(self, columns: ModelColumns) -> Array:
+        """Return the information matrix of columns, shape (columns, columns)."""
+        return next(self.matrices(columns, self.noise[:1]))
 
-    def grams(self, columns: ModelColumns, noises: Sequence[Noise]) -> Iterator[Array]:
-        """Yield inner products of columns with each of some noises of friction in its own's place.
+    def matrices(self, columns: ModelColumns, noises: Sequence[Noise]) -> Iterator[Array]:
+        """Yield the information matrix of columns under each of several noises of friction.
 
         Parameters
         ----------
         columns : ModelColumns
-            The columns.
+            Columns of the model in both channels.
         noises : sequence of Noise
-            Noises of pair means; that of a single angle bin stays. [N·m]
+            Noises of the pair means of friction; the noise of a single angle bin is kept [N·m].
+
+        Yields
+        ------
+        ndarray, shape (columns, columns)
+            Information matrix.
         """
-        shared = _inner(columns.load.means, self._covariance(self.noise[1], 0.0))
+        shared = _pair_information(columns.load.means, self._covariance(self.noise[1], 0.0))
         for part, noise in zip(columns.channels, self.noise, strict=True):
             shared += part.inside.T @ part.inside / noise.point**2
         for noise in noises:
             covariance = self._covariance(noise, self.problem.temperature_variance)
-            yield shared + _inner(columns.friction.means, covariance)
+            yield shared + _pair_information(columns.friction.means, covariance)
 
     def _covariance(self, noise: Noise, extra: Array | float) -> PairCovariance:
         layout = self.problem.layout
@@ -63,5 +67,5 @@ class Information:
         )
 
 
-def _inner(means: Array, covariance: PairCovariance) -> Array:
+def _pair_information(means: Array, covariance: PairCovariance) -> Array:
     return np.asarray(means.T @ covariance.solve(means))

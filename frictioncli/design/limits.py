@@ -1,4 +1,4 @@
-"""Within which limits a joint may move: those of the data at hand, unless the user sets others."""
+"""Limits of a joint's motion: the measured ranges, unless the user sets others."""
 
 from dataclasses import dataclass
 
@@ -9,37 +9,37 @@ from frictioncli.design.settings import PlanSettings
 from frictioncli.design.steps import ACCELERATION
 from frictioncli.errors import OptionError
 
-USUAL_HOTTEST = 65.0
-"""Heating moves may go as far as the paper's, whatever was measured. [°C]"""
+DEFAULT_HOTTEST = 65.0
+"""Heating moves may always reach the temperature of the paper. [°C]"""
 
-SLOWER = 60.0
-"""Slow moves endanger nothing: they may be slower than the fastest by this, whatever was measured.
-"""
+SPEED_RATIO = 60.0
+"""Slow moves are safe: the lowest speed may always be the highest divided by this."""
 
-BIN = 5.0
-"""Width of the angle bins where the data do not tell. [deg]"""
+DEFAULT_BIN_WIDTH = 5.0
+"""Width of the angle bins where there is only one. [deg]"""
 
-_ROOM = 1e-6
+_TOLERANCE = 1e-6
+"""Tolerance of comparisons with a limit: relative, or [deg]."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Limits:
-    """Limits and measured range of one joint.
+    """Limits of one joint's motion.
 
     Attributes
     ----------
     low, high : float
-        Angles between which it may turn. [deg]
+        Range of the angle [deg].
     slowest, fastest : float
-        Lowest and highest speed of moves. [deg/s]
+        Range of the speed [deg/s].
     hottest : float
-        Motor temperature at which heating moves end. [°C]
+        Motor temperature at which heating moves end [°C].
     payloads : tuple of float
-        Payloads that may be mounted. [kg]
+        Payloads that may be mounted [kg].
     speed_step : float or None
-        Speeds are whole multiples of it: one per cent of the rated speed. [deg/s]
+        Speeds are whole multiples of it: one per cent of the rated speed [deg/s].
     beyond : tuple of str
-        Which of them go beyond what was measured, because the user said so.
+        Limits that exceed the measured range because the user set them so.
     """
 
     low: float
@@ -69,16 +69,26 @@ class Limits:
         return self.high - self.low
 
     def speed(self, wanted: float) -> float:
-        """Return the speed next to the one that is wanted that is allowed and can be stated."""
+        """Return the allowed speed nearest to a wanted one that can be programmed [deg/s]."""
         bounded = min(max(wanted, self.slowest), self.fastest)
         if self.speed_step is None:
             return float(f"{bounded:.3g}") if float(f"{bounded:.3g}") <= self.fastest else bounded
-        steps = min(round(bounded / self.speed_step), int(self.fastest / self.speed_step + _ROOM))
+        steps = min(
+            round(bounded / self.speed_step), int(self.fastest / self.speed_step + _TOLERANCE)
+        )
         return max(steps, 1) * self.speed_step
 
     def speeds(self, count: int, slowest: float = 0.0) -> tuple[float, ...]:
-        """Return so many speeds from slow to fast in equal ratios; fewer if they coincide."""
-        # the highest needs room to reach its speed and hold it
+        """Return speeds in equal ratios from slow to fast; fewer where they coincide [deg/s].
+
+        Parameters
+        ----------
+        count : int
+            Number of speeds.
+        slowest : float
+            Lowest speed, if it is above the limit [deg/s].
+        """
+        # the highest speed needs room to accelerate and to stay constant
         high = min(self.fastest, self.highest_useful)
         low = min(max(self.slowest, slowest), high)
         return tuple(sorted({self.speed(float(one)) for one in np.geomspace(low, high, count)}))
@@ -97,30 +107,35 @@ def limits_of(torques: pd.DataFrame, settings: PlanSettings) -> Limits:
     torques : DataFrame
         Rows of :data:`frictioncli.schemas.TORQUES` of a single joint.
     settings : PlanSettings
-        What the user allows.
+        Limits that the user sets.
+
+    Returns
+    -------
+    Limits
+        The limits.
 
     Raises
     ------
     OptionError
-        If they contradict each other, or one per cent of the rated speed is more than the highest.
+        If they contradict each other, or one per cent of the rated speed exceeds the highest speed.
     """
     half = bin_width(torques) / 2
     low, high = float(torques["position"].min() - half), float(torques["position"].max() + half)
     measured, fastest = float(torques["speed"].min()), float(torques["speed"].max())
     warmest = float(torques["motor_temperature"].max())
-    hottest = USUAL_HOTTEST if np.isnan(warmest) else max(warmest, USUAL_HOTTEST)
+    hottest = DEFAULT_HOTTEST if np.isnan(warmest) else max(warmest, DEFAULT_HOTTEST)
     beyond = []
-    if settings.low is not None and settings.low < low - _ROOM:
+    if settings.low is not None and settings.low < low - _TOLERANCE:
         beyond.append(f"--from {settings.low:g} deg (measured from {low:g})")
-    if settings.high is not None and settings.high > high + _ROOM:
+    if settings.high is not None and settings.high > high + _TOLERANCE:
         beyond.append(f"--to-angle {settings.high:g} deg (measured to {high:g})")
-    if settings.max_speed is not None and settings.max_speed > fastest * (1 + _ROOM):
+    if settings.max_speed is not None and settings.max_speed > fastest * (1 + _TOLERANCE):
         beyond.append(f"--max-speed {settings.max_speed:g} deg/s (measured to {fastest:.4g})")
     low = low if settings.low is None else settings.low
     high = high if settings.high is None else settings.high
     fastest = fastest if settings.max_speed is None else settings.max_speed
     step = None if settings.rated_speed is None else settings.rated_speed / 100
-    if step is not None and not step <= fastest <= _rated(settings) * (1 + _ROOM):
+    if step is not None and not step <= fastest <= _rated(settings) * (1 + _TOLERANCE):
         raise OptionError(
             f"highest speed {fastest:.4g} deg/s: expected between 1 and 100 % of the rated speed,"
             f" --rated-speed {settings.rated_speed:g} deg/s"
@@ -128,7 +143,7 @@ def limits_of(torques: pd.DataFrame, settings: PlanSettings) -> Limits:
     return Limits(
         low=low,
         high=high,
-        slowest=min(measured, fastest / SLOWER),
+        slowest=min(measured, fastest / SPEED_RATIO),
         fastest=fastest,
         hottest=hottest if settings.max_temperature is None else settings.max_temperature,
         payloads=settings.payload,
@@ -138,11 +153,11 @@ def limits_of(torques: pd.DataFrame, settings: PlanSettings) -> Limits:
 
 
 def _rated(settings: PlanSettings) -> float:
-    """Return the rated speed, or no bound where it is not known [deg/s]."""
+    """Return the rated speed, infinity where it is not known [deg/s]."""
     return float("inf") if settings.rated_speed is None else settings.rated_speed
 
 
 def bin_width(torques: pd.DataFrame) -> float:
-    """Return the width of the angle bins, from the distance of their centres [deg]."""
+    """Return the width of the angle bins, the least distance of their centres [deg]."""
     centres = np.unique(torques["position"].to_numpy(float))
-    return float(np.min(np.diff(centres))) if len(centres) > 1 else BIN
+    return float(np.min(np.diff(centres))) if len(centres) > 1 else DEFAULT_BIN_WIDTH

@@ -1,6 +1,6 @@
-"""Algorithms 1 and 2 of the paper as a programme, for a joint of which there are no data yet.
+"""Algorithms 1 and 2 of the paper as a programme, for a joint without any data.
 
-Speeds are the published ones; where the axis may not be as fast, all are slower in proportion.
+The speeds are the published ones [1]_, scaled down where the highest speed is lower.
 
 References
 ----------
@@ -10,36 +10,46 @@ References
 """
 
 from frictioncli.design.blocks import Block
-from frictioncli.design.limits import USUAL_HOTTEST, Limits
+from frictioncli.design.limits import DEFAULT_HOTTEST, Limits
 from frictioncli.design.settings import PlanSettings
 from frictioncli.design.steps import HeatStep, RestStep, SeriesStep
 from frictioncli.errors import OptionError
 
 SWEEP = (2.3, 4.2, 7.6, 12.4, 19.1, 28.0, 39.4, 52.0, 67.5, 84.0, 101.2)
-"""Speeds from the published lowest to the published highest. [deg/s]"""
+"""Speeds of the sweep, from the published lowest to the published highest. [deg/s]"""
 
 CYCLE = (19.1, 39.4, 67.5, 101.2)
-"""Four speeds of the thermal cycle. [deg/s]"""
+"""Speeds of the thermal cycle. [deg/s]"""
 
 COLDEST = 25
-"""Motor temperature from which, and down to which, the cycle goes. [°C]"""
+"""Motor temperature at the start and at the end of the cycle. [°C]"""
 
 _LONGEST_HEATING = 900.0
 _LONGEST_COOLING = 3600.0
-"""Longest time for one degree. [s]"""
+"""Longest time per degree. [s]"""
 
 HEATING_MINUTES = 100.0
 COOLING_MINUTES = 300.0
-"""What heating and cooling between 25 and 65 °C took in the paper. [min]"""
+"""Duration of heating and of cooling between 25 and 65 °C in the paper. [min]"""
 
 
 def new_limits(settings: PlanSettings) -> Limits:
     """Return the limits of a joint without data.
 
+    Parameters
+    ----------
+    settings : PlanSettings
+        Limits that the user sets.
+
+    Returns
+    -------
+    Limits
+        The limits.
+
     Raises
     ------
     OptionError
-        If the user does not state them all: without data nothing tells what is safe.
+        If the user does not set them all: without data it is not known what is safe.
     """
     needed = (
         ("--joint", settings.joint),
@@ -55,7 +65,7 @@ def new_limits(settings: PlanSettings) -> Limits:
     low, high, fastest = settings.low, settings.high, settings.max_speed
     assert low is not None
     assert high is not None
-    assert fastest is not None  # else they are among the missing
+    assert fastest is not None  # else they are missing
     rated = settings.rated_speed
     if rated is not None and fastest > rated:
         raise OptionError(
@@ -67,18 +77,18 @@ def new_limits(settings: PlanSettings) -> Limits:
         high=high,
         slowest=min(max(SWEEP[0] * _scale(fastest), step or 0.0), fastest),
         fastest=fastest,
-        hottest=settings.max_temperature or USUAL_HOTTEST,
+        hottest=settings.max_temperature or DEFAULT_HOTTEST,
         speed_step=step,
     )
 
 
 def algorithms(limits: Limits) -> tuple[Block, ...]:
-    """Return the speed sweep, heating and cooling as blocks, one series per degree."""
+    """Return speed sweep, heating and cooling as blocks, with a series per degree."""
     scale = _scale(limits.fastest)
 
     def series(speeds: tuple[float, ...]) -> SeriesStep:
-        able = {limits.speed(one * scale) for one in speeds}
-        held = tuple(sorted(one for one in able if one <= limits.highest_useful))
+        scaled = {limits.speed(one * scale) for one in speeds}
+        held = tuple(sorted(one for one in scaled if one <= limits.highest_useful))
         return SeriesStep(speeds=held, low=limits.low, high=limits.high)
 
     heating = min(limits.fastest, limits.highest_useful)
@@ -121,8 +131,8 @@ def algorithms(limits: Limits) -> tuple[Block, ...]:
 
 
 def usual_seconds(limits: Limits) -> float:
-    """Return how long the paper's programme takes by the paper's own times [s]."""
-    share = (limits.hottest - COLDEST) / (USUAL_HOTTEST - COLDEST)
+    """Return the duration of the programme by the times of the paper [s]."""
+    share = (limits.hottest - COLDEST) / (DEFAULT_HOTTEST - COLDEST)
     return 60 * share * (HEATING_MINUTES + COOLING_MINUTES)
 
 

@@ -1,4 +1,4 @@
-"""The plan of the next experiment for one joint."""
+"""Plan of the next experiment for one joint."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -8,12 +8,12 @@ import numpy as np
 import pandas as pd
 
 from frictioncli.design.blocks import Block, all_blocks
-from frictioncli.design.decision_probability import decided
+from frictioncli.design.decision_probability import decision_probability
 from frictioncli.design.design_criterion import DesignCriterion
 from frictioncli.design.limits import Limits, limits_of
-from frictioncli.design.predicted_rows import Moment, PlannedJoint, foreseen, plain
-from frictioncli.design.rivals import open_questions
-from frictioncli.design.selection import chosen, seconds_of, steps_of
+from frictioncli.design.predicted_rows import PlannedJoint, Timing, planning_columns, predict_rows
+from frictioncli.design.rivals import open_questions_of
+from frictioncli.design.selection import choose_blocks, seconds_of, steps_of
 from frictioncli.design.settings import PlanSettings
 from frictioncli.design.steps import Step
 from frictioncli.design.thermal_model import thermal_model_of
@@ -24,37 +24,37 @@ from frictioncli.errors import NotEnoughData
 from frictioncli.model.friction import PUBLISHED, FrictionParameters
 
 CHECK = 0.28
-"""Share of the time that is kept for the check on the next day."""
+"""Share of the time that is reserved for the check on the next day."""
 
-_SHOWN = 1.5
-"""A check that shows the likely causes so many times as much as the programme shows enough."""
+_ENOUGH_LACK_OF_FIT = 1.5
+"""Lack of fit in the check, relative to the programme's, beyond which more counts nothing."""
 
-_SHOWING = 0.3
-"""Weight of what the check shows, beside its worth after the programme."""
+_LACK_OF_FIT_WEIGHT = 0.3
+"""Weight of this ratio beside the design criterion."""
 
-_TRIALS = 40
-"""Exchanges that are tried for the check."""
+_CHECK_EXCHANGES = 40
+"""Number of exchanges that are tried for the check."""
 
-_LEVER = 0.5 * 9.80665
-"""Gravity torque of a mass at half a metre, where no payload has been changed yet. [N·m/kg]"""
+_USUAL_LEVER = 0.5 * 9.80665
+"""Gravity torque of a mass at half a metre, where no payload was changed yet. [N·m/kg]"""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Expected:
-    """What is expected after a part of the programme.
+class Expectation:
+    """Expected results after a part of the programme.
 
     Attributes
     ----------
-    decided : tuple of float
-        Probability, per question, that it ends with the right name alone.
-    chances : tuple of ndarray
-        Probability, per question, that rival i, if it is at work, leaves rival j behind.
+    decision : tuple of float
+        Probability, per question, that only the right name remains.
+    rule_out : tuple of ndarray
+        Probability, per question, that rival j is ruled out if rival i is the cause.
     half_widths : dict of str to float
-        Half of each parameter's 95 % interval.
+        Half-width of each parameter's 95 % interval.
     """
 
-    decided: tuple[float, ...]
-    chances: tuple[np.ndarray, ...]
+    decision: tuple[float, ...]
+    rule_out: tuple[np.ndarray, ...]
     half_widths: Mapping[str, float]
 
 
@@ -67,38 +67,38 @@ class Plan:
     joint : int
         Joint number.
     verdict : str
-        The diagnosis that it starts from.
+        Verdict of the diagnosis that it starts from.
     torque_unit : str
         Unit of everything torque-like.
     limits : Limits
-        Within which it stays.
-    outlook : DesignCriterion
-        What is open.
+        Limits of the motion.
+    criterion : DesignCriterion
+        Open questions and wide intervals.
     blocks : tuple of Block
         The programme.
-    moments : tuple of Moment
-        When each block begins and ends, and how warm the motor is then.
+    timings : tuple of Timing
+        Start, end and motor temperatures of each block.
     check : tuple of Block
-        What is repeated on the next day.
-    check_moments : tuple of Moment
-        The same of it.
-    expected : tuple of Expected
+        Blocks that are repeated on the next day.
+    check_timings : tuple of Timing
+        Start, end and motor temperatures of each of them.
+    expected : tuple of Expectation
         Before the programme, and after each of its blocks.
-    settled : Expected
-        After programme and check, by all runs together.
+    after_check : Expectation
+        After programme and check.
     """
 
     joint: int
     verdict: str
     torque_unit: str
     limits: Limits
-    outlook: DesignCriterion
+    criterion: DesignCriterion
     blocks: tuple[Block, ...]
-    moments: tuple[Moment, ...]
+    timings: tuple[Timing, ...]
     check: tuple[Block, ...]
-    check_moments: tuple[Moment, ...]
-    expected: tuple[Expected, ...]
-    settled: Expected
+    check_timings: tuple[Timing, ...]
+    expected: tuple[Expectation, ...]
+    after_check: Expectation
 
 
 def plan_joint(
@@ -121,7 +121,12 @@ def plan_joint(
     extended : ExtendedModel
         Its extended model.
     settings : PlanSettings
-        Budget and limits.
+        Time budget and limits.
+
+    Returns
+    -------
+    Plan
+        The programme, the check, and what is expected of both.
 
     Raises
     ------
@@ -131,122 +136,148 @@ def plan_joint(
         If no block fits into the time.
     """
     limits = limits_of(torques, settings)
-    outlook = outlook_of(torques, document, extended, limits)
+    criterion = criterion_of(torques, document, extended, limits)
     candidates = all_blocks(limits, settings.seed)
-    if outlook.joint.warmth is None:  # what heats cannot be told apart from what does not
+    if criterion.joint.thermal_model is None:  # the effect of heating could not be predicted
         candidates = tuple(block for block in candidates if not block.name.startswith("heat"))
-    payload = outlook.joint.payload
+    payload = criterion.joint.payload
     budget = 60 * settings.minutes
-    blocks = chosen(candidates, outlook.worth, (1 - CHECK) * budget, payload, settings.seed)
+    blocks = choose_blocks(
+        candidates, criterion.value, (1 - CHECK) * budget, payload, settings.seed
+    )
     if not blocks:
         raise NotEnoughData(
-            f"joint {_number_of(torques)}: no block fits into {settings.minutes:g} min, or none"
+            f"joint {_joint_number(torques)}: no block fits into {settings.minutes:g} min, or none"
             " tells anything new; give more time with --minutes"
         )
     rest = budget - seconds_of(blocks, payload)
-    check = check_of(outlook, blocks, rest, payload, settings.seed)
+    check = choose_check(criterion, blocks, rest, payload, settings.seed)
     return Plan(
-        joint=_number_of(torques),
+        joint=_joint_number(torques),
         verdict=str(document["verdict"]),
         torque_unit=torque_unit,
         limits=limits,
-        outlook=outlook,
+        criterion=criterion,
         blocks=blocks,
-        moments=_moments(outlook.joint, blocks),
+        timings=_timings(criterion.joint, blocks),
         check=check,
-        check_moments=_moments(outlook.joint, check),
-        expected=tuple(expected(outlook, blocks[:count]) for count in range(len(blocks) + 1)),
-        settled=expected(outlook, blocks, check),
+        check_timings=_timings(criterion.joint, check),
+        expected=tuple(expectation(criterion, blocks[:count]) for count in range(len(blocks) + 1)),
+        after_check=expectation(criterion, blocks, check),
     )
 
 
-def outlook_of(
+def criterion_of(
     torques: pd.DataFrame, document: Mapping[str, Any], extended: ExtendedModel, limits: Limits
 ) -> DesignCriterion:
-    """Return what is open of one joint; parameters as of :func:`plan_joint`."""
+    """Return the design criterion of one joint; parameters as for :func:`plan_joint`."""
     problem, _ = build_problems(torques, extended.temperature)
     joint = PlannedJoint(
-        torques=plain(torques),
+        torques=planning_columns(torques),
         temperature=extended.temperature,
         parameters=_planning_parameters(problem),
         gravity=_planning_gravity(problem, limits),
-        warmth=thermal_model_of(torques),
+        thermal_model=thermal_model_of(torques),
     )
     return DesignCriterion.of(
         joint,
-        open_questions(problem, document, extended),
+        open_questions_of(problem, document, extended),
         unnamed=document["verdict"] == "unnamed",
     )
 
 
-def check_of(
-    outlook: DesignCriterion,
+def choose_check(
+    criterion: DesignCriterion,
     blocks: Sequence[Block],
     budget: float,
     payload: float | None,
     seed: int,
 ) -> tuple[Block, ...]:
-    """Return what of a programme is repeated on the next day.
+    """Return the blocks of a programme that are repeated on the next day.
 
-    Diagnosis keeps the last run to see whether a cause is worth modelling. Where the cause does not
-    show there, a right name would be dropped. Later that run speaks for or against names, too.
+    The diagnosis holds the last run out to test whether a cause improves the model. Where the cause
+    has little effect in that run, a right name would be dropped. With still later runs, this run
+    also contributes evidence.
 
     Parameters
     ----------
-    outlook : DesignCriterion
-        What is open.
+    criterion : DesignCriterion
+        Open questions and wide intervals.
     blocks : sequence of Block
         The programme.
     budget : float
-        Time for the check. [s]
+        Time for the check [s].
     payload : float or None
-        What is on before. [kg]
+        Payload that is mounted before the first block [kg].
     seed : int
-        Source of what is tried.
+        Seed of the random starts and exchanges.
+
+    Returns
+    -------
+    tuple of Block
+        The check.
     """
     programme = steps_of(blocks)
-    usual = max(outlook.shown(programme), 1e-9)
+    reference = max(criterion.lack_of_fit(programme), 1e-9)
 
-    def worth(steps: Sequence[Step]) -> float:
+    def check_criterion(steps: Sequence[Step]) -> float:
         if not steps:
             return 0.0
-        shown = min(outlook.shown(steps) / usual, _SHOWN)
-        return outlook.worth(programme, steps) + _SHOWING * shown
+        ratio = min(criterion.lack_of_fit(steps) / reference, _ENOUGH_LACK_OF_FIT)
+        return criterion.value(programme, steps) + _LACK_OF_FIT_WEIGHT * ratio
 
-    return chosen(list(dict.fromkeys(blocks)), worth, budget, payload, seed, trials=_TRIALS)
-
-
-def expected(outlook: DesignCriterion, *days: Sequence[Block]) -> Expected:
-    """Return what is expected after blocks, day after day."""
-    sight = outlook.after(*map(steps_of, days)) if any(days) else outlook.before
-    chance = outlook.chances(sight)
-    return Expected(
-        decided=tuple(
-            decided(question, one)
-            for question, one in zip(outlook.opening.questions, chance, strict=True)
-        ),
-        chances=chance,
-        half_widths=outlook.narrowed(sight).half_widths,
+    candidates = list(dict.fromkeys(blocks))
+    return choose_blocks(
+        candidates, check_criterion, budget, payload, seed, exchanges=_CHECK_EXCHANGES
     )
 
 
-def _moments(joint: PlannedJoint, blocks: Sequence[Block]) -> tuple[Moment, ...]:
-    """Return when blocks begin and end, and how warm the motor is then."""
-    _, each = foreseen(joint, steps_of(blocks), "planned")
-    found, first = [], 0
+def expectation(criterion: DesignCriterion, *days: Sequence[Block]) -> Expectation:
+    """Return the expected results after blocks, day after day.
+
+    Parameters
+    ----------
+    criterion : DesignCriterion
+        Open questions and wide intervals.
+    *days : sequence of Block
+        Blocks of each day; none: the observed rows alone.
+
+    Returns
+    -------
+    Expectation
+        Probabilities of decisions and widths of intervals.
+    """
+    information = criterion.observed
+    if any(days):
+        information = criterion.information_after(*map(steps_of, days))
+    rule_out = criterion.rule_out_probabilities(information)
+    return Expectation(
+        decision=tuple(
+            decision_probability(question, one)
+            for question, one in zip(criterion.open_questions.questions, rule_out, strict=True)
+        ),
+        rule_out=rule_out,
+        half_widths=criterion.precision_with(information).half_widths,
+    )
+
+
+def _timings(joint: PlannedJoint, blocks: Sequence[Block]) -> tuple[Timing, ...]:
+    """Return start, end and motor temperatures of blocks."""
+    _, of_steps = predict_rows(joint, steps_of(blocks), "planned")
+    timings, first = [], 0
     for block in blocks:
-        own = each[first : first + len(block.steps)]
+        own = of_steps[first : first + len(block.steps)]
         first += len(block.steps)
-        warm = (own[0].temperatures[0], own[-1].temperatures[1])
-        found.append(Moment(own[0].start, own[-1].end, warm))
-    return tuple(found)
+        temperatures = (own[0].temperatures[0], own[-1].temperatures[1])
+        timings.append(Timing(own[0].start, own[-1].end, temperatures))
+    return tuple(timings)
 
 
 def _planning_parameters(problem: Problem) -> FrictionParameters:
-    """Return the fitted friction; what the data cannot tell has a usual value.
+    """Return the fitted friction parameters; undetermined ones have a usual value.
 
-    A design that is best for one value of a parameter needs a guess of it [1]_. Where the fall with
-    temperature is not determined, the published rate is taken, and half of the viscous part falls.
+    A locally optimal design needs a guess of the parameters [1]_. Where the decay with temperature
+    is not determined, the published rate is taken, and half of the viscous part decays.
 
     References
     ----------
@@ -256,23 +287,22 @@ def _planning_parameters(problem: Problem) -> FrictionParameters:
     fitted = problem.parameters
     if fitted.gamma > 0 and fitted.delta > 0:
         return fitted
-    warm = float(np.mean(problem.table.temperature)) or 20.0
+    temperature = float(np.mean(problem.table.temperature)) or 20.0
     viscous = max(fitted.beta, 1e-3 * float(np.mean(np.abs(problem.friction))))
     return replace(
         fitted,
         beta=viscous / 2,
-        gamma=viscous / 2 * float(np.exp(PUBLISHED.delta * warm)),
+        gamma=viscous / 2 * float(np.exp(PUBLISHED.delta * temperature)),
         delta=PUBLISHED.delta,
     )
 
 
 def _planning_gravity(problem: Problem, limits: Limits) -> np.ndarray:
-    """Return the fitted gravity; a payload that is new to the data gets a usual lever."""
+    """Return the fitted gravity coefficients; an unmeasured payload gets a usual lever."""
     if len(problem.gravity) > len(NAMES) or not limits.payloads:
         return problem.gravity
-    return np.append(problem.gravity, [_LEVER, 0.0])
+    return np.append(problem.gravity, [_USUAL_LEVER, 0.0])
 
 
-def _number_of(torques: pd.DataFrame) -> int:
-    """Return the number of the joint that rows are of."""
+def _joint_number(torques: pd.DataFrame) -> int:
     return int(torques["joint"].iloc[0])

@@ -1,7 +1,7 @@
-"""How narrow a programme makes intervals.
+"""D-optimality of a programme: for parameters of interest, and for a general response surface.
 
-The gain is half the fall of the log determinant of the covariance of the parameters that matter
-(D_s-optimality [1]_), in nats.
+The gain in precision is half the fall of the log determinant of the covariance of the parameters
+of interest (D_s-optimality [1]_), in nats.
 
 References
 ----------
@@ -18,6 +18,7 @@ from frictioncli.design.information import Information
 from frictioncli.design.rivals import OpenQuestions
 from frictioncli.diagnosis.data.problem import Problem
 from frictioncli.diagnosis.fit.columns import ModelColumns, base_columns, basis_columns, joined
+from frictioncli.effects.base import EffectTable
 from frictioncli.linear_algebra import scaled_gram_inverse
 
 
@@ -28,61 +29,105 @@ class Precision:
     Attributes
     ----------
     names : tuple of str
-        Parameters.
-    covariance : ndarray, shape (names, names)
-        Their covariance by the noise at hand.
+        Names of the parameters.
+    covariance : ndarray, shape (parameters, parameters)
+        Their covariance; each in its own unit.
     """
 
     names: tuple[str, ...]
     covariance: Array
 
-    def of(self, names: Sequence[str]) -> "Precision":
-        """Return the same of some of the parameters."""
+    def subset(self, names: Sequence[str]) -> "Precision":
+        """Return the covariance of some of the parameters."""
         chosen = [self.names.index(name) for name in names]
         return Precision(tuple(names), self.covariance[np.ix_(chosen, chosen)])
 
     @property
     def half_widths(self) -> dict[str, float]:
-        """Half of each 95 % interval."""
+        """Half-widths of the 95 % intervals by parameter name."""
         errors = 1.96 * np.sqrt(np.maximum(np.diag(self.covariance), 0.0))
         return dict(zip(self.names, map(float, errors), strict=True))
 
     @property
-    def volume(self) -> float:
-        """Half the logarithm of the determinant."""
+    def log_volume(self) -> float:
+        """Half the log determinant: log volume of the confidence ellipsoid, but for a constant."""
         return 0.5 * float(np.linalg.slogdet(self.covariance)[1])
 
 
 def precision(
-    sight: Information,
-    opening: OpenQuestions,
+    information: Information,
+    open_questions: OpenQuestions,
     prior: Array,
     names: Sequence[str],
-    told: Sequence[str],
+    reported: Sequence[str],
 ) -> Precision:
-    """Return the covariance of parameters.
+    """Return the covariance of parameters: the inverse of information and prior.
 
     Parameters
     ----------
-    sight : Information
+    information : Information
         Rows and noise.
-    opening : OpenQuestions
-        Causes, which are fitted beside the base.
+    open_questions : OpenQuestions
+        Causes that are fitted together with the base model.
     prior : ndarray, shape (columns,)
-        Weights of what is believed beforehand, of the base's and the causes' columns.
+        Prior precision of the coefficients of base model and causes.
     names : sequence of str
-        Names of these columns.
-    told : sequence of str
-        Those that are told; the others are fitted beside them.
+        Names of these coefficients.
+    reported : sequence of str
+        Coefficients to report; the others are nuisance parameters.
     """
-    gram = sight.gram(_model(sight.problem, opening))
+    gram = information.matrix(_model(information.problem, open_questions))
     total = gram + np.diag(prior)
     covariance = scaled_gram_inverse(total, tolerance=1e-13)
-    chosen = [list(names).index(name) for name in told]
-    return Precision(tuple(told), covariance[np.ix_(chosen, chosen)])
+    chosen = [list(names).index(name) for name in reported]
+    return Precision(tuple(reported), covariance[np.ix_(chosen, chosen)])
 
 
-def _model(problem: Problem, opening: OpenQuestions) -> ModelColumns:
-    """Return the columns of base and likeliest causes."""
-    bases = (problem.basis(one.effect, one.shape) for one in opening.causes)
+def _model(problem: Problem, open_questions: OpenQuestions) -> ModelColumns:
+    """Return the columns of the base model and of the likeliest causes."""
+    bases = (problem.basis(one.effect, one.shape) for one in open_questions.causes)
     return joined([base_columns(problem), *(basis_columns(problem, basis) for basis in bases)])
+
+
+def response_surface_log_determinants(tables: Sequence[EffectTable]) -> list[float]:
+    """Return half the log determinant of the information on a quadratic response surface.
+
+    It measures how well rows cover all inputs, where no model of the cause is known. Each input is
+    scaled to -1 ... 1 by the range of all tables together; the identity is added as a prior.
+
+    Parameters
+    ----------
+    tables : sequence of EffectTable
+        Tables to compare.
+
+    Returns
+    -------
+    list of float
+        One value per table [nat].
+    """
+    inputs = [_inputs(table) for table in tables]
+    stacked = np.vstack(inputs)
+    low, high = stacked.min(axis=0), stacked.max(axis=0)
+    varies = high > low
+    values = []
+    for one in inputs:
+        unit = 2 * (one[:, varies] - low[varies]) / (high - low)[varies] - 1
+        rows, columns = np.triu_indices(unit.shape[1])
+        quadratic = np.column_stack([np.ones(len(unit)), unit, unit[:, rows] * unit[:, columns]])
+        information = quadratic.T @ quadratic + np.eye(quadratic.shape[1])
+        values.append(0.5 * float(np.linalg.slogdet(information)[1]))
+    return values
+
+
+def _inputs(table: EffectTable) -> Array:
+    """Return √speed, temperature, angle, load, √travel, √time and log rest, shape (rows, 7)."""
+    columns = (
+        np.sqrt(table.speed),
+        table.temperature,
+        table.position,
+        table.load,
+        np.sqrt(table.travel),
+        np.sqrt(table.time),
+        np.log1p(np.minimum(table.rest, 12 * 3600.0)),
+    )
+    return np.column_stack(columns)

@@ -1,4 +1,4 @@
-"""Rows of the table of torques that a programme would add."""
+"""Rows of the torque table that a programme is predicted to add."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -12,12 +12,12 @@ from frictioncli.design.limits import bin_width
 from frictioncli.design.steps import (
     ACCELERATION,
     LEAD,
-    MOUNTING,
+    PAYLOAD_CHANGE,
     HeatStep,
     RestStep,
     SeriesStep,
     Step,
-    mountings,
+    payload_changes,
     round_trip,
 )
 from frictioncli.design.thermal_model import ThermalModel
@@ -25,17 +25,20 @@ from frictioncli.diagnosis.data.gravity import columns_of, known_payload
 from frictioncli.model.friction import FrictionParameters, friction_torque
 
 _SETTLING = 0.2
-"""Time after a ramp that is not yet constant speed. [s]"""
+"""Time after a ramp until the speed is constant. [s]"""
 
-_COVERED = 0.6
-"""Least share of a bin that must be passed at constant speed."""
+_LEAST_COVERAGE = 0.6
+"""Least share of an angle bin that must be passed at constant speed."""
+
+_HEATING_STEP = 60.0
+"""Heating moves are integrated in steps of this length. [s]"""
 
 _COLUMNS = (
     *("run", "joint", "pair", "speed", "time", "phase", "motor_temperature"),
     *("housing_temperature", "position", "motor_temperature_reading", "load", "payload"),
     *("friction_torque", "load_torque"),
 )
-"""Columns of the table that planning needs."""
+"""Columns of the torque table that planning needs."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -45,40 +48,40 @@ class PlannedJoint:
     Attributes
     ----------
     torques : DataFrame
-        Rows at hand, of a single joint, as of :func:`plain`.
+        Observed rows of a single joint, as returned by :func:`planning_columns`.
     temperature : {"motor", "housing", "mean"}
-        Temperature that the friction function is given.
+        Temperature that enters the friction model.
     parameters : FrictionParameters
-        Friction of the base model.
+        Parameters of the base model.
     gravity : ndarray, shape (3,) or (5,)
-        Coefficients of the gravity torque. [N·m], [N·m/kg]
-    warmth : ThermalModel or None
-        How its motor warms; None where its temperature is not known.
+        Coefficients of the gravity torque [N·m], [N·m/kg].
+    thermal_model : ThermalModel or None
+        Thermal model of the motor; None where its temperature is not known.
     """
 
     torques: pd.DataFrame
     temperature: str
     parameters: FrictionParameters
     gravity: Array
-    warmth: ThermalModel | None
+    thermal_model: ThermalModel | None
 
     @property
     def payload(self) -> float | None:
-        """Payload that is on, as far as the last run tells [kg]."""
+        """Mounted payload, as far as the last run tells [kg]."""
         known = known_payload(self.torques)
         return float(known[-1]) if len(known) and np.isfinite(known[-1]) else None
 
 
 @dataclass(frozen=True, slots=True)
-class Moment:
-    """When a step begins, and how warm the motor is then and at its end.
+class Timing:
+    """Start and end of a part of the programme, and the motor temperatures then.
 
     Attributes
     ----------
     start, end : float
-        Since the programme's start, a change of payload before it included. [s]
+        Time since the start of the programme, after a change of payload [s].
     temperatures : (float, float)
-        Motor temperature at its start and its end; NaN where unknown. [°C]
+        Motor temperature at the start and at the end; NaN where unknown [°C].
     """
 
     start: float
@@ -87,23 +90,24 @@ class Moment:
 
 
 class _Pair(NamedTuple):
-    """A pair to come: middle [s], speed, motor temperature, bins, payload, and way before [deg]."""
+    """A planned pair.
+
+    Mid time [s], speed [deg/s], motor temperature [°C], bin centres [deg], payload [kg] and travel
+    before it [deg].
+    """
 
     time: float
     speed: float
     motor: float
     bins: Array
     payload: float | None
-    way: float
+    travel: float
 
 
-def foreseen(
+def predict_rows(
     joint: PlannedJoint, steps: Sequence[Step], run: str
-) -> tuple[pd.DataFrame, tuple[Moment, ...]]:
-    """Return the rows that steps would add as a run of their own, from a cold start, and when.
-
-    Torques in them are those of the base model, without noise. Column ``way`` is the way before
-    the pair, recorded or not. [deg]
+) -> tuple[pd.DataFrame, tuple[Timing, ...]]:
+    """Return the rows that steps would add as a new run from a cold start, and their timing.
 
     Parameters
     ----------
@@ -112,89 +116,108 @@ def foreseen(
     steps : sequence of Step
         The programme.
     run : str
-        Name of the run.
+        Name of the new run.
+
+    Returns
+    -------
+    rows : DataFrame
+        Planned rows with the noise-free torques of the base model. Column ``travel`` is the true
+        travel before the pair, recorded or not [deg].
+    timings : tuple of Timing
+        One per step.
     """
     width = bin_width(joint.torques)
-    warm = joint.warmth.ambient if joint.warmth else float("nan")
-    now, way, payload = 0.0, 0.0, joint.payload
+    motor = joint.thermal_model.ambient if joint.thermal_model else float("nan")
+    now, travel, payload = 0.0, 0.0, joint.payload
     pairs: list[_Pair] = []
-    moments = []
-    changes = mountings(steps, payload)
+    timings = []
+    changes = payload_changes(steps, payload)
     for step, change in zip(steps, changes, strict=True):
         if change:
-            warm, now = _warmer(joint, warm, MOUNTING, None), now + MOUNTING
-        start, before = now, warm
+            motor, now = _after(joint, motor, PAYLOAD_CHANGE, None), now + PAYLOAD_CHANGE
+        start, motor_at_start = now, motor
         if isinstance(step, SeriesStep):
             payload = payload if step.payload is None else step.payload
-            now, warm = now + LEAD, _warmer(joint, warm, LEAD, None)
+            now, motor = now + LEAD, _after(joint, motor, LEAD, None)
             for speed in step.speeds:
                 half = round_trip(speed, step.high - step.low) / 2
-                middle = _warmer(joint, warm, half, speed)
-                bins = constant_bins(speed, step.low, step.high, width)
+                motor_at_mid = _after(joint, motor, half, speed)
+                bins = constant_speed_bins(speed, step.low, step.high, width)
                 if len(bins):
-                    pairs.append(_Pair(now + half, speed, middle, bins, payload, way))
-                way += 2 * (step.high - step.low)
-                now, warm = now + 2 * half, _warmer(joint, middle, half, speed)
+                    pairs.append(_Pair(now + half, speed, motor_at_mid, bins, payload, travel))
+                travel += 2 * (step.high - step.low)
+                now, motor = now + 2 * half, _after(joint, motor_at_mid, half, speed)
         elif isinstance(step, HeatStep):
-            spent, warm = _heated(joint, warm, step)
-            now, way = now + spent, way + spent * step.speed
+            seconds, motor = _heat(joint, motor, step)
+            now, travel = now + seconds, travel + seconds * step.speed
         elif isinstance(step, RestStep):
-            now, warm = now + step.seconds, _warmer(joint, warm, step.seconds, None)
-        moments.append(Moment(start, now, (before, warm)))
-    return _table(joint, pairs, run), tuple(moments)
+            now, motor = now + step.seconds, _after(joint, motor, step.seconds, None)
+        timings.append(Timing(start, now, (motor_at_start, motor)))
+    return _table(joint, pairs, run), tuple(timings)
 
 
-def constant_bins(speed: float, low: float, high: float, width: float) -> Array:
-    """Return the centres of the angle bins that a move passes at constant speed [deg].
+def constant_speed_bins(speed: float, low: float, high: float, width: float) -> Array:
+    """Return the centres of the angle bins that a move passes at constant speed.
 
     Parameters
     ----------
     speed : float
-        Speed of the move. [deg/s]
-    low, high, width : float
-        Its ends, and the width of the bins. [deg]
+        Speed of the move [deg/s].
+    low, high : float
+        Ends of the move [deg].
+    width : float
+        Width of the bins [deg].
+
+    Returns
+    -------
+    ndarray, shape (bins,)
+        Bin centres [deg].
+
+    Examples
+    --------
+    >>> constant_speed_bins(20.0, low=0.0, high=30.0, width=5.0)
+    array([ 7.5, 12.5, 17.5, 22.5])
     """
     trimmed = speed**2 / (2 * ACCELERATION) + _SETTLING * speed
     edges = np.arange(np.floor(low / width), np.ceil(high / width)) * width
     passed = np.minimum(edges + width, high - trimmed) - np.maximum(edges, low + trimmed)
-    return np.asarray(edges[passed >= _COVERED * width] + width / 2)
+    return np.asarray(edges[passed >= _LEAST_COVERAGE * width] + width / 2)
 
 
-def _heated(joint: PlannedJoint, warm: float, step: HeatStep) -> tuple[float, float]:
-    """Return how long heating moves last [s] and the motor temperature after them [°C]."""
-    pace, spent = 60.0, 0.0
+def _heat(joint: PlannedJoint, motor: float, step: HeatStep) -> tuple[float, float]:
+    """Return the duration of heating moves [s] and the motor temperature after them [°C]."""
+    spent = 0.0
     while spent < step.seconds:
-        if step.until is not None and warm >= step.until:
+        if step.until is not None and motor >= step.until:
             break
-        part = min(pace, step.seconds - spent)
-        warm, spent = _warmer(joint, warm, part, step.speed), spent + part
-    return spent, warm
+        part = min(_HEATING_STEP, step.seconds - spent)
+        motor, spent = _after(joint, motor, part, step.speed), spent + part
+    return spent, motor
 
 
-def _warmer(joint: PlannedJoint, warm: float, seconds: float, speed: float | None) -> float:
-    """Return the motor temperature after a time of rest or of moves at a speed [°C]."""
-    if joint.warmth is None:
+def _after(joint: PlannedJoint, motor: float, seconds: float, speed: float | None) -> float:
+    """Return the motor temperature after a time at rest (speed None) or at a speed [°C]."""
+    if joint.thermal_model is None:
         return float("nan")
     power = 0.0
     if speed is not None:
-        power = speed * float(_friction(joint, np.array(speed), np.array(warm), np.array(0.0)))
-    return joint.warmth.after(warm, seconds, power)
+        power = speed * float(_friction(joint, np.array(speed), np.array(motor), np.array(0.0)))
+    return joint.thermal_model.after(motor, seconds, power)
 
 
-def _friction(joint: PlannedJoint, speed: Array, warm: Array, load: Array) -> Array:
-    """Return the base model's friction at motor temperatures. [N·m]."""
-    used = warm
-    if joint.temperature != "motor" and joint.warmth is not None:
-        rise = {"housing": 1.0, "mean": 0.5}[joint.temperature]
-        housing = joint.warmth.ambient + joint.warmth.housing_share * (warm - joint.warmth.ambient)
-        used = warm + rise * (housing - warm)
+def _friction(joint: PlannedJoint, speed: Array, motor: Array, load: Array) -> Array:
+    """Return the base model's friction torque at motor temperatures [N·m]."""
+    used = motor
+    if joint.temperature != "motor" and joint.thermal_model is not None:
+        weight = {"housing": 1.0, "mean": 0.5}[joint.temperature]
+        used = motor + weight * (joint.thermal_model.housing(motor) - motor)
     return friction_torque(
         joint.parameters, load=load, speed=speed, temperature=np.nan_to_num(used, nan=0.0)
     )
 
 
 def _table(joint: PlannedJoint, pairs: Sequence[_Pair], run: str) -> pd.DataFrame:
-    """Return pairs as rows of torques."""
+    """Return planned pairs as rows of the torque table."""
     sizes = [len(one.bins) for one in pairs]
 
     def per_row(values: Sequence[float | None]) -> Array:
@@ -203,8 +226,8 @@ def _table(joint: PlannedJoint, pairs: Sequence[_Pair], run: str) -> pd.DataFram
     motor = per_row([one.motor for one in pairs])
     speed = per_row([one.speed for one in pairs])
     housing = np.full_like(motor, np.nan)
-    if joint.warmth is not None and joint.torques["housing_temperature"].notna().any():
-        housing = joint.warmth.ambient + joint.warmth.housing_share * (motor - joint.warmth.ambient)
+    if joint.thermal_model is not None and joint.torques["housing_temperature"].notna().any():
+        housing = joint.thermal_model.housing(motor)
     table = pd.DataFrame(
         {
             "run": run,
@@ -218,21 +241,21 @@ def _table(joint: PlannedJoint, pairs: Sequence[_Pair], run: str) -> pd.DataFram
             "position": np.concatenate([np.empty(0), *(one.bins for one in pairs)]),
             "motor_temperature_reading": motor,
             "payload": per_row([one.payload for one in pairs]),
-            "way": per_row([one.way for one in pairs]),
+            "travel": per_row([one.travel for one in pairs]),
         }
     )
     load = columns_of(table, payloads=len(joint.gravity) > 3) @ joint.gravity
     friction = _friction(joint, speed, motor, load)
-    own_load = load if joint.torques["load"].notna().any() else np.nan
-    whole = table.assign(load=own_load, friction_torque=friction, load_torque=load)
-    return whole[[*_COLUMNS, "way"]]
+    load_channel = load if joint.torques["load"].notna().any() else np.nan
+    rows = table.assign(load=load_channel, friction_torque=friction, load_torque=load)
+    return rows[[*_COLUMNS, "travel"]]
 
 
-def plain(torques: pd.DataFrame) -> pd.DataFrame:
-    """Return the columns of torques that planning needs, with plain text in place of labels."""
+def planning_columns(torques: pd.DataFrame) -> pd.DataFrame:
+    """Return the columns of a torque table that planning needs, labels as plain text."""
     return torques[list(_COLUMNS)].astype({"run": str, "phase": str}).reset_index(drop=True)
 
 
-def together(known: pd.DataFrame, new: pd.DataFrame) -> pd.DataFrame:
-    """Return the rows at hand, as of :func:`plain`, with those of a further run below them."""
-    return pd.concat([known, new[list(_COLUMNS)]], ignore_index=True) if len(new) else known
+def append_run(observed: pd.DataFrame, new: pd.DataFrame) -> pd.DataFrame:
+    """Return observed rows, as returned by :func:`planning_columns`, followed by those of a run."""
+    return pd.concat([observed, new[list(_COLUMNS)]], ignore_index=True) if len(new) else observed

@@ -1,4 +1,4 @@
-"""What is open after a diagnosis: rivals for the same misfit, each fitted to all data at hand."""
+"""Rival explanations that a diagnosis leaves open, fitted to all observed rows."""
 
 from collections import Counter
 from collections.abc import Mapping, Sequence
@@ -18,31 +18,32 @@ from frictioncli.effects import BY_NAME
 from frictioncli.effects.availability import missing_columns
 from frictioncli.model.noise import Noise
 
-_MOST = 5
-"""Rivals of one question, at most; the least likely of longer sets are left out."""
+_MOST_RIVALS = 5
+"""Greatest number of rivals of one question; the least likely are left out."""
 
-_MOST_OTHERS = 8
-"""Effects at most that the rivals are easily taken for, though not by the data at hand."""
+_MOST_CONFOUNDERS = 8
+"""Greatest number of confounders of one question."""
 
-_THINKABLE = 0.01
-"""An effect outside a set that is as likely as this is a rival, too."""
+_LEAST_PROBABILITY = 0.01
+"""An effect outside the credible set is a rival from this probability on."""
 
-_WANDERING = 0.007
-_WANDERING_TIME = 1200.0
-"""Friction of a joint is taken to wander by this share of it in this time [s], even where a thin
-experiment shows less: what a rival explains in it may be wandering, too."""
+_DRIFT_SHARE = 0.007
+_DRIFT_TIME = 1200.0
+"""Least drift of friction as a share of it, and its time constant [s].
+
+A short experiment may show less; but what a rival explains there may be drift."""
 
 
 @dataclass(frozen=True, slots=True)
 class Rival:
-    """An effect that may be the cause, fitted to the data at hand.
+    """An effect that may be the cause, fitted to the observed rows.
 
     Attributes
     ----------
     score : Score
         The effect with its shape and coefficients.
     evidence : float
-        Logarithm of its Bayes factor.
+        Log Bayes factor against the base model.
     """
 
     score: Score
@@ -56,22 +57,23 @@ class Rival:
 
 @dataclass(frozen=True, slots=True)
 class Question:
-    """Which of some effects is the cause.
+    """Which of several rivals is the cause.
 
     Attributes
     ----------
     rivals : tuple of Rival
         Effects that may be the cause.
-    others : tuple of Rival
-        Effects that the data at hand speak against, but which more data might be taken for.
+    confounders : tuple of Rival
+        Effects easily confused with the rivals. The observed rows speak against them, but more rows
+        might not.
     """
 
     rivals: tuple[Rival, ...]
-    others: tuple[Rival, ...] = ()
+    confounders: tuple[Rival, ...] = ()
 
     @property
     def probabilities(self) -> dict[str, float]:
-        """Probability of each rival by all data at hand."""
+        """Posterior probability of each rival by name."""
         return probabilities({rival.name: rival.evidence for rival in self.rivals})
 
     @property
@@ -82,16 +84,16 @@ class Question:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class OpenQuestions:
-    """Where a plan starts from.
+    """What is settled and what is open after a diagnosis.
 
     Attributes
     ----------
     settled : tuple of Score
         Causes with a single name.
     questions : tuple of Question
-        Causes whose name is open.
+        Causes with several possible names.
     noise : (Noise, Noise)
-        Noise of friction and load with the likeliest causes in place. [N·m]
+        Noise of friction and of load beside the likeliest causes [N·m].
     """
 
     settled: tuple[Score, ...]
@@ -100,27 +102,32 @@ class OpenQuestions:
 
     @property
     def causes(self) -> tuple[Score, ...]:
-        """Settled causes, and the likeliest of each question."""
+        """Settled causes and the likeliest rival of each question."""
         return (*self.settled, *(question.leading.score for question in self.questions))
 
 
-def open_questions(
+def open_questions_of(
     problem: Problem, document: Mapping[str, Any], extended: ExtendedModel
 ) -> OpenQuestions:
     """Return what is open after a diagnosis.
 
-    The rivals are refitted: to the run that the diagnosis kept out, too.
+    The rivals are fitted to all runs, also to the hold-out run of the diagnosis.
 
     Parameters
     ----------
     problem : Problem
-        All data at hand.
+        All observed rows.
     document : mapping
         The joint's part of ``diagnosis.json``.
     extended : ExtendedModel
         Its extended model.
+
+    Returns
+    -------
+    OpenQuestions
+        Settled causes, questions and noise.
     """
-    bench = Precomputed.of(problem)
+    precomputed = Precomputed.of(problem)
     named = [cause for cause in document["causes"] if cause["effects"]]
     scores = [
         Score(one.effect, dict(one.shape), one.coefficients, np.zeros((0, 0)), 0.0)
@@ -134,46 +141,46 @@ def open_questions(
         if len(cause["effects"]) == 1:
             continue
         others = [score for place, score in enumerate(scores) if place != number]
-        thinkable = [n for n, share in cause["probabilities"].items() if share >= _THINKABLE]
-        names = list(dict.fromkeys([*cause["effects"], *thinkable]))
-        asked = _question(Step.of(bench, others), names[:_MOST])
-        if len(asked.rivals) > 1:
-            questions.append(asked)
+        likely = [n for n, share in cause["probabilities"].items() if share >= _LEAST_PROBABILITY]
+        names = list(dict.fromkeys([*cause["effects"], *likely]))
+        question = _fit_rivals(Step.of(precomputed, others), names[:_MOST_RIVALS])
+        if len(question.rivals) > 1:
+            questions.append(question)
         else:
-            settled += [rival.score for rival in asked.rivals]
-    likeliest = [*settled, *(question.leading.score for question in questions)]
-    friction, load = Step.of(bench, likeliest).noise()
+            settled += [rival.score for rival in question.rivals]
+    causes = [*settled, *(question.leading.score for question in questions)]
+    friction, load = Step.of(precomputed, causes).noise()
     return OpenQuestions(
         settled=tuple(settled),
         questions=tuple(questions),
-        noise=(_wandering(friction, float(np.mean(np.abs(problem.friction)))), load),
+        noise=(_with_least_drift(friction, float(np.mean(np.abs(problem.friction)))), load),
     )
 
 
-def _wandering(noise: Noise, friction: float) -> Noise:
-    """Return noise that drifts at least as friction of a mean [N·m] is taken to wander."""
-    least = _WANDERING * friction
+def _with_least_drift(noise: Noise, friction: float) -> Noise:
+    """Return noise with at least the usual drift of a mean friction torque [N·m]."""
+    least = _DRIFT_SHARE * friction
     if noise.drift >= least:
         return noise
-    return replace(noise, drift=least, drift_time=max(noise.drift_time, _WANDERING_TIME))
+    return replace(noise, drift=least, drift_time=max(noise.drift_time, _DRIFT_TIME))
 
 
-def _question(step: Step, names: Sequence[str]) -> Question:
-    """Return the rivals of these names and what they are easily taken for, fitted."""
+def _fit_rivals(step: Step, names: Sequence[str]) -> Question:
+    """Return the rivals of these names and their confounders, fitted."""
     problem = step.problem
-    taken_for = [other for name in names for other in BY_NAME[name].confounders]
+    confused = [other for name in names for other in BY_NAME[name].confounders]
     known = {*names, *(one.effect.name for one in step.accepted)}
-    others = [name for name, _ in Counter(taken_for).most_common() if name not in known]
-    effects = [BY_NAME[name] for name in [*names, *others[:_MOST_OTHERS]]]
-    able = [effect for effect in effects if not missing_columns(effect, problem.table)]
-    hypotheses = [hypothesis_of(effect, problem) for effect in able]
+    confounders = [name for name, _ in Counter(confused).most_common() if name not in known]
+    effects = [BY_NAME[name] for name in [*names, *confounders[:_MOST_CONFOUNDERS]]]
+    available = [effect for effect in effects if not missing_columns(effect, problem.table)]
+    hypotheses = [hypothesis_of(effect, problem) for effect in available]
     judged = step.judged(Catalogue.of(step.bench, hypotheses), seed=0, draws=0)
     rivals = []
-    for effect in able:
+    for effect in available:
         one = judged[effect.name]
         score = step.refined(one.score(effect))
-        bonus = max(score.statistic - one.statistic, 0.0) / 2
-        rivals.append(Rival(score, one.evidence + bonus))
+        refinement = max(score.statistic - one.statistic, 0.0) / 2
+        rivals.append(Rival(score, one.evidence + refinement))
     return Question(
         tuple(rival for rival in rivals if rival.name in names),
         tuple(rival for rival in rivals if rival.name not in names),

@@ -1,89 +1,108 @@
-"""Which blocks, in which order: the best of many at random, then exchanges, within a budget.
+"""Selection of blocks and their order: random starts, then exchanges, within a time budget.
 
-Every block changes what the next one finds: temperature, way, rest. So whole programmes are
-compared, not blocks.
+Each block changes the temperature, travel and rest that the next one starts from. Therefore whole
+programmes are compared, not single blocks.
 """
 
 import random
 from collections.abc import Callable, Sequence
 
 from frictioncli.design.blocks import Block
-from frictioncli.design.steps import MOUNTING, Step, duration, mountings
+from frictioncli.design.steps import PAYLOAD_CHANGE, Step, duration, payload_changes
 
-Worth = Callable[[Sequence[Step]], float]
+Criterion = Callable[[Sequence[Step]], float]
+"""Value of the design criterion for the steps of a programme; greater is better."""
 
 _STARTS = 30
-"""Programmes at random, of which the best is changed further."""
+"""Number of random programmes, of which the best is improved."""
 
-_TRIALS = 100
-"""Exchanges of a stretch of it that are tried."""
+_EXCHANGES = 100
+"""Number of exchanges that are tried."""
 
-_STRETCH = 3
-"""A stretch is at most one in so many of its blocks."""
+_EXCHANGE_SHARE = 3
+"""An exchange replaces at most one in so many blocks, plus one."""
 
-_REPEATS = 12
-"""Times that one block may come, at most: more of the same guards against noise only."""
+_MOST_REPEATS = 12
+"""Greatest number of times that one block may occur; more repetition only averages noise."""
 
 
 def steps_of(blocks: Sequence[Block]) -> tuple[Step, ...]:
-    """Return the steps of blocks, one after the other."""
+    """Return the steps of blocks in sequence."""
     return tuple(step for block in blocks for step in block.steps)
 
 
 def seconds_of(blocks: Sequence[Block], payload: float | None) -> float:
-    """Return how long blocks take, with the changes of payload that they need [s]."""
+    """Return the duration of blocks with the changes of payload that they need.
+
+    Parameters
+    ----------
+    blocks : sequence of Block
+        The blocks.
+    payload : float or None
+        Payload that is mounted before the first [kg].
+
+    Returns
+    -------
+    float
+        Duration [s].
+    """
     steps = steps_of(blocks)
-    return duration(steps) + MOUNTING * sum(mountings(steps, payload))
+    return duration(steps) + PAYLOAD_CHANGE * sum(payload_changes(steps, payload))
 
 
-def chosen(
+def choose_blocks(
     candidates: Sequence[Block],
-    worth: Worth,
+    criterion: Criterion,
     budget: float,
     payload: float | None,
     seed: int,
-    trials: int = _TRIALS,
+    exchanges: int = _EXCHANGES,
 ) -> tuple[Block, ...]:
-    """Return the blocks that are worth most together, in order.
+    """Return the sequence of blocks with the greatest criterion that was found.
 
     Parameters
     ----------
     candidates : sequence of Block
-        Blocks; each may come up to twelve times.
-    worth : callable
-        What a programme is worth, from its steps.
+        Blocks to choose from; each may occur up to twelve times.
+    criterion : callable
+        Value of a programme from its steps.
     budget : float
-        Time for all. [s]
+        Time for all blocks [s].
     payload : float or None
-        What is on before. [kg]
+        Payload that is mounted before the first [kg].
     seed : int
-        Source of the random starts and exchanges.
-    trials : int
-        Exchanges that are tried.
+        Seed of the random starts and exchanges.
+    exchanges : int
+        Number of exchanges that are tried.
+
+    Returns
+    -------
+    tuple of Block
+        Empty where no programme is better than none.
     """
     generator = random.Random(seed)
 
-    def filled(taken: tuple[Block, ...], place: int) -> tuple[Block, ...]:
-        """Return a programme with blocks at random from a place on, until its time is filled."""
+    def fill(blocks: tuple[Block, ...], place: int) -> tuple[Block, ...]:
+        """Return blocks with random ones inserted from a place on until the time is used."""
         fitting = list(candidates)
         while fitting:
-            one = generator.choice(fitting)
-            longer = (*taken[:place], one, *taken[place:])
-            if longer.count(one) > _REPEATS or seconds_of(longer, payload) > budget:
-                fitting.remove(one)
+            block = generator.choice(fitting)
+            longer = (*blocks[:place], block, *blocks[place:])
+            if longer.count(block) > _MOST_REPEATS or seconds_of(longer, payload) > budget:
+                fitting.remove(block)
             else:
-                taken, place = longer, place + 1
-        return taken
+                blocks, place = longer, place + 1
+        return blocks
 
-    starts = [filled((), 0) for _ in range(_STARTS)]
-    rated = [worth(steps_of(one)) for one in starts]
-    value = max(rated)
-    taken = starts[rated.index(value)]
-    for _ in range(trials):
-        first = generator.randrange(len(taken) + 1)
-        count = generator.randint(1, 1 + len(taken) // _STRETCH)
-        other = filled(taken[:first] + taken[first + count :], first)
-        found = worth(steps_of(other))
-        if found > value:
-            taken, value = other, found
-    return taken if value > worth(()) else ()
+    starts = [fill((), 0) for _ in range(_STARTS)]
+    values = [criterion(steps_of(blocks)) for blocks in starts]
+    best = max(values)
+    chosen = starts[values.index(best)]
+    for _ in range(exchanges):
+        first = generator.randrange(len(chosen) + 1)
+        count = generator.randint(1, 1 + len(chosen) // _EXCHANGE_SHARE)
+        other = fill(chosen[:first] + chosen[first + count :], first)
+        value = criterion(steps_of(other))
+        if value > best:
+            chosen, best = other, value
+    return chosen if best > criterion(()) else ()

@@ -1,4 +1,4 @@
-"""What a plan is asked for."""
+"""Settings of the command ``plan``."""
 
 import math
 from dataclasses import dataclass
@@ -9,36 +9,36 @@ PROGRAMS = ("csv", "krl", "urscript")
 """Forms of the robot program."""
 
 GREATEST_SPEED = 360.0
-"""No industrial joint is planned faster. [deg/s]"""
+"""Greatest speed that may be set. [deg/s]"""
 
 GREATEST_ANGLE = 360.0
-"""Nor further from its zero. [deg]"""
+"""Greatest absolute angle that may be set. [deg]"""
 
 AXES = (1, 6)
-"""Least and greatest number of an axis."""
+"""Least and greatest axis number."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class PlanSettings:
-    """Budget, limits that the user sets, and the form of the program.
+    """Time budget, limits that the user sets, and form of the robot program.
 
     Attributes
     ----------
     minutes : float
-        Time for everything, the check on the next day included. [min]
+        Total time with the check on the next day [min].
     low, high : float or None
-        Angles between which the joint may turn; None: the range measured. [deg]
+        Range of the angle; None: the measured one [deg].
     max_speed : float or None
-        Highest speed; None: the highest measured. [deg/s]
+        Highest speed; None: the highest measured [deg/s].
     max_temperature : float or None
-        Highest motor temperature that heating moves may reach; None: the highest measured, and
-        65 °C if that is less. [°C]
+        Motor temperature at which heating moves end; None: the highest measured, at least 65 °C
+        [°C].
     payload : tuple of float
-        Payloads that may be mounted; none: the one that is on stays. [kg]
+        Payloads that may be mounted; none: the mounted one stays [kg].
     to : {"csv", "krl", "urscript"}
         Form of the robot program.
     rated_speed : float or None
-        Speed of the axis at 100 %: KUKA programs state speeds in whole per cent of it. [deg/s]
+        Speed of the axis at 100 %; KUKA programs state speeds in whole per cent of it [deg/s].
     joint : int or None
         Joint to plan for; None: the one with the most pairs.
     seed : int

@@ -1,4 +1,4 @@
-"""What a joint is made to do: series that are measured, moves that heat, rests."""
+"""Steps of a measuring programme: recorded series, heating moves and rests."""
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 ACCELERATION = 200.0
-"""Acceleration that durations are reckoned with; the robot's own is not known. [deg/s²]"""
+"""Assumed acceleration of all moves; that of the robot is not known. [deg/s²]"""
 
 DWELL = 0.5
 """Standing time at each end of a measured move. [s]"""
@@ -14,22 +14,22 @@ DWELL = 0.5
 LEAD = 2.0
 """Standing time before a series, in which the recording starts. [s]"""
 
-MOUNTING = 240.0
+PAYLOAD_CHANGE = 240.0
 """Time to change the payload. [s]"""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class SeriesStep:
-    """Moves there and back at constant speed, one pair per speed; recorded.
+    """Recorded moves there and back at constant speed, one pair per speed.
 
     Attributes
     ----------
     speeds : tuple of float
-        In this order. [deg/s]
+        Speeds in their order [deg/s].
     low, high : float
-        Angles between which it moves. [deg]
+        Ends of the moves [deg].
     payload : float or None
-        Mass that is on; None: what is on stays. [kg]
+        Payload to mount; None: the mounted one stays [kg].
     """
 
     speeds: tuple[float, ...]
@@ -39,24 +39,24 @@ class SeriesStep:
 
     @property
     def seconds(self) -> float:
-        """Its duration, its lead included [s]."""
+        """Duration with the standing time before it [s]."""
         return LEAD + sum(round_trip(speed, self.high - self.low) for speed in self.speeds)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class HeatStep:
-    """Moves there and back without pauses, to heat or to travel; not recorded.
+    """Unrecorded moves there and back without pauses, to heat the joint.
 
     Attributes
     ----------
     speed : float
-        Their speed. [deg/s]
+        Speed [deg/s].
     low, high : float
-        Angles between which it moves. [deg]
+        Ends of the moves [deg].
     seconds : float
-        Longest duration. [s]
+        Longest duration [s].
     until : float or None
-        Motor temperature at which it ends before that. [°C]
+        Motor temperature at which the moves end earlier [°C].
     """
 
     speed: float
@@ -68,7 +68,15 @@ class HeatStep:
 
 @dataclass(frozen=True, slots=True)
 class RestStep:
-    """The joint is held still for a time [s], or until the motor has cooled to ``until`` [°C]."""
+    """Static hold.
+
+    Attributes
+    ----------
+    seconds : float
+        Longest duration [s].
+    until : float or None
+        Motor temperature at which the hold ends earlier [°C].
+    """
 
     seconds: float
     until: float | None = None
@@ -78,12 +86,24 @@ Step = SeriesStep | HeatStep | RestStep
 
 
 def round_trip(speed: float, stroke: float) -> float:
-    """Return the duration of a move there and back, its two dwells included [s].
+    """Return the duration of a move there and back with a dwell at each end.
 
     Parameters
     ----------
-    speed, stroke : float
-        Speed of the constant part, and the angle of one move. [deg/s], [deg]
+    speed : float
+        Constant speed [deg/s].
+    stroke : float
+        Angle of one move [deg].
+
+    Returns
+    -------
+    float
+        Duration [s].
+
+    Examples
+    --------
+    >>> round_trip(50.0, stroke=100.0)
+    5.5
     """
     ramp = speed / ACCELERATION
     if speed * ramp >= stroke:  # too short to reach the speed
@@ -92,11 +112,11 @@ def round_trip(speed: float, stroke: float) -> float:
 
 
 def duration(steps: Sequence[Step]) -> float:
-    """Return how long steps take, changes of payload apart [s]."""
+    """Return the duration of steps without changes of payload [s]."""
     return sum(step.seconds for step in steps)
 
 
-def mountings(steps: Sequence[Step], payload: float | None) -> Iterator[bool]:
+def payload_changes(steps: Sequence[Step], payload: float | None) -> Iterator[bool]:
     """Yield for each step whether the payload must be changed before it.
 
     Parameters
@@ -104,7 +124,12 @@ def mountings(steps: Sequence[Step], payload: float | None) -> Iterator[bool]:
     steps : sequence of Step
         The steps.
     payload : float or None
-        What is on before the first. [kg]
+        Payload that is mounted before the first [kg].
+
+    Yields
+    ------
+    bool
+        Whether a payload has to be mounted.
     """
     for step in steps:
         wanted = step.payload if isinstance(step, SeriesStep) else None

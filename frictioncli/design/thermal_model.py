@@ -1,9 +1,10 @@
-r"""How the motor warms and cools, from the run's own temperatures.
+r"""First-order thermal model of the motor, fitted to its recorded temperatures.
 
-.. math:: \dot T = q\,P - b\,(T - T_a)
+.. math:: \dot T = q\,P - \frac{T - T_a}{\theta}
 
-with the friction power :math:`P = \tau v`. :math:`b` is scanned, :math:`q` follows by least squares
-from the steps of temperature between pairs, and :math:`T_a` is the coldest start of a run.
+with the friction power :math:`P = \tau v`. The time constant :math:`\theta` is scanned;
+:math:`q` follows by least squares from the rises of temperature between pairs; :math:`T_a` is the
+coldest start of a run.
 """
 
 from dataclasses import dataclass
@@ -14,41 +15,40 @@ import pandas as pd
 from frictioncli.arrays import Array
 from frictioncli.diagnosis.data.motion_history import moved_throughout
 
-_TIMES = np.geomspace(1200.0, 28_800.0, 25)
+_TIME_CONSTANTS = np.geomspace(1200.0, 28_800.0, 25)
 """Time constants that are tried; a joint takes tens of minutes to hours. [s]"""
 
-_USUAL_TIME = 6000.0
-_USUAL_SPREAD = 0.7
-"""A usual time constant, and the standard deviation of its logarithm. [s], [-]"""
+_USUAL_TIME_CONSTANT = 6000.0
+_TIME_CONSTANT_SPREAD = 0.7
+"""Prior: median of the time constant [s] and standard deviation of its logarithm."""
 
-_ERROR = 0.1
-"""Error of a rise of temperature between two moments. [°C]"""
+_RISE_ERROR = 0.1
+"""Standard error of a rise of temperature. [°C]"""
 
-_USUAL_HEATING = 0.01
-"""Warming by moves at the highest speed where the data do not show it. [°C/s]"""
+_USUAL_WARMING = 0.01
+"""Rate of warming at the highest speed where the data do not show it. [°C/s]"""
 
-_SPAN = 120.0
-"""Steps of temperature are taken over at least this time. [s]"""
+_LEAST_INTERVAL = 120.0
+"""Rises of temperature are taken over at least this time. [s]"""
 
 _LEAST_DUTY = 0.5
-"""With less recorded motion than this share of the time, a motor that warms was moved unrecorded.
-"""
+"""Least share of recorded motion; below it, a warming motor indicates unrecorded motion."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ThermalModel:
-    """A motor that heats with the friction power and cools to ambient.
+    """First-order model of a motor that is heated by friction power and cools to ambient.
 
     Attributes
     ----------
     ambient : float
-        Temperature to which it cools, and of a cold start. [°C]
+        Ambient temperature, also that of a cold start [°C].
     time_constant : float
-        Time in which it closes 63 % of its distance to ambient. [s]
+        Thermal time constant [s].
     heating : float
-        Warming by friction power. [°C/s per N·m·deg/s]
+        Rate of warming per friction power [°C/s per N·m·deg/s].
     housing_share : float
-        Rise of the housing per rise of the motor above ambient. [-]
+        Rise of the housing above ambient per rise of the motor [-].
     """
 
     ambient: float
@@ -57,37 +57,66 @@ class ThermalModel:
     housing_share: float
 
     def after(self, temperature: float, seconds: float, power: float = 0.0) -> float:
-        """Return the motor temperature after a time at constant power [°C].
+        """Return the motor temperature after a time at constant power.
 
         Parameters
         ----------
         temperature : float
-            Before. [°C]
+            Motor temperature at the start [°C].
         seconds : float
-            The time. [s]
+            Duration [s].
         power : float
-            Friction power. [N·m·deg/s]
-        """
-        end = self.ambient + self.heating * power * self.time_constant
-        kept = float(np.exp(-seconds / self.time_constant))
-        return end + (temperature - end) * kept
+            Friction power [N·m·deg/s].
 
-    def housing(self, temperature: float) -> float:
-        """Return the housing temperature beside a motor temperature [°C]."""
-        return self.ambient + self.housing_share * (temperature - self.ambient)
+        Returns
+        -------
+        float
+            Motor temperature [°C].
+
+        Examples
+        --------
+        >>> model = ThermalModel(
+        ...     ambient=20.0, time_constant=4000.0, heating=1e-6, housing_share=0.6
+        ... )
+        >>> round(model.after(60.0, 4000.0), 2)
+        34.72
+        """
+        equilibrium = self.ambient + self.heating * power * self.time_constant
+        decay = float(np.exp(-seconds / self.time_constant))
+        return equilibrium + (temperature - equilibrium) * decay
+
+    def housing(self, motor: Array) -> Array:
+        """Return the housing temperature that belongs to motor temperatures.
+
+        Parameters
+        ----------
+        motor : ndarray
+            Motor temperature [°C].
+
+        Returns
+        -------
+        ndarray
+            Housing temperature [°C].
+        """
+        return self.ambient + self.housing_share * (motor - self.ambient)
 
 
 def thermal_model_of(torques: pd.DataFrame) -> ThermalModel | None:
-    """Return how the motor of one joint warms; None where its temperature is not known.
+    """Return the thermal model of one joint's motor; None where its temperature is not known.
 
-    Where the log shows a warming motor without motion between its pairs, the joint was moved
-    unrecorded; it is taken to have moved at the highest speed recorded. If it was faster, heating
-    moves of a plan will take longer than predicted.
+    A motor that warms without motion between its pairs was moved unrecorded; it is taken to have
+    moved at the highest recorded speed. If it was faster, the heating moves of a plan will take
+    longer than predicted.
 
     Parameters
     ----------
     torques : DataFrame
         Rows of :data:`frictioncli.schemas.TORQUES` of a single joint.
+
+    Returns
+    -------
+    ThermalModel or None
+        The fitted model.
     """
     pairs = torques.groupby(["run", "pair"], observed=True, sort=False).agg(
         time=("time", "first"),
@@ -104,10 +133,11 @@ def thermal_model_of(torques: pd.DataFrame) -> ThermalModel | None:
     starts = pairs.groupby("run", observed=True)["motor"].first()
     ambient = float(min(starts.min(), pairs["motor"].min()))
     fastest = pairs["speed"] == pairs["speed"].max()
-    strongest = float((pairs["friction"] * pairs["speed"])[fastest].mean())
-    rise, warm, power, seconds = _steps(pairs, strongest)
-    usual = _USUAL_HEATING / strongest
-    time_constant, heating = _fitted(rise, warm - ambient, power * seconds, seconds, usual)
+    highest_power = float((pairs["friction"] * pairs["speed"])[fastest].mean())
+    rise, temperature, power, seconds = _rises(pairs, highest_power)
+    time_constant, heating = _fit(
+        rise, temperature - ambient, power * seconds, seconds, _USUAL_WARMING / highest_power
+    )
     housing = (pairs["housing"] - ambient).to_numpy(float)
     motor = (pairs["motor"] - ambient).to_numpy(float)
     share = float(housing @ motor / max(motor @ motor, 1e-9)) if np.isfinite(housing).all() else 1.0
@@ -119,10 +149,15 @@ def thermal_model_of(torques: pd.DataFrame) -> ThermalModel | None:
     )
 
 
-def _steps(pairs: pd.DataFrame, strongest: float) -> tuple[Array, Array, Array, Array]:
-    """Return rises of temperature, mean temperature, power and duration of stretches.
+def _rises(pairs: pd.DataFrame, highest_power: float) -> tuple[Array, Array, Array, Array]:
+    """Return rise, mean temperature, power and duration of intervals between pairs.
 
-    ``strongest`` is the friction power at the highest speed: that of moves not recorded.
+    Parameters
+    ----------
+    pairs : DataFrame
+        One row per pair, in order of time within each run.
+    highest_power : float
+        Friction power at the highest speed, taken for unrecorded motion [N·m·deg/s].
     """
     found: list[tuple[float, float, float, float, bool]] = []
     for _, run in pairs.groupby("run", observed=True):
@@ -131,42 +166,46 @@ def _steps(pairs: pd.DataFrame, strongest: float) -> tuple[Array, Array, Array, 
         speed, friction = run["speed"].to_numpy(float), run["friction"].to_numpy(float)
         begin = 0
         for end in range(1, len(run)):
-            span = time[end] - time[begin]
-            if span < _SPAN:
+            interval = time[end] - time[begin]
+            if interval < _LEAST_INTERVAL:
                 continue
             rise = motor[end] - motor[begin]
             between = slice(begin, end)
-            hidden = float(np.sum(stroke[between] / speed[between])) < _LEAST_DUTY * span
-            hidden = hidden and rise > 0
-            power = strongest if hidden else float(np.sum((stroke * friction)[between])) / span
-            found.append((rise, (motor[end] + motor[begin]) / 2, power, span, hidden))
+            moving = float(np.sum(stroke[between] / speed[between]))
+            unrecorded = moving < _LEAST_DUTY * interval and rise > 0
+            recorded_power = float(np.sum((stroke * friction)[between])) / interval
+            power = highest_power if unrecorded else recorded_power
+            found.append((rise, (motor[end] + motor[begin]) / 2, power, interval, unrecorded))
             begin = end
-    rises, warm, powers, spans, flags = np.array(found, dtype=float).reshape(-1, 5).T
-    kept = (flags == 0) | moved_throughout(rises, spans, flags > 0)
-    return rises[kept], warm[kept], powers[kept], spans[kept]
+    rise, temperature, power, seconds, flags = np.array(found, dtype=float).reshape(-1, 5).T
+    kept = (flags == 0) | moved_throughout(rise, seconds, flags > 0)
+    return rise[kept], temperature[kept], power[kept], seconds[kept]
 
 
-def _fitted(
+def _fit(
     rise: Array, above: Array, heat: Array, seconds: Array, usual: float
 ) -> tuple[float, float]:
-    """Return the time constant and the heating that suit rises of temperature best.
+    """Return the time constant and the heating with the least cost.
 
     Parameters
     ----------
-    rise, above : ndarray, shape (stretches,)
-        Rise, and mean temperature above ambient. [°C]
-    heat, seconds : ndarray, shape (stretches,)
-        Friction power times duration, and duration. [N·m·deg], [s]
+    rise, above : ndarray, shape (intervals,)
+        Rise of temperature, and mean temperature above ambient [°C].
+    heat : ndarray, shape (intervals,)
+        Friction power times duration [N·m·deg].
+    seconds : ndarray, shape (intervals,)
+        Duration [s].
     usual : float
-        Heating where the data do not show any. [°C/s per N·m·deg/s]
+        Heating where the data do not show any [°C/s per N·m·deg/s].
     """
-    best = (np.inf, _USUAL_TIME, usual)
+    best = (np.inf, _USUAL_TIME_CONSTANT, usual)
     prior = 1e-2 * max(float(heat @ heat), 1.0)
-    for time in _TIMES:
-        wanted = rise + above * seconds / time
-        heating = max(float((heat @ wanted + prior * usual) / (heat @ heat + prior)), 0.0)
-        misfit = float(np.sum(np.square((wanted - heating * heat) / _ERROR)))
-        cost = misfit + (float(np.log(time / _USUAL_TIME)) / _USUAL_SPREAD) ** 2
+    for time_constant in _TIME_CONSTANTS:
+        gain = rise + above * seconds / time_constant
+        heating = max(float((heat @ gain + prior * usual) / (heat @ heat + prior)), 0.0)
+        misfit = float(np.sum(np.square((gain - heating * heat) / _RISE_ERROR)))
+        deviation = float(np.log(time_constant / _USUAL_TIME_CONSTANT)) / _TIME_CONSTANT_SPREAD
+        cost = misfit + deviation**2
         if cost < best[0]:
-            best = (cost, float(time), heating)
+            best = (cost, float(time_constant), heating)
     return best[1], best[2]

@@ -12,7 +12,7 @@ from frictioncli.design.limits import Limits
 from frictioncli.design.paper_protocol import algorithms, new_limits, usual_seconds
 from frictioncli.design.plan import plan_joint
 from frictioncli.design.programs import FORMS
-from frictioncli.design.programs.programme import REDUCED, Programme
+from frictioncli.design.programs.robot_program import SAFETY_NOTE, RobotProgram
 from frictioncli.design.settings import PlanSettings
 from frictioncli.diagnosis.documents.reload import is_current, read_documents
 from frictioncli.documents import to_json
@@ -54,10 +54,10 @@ def plan(work: Path, settings: PlanSettings | None = None) -> Done:
     unit = str(tables.facts(work / TORQUES).get("torque_unit", "N·m"))
     found = plan_joint(torques, unit, document, extended, settings)
     name = f"friction_a{joint}"
-    files = _written(work, settings, name, joint, found.blocks, found.limits, found.moments[-1].end)
+    files = _written(work, settings, name, joint, found.blocks, found.limits, found.timings[-1].end)
     checks = []
     if found.check:
-        end = found.check_moments[-1].end
+        end = found.check_timings[-1].end
         checks = _written(work, settings, f"{name}_check", joint, found.check, found.limits, end)
     units = {one: entry.unit for one, entry in models[joint].parameters.items()}
     inputs = hashes([work / TORQUES, work / MODEL, work / DIAGNOSIS, work / EXTENDED])
@@ -93,7 +93,7 @@ def plan_new(work: Path, settings: PlanSettings) -> Done:
             f"  sweep, cold: {_speeds(sweep)} deg/s",
             f"  every degree up to {limits.hottest:.0f} °C and back to 25 °C: {_speeds(cycle)}"
             " deg/s",
-            f"  program: {', '.join(files)}. {REDUCED}",
+            f"  program: {', '.join(files)}. {SAFETY_NOTE}",
         ]
     )
     return Done(work / PLAN, text)
@@ -113,8 +113,8 @@ def _written(
     seconds: float,
 ) -> list[str]:
     """Write the robot program of blocks; return the names of its files."""
-    programme = Programme(name=name, axis=joint, blocks=blocks, limits=limits, seconds=seconds)
-    files = FORMS[settings.to](programme)
+    program = RobotProgram(name=name, axis=joint, blocks=blocks, limits=limits, seconds=seconds)
+    files = FORMS[settings.to](program)
     for file, text in files.items():
         write_text(work / file, text)
     return sorted(files)

@@ -1,7 +1,7 @@
 """A reader of the part of KUKA's robot language that programs here use, and a controller for it.
 
 What it does not know is an error: a statement, a variable that is not declared, a name that is too
-long. It executes the program on the arm of :mod:`tests.design.axis`.
+long. It executes the program on the arm of :mod:`tests.design.model_arm`.
 """
 
 import re

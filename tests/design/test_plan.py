@@ -15,8 +15,8 @@ from frictioncli.stages.diagnose import diagnose
 from frictioncli.stages.fit import fit
 from frictioncli.stages.plan import plan, plan_new
 from frictioncli.workfiles import TORQUES
-from tests.design.axis import Arm
 from tests.design.krl import Controller
+from tests.design.model_arm import Arm
 from tests.simulation.motion_programme import MeasuredMoves, UnrecordedMoves, simulate_programmes
 
 FASTEST = 101.2

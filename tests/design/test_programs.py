@@ -11,13 +11,13 @@ from frictioncli.design.blocks import Block, all_blocks
 from frictioncli.design.limits import Limits
 from frictioncli.design.paper_protocol import algorithms, new_limits
 from frictioncli.design.programs import FORMS, krl
-from frictioncli.design.programs.programme import Programme
+from frictioncli.design.programs.robot_program import RobotProgram
 from frictioncli.design.selection import seconds_of
 from frictioncli.design.settings import PlanSettings
 from frictioncli.design.steps import HeatStep, RestStep, SeriesStep
 from frictioncli.errors import OptionError
-from tests.design.axis import Arm
 from tests.design.krl import Controller, KrlError, read_data, read_source
+from tests.design.model_arm import Arm
 from tests.design.urscript import Robot, ScriptError
 
 RATED = 225.0
@@ -25,26 +25,26 @@ START = [10.0, 33.0, -20.0, 5.0, 60.0, 0.0]
 
 
 def limits(**changes):
-    told = {"low": -100.0, "high": 20.0, "slowest": 2.25, "fastest": 112.5, "hottest": 65.0}
-    return Limits(**told | {"speed_step": RATED / 100, "payloads": (5.0,)} | changes)
+    usual = {"low": -100.0, "high": 20.0, "slowest": 2.25, "fastest": 112.5, "hottest": 65.0}
+    return Limits(**usual | {"speed_step": RATED / 100, "payloads": (5.0,)} | changes)
 
 
-def programme(blocks=None, *, axis=2, name="friction_a2", within=None):
+def robot_program(blocks=None, *, axis=2, name="friction_a2", within=None):
     within = within or limits()
     blocks = all_blocks(within, 0) if blocks is None else blocks
     seconds = seconds_of(blocks, None)
-    return Programme(name=name, axis=axis, blocks=tuple(blocks), limits=within, seconds=seconds)
+    return RobotProgram(name=name, axis=axis, blocks=tuple(blocks), limits=within, seconds=seconds)
 
 
-def run_krl(made, arm):
-    files = FORMS["krl"](made)
+def run_krl(program, arm):
+    files = FORMS["krl"](program)
     source, data = (text for _, text in sorted(files.items(), reverse=True))
     Controller(source, data, arm, RATED).run()
     return arm
 
 
-def run_urscript(made, arm):
-    (script,) = FORMS["urscript"](made).values()
+def run_urscript(program, arm):
+    (script,) = FORMS["urscript"](program).values()
     assert Robot(script, arm).run()
     return arm
 
@@ -54,26 +54,26 @@ RUNNERS = {"krl": run_krl, "urscript": run_urscript}
 
 @pytest.fixture(params=sorted(RUNNERS))
 def ran(request):
-    """A programme with every kind of block, after it was run."""
-    made = programme()
-    return made, RUNNERS[request.param](made, Arm(list(START)))
+    """A program with every kind of block, after it was run."""
+    program = robot_program()
+    return program, RUNNERS[request.param](program, Arm(list(START)))
 
 
 def test_only_its_axis_moves_and_within_limits(ran):
-    made, arm = ran
-    assert {move.axis for move in arm.moves} == {made.axis}
-    others = [at for number, at in enumerate(arm.positions) if number != made.axis - 1]
+    program, arm = ran
+    assert {move.axis for move in arm.moves} == {program.axis}
+    others = [at for number, at in enumerate(arm.positions) if number != program.axis - 1]
     assert others == pytest.approx(START[:1] + START[2:])
     for move in arm.moves:
-        assert made.limits.low - 1e-6 <= move.target <= made.limits.high + 1e-6
-        assert 0 < move.speed <= made.limits.fastest * (1 + 1e-5)
+        assert program.limits.low - 1e-6 <= move.target <= program.limits.high + 1e-6
+        assert 0 < move.speed <= program.limits.fastest * (1 + 1e-5)
 
 
 def test_recorded_moves_are_those_of_the_plan(ran):
-    made, arm = ran
+    program, arm = ran
     wanted = [
         (target, speed)
-        for block in made.blocks
+        for block in program.blocks
         for step in block.steps
         if isinstance(step, SeriesStep)
         for speed in step.speeds
@@ -87,8 +87,8 @@ def test_recorded_moves_are_those_of_the_plan(ran):
 
 
 def test_traces_are_the_series_and_the_arm_is_left_untraced(ran):
-    made, arm = ran
-    series = [s for block in made.blocks for s in block.steps if isinstance(s, SeriesStep)]
+    program, arm = ran
+    series = [s for block in program.blocks for s in block.steps if isinstance(s, SeriesStep)]
     assert len(arm.traces) == len(series)
     assert not arm.traced
     for (begin, end), one in zip(arm.traces, series, strict=True):
@@ -96,36 +96,36 @@ def test_traces_are_the_series_and_the_arm_is_left_untraced(ran):
 
 
 def test_the_whole_takes_as_long_as_the_plan_says(ran):
-    made, arm = ran
+    program, arm = ran
     mounting = 240.0  # the operator's time is not in the program
-    assert arm.clock == pytest.approx(made.seconds - mounting, rel=0.05)
+    assert arm.clock == pytest.approx(program.seconds - mounting, rel=0.05)
 
 
 def test_heating_ends_at_its_temperature():
     heat = HeatStep(speed=112.5, low=-100.0, high=20.0, seconds=3600.0, until=40.0)
     series = SeriesStep(speeds=(45.0,), low=-100.0, high=20.0)
-    made = programme([Block(name="heat", reason="heats", steps=(heat, series))])
+    program = robot_program([Block(name="heat", reason="heats", steps=(heat, series))])
     for runner in RUNNERS.values():
-        arm = runner(made, Arm(list(START), warming=0.05))
+        arm = runner(program, Arm(list(START), warming=0.05))
         heating = [move for move in arm.moves if not move.traced and move.speed > 100.0]
         assert heating[-1].temperature < 41.0
         assert heating[-1].end < 1200.0
 
 
 def test_a_motor_that_stays_too_hot_ends_the_program():
-    made = programme(all_blocks(limits(payloads=()), 0)[:1])
+    program = robot_program(all_blocks(limits(payloads=()), 0)[:1])
     arm = Arm(list(START), temperature=200.0, cooling=0.0)
-    (script,) = FORMS["urscript"](made).values()
+    (script,) = FORMS["urscript"](program).values()
     assert not Robot(script, arm).run()
-    arm = run_krl(made, Arm(list(START), temperature=200.0, cooling=0.0))
+    arm = run_krl(program, Arm(list(START), temperature=200.0, cooling=0.0))
     assert arm.halted > 0  # a KUKA program waits for the operator there
 
 
 @pytest.mark.parametrize("form", sorted(RUNNERS))
 def test_a_changed_limit_stops_the_program_before_it_moves_too_far(form):
     """A user who narrows the limits at the top gets a stop, not a move beyond them."""
-    made = programme(all_blocks(limits(payloads=()), 0)[:1])
-    files = FORMS[form](made)
+    program = robot_program(all_blocks(limits(payloads=()), 0)[:1])
+    files = FORMS[form](program)
     arm = Arm(list(START))
     if form == "krl":
         data = files["friction_a2.dat"].replace("A_HIGH=20.000", "A_HIGH=0.000")
@@ -139,7 +139,7 @@ def test_a_changed_limit_stops_the_program_before_it_moves_too_far(form):
 
 @pytest.mark.parametrize("form", sorted(FORMS))
 def test_every_program_says_to_try_it_slowly_and_is_plain_text(form):
-    for name, text in FORMS[form](programme()).items():
+    for name, text in FORMS[form](robot_program()).items():
         if not name.endswith(".dat"):
             assert "reduced speed first" in text
         assert text.isascii()
@@ -147,8 +147,8 @@ def test_every_program_says_to_try_it_slowly_and_is_plain_text(form):
 
 
 def test_names_are_what_a_kuka_controller_takes():
-    made = programme(name="friction_a2_check_and_much_more_than_that")
-    files = FORMS["krl"](made)
+    program = robot_program(name="friction_a2_check_and_much_more_than_that")
+    files = FORMS["krl"](program)
     assert {len(name.split(".")[0]) for name in files} == {krl.LONGEST_NAME}
     name, _, _ = read_data(next(text for file, text in files.items() if file.endswith("dat")))
     assert re.fullmatch(r"[A-Z][A-Z0-9_]{0,23}", name)
@@ -156,7 +156,7 @@ def test_names_are_what_a_kuka_controller_takes():
 
 def test_a_kuka_program_without_the_rated_speed_is_refused():
     with pytest.raises(OptionError, match="rated"):
-        FORMS["krl"](programme(within=limits(speed_step=None)))
+        FORMS["krl"](robot_program(within=limits(speed_step=None)))
 
 
 def test_speeds_of_a_kuka_program_are_whole_per_cent():
@@ -169,19 +169,21 @@ def test_speeds_of_a_kuka_program_are_whole_per_cent():
 
 
 def test_the_table_holds_the_same_moves():
-    made = programme(all_blocks(limits(payloads=()), 0))
-    lines = [line for line in FORMS["csv"](made)["friction_a2.csv"].splitlines() if line[0] != "#"]
+    program = robot_program(all_blocks(limits(payloads=()), 0))
+    lines = [
+        line for line in FORMS["csv"](program)["friction_a2.csv"].splitlines() if line[0] != "#"
+    ]
     names = lines[0].split(";")
     rows = [dict(zip(names, line.split(";"), strict=True)) for line in lines[1:]]
     moves = [row for row in rows if row["action"] == "move"]
     pairs = sum(
-        len(s.speeds) for block in made.blocks for s in block.steps if isinstance(s, SeriesStep)
+        len(s.speeds) for block in program.blocks for s in block.steps if isinstance(s, SeriesStep)
     )
     assert len(moves) == 2 * pairs
     times = [float(row["time_s"]) for row in rows]
     assert times == sorted(times)
     ends = float(rows[-1]["time_s"]) + float(rows[-1]["duration_s"])
-    assert ends == pytest.approx(made.seconds, rel=0.05)
+    assert ends == pytest.approx(program.seconds, rel=0.05)
     assert all(-100 <= float(row["target_deg"]) <= 20 for row in rows if row["target_deg"])
 
 
@@ -190,8 +192,8 @@ def test_the_papers_algorithms_run_through_a_thermal_cycle():
         joint=2, low=-100.0, high=0.0, max_speed=150.0, to="krl", rated_speed=RATED
     )
     within = new_limits(settings)
-    made = programme(algorithms(within), within=within, name="friction_a2_new")
-    arm = run_krl(made, Arm(list(START), warming=0.02, cooling=0.01))
+    program = robot_program(algorithms(within), within=within, name="friction_a2_new")
+    arm = run_krl(program, Arm(list(START), warming=0.02, cooling=0.01))
     traced = [move for move in arm.moves if move.traced]
     assert len(arm.traces) == 1 + 41 + 40  # the sweep, every degree up to 65 °C, and back to 25 °C
     assert max(move.temperature for move in traced) == pytest.approx(65.0, abs=4.0)
@@ -203,7 +205,7 @@ def test_the_papers_algorithms_run_through_a_thermal_cycle():
 
 
 def test_the_reader_of_the_tests_refuses_what_it_does_not_know():
-    files = FORMS["krl"](programme())
+    files = FORMS["krl"](robot_program())
     source, data = files["friction_a2.src"], files["friction_a2.dat"]
     other = Controller(
         source.replace("PTP TARGET", "LIN_REL TARGET"), data, Arm(list(START)), RATED
@@ -216,7 +218,7 @@ def test_the_reader_of_the_tests_refuses_what_it_does_not_know():
         other.run()
     with pytest.raises(KrlError, match="does not end"):
         read_source(source.rsplit("END", 1)[0])
-    (script,) = FORMS["urscript"](programme()).values()
+    (script,) = FORMS["urscript"](robot_program()).values()
     robot = Robot(script.replace("movej(", "movel("), Arm(list(START)))
     with pytest.raises(ScriptError, match="not known"):
         robot.run()
@@ -224,8 +226,10 @@ def test_the_reader_of_the_tests_refuses_what_it_does_not_know():
 
 def test_rests_are_held_still():
     series = SeriesStep(speeds=(45.0,), low=-100.0, high=20.0)
-    made = programme([Block(name="rest", reason="rests", steps=(series, RestStep(300.0), series))])
+    program = robot_program(
+        [Block(name="rest", reason="rests", steps=(series, RestStep(300.0), series))]
+    )
     for runner in RUNNERS.values():
-        arm = runner(made, Arm(list(START)))
+        arm = runner(program, Arm(list(START)))
         gap = arm.traces[1][0] - arm.traces[0][1]
         assert gap == pytest.approx(300.0, abs=0.5)

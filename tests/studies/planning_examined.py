@@ -81,7 +81,7 @@ def _compared(world: World) -> dict[str, object]:
         extended_model(extended_document(said, model)),
         settings,
     )
-    row["expected"] = ";".join(f"{one:.3f}" for one in plan.settled.decided)
+    row["expected"] = ";".join(f"{one:.3f}" for one in plan.after_check.decision)
     row["programme"] = ";".join(block.name for block in plan.blocks)
     chance = random.Random(" ".join(world.key))
     blocks = all_blocks(plan.limits, settings.seed)

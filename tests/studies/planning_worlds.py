@@ -7,7 +7,7 @@ from pathlib import Path
 
 import numpy as np
 
-from frictioncli.design.steps import MOUNTING, HeatStep, SeriesStep, Step, mountings
+from frictioncli.design.steps import PAYLOAD_CHANGE, HeatStep, SeriesStep, Step, payload_changes
 from frictioncli.simulator.settings import SynthesisSettings
 from tests.simulation.motion_programme import MeasuredMoves, Motion, Standstill, UnrecordedMoves
 
@@ -103,9 +103,9 @@ def _series(*speeds: float) -> MeasuredMoves:
 def acts_of(steps: Sequence[Step]) -> list[Motion]:
     """Return what the simulator is to do for the steps of a plan."""
     found: list[Motion] = []
-    for step, change in zip(steps, mountings(steps, None), strict=True):
+    for step, change in zip(steps, payload_changes(steps, None), strict=True):
         if change:
-            found.append(Standstill(MOUNTING))
+            found.append(Standstill(PAYLOAD_CHANGE))
         if isinstance(step, SeriesStep):
             found.append(
                 MeasuredMoves(

@@ -1,12 +1,12 @@
-"""Robot programs of a programme, one form per file."""
+"""Robot programs, one module per language."""
 
 from collections.abc import Callable, Mapping
 from types import MappingProxyType
 
 from frictioncli.design.programs import krl, table, urscript
-from frictioncli.design.programs.programme import Programme
+from frictioncli.design.programs.robot_program import RobotProgram
 
-FORMS: Mapping[str, Callable[[Programme], dict[str, str]]] = MappingProxyType(
-    {"csv": table.written, "krl": krl.written, "urscript": urscript.written}
+FORMS: Mapping[str, Callable[[RobotProgram], dict[str, str]]] = MappingProxyType(
+    {"csv": table.program_files, "krl": krl.program_files, "urscript": urscript.program_files}
 )
-"""Form -> function that gives the text of each file by its name."""
+"""Functions that return the text of each file by name, by language."""

@@ -1,4 +1,4 @@
-"""The programme as a KUKA program: a ``.src`` with what it does, a ``.dat`` with its constants.
+"""KUKA programs (KRL): a ``.src`` with the motions and a ``.dat`` with the constants.
 
 System variables used [1]_: ``$VEL_AXIS`` is a whole number of per cent of the axis' rated speed,
 ``$MOT_TEMP`` the motor temperature in whole kelvins, ``$TIMER`` counts milliseconds, ``$TRACE``
@@ -12,16 +12,18 @@ References
 import math
 
 from frictioncli.design.blocks import Block
-from frictioncli.design.programs.programme import MARGIN, Programme, plain_text
+from frictioncli.design.programs.robot_program import TEMPERATURE_MARGIN, RobotProgram, to_ascii
 from frictioncli.design.steps import DWELL, LEAD, HeatStep, RestStep, SeriesStep
 from frictioncli.errors import OptionError
 
 KELVIN = 273
+"""0 °C; the controller states motor temperatures in whole kelvins. [K]"""
+
 LONGEST_NAME = 24
-"""Longest name of a program that the controller takes."""
+"""Greatest length of a program name that the controller accepts."""
 
 _ACCELERATION = 50
-"""Share of the axis' acceleration. [%]"""
+"""Acceleration in per cent of the greatest acceleration of the axis."""
 
 _BODY = """\
 ; ---------------------------------------------------------------- parts
@@ -117,31 +119,41 @@ END
 """
 
 
-def written(programme: Programme) -> dict[str, str]:
+def program_files(program: RobotProgram) -> dict[str, str]:
     """Return the text of the ``.src`` and the ``.dat`` by file name.
+
+    Parameters
+    ----------
+    program : RobotProgram
+        The program.
+
+    Returns
+    -------
+    dict of str to str
+        Text by file name.
 
     Raises
     ------
     OptionError
-        If the axis' rated speed is not known.
+        If the rated speed of the axis is not known.
     """
-    step = programme.limits.speed_step
+    step = program.limits.speed_step
     if step is None:
         raise OptionError("a KUKA program needs the rated speed of the axis: --rated-speed")
-    name = programme.name.upper()[:LONGEST_NAME]
+    name = program.name.upper()[:LONGEST_NAME]
     return {
-        f"{name.lower()}.src": _source(programme, name),
-        f"{name.lower()}.dat": _data(programme, name, 100 * step),
+        f"{name.lower()}.src": _source(program, name),
+        f"{name.lower()}.dat": _data(program, name, 100 * step),
     }
 
 
-def _source(programme: Programme, name: str) -> str:
-    axis = programme.axis
+def _source(program: RobotProgram, name: str) -> str:
+    axis = program.axis
     head = [
         "&ACCESS RVP",
         "&REL 1",
         f"DEF {name} ( )",
-        *(f"; {plain_text(text)}" for text in programme.told()),
+        *(f"; {to_ascii(text)}" for text in program.header_lines()),
         f"; Limits and speeds are constants in {name.lower()}.dat. V_RATED there must be the rated",
         "; speed of the axis: speeds are stated in whole per cent of it. Run in T1 first, then in",
         "; automatic mode with the override at 100 %: another override makes other speeds.",
@@ -157,15 +169,15 @@ def _source(programme: Programme, name: str) -> str:
         f"$ACC_AXIS[{axis}] = {_ACCELERATION}",
     ]
     return "\n".join(
-        [*head, *_main(programme), "END", "", _BODY.format(axis=axis, name=name.lower())]
+        [*head, *_main(program), "END", "", _BODY.format(axis=axis, name=name.lower())]
     )
 
 
-def _main(programme: Programme) -> list[str]:
+def _main(program: RobotProgram) -> list[str]:
     lines: list[str] = []
     at, payload = None, None
-    for number, block in enumerate(programme.blocks, start=1):
-        lines += ["", f"; ---- block {number}: {plain_text(block.name)}", *_reason(block)]
+    for number, block in enumerate(program.blocks, start=1):
+        lines += ["", f"; ---- block {number}: {to_ascii(block.name)}", *_reason(block)]
         for step in block.steps:
             if isinstance(step, RestStep):
                 lines.append(_rest(step))
@@ -179,7 +191,7 @@ def _main(programme: Programme) -> list[str]:
                 lines.append(f"GO_TO({step.low:.3f}, V_APPROACH)")
                 at = step.low
             if isinstance(step, HeatStep):
-                until = programme.limits.hottest if step.until is None else step.until
+                until = program.limits.hottest if step.until is None else step.until
                 lines.append(
                     f"HEAT({step.low:.3f}, {step.high:.3f}, {step.speed:.3f},"
                     f" {step.seconds:.1f}, {math.floor(until + KELVIN)})"
@@ -200,18 +212,19 @@ def _rest(step: RestStep) -> str:
 
 
 def _reason(block: Block) -> list[str]:
-    return [f"; {plain_text(block.reason)}"]
+    return [f"; {to_ascii(block.reason)}"]
 
 
-def _data(programme: Programme, name: str, rated: float) -> str:
-    limits = programme.limits
+def _data(program: RobotProgram, name: str, rated: float) -> str:
+    limits = program.limits
+    hottest = math.floor(limits.hottest + TEMPERATURE_MARGIN) + KELVIN
     constants = (
         ("REAL", "V_RATED", f"{rated:.3f}", "rated speed of the axis: CHECK IT (deg/s)"),
         ("REAL", "V_MAX", f"{limits.fastest * (1 + 1e-6):.3f}", "highest speed (deg/s)"),
-        ("REAL", "V_APPROACH", f"{programme.approach:.3f}", "to where a series begins (deg/s)"),
+        ("REAL", "V_APPROACH", f"{program.approach:.3f}", "to where a series begins (deg/s)"),
         ("REAL", "A_LOW", f"{limits.low:.3f}", "lowest angle (deg)"),
         ("REAL", "A_HIGH", f"{limits.high:.3f}", "highest angle (deg)"),
-        ("INT", "T_STOP_K", f"{math.floor(limits.hottest + MARGIN) + KELVIN}", "wait above (K)"),
+        ("INT", "T_STOP_K", f"{hottest}", "wait above (K)"),
         ("REAL", "DWELL", f"{DWELL:.3f}", "standing time at each end (s)"),
         ("REAL", "LEAD", f"{LEAD:.3f}", "standing time after a recording starts (s)"),
     )

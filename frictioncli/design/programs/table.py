@@ -1,10 +1,10 @@
-"""The programme as a table: for people, and for controllers that read one."""
+"""Programs as a CSV table, for people and for other controllers."""
 
-from frictioncli.design.programs.programme import Programme
+from frictioncli.design.programs.robot_program import RobotProgram
 from frictioncli.design.steps import (
     DWELL,
     LEAD,
-    MOUNTING,
+    PAYLOAD_CHANGE,
     HeatStep,
     RestStep,
     SeriesStep,
@@ -12,53 +12,63 @@ from frictioncli.design.steps import (
 )
 
 HEADER = "time_s;block;action;target_deg;back_deg;speed_deg_s;duration_s;until_degC;payload_kg"
-"""Columns. ``duration_s`` is that of the action, its standing time included."""
+"""Column names; ``duration_s`` is the duration of an action with its standing time."""
 
 _NOTE = f"# A recorded move ends with {DWELL:g} s of standing, which its duration includes."
 
 
-def written(programme: Programme) -> dict[str, str]:
-    """Return the table's text by file name.
+def program_files(program: RobotProgram) -> dict[str, str]:
+    """Return the text of the table by file name.
 
-    Actions: ``approach`` (move to a target, not recorded), ``record`` (stand, recording starts),
-    ``move`` (to a target at constant speed, recorded), ``heat`` (between target and back for a
-    time, or until the motor is as warm), ``rest`` (stand, perhaps until the motor is as cold),
-    ``payload`` (the operator mounts it).
+    Actions: ``approach`` (unrecorded move to a target), ``record`` (stand while the recording
+    starts), ``move`` (recorded move to a target at constant speed), ``heat`` (moves between target
+    and back for a time, or until the motor reaches a temperature), ``rest`` (stand for a time, or
+    until the motor has cooled to a temperature), ``payload`` (the operator mounts it).
+
+    Parameters
+    ----------
+    program : RobotProgram
+        The program.
+
+    Returns
+    -------
+    dict of str to str
+        Text by file name.
     """
-    lines = [*(f"# {text}" for text in programme.told()), _NOTE, HEADER]
+    lines = [*(f"# {text}" for text in program.header_lines()), _NOTE, HEADER]
     now, at, payload = 0.0, None, None
 
     def row(block: str, action: str, seconds: float, **cells: float | None) -> None:
         nonlocal now
         names = ("target", "back", "speed", "until", "payload")
         target, back, speed, until, mass = (_cell(cells.get(name)) for name in names)
-        told = f"{seconds:.1f}"
+        duration = f"{seconds:.1f}"
         lines.append(
-            ";".join([f"{now:.1f}", block, action, target, back, speed, told, until, mass])
+            ";".join([f"{now:.1f}", block, action, target, back, speed, duration, until, mass])
         )
         now += seconds
 
-    def approached(block: str, angle: float) -> None:
+    def approach(block: str, angle: float) -> None:
         nonlocal at
         if at != angle:
-            seconds = 0.0 if at is None else abs(angle - at) / programme.approach
-            row(block, "approach", seconds, target=angle, speed=programme.approach)
+            seconds = 0.0 if at is None else abs(angle - at) / program.approach
+            row(block, "approach", seconds, target=angle, speed=program.approach)
         at = angle
 
-    for block in programme.blocks:
+    for block in program.blocks:
         for step in block.steps:
             if isinstance(step, SeriesStep):
                 if step.payload is not None and step.payload != payload:
                     payload = step.payload
-                    row(block.name, "payload", MOUNTING, payload=payload)
-                approached(block.name, step.low)
+                    row(block.name, "payload", PAYLOAD_CHANGE, payload=payload)
+                approach(block.name, step.low)
                 row(block.name, "record", LEAD)
                 for speed in step.speeds:
                     half = round_trip(speed, step.high - step.low) / 2
                     row(block.name, "move", half, target=step.high, speed=speed)
                     row(block.name, "move", half, target=step.low, speed=speed)
             elif isinstance(step, HeatStep):
-                approached(block.name, step.low)
+                approach(block.name, step.low)
                 row(
                     block.name,
                     "heat",
@@ -70,7 +80,7 @@ def written(programme: Programme) -> dict[str, str]:
                 )
             elif isinstance(step, RestStep):
                 row(block.name, "rest", step.seconds, until=step.until)
-    return {f"{programme.name}.csv": "\n".join(lines) + "\n"}
+    return {f"{program.name}.csv": "\n".join(lines) + "\n"}
 
 
 def _cell(value: float | None) -> str:

@@ -1,6 +1,6 @@
-"""The programme as URScript, for robots of Universal Robots."""
+"""URScript programs, for robots of Universal Robots."""
 
-from frictioncli.design.programs.programme import MARGIN, Programme, plain_text
+from frictioncli.design.programs.robot_program import TEMPERATURE_MARGIN, RobotProgram, to_ascii
 from frictioncli.design.steps import (
     ACCELERATION,
     DWELL,
@@ -78,44 +78,55 @@ _PARTS = """\
 """
 
 
-def written(programme: Programme) -> dict[str, str]:
-    """Return the script's text by file name."""
-    limits, name = programme.limits, programme.name.lower()
+def program_files(program: RobotProgram) -> dict[str, str]:
+    """Return the text of the script by file name.
+
+    Parameters
+    ----------
+    program : RobotProgram
+        The program.
+
+    Returns
+    -------
+    dict of str to str
+        Text by file name.
+    """
+    limits, name = program.limits, program.name.lower()
     constants = (
         ("A_LOW", limits.low, "lowest angle (deg)"),
         ("A_HIGH", limits.high, "highest angle (deg)"),
         ("V_MAX", limits.fastest * (1 + 1e-6), "highest speed (deg/s)"),
-        ("V_APPROACH", programme.approach, "to where a series begins (deg/s)"),
+        ("V_APPROACH", program.approach, "to where a series begins (deg/s)"),
         ("ACCELERATION", ACCELERATION, "of all moves (deg/s2)"),
-        ("T_STOP", limits.hottest + MARGIN, "wait above (degC)"),
+        ("T_STOP", limits.hottest + TEMPERATURE_MARGIN, "wait above (degC)"),
         ("DWELL", DWELL, "standing time at each end (s)"),
         ("LEAD", LEAD, "standing time after a recording starts (s)"),
     )
     lines = [
-        *(f"# {plain_text(text)}" for text in programme.told()),
+        *(f"# {to_ascii(text)}" for text in program.header_lines()),
         f"def {name}():",
         "  # Limits of this program. Change them only towards the safe side.",
         *(f"  global {what} = {value:.6g} # {text}" for what, value, text in constants),
         "  global q_start = get_actual_joint_positions() # the other joints keep these angles",
         "",
-        *_PARTS.format(axis=programme.axis, index=programme.axis - 1).splitlines(),
+        *_PARTS.format(axis=program.axis, index=program.axis - 1).splitlines(),
         "",
         '  popup("Tried at reduced speed? Way free, payload fixed and set?", "friction", True,'
         " False, True)",
-        *_main(programme),
+        *_main(program),
         "end",
     ]
     return {f"{name}.script": "\n".join(lines) + "\n"}
 
 
-def _main(programme: Programme) -> list[str]:
+def _main(program: RobotProgram) -> list[str]:
     lines: list[str] = []
     at, payload = None, None
-    for number, block in enumerate(programme.blocks, start=1):
+    for number, block in enumerate(program.blocks, start=1):
         lines += [
             "",
-            f"  # ---- block {number}: {plain_text(block.name)}",
-            f"  # {plain_text(block.reason)}",
+            f"  # ---- block {number}: {to_ascii(block.name)}",
+            f"  # {to_ascii(block.reason)}",
         ]
         for step in block.steps:
             if isinstance(step, RestStep):
@@ -135,7 +146,7 @@ def _main(programme: Programme) -> list[str]:
                 lines.append(f"  go_to({step.low:.3f}, V_APPROACH)")
                 at = step.low
             if isinstance(step, HeatStep):
-                until = programme.limits.hottest if step.until is None else step.until
+                until = program.limits.hottest if step.until is None else step.until
                 trip = round_trip(step.speed, step.high - step.low) - 2 * DWELL
                 lines.append(
                     f"  heat({step.low:.3f}, {step.high:.3f}, {step.speed:.3f},"

@@ -5,7 +5,7 @@ import pytest
 from scipy.linalg import null_space
 from scipy.optimize import minimize
 
-from frictioncli.design.expected_evidence import noises_of
+from frictioncli.design.expected_evidence import candidate_noises
 from frictioncli.diagnosis.data.pair_layout import PairLayout
 from frictioncli.model.noise import Noise, pair_covariance
 
@@ -59,17 +59,17 @@ def left_of(layout, noise, torque, outside):
 
 def test_true_noise_under_others_is_as_drawn(layout):
     """Squares of drawn noise after generalised least squares, and determinants off the base."""
-    found = noises_of(layout, TRUE, np.zeros_like(layout.time), base(layout))
-    assert found.friction[0] == TRUE
-    assert found.freedom == len(layout.time) - 3
+    found = candidate_noises(layout, TRUE, np.zeros_like(layout.time), base(layout))
+    assert found.noises[0] == TRUE
+    assert found.degrees_of_freedom == len(layout.time) - 3
     outside = null_space(base(layout).T)
     draws = np.random.default_rng(3).multivariate_normal(
         np.zeros(len(layout.time)), dense(layout, TRUE), size=4000
     )
     first = np.linalg.slogdet(outside.T @ dense(layout, TRUE) @ outside)[1]
-    assert found.square[0] == pytest.approx(found.freedom)
+    assert found.expected_squares[0] == pytest.approx(found.degrees_of_freedom)
     for noise, square, determinant in zip(
-        found.friction, found.square, found.determinant, strict=True
+        found.noises, found.expected_squares, found.log_determinants, strict=True
     ):
         root = np.linalg.cholesky(np.linalg.inv(dense(layout, noise)))
         design, target = root.T @ base(layout), root.T @ draws.T
@@ -82,17 +82,19 @@ def test_true_noise_under_others_is_as_drawn(layout):
 
 
 def test_without_a_torque_there_is_no_evidence(layout):
-    found = noises_of(layout, TRUE, np.zeros_like(layout.time), base(layout))
-    assert found.fall(np.zeros((len(found.friction), 2)))[0] == pytest.approx(0.0, abs=1e-9)
+    found = candidate_noises(layout, TRUE, np.zeros_like(layout.time), base(layout))
+    assert found.log_likelihood_ratio(np.zeros((len(found.noises), 2)))[0] == pytest.approx(
+        0.0, abs=1e-9
+    )
 
 
 @pytest.mark.parametrize("kind", ["slow", "quick"])
 @pytest.mark.parametrize("size", [0.3, 1.0, 3.0])
 def test_evidence_is_nearly_that_of_any_noise(layout, kind, size):
     """Against a search for the strength and the time of the drift that suit the torque best."""
-    found = noises_of(layout, TRUE, np.zeros_like(layout.time), base(layout))
+    found = candidate_noises(layout, TRUE, np.zeros_like(layout.time), base(layout))
     torque, outside = size * torque_of(layout, kind), null_space(base(layout).T)
-    left = np.array([left_of(layout, noise, torque, outside) for noise in found.friction])
+    left = np.array([left_of(layout, noise, torque, outside) for noise in found.noises])
     true = outside.T @ dense(layout, TRUE) @ outside
 
     def doubled(logs):
@@ -100,28 +102,31 @@ def test_evidence_is_nearly_that_of_any_noise(layout, kind, size):
         noise = Noise(point=TRUE.point, pair=TRUE.pair, drift=strength, drift_time=time)
         whole = outside.T @ dense(layout, noise) @ outside
         square = np.trace(np.linalg.solve(whole, true)) + left_of(layout, noise, torque, outside)
-        return found.freedom * np.log(square / found.freedom) + np.linalg.slogdet(whole)[1]
+        return (
+            found.degrees_of_freedom * np.log(square / found.degrees_of_freedom)
+            + np.linalg.slogdet(whole)[1]
+        )
 
     bounds = [(np.log(0.04), np.log(4.0)), (np.log(60.0), np.log(1740.0))]
     starts = [np.log([TRUE.drift, TRUE.drift_time]), np.log([2.0, 1700.0]), np.log([0.4, 70.0])]
     best = min(minimize(doubled, start, bounds=bounds).fun for start in starts)
     searched = best - np.linalg.slogdet(true)[1]
-    evidence = float(found.fall(left)[0])
+    evidence = float(found.log_likelihood_ratio(left)[0])
     assert searched - 1e-6 <= evidence <= 1.15 * searched + 0.5
 
 
 def test_a_slow_torque_tells_less_than_a_quick_one(layout):
     """Both as far from nothing under the true noise; wandering may take only the slow one."""
-    found = noises_of(layout, TRUE, np.zeros_like(layout.time), base(layout))
+    found = candidate_noises(layout, TRUE, np.zeros_like(layout.time), base(layout))
     outside = null_space(base(layout).T)
     evidence = {}
     for kind in ("slow", "quick"):
         torque = torque_of(layout, kind)
         torque = torque * np.sqrt(60.0 / left_of(layout, TRUE, torque, outside))
-        left = np.array([left_of(layout, noise, torque, outside) for noise in found.friction])
+        left = np.array([left_of(layout, noise, torque, outside) for noise in found.noises])
         assert left[0] == pytest.approx(60.0)
-        evidence[kind] = float(found.fall(left)[0])
-    known = found.freedom * np.log(1 + 60.0 / found.freedom)
+        evidence[kind] = float(found.log_likelihood_ratio(left)[0])
+    known = found.degrees_of_freedom * np.log(1 + 60.0 / found.degrees_of_freedom)
     assert 0.9 * known < evidence["quick"] <= known
     assert evidence["slow"] < 0.75 * evidence["quick"]
 

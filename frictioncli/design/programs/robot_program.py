@@ -1,4 +1,4 @@
-"""What a robot program is written from."""
+"""A robot program, independent of the controller's language."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -6,31 +6,31 @@ from dataclasses import dataclass
 from frictioncli.design.blocks import Block
 from frictioncli.design.limits import Limits
 
-APPROACH = 20.0
-"""Speed on the way to where a series begins. [deg/s]"""
+APPROACH_SPEED = 20.0
+"""Speed of unrecorded moves to the start of a series. [deg/s]"""
 
-MARGIN = 10.0
-"""Above the temperature at which heating ends, by so much, all motion waits. [°C]"""
+TEMPERATURE_MARGIN = 10.0
+"""All motion waits above the temperature at which heating ends plus this margin. [°C]"""
 
-REDUCED = "Try it at reduced speed first, with nobody in reach and a free way for the axis."
+SAFETY_NOTE = "Try it at reduced speed first, with nobody in reach and a free way for the axis."
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Programme:
-    """A programme with a name, for one axis.
+class RobotProgram:
+    """A robot program for one axis.
 
     Attributes
     ----------
     name : str
-        Name of the files, in letters, digits and underscores.
+        Name of the files: letters, digits and underscores.
     axis : int
         Number of the axis, from 1.
     blocks : tuple of Block
-        What it does.
+        Blocks in sequence.
     limits : Limits
-        Within which it stays.
+        Limits of the motion.
     seconds : float
-        How long it is expected to take. [s]
+        Expected duration [s].
     """
 
     name: str
@@ -41,23 +41,23 @@ class Programme:
 
     @property
     def approach(self) -> float:
-        """Speed on the way to where a series begins [deg/s]."""
-        return self.limits.speed(min(APPROACH, self.limits.fastest))
+        """Speed of unrecorded moves to the start of a series [deg/s]."""
+        return self.limits.speed(min(APPROACH_SPEED, self.limits.fastest))
 
-    def told(self) -> Iterator[str]:
-        """Yield what stands at the top of every program."""
+    def header_lines(self) -> Iterator[str]:
+        """Yield the lines at the top of every program."""
         limits = self.limits
         yield f"Measures the friction of axis {self.axis}; about {self.seconds / 60:.0f} min."
         yield f"Moves axis {self.axis} only, from {limits.low:g} to {limits.high:g} deg, up to"
         yield f"{limits.fastest:.4g} deg/s. All other axes stay where they are at the start."
-        yield REDUCED
+        yield SAFETY_NOTE
         yield "Check before: the way is free over the whole range in this posture of the other"
         yield "axes, the payload is fixed and its data are set, the robot has stood for the night."
         for text in limits.beyond:
             yield f"Beyond what was measured, as asked: {text}."
 
 
-def plain_text(text: str) -> str:
-    """Return text that any controller can show: printable ASCII only."""
-    swapped = text.replace("°C", "degC").replace("N·m", "Nm")
-    return "".join(letter if " " <= letter <= "~" else "?" for letter in swapped)
+def to_ascii(text: str) -> str:
+    """Return text in printable ASCII, which every controller can show."""
+    replaced = text.replace("°C", "degC").replace("N·m", "Nm")
+    return "".join(letter if " " <= letter <= "~" else "?" for letter in replaced)
