@@ -55,19 +55,15 @@ def test_factors_by_hand():
 )
 def test_motion_ratio(position_factor, velocity_factor, ratio):
     time, position, velocity, _ = back_and_forth()
-    motion = unit_evidence.MotionEvidence(
-        time, position * position_factor, velocity * velocity_factor
-    )
+    motion = unit_evidence.RawMotion(time, position * position_factor, velocity * velocity_factor)
     assert unit_evidence.motion_ratio([motion]) == pytest.approx(ratio, rel=0.01)
 
 
 def test_motion_ratio_says_nothing_of_rest_or_noise():
     time = np.arange(0, 5, 0.01)
     rng = np.random.default_rng(1)
-    rest = unit_evidence.MotionEvidence(time, np.zeros_like(time), np.zeros_like(time))
-    noise = unit_evidence.MotionEvidence(
-        time, rng.normal(size=len(time)), rng.normal(size=len(time))
-    )
+    rest = unit_evidence.RawMotion(time, np.zeros_like(time), np.zeros_like(time))
+    noise = unit_evidence.RawMotion(time, rng.normal(size=len(time)), rng.normal(size=len(time)))
     assert unit_evidence.motion_ratio([rest]) is None
     assert unit_evidence.motion_ratio([noise]) is None
 
@@ -75,13 +71,13 @@ def test_motion_ratio_says_nothing_of_rest_or_noise():
 def test_lever_of_an_arm_half_a_metre_long():
     angle = np.linspace(-1, 1, 400)  # [rad]
     tool = 500 * np.stack([np.cos(angle), np.sin(angle), 0 * angle], axis=1)
-    assert unit_evidence.lever(tool, angle[:, None]) == pytest.approx(500, rel=1e-4)
+    assert unit_evidence.tool_path_per_angle(tool, angle[:, None]) == pytest.approx(500, rel=1e-4)
     in_rad = unit_evidence.possible_position_units(
-        furthest=1, span=2, on_motor=False, way_per_turn=500
+        largest=1, span=2, on_motor=False, path_per_angle=500
     )
     assert in_rad[0] == {"rad"}
     in_degrees = unit_evidence.possible_position_units(
-        furthest=5, span=4, on_motor=False, way_per_turn=500 * np.pi / 180
+        largest=5, span=4, on_motor=False, path_per_angle=500 * np.pi / 180
     )
     assert in_degrees[0] == {"deg"}
 
@@ -263,5 +259,5 @@ def test_a_damaged_velocity_does_not_change_the_ratio(damage):
     broken = velocity.copy()
     broken[len(broken) // 3] = damage
     assert unit_evidence.motion_ratio(
-        [unit_evidence.MotionEvidence(time, position, broken)]
+        [unit_evidence.RawMotion(time, position, broken)]
     ) == pytest.approx(1.0, rel=0.01)

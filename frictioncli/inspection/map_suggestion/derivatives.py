@@ -101,10 +101,10 @@ def _unit_rows(rows: Array) -> Array:
 def _units(position: Array, ratio: float, time_units: Sequence[str]) -> MotionUnits | None:
     """Return the units that fit; None where no usual ones do."""
     possible, _ = unit_evidence.possible_position_units(
-        furthest=float(np.max(np.abs(position))),
+        largest=float(np.max(np.abs(position))),
         span=float(np.ptp(position)),
         on_motor=False,
-        way_per_turn=None,
+        path_per_angle=None,
     )
     for time_unit in time_units:
         scaled = ratio / FACTORS[names.TIME][time_unit]

@@ -118,10 +118,10 @@ def _without_velocity(
     column = max(named, key=lambda c: float(np.ptp(columns.found.values[c]))) if named else order[0]
     values = columns.found.values[column]
     possible, why = unit_evidence.possible_position_units(
-        furthest=float(np.max(np.abs(values))),
+        largest=float(np.max(np.abs(values))),
         span=float(np.ptp(values)),
         on_motor=False,
-        way_per_turn=None,
+        path_per_angle=None,
     )
     unit = sorted(possible)[0]
     time_unit = possible_units(clock)[-1]

@@ -1,1 +1,1 @@
-"""Channels of a log: their names, their units, and how these are inferred."""
+"""Channels of a log: recognising them by name and inferring their units from the values."""

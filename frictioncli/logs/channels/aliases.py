@@ -1,4 +1,4 @@
-"""The names that robot controllers and loggers give their channels, in German and English."""
+"""Channel names used by robot controllers and loggers, in German and English."""
 
 from dataclasses import dataclass
 
@@ -18,10 +18,20 @@ MOTOR_SIDE = "motor"
 
 @dataclass(frozen=True, slots=True)
 class Meaning:
-    """What an alias stands for.
+    """What a channel name stands for.
 
-    ``side`` is "" where names do not tell it. ``rank`` orders the torque channels of one joint:
-    motor torque holds all friction of the drive train, gear torque only a part, current is last.
+    Attributes
+    ----------
+    quantity : str
+        One of :data:`CHANNELS` or ``TOOL``.
+    side : str
+        Side of the gear, ``joint`` or ``motor``; "" where the name does not tell it.
+    rank : int
+        Order of preference among the channels of one quantity, lowest first. Motor torque contains
+        all friction of the drive train, gear torque only a part of it; motor current comes last.
+        For ``TOOL``, 0 to 2 stand for x, y and z.
+    unit : str
+        Usual unit where the header names none; "" where there is no usual one.
     """
 
     quantity: str
@@ -30,7 +40,7 @@ class Meaning:
     unit: str = ""
 
 
-# Only measured values: commands (Cmd, Soll, target) and differences are in no line on purpose.
+# Measured values only: names of commands (Cmd, Soll, target) and of differences are left out.
 _ALIASES: tuple[tuple[Meaning, str], ...] = (
     (
         Meaning(TIME),
@@ -93,4 +103,4 @@ _ALIASES: tuple[tuple[Meaning, str], ...] = (
     (Meaning(TOOL, rank=2), "zact toolz tcpz robotcartesiancoordtoolz z"),
 )
 MEANINGS = {name: meaning for meaning, names in _ALIASES for name in names.split()}
-"""Name in small letters and digits only, without joint number -> meaning."""
+"""Meaning by channel name in lower-case letters and digits, without joint number."""

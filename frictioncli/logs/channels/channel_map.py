@@ -1,4 +1,4 @@
-"""The mapping file: what the user says of columns, units and form that cannot be detected."""
+"""The mapping file: columns, units and text form given by the user where detection fails."""
 
 import codecs
 import difflib
@@ -23,20 +23,20 @@ _DELIMITERS = {";": ";", ",": ",", "\t": "\t", " ": " ", "tab": "\t", "space": "
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ChannelMap:
-    """A read mapping file.
+    """The content of a mapping file.
 
     Attributes
     ----------
     channels : dict of str to str
-        Canonical name to column name.
+        Column name by quantity.
     units : dict of str to str
-        Canonical name to unit, as :mod:`units` names it.
+        Unit by quantity, a key of :data:`frictioncli.logs.channels.units.FACTORS`.
     hints : CsvHints
         Form of the text.
     joint : int or None
         Number of the joint, from 1.
     gear_ratio : float or None
-        Motor turns per joint turn, negative where they turn against each other.
+        Motor turns per joint turn, negative where they turn in opposite directions. [-]
     """
 
     channels: dict[str, str] = field(default_factory=dict)
@@ -52,7 +52,7 @@ def read_map(path: Path) -> ChannelMap:
     Raises
     ------
     MappingError
-        If it is no TOML or names a section, key, unit or value that is not known.
+        If it is not TOML, or has an unknown section, key, unit or value.
     """
     try:
         text = path.read_text(encoding="utf-8-sig")
@@ -87,12 +87,23 @@ def read_map(path: Path) -> ChannelMap:
 def mapped_channels(
     channel_map: ChannelMap, columns: Sequence[str], joint: int
 ) -> tuple[LogChannel, ...] | Refusal:
-    """Return the channels that the map names, with time recognised where it names none.
+    """Return the channels that the map names, and those recognised where it names none.
+
+    Where the map names position or torque, only the time is still recognised by its name.
+
+    Parameters
+    ----------
+    channel_map : ChannelMap
+        The map.
+    columns : sequence of str
+        All column names of the log.
+    joint : int
+        The joint of the mapped columns.
 
     Returns
     -------
-    tuple of Channel or Refusal
-        ``mapped_column_missing`` when the file lacks a named column.
+    tuple of LogChannel or Refusal
+        Refused as ``mapped_column_missing`` where the log lacks a mapped column.
     """
     recognised = recognise_channels(columns)
     if TORQUE not in channel_map.channels and POSITION not in channel_map.channels:
@@ -111,10 +122,11 @@ def mapped_channels(
                 f" {', '.join(names[:20])}",
             )
         known = next((c.meaning for c in recognised if c.column == index), None)
-        same = known is not None and known.quantity == quantity
-        side = known.side if known is not None and same and quantity != TORQUE else JOINT_SIDE
+        if known is not None and known.quantity != quantity:
+            known = None
+        side = known.side if known is not None and quantity != TORQUE else JOINT_SIDE
         unit = split_unit(columns[index])[1]
-        if not unit and known is not None and same:
+        if not unit and known is not None:
             unit = known.unit
         kept.append(
             LogChannel(
@@ -125,6 +137,7 @@ def mapped_channels(
 
 
 def _find(columns: Sequence[str], wanted: str) -> int | None:
+    """Return the index of a column by its name, which may lack blanks around it or its unit."""
     for normal in (str, str.strip, lambda name: split_unit(name)[0]):
         matches = [i for i, column in enumerate(columns) if normal(column) == normal(wanted)]
         if matches:

@@ -1,4 +1,4 @@
-"""From a survey to a plan per joint: which columns, times which factor, and what must be said."""
+"""The plan of reading a joint: its columns, their unit conversions, and notes on both."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
@@ -10,6 +10,7 @@ from frictioncli.logs.channels import unit_evidence, units
 from frictioncli.logs.channels.motion_units import JointMotion, Remarks, joint_motion
 from frictioncli.logs.channels.recognition import JointChannels, LogChannel
 from frictioncli.logs.channels.survey import Survey
+from frictioncli.logs.channels.transmission import Transmission, find_transmission
 from frictioncli.logs.channels.units import UnitConversion
 from frictioncli.logs.log_source import Refusal
 
@@ -22,16 +23,16 @@ class JointPlan:
     ----------
     channels : JointChannels
         The columns.
-    conversions : dict of str to UnitConversion
-        Canonical name to factor and offset; a name that is missing is not read.
+    conversions : mapping of str to UnitConversion
+        Conversion by quantity; a quantity that is missing is not read.
     position_limit : float or None
-        Raw positions beyond this contradict radians as the unit. [rad]
+        Largest absolute position that is plausible in radians; None where no limit applies. [rad]
     torque_unit : str
         ``N·m`` or ``A``.
     torque_side : str
-        ``joint`` or ``motor``.
+        Side of the gear, ``joint`` or ``motor``.
     notes, warnings : tuple of str
-        What was believed against or beyond the header.
+        Where the reading departs from the header or adds to it.
     """
 
     channels: JointChannels
@@ -50,23 +51,23 @@ def plan_joint(
     forced: Mapping[str, str],
     gear_ratio: float | None,
 ) -> JointPlan | Refusal:
-    """Decide units, side and use of each channel of a joint.
+    """Decide which channels of a joint are used, in which unit, and on which side of the gear.
 
     Parameters
     ----------
     channels : JointChannels
         The columns chosen.
     survey : Survey
-        Raw samples of logs of this layout.
+        Raw samples of logs with this layout.
     forced : mapping of str to str
-        Canonical name to unit, given by the user.
+        Unit by quantity, given by the user.
     gear_ratio : float or None
-        Motor turns per joint turn.
+        Motor turns per joint turn, given by the user. [-]
 
     Returns
     -------
     JointPlan or Refusal
-        ``no_torque_channel`` (an empty or all-zero column), ``torque_in_percent`` or
+        Refused as ``no_torque_channel`` (an empty or all-zero column), ``torque_in_percent`` or
         ``no_gear_ratio``.
     """
     remarks = Remarks(notes=list(channels.notes))
@@ -81,25 +82,25 @@ def plan_joint(
     torque_unit = _torque_unit(channels.torque, forced, remarks)
     if isinstance(torque_unit, Refusal):
         return torque_unit
-    channels = _with_moving_velocity(channels, survey, remarks)
+    channels = _without_zero_velocity(channels, survey, remarks)
     motion = joint_motion(channels, survey, forced, remarks)
-    gear = _gear(channels, survey, motion, gear_ratio, remarks)
+    gear = find_transmission(channels, survey, motion, gear_ratio, remarks)
     if gear is None:
-        seen = _without_gear(channels, motion, remarks)
-        if seen is None:
+        without_gear = _without_gear(channels, motion, remarks)
+        if without_gear is None:
             return Refusal(
                 "no_gear_ratio",
                 f"{channels.position.name} is the motor's position and nothing tells the gear"
                 " ratio; give it with --gear-ratio or [joint] gear_ratio in --map",
             )
-        channels, motion = seen
+        channels, motion = without_gear
     found = motion.units
     conversions = {
         names.TIME: units.conversion_from(found.time, names.TIME),
-        names.POSITION: _at_joint(found.position, channels.position, gear),
+        names.POSITION: _joint_conversion(found.position, channels.position, gear),
     }
     if channels.velocity is not None and found.velocity is not None:
-        velocity = _at_joint(found.velocity, channels.velocity, gear)
+        velocity = _joint_conversion(found.velocity, channels.velocity, gear)
         conversions[names.VELOCITY] = _scaled(velocity, -1.0 if found.reversed_velocity else 1.0)
     side, factor = _torque_side(channels, torque_unit, gear, remarks)
     conversions[names.TORQUE] = _scaled(units.conversion_from(torque_unit, names.TORQUE), factor)
@@ -110,7 +111,11 @@ def plan_joint(
             forced.get(names.LOAD) or written or "N·m", names.LOAD
         )
     at_joint = channels.position.meaning.side != names.MOTOR_SIDE
-    limited = found.position == "rad" and at_joint and motion.furthest <= unit_evidence.RADIAN_LIMIT
+    limited = (
+        found.position == "rad"
+        and at_joint
+        and motion.largest_position <= unit_evidence.RADIAN_LIMIT
+    )
     return JointPlan(
         channels=channels,
         conversions=conversions,
@@ -122,7 +127,7 @@ def plan_joint(
     )
 
 
-def _with_moving_velocity(
+def _without_zero_velocity(
     channels: JointChannels, survey: Survey, remarks: Remarks
 ) -> JointChannels:
     """Return the channels without a velocity that is empty or zero throughout."""
@@ -157,78 +162,25 @@ def _torque_unit(channel: LogChannel, forced: Mapping[str, str], remarks: Remark
     return unit
 
 
-@dataclass(frozen=True, slots=True)
-class _Gear:
-    """What is known of a joint's gear.
-
-    Attributes
-    ----------
-    ratio : float
-        Motor turn per joint turn, negative where they turn against each other. [-]
-    offset : float
-        The joint's position where the motor's is 0; 0 where nothing tells it. [deg]
-    of_torque : bool
-        Whether torque at the motor is brought to the joint too.
-    """
-
-    ratio: float
-    offset: float
-    of_torque: bool
-
-
-def _gear(
-    channels: JointChannels,
-    survey: Survey,
-    motion: JointMotion,
-    told: float | None,
-    remarks: Remarks,
-) -> _Gear | None:
-    """Return the gear by what the user says, else by the positions on both sides."""
-    position, other_position = channels.position, channels.other_position
-    if other_position is None or motion.other_position is None:
-        return None if told is None else _Gear(told, 0.0, True)
-    joint = (position, units.FACTORS[names.POSITION][motion.units.position])
-    motor = (other_position, units.FACTORS[names.POSITION][motion.other_position])
-    if position.meaning.side == names.MOTOR_SIDE:
-        joint, motor = motor, joint
-    pairs = [
-        (head[motor[0].column] * motor[1], head[joint[0].column] * joint[1])
-        for head in survey.heads
-    ]
-    ratio = told
-    if ratio is None:
-        found = [r for one in pairs if (r := unit_evidence.gear_ratio(*one)) is not None]
-        if not found:
-            return None
-        ratio = float(np.median(found))
-        remarks.notes.append(
-            f"gear ratio of joint {channels.joint} found from {motor[0].name} and"
-            f" {joint[0].name}: {ratio:.4g}"
-        )
-    offset = unit_evidence.gear_offset(pairs, ratio)
-    # another trace may lack the drive's file, and its torque would stay at the motor
-    return _Gear(ratio, offset, told is not None or not other_position.is_merged)
-
-
 def _without_gear(
     channels: JointChannels, motion: JointMotion, remarks: Remarks
 ) -> tuple[JointChannels, JointMotion] | None:
-    """Return the channels that do without a gear ratio; None where the position needs it."""
+    """Return the channels that need no gear ratio; None where the position needs it."""
     position, velocity, other_position = (
         channels.position,
         channels.velocity,
         channels.other_position,
     )
     if position.meaning.side == names.MOTOR_SIDE:
-        if other_position is None or motion.other_position is None:
+        if other_position is None or motion.other_position_unit is None:
             return None
         remarks.notes.append(
             f"joint {channels.joint} does not move, which would tell the gear ratio: its position"
             f" is {other_position.name}"
         )
         channels = replace(channels, position=other_position, other_position=position)
-        own = replace(motion.units, position=motion.other_position)
-        motion = JointMotion(own, np.inf, motion.units.position)
+        swapped = replace(motion.units, position=motion.other_position_unit)
+        motion = JointMotion(swapped, np.inf, motion.units.position)
     if velocity is not None and velocity.meaning.side == names.MOTOR_SIDE:
         remarks.notes.append(
             f"{velocity.name} is not used, as nothing tells the gear ratio: velocity is"
@@ -238,8 +190,8 @@ def _without_gear(
     return channels, motion
 
 
-def _at_joint(unit: str, channel: LogChannel, gear: _Gear | None) -> UnitConversion:
-    """Return the conversion of a position or velocity, through the gear if it is the motor's."""
+def _joint_conversion(unit: str, channel: LogChannel, gear: Transmission | None) -> UnitConversion:
+    """Return the conversion of a position or velocity to the joint's side of the gear."""
     conversion = units.conversion_from(unit, channel.quantity)
     if gear is None or channel.meaning.side != names.MOTOR_SIDE:
         return conversion
@@ -248,9 +200,9 @@ def _at_joint(unit: str, channel: LogChannel, gear: _Gear | None) -> UnitConvers
 
 
 def _torque_side(
-    channels: JointChannels, unit: str, gear: _Gear | None, remarks: Remarks
+    channels: JointChannels, unit: str, gear: Transmission | None, remarks: Remarks
 ) -> tuple[str, float]:
-    """Return the side on which the torque then is, and the factor that brings it there."""
+    """Return the side of the gear on which the torque is used, and the factor to that side."""
     name, side = channels.torque.name, channels.torque.meaning.side
     if unit in ("A", "mA"):
         return names.MOTOR_SIDE, 1.0
@@ -261,7 +213,7 @@ def _torque_side(
         remarks.notes.append(f"{name} does not say its side of the gear: taken as {side} side")
     if side == names.JOINT_SIDE:
         return names.JOINT_SIDE, 1.0
-    if gear is None or not gear.of_torque:
+    if gear is None or not gear.converts_torque:
         remarks.notes.append(
             f"{name} is torque at the motor and stays so; with --gear-ratio it is brought to the"
             " joint"

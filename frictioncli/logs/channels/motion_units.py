@@ -1,4 +1,4 @@
-"""Units of a joint's motion: what the header says, held against what the survey shows."""
+"""Units of time, position and velocity: the header's, checked against the surveyed values."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
@@ -9,12 +9,12 @@ from frictioncli.logs.channels import aliases as names
 from frictioncli.logs.channels import unit_evidence, units
 from frictioncli.logs.channels.recognition import JointChannels, LogChannel
 from frictioncli.logs.channels.survey import Survey
-from frictioncli.logs.channels.unit_evidence import MotionEvidence, MotionUnits
+from frictioncli.logs.channels.unit_evidence import MotionUnits, RawMotion
 
 
 @dataclass(slots=True)
 class Remarks:
-    """What is to be said of a joint's channels: notes, and warnings of what may be wrong."""
+    """Notes on a joint's channels, and warnings of what may be wrong."""
 
     notes: list[str] = field(default_factory=list)
     warnings: list[str] = field(default_factory=list)
@@ -28,20 +28,23 @@ class JointMotion:
     ----------
     units : MotionUnits
         Of time, position and velocity.
-    furthest : float
-        Greatest distance of the position from zero. [raw]
-    other_position : str or None
-        Unit of the position on the other side of the gear.
+    largest_position : float
+        Largest absolute position. [raw]
+    other_position_unit : str or None
+        Unit of the position on the other side of the gear; None where there is none.
     """
 
     units: MotionUnits
-    furthest: float
-    other_position: str | None
+    largest_position: float
+    other_position_unit: str | None
 
 
 @dataclass(frozen=True, slots=True)
 class _Axis:
-    """Position and velocity on one side of the gear; ``hint`` is how to force the former's unit."""
+    """Time, position and velocity on one side of the gear.
+
+    ``hint`` is the end of a note that tells the user how to force the position's unit.
+    """
 
     time: LogChannel
     position: LogChannel
@@ -52,43 +55,53 @@ class _Axis:
 def joint_motion(
     channels: JointChannels, survey: Survey, forced: Mapping[str, str], remarks: Remarks
 ) -> JointMotion:
-    """Find the units of time, of both positions, and of the velocity on whichever side it is."""
+    """Find the units of time, of the positions on both sides of the gear, and of the velocity.
+
+    Parameters
+    ----------
+    channels : JointChannels
+        The joint's columns.
+    survey : Survey
+        Raw samples of logs with this layout.
+    forced : mapping of str to str
+        Unit by quantity, given by the user.
+    remarks : Remarks
+        Notes and warnings are added here.
+    """
     time, position, velocity = channels.time, channels.position, channels.velocity
     other_position = channels.other_position
-    beside = velocity is None or velocity.meaning.side == position.meaning.side
-    axis = _Axis(time, position, velocity if beside else None, "; force with --position-unit {}")
-    found, furthest = _axis_units(axis, survey, forced, remarks)
-    elsewhere = None
+    same_side = velocity is None or velocity.meaning.side == position.meaning.side
+    axis = _Axis(time, position, velocity if same_side else None, "; force with --position-unit {}")
+    found, largest_position = _axis_units(axis, survey, forced, remarks)
+    other_unit = None
     if other_position is not None:
-        # a forced position unit is the other channel's
-        others = {name: unit for name, unit in forced.items() if name != names.POSITION}
-        axis = _Axis(time, other_position, None if beside else velocity, "")
-        beyond, _ = _axis_units(axis, survey, others, remarks)
-        elsewhere = beyond.position
-        if not beside:
-            found = replace(beyond, position=found.position)
+        # a forced position unit applies to the other channel
+        other_forced = {name: unit for name, unit in forced.items() if name != names.POSITION}
+        axis = _Axis(time, other_position, None if same_side else velocity, "")
+        other_units, _ = _axis_units(axis, survey, other_forced, remarks)
+        other_unit = other_units.position
+        if not same_side:
+            found = replace(other_units, position=found.position)
     if velocity is None:
         remarks.notes.append("no velocity channel: differentiated from position")
     if found.time != (units.canonical(time.unit, names.TIME) or "s") and names.TIME not in forced:
         remarks.notes.append(f"{time.name} is read as {found.time}")
-    return JointMotion(found, furthest, elsewhere)
+    return JointMotion(found, largest_position, other_unit)
 
 
 def _axis_units(
     axis: _Axis, survey: Survey, forced: Mapping[str, str], remarks: Remarks
 ) -> tuple[MotionUnits, float]:
-    """Return the units of time, position and velocity, and the furthest raw position."""
+    """Return the units of time, position and velocity, and the largest absolute raw position."""
     position = axis.position
     family = survey.family(position)
-    everything = [
-        motion for member in family for motion in motions_of(survey, axis.time, member, None)
-    ]
-    furthest, span = unit_evidence.position_range(everything)
+    motions = [motion for member in family for motion in _motions(survey, axis.time, member, None)]
+    largest, span = unit_evidence.position_range(motions)
     possible, why = unit_evidence.possible_position_units(
-        furthest=furthest,
+        largest=largest,
         span=span,
         on_motor=position.meaning.side == names.MOTOR_SIDE,
-        way_per_turn=_lever(survey, family),
+        path_per_angle=_tool_path_per_angle(survey, family),
     )
     allowed = possible
     if names.POSITION in forced:
@@ -106,26 +119,28 @@ def _axis_units(
     if axis.velocity is not None:
         written = units.canonical(axis.velocity.unit, names.VELOCITY)
         declared_velocity = declared_velocity or written
-        ratio = unit_evidence.motion_ratio(motions_of(survey, axis.time, position, axis.velocity))
-    time_is_told = written_time is not None or names.TIME in forced or declared_time != "s"
+        ratio = unit_evidence.motion_ratio(_motions(survey, axis.time, position, axis.velocity))
+    time_is_known = written_time is not None or names.TIME in forced or declared_time != "s"
     found = unit_evidence.motion_units(
         declared=(
-            declared_time if time_is_told else None,
+            declared_time if time_is_known else None,
             declared_position,
             declared_velocity,
         ),
         possible=allowed,
         ratio=ratio,
     )
-    found = _held_to(found, forced, remarks)
+    found = _with_forced_units(found, forced, remarks)
     _remark_position(axis, found, why, forced, remarks)
     if axis.velocity is not None:
         _remark_velocity(axis.velocity, found, forced, remarks)
-    return found, furthest
+    return found, largest
 
 
-def _held_to(found: MotionUnits, forced: Mapping[str, str], remarks: Remarks) -> MotionUnits:
-    """Return the units with the forced ones in place, and warn where measurements disagree."""
+def _with_forced_units(
+    found: MotionUnits, forced: Mapping[str, str], remarks: Remarks
+) -> MotionUnits:
+    """Return the units with the forced ones in place; warn where the values contradict them."""
     time = forced.get(names.TIME, found.time)
     velocity = forced.get(names.VELOCITY, found.velocity)
     if time != found.time or (velocity != found.velocity and found.evidence):
@@ -175,10 +190,10 @@ def _remark_velocity(
         )
 
 
-def motions_of(
+def _motions(
     survey: Survey, time: LogChannel, position: LogChannel, velocity: LogChannel | None
-) -> list[MotionEvidence]:
-    """Return the surveyed motion of an axis per log; velocity is empty where it has none."""
+) -> list[RawMotion]:
+    """Return the surveyed motion of an axis in each log, without rows that lack a value."""
     motions = []
     for head in survey.heads:
         good = np.isfinite(head[position.column])
@@ -186,22 +201,22 @@ def motions_of(
         if velocity is not None:
             good = good & np.isfinite(head[velocity.column])
             rate = head[velocity.column][good]
-        motions.append(MotionEvidence(head[time.column][good], head[position.column][good], rate))
+        motions.append(RawMotion(head[time.column][good], head[position.column][good], rate))
     return motions
 
 
-def _lever(survey: Survey, family: list[LogChannel]) -> float | None:
-    """Return the tool's way per turn of an axis [mm per raw unit], median over the logs."""
+def _tool_path_per_angle(survey: Survey, family: list[LogChannel]) -> float | None:
+    """Return the tool's path per angle of the moving axis, median over the logs [mm/raw]."""
     tool = survey.tool()
     if not tool:
         return None
     scale = 1000.0 if all(c.unit.strip() == "m" for c in tool) else 1.0
     found = []
     for head in survey.heads:
-        way = scale * np.stack([head[c.column] for c in tool], axis=1)
+        points = scale * np.stack([head[c.column] for c in tool], axis=1)
         axes = np.stack([head[c.column] for c in family], axis=1)
-        good = np.isfinite(way).all(axis=1) & np.isfinite(axes).all(axis=1)
-        size = unit_evidence.lever(way[good], axes[good])
-        if size is not None:
-            found.append(size)
+        good = np.isfinite(points).all(axis=1) & np.isfinite(axes).all(axis=1)
+        ratio = unit_evidence.tool_path_per_angle(points[good], axes[good])
+        if ratio is not None:
+            found.append(ratio)
     return float(np.median(found)) if found else None

@@ -1,4 +1,4 @@
-"""What a column of a log is, from its name: quantity, joint, side of the gear and unit."""
+"""Recognise the columns of a log by name: quantity, joint, side of the gear and unit."""
 
 import re
 from collections.abc import Collection, Iterable, Sequence
@@ -20,14 +20,16 @@ from frictioncli.logs.channels.aliases import (
 from frictioncli.logs.log_source import Refusal
 
 _UNIT = re.compile(r"^(?P<name>.*?)\s*[\[(](?P<unit>[^\[\]()]*)[\])]\s*$")
-_TAIL = re.compile(
+_JOINT_LAST = re.compile(
     r"^(?P<name>.*?)(?:(?<=[a-z])[AJ]|[ _.\-(\[]+[AaJj]?[ _]?|)(?P<joint>\d{1,2})[)\]]?$"
 )
-_FRONT = re.compile(
+_JOINT_FIRST = re.compile(
     r"^(?:joint|axis|axle|achse|gelenk|[aj])[ _.]?(?P<joint>\d{1,2})[ _.\-]+(?P<name>.+)$", re.I
 )
 _JOINT_IN_BRACKETS = re.compile(r"^[AaJj]?\d{1,2}$")
-_DRIVE = re.compile(r"NextGenDrive#(\d{1,2})|(?:^|[_\s-])(?:A|J|axis|joint|achse)(\d)$", re.I)
+_JOINT_IN_FILE_NAME = re.compile(
+    r"NextGenDrive#(\d{1,2})|(?:^|[_\s-])(?:A|J|axis|joint|achse)(\d)$", re.I
+)
 
 
 @dataclass(frozen=True, slots=True)
@@ -39,17 +41,18 @@ class LogChannel:
     column : int
         Index in the file, from 0.
     name : str
-        Its name as it stands there.
+        Its name as it stands in the file.
     meaning : Meaning
-        Quantity, side and rank.
+        Quantity, side of the gear and rank.
     joint : int or None
         Joint number from 1; None where the name has none.
     unit : str
-        Unit as written, "" where none.
+        Unit as written; "" where there is none.
     family : str
-        The name without number and unit: columns of one family share their unit.
+        The name without joint number and unit; columns of one family share their unit.
     is_merged : bool
-        Taken from another file of the same trace, at this file's times: second choice.
+        Whether it was merged from another file of the same trace; columns of the file itself are
+        preferred.
     """
 
     column: int
@@ -87,12 +90,20 @@ class JointChannels:
 
 
 def split_unit(column: str) -> tuple[str, str]:
-    """Return a column's name without its unit, and the unit as written ("" where none)."""
+    """Return a column's name without its unit, and the unit as written ("" where there is none).
+
+    Examples
+    --------
+    >>> split_unit("AxisPos_Act1 [deg]")
+    ('AxisPos_Act1', 'deg')
+    >>> split_unit("q(2)")
+    ('q(2)', '')
+    """
     found = _UNIT.match(column.strip().strip('"'))
     if found is None or _JOINT_IN_BRACKETS.match(found["unit"].strip()):
         return column.strip().strip('"'), ""
     unit = found["unit"].strip()
-    if unit in ("x", "y", "z", "rx", "ry", "rz"):  # an axis of a frame, no unit
+    if unit in ("x", "y", "z", "rx", "ry", "rz"):  # an axis of a coordinate frame, not a unit
         return f"{found['name']} {unit}", ""
     return found["name"], unit
 
@@ -100,17 +111,23 @@ def split_unit(column: str) -> tuple[str, str]:
 def recognise_channels(
     columns: Sequence[str], first_merged: int | None = None
 ) -> tuple[LogChannel, ...]:
-    """Return the columns whose names tell what they are, in file order.
+    """Return the columns whose names are known, in file order.
 
-    Where a family has a column numbered 0 the file counts joints from 0 and all of its joint
-    numbers are raised by one. Of columns of the same name the first is taken.
+    Where a column has joint number 0, the file counts joints from 0 and all of its joint numbers
+    are raised by one. Of several columns with the same name, the first is taken.
 
     Parameters
     ----------
     columns : sequence of str
         Column names.
     first_merged : int, optional
-        The first column that another file lends.
+        Index of the first column that was merged from another file.
+
+    Examples
+    --------
+    >>> columns = ["Zeit [s]", "actual_q_0", "actual_q_1", "comment"]
+    >>> [(channel.quantity, channel.joint) for channel in recognise_channels(columns)]
+    [('time', None), ('position', 1), ('position', 2)]
     """
     found: list[LogChannel] = []
     seen: set[str] = set()
@@ -130,11 +147,11 @@ def recognise_channels(
 
 def _recognised(index: int, column: str) -> LogChannel | None:
     name, unit = split_unit(column)
-    for text in _readings(name):
-        plain = MEANINGS.get(_key(text))
-        if plain is not None:
-            return LogChannel(index, column, plain, None, unit, _key(text))
-        for pattern in (_FRONT, _TAIL):
+    for text in _candidate_names(name):
+        meaning = MEANINGS.get(_key(text))
+        if meaning is not None:
+            return LogChannel(index, column, meaning, None, unit, _key(text))
+        for pattern in (_JOINT_FIRST, _JOINT_LAST):
             parts = pattern.match(text)
             meaning = MEANINGS.get(_key(parts["name"])) if parts else None
             if parts and meaning and meaning.quantity not in (TIME, TOOL):
@@ -143,8 +160,8 @@ def _recognised(index: int, column: str) -> LogChannel | None:
     return None
 
 
-def _readings(name: str) -> tuple[str, ...]:
-    """Return how a name may be read: a ROS topic, /joints/joint_2/position, from its end."""
+def _candidate_names(name: str) -> tuple[str, ...]:
+    """Return a name, or of a ROS topic such as ``/joints/joint_2/position`` its last parts."""
     if not name.startswith("/"):
         return (name,)
     parts = name.split("/")
@@ -152,13 +169,20 @@ def _readings(name: str) -> tuple[str, ...]:
 
 
 def _key(name: str) -> str:
+    """Return a name as a key of :data:`MEANINGS`."""
     lower = name.lower().replace("ä", "ae").replace("ö", "oe").replace("ü", "ue")
     return re.sub(r"[^a-z0-9]", "", lower.replace("ß", "ss"))
 
 
 def joint_in_name(stem: str) -> int | None:
-    """Return the joint that a file's name tells, such as 3 of ``..._NextGenDrive#3``."""
-    found = _DRIVE.search(stem)
+    """Return the joint number in a file's name, None where it has none.
+
+    Examples
+    --------
+    >>> joint_in_name("trace_NextGenDrive#3")
+    3
+    """
+    found = _JOINT_IN_FILE_NAME.search(stem)
     return int(found[1] or found[2]) if found else None
 
 
@@ -180,31 +204,31 @@ def assign_channels(
     joints : tuple of int or None
         The joints wanted; None for every joint with a torque channel.
     file_joint : int
-        The joint of columns without a number.
+        The joint of columns whose names have no joint number.
 
     Returns
     -------
     tuple of JointChannels or Refusal
-        ``no_torque_channel``, ``no_position_channel`` or ``no_time_channel``.
+        Refused as ``no_torque_channel``, ``no_position_channel`` or ``no_time_channel``.
     """
-    times = _of(channels, TIME)
-    torques = _of(channels, TORQUE)
-    have = {file_joint if c.joint is None else c.joint for c in torques}
-    wanted = sorted(have if joints is None else have & set(joints))
+    times = _by_preference(channels, TIME)
+    torques = _by_preference(channels, TORQUE)
+    with_torque = {file_joint if c.joint is None else c.joint for c in torques}
+    wanted = sorted(with_torque if joints is None else with_torque & set(joints))
     if not wanted:
         which = "" if joints is None else f" of joint {', '.join(map(str, joints))}"
         return _missing("torque", which, channels, columns)
-    single = len(have | {c.joint for c in channels if c.joint is not None}) == 1
+    single = len(with_torque | {c.joint for c in channels if c.joint is not None}) == 1
     chosen: list[JointChannels] = []
     for joint in wanted:
-        own = [c for c in channels if c.joint == joint]
-        own += [c for c in channels if c.joint is None and (single or joint == file_joint)]
-        shared = own + [c for c in channels if c.joint is None and c not in own]
-        positions = _of(own, POSITION)
+        of_joint = [c for c in channels if c.joint == joint]
+        of_joint += [c for c in channels if c.joint is None and (single or joint == file_joint)]
+        usable = of_joint + [c for c in channels if c.joint is None and c not in of_joint]
+        positions = _by_preference(of_joint, POSITION)
         if positions and times:
-            chosen.append(_joint_channels(joint, times[0], positions, own, shared))
+            chosen.append(_joint_channels(joint, times[0], positions, of_joint, usable))
     if chosen:
-        lacking = sorted({*(joints or ()), *wanted} - {own.joint for own in chosen})
+        lacking = sorted({*(joints or ()), *wanted} - {found.joint for found in chosen})
         without = tuple(f"joint {joint}: no position and torque channel" for joint in lacking)
         return replace(chosen[0], notes=(*chosen[0].notes, *without)), *chosen[1:]
     if not times:
@@ -216,13 +240,14 @@ def _joint_channels(
     joint: int,
     time: LogChannel,
     positions: list[LogChannel],
-    own: Sequence[LogChannel],
-    shared: Sequence[LogChannel],
+    of_joint: Sequence[LogChannel],
+    usable: Sequence[LogChannel],
 ) -> JointChannels:
-    torques = _of(own, TORQUE)
+    """Return the columns of a joint; temperatures may be ``usable`` ones without a joint number."""
+    torques = _by_preference(of_joint, TORQUE)
     position = min(positions, key=lambda c: (c.is_merged, c.meaning.side == MOTOR_SIDE))
     other_position = _first([c for c in positions if c.meaning.side != position.meaning.side])
-    velocities = _of(own, VELOCITY)
+    velocities = _by_preference(of_joint, VELOCITY)
     same_side = [c for c in velocities if c.meaning.side == position.meaning.side]
     notes = []
     if len(torques) > 1:
@@ -235,14 +260,14 @@ def _joint_channels(
         torque=torques[0],
         velocity=_first(same_side or (velocities if other_position else [])),
         other_position=other_position,
-        motor_temperature=_first(_of(shared, MOTOR_TEMPERATURE)),
-        housing_temperature=_first(_of(shared, HOUSING_TEMPERATURE)),
-        load=_first(_of(own, LOAD)),
+        motor_temperature=_first(_by_preference(usable, MOTOR_TEMPERATURE)),
+        housing_temperature=_first(_by_preference(usable, HOUSING_TEMPERATURE)),
+        load=_first(_by_preference(of_joint, LOAD)),
         notes=tuple(notes),
     )
 
 
-def _of(channels: Iterable[LogChannel], quantity: str) -> list[LogChannel]:
+def _by_preference(channels: Iterable[LogChannel], quantity: str) -> list[LogChannel]:
     """Return the channels of a quantity, preferred ones first."""
     return sorted(
         (c for c in channels if c.quantity == quantity),

@@ -1,10 +1,9 @@
-"""What the numbers of a log say about the units of its time, position and velocity.
+"""Evidence in the values of a log for the units of its time, position and velocity.
 
-Positions, velocities and times are checked against each other and against what a joint can do;
-each function returns what it believes and the evidence for it.
+The change of position is compared with the integral of velocity, and positions with the range of
+motion of a joint and with the path of the tool.
 """
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -12,24 +11,30 @@ import numpy as np
 from frictioncli.arrays import Array
 from frictioncli.logs.channels.units import FACTORS
 
-_TURN = 180.0 / np.pi
+_DEGREES_PER_RADIAN = 180.0 / np.pi
 _LIMIT = 2 * np.pi
 _MARGIN = 1.1
 RADIAN_LIMIT = _LIMIT * _MARGIN
-"""A joint with end stops does not turn further than this. [rad]"""
-_COUPLED = 0.02
-"""Positions whose ratio varies by more than this share are not those of one gear."""
-_RAW = 0.5
-"""Velocities are rather in a usual unit and time in ms than raw values without their scale."""
-_LEVER = (0.02, 5.0)  # [m]
-_WILD = 1e6
+"""Largest absolute position of a joint with end stops. [rad]"""
+_UNSCALED_COST = 0.5
+"""Cost of velocity in mdeg/s, that is without scale; velocity in deg/s with time in ms is
+preferred."""
+_LEVER_ARM = (0.02, 5.0)
+"""Range of the tool's distance from an axis. [m]"""
+_OUTLIER_FACTOR = 1e6
+"""A value so many times larger than the 95 % quantile of absolute values is damaged."""
 
 
 @dataclass(frozen=True, slots=True)
-class MotionEvidence:
-    """Raw samples of one axis in one file, for finding units; velocity empty where none.
+class RawMotion:
+    """Raw samples of one axis in one file.
 
-    ``time`` in the raw unit, shape (n,); ``position`` and ``velocity`` raw, shape (n,).
+    Attributes
+    ----------
+    time, position : ndarray, shape (n,)
+        Time and position. [raw]
+    velocity : ndarray, shape (n,) or (0,)
+        Velocity, empty where the file has none. [raw]
     """
 
     time: Array
@@ -37,11 +42,30 @@ class MotionEvidence:
     velocity: Array
 
 
-def motion_ratio(motions: list[MotionEvidence]) -> float | None:
-    """Return the median ratio of position change to the integral of velocity, in raw units.
+def motion_ratio(motions: list[RawMotion]) -> float | None:
+    """Return the median ratio of the change of position to the integral of velocity.
 
-    Robust: windows of about 0.1 s or ten samples in which the axis moves, median over all of them;
-    None when nothing moves or the ratios disagree by more than a third.
+    The ratio is taken over windows of eight samples (one sample in short files) in which the axis
+    moves.
+
+    Parameters
+    ----------
+    motions : list of RawMotion
+        The axis in each file.
+
+    Returns
+    -------
+    float or None
+        None where nothing moves, or where the median absolute deviation of the ratios exceeds a
+        third of their median. [raw position / (raw velocity · raw time)]
+
+    Examples
+    --------
+    >>> time = np.linspace(0, 10, 101)
+    >>> position = np.degrees(np.sin(time))
+    >>> velocity = np.cos(time)  # [rad/s]
+    >>> round(motion_ratio([RawMotion(time, position, velocity)]), 1)
+    57.3
     """
     ratios = [_window_ratios(motion) for motion in motions if len(motion.time) >= 3]
     pooled = np.concatenate(ratios) if ratios else np.empty(0)
@@ -52,112 +76,158 @@ def motion_ratio(motions: list[MotionEvidence]) -> float | None:
     return median if median != 0 and spread < abs(median) / 3 else None
 
 
-def _window_ratios(motion: MotionEvidence) -> Array:
+def _window_ratios(motion: RawMotion) -> Array:
     if len(motion.velocity) != len(motion.time):
         return np.empty(0)
-    # one damaged cell must not be the only place that moves
+    # a single damaged value must not raise the threshold of motion for all others
     speed = np.abs(motion.velocity)
-    usual = speed <= _WILD * (float(np.quantile(speed, 0.95)) or np.inf)
+    usual = speed <= _OUTLIER_FACTOR * (float(np.quantile(speed, 0.95)) or np.inf)
     if not usual.all():
-        motion = MotionEvidence(motion.time[usual], motion.position[usual], motion.velocity[usual])
+        motion = RawMotion(motion.time[usual], motion.position[usual], motion.velocity[usual])
     steps = np.diff(motion.time)
     if not np.any(steps > 0):
         return np.empty(0)
-    area = steps * (motion.velocity[1:] + motion.velocity[:-1]) / 2
-    travelled = np.concatenate(([0.0], np.cumsum(area)))
+    increments = steps * (motion.velocity[1:] + motion.velocity[:-1]) / 2
+    integral = np.concatenate(([0.0], np.cumsum(increments)))
     period = float(np.median(steps))
     width = 1 if len(steps) < 200 else 8
-    by_velocity = travelled[width:] - travelled[:-width]
+    by_velocity = integral[width:] - integral[:-width]
     by_position = motion.position[width:] - motion.position[:-width]
     elapsed = motion.time[width:] - motion.time[:-width]
-    even = (elapsed > 0) & (elapsed < 2 * width * period)
+    without_gap = (elapsed > 0) & (elapsed < 2 * width * period)
     moving = np.abs(by_velocity) > 0.3 * np.max(np.abs(by_velocity), initial=0.0)
-    return by_position[even & moving] / by_velocity[even & moving]
+    return by_position[without_gap & moving] / by_velocity[without_gap & moving]
 
 
-def position_range(motions: list[MotionEvidence]) -> tuple[float, float]:
-    """Return the greatest distance from zero and the greatest span within a file, in raw units.
+def position_range(motions: list[RawMotion]) -> tuple[float, float]:
+    """Return the largest absolute position and the largest position range within a file.
 
-    A thousandth of the samples on either side does not count, so that damaged cells do not, nor
-    does what lies a million times further from zero than most: an axis at rest at zero has no scale
-    of its own.
+    The extreme thousandth of the samples on either side is left out, as it may be damaged. So are
+    values a million times larger than most; the reference is the largest 95 % quantile of all
+    files, as that of an axis at rest at zero would be zero.
+
+    Parameters
+    ----------
+    motions : list of RawMotion
+        The axis in each file.
+
+    Returns
+    -------
+    largest, span : float
+        Both 0 where there are no samples. [raw]
+
+    Examples
+    --------
+    >>> position_range([RawMotion(np.arange(3.0), np.array([-10.0, 5.0, 20.0]), np.empty(0))])
+    (20.0, 30.0)
     """
-    furthest = span = 0.0
-    moved = [motion for motion in motions if len(motion.position)]
-    usual = (float(np.quantile(np.abs(motion.position), 0.95)) for motion in moved)
-    most = max(usual, default=0.0) or np.inf
-    for motion in moved:
-        position = motion.position[np.abs(motion.position) <= _WILD * most]
+    largest = span = 0.0
+    filled = [motion for motion in motions if len(motion.position)]
+    usual = (float(np.quantile(np.abs(motion.position), 0.95)) for motion in filled)
+    reference = max(usual, default=0.0) or np.inf
+    for motion in filled:
+        position = motion.position[np.abs(motion.position) <= _OUTLIER_FACTOR * reference]
         n = len(position)
         if not n:
             continue
-        damaged = int(np.ceil(n / 1000)) if n >= 50 else 0
-        ordered = np.sort(position)[damaged : n - damaged]
-        furthest = max(furthest, float(np.max(np.abs(ordered))))
+        trimmed = int(np.ceil(n / 1000)) if n >= 50 else 0
+        ordered = np.sort(position)[trimmed : n - trimmed]
+        largest = max(largest, float(np.max(np.abs(ordered))))
         span = max(span, float(ordered[-1] - ordered[0]))
-    return furthest, span
+    return largest, span
 
 
-def lever(tool: Array, axes: Array) -> float | None:
-    """Return the median way of the tool per turn of the fastest axis [mm per raw unit].
+def tool_path_per_angle(tool: Array, axes: Array) -> float | None:
+    """Return the median path of the tool per angle of the fastest axis: its lever arm.
 
     Parameters
     ----------
     tool : ndarray, shape (n, 3)
         Tool position. [mm]
-    axes : ndarray, shape (n, m)
-        Axis positions, raw.
+    axes : ndarray, shape (n, axes)
+        Axis positions. [raw]
+
+    Returns
+    -------
+    float or None
+        None where nothing moves; the lever arm in mm if positions are in rad. [mm/raw]
+
+    Examples
+    --------
+    >>> angle = np.linspace(0, 1, 50)
+    >>> tool = 400 * np.column_stack([np.cos(angle), np.sin(angle), 0 * angle])
+    >>> round(tool_path_per_angle(tool, angle[:, None]), 1)
+    400.0
     """
     if len(tool) < 10:
         return None
-    way = np.linalg.norm(np.diff(tool, axis=0), axis=1)
-    turn = np.max(np.abs(np.diff(axes, axis=0)), axis=1)
-    moving = turn > 0.2 * np.quantile(turn, 0.98)
-    if not np.any(moving & (turn > 0)):
+    path = np.linalg.norm(np.diff(tool, axis=0), axis=1)
+    angle = np.max(np.abs(np.diff(axes, axis=0)), axis=1)
+    moving = angle > 0.2 * np.quantile(angle, 0.98)
+    if not np.any(moving & (angle > 0)):
         return None
-    return float(np.median(way[moving] / turn[moving]))
+    return float(np.median(path[moving] / angle[moving]))
 
 
 def possible_position_units(
-    *, furthest: float, span: float, on_motor: bool, way_per_turn: float | None
+    *, largest: float, span: float, on_motor: bool, path_per_angle: float | None
 ) -> tuple[frozenset[str], str]:
     """Return the units that positions can be in, and why.
 
     Parameters
     ----------
-    furthest, span : float
-        Greatest distance from zero and span. [raw]
+    largest, span : float
+        Largest absolute position and position range. [raw]
     on_motor : bool
-        A motor turns without limit.
-    way_per_turn : float or None
-        Result of :func:`lever`.
+        Whether it is the position of the motor, which turns without limit.
+    path_per_angle : float or None
+        Result of :func:`tool_path_per_angle`. [mm/raw]
+
+    Examples
+    --------
+    >>> units, why = possible_position_units(
+    ...     largest=170, span=300, on_motor=False, path_per_angle=None
+    ... )
+    >>> sorted(units), why
+    (['deg'], 'values reach ±170, beyond a turn in rad')
     """
-    if furthest > 1e6 or (furthest > 1e5 and not on_motor):
-        return frozenset({"udeg"}), f"values reach {furthest:.3g}"
+    if largest > 1e6 or (largest > 1e5 and not on_motor):
+        return frozenset({"udeg"}), f"values reach {largest:.3g}"
     if on_motor:
         return frozenset({"deg", "rad"}), ""
-    if furthest > RADIAN_LIMIT:
-        return frozenset({"deg"}), f"values reach ±{furthest:.4g}, beyond a turn in rad"
-    levers = _units_by_lever(way_per_turn) if way_per_turn is not None else frozenset()
-    if len(levers) == 1 and way_per_turn is not None:
-        metres = way_per_turn / 1000 * (_TURN if "deg" in levers else 1.0)
-        return levers, f"the tool then moves on a lever of {metres:.2g} m"
+    if largest > RADIAN_LIMIT:
+        return frozenset({"deg"}), f"values reach ±{largest:.4g}, beyond a turn in rad"
+    if path_per_angle is not None:
+        lever_arms = {
+            "rad": path_per_angle / 1000,
+            "deg": path_per_angle / 1000 * _DEGREES_PER_RADIAN,
+        }
+        fitting = [u for u, arm in lever_arms.items() if _LEVER_ARM[0] <= arm <= _LEVER_ARM[1]]
+        if len(fitting) == 1:
+            (unit,) = fitting
+            return (
+                frozenset(fitting),
+                f"the tool then moves on a lever of {lever_arms[unit]:.2g} m",
+            )
     if span > 0.01:
         return frozenset({"rad"}), f"values span {span:.2g} and stay within ±6.3"
     return frozenset({"deg", "rad"}), "it does not move"
 
 
-def _units_by_lever(way_per_turn: float) -> frozenset[str]:
-    metres = {"rad": way_per_turn / 1000, "deg": way_per_turn / 1000 * _TURN}
-    return frozenset(unit for unit, size in metres.items() if _LEVER[0] <= size <= _LEVER[1])
-
-
 @dataclass(frozen=True, slots=True)
 class MotionUnits:
-    """Units of time, position and velocity that fit together.
+    """Units of time, position and velocity that agree with each other.
 
-    ``velocity`` is None where none fits; ``reversed_velocity`` where it runs against position.
-    ``evidence`` tells what was measured.
+    Attributes
+    ----------
+    time, position : str
+        Units.
+    velocity : str or None
+        Unit; None where none agrees with time and position.
+    reversed_velocity : bool
+        Whether velocity has the opposite sign of the change of position.
+    evidence : str
+        The measured ratio in words; "" where there is no velocity.
     """
 
     time: str
@@ -173,16 +243,24 @@ def motion_units(
     possible: frozenset[str],
     ratio: float | None,
 ) -> MotionUnits:
-    """Choose the units that agree with the measurements and differ least from the header.
+    """Choose the units that agree with the values and differ least from the header.
 
     Parameters
     ----------
     declared : tuple of str or None
-        Units of time, position and velocity by the header.
+        Units of time, position and velocity in the header.
     possible : frozenset of str
         Position units that the values allow.
     ratio : float or None
-        Result of :func:`motion_ratio`; None where velocity says nothing.
+        Result of :func:`motion_ratio`.
+
+    Examples
+    --------
+    >>> found = motion_units(
+    ...     declared=("s", None, "deg/s"), possible=frozenset({"deg"}), ratio=57.3
+    ... )
+    >>> found.velocity
+    'rad/s'
     """
     time, position, velocity = declared
     positions = sorted(possible, key=lambda unit: (unit != position, unit))
@@ -201,10 +279,10 @@ def motion_units(
                 if not 0.9 < abs(ratio) / expected < 1.1:
                     continue
                 cost = (
-                    2.0 * _differs(time_unit, time, "s")
-                    + _differs(position_unit, position, "deg")
-                    + _differs(velocity_unit, velocity, "deg/s")
-                    + _RAW * (velocity_unit == "mdeg/s" and velocity != "mdeg/s")
+                    2.0 * _cost(time_unit, time, "s")
+                    + _cost(position_unit, position, "deg")
+                    + _cost(velocity_unit, velocity, "deg/s")
+                    + _UNSCALED_COST * (velocity_unit == "mdeg/s" and velocity != "mdeg/s")
                 )
                 found = MotionUnits(
                     time_unit,
@@ -226,45 +304,8 @@ def motion_units(
     )
 
 
-def _differs(unit: str, declared: str | None, usual: str) -> float:
+def _cost(unit: str, declared: str | None, usual: str) -> float:
+    """Return the cost of a unit: 1 where the header names another one, 0.25 where it is unusual."""
     if declared is None:
         return 0.0 if unit == usual else 0.25
     return 0.0 if unit == declared else 1.0
-
-
-def gear_ratio(motor: Array, joint: Array) -> float | None:
-    """Return motor turn per joint turn from both positions.
-
-    None when too little moves, or the two do not move together.
-
-    Parameters
-    ----------
-    motor, joint : ndarray, shape (n,)
-        Positions in the same unit; rows where one is NaN are left out.
-    """
-    good = np.isfinite(motor) & np.isfinite(joint)
-    motor, joint = motor[good], joint[good]
-    if len(joint) < 20 or np.ptp(joint) < 1.0:
-        return None
-    width = max(1, len(joint) // 200)
-    by_motor, by_joint = motor[width:] - motor[:-width], joint[width:] - joint[:-width]
-    moving = np.abs(by_joint) > 0.3 * np.max(np.abs(by_joint))
-    ratios = by_motor[moving] / by_joint[moving]
-    ratio = float(np.median(ratios))
-    spread = float(np.median(np.abs(ratios - ratio)))
-    return ratio if spread < _COUPLED * abs(ratio) else None
-
-
-def gear_offset(pairs: Sequence[tuple[Array, Array]], ratio: float) -> float:
-    """Return the joint's position where the motor's is 0 [deg], median over all samples.
-
-    Parameters
-    ----------
-    pairs : sequence of (ndarray, ndarray)
-        Positions of the motor and of the joint, per log. [deg]
-    ratio : float
-        Motor turn per joint turn.
-    """
-    left = np.concatenate([joint - motor / ratio for motor, joint in pairs])
-    left = left[np.isfinite(left)]
-    return float(np.median(left)) if len(left) else 0.0
