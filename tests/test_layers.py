@@ -19,7 +19,7 @@ LAYERS = [
     {"model", "effects"},
     {"pairs", "logs", "simulator"},
     {"tables", "documents"},
-    {"schemas", "files", "provenance", "workfiles"},
+    {"schemas", "files", "provenance", "workfiles", "options"},
     {"linear_algebra"},
     {"quantities", "errors", "arrays", "plain_text", "__init__"},
 ]

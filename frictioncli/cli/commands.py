@@ -1,26 +1,35 @@
-"""One function per command.
+"""One function per command: its settings, one call of the library, what is printed.
 
-A command makes its settings first and imports what works with them last: a wrong option is told at
-once.
+The options of a command are the fields of its settings, see :mod:`frictioncli.cli.signature`. What
+works with the settings is imported last, so that help and wrong options are answered at once.
 """
 
+import sys
+from collections.abc import Callable, Iterable, Iterator
+from contextlib import AbstractContextManager, nullcontext
+from dataclasses import replace
 from pathlib import Path
-from typing import Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from frictioncli.cli import options as o
-from frictioncli.cli.compare import compare
-from frictioncli.cli.export import export
-from frictioncli.cli.fleet import fleet
-from frictioncli.cli.plan import plan
+from frictioncli.cli.signature import Command, with_options
 from frictioncli.cli.terminal import say
+from frictioncli.comparison.settings import ComparisonSettings
 from frictioncli.correction.settings import CorrectionSettings, EvaluationGrid, ScheduleSettings
+from frictioncli.deployment.settings import ExportSettings
+from frictioncli.design.settings import PlanSettings
 from frictioncli.diagnosis.settings import DiagnosisSettings
 from frictioncli.errors import OptionError
+from frictioncli.fleet.settings import FleetSettings
+from frictioncli.logs.settings import IngestSettings
 from frictioncli.model.settings import FitSettings
-from frictioncli.pairs.settings import PairingSettings, SteadySettings
+from frictioncli.pairs.settings import PairingSettings, SeparationSettings
 from frictioncli.simulator.settings import SynthesisSettings
+from frictioncli.stages.settings import RunSettings
+
+if TYPE_CHECKING:
+    from frictioncli.fleet.joint import Outcome
 
 app = typer.Typer(
     name="frictioncli",
@@ -30,6 +39,29 @@ app = typer.Typer(
     rich_markup_mode=None,
     pretty_exceptions_enable=False,
 )
+
+Logs = Annotated[
+    list[Path], typer.Argument(help="Log files or folders; each folder is one run.", metavar="LOGS")
+]
+Work = Annotated[
+    Path, typer.Option("-w", "--work", metavar="RUN", help="Work folder that holds the tables.")
+]
+Extended = Annotated[bool, typer.Option("--extended", help="Use extended-model.json.")]
+
+WORK = Path("friction-run")
+
+_FINDING = 3
+_INTERRUPTED = 130
+
+
+def _command(**layout: Any) -> Callable[[Command], Command]:
+    """Register a command; ``layout`` goes to :func:`frictioncli.cli.signature.with_options`."""
+
+    def register(command: Command) -> Command:
+        app.command()(with_options(command, **layout))
+        return command
+
+    return register
 
 
 def _show_version(wanted: bool) -> None:
@@ -49,24 +81,22 @@ def _common(
     """Friction of a robot joint from its torque logs. Units: deg, deg/s, s, N·m, °C."""
 
 
-@app.command()
+@_command()
 def inspect(
-    logs: o.Logs,
-    joints: o.Joints = None,
-    map_file: o.Map = None,
-    gear_ratio: o.GearRatio = None,
-    time_unit: o.TimeUnit = None,
-    position_unit: o.PositionUnit = None,
-    velocity_unit: o.VelocityUnit = None,
-    torque_unit: o.TorqueUnit = None,
-    temperature_unit: o.TemperatureUnit = None,
-    json: o.Json = False,
-    suggest_map: o.SuggestMap = False,
+    logs: Logs,
+    settings: IngestSettings,
+    json: Annotated[
+        bool, typer.Option("--json", help="Print one JSON document; units are in its key names.")
+    ] = False,
+    suggest_map: Annotated[
+        bool,
+        typer.Option(
+            "--suggest-map",
+            help="Print a first mapping file (TOML) for --map, with its reasons.",
+        ),
+    ] = False,
 ) -> None:
     """Show what logs hold (deg, deg/s, s, N·m, °C), how good they are and what they suffice for."""
-    from frictioncli.logs.settings import IngestSettings
-
-    settings = o.chosen(IngestSettings, locals())
     if json and suggest_map:
         raise OptionError("--json and --suggest-map: expected one of them")
     if suggest_map:
@@ -74,246 +104,223 @@ def inspect(
 
         say(suggested_map(logs, settings))
         return
-    from frictioncli.inspection.inspect import inspect as look
+    from frictioncli.inspection.inspect import inspect as inspect_logs
 
-    found = look(logs, settings)
+    inspection = inspect_logs(logs, settings)
     if json:
         from frictioncli.documents import to_json
         from frictioncli.inspection.document import document
 
-        say(to_json(document(found)).rstrip())
-        return
-    from frictioncli.inspection.text import text
+        say(to_json(document(inspection)).rstrip())
+    else:
+        from frictioncli.inspection.text import text
 
-    say(text(found))
+        say(text(inspection))
 
 
-@app.command()
-def ingest(
-    logs: o.Logs,
-    work: o.Work = o.WORK,
-    joints: o.Joints = None,
-    map_file: o.Map = None,
-    gear_ratio: o.GearRatio = None,
-    time_unit: o.TimeUnit = None,
-    position_unit: o.PositionUnit = None,
-    velocity_unit: o.VelocityUnit = None,
-    torque_unit: o.TorqueUnit = None,
-    temperature_unit: o.TemperatureUnit = None,
-) -> None:
+@_command()
+def ingest(logs: Logs, *, work: Work = WORK, settings: IngestSettings) -> None:
     """Read logs into samples: deg, deg/s, s, N·m (or A), °C."""
-    from frictioncli.logs.settings import IngestSettings
-
-    settings = o.chosen(IngestSettings, locals())
     from frictioncli.stages.ingest import ingest as ingest_stage
 
     say(ingest_stage(logs, work, settings))
 
 
-@app.command()
-def pair(
-    work: o.Work = o.WORK,
-    bin_width: o.BinWidth = o.PAIRING.bin_width,
-    min_speed: o.MinSpeed = o.STEADY.min_speed,
-    speed_tolerance: o.SpeedTolerance = o.STEADY.speed_tolerance,
-    settling: o.Settling = o.STEADY.settling,
-    min_samples: o.MinSamples = o.STEADY.min_samples,
-    same_speed: o.SameSpeed = o.PAIRING.same_speed,
-    same_temperature: o.SameTemperature = o.PAIRING.same_temperature,
-    longest_pause: o.LongestPause = o.PAIRING.longest_pause,
-) -> None:
+@_command(before={"min_speed": ["bin_width"]})
+def pair(*, work: Work = WORK, settings: PairingSettings) -> None:
     """Match counter-directed constant-speed motion by speed [deg/s] and angle bin [deg]."""
-    steady = o.chosen(SteadySettings, locals())
-    settings = o.chosen(PairingSettings, locals())
     from frictioncli.stages.pair import pair as pair_stage
 
     say(pair_stage(work, settings))
 
 
-@app.command()
-def separate(work: o.Work = o.WORK, sign: o.Sign = "auto") -> None:
+@_command()
+def separate(*, work: Work = WORK, settings: SeparationSettings) -> None:
     """Separate friction torque from load torque [N·m] by equation (8)."""
-    number = o.sign_number(sign)
     from frictioncli.stages.separate import separate as separate_stage
 
-    say(separate_stage(work, number))
+    say(separate_stage(work, settings))
 
 
-@app.command()
-def fit(
-    work: o.Work = o.WORK,
-    method: o.Method = o.FIT.method,
-    temperature: o.Temperature = o.FIT.temperature,
-) -> None:
+@_command()
+def fit(*, work: Work = WORK, settings: FitSettings) -> None:
     """Identify the friction model (16): load [N·m], speed [deg/s], temperature [°C]."""
-    settings = FitSettings(method=method, temperature=temperature)
     from frictioncli.stages.fit import fit as fit_stage
 
     say(fit_stage(work, settings))
 
 
-@app.command()
+@_command(before={"criterion": ["k", "tmax"]})
 def simulate(
-    work: o.Work = o.WORK,
-    k: o.K = o.SCHEDULE.k,
-    tmax: o.TMax = o.SCHEDULE.tmax / 60,
-    criterion: o.Criterion = o.SCHEDULE.criterion,
-    bound: o.Bound = o.SCHEDULE.bound,
-    correction_speed: o.CorrectionSpeed = None,
-    smoothing_degree: o.SmoothingDegree = o.CORRECTION.smoothing_degree,
-    extended: o.Extended = False,
+    *,
+    work: Work = WORK,
+    schedule: ScheduleSettings,
+    settings: CorrectionSettings,
+    extended: Extended = False,
 ) -> None:
     """Simulate the temperature correction of Algorithm 3; tmax in minutes, epsilon in N·m."""
-    schedule = ScheduleSettings(criterion=criterion, k=k, tmax=tmax * 60, bound=bound)
-    correction = o.chosen(CorrectionSettings, locals())
     from frictioncli.stages.simulate import simulate as simulate_stage
 
-    say(simulate_stage(work, schedule, correction, extended=extended))
+    say(simulate_stage(work, schedule, settings, extended=extended))
 
 
-@app.command()
+@_command()
 def evaluate(
-    work: o.Work = o.WORK,
-    k: o.KGrid = None,
-    tmax: o.TMaxGrid = None,
-    bound: o.BoundGrid = None,
-    correction_speed: o.CorrectionSpeed = None,
-    smoothing_degree: o.SmoothingDegree = o.CORRECTION.smoothing_degree,
-    extended: o.Extended = False,
+    *,
+    work: Work = WORK,
+    grid: EvaluationGrid,
+    settings: CorrectionSettings,
+    extended: Extended = False,
 ) -> None:
     """Evaluate schedules over k, tmax [min] and bound [N·m]: epsilon [N·m] by corrections."""
-    grid, correction = _grid(k, tmax, bound), o.chosen(CorrectionSettings, locals())
     from frictioncli.stages.evaluate import evaluate as evaluate_stage
 
-    say(evaluate_stage(work, grid, correction, extended=extended))
+    say(evaluate_stage(work, grid, settings, extended=extended))
 
 
-@app.command()
+@_command()
 def diagnose(
-    work: o.Work = o.WORK,
-    alpha: o.Alpha = o.DIAGNOSIS.alpha,
-    seed: o.DiagnosisSeed = o.DIAGNOSIS.seed,
-    most: o.Most = o.DIAGNOSIS.most,
-    fail_on: o.FailOn = None,
+    *,
+    work: Work = WORK,
+    settings: DiagnosisSettings,
+    fail_on: Annotated[
+        str | None, typer.Option(help="Exit with 3 if there is such a finding: any, named.")
+    ] = None,
 ) -> None:
     """Find what the simulated torque [N·m] gets wrong, name the cause, measure the gain."""
-    o.check_fail_on(fail_on)
-    settings = o.chosen(DiagnosisSettings, locals())
+    if fail_on not in (None, "any", "named"):
+        raise OptionError(f"--fail-on {fail_on}: expected any or named")
     from frictioncli.stages.diagnose import diagnose as diagnose_stage
     from frictioncli.stages.diagnose import has_finding
 
     say(diagnose_stage(work, settings))
     if fail_on and has_finding(work, named_only=fail_on == "named"):
-        raise typer.Exit(3)
+        raise typer.Exit(_FINDING)
 
 
-@app.command()
-def report(work: o.Work = o.WORK) -> None:
+@_command()
+def report(work: Work = WORK) -> None:
     """Draw the figures (deg, deg/s, s, N·m, °C) and write report/index.html."""
     from frictioncli.stages.report import report as report_stage
 
     say(report_stage(work))
 
 
-@app.command()
-def run(
-    logs: o.Logs,
-    work: o.Work = o.WORK,
-    joints: o.Joints = None,
-    map_file: o.Map = None,
-    gear_ratio: o.GearRatio = None,
-    time_unit: o.TimeUnit = None,
-    position_unit: o.PositionUnit = None,
-    velocity_unit: o.VelocityUnit = None,
-    torque_unit: o.TorqueUnit = None,
-    temperature_unit: o.TemperatureUnit = None,
-    bin_width: o.BinWidth = o.PAIRING.bin_width,
-    min_speed: o.MinSpeed = o.STEADY.min_speed,
-    speed_tolerance: o.SpeedTolerance = o.STEADY.speed_tolerance,
-    settling: o.Settling = o.STEADY.settling,
-    min_samples: o.MinSamples = o.STEADY.min_samples,
-    same_speed: o.SameSpeed = o.PAIRING.same_speed,
-    same_temperature: o.SameTemperature = o.PAIRING.same_temperature,
-    longest_pause: o.LongestPause = o.PAIRING.longest_pause,
-    sign: o.Sign = "auto",
-    method: o.Method = o.FIT.method,
-    temperature: o.Temperature = o.FIT.temperature,
-    criterion: o.Criterion = o.SCHEDULE.criterion,
-    k: o.K = o.SCHEDULE.k,
-    tmax: o.TMax = o.SCHEDULE.tmax / 60,
-    bound: o.Bound = o.SCHEDULE.bound,
-    correction_speed: o.CorrectionSpeed = None,
-    smoothing_degree: o.SmoothingDegree = o.CORRECTION.smoothing_degree,
-) -> None:
+@_command(before={"min_speed": ["bin_width"]})
+def run(logs: Logs, *, work: Work = WORK, settings: RunSettings) -> None:
     """Run the whole chain, from logs to the report. Units: deg, deg/s, s, N·m, °C."""
-    from frictioncli.logs.settings import IngestSettings
+    from frictioncli.stages.run import run as run_chain
 
-    steady = o.chosen(SteadySettings, locals())
-    parts: dict[str, Any] = {
-        "ingest": o.chosen(IngestSettings, locals()),
-        "pairing": o.chosen(PairingSettings, locals()),
-        "sign": o.sign_number(sign),
-        "fit": o.chosen(FitSettings, locals()),
-        "schedule": ScheduleSettings(criterion=criterion, k=k, tmax=tmax * 60, bound=bound),
-        "correction": o.chosen(CorrectionSettings, locals()),
-    }
-    from frictioncli.stages import run as pipeline
-
-    pipeline.run(logs, work, pipeline.RunSettings(**parts), tell=_tell)
+    run_chain(logs, work, settings, tell=_say_stage)
 
 
-@app.command()
-def synthesize(
-    folder: Annotated[Path, typer.Argument(help="Folder to make.", metavar="FOLDER")],
-    seed: o.Seed = o.SYNTHESIS.seed,
-    runs: o.Runs = o.SYNTHESIS.runs,
-    joint: o.SimulatedJoint = o.SYNTHESIS.joint,
-    sign: o.SimulatedSign = o.SYNTHESIS.sign,
-    payload: o.Payload = o.SYNTHESIS.payload,
-    lowest: o.Lowest = o.SYNTHESIS.lowest,
-    highest: o.Highest = o.SYNTHESIS.highest,
-    ambient: o.Ambient = None,
-    ambient_drift: o.AmbientDrift = None,
-    motor_heat_share: o.MotorHeatShare = None,
-    noise_scale: o.NoiseScale = o.SYNTHESIS.noise_scale,
-    effects: o.Effects = None,
-    blind: o.Blind = False,
-    joint_kind: o.JointKind = o.SYNTHESIS.joint_kind,
-    noise_kind: o.NoiseKind = o.SYNTHESIS.noise_kind,
-    protocol: o.Protocol = o.SYNTHESIS.protocol,
-    thin: o.Thin = o.SYNTHESIS.thin,
-) -> None:
-    """Simulate a joint (deg, deg/s, N·m, °C, kg) and write its traces with truth.json."""
-    settings = o.chosen(SynthesisSettings, locals())
-    from frictioncli.simulator.synthesize import synthesize as make
-
-    say(make(folder, settings))
-
-
-app.command()(plan)
-app.command()(export)
-app.command()(compare)
-app.command()(fleet)
-
-
-def _tell(stage: str, text: object) -> None:
+def _say_stage(stage: str, text: object) -> None:
     first, *others = str(text).splitlines() or [""]
     say(f"{stage:9s} {first}")
     for line in others:
         say(f"{'':9s} {line}")
 
 
-def _grid(k: list[str] | None, tmax: list[str] | None, bound: list[str] | None) -> EvaluationGrid:
-    return EvaluationGrid(
-        k=_numbers("k", k) if k else o.GRID.k,
-        tmax=tuple(60 * minutes for minutes in _numbers("tmax", tmax)) if tmax else o.GRID.tmax,
-        bound=_numbers("bound", bound) if bound else o.GRID.bound,
-    )
+@_command()
+def synthesize(
+    folder: Annotated[Path, typer.Argument(help="Folder to make.", metavar="FOLDER")],
+    settings: SynthesisSettings,
+) -> None:
+    """Simulate a joint (deg, deg/s, N·m, °C, kg) and write its traces with truth.json."""
+    from frictioncli.simulator.synthesize import synthesize as synthesize_traces
+
+    say(synthesize_traces(folder, settings))
 
 
-def _numbers(name: str, texts: list[str]) -> tuple[float, ...]:
-    parts = [part for text in texts for part in text.replace(",", " ").split()]
+@_command(before={"low": ["joint", "new", "seed"]})
+def plan(
+    *,
+    work: Work = WORK,
+    settings: PlanSettings,
+    new: Annotated[
+        bool,
+        typer.Option("--new", help="Without data: Algorithms 1 and 2 of the paper, for any axis."),
+    ] = False,
+) -> None:
+    """Plan the next experiment [min, deg, deg/s, °C]: what it would settle; write its program."""
+    from frictioncli.stages.plan import plan as plan_stage
+    from frictioncli.stages.plan import plan_new
+
+    say(plan_new(work, settings) if new else plan_stage(work, settings))
+
+
+@_command()
+def export(*, work: Work = WORK, settings: ExportSettings) -> None:
+    """Write the model as C, URDF, MJCF, JSON or a table (N·m or A, deg/s, °C); say what is lost."""
+    from frictioncli.stages.export import export as export_stage
+
+    say(export_stage(work, settings))
+
+
+@_command()
+def compare(
+    runs: Annotated[
+        list[Path],
+        typer.Argument(
+            help="Work folders of the same joint on different days; each may hold several runs."
+            " Without dates in the logs they follow each other as named here.",
+            metavar="RUN...",
+        ),
+    ],
+    *,
+    out: Annotated[
+        Path,
+        typer.Option("-w", "--work", metavar="OUT", help="Folder for comparison.json and trend."),
+    ] = Path("friction-comparison"),
+    settings: ComparisonSettings,
+) -> None:
+    """Say what changed in a joint between runs. Friction in N·m (or A) and %, °C, deg/s."""
+    from frictioncli.stages.compare import above_threshold
+    from frictioncli.stages.compare import compare as compare_stage
+
+    say(compare_stage(runs, out, settings))
+    if above_threshold(out):
+        raise typer.Exit(_FINDING)
+
+
+@_command(without=("joints", "pairing", "criterion", "bound", "correction"))
+def fleet(
+    logs: Annotated[
+        Path,
+        typer.Argument(
+            help="Folder with robot=R/joint=J/run=D folders of logs, or a table of contents (CSV,"
+            " Parquet) with columns robot, joint, run, path and, if wanted, map, gear_ratio.",
+            metavar="FLEET",
+        ),
+    ],
+    *,
+    out: Annotated[
+        Path,
+        typer.Option("-w", "--work", metavar="OUT", help="Folder for the table and all joints."),
+    ] = Path("friction-fleet"),
+    options: FleetSettings,
+    diagnosis: Annotated[
+        bool, typer.Option("--diagnosis/--no-diagnosis", help="Diagnose each joint.")
+    ] = True,
+    settings: RunSettings,
+) -> None:
+    """Run the chain for many joints; one row each in fleet.parquet. N·m (or A), °C, deg/s."""
+    from frictioncli.fleet.fleet import run_fleet
+
+    if not diagnosis:
+        settings = replace(settings, diagnosis=None)
     try:
-        return tuple(float(part) for part in parts)
-    except ValueError:
-        raise OptionError(f"--{name} {' '.join(texts)}: expected numbers, such as 2,5,10") from None
+        summary = run_fleet(logs, out, settings, options, _progress_bar)
+    except KeyboardInterrupt:
+        say("interrupted; joints that are done stay done: call again to go on", fault=True)
+        raise typer.Exit(_INTERRUPTED) from None
+    say(summary)
+
+
+def _progress_bar(
+    outcomes: "Iterator[Outcome]", joints: int
+) -> "AbstractContextManager[Iterable[Outcome]]":
+    """Return the outcomes with a progress bar around them, on a terminal only."""
+    if not sys.stdout.isatty():
+        return nullcontext(outcomes)
+    return typer.progressbar(outcomes, length=joints, label="joints")

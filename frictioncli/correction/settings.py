@@ -1,9 +1,10 @@
-"""Settings of the stages ``simulate`` and ``evaluate``."""
+"""Settings of the temperature correction: schedules, and how corrections are computed."""
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 from frictioncli.errors import OptionError
+from frictioncli.options import numbers_option, option
 
 READINGS = ("first_degree", "latest_degree")
 """The two workable readings of criterion (20); see :mod:`frictioncli.correction.schedule`."""
@@ -16,20 +17,28 @@ MIDDLE_SPEED = 2 / 3
 """Share of the highest speed at which to correct: the paper's 67.5 of 101.2 deg/s."""
 
 
+SCALE_OPTION = option("Scale k of criterion (20).")
+LONGEST_TIME_OPTION = option("Time that forces a correction [min].", factor=60.0)
+
+
 @dataclass(frozen=True, slots=True, kw_only=True)
 class CorrectionSettings:
-    """How corrections are computed and judged.
+    """How corrections are computed and evaluated.
 
     Attributes
     ----------
     correction_speed : float or None
-        Speed of the pairs that corrections use; two thirds of the highest if none. [deg/s]
+        Speed of the pairs that corrections use; None: two thirds of the highest. [deg/s]
     smoothing_degree : int
         Degree of the polynomials in motor temperature that smooth the reference of (21).
     """
 
-    correction_speed: float | None = None
-    smoothing_degree: int = 3
+    correction_speed: float | None = field(
+        default=None, metadata=option("Speed of correction pairs [deg/s]; 2/3 of the highest.")
+    )
+    smoothing_degree: int = field(
+        default=3, metadata=option("Degree of the polynomial that smooths (21).")
+    )
 
     def __post_init__(self) -> None:
         if not 0 <= self.smoothing_degree <= 9:
@@ -40,7 +49,7 @@ class CorrectionSettings:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ScheduleSettings:
-    """The schedule that ``simulate`` replays.
+    """When the temperature is corrected.
 
     Attributes
     ----------
@@ -51,14 +60,22 @@ class ScheduleSettings:
     tmax : float
         Time after which a correction is forced. [s]
     bound : float
-        Greatest standard deviation of predicted friction that ``uncertainty`` allows; the default
-        is the error that the paper reaches. [torque unit]
+        Greatest standard deviation of the predicted friction with criterion ``uncertainty``; the
+        default is the error that the paper reports. [torque unit]
     """
 
-    criterion: str = "first_degree"
-    k: float = 5.0
-    tmax: float = 3600.0
-    bound: float = 2.0
+    criterion: str = field(
+        default="first_degree", metadata=option(f"When to correct: {', '.join(CRITERIA)}.")
+    )
+    k: float = field(default=5.0, metadata=SCALE_OPTION)
+    tmax: float = field(default=3600.0, metadata=LONGEST_TIME_OPTION)
+    bound: float = field(
+        default=2.0,
+        metadata=option(
+            "Criterion uncertainty: greatest standard deviation (1 sigma, as epsilon is an RMS) of"
+            " friction predicted for the highest speed [torque unit]."
+        ),
+    )
 
     def __post_init__(self) -> None:
         if self.criterion not in CRITERIA:
@@ -71,11 +88,11 @@ class ScheduleSettings:
 
     @property
     def by_time(self) -> bool:
-        """Whether k and tmax decide, not the bound."""
+        """Whether k and tmax decide, and not the bound."""
         return self.criterion not in ("none", "uncertainty")
 
     def columns(self) -> dict[str, str | float]:
-        """Return what the tables say of the schedule: NaN where one decides nothing."""
+        """Return the columns of the tables; NaN for a parameter that the criterion does not use."""
         return {
             "criterion": self.criterion,
             "k": self.k if self.by_time else math.nan,
@@ -84,19 +101,19 @@ class ScheduleSettings:
         }
 
     def told(self, unit: str) -> str:
-        """Return the schedule in words.
+        """Return the schedule as text.
 
         Parameters
         ----------
         unit : str
             Unit of torque.
         """
-        told = f"criterion {self.criterion}"
+        text = f"criterion {self.criterion}"
         if self.by_time:
-            told += f", k = {self.k:g}, tmax = {self.tmax / 60:g} min"
+            text += f", k = {self.k:g}, tmax = {self.tmax / 60:g} min"
         elif self.criterion == "uncertainty":
-            told += f", bound = {self.bound:g} {unit}"
-        return told
+            text += f", bound = {self.bound:g} {unit}"
+        return text
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -113,9 +130,20 @@ class EvaluationGrid:
         Bounds of criterion ``uncertainty``. [torque unit]
     """
 
-    k: tuple[float, ...] = (1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 8.0, 10.0, 15.0, 20.0)
-    tmax: tuple[float, ...] = (600.0, 1200.0, 1800.0, 3600.0, 7200.0)
-    bound: tuple[float, ...] = (0.5, 0.75, 1.0, 1.5, 2.0, 3.0, 4.0, 6.0)
+    k: tuple[float, ...] = field(
+        default=(1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 8.0, 10.0, 15.0, 20.0),
+        metadata=numbers_option("Scales k to evaluate, repeated or 1,2,5.", "--k"),
+    )
+    tmax: tuple[float, ...] = field(
+        default=(600.0, 1200.0, 1800.0, 3600.0, 7200.0),
+        metadata=numbers_option("Forcing times to evaluate [min], as --k.", "--tmax", factor=60.0),
+    )
+    bound: tuple[float, ...] = field(
+        default=(0.5, 0.75, 1.0, 1.5, 2.0, 3.0, 4.0, 6.0),
+        metadata=numbers_option(
+            "Bounds of criterion uncertainty to evaluate [torque unit], as --k.", "--bound"
+        ),
+    )
 
     def __post_init__(self) -> None:
         _check_positive("k", self.k)

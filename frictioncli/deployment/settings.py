@@ -1,63 +1,98 @@
-"""Settings of the stage ``export``."""
+"""Settings of the export of a model."""
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
-from frictioncli.correction.settings import READINGS, ScheduleSettings
+from frictioncli.correction.settings import (
+    LONGEST_TIME_OPTION,
+    READINGS,
+    SCALE_OPTION,
+    ScheduleSettings,
+)
 from frictioncli.errors import OptionError
+from frictioncli.options import option
 
 TARGETS = ("c", "urdf", "mjcf", "json", "csv")
-"""What a model can be written as."""
+"""Forms in which a model can be written."""
 
 STATEFUL = ("c", "json")
-"""Targets that carry a state: corrections and the extended model."""
+"""Forms with a state: they hold corrections and the extended model."""
 
 _SCHEDULE = ScheduleSettings()
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ExportSettings:
-    """What ``export`` writes.
+    """Form of the file and what it holds.
 
     Attributes
     ----------
     to : str
         One of :data:`TARGETS`.
     joint : int or None
-        The joint; needed where the model has several.
+        Joint; needed where the model has several.
     extended : bool
-        Whether the extended model is carried as far as it can be.
+        Whether the extended model is exported, as far as its effects need no past.
     criterion : str
-        Reading of criterion (20) that the corrections start with.
+        Reading of criterion (20) that decides when to correct.
     k : float
         Scale of criterion (20).
     tmax : float
         Time after which a correction is forced. [s]
     temperature, load : float or None
-        Where a simpler form must fit best; the middle of the data's temperatures and the root mean
-        square of the range of loads if none. [°C], [N·m]
+        Operating point at which a simpler form must fit best; None: the middle of the measured
+        temperatures and the root mean square over the range of loads. [°C], [N·m]
     lowest, highest : float or None
-        Speeds between which a simpler form must fit; those of the data if none. [deg/s]
+        Range of speeds in which a simpler form must fit; None: as measured. [deg/s]
     tolerance : float or None
-        Greatest error of interpolation in the table; a thousandth of the greatest friction in it if
-        none. [torque unit]
+        Greatest error of interpolation in the table; None: a thousandth of the greatest friction
+        in it. [torque unit]
     torque_constant : float or None
-        Torque at the joint per unit of the log's torque, where that is not N·m at the joint.
+        Torque at the joint per unit of the torque in the log, where that is not N·m at the joint.
         [N·m/A]
     """
 
-    to: str
-    joint: int | None = None
-    extended: bool = False
-    criterion: str = _SCHEDULE.criterion
-    k: float = _SCHEDULE.k
-    tmax: float = _SCHEDULE.tmax
-    temperature: float | None = None
-    load: float | None = None
-    lowest: float | None = None
-    highest: float | None = None
-    tolerance: float | None = None
-    torque_constant: float | None = None
+    to: str = field(metadata=option(f"Form of the file: {', '.join(TARGETS)}."))
+    joint: int | None = field(
+        default=None, metadata=option("Joint, from 1; needed where the model has several.")
+    )
+    extended: bool = field(
+        default=False,
+        metadata=option(
+            "Carry extended-model.json: the gear's temperature and effects without memory."
+        ),
+    )
+    criterion: str = field(
+        default=_SCHEDULE.criterion, metadata=option(f"When to correct: {', '.join(READINGS)}.")
+    )
+    k: float = field(default=_SCHEDULE.k, metadata=SCALE_OPTION)
+    tmax: float = field(default=_SCHEDULE.tmax, metadata=LONGEST_TIME_OPTION)
+    temperature: float | None = field(
+        default=None,
+        metadata=option("Where the form must fit best [°C]; the middle of the data."),
+    )
+    load: float | None = field(
+        default=None,
+        metadata=option(
+            "As --temperature, load [N·m]; the root mean square over the data's range."
+        ),
+    )
+    lowest: float | None = field(
+        default=None, metadata=option("Lowest speed to fit [deg/s]; that of the data.")
+    )
+    highest: float | None = field(
+        default=None, metadata=option("Highest speed to fit [deg/s]; that of the data.")
+    )
+    tolerance: float | None = field(
+        default=None,
+        metadata=option(
+            "csv: greatest error of linear interpolation [torque unit]; 1/1000 of the friction."
+        ),
+    )
+    torque_constant: float | None = field(
+        default=None,
+        metadata=option("urdf, mjcf: torque at the joint per unit of the log's torque [N·m/A]."),
+    )
 
     def __post_init__(self) -> None:
         if self.to not in TARGETS:

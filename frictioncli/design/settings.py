@@ -1,9 +1,10 @@
 """Settings of the command ``plan``."""
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 from frictioncli.errors import OptionError
+from frictioncli.options import option
 
 PROGRAMS = ("csv", "krl", "urscript")
 """Forms of the robot program."""
@@ -45,16 +46,36 @@ class PlanSettings:
         Seed of the random order of speeds.
     """
 
-    minutes: float = 45.0
-    low: float | None = None
-    high: float | None = None
-    max_speed: float | None = None
-    max_temperature: float | None = None
-    payload: tuple[float, ...] = ()
-    to: str = "csv"
-    rated_speed: float | None = None
-    joint: int | None = None
-    seed: int = 0
+    minutes: float = field(
+        default=45.0,
+        metadata=option("Time for all of it, the check on the next day included [min]."),
+    )
+    low: float | None = field(
+        default=None, metadata=option("Lowest angle [deg]; as measured.", "--from")
+    )
+    high: float | None = field(
+        default=None, metadata=option("Highest angle [deg]; as measured.", "--to-angle")
+    )
+    max_speed: float | None = field(
+        default=None, metadata=option("Highest speed [deg/s]; as measured.")
+    )
+    max_temperature: float | None = field(
+        default=None,
+        metadata=option("Motor temperature at which heating ends [°C]; as measured, at least 65."),
+    )
+    payload: tuple[float, ...] = field(
+        default=(), metadata=option("Payload that may be mounted [kg], repeatable.")
+    )
+    to: str = field(default="csv", metadata=option(f"Robot program: {', '.join(PROGRAMS)}."))
+    rated_speed: float | None = field(
+        default=None,
+        metadata=option("Speed of the axis at 100 % [deg/s]; KUKA programs need it."),
+    )
+    joint: int | None = field(
+        default=None,
+        metadata=option("Joint to plan for, from 1; that with most pairs.", "--joint", "--axis"),
+    )
+    seed: int = field(default=0, metadata=option("Seed of the random order of speeds."))
 
     def __post_init__(self) -> None:
         given = (self.low, self.high, self.max_speed, self.max_temperature, self.rated_speed)

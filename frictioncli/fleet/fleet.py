@@ -26,7 +26,7 @@ from frictioncli.fleet.layout import joints_of
 from frictioncli.fleet.local_pool import run_local
 from frictioncli.fleet.settings import FleetSettings
 from frictioncli.provenance import Provenance, sha256
-from frictioncli.stages.run import RunSettings
+from frictioncli.stages.settings import RunSettings
 from frictioncli.tables import TableWriter
 from frictioncli.workfolder import alone
 

@@ -19,7 +19,7 @@ from frictioncli.fleet.layout import JointLogs
 from frictioncli.fleet.table_row import row_of, unused_runs
 from frictioncli.provenance import sha256
 from frictioncli.stages import run as pipeline
-from frictioncli.stages.run import RunSettings
+from frictioncli.stages.settings import RunSettings
 from frictioncli.stages.stage import Done
 from frictioncli.workfolder import alone
 
@@ -156,7 +156,7 @@ def settings_document(settings: RunSettings, *, report: bool) -> dict[str, Any]:
     }
     return {
         "ingest": settings.ingest.as_dict(),
-        "sign": settings.sign,
+        "sign": settings.separation.sign,
         **stages,
         "report": report,
     }

@@ -1,41 +1,57 @@
-"""What the user can tell ``ingest`` beyond the logs themselves."""
+"""Settings of reading logs."""
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 
 from frictioncli.errors import OptionError
 from frictioncli.logs.channels import units
+from frictioncli.options import NO_OPTION, option
 
 
 @dataclass(frozen=True, kw_only=True)
 class IngestSettings:
-    """Settings of reading; what is None is found from the logs.
+    """What is to be read, and what the logs do not say; None is found from the logs.
 
     Attributes
     ----------
     joints : tuple of int or None
-        Joints to read, counted from 1; None for every joint with a torque channel.
+        Joints to read, from 1; None for every joint with a torque channel.
     map_file : Path or None
         Mapping file, see :mod:`frictioncli.logs.channels.channel_map`.
     gear_ratio : float or None
-        Motor turns per joint turn, negative where they turn against each other. [-]
+        Motor turns per joint turn, negative if motor and joint turn in opposite directions. [-]
     time_unit, position_unit, velocity_unit, torque_unit, temperature_unit : str or None
-        Unit in which the logs hold that quantity, whatever they say: s, ms, us; deg, rad, udeg;
+        Unit of that quantity in the logs, whatever their headers say: s, ms, us; deg, rad, udeg;
         deg/s, rad/s, rpm, mdeg/s; N·m, mN·m, A, mA; °C, K, °F, m°C, mK.
     batch_bytes : int
-        How much of a log is held in memory at a time. [byte]
+        Size of the part of a log that is held in memory at once. [byte]
     """
 
-    joints: tuple[int, ...] | None = None
-    map_file: Path | None = None
-    gear_ratio: float | None = None
-    time_unit: str | None = None
-    position_unit: str | None = None
-    velocity_unit: str | None = None
-    torque_unit: str | None = None
-    temperature_unit: str | None = None
-    batch_bytes: int = 1 << 22
+    joints: tuple[int, ...] | None = field(
+        default=None,
+        metadata=option("Joint to read, from 1; repeatable. All with torque.", "--joint"),
+    )
+    map_file: Path | None = field(
+        default=None, metadata=option("TOML file that names channels and units.", "--map")
+    )
+    gear_ratio: float | None = field(
+        default=None, metadata=option("Motor turns per joint turn, for motor-side channels.")
+    )
+    time_unit: str | None = field(default=None, metadata=option("Force the unit: s, ms, us."))
+    position_unit: str | None = field(
+        default=None, metadata=option("Force the unit: deg, rad, udeg.")
+    )
+    velocity_unit: str | None = field(
+        default=None, metadata=option("Force the unit: deg/s, rad/s, rpm.")
+    )
+    torque_unit: str | None = field(
+        default=None, metadata=option("Force the unit: N·m (or Nm), mNm, A, mA.")
+    )
+    temperature_unit: str | None = field(
+        default=None, metadata=option("Force the unit: degC, K, degF.")
+    )
+    batch_bytes: int = field(default=1 << 22, metadata=NO_OPTION)
 
     def __post_init__(self) -> None:
         if self.joints is not None and (not self.joints or min(self.joints) < 1):
@@ -51,7 +67,7 @@ class IngestSettings:
         self.forced_units()
 
     def forced_units(self) -> dict[str, str]:
-        """Return canonical name -> unit for the units that the user forces.
+        """Return the units that the user has set, by canonical name of the channel.
 
         Raises
         ------
@@ -80,7 +96,7 @@ class IngestSettings:
         return forced
 
     def as_dict(self) -> dict[str, object]:
-        """Return the settings as plain values for provenance."""
+        """Return plain values for the provenance of a table."""
         return {
             "joints": None if self.joints is None else list(self.joints),
             "map_file": None if self.map_file is None else self.map_file.name,

@@ -1,8 +1,9 @@
-"""Settings of the stage ``fit``."""
+"""Settings of the identification."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 from frictioncli.errors import OptionError
+from frictioncli.options import option
 
 METHODS = ("joint", "paper")
 TEMPERATURES = ("motor", "housing", "mean")
@@ -10,19 +11,22 @@ TEMPERATURES = ("motor", "housing", "mean")
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class FitSettings:
-    """How the model is identified.
+    """How the friction model is identified.
 
     Attributes
     ----------
     method : {"joint", "paper"}
-        All parameters at once from all pairs, or consecutively as in the source paper.
+        All parameters at once from all pairs, or one after the other as in the paper.
     temperature : {"auto", "motor", "housing", "mean"}
-        The temperature that the friction function is given; ``auto`` is the motor's, and for the
-        paper's method its mean with the housing's where the log has that.
+        Temperature that friction depends on. ``auto`` is the motor temperature; with method
+        ``paper`` it is the mean of motor and housing temperature where the log has both.
     """
 
-    method: str = "joint"
-    temperature: str = "auto"
+    method: str = field(default="joint", metadata=option(f"Identification: {', '.join(METHODS)}."))
+    temperature: str = field(
+        default="auto",
+        metadata=option(f"Temperature in the model: auto, {', '.join(TEMPERATURES)}."),
+    )
 
     def __post_init__(self) -> None:
         allowed_temperatures = ("auto", *TEMPERATURES)

@@ -1,30 +1,34 @@
-"""Settings of the stage ``pair``."""
+"""Settings of segmentation, pairing and separation."""
 
 from dataclasses import dataclass, field
 
 from frictioncli.errors import OptionError
+from frictioncli.options import option
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class SteadySettings:
-    """What counts as constant velocity.
+    """What counts as motion at constant speed.
 
     Attributes
     ----------
     min_speed : float
-        Below this the joint stands. [deg/s]
+        Speed below which the joint is at rest. [deg/s]
     speed_tolerance : float
-        Greatest departure from the plateau's speed, as a share of it, where noise asks for less.
+        Greatest deviation from the speed of a segment, relative to it; more is allowed where the
+        noise of the velocity is larger. [-]
     settling : float
-        Time dropped after acceleration ends, at most a quarter of the plateau. [s]
+        Time dropped after an acceleration, at most a quarter of the segment. [s]
     min_samples : int
-        Least number of samples of a constant-velocity part.
+        Least number of samples of a constant-speed segment.
     """
 
-    min_speed: float = 0.2
-    speed_tolerance: float = 0.02
-    settling: float = 0.2
-    min_samples: int = 3
+    min_speed: float = field(default=0.2, metadata=option("Below this the joint stands [deg/s]."))
+    speed_tolerance: float = field(
+        default=0.02, metadata=option("Departure from constant speed [share of it].")
+    )
+    settling: float = field(default=0.2, metadata=option("Time dropped after acceleration [s]."))
+    min_samples: int = field(default=3, metadata=option("Least samples of a constant-speed part."))
 
     def __post_init__(self) -> None:
         if self.min_speed <= 0 or not 0 < self.speed_tolerance < 0.5:
@@ -41,30 +45,79 @@ class SteadySettings:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class PairingSettings:
-    """What makes two counter-directed spans a pair.
+    """What makes two segments of opposite direction a pair.
 
     Attributes
     ----------
     steady : SteadySettings
-        What counts as constant velocity.
+        What counts as motion at constant speed.
     bin_width : float
         Width of the angle bins. [deg]
     same_speed : float
-        Greatest difference of speed, as a share of it.
+        Greatest difference of speed, relative to it. [-]
     same_temperature : float
         Greatest difference of motor temperature. [°C]
     longest_pause : float
-        Greatest time between the end of one span and the start of the other. [s]
+        Longest time between the end of one segment and the start of the other. [s]
     """
 
     steady: SteadySettings = field(default_factory=SteadySettings)
-    bin_width: float = 5.0
-    same_speed: float = 0.03
-    same_temperature: float = 2.0
-    longest_pause: float = 600.0
+    bin_width: float = field(default=5.0, metadata=option("Width of the angle bins [deg]."))
+    same_speed: float = field(
+        default=0.03, metadata=option("Greatest difference of speed [share].")
+    )
+    same_temperature: float = field(
+        default=2.0, metadata=option("Greatest difference of temperature [°C].")
+    )
+    longest_pause: float = field(
+        default=600.0, metadata=option("Longest pause between partners [s].")
+    )
 
     def __post_init__(self) -> None:
         if not 0 < self.bin_width <= 180:
             raise OptionError(f"bin width {self.bin_width:g} deg: expected between 0 and 180")
         if not 0 < self.same_speed < 0.5:
             raise OptionError(f"speed difference {self.same_speed:g}: expected between 0 and 0.5")
+
+
+_SIGNS = {"auto": None, "+1": 1, "1": 1, "+": 1, "-1": -1, "-": -1}
+
+
+def sign_number(text: str) -> int | None:
+    """Return the sign of friction for the text of ``--sign``; None for ``auto``.
+
+    Parameters
+    ----------
+    text : str
+        As typed.
+
+    Raises
+    ------
+    OptionError
+        If the text is no sign.
+    """
+    if text not in _SIGNS:
+        raise OptionError(f"--sign {text}: expected auto, +1 or -1")
+    return _SIGNS[text]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class SeparationSettings:
+    """How friction torque is separated from load torque.
+
+    Attributes
+    ----------
+    sign : {1, -1} or None
+        Sign of friction in forward motion. 1: torque is load + friction; -1: load - friction;
+        None: found from the data.
+    """
+
+    sign: int | None = field(
+        default=None,
+        metadata=option(
+            "Torque in forward motion: +1 load + friction, -1 load - friction, auto.",
+            typed=str,
+            default="auto",
+            convert=sign_number,
+        ),
+    )

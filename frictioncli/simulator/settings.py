@@ -1,9 +1,10 @@
-"""What a synthesis is asked for."""
+"""Settings of simulated measurements."""
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 from frictioncli.errors import OptionError
+from frictioncli.options import option
 
 JOINT_KINDS = ("zones", "plain")
 NOISE_KINDS = (
@@ -18,10 +19,14 @@ NOISE_KINDS = (
 )
 PROTOCOLS = ("paper", "enriched")
 
+_AMBIENT = (16.0, 16.0)
+_AMBIENT_DRIFT = (-0.10, -0.35)
+_MOTOR_HEAT_SHARE = (0.52, 0.48)
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class SynthesisSettings:
-    """What to simulate. Where a field has one value per run, further runs take them in turn.
+    """What is simulated. Values that differ between runs are repeated where there are more runs.
 
     Attributes
     ----------
@@ -30,56 +35,100 @@ class SynthesisSettings:
     runs : int
         Number of runs, one per day.
     joint : int
-        Number of the axis in the traces' channel names.
+        Number of the axis in the channel names.
     sign : int
-        +1: torque is load + friction in forward motion; -1: load - friction, as in the paper.
+        Sign of friction in forward motion. 1: torque is load + friction; -1: load - friction, as
+        in the paper.
     payload : float
         Mass at the flange. [kg]
     lowest, highest : int
-        Motor temperatures between which the thermal cycle runs. [°C]
+        Lowest and highest motor temperature of the thermal cycle. [°C]
     ambient : tuple of float
         Ambient temperature at the start of each run. [°C]
     ambient_drift : tuple of float
-        Its change during each run. [K/h]
+        Rate of change of the ambient temperature in each run. [K/h]
     motor_heat_share : tuple of float
-        Share of the dissipated heat that enters at the motor, for each run; the rest enters at gear
-        and housing. From about 0.05 down, friction is lower while heating than while cooling. [-]
+        Share of the dissipated heat that enters at the motor in each run; the rest enters at gear
+        and housing. Below about 0.05 friction is lower while heating than while cooling. [-]
     noise_scale : float
-        Factor on all random parts; 0 gives the bare physics. [-]
+        Factor on all noise; 0 gives the physics alone. [-]
     effects : tuple of str
-        Effects to hide, each ``NAME`` or ``NAME:SIZE``; SIZE is the root mean square of its torque
-        at constant velocity. [N·m]
+        Effects to add, each ``NAME`` or ``NAME:SIZE``; SIZE is the root mean square of its torque
+        at constant speed. [N·m]
     blind : bool
-        Write the truth beside the folder instead of into it, and do not tell it.
+        Whether the truth is written beside the folder instead of into it, and not printed.
     joint_kind : str
         ``zones``: three friction zones at three temperatures; ``plain``: friction is equation (16)
         of the true motor temperature.
     noise_kind : str
-        Kind of the random parts.
+        Kind of noise.
     protocol : str
         ``paper``: Algorithms 1 and 2; ``enriched``: speeds in random order, two thermal cycles with
         different entry of heat, three payloads, pauses.
     thin : int
-        Log each so many-th sample of the controller only.
+        Decimation: only every ``thin``-th sample of the controller is logged.
     """
 
-    seed: int = 0
-    runs: int = 2
-    joint: int = 2
-    sign: int = 1
-    payload: float = 2.0
-    lowest: int = 25
-    highest: int = 65
-    ambient: tuple[float, ...] = (16.0, 16.0)
-    ambient_drift: tuple[float, ...] = (-0.10, -0.35)
-    motor_heat_share: tuple[float, ...] = (0.52, 0.48)
-    noise_scale: float = 1.0
-    effects: tuple[str, ...] = ()
-    blind: bool = False
-    joint_kind: str = "zones"
-    noise_kind: str = "default"
-    protocol: str = "paper"
-    thin: int = 1
+    seed: int = field(default=0, metadata=option("Seed; the same one gives the same bytes."))
+    runs: int = field(default=2, metadata=option("Number of runs, one per day."))
+    joint: int = field(default=2, metadata=option("Number of the axis in the channel names."))
+    sign: int = field(
+        default=1,
+        metadata=option("Torque in forward motion: 1 load + friction, -1 load - friction."),
+    )
+    payload: float = field(default=2.0, metadata=option("Mass at the flange [kg]."))
+    lowest: int = field(default=25, metadata=option("Lowest motor temperature of the cycle [°C]."))
+    highest: int = field(
+        default=65, metadata=option("Highest motor temperature of the cycle [°C].")
+    )
+    ambient: tuple[float, ...] = field(
+        default=_AMBIENT,
+        metadata=option(f"Ambient at each run's start [°C], repeatable. {_AMBIENT}"),
+    )
+    ambient_drift: tuple[float, ...] = field(
+        default=_AMBIENT_DRIFT,
+        metadata=option(f"Its change in each run [K/h]. {_AMBIENT_DRIFT}"),
+    )
+    motor_heat_share: tuple[float, ...] = field(
+        default=_MOTOR_HEAT_SHARE,
+        metadata=option(f"Share of heat entering at the motor. {_MOTOR_HEAT_SHARE}"),
+    )
+    noise_scale: float = field(
+        default=1.0, metadata=option("Factor on all noise; 0 is bare physics.")
+    )
+    effects: tuple[str, ...] = field(
+        default=(),
+        metadata=option(
+            "Effect to hide, repeatable; SIZE is its RMS at constant speed [N·m], 0.5 to 2 if not"
+            " given. A wrong name lists all.",
+            "--effect",
+            metavar="NAME[:SIZE]",
+        ),
+    )
+    blind: bool = field(
+        default=False,
+        metadata=option(
+            "Write the truth to FOLDER-truth.json beside the folder, and tell nothing."
+        ),
+    )
+    joint_kind: str = field(
+        default="zones",
+        metadata=option(
+            f"Friction of the joint: {', '.join(JOINT_KINDS)}; plain is equation (16) of the motor"
+            " temperature [°C]."
+        ),
+    )
+    noise_kind: str = field(
+        default="default", metadata=option(f"Kind of noise [N·m]: {', '.join(NOISE_KINDS)}.")
+    )
+    protocol: str = field(
+        default="paper",
+        metadata=option(
+            f"Motions: {', '.join(PROTOCOLS)}; enriched has 10 speeds [deg/s] in random order, two"
+            " thermal cycles, three payloads [kg], pauses [s]."
+        ),
+    )
+    thin: int = field(default=1, metadata=option("Log every so many-th sample of 0.012 s only."))
 
     def __post_init__(self) -> None:
         demands = (

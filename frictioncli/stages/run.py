@@ -1,16 +1,10 @@
 """The whole chain in one call, from logs to the report: ``run``."""
 
 from collections.abc import Callable
-from dataclasses import dataclass, field
 from pathlib import Path
 
-from frictioncli.correction.settings import CorrectionSettings, EvaluationGrid, ScheduleSettings
-from frictioncli.diagnosis.settings import DiagnosisSettings
 from frictioncli.errors import NotEnoughData
 from frictioncli.logs.runs.discovery import Logs
-from frictioncli.logs.settings import IngestSettings
-from frictioncli.model.settings import FitSettings
-from frictioncli.pairs.settings import PairingSettings
 from frictioncli.stages.diagnose import diagnose
 from frictioncli.stages.evaluate import evaluate
 from frictioncli.stages.fit import fit
@@ -18,6 +12,7 @@ from frictioncli.stages.ingest import ingest
 from frictioncli.stages.pair import pair
 from frictioncli.stages.report import report
 from frictioncli.stages.separate import separate
+from frictioncli.stages.settings import RunSettings
 from frictioncli.stages.simulate import simulate
 from frictioncli.stages.stage import Done
 from frictioncli.workfiles import DIAGNOSIS, EVALUATION, EXTENDED, SCHEDULE
@@ -25,20 +20,6 @@ from frictioncli.workfolder import alone
 
 Tell = Callable[[str, Done], None]
 """Is told each stage's name and what it made."""
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class RunSettings:
-    """The settings of every stage of a run; without any for the diagnosis there is none."""
-
-    ingest: IngestSettings = field(default_factory=IngestSettings)
-    pairing: PairingSettings = field(default_factory=PairingSettings)
-    sign: int | None = None
-    fit: FitSettings = field(default_factory=FitSettings)
-    diagnosis: DiagnosisSettings | None = field(default_factory=DiagnosisSettings)
-    schedule: ScheduleSettings = field(default_factory=ScheduleSettings)
-    grid: EvaluationGrid = field(default_factory=EvaluationGrid)
-    correction: CorrectionSettings = field(default_factory=CorrectionSettings)
 
 
 def run(
@@ -90,7 +71,7 @@ def _analyse(logs: Logs, work: Path, chosen: RunSettings, tell: Tell) -> None:
         (work / name).unlink(missing_ok=True)
     tell("ingest", ingest(logs, work, chosen.ingest))
     tell("pair", pair(work, chosen.pairing))
-    tell("separate", separate(work, chosen.sign))
+    tell("separate", separate(work, chosen.separation))
     tell("fit", fit(work, chosen.fit))
     optional: dict[str, tuple[str, Callable[[], Done]]] = {}
     if chosen.diagnosis is not None:

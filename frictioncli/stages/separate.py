@@ -1,10 +1,12 @@
 """From pairs to torques: ``separate``."""
 
+from dataclasses import asdict
 from pathlib import Path
 
 from frictioncli import schemas, tables
 from frictioncli.pairs.separation import separate as separate_pairs
 from frictioncli.pairs.separation import sign_conventions
+from frictioncli.pairs.settings import SeparationSettings
 from frictioncli.pairs.summary import TorqueRanges, separation_text
 from frictioncli.provenance import Provenance, hashes
 from frictioncli.stages.stage import Done, stage
@@ -12,13 +14,14 @@ from frictioncli.workfiles import PAIRS, TORQUES
 
 
 @stage
-def separate(work: Path, sign: int | None = None) -> Done:
+def separate(work: Path, settings: SeparationSettings | None = None) -> Done:
     """Separate friction torque from load torque by equation (8): ``torques.parquet``."""
+    settings = settings or SeparationSettings()
     source = work / PAIRS
     facts = tables.facts(source)
-    signs = sign_conventions(tables.batches(source, schemas.PAIRS), sign)
+    signs = sign_conventions(tables.batches(source, schemas.PAIRS), settings.sign)
     facts["sign"] = {str(joint): value for joint, value in signs.items()}
-    provenance = Provenance("separate", {"sign": sign}, hashes([source]))
+    provenance = Provenance("separate", asdict(settings), hashes([source]))
     ranges = TorqueRanges()
     with tables.TableWriter(work / TORQUES, schemas.TORQUES, provenance) as torques:
         pairs = tables.ahead(tables.batches(source, schemas.PAIRS))
@@ -26,4 +29,6 @@ def separate(work: Path, sign: int | None = None) -> Done:
             torques.write(rows)
         facts |= {"load_unit": "N·m"} if ranges.own_load else {}
         torques.facts = facts
-    return Done(work / TORQUES, separation_text(ranges, signs, facts, told=sign is not None))
+    return Done(
+        work / TORQUES, separation_text(ranges, signs, facts, told=settings.sign is not None)
+    )

@@ -11,7 +11,7 @@ import pytest
 
 from frictioncli import schemas, tables
 from frictioncli.cli.commands import app
-from frictioncli.stages.run import RunSettings
+from frictioncli.stages.settings import RunSettings
 from tests.equation_16 import friction, write_recording
 from tests.moves import journey
 

@@ -6,21 +6,16 @@ from datetime import timedelta
 import numpy as np
 import pytest
 
-from frictioncli.cli import compare as command
 from frictioncli.comparison.settings import ComparisonSettings
 from frictioncli.errors import OptionError, TableError
 from frictioncli.stages.compare import compare as stage
+from tests.command_line import invoke
 from tests.comparison.folders import FIRST, one_each, write_folder
 from tests.equation_16 import daily_torques
 
 
 def called_with(runs, out, threshold):
-    """Call the command; return its exit status."""
-    try:
-        command.compare(runs, out, fail_above=threshold)
-    except command.typer.Exit as ended:
-        return ended.exit_code
-    return 0
+    return invoke("compare", *runs, "-w", out, "--fail-above", threshold)
 
 
 @pytest.fixture(scope="module")
@@ -34,7 +29,7 @@ def worn(tmp_path_factory):
 def called(worn, tmp_path_factory):
     """The command's folder and exit status, the runs named last to first."""
     out = tmp_path_factory.mktemp("out") / "comparison"
-    return out, called_with(worn[::-1], out, "5%")
+    return out, called_with(worn[::-1], out, "5%").exit_code
 
 
 def test_a_change_above_the_threshold_ends_with_status_3(called):
@@ -88,9 +83,10 @@ def test_the_same_inputs_give_the_same_bytes(called, worn, tmp_path):
         assert (tmp_path / path.name).read_bytes() == path.read_bytes(), path.name
 
 
-def test_below_the_threshold_the_status_is_0_and_the_text_says_so(worn, tmp_path, capsys):
-    assert called_with(worn, tmp_path, "40%") == 0
-    said = capsys.readouterr().out
+def test_below_the_threshold_the_status_is_0_and_the_text_says_so(worn, tmp_path):
+    result = called_with(worn, tmp_path, "40%")
+    assert result.exit_code == 0
+    said = result.stdout
     assert said.startswith("joint 2, 5 runs of 5 folders, 2026-01-05 to 2026-02-02: changed\n")
     assert "threshold 40 %: no change above it found" in said
 

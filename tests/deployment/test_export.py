@@ -4,13 +4,13 @@ from dataclasses import replace
 
 import pytest
 
-from frictioncli.cli.export import export as command
 from frictioncli.deployment.document import load_deployed
 from frictioncli.deployment.settings import TARGETS, ExportSettings
 from frictioncli.errors import OptionError, TableError
 from frictioncli.model.document import write_models
 from frictioncli.provenance import Provenance, sha256
 from frictioncli.stages.export import export
+from tests.command_line import invoke
 from tests.deployment.joints import joint
 
 
@@ -34,10 +34,10 @@ def test_each_target_is_one_file_whose_path_is_told_first(work, target):
     assert done.path.read_text(encoding="utf-8") == text
 
 
-def test_the_command_says_what_the_stage_says(work, capsys):
+def test_the_command_says_what_the_stage_says(work):
     """Minutes on the command line are seconds inside."""
-    command(to="json", work=work, k=3.0, tmax=20.0)
-    path, *_ = capsys.readouterr().out.splitlines()
+    result = invoke("export", "--to", "json", "-w", work, "--k", 3, "--tmax", 20)
+    path, *_ = result.stdout.splitlines()
     rule = load_deployed(work / "export" / "friction-joint2.json").schedule
     assert path == str(work / "export" / "friction-joint2.json")
     assert (rule.k, rule.tmax) == (3.0, 1200.0)

@@ -10,7 +10,7 @@ from frictioncli.errors import FrictionError, OptionError
 from frictioncli.fleet.cluster import run_on_cluster
 from frictioncli.fleet.joint import JointTask
 from frictioncli.fleet.layout import joints_of
-from frictioncli.stages.run import RunSettings
+from frictioncli.stages.settings import RunSettings
 from tests.fleet.clusters import free_port, scheduler, worker
 from tests.fleet.fleets import Deadly, begun, contents, done, fleet, started, until
 from tests.fleet.joints import Joint, write_joint

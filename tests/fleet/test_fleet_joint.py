@@ -13,7 +13,7 @@ from frictioncli.fleet.joint_record import check_own, read_note
 from frictioncli.fleet.layout import JointLogs
 from frictioncli.fleet.table_row import causes_text
 from frictioncli.model.settings import FitSettings
-from frictioncli.stages.run import RunSettings
+from frictioncli.stages.settings import RunSettings
 from tests.equation_16 import friction
 from tests.fleet.fleets import contents
 from tests.fleet.joints import Joint, write_joint

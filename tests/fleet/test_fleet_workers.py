@@ -14,7 +14,7 @@ from frictioncli.fleet.joint_record import read_note
 from frictioncli.fleet.layout import joints_of
 from frictioncli.fleet.local_pool import run_local
 from frictioncli.fleet.settings import FleetSettings
-from frictioncli.stages.run import RunSettings
+from frictioncli.stages.settings import RunSettings
 from tests.fleet.fleets import Deadly, begun, children, contents, done, fleet, started, until
 from tests.fleet.joints import Joint, write_joint
 
