@@ -78,6 +78,7 @@ def test_simulator_shares_no_code_with_the_analysis(module):
         "files",
         "provenance",
         "documents",
+        "options",
         "arrays",
         "__init__",
     }
