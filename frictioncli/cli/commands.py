@@ -5,15 +5,15 @@ works with the settings is imported last, so that help and wrong options are ans
 """
 
 import sys
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Iterable, Iterator
 from contextlib import AbstractContextManager, nullcontext
 from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from frictioncli.cli.signature import Command, with_options
+from frictioncli.cli.application import app, command
 from frictioncli.cli.terminal import say
 from frictioncli.comparison.settings import ComparisonSettings
 from frictioncli.correction.settings import CorrectionSettings, EvaluationGrid, ScheduleSettings
@@ -31,14 +31,7 @@ from frictioncli.stages.settings import RunSettings
 if TYPE_CHECKING:
     from frictioncli.fleet.joint import Outcome
 
-app = typer.Typer(
-    name="frictioncli",
-    help="Friction of a robot joint from its torque logs. Units: deg, deg/s, s, N·m, °C.",
-    no_args_is_help=True,
-    add_completion=False,
-    rich_markup_mode=None,
-    pretty_exceptions_enable=False,
-)
+__all__ = ["app"]
 
 Logs = Annotated[
     list[Path], typer.Argument(help="Log files or folders; each folder is one run.", metavar="LOGS")
@@ -54,34 +47,7 @@ _FINDING = 3
 _INTERRUPTED = 130
 
 
-def _command(**layout: Any) -> Callable[[Command], Command]:
-    """Register a command; ``layout`` goes to :func:`frictioncli.cli.signature.with_options`."""
-
-    def register(command: Command) -> Command:
-        app.command()(with_options(command, **layout))
-        return command
-
-    return register
-
-
-def _show_version(wanted: bool) -> None:
-    if wanted:
-        from frictioncli import __version__
-
-        say(f"frictioncli {__version__}")
-        raise typer.Exit
-
-
-@app.callback()
-def _common(
-    version: Annotated[
-        bool, typer.Option("--version", callback=_show_version, is_eager=True, help="Show it.")
-    ] = False,
-) -> None:
-    """Friction of a robot joint from its torque logs. Units: deg, deg/s, s, N·m, °C."""
-
-
-@_command()
+@command()
 def inspect(
     logs: Logs,
     settings: IngestSettings,
@@ -118,7 +84,7 @@ def inspect(
         say(text(inspection))
 
 
-@_command()
+@command()
 def ingest(logs: Logs, *, work: Work = WORK, settings: IngestSettings) -> None:
     """Read logs into samples: deg, deg/s, s, N·m (or A), °C."""
     from frictioncli.stages.ingest import ingest as ingest_stage
@@ -126,7 +92,7 @@ def ingest(logs: Logs, *, work: Work = WORK, settings: IngestSettings) -> None:
     say(ingest_stage(logs, work, settings))
 
 
-@_command(before={"min_speed": ["bin_width"]})
+@command(before={"min_speed": ["bin_width"]})
 def pair(*, work: Work = WORK, settings: PairingSettings) -> None:
     """Match counter-directed constant-speed motion by speed [deg/s] and angle bin [deg]."""
     from frictioncli.stages.pair import pair as pair_stage
@@ -134,7 +100,7 @@ def pair(*, work: Work = WORK, settings: PairingSettings) -> None:
     say(pair_stage(work, settings))
 
 
-@_command()
+@command()
 def separate(*, work: Work = WORK, settings: SeparationSettings) -> None:
     """Separate friction torque from load torque [N·m] by equation (8)."""
     from frictioncli.stages.separate import separate as separate_stage
@@ -142,7 +108,7 @@ def separate(*, work: Work = WORK, settings: SeparationSettings) -> None:
     say(separate_stage(work, settings))
 
 
-@_command()
+@command()
 def fit(*, work: Work = WORK, settings: FitSettings) -> None:
     """Identify the friction model (16): load [N·m], speed [deg/s], temperature [°C]."""
     from frictioncli.stages.fit import fit as fit_stage
@@ -150,7 +116,7 @@ def fit(*, work: Work = WORK, settings: FitSettings) -> None:
     say(fit_stage(work, settings))
 
 
-@_command(before={"criterion": ["k", "tmax"]})
+@command(before={"criterion": ["k", "tmax"]})
 def simulate(
     *,
     work: Work = WORK,
@@ -164,7 +130,7 @@ def simulate(
     say(simulate_stage(work, schedule, settings, extended=extended))
 
 
-@_command()
+@command()
 def evaluate(
     *,
     work: Work = WORK,
@@ -178,7 +144,7 @@ def evaluate(
     say(evaluate_stage(work, grid, settings, extended=extended))
 
 
-@_command()
+@command()
 def diagnose(
     *,
     work: Work = WORK,
@@ -198,7 +164,7 @@ def diagnose(
         raise typer.Exit(_FINDING)
 
 
-@_command()
+@command()
 def report(work: Work = WORK) -> None:
     """Draw the figures (deg, deg/s, s, N·m, °C) and write report/index.html."""
     from frictioncli.stages.report import report as report_stage
@@ -206,7 +172,7 @@ def report(work: Work = WORK) -> None:
     say(report_stage(work))
 
 
-@_command(before={"min_speed": ["bin_width"]})
+@command(before={"min_speed": ["bin_width"]})
 def run(logs: Logs, *, work: Work = WORK, settings: RunSettings) -> None:
     """Run the whole chain, from logs to the report. Units: deg, deg/s, s, N·m, °C."""
     from frictioncli.stages.run import run as run_chain
@@ -221,7 +187,7 @@ def _say_stage(stage: str, text: object) -> None:
         say(f"{'':9s} {line}")
 
 
-@_command()
+@command()
 def synthesize(
     folder: Annotated[Path, typer.Argument(help="Folder to make.", metavar="FOLDER")],
     settings: SynthesisSettings,
@@ -232,7 +198,7 @@ def synthesize(
     say(synthesize_traces(folder, settings))
 
 
-@_command(before={"low": ["joint", "new", "seed"]})
+@command(before={"low": ["joint", "new", "seed"]})
 def plan(
     *,
     work: Work = WORK,
@@ -249,7 +215,7 @@ def plan(
     say(plan_new(work, settings) if new else plan_stage(work, settings))
 
 
-@_command()
+@command()
 def export(*, work: Work = WORK, settings: ExportSettings) -> None:
     """Write the model as C, URDF, MJCF, JSON or a table (N·m or A, deg/s, °C); say what is lost."""
     from frictioncli.stages.export import export as export_stage
@@ -257,7 +223,7 @@ def export(*, work: Work = WORK, settings: ExportSettings) -> None:
     say(export_stage(work, settings))
 
 
-@_command()
+@command()
 def compare(
     runs: Annotated[
         list[Path],
@@ -283,7 +249,7 @@ def compare(
         raise typer.Exit(_FINDING)
 
 
-@_command(without=("joints", "pairing", "criterion", "bound", "correction"))
+@command(without=("joints", "pairing", "criterion", "bound", "correction"))
 def fleet(
     logs: Annotated[
         Path,
