@@ -1,8 +1,9 @@
-"""Look at logs as they would be read, each in one pass, and write nothing."""
+"""Inspection of logs: what they hold and what they suffice for; nothing is written."""
 
 import tempfile
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field, replace
+from functools import partial
 from pathlib import Path
 
 import pandas as pd
@@ -13,39 +14,41 @@ from frictioncli.inspection.brakes import closed_seconds
 from frictioncli.inspection.findings import FileInspection
 from frictioncli.inspection.monitors.log_monitor import LogMonitor
 from frictioncli.inspection.other_clocks import other_clocks
-from frictioncli.inspection.pair_check import NO_MOVES, Moves, segments_and_pairs
-from frictioncli.inspection.sample_buffer import SampleBuffer, gathered
-from frictioncli.inspection.sufficiency import JointSummary, Recordings, joint_data
+from frictioncli.inspection.pair_check import NO_SEGMENTS, SegmentCounts, segments_and_pairs
+from frictioncli.inspection.sample_store import (
+    SampleStore,
+    combined,
+    store_samples,
+    stored_samples,
+)
+from frictioncli.inspection.sufficiency import JointSummary, RecordingCounts, joint_summary
 from frictioncli.inspection.unit_reasons import other_remarks
 from frictioncli.inspection.unusable_file import inspect_unusable
 from frictioncli.logs.channels.channel_map import ChannelMap, read_map
 from frictioncli.logs.log_source import Refusal
-from frictioncli.logs.reading_plan import planned_logs
-from frictioncli.logs.runs import manifest
+from frictioncli.logs.run_logs import plan_run
 from frictioncli.logs.runs.discovery import LogRun, discover
-from frictioncli.logs.runs.opening import open_run
-from frictioncli.logs.samples.chunks import Chunk, PlannedLog, chunks_of
-from frictioncli.logs.samples.recording import RecordingSummary, record
-from frictioncli.logs.samples.row_checks import RejectedRows
-from frictioncli.logs.samples.timeline import DatedLog, RunClock, in_time_order
+from frictioncli.logs.runs.manifest import RunManifest, read_run_manifest
+from frictioncli.logs.samples.chunks import Chunk, PlannedLog
+from frictioncli.logs.samples.log_rows import RejectedRows
+from frictioncli.logs.samples.recording import RecordingSummary, SampleSink, read_recording
+from frictioncli.logs.samples.timeline import DatedLog, RunClock
 from frictioncli.logs.settings import IngestSettings
 from frictioncli.pairs.settings import PairingSettings
-
-_SPOOL = "samples.arrow"
 
 
 @dataclass(frozen=True, slots=True)
 class Inspection:
-    """What logs hold.
+    """Result of an inspection.
 
     Attributes
     ----------
     files : tuple of FileInspection
         One per file, in the order of runs and names.
     joints : tuple of JointSummary
-        What all of them together hold of each joint, and for which stages it suffices.
+        What all files together hold of each joint, and for which stages it suffices.
     remarks : tuple of str
-        What is to be said of runs as a whole.
+        Remarks on whole runs.
     """
 
     files: tuple[FileInspection, ...]
@@ -58,16 +61,16 @@ def inspect(
     settings: IngestSettings | None = None,
     pairing: PairingSettings | None = None,
 ) -> Inspection:
-    """Look at logs as ``ingest`` would read them, and write nothing.
+    """Inspect logs as ``ingest`` would read them, without writing anything.
 
     Parameters
     ----------
     logs : sequence of Path
         Log files, or folders of them.
     settings : IngestSettings, optional
-        What the user knows beyond the logs.
+        Settings of reading.
     pairing : PairingSettings, optional
-        What makes a pair.
+        Settings of the stage ``pair``.
 
     Returns
     -------
@@ -84,150 +87,160 @@ def inspect(
     settings = settings or IngestSettings()
     pairing = pairing or PairingSettings()
     channel_map = read_map(settings.map_file) if settings.map_file is not None else ChannelMap()
-    harvest = _State()
+    inspected = _InspectedLogs()
     with tempfile.TemporaryDirectory(prefix="frictioncli-") as name:
         folder = Path(name)
-        samples = _samples(discover(logs), settings, channel_map, folder / _SPOOL, harvest)
-        moves, pairs = segments_and_pairs(gathered(samples), harvest.said, pairing, folder)
+        samples = (
+            batch
+            for run in discover(logs)
+            for batch in _inspect_run(run, settings, channel_map, folder, inspected)
+        )
+        segments, pairs = segments_and_pairs(
+            combined(samples), inspected.conditions, pairing, folder
+        )
     return Inspection(
-        files=tuple(_with_moves(file, moves) for file in harvest.files),
+        files=tuple(_with_segments(file, segments) for file in inspected.files),
         joints=tuple(
-            joint_data(
+            joint_summary(
                 joint,
-                _in_all(moves, joint),
-                harvest.recordings(joint),
+                _total(segments, joint),
+                inspected.recording_counts(joint),
                 pairs[pairs["joint"] == joint],
             )
-            for joint in harvest.joints
+            for joint in inspected.joints
         ),
-        remarks=tuple(harvest.remarks),
+        remarks=tuple(inspected.remarks),
     )
 
 
 @dataclass(slots=True)
-class _State:
-    """What has been seen so far."""
+class _InspectedLogs:
+    """Record of all logs inspected so far.
+
+    ``usable`` holds the logs whose samples can be used; ``time_known`` is false where start times
+    are not known and were assumed.
+    """
 
     files: list[FileInspection] = field(default_factory=list)
-    dated: list[DatedLog] = field(default_factory=list)
+    usable: list[DatedLog] = field(default_factory=list)
     remarks: list[str] = field(default_factory=list)
     time_known: bool = True
 
     @property
     def joints(self) -> tuple[int, ...]:
-        return tuple(sorted({plan.channels.joint for d in self.dated for plan in d.reading.plans}))
+        """The joints of all usable logs."""
+        return tuple(sorted({joint for dated in self.usable for joint in _joints(dated)}))
 
-    def recordings(self, joint: int) -> Recordings:
-        """Return what is known of the recordings of a joint."""
-        runs = [
-            dated.reading.log.run.name
-            for dated in self.dated
-            if any(plan.channels.joint == joint for plan in dated.reading.plans)
-        ]
-        return Recordings(len(set(runs)), len(runs), self.time_known)
+    def recording_counts(self, joint: int) -> RecordingCounts:
+        """Return the numbers of recordings and runs of a joint."""
+        runs = [dated.planned.log.run.name for dated in self.usable if joint in _joints(dated)]
+        return RecordingCounts(len(set(runs)), len(runs), self.time_known)
 
-    def said(self) -> pd.DataFrame:
-        """Return phase and payload [kg] by run and recording, missing where nothing tells them."""
+    def conditions(self) -> pd.DataFrame:
+        """Return phase and payload [kg] by run and recording, missing where not known."""
         rows = [
-            (d.reading.log.run.name, d.reading.log.recording, d.entry and d.entry.phase, d.payload)
-            for d in self.dated
+            (
+                dated.planned.log.run.name,
+                dated.planned.log.recording,
+                dated.entry and dated.entry.phase,
+                dated.payload,
+            )
+            for dated in self.usable
         ]
         frame = pd.DataFrame(rows, columns=["run", "recording", "phase", "payload"])
         types = {"phase": object, "payload": float}
         return frame.astype(types).set_index(["run", "recording"])
 
 
-def _samples(
-    runs: Sequence[LogRun],
+def _joints(dated: DatedLog) -> list[int]:
+    return [plan.channels.joint for plan in dated.planned.plans]
+
+
+def _inspect_run(
+    run: LogRun,
     settings: IngestSettings,
     channel_map: ChannelMap,
-    spool: Path,
-    harvest: _State,
+    folder: Path,
+    inspected: _InspectedLogs,
 ) -> Iterator[pa.RecordBatch]:
-    """Yield the samples of all logs, run by run in order of time; what is seen goes to harvest."""
-    for run in runs:
-        found: dict[Path, FileInspection] = {}
-        opened, refused = open_run(run, settings, channel_map)
-        usable, unusable = planned_logs(opened, settings, channel_map)
-        for log in (*refused, *unusable):
-            found[log.file.path] = inspect_unusable(
-                run, log.file.path, log.refusal, channel_map, settings
-            )
-        clock = RunClock(run.name)
-        queue = _in_time_order(run, usable, harvest)
-        in_turn = chunks_of([dated.reading for dated in queue], settings.batch_bytes)
-        for dated, (_, parts) in zip(queue, in_turn, strict=True):
-            samples = SampleBuffer(
-                spool, run.name, dated.reading.log.recording, clock.start_of(dated)
-            )
-            file, recorded = _look(dated.reading, parts, samples, settings)
-            found[file.path] = file
-            if recorded is not None:
-                clock.place(dated, recorded)
-                harvest.dated.append(dated)
-                yield from samples.samples()
-        timeline = clock.timeline(has_manifest=(run.folder / manifest.NAME).is_file())
-        harvest.time_known &= timeline.known
-        harvest.remarks += timeline.warnings
-        harvest.files += [found[file.path] for file in run.files if file.path in found]
+    """Yield the samples of all logs of a run in the order of time, and record what they hold."""
+    manifest = _manifest(run, inspected)
+    logs = plan_run(run, manifest, settings, channel_map)
+    files = {
+        log.file.path: inspect_unusable(run, log.file.path, log.refusal, channel_map, settings)
+        for log in logs.refused
+    }
+    clock = RunClock(run.name)
+    for dated, start, chunks in logs.recordings(clock, settings.batch_bytes):
+        with SampleStore(folder) as store:
+            sink = partial(store_samples, store, dated.planned.log.recording, start)
+            file, recording = _inspect_log(dated.planned, chunks, sink, settings)
+            files[file.path] = file
+            if recording is not None:
+                clock.place(dated, recording)
+                inspected.usable.append(dated)
+                yield from stored_samples(store, run.name)
+    timeline = clock.timeline(has_manifest=manifest.found)
+    inspected.time_known &= timeline.known
+    inspected.remarks += timeline.warnings
+    inspected.files += [files[file.path] for file in run.files if file.path in files]
 
 
-def _in_time_order(run: LogRun, usable: Sequence[PlannedLog], harvest: _State) -> list[DatedLog]:
-    """Return the logs of a run in the order of their starts."""
-    entries: Mapping[str, manifest.Entry] = {}
-    path = run.folder / manifest.NAME
-    if path.is_file():
-        try:
-            rows = manifest.read_manifest(path)
-            entries = manifest.match(rows, [file.path.name for file in run.files])
-        except MappingError as error:
-            harvest.remarks.append(f"the manifest cannot be used: {error}")
-    return in_time_order(usable, entries)
-
-
-def _look(
-    reading: PlannedLog, parts: Iterator[Chunk], samples: SampleBuffer, settings: IngestSettings
-) -> tuple[FileInspection, RecordingSummary | None]:
-    """Return what one log holds; its samples go to the spool."""
-    watch, faults = LogMonitor(reading), RejectedRows()
+def _manifest(run: LogRun, inspected: _InspectedLogs) -> RunManifest:
+    """Return the manifest of a run; one that cannot be followed becomes a remark."""
     try:
-        result = record(reading, watch.over(parts), faults, samples.add)
+        return read_run_manifest(run.folder, [file.path.name for file in run.files])
+    except MappingError as error:
+        inspected.remarks.append(f"the manifest cannot be used: {error}")
+        return RunManifest({}, found=True)
+
+
+def _inspect_log(
+    planned: PlannedLog, chunks: Iterator[Chunk], sink: SampleSink, settings: IngestSettings
+) -> tuple[FileInspection, RecordingSummary | None]:
+    """Return what one log holds; its samples go to the sink."""
+    monitor, rejected = LogMonitor(planned), RejectedRows()
+    try:
+        result = read_recording(planned, monitor.observe(chunks), rejected, sink)
     except LogError as error:
         result = Refusal("contradicts_survey", str(error))
-    samples.close()
-    log = reading.log
+    log = planned.log
     found = FileInspection(
         path=log.file.path,
         run=log.run.name,
         recording=log.recording,
         form=log.source.form,
         columns=len(log.source.columns),
-        rows=watch.rows,
-        rejected=faults.counts(),
-        sampling=watch.sampling(),
-        joints=watch.joints(settings.forced_units()),
-        notes=tuple(dict.fromkeys(text for plan in reading.plans for text in other_remarks(plan))),
+        rows=monitor.rows_read,
+        rejected=rejected.counts(),
+        sampling=monitor.sampling(),
+        joints=monitor.joints(settings.forced_units()),
+        notes=tuple(dict.fromkeys(text for plan in planned.plans for text in other_remarks(plan))),
     )
     if isinstance(result, Refusal):
         return replace(found, reason=result.reason, refusal=result.text), None
     joints = tuple(
         replace(joint, brake_closed_s=closed_seconds(log.source, plan, settings.batch_bytes))
-        for joint, plan in zip(found.joints, reading.plans, strict=True)
+        for joint, plan in zip(found.joints, planned.plans, strict=True)
     )
-    clocks = other_clocks(log.source, reading.plans[0], settings.batch_bytes)
+    clocks = other_clocks(log.source, planned.plans[0], settings.batch_bytes)
     return replace(found, rows_kept=result.rows_kept, joints=joints, clocks=clocks), result
 
 
-def _with_moves(file: FileInspection, moves: Moves) -> FileInspection:
-    """Return the same with the constant-speed parts of each joint."""
+def _with_segments(file: FileInspection, segments: SegmentCounts) -> FileInspection:
+    """Return a file with the constant-speed segments of each joint."""
     joints = tuple(
-        replace(joint, moves=dict(moves.get((file.run, file.recording, joint.joint), NO_MOVES)))
+        replace(
+            joint, moves=dict(segments.get((file.run, file.recording, joint.joint), NO_SEGMENTS))
+        )
         for joint in file.joints
     )
     return replace(file, joints=joints)
 
 
-def _in_all(moves: Moves, joint: int) -> dict[str, int]:
-    """Return how often a joint holds a constant speed in all recordings together."""
-    own = [counts for (_, _, number), counts in moves.items() if number == joint]
-    return {way: sum(counts[way] for counts in own) for way in NO_MOVES}
+def _total(segments: SegmentCounts, joint: int) -> dict[str, int]:
+    """Return the constant-speed segments of a joint in all recordings together."""
+    counts_of_joint = [counts for (_, _, number), counts in segments.items() if number == joint]
+    return {
+        direction: sum(counts[direction] for counts in counts_of_joint) for direction in NO_SEGMENTS
+    }

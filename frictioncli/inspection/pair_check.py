@@ -30,8 +30,8 @@ _HEADS = (
     "load_high",
 )
 
-NO_MOVES: Mapping[str, int] = MappingProxyType(dict.fromkeys((FORWARD, REVERSE), 0))
-Moves = dict[tuple[str, str, int], dict[str, int]]
+NO_SEGMENTS: Mapping[str, int] = MappingProxyType(dict.fromkeys((FORWARD, REVERSE), 0))
+SegmentCounts = dict[tuple[str, str, int], dict[str, int]]
 """Run, recording and joint -> constant-speed parts forward and in reverse."""
 
 
@@ -40,7 +40,7 @@ def segments_and_pairs(
     said: Callable[[], pd.DataFrame],
     settings: PairingSettings,
     folder: Path,
-) -> tuple[Moves, pd.DataFrame]:
+) -> tuple[SegmentCounts, pd.DataFrame]:
     """Return the constant-speed parts of samples, and one row per pair of them.
 
     Parameters
@@ -56,7 +56,7 @@ def segments_and_pairs(
 
     Returns
     -------
-    moves : Moves
+    moves : SegmentCounts
         How often a constant speed was held.
     pairs : DataFrame
         Run, joint, pair, speed [deg/s], phase, motor temperature [°C], mean half difference of the
@@ -73,9 +73,9 @@ def segments_and_pairs(
         return _moves(found), pd.concat(parts, ignore_index=True)
 
 
-def _moves(found: Segments) -> Moves:
+def _moves(found: Segments) -> SegmentCounts:
     """Return how often each joint held a constant speed in each recording."""
-    moves: Moves = {}
+    moves: SegmentCounts = {}
     for run, joint in found.counts:
         for (spans,) in found.pages.of((run, joint), "spans"):
             for way, sign in ((FORWARD, 1), (REVERSE, -1)):
@@ -84,7 +84,7 @@ def _moves(found: Segments) -> Moves:
                 )
                 for number, count in zip(numbers.tolist(), counts.tolist(), strict=True):
                     key = (*found.recordings[number], joint)
-                    moves.setdefault(key, dict(NO_MOVES))[way] += count
+                    moves.setdefault(key, dict(NO_SEGMENTS))[way] += count
     return moves
 
 

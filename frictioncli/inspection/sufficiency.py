@@ -65,7 +65,7 @@ class JointSummary:
 
 
 @dataclass(frozen=True, slots=True)
-class Recordings:
+class RecordingCounts:
     """What is known of the recordings of one joint: how many, of how many runs, and their starts.
 
     ``time_known`` is false where start times are not known.
@@ -76,8 +76,8 @@ class Recordings:
     time_known: bool
 
 
-def joint_data(
-    joint: int, moves: Mapping[str, int], recordings: Recordings, pairs: pd.DataFrame
+def joint_summary(
+    joint: int, moves: Mapping[str, int], recordings: RecordingCounts, pairs: pd.DataFrame
 ) -> JointSummary:
     """Return what the logs hold of a joint and for which stages it suffices.
 
@@ -87,7 +87,7 @@ def joint_data(
         Which joint.
     moves : mapping of str to int
         Constant-speed parts ``forward`` and ``reverse``.
-    recordings : Recordings
+    recordings : RecordingCounts
         What is known of its recordings.
     pairs : DataFrame
         Its rows of :func:`frictioncli.inspection.pair_check.pair_heads`.
@@ -124,7 +124,7 @@ def _counted(count: int, what: str) -> str:
     return f"{count} {what}{'s' * (count != 1)}"
 
 
-def _ingest_told(recordings: Recordings) -> str:
+def _ingest_told(recordings: RecordingCounts) -> str:
     return f"{_counted(recordings.count, 'recording')} in {_counted(recordings.runs, 'run')}"
 
 
@@ -209,7 +209,7 @@ def _speed_lacking(heads: pd.DataFrame) -> Iterable[str]:
         )
 
 
-def _diagnose(heads: pd.DataFrame, recordings: Recordings) -> Stage:
+def _diagnose(heads: pd.DataFrame, recordings: RecordingCounts) -> Stage:
     runs = sorted(heads["run"].unique())
     learned = heads if len(runs) == 1 else heads[heads["run"] != runs[-1]]
     if len(learned) < LEAST_TO_DIAGNOSE:

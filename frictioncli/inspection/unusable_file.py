@@ -15,7 +15,7 @@ from frictioncli.logs.channels.recognition import LogChannel, recognise_channels
 from frictioncli.logs.formats import open_log
 from frictioncli.logs.log_source import LogSource, Refusal, UnreadableLog
 from frictioncli.logs.runs.discovery import LogRun
-from frictioncli.logs.samples.row_checks import LogRows
+from frictioncli.logs.samples.log_rows import LogRows
 from frictioncli.logs.settings import IngestSettings
 
 _TABLES = (
@@ -72,7 +72,7 @@ def _sampled(
     source: LogSource, time: LogChannel, settings: IngestSettings
 ) -> tuple[int, Sampling | None]:
     """Return how many rows a log has and how it was sampled."""
-    windows, watch = Windows(), SamplingMonitor()
+    windows, monitor = Windows(), SamplingMonitor()
     factor, rows = np.nan, 0
     with suppress(UnreadableLog):
         for batch in source.batches([time.column], settings.batch_bytes):
@@ -81,11 +81,11 @@ def _sampled(
             good = np.isfinite(values)
             if np.isnan(factor):
                 factor = units.FACTORS[names.TIME][_unit(time, values[good], settings)]
-            for window in windows.see(LogRows(batch.lines[good], values[good] * factor, {})):
-                watch.see(window)
+            for window in windows.update(LogRows(batch.lines[good], values[good] * factor, {})):
+                monitor.update(window)
     for window in windows.rest():
-        watch.see(window)
-    return rows, watch.result()
+        monitor.update(window)
+    return rows, monitor.result()
 
 
 def _unit(time: LogChannel, values: np.ndarray, settings: IngestSettings) -> str:

@@ -1,14 +1,30 @@
-"""What ``ingest`` did, in a few lines."""
+"""What ``ingest`` has read: the record of all logs, facts for later stages, and a summary."""
 
+from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
+from typing import Any
+
+from frictioncli.errors import LogError
+from frictioncli.logs.runs.opening import RefusedLog
+from frictioncli.logs.samples.quantized_temperature import Knots
+from frictioncli.logs.samples.recording import RecordingSummary
+from frictioncli.logs.samples.timeline import Timeline
 
 _NAMES_SHOWN = 6
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class RejectedFile:
-    """A file that was not used as a whole."""
+    """A file that is not used as a whole.
+
+    Attributes
+    ----------
+    run, file : str
+        Names of its run and of the file.
+    reason, text : str
+        Why it is not used: a word from a fixed list, and a sentence.
+    """
 
     run: str
     file: str
@@ -18,7 +34,7 @@ class RejectedFile:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class IngestSummary:
-    """What ``ingest`` read, kept and rejected; ``str()`` is the text for the terminal.
+    """What ``ingest`` has read, kept and rejected; ``str()`` gives the text for the terminal.
 
     Attributes
     ----------
@@ -37,11 +53,11 @@ class IngestSummary:
     torque_unit, torque_side : str
         ``N·m`` or ``A``; ``joint`` or ``motor``.
     duration : float
-        Sum over the recordings. [s]
+        Sum over all recordings. [s]
     time_known : bool
-        False where start times were invented.
+        False where start times are not known and were assumed.
     notes, warnings : tuple of str
-        What was believed, and what should worry.
+        Assumptions about the logs, and possible faults in them.
     """
 
     runs: tuple[str, ...]
@@ -79,34 +95,115 @@ class IngestSummary:
         return "\n".join(lines)
 
 
-def _rejected_lines(files: Sequence[RejectedFile]) -> list[str]:
-    return [
-        f"rejected, {reason}: {names}: {text}"
-        for (reason, text), names in _by_text(((f.reason, f.text), f.file) for f in files).items()
-    ]
+@dataclass(slots=True)
+class IngestedLogs:
+    """Record of all logs that were read; the samples themselves are on disk.
+
+    Attributes
+    ----------
+    timelines : dict of str to Timeline
+        Run -> its recordings.
+    knots : dict of (str, int) to tuple of Knots or None
+        Run and joint -> knots of the motor temperature for each recording.
+    refused : list of RefusedLog
+        Files that cannot be used.
+    notes, warnings : list of str
+        What concerns whole runs.
+    """
+
+    timelines: dict[str, Timeline] = field(default_factory=dict)
+    knots: dict[tuple[str, int], tuple[Knots | None, ...]] = field(default_factory=dict)
+    refused: list[RefusedLog] = field(default_factory=list)
+    notes: list[str] = field(default_factory=list)
+    warnings: list[str] = field(default_factory=list)
+
+    @property
+    def recordings(self) -> list[RecordingSummary]:
+        """All recordings, run by run, in the order of time."""
+        return [placed.recording for line in self.timelines.values() for placed in line.placed]
+
+    def facts(self) -> dict[str, Any]:
+        """Return what later stages must know besides the columns of ``samples``.
+
+        Raises
+        ------
+        LogError
+            If the logs differ in unit or side of the torque.
+        """
+        recordings = self.recordings
+        plans = [
+            (f"{recording.log.run.name}/{recording.log.file.path.name}", plan)
+            for recording in recordings
+            for plan in recording.planned.plans
+        ]
+        notes = ((name, text) for name, plan in plans for text in plan.notes)
+        warnings = ((name, text) for name, plan in plans for text in plan.warnings)
+        return {
+            "torque_unit": _common("torque unit", ((n, plan.torque_unit) for n, plan in plans)),
+            "torque_side": _common(
+                "side of the torque", ((n, plan.torque_side) for n, plan in plans)
+            ),
+            "notes": [*_grouped_by_remark(notes, len(recordings)), *self.notes],
+            "warnings": [*_grouped_by_remark(warnings, len(recordings)), *self.warnings],
+            "time_known": all(timeline.known for timeline in self.timelines.values()),
+        }
+
+    def summary(self, facts: Mapping[str, Any]) -> IngestSummary:
+        """Return the summary for the user, given the result of :meth:`facts`."""
+        rejected: Counter[str] = Counter()
+        samples: Counter[int] = Counter()
+        recordings = self.recordings
+        for recording in recordings:
+            rejected.update(recording.rejected)
+            samples.update(dict.fromkeys(recording.joints, recording.rows_kept))
+        return IngestSummary(
+            runs=tuple(self.timelines),
+            files_read=len(recordings),
+            files_rejected=tuple(
+                RejectedFile(
+                    run=log.run.name,
+                    file=log.file.path.name,
+                    reason=log.refusal.reason,
+                    text=log.refusal.text,
+                )
+                for log in self.refused
+            ),
+            rows_read=sum(r.rows_read for r in recordings),
+            rows_kept=sum(r.rows_kept for r in recordings),
+            rows_rejected=dict(rejected),
+            samples=dict(sorted(samples.items())),
+            torque_unit=facts["torque_unit"],
+            torque_side=facts["torque_side"],
+            duration=sum(r.duration for r in recordings),
+            time_known=facts["time_known"],
+            notes=tuple(facts["notes"]),
+            warnings=tuple(facts["warnings"]),
+        )
 
 
-def _by_text(pairs: Iterable[tuple[tuple[str, str], str]]) -> dict[tuple[str, str], str]:
-    groups: dict[tuple[str, str], list[str]] = {}
-    for key, name in pairs:
-        groups.setdefault(key, []).append(name)
-    return {key: _shortened(names) for key, names in groups.items()}
+def _common(what: str, values: Iterable[tuple[str, str]]) -> str:
+    """Return the value that all logs share, given (log, value)."""
+    first: dict[str, str] = {}
+    for name, value in values:
+        first.setdefault(value, name)
+    if len(first) > 1:
+        found = "; ".join(f"{value} in {name}" for value, name in first.items())
+        raise LogError(
+            f"the logs differ in {what}: {found}; expected the same in all: read them in separate"
+            " calls, choose joints, or choose the torque column with --map"
+        )
+    return next(iter(first))
 
 
-def _shortened(names: Sequence[str]) -> str:
-    shown = ", ".join(names[:_NAMES_SHOWN])
-    return shown + (f" and {len(names) - _NAMES_SHOWN} more" if len(names) > _NAMES_SHOWN else "")
-
-
-def grouped(remarks: Iterable[tuple[str, str]], total: int) -> tuple[str, ...]:
-    """Return each remark once, saying in how many of the files it holds.
+def _grouped_by_remark(remarks: Iterable[tuple[str, str]], total: int) -> tuple[str, ...]:
+    """Return each remark once, with the number of files that it holds for.
 
     Parameters
     ----------
     remarks : iterable of (file, remark)
-        In order.
+        Remarks in order.
     total : int
-        Number of files; a remark that holds in all of them needs no mention of files.
+        Number of files; a remark that holds for all of them does not mention files.
     """
     files: dict[str, list[str]] = {}
     for file, remark in remarks:
@@ -119,3 +216,19 @@ def grouped(remarks: Iterable[tuple[str, str]], total: int) -> tuple[str, ...]:
         else f"in {len(names)} files: {remark}"
         for remark, names in files.items()
     )
+
+
+def _rejected_lines(files: Sequence[RejectedFile]) -> list[str]:
+    """Return a line per reason and text, with the files that it holds for."""
+    groups: dict[tuple[str, str], list[str]] = {}
+    for file in files:
+        groups.setdefault((file.reason, file.text), []).append(file.file)
+    return [
+        f"rejected, {reason}: {_first_names(names)}: {text}"
+        for (reason, text), names in groups.items()
+    ]
+
+
+def _first_names(names: Sequence[str]) -> str:
+    shown = ", ".join(names[:_NAMES_SHOWN])
+    return shown + (f" and {len(names) - _NAMES_SHOWN} more" if len(names) > _NAMES_SHOWN else "")

@@ -10,9 +10,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from frictioncli import schemas, tables
+from frictioncli.logs.samples.log_rows import LogRows
 from frictioncli.logs.samples.quantized_temperature import Knots
 from frictioncli.logs.samples.read_ahead import in_order
-from frictioncli.logs.samples.row_checks import LogRows
 from frictioncli.logs.samples.sample_writer import SampleWriter
 from frictioncli.provenance import Provenance
 
@@ -72,10 +72,10 @@ def block(first, n, joints):
     return LogRows(row.astype(np.int64), row, columns)
 
 
-def finished(drafts, folder, temperatures):
+def finished(writer, folder, temperatures):
     target = folder / "table" / "samples.parquet"
     target.parent.mkdir(exist_ok=True)
-    drafts.finish(target, temperatures, Provenance("ingest"), {"torque_unit": "A"})
+    writer.finish(target, temperatures, Provenance("ingest"), {"torque_unit": "A"})
     assert tables.facts(target) == {"torque_unit": "A"}
     return tables.read(target, schemas.SAMPLES)
 
@@ -84,18 +84,18 @@ def finished(drafts, folder, temperatures):
 @given(st.lists(st.integers(1, 5), min_size=1, max_size=4))
 def test_samples_are_ordered_by_run_joint_and_time(tmp_path_factory, sizes):
     """Two runs of two recordings each, all with joints 2 and 1, handed over in small pieces."""
-    folder = Path(tmp_path_factory.mktemp("drafts"))
-    with SampleWriter(folder) as drafts:
+    folder = Path(tmp_path_factory.mktemp("writer"))
+    with SampleWriter(folder) as writer:
         for run in ("a", "b"):
             for recording, start in (("one", 0.0), ("two", 100.0)):
-                drafts.begin(run, recording, [2, 1], start)
+                writer.begin_recording(run, recording, [2, 1], start)
                 first = 0
                 for n in sizes:
                     piece = block(first, n, [2, 1])
-                    drafts.add(piece, piece.time)
+                    writer.add(piece, piece.time)
                     first += n
         none = {(run, joint): (None, None) for run in ("a", "b") for joint in (1, 2)}
-        table = finished(drafts, folder, none)
+        table = finished(writer, folder, none)
     rows = np.arange(sum(sizes), dtype=float)
     expected = pd.DataFrame(
         [
@@ -113,15 +113,15 @@ def test_samples_are_ordered_by_run_joint_and_time(tmp_path_factory, sizes):
 
 
 def test_a_void_recording_leaves_no_sample_and_temperatures_are_rebuilt(tmp_path):
-    with SampleWriter(tmp_path) as drafts:
+    with SampleWriter(tmp_path) as writer:
         for name in ("good", "void", "last"):
-            drafts.begin("run", name, [3], 0.0)
+            writer.begin_recording("run", name, [3], 0.0)
             piece = block(0, 5, [3])
-            drafts.add(piece, piece.time)
+            writer.add(piece, piece.time)
             if name == "void":
-                drafts.forget([3])
+                writer.discard_recording([3])
         rising = Knots(np.array([-1.0, 9.0]), np.array([19.7, 20.7]), 1.0, 2)
-        table = finished(drafts, tmp_path, {("run", 3): (rising, None)})
+        table = finished(writer, tmp_path, {("run", 3): (rising, None)})
     assert list(table["recording"]) == ["good"] * 5 + ["last"] * 5
     rebuilt = table["motor_temperature"].to_numpy()
     assert rebuilt[:5] == pytest.approx([19.8, 19.9, 20.0, 20.1, 20.2])
@@ -130,15 +130,15 @@ def test_a_void_recording_leaves_no_sample_and_temperatures_are_rebuilt(tmp_path
 
 
 def test_short_recordings_of_different_channels_share_a_table(tmp_path):
-    with SampleWriter(tmp_path) as drafts:
+    with SampleWriter(tmp_path) as writer:
         for name, n, channels in (("warm", 4, 3), ("bare", 2, 2), ("again", 3, 3)):
             piece = block(0, n, [1])
             if channels == 2:
                 columns = {key: piece.columns[key] for key in piece.columns if "temp" not in key[1]}
                 piece = LogRows(piece.lines, piece.time, columns)
-            drafts.begin("run", name, [1], 0.0)
-            drafts.add(piece, piece.time)
-        table = finished(drafts, tmp_path, {("run", 1): (None, None, None)})
+            writer.begin_recording("run", name, [1], 0.0)
+            writer.add(piece, piece.time)
+        table = finished(writer, tmp_path, {("run", 1): (None, None, None)})
     assert list(table["recording"]) == ["warm"] * 4 + ["bare"] * 2 + ["again"] * 3
     assert list(table["motor_temperature"].isna()) == [False] * 4 + [True] * 2 + [False] * 3
     assert list(table["position"]) == [1000 + i for i in (0, 1, 2, 3, 0, 1, 0, 1, 2)]

@@ -14,11 +14,11 @@ from frictioncli.logs.samples import quantized_temperature
 from .logs import kuka_columns, write
 
 
-def rebuilt(time, reading, wait=2.0):
-    changes = quantized_temperature.find_changes(time, reading, wait=wait)
+def rebuilt(time, reading, longest=2.0):
+    changes = quantized_temperature.find_changes(time, reading, longest=longest)
     step = quantized_temperature.find_step(np.unique(reading))
-    points = quantized_temperature.knots(changes, step=step, span=(time[0], time[-1]))
-    return quantized_temperature.rebuild(points, time, reading)
+    points = quantized_temperature.interpolation_knots(changes, step=step, span=(time[0], time[-1]))
+    return quantized_temperature.interpolate_temperature(points, time, reading)
 
 
 def test_a_ramp_is_rebuilt_exactly():
@@ -50,7 +50,7 @@ def test_flicker_makes_no_spikes():
 def test_changes_across_a_pause_are_not_dated():
     time = np.array([0.0, 1.0, 300.0, 301.0])
     reading = np.array([20.0, 20.0, 21.0, 22.0])
-    changes = quantized_temperature.find_changes(time, reading, wait=2.0)
+    changes = quantized_temperature.find_changes(time, reading, longest=2.0)
     np.testing.assert_array_equal(changes.time, [300.5])
     np.testing.assert_array_equal(changes.before + changes.after, [43.0])
 

@@ -38,7 +38,7 @@ class _Top:
     longest: int = 0
     running: int = 0
 
-    def see(self, torque: Array, moving: Flags) -> None:
+    def update(self, torque: Array, moving: Flags) -> None:
         if not len(torque):
             return
         highest = float(torque.max())
@@ -65,7 +65,7 @@ class _Standstill:
     _open_since: float = np.nan
     _last: float = np.nan
 
-    def see(self, time: Array, still: Flags) -> None:
+    def update(self, time: Array, still: Flags) -> None:
         rows, begins = _runs(still)
         before = np.concatenate(([self._last], time))
         since, until = before[begins], time[begins + rows - 1]
@@ -105,16 +105,16 @@ class ConstantTorqueMonitor:
     _moving: int = 0
     _changing: int = 0
 
-    def see(self, rows: JointRows) -> None:
+    def update(self, rows: JointRows) -> None:
         """Take in the next rows."""
         torque, new = rows.required(names.TORQUE), rows.new
         moving = rows.moving[new]
-        self._high.see(torque[new], moving)
-        self._low.see(-torque[new], moving)
+        self._high.update(torque[new], moving)
+        self._low.update(-torque[new], moving)
         same = rows.joined & (np.diff(torque, prepend=np.nan) == 0)
         self._moving += int(moving.sum())
         self._changing += int((moving & ~same[new]).sum())
-        self._standstill.see(rows.window.rows.time[new], (same & ~rows.moving)[new])
+        self._standstill.update(rows.window.rows.time[new], (same & ~rows.moving)[new])
 
     @property
     def _alive(self) -> bool:

@@ -15,8 +15,8 @@ from frictioncli.inspection.monitors.velocity_agreement import VelocityAgreement
 from frictioncli.inspection.monitors.windows import Window, Windows
 from frictioncli.inspection.unit_reasons import evidence, gear_ratio
 from frictioncli.logs.channels import aliases as names
-from frictioncli.logs.channels.joint_plan import JointPlan
 from frictioncli.logs.channels.recognition import LogChannel
+from frictioncli.logs.channels.joint_plan import JointPlan
 from frictioncli.logs.samples.chunks import Chunk, PlannedLog
 
 _SPIKY = (names.POSITION, names.VELOCITY, names.TORQUE)
@@ -32,19 +32,19 @@ class _JointMonitor:
     agreement: VelocityAgreementMonitor = field(default_factory=VelocityAgreementMonitor)
     spikes: dict[str, SpikeMonitor] = field(default_factory=dict)
 
-    def see(self, rows: JointRows, changed: Flags) -> None:
+    def update(self, rows: JointRows, changed: Flags) -> None:
         for name in names.CHANNELS[1:]:
             values = rows.channel(name)
             if values is None:
                 continue
-            watch = self.channels.setdefault(name, ResolutionMonitor())
-            watch.see(values[rows.new])
+            monitor = self.channels.setdefault(name, ResolutionMonitor())
+            monitor.update(values[rows.new])
             if name in _SPIKY:
                 spiky = self.spikes.setdefault(name, SpikeMonitor())
-                spiky.see(rows, values, _step(watch))
-        self.held.see(rows, changed)
-        self.torque.see(rows)
-        self.agreement.see(rows)
+                spiky.update(rows, values, _step(monitor))
+        self.held.update(rows, changed)
+        self.torque.update(rows)
+        self.agreement.update(rows)
 
     def result(self, plan: JointPlan, told: Collection[str]) -> JointInspection:
         position = self.channels.get(names.POSITION)
@@ -63,9 +63,9 @@ class _JointMonitor:
             held_line=line,
             limits=self.torque.limits(),
             spikes=tuple(
-                Spikes(name, watch.count, watch.line, watch.farthest)
-                for name, watch in self.spikes.items()
-                if watch.line is not None
+                Spikes(name, monitor.count, monitor.line, monitor.farthest)
+                for name, monitor in self.spikes.items()
+                if monitor.line is not None
             ),
             frozen_spans=frozen_spans,
             frozen_s=frozen_s,
@@ -73,22 +73,22 @@ class _JointMonitor:
 
     def _channel(self, plan: JointPlan, name: str, told: Collection[str]) -> ChannelInspection:
         channel: LogChannel = getattr(plan.channels, name)
-        watch = self.channels.get(name, ResolutionMonitor())
+        monitor = self.channels.get(name, ResolutionMonitor())
         return ChannelInspection(
             quantity=name,
             column=channel.name,
             side=channel.meaning.side if name in _SPIKY else "",
             unit_found=channel.unit,
             unit_believed=plan.conversions[name].unit,
-            evidence=evidence(plan, name, told, max(abs(watch.lowest), abs(watch.highest))),
-            lowest=watch.lowest,
-            highest=watch.highest,
-            grid=watch.grid(),
+            evidence=evidence(plan, name, told, max(abs(monitor.lowest), abs(monitor.highest))),
+            lowest=monitor.lowest,
+            highest=monitor.highest,
+            grid=monitor.grid(),
         )
 
 
-def _step(watch: ResolutionMonitor) -> float:
-    grid = watch.grid()
+def _step(monitor: ResolutionMonitor) -> float:
+    grid = monitor.grid()
     return 0.0 if grid is None else grid.step
 
 
@@ -97,32 +97,32 @@ class LogMonitor:
 
     Parameters
     ----------
-    reading : PlannedLog
+    planned : PlannedLog
         The log about to be read.
     """
 
-    def __init__(self, reading: PlannedLog) -> None:
-        self._reading = reading
+    def __init__(self, planned: PlannedLog) -> None:
+        self._planned = planned
         self._windows = Windows()
         self._sampling = SamplingMonitor()
-        self._joints = {plan.channels.joint: _JointMonitor() for plan in reading.plans}
-        self.rows = 0
+        self._joints = {plan.channels.joint: _JointMonitor() for plan in planned.plans}
+        self.rows_read = 0
 
-    def over(self, parts: Iterable[Chunk]) -> Iterator[Chunk]:
-        """Yield the parts of the log as they come, having looked at them."""
-        for part in parts:
-            self.rows += part.rows
-            for window in self._windows.see(part.block):
+    def observe(self, chunks: Iterable[Chunk]) -> Iterator[Chunk]:
+        """Yield the chunks of the log as they come, having looked at them."""
+        for chunk in chunks:
+            self.rows_read += chunk.rows_read
+            for window in self._windows.update(chunk.rows):
                 self._see(window)
-            yield part
+            yield chunk
         for window in self._windows.rest():
             self._see(window)
 
     def _see(self, window: Window) -> None:
-        self._sampling.see(window)
+        self._sampling.update(window)
         changed = changes(window)
-        for joint, watch in self._joints.items():
-            watch.see(joint_rows(window, joint, self._reading.period), changed)
+        for joint, monitor in self._joints.items():
+            monitor.update(joint_rows(window, joint, self._planned.period), changed)
 
     def sampling(self) -> Sampling | None:
         """Return how the log was sampled; None where it has no usable row."""
@@ -137,5 +137,5 @@ class LogMonitor:
             Quantities whose unit the user gives.
         """
         return tuple(
-            self._joints[plan.channels.joint].result(plan, told) for plan in self._reading.plans
+            self._joints[plan.channels.joint].result(plan, told) for plan in self._planned.plans
         )

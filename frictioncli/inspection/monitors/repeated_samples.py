@@ -46,7 +46,7 @@ class RepeatedSamplesMonitor:
     _line: Numbers = field(default_factory=lambda: np.empty(0, np.int64))
     _rows: int = 0
 
-    def see(self, rows: JointRows, changed: Flags) -> None:
+    def update(self, rows: JointRows, changed: Flags) -> None:
         """Take in the next rows.
 
         Parameters

@@ -48,7 +48,7 @@ class ResolutionMonitor:
     _grid: Resolution | None = None
     _judged: int = 0
 
-    def see(self, values: Array) -> None:
+    def update(self, values: Array) -> None:
         """Take in the next values; NaN are passed over."""
         values = values[np.isfinite(values)]
         if not len(values):

@@ -98,7 +98,7 @@ class SamplingMonitor:
     _longest: list[Gap] = field(default_factory=list)
     _resets: list[Reset] = field(default_factory=list)
 
-    def see(self, window: Window) -> None:
+    def update(self, window: Window) -> None:
         """Take in the next rows."""
         time, new = window.rows.time, window.new
         if not self._samples:

@@ -28,7 +28,7 @@ class SpikeMonitor:
     farthest: float = 0.0
     _scale: float = 0.0
 
-    def see(self, rows: JointRows, values: Array, step: float) -> None:
+    def update(self, rows: JointRows, values: Array, step: float) -> None:
         """Take in the next rows.
 
         Parameters

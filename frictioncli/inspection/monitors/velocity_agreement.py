@@ -21,7 +21,7 @@ class VelocityAgreementMonitor:
     _ratios: LogHistogram = field(default_factory=LogHistogram)
     _farthest: float = 0.0
 
-    def see(self, rows: JointRows) -> None:
+    def update(self, rows: JointRows) -> None:
         """Take in the next rows."""
         velocity = rows.channel(names.VELOCITY)
         if velocity is None or len(velocity) <= _WIDTH:

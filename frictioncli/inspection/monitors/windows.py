@@ -10,7 +10,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from frictioncli.arrays import Array
-from frictioncli.logs.samples.row_checks import LogRows, joined
+from frictioncli.logs.samples.log_rows import LogRows, concatenate_rows
 
 CONTEXT = 8
 """Rows before and after a window that are shown with it."""
@@ -47,7 +47,7 @@ class Windows:
     _length: int = 0
     _before: int = 0
 
-    def see(self, block: LogRows) -> Iterator[Window]:
+    def update(self, block: LogRows) -> Iterator[Window]:
         """Take the next rows and yield the windows that are complete."""
         if not len(block):
             return
@@ -65,7 +65,7 @@ class Windows:
     def _window(self, length: int) -> Window:
         whole = self._held[0]
         for block in self._held[1:]:
-            whole = joined(whole, block)
+            whole = concatenate_rows(whole, block)
         new = slice(self._before, self._before + length)
         start = max(new.stop - CONTEXT, 0)
         rest = whole.take(slice(start, None))

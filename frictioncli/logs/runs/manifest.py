@@ -1,8 +1,9 @@
-"""``manifest.csv``: when each recording of a run started, and what is known of it."""
+"""``manifest.csv``: start, phase, payload and ambient temperature of each recording of a run."""
 
 import csv
 import difflib
 import math
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from datetime import UTC, datetime
 from pathlib import Path
@@ -16,7 +17,7 @@ _COLUMNS = ("file", "started_at", "phase", "payload", "ambient")
 
 
 @dataclass(frozen=True, slots=True)
-class Entry:
+class ManifestEntry:
     """One row of a manifest.
 
     Attributes
@@ -26,7 +27,7 @@ class Entry:
     started_at : datetime
         Start of the recording; UTC where the manifest names no zone.
     phase : str or None
-        One of ``PHASES``.
+        Phase of the measurement, one of ``PHASES``.
     payload : float or None
         Mass at the tool. [kg]
     ambient : float or None
@@ -43,13 +44,67 @@ class Entry:
     row: int
 
 
-def read_manifest(path: Path) -> tuple[Entry, ...]:
-    """Read a manifest, delimiter ``;`` or ``,``.
+@dataclass(frozen=True, slots=True)
+class RunManifest:
+    """Manifest of a run, matched to the files of the run.
+
+    Attributes
+    ----------
+    entries : mapping of str to ManifestEntry
+        File name -> its row.
+    found : bool
+        Whether there is a manifest.
+    warnings : tuple of str
+        Rows whose file is not in the folder.
+    """
+
+    entries: Mapping[str, ManifestEntry]
+    found: bool
+    warnings: tuple[str, ...] = ()
+
+
+def read_run_manifest(folder: Path, names: Sequence[str]) -> RunManifest:
+    """Read the manifest of a run, if there is one.
+
+    Parameters
+    ----------
+    folder : Path
+        Folder of the manifest.
+    names : sequence of str
+        Names of the run's files.
 
     Raises
     ------
     MappingError
-        If a column, date, phase or number cannot be understood, or a file is listed twice.
+        If the manifest cannot be followed.
+    """
+    path = folder / NAME
+    if not path.is_file():
+        return RunManifest({}, found=False)
+    rows = read_manifest(path)
+    entries = match_files(rows, names)
+    present = {entry.file for entry in entries.values()}
+    present |= {path.name for path in folder.iterdir()}
+    warnings = tuple(
+        f"{path} row {row.row}: {row.file} is not in the folder"
+        for row in rows
+        if row.file not in present
+    )
+    return RunManifest(entries, found=True, warnings=warnings)
+
+
+def read_manifest(path: Path) -> tuple[ManifestEntry, ...]:
+    """Read a manifest: text with the delimiter ``;``, ``,`` or tab, and a row per file.
+
+    Parameters
+    ----------
+    path : Path
+        The file.
+
+    Raises
+    ------
+    MappingError
+        If the file, a column, date, phase or number cannot be read, or a file is listed twice.
     """
     try:
         content = path.read_bytes()
@@ -68,7 +123,7 @@ def read_manifest(path: Path) -> tuple[Entry, ...]:
         name.strip().lower() for name in next(csv.reader([filled[0][1]], delimiter=delimiter))
     ]
     _check_header(path, header)
-    entries: list[Entry] = []
+    entries: list[ManifestEntry] = []
     known: dict[str, int] = {}
     for row, line in filled[1:]:
         fields = [cell.strip() for cell in next(csv.reader([line], delimiter=delimiter))]
@@ -100,7 +155,7 @@ def _check_header(path: Path, header: list[str]) -> None:
             )
 
 
-def _entry(path: Path, row: int, cells: dict[str, str]) -> Entry:
+def _entry(path: Path, row: int, cells: dict[str, str]) -> ManifestEntry:
     file, start, phase = cells.get("file", ""), cells.get("started_at", ""), cells.get("phase", "")
     if not file:
         raise MappingError(f"{path} row {row}: no file name; expected one in the column file")
@@ -117,7 +172,7 @@ def _entry(path: Path, row: int, cells: dict[str, str]) -> Entry:
         raise MappingError(
             f"{path} row {row}: phase is {phase!r}; expected {', '.join(PHASES)} or nothing"
         )
-    return Entry(
+    return ManifestEntry(
         file,
         started_at,
         phase or None,
@@ -140,16 +195,23 @@ def _number(path: Path, row: int, name: str, text: str) -> float | None:
     return value
 
 
-def match(entries: tuple[Entry, ...], names: list[str]) -> dict[str, Entry]:
-    """Return file name -> entry.
+def match_files(entries: Sequence[ManifestEntry], names: Sequence[str]) -> dict[str, ManifestEntry]:
+    """Return file name -> row of the manifest, for the files that the manifest lists.
 
-    A manifest may leave the ending of a name out, name another form of the same recording, or a
+    The manifest may omit the ending of a name, name another format of the same recording, or name a
     trace instead of its files.
+
+    Parameters
+    ----------
+    entries : sequence of ManifestEntry
+        Rows of the manifest.
+    names : sequence of str
+        File names.
     """
     by_name = {entry.file: entry for entry in entries}
     by_stem = {Path(entry.file).stem: entry for entry in entries}
     by_trace = {trace_of(stem): entry for stem, entry in by_stem.items()}
-    found: dict[str, Entry] = {}
+    found: dict[str, ManifestEntry] = {}
     for name in names:
         stem = Path(name).stem
         trace = by_trace.get(trace_of(stem)) if is_module(stem) else None

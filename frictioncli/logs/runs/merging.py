@@ -13,7 +13,8 @@ import numpy as np
 from frictioncli.arrays import Array, Flags, Numbers
 from frictioncli.logs.log_source import LogSource, RawBatch, SequentialSource
 from frictioncli.logs.samples.differentiation import max_gap
-from frictioncli.logs.samples.row_checks import LogRows, RejectedRows, ascending
+from frictioncli.logs.samples.log_rows import LogRows, RejectedRows
+from frictioncli.logs.samples.row_checks import drop_non_increasing_time
 
 _OUTSIDE = "outside_other_file"
 _EDGE = 1e-3
@@ -198,7 +199,7 @@ class _Alignment:
         """Yield the lender's rows; each window begins with the last row of the one before."""
         period = self._lender.period
         last: _Window | None = None
-        for block in ascending(self._blocks(), RejectedRows()):
+        for block in drop_non_increasing_time(self._blocks(), RejectedRows()):
             if not len(block):
                 continue
             time = block.time

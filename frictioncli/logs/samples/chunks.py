@@ -1,10 +1,8 @@
-"""Logs in parts: consecutive rows, converted and judged one by one, parsed ahead in threads."""
+"""Chunks of a log: consecutive raw rows, converted to the units used inside and checked."""
 
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Iterable
 from contextlib import suppress
 from dataclasses import dataclass
-from functools import partial
-from itertools import chain, groupby
 from statistics import median
 
 import numpy as np
@@ -12,197 +10,170 @@ import numpy as np
 from frictioncli.arrays import Array, Flags
 from frictioncli.errors import LogError
 from frictioncli.logs.channels import aliases as names
-from frictioncli.logs.channels.joint_plan import JointPlan
 from frictioncli.logs.channels.recognition import LogChannel
+from frictioncli.logs.channels.joint_plan import JointPlan
 from frictioncli.logs.channels.units import plausible_temperature
-from frictioncli.logs.log_source import RawBatch, ReadTask, UnreadableLog
+from frictioncli.logs.log_source import RawBatch, UnreadableLog
 from frictioncli.logs.runs.opening import OpenedLog
-from frictioncli.logs.samples.read_ahead import in_order
-from frictioncli.logs.samples.row_checks import LogRows, RejectedRows, with_values
+from frictioncli.logs.samples.log_rows import LogRows, RejectedRows
+from frictioncli.logs.samples.row_checks import drop_missing_values
 
 _FIRST_BYTES = 1 << 12
-_HANDED_OVER = 1 << 21
-"""Tasks of fewer bytes go to a thread together: handing them over takes longer than some take."""
-_BEYOND = 3
-_BEYOND_SHARE = 0.01
+
+_MAX_OUTLIERS = 3
+_MAX_OUTLIER_SHARE = 0.01
+"""More rows of a chunk than this beyond the limit of position contradict the unit, not a row."""
 
 
 @dataclass(frozen=True, slots=True)
 class PlannedLog:
-    """A log about to be read.
+    """A log with the plan by which it is read.
 
     Attributes
     ----------
     log : OpenedLog
-        Which.
+        The log.
     plans : tuple of JointPlan
-        How.
-    begin : float
-        The file's own time at its first row; NaN where it tells none. [s]
+        Columns and units of each joint.
+    first_time : float
+        Time of the first row by the clock of the log; NaN where it has none. [s]
     period : float
-        Median time between the first samples; 1 where they do not tell. [s]
+        Median time between the first samples; 1 where they do not show it. [s]
     """
 
     log: OpenedLog
     plans: tuple[JointPlan, ...]
-    begin: float
+    first_time: float
     period: float
+
+    @property
+    def columns(self) -> set[int]:
+        """Indices of all columns that are read."""
+        columns = {self.plans[0].channels.time.column}
+        for plan in self.plans:
+            columns.update(_column(plan, name) for name in plan.conversions)
+        return columns
 
 
 @dataclass(frozen=True, slots=True)
 class Chunk:
-    """Consecutive rows of a log: converted usable ones, faults of the others, rows in all."""
+    """Consecutive rows of a log.
 
-    block: LogRows
-    faults: RejectedRows
-    rows: int
+    Attributes
+    ----------
+    rows : LogRows
+        The usable rows, converted.
+    rejected : RejectedRows
+        Lines of the others.
+    rows_read : int
+        Rows in all.
+    """
+
+    rows: LogRows
+    rejected: RejectedRows
+    rows_read: int
 
 
 def plan_log(log: OpenedLog, plans: Iterable[JointPlan]) -> PlannedLog:
-    """Return how a log will be read, with what its first rows tell of time."""
+    """Return a log with its plan, and first time and period from its first rows."""
     plans = tuple(plans)
     conversion = plans[0].conversions[names.TIME]
-    at, where = _column(plans[0], names.TIME), _column(plans[0], names.POSITION)
-    known = time = np.empty(0)
-    with suppress(UnreadableLog):  # reading it will tell
-        first = next(iter(log.source.batches([at, where], _FIRST_BYTES)), None)
+    time_column = _column(plans[0], names.TIME)
+    position_column = _column(plans[0], names.POSITION)
+    finite = time = np.empty(0)
+    with suppress(UnreadableLog):  # reported when the whole log is read
+        first = next(iter(log.source.batches([time_column, position_column], _FIRST_BYTES)), None)
         if first is not None:
-            known = first.values[at][np.isfinite(first.values[at])]
-            time = first.values[at][np.isfinite(first.values[where])]
+            finite = first.values[time_column][np.isfinite(first.values[time_column])]
+            time = first.values[time_column][np.isfinite(first.values[position_column])]
     steps = np.diff(time)
     steps = steps[steps > 0]
     return PlannedLog(
         log,
         plans,
-        begin=float(known[0]) * conversion.factor if len(known) else np.nan,
+        first_time=float(finite[0]) * conversion.factor if len(finite) else np.nan,
         period=median(steps.tolist()) * conversion.factor if len(steps) else 1.0,
     )
 
 
-def chunks_of(
-    readings: Sequence[PlannedLog], batch_bytes: int
-) -> Iterator[tuple[PlannedLog, Iterator[Chunk]]]:
-    """Yield each log with its rows in order; parsing goes ahead in threads, across logs too.
+def empty_chunk(planned: PlannedLog) -> Chunk:
+    """Return a chunk without rows."""
+    columns = {
+        (plan.channels.joint, name): np.empty(0) for plan in planned.plans for name in plan.conversions
+    }
+    return Chunk(LogRows(np.empty(0, np.int64), np.empty(0), columns), RejectedRows(), 0)
 
-    Taking the parts of a log that cannot be read to its end raises ``UnreadableLog``.
+
+def convert_chunk(batch: RawBatch, planned: PlannedLog) -> Chunk:
+    """Convert raw rows, and reject those that are unreadable or lack a required value.
 
     Parameters
     ----------
-    readings : sequence of PlannedLog
-        The logs.
-    batch_bytes : int
-        How much of a log makes a part. [byte]
+    batch : RawBatch
+        The rows as they stand in the file.
+    planned : PlannedLog
+        Their log.
+
+    Raises
+    ------
+    LogError
+        If positions contradict the unit that the survey found.
     """
-    results = chain.from_iterable(in_order(_together(_tasks(readings, batch_bytes))))
-    for number, group in groupby(results, key=lambda result: result.number):
-        yield readings[number], _parts(group)
-
-
-@dataclass(frozen=True, slots=True)
-class _Result:
-    """A part of the log with this number, or why it cannot be read further."""
-
-    number: int
-    part: Chunk | UnreadableLog
-
-
-def _tasks(readings: Iterable[PlannedLog], batch_bytes: int) -> Iterator[ReadTask[_Result]]:
-    """Yield the tasks of all logs one after the other; each log has at least one."""
-    for number, reading in enumerate(readings):
-        end: Chunk | UnreadableLog | None = Chunk(_no_rows(reading.plans), RejectedRows(), 0)
-        columns = {reading.plans[0].channels.time.column}
-        for plan in reading.plans:
-            columns.update(_column(plan, name) for name in plan.conversions)
-        try:
-            for task in reading.log.source.tasks(columns, batch_bytes):
-                yield ReadTask(partial(_done, number, reading, task), task.size)
-                end = None
-        except UnreadableLog as error:
-            end = error
-        if end is not None:
-            yield ReadTask(partial(_Result, number, end), 0)
-
-
-def _together(tasks: Iterable[ReadTask[_Result]]) -> Iterator[Callable[[], list[_Result]]]:
-    """Yield the tasks, small ones together."""
-    held: list[ReadTask[_Result]] = []
-    held_bytes = 0
-    for task in tasks:
-        if held and held_bytes + task.size > _HANDED_OVER:
-            yield partial(_all, held)
-            held, held_bytes = [], 0
-        held.append(task)
-        held_bytes += task.size
-    yield partial(_all, held)
-
-
-def _all(tasks: Iterable[ReadTask[_Result]]) -> list[_Result]:
-    return [task.read() for task in tasks]
-
-
-def _done(number: int, reading: PlannedLog, task: ReadTask[RawBatch]) -> _Result:
-    try:
-        return _Result(number, _part(task.read(), reading))
-    except UnreadableLog as error:
-        return _Result(number, error)
-
-
-def _parts(results: Iterable[_Result]) -> Iterator[Chunk]:
-    for result in results:
-        if isinstance(result.part, UnreadableLog):
-            raise result.part
-        yield result.part
-
-
-def _part(batch: RawBatch, reading: PlannedLog) -> Chunk:
-    """Return converted rows; unreadable ones and those without the required values go out."""
-    faults = RejectedRows()
+    rejected = RejectedRows()
     for reason in sorted(set(batch.bad_reasons)):
-        faults.add(batch.bad_lines[np.array(batch.bad_reasons) == reason], reason)
-    block = _within_limits(_converted(batch, reading.plans), batch, reading, faults)
+        rejected.add(batch.bad_lines[np.array(batch.bad_reasons) == reason], reason)
+    rows = _drop_implausible_positions(_converted(batch, planned.plans), batch, planned, rejected)
     required = [
         (plan.channels.joint, name)
-        for plan in reading.plans
+        for plan in planned.plans
         for name in (names.POSITION, names.TORQUE, names.VELOCITY)
         if name in plan.conversions
     ]
-    block = with_values(block, required, faults)
-    return Chunk(block, faults, len(batch.lines) + len(batch.bad_lines))
+    rows = drop_missing_values(rows, required, rejected)
+    return Chunk(rows, rejected, len(batch.lines) + len(batch.bad_lines))
 
 
-def _no_rows(plans: Iterable[JointPlan]) -> LogRows:
-    columns = {
-        (plan.channels.joint, name): np.empty(0) for plan in plans for name in plan.conversions
-    }
-    return LogRows(np.empty(0, np.int64), np.empty(0), columns)
+def _converted(batch: RawBatch, plans: Iterable[JointPlan]) -> LogRows:
+    columns: dict[tuple[int, str], Array] = {}
+    for plan in plans:
+        for name, conversion in plan.conversions.items():
+            values = batch.values[_column(plan, name)]
+            if (conversion.factor, conversion.offset) != (1.0, 0.0):
+                with np.errstate(over="ignore"):  # infinite values are rejected later
+                    values = values * conversion.factor + conversion.offset
+            if name in (names.MOTOR_TEMPERATURE, names.HOUSING_TEMPERATURE):
+                values = plausible_temperature(values)
+            columns[plan.channels.joint, name] = values
+    time = next(values for (_, name), values in columns.items() if name == names.TIME)
+    return LogRows(batch.lines, time, columns)
 
 
-def _within_limits(
-    block: LogRows, batch: RawBatch, reading: PlannedLog, faults: RejectedRows
+def _drop_implausible_positions(
+    rows: LogRows, batch: RawBatch, planned: PlannedLog, rejected: RejectedRows
 ) -> LogRows:
-    """Return the rows without positions that contradict radians as the unit."""
-    outside = np.zeros(len(block), bool)
-    for plan in reading.plans:
-        if plan.position_limit is None or not len(block):
+    """Return the rows whose raw positions agree with the unit rad, where that was inferred."""
+    outside = np.zeros(len(rows), bool)
+    for plan in planned.plans:
+        if plan.position_limit is None or not len(rows):
             continue
         raw = batch.values[plan.channels.position.column]
         if -plan.position_limit <= raw.min() <= raw.max() <= plan.position_limit:
             continue
         out = np.isfinite(raw) & (np.abs(raw) > plan.position_limit)
-        if out.sum() > max(_BEYOND, _BEYOND_SHARE * len(out)):
-            _contradicted(reading.log, plan, batch, out)
+        if out.sum() > max(_MAX_OUTLIERS, _MAX_OUTLIER_SHARE * len(out)):
+            raise _contradicted_unit(planned.log, plan, batch, out)
         outside |= out
     if not outside.any():
-        return block
-    faults.add(block.lines[outside], "implausible_position")
-    return block.take(~outside)
+        return rows
+    rejected.add(rows.lines[outside], "implausible_position")
+    return rows.take(~outside)
 
 
-def _contradicted(log: OpenedLog, plan: JointPlan, batch: RawBatch, out: Flags) -> None:
+def _contradicted_unit(log: OpenedLog, plan: JointPlan, batch: RawBatch, out: Flags) -> LogError:
     where = int(np.flatnonzero(out)[0])
     name = plan.channels.position.name
     value = batch.values[plan.channels.position.column][where]
-    raise LogError(
+    return LogError(
         f"{log.file.path} line {batch.lines[where]}: {name} is {value:.4g}, but the beginnings of"
         f" the logs of run {log.run.name} looked like rad, which end at ±6.9; say which it is with"
         " --position-unit deg or rad"
@@ -212,18 +183,3 @@ def _contradicted(log: OpenedLog, plan: JointPlan, batch: RawBatch, out: Flags) 
 def _column(plan: JointPlan, name: str) -> int:
     channel: LogChannel = getattr(plan.channels, name)
     return channel.column
-
-
-def _converted(batch: RawBatch, plans: Iterable[JointPlan]) -> LogRows:
-    columns: dict[tuple[int, str], Array] = {}
-    for plan in plans:
-        for name, conversion in plan.conversions.items():
-            values = batch.values[_column(plan, name)]
-            if (conversion.factor, conversion.offset) != (1.0, 0.0):
-                with np.errstate(over="ignore"):  # infinite ones are rejected
-                    values = values * conversion.factor + conversion.offset
-            if name in (names.MOTOR_TEMPERATURE, names.HOUSING_TEMPERATURE):
-                values = plausible_temperature(values)
-            columns[plan.channels.joint, name] = values
-    time = next(values for (_, name), values in columns.items() if name == names.TIME)
-    return LogRows(batch.lines, time, columns)

@@ -1,4 +1,4 @@
-"""Velocity from positions: the slope of a short local fit, with real time stamps."""
+"""Velocity from positions: slope of a local least-squares line, at the actual time stamps."""
 
 from math import floor
 
@@ -12,18 +12,29 @@ _GAP_PERIODS = 5.0
 
 
 def half_window(period: float) -> int:
-    """Return how many samples to each side the fit takes: at most 0.03 s and at most four.
+    """Return the samples to each side of a local fit: 1 to 4, within 0.03 s where possible.
+
+    Parameters
+    ----------
+    period : float
+        Median time between samples. [s]
+
+    Examples
+    --------
+    >>> half_window(0.004), half_window(0.012), half_window(0.1)
+    (4, 2, 1)
+    """
+    return floor(min(max(_HALF_SPAN / period + 1e-9, 1.0), _MAX_HALF_WINDOW))
+
+
+def max_gap(period: float) -> float:
+    """Return the time between neighbours above which they are not connected [s].
 
     Parameters
     ----------
     period : float
         Median time between samples. [s]
     """
-    return floor(min(max(_HALF_SPAN / period + 1e-9, 1.0), _MAX_HALF_WINDOW))
-
-
-def max_gap(period: float) -> float:
-    """Return the time [s] beyond which neighbours belong to different stretches."""
     return _GAP_PERIODS * period
 
 
@@ -34,17 +45,17 @@ def local_slope(
     half: int,
     gap: float,
 ) -> Array:
-    """Return the slope of a straight line fitted around each sample.
+    """Return the slope of a least-squares line fitted around each sample.
 
-    Exact for a ramp, at any spacing. The window shrinks to one side at the ends of a stretch, and
-    no window reaches across a gap. Quantised values give noise of zero mean, no bias.
+    The slope of a ramp is exact at any spacing of the samples. The window is one-sided at the
+    ends, and it never reaches across a gap. Quantization adds noise of zero mean, no bias.
 
     Parameters
     ----------
     time : ndarray, shape (n,)
-        Ascending. [s]
+        Ascending time. [s]
     values : ndarray, shape (n,)
-        What to differentiate.
+        Values to differentiate.
     half : int
         Samples to each side.
     gap : float
@@ -54,22 +65,29 @@ def local_slope(
     -------
     ndarray, shape (n,)
         Slope per second; NaN for a sample without neighbours.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> time = np.array([0.0, 0.1, 0.3, 9.0])
+    >>> local_slope(time, 2 * time, half=1, gap=0.5)
+    array([ 2.,  2.,  2., nan])
     """
     n = len(time)
-    stretch = np.concatenate(([0], np.cumsum(np.diff(time) > gap))) if n else np.empty(0)
+    group = np.concatenate(([0], np.cumsum(np.diff(time) > gap))) if n else np.empty(0)
     count = np.ones(n)
     sum_t, sum_v, sum_tt, sum_tv = (np.zeros(n) for _ in range(4))
     for shift in range(1, min(half, n - 1) + 1):
-        near = (stretch[shift:] == stretch[:-shift]).astype(float)
-        dt = (time[shift:] - time[:-shift]) * near
-        dv = (values[shift:] - values[:-shift]) * near
-        # each neighbouring pair serves twice: as the later sample of one, the earlier of the other
-        for part, sign in ((slice(None, n - shift), 1.0), (slice(shift, None), -1.0)):
-            count[part] += near
-            sum_t[part] += sign * dt
-            sum_v[part] += sign * dv
-            sum_tt[part] += dt * dt
-            sum_tv[part] += dt * dv
+        connected = (group[shift:] == group[:-shift]).astype(float)
+        dt = (time[shift:] - time[:-shift]) * connected
+        dv = (values[shift:] - values[:-shift]) * connected
+        # each pair of neighbours counts for both of its samples
+        for samples, sign in ((slice(None, n - shift), 1.0), (slice(shift, None), -1.0)):
+            count[samples] += connected
+            sum_t[samples] += sign * dt
+            sum_v[samples] += sign * dv
+            sum_tt[samples] += dt * dt
+            sum_tv[samples] += dt * dv
     spread = sum_tt - sum_t**2 / count
     with np.errstate(divide="ignore", invalid="ignore"):
         slope = (sum_tv - sum_t * sum_v / count) / spread

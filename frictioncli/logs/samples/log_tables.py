@@ -1,4 +1,4 @@
-"""What became of files and rows, as tables: ``recordings`` and ``rejected``."""
+"""Rows of the tables ``recordings`` and ``rejected``."""
 
 from collections.abc import Iterator, Sequence
 from itertools import islice
@@ -6,59 +6,59 @@ from itertools import islice
 import pyarrow as pa
 
 from frictioncli.logs.runs.opening import OpenedLog, RefusedLog
-from frictioncli.logs.samples.row_checks import REASONS, RejectedRows
+from frictioncli.logs.samples.log_rows import REASONS, RejectedRows
 from frictioncli.logs.samples.timeline import PlacedRecording
 
-_REJECTED_ROWS = 1 << 15
+_TABLE_ROWS = 1 << 15
 
 
 def recording_rows(run: str, recordings: Sequence[PlacedRecording]) -> pa.Table:
     """Return the rows of ``recordings`` for a run: one per recording and joint."""
     rows = []
     for placed in recordings:
-        recorded, entry = placed.recorded, placed.entry
-        for plan in recorded.reading.plans:
+        recording, entry = placed.recording, placed.entry
+        for plan in recording.planned.plans:
             rows.append(
                 {
                     "run": run,
-                    "recording": recorded.log.recording,
+                    "recording": recording.log.recording,
                     "joint": plan.channels.joint,
-                    "file": str(recorded.log.file.path),
+                    "file": str(recording.log.file.path),
                     "started_at": placed.started_at and placed.started_at.isoformat(),
                     "start": placed.start,
                     "phase": entry and entry.phase,
                     "payload": placed.payload,
                     "ambient": entry and entry.ambient,
-                    "rows_read": recorded.rows_read,
-                    "rows_kept": recorded.rows_kept,
-                    "rows_rejected": sum(recorded.rejected.values()),
-                    "period": recorded.reading.period,
+                    "rows_read": recording.rows_read,
+                    "rows_kept": recording.rows_kept,
+                    "rows_rejected": sum(recording.rejected.values()),
+                    "period": recording.planned.period,
                     "notes": "\n".join((*plan.notes, *plan.warnings)),
                 }
             )
     return pa.Table.from_pylist(rows)
 
 
-def rejected_rows(log: OpenedLog, faults: RejectedRows, batch_bytes: int) -> Iterator[pa.Table]:
+def rejected_rows(log: OpenedLog, rejected: RejectedRows, batch_bytes: int) -> Iterator[pa.Table]:
     """Yield the rows of ``rejected`` for the lines of a log that were not kept."""
-    lines, codes = faults.ascending()
+    lines, codes = rejected.in_line_order()
     texts = log.source.texts(lines, batch_bytes)
-    for start in range(0, len(lines), _REJECTED_ROWS):
-        part = codes[start : start + _REJECTED_ROWS]
-        found = list(islice(texts, len(part)))
+    for start in range(0, len(lines), _TABLE_ROWS):
+        reasons = [REASONS[code] for code in codes[start : start + _TABLE_ROWS]]
+        found = list(islice(texts, len(reasons)))
         yield pa.table(
             {
-                "run": [log.run.name] * len(part),
-                "recording": [log.recording] * len(part),
+                "run": [log.run.name] * len(reasons),
+                "recording": [log.recording] * len(reasons),
                 "row": [line for line, _ in found],
-                "reason": [REASONS[code] for code in part],
+                "reason": reasons,
                 "text": [text for _, text in found],
             }
         )
 
 
 def rejected_files(refused: Sequence[RefusedLog]) -> pa.Table:
-    """Return the rows of ``rejected`` for files that are not used as a whole."""
+    """Return the rows of ``rejected`` for whole files that are not used."""
     return pa.table(
         {
             "run": pa.array([log.run.name for log in refused], pa.string()),

@@ -1,9 +1,9 @@
-"""A temperature register that shows whole degrees, rebuilt to a continuous temperature.
+"""Continuous temperature from a register that shows whole degrees.
 
-Between two samples of which the second shows another step, the true temperature is known: half way
-between the two steps, if the register rounds (a register that truncates gives a constant offset of
-half a step). Between such moments the temperature is interpolated in time, also across pauses, and
-it never leaves the band of the reading.
+At the moment the register changes, the true temperature lies half-way between the two readings, if
+the register rounds. (A register that truncates gives a constant offset of half a step.) Between
+such moments the temperature is interpolated in time, also across pauses, and it always stays within
+half a step of the reading.
 """
 
 from dataclasses import dataclass
@@ -15,20 +15,20 @@ from frictioncli.arrays import Array, Numbers
 _MIN_STEP = 0.5  # [°C]
 _MAX_LEVELS = 400
 _GRID_TOLERANCE = 1e-3
-_LONGEST_WAIT = 2.0  # [s]
-_LONGEST_WAIT_PERIODS = 3.0
+_CHANGE_INTERVAL = 2.0  # [s]
+_CHANGE_INTERVAL_PERIODS = 3.0
 
 
 @dataclass(frozen=True, slots=True)
-class Changes:
-    """Known moments of change.
+class RegisterChanges:
+    """Changes of a temperature register.
 
     Attributes
     ----------
     time : ndarray, shape (n,)
-        Middle between the samples before and after. [s]
+        Midpoint between the samples before and after. [s]
     before, after : ndarray, shape (n,)
-        Readings on both sides. [°C]
+        Readings before and after. [°C]
     """
 
     time: Array
@@ -38,9 +38,18 @@ class Changes:
 
 @dataclass(frozen=True, slots=True)
 class Knots:
-    """Moments [s] and the temperature [°C] taken as known there; ``n_changes`` of them were seen.
+    """Points between which the temperature is interpolated.
 
-    ``step`` is the register's. [°C]
+    Attributes
+    ----------
+    time : ndarray, shape (n,)
+        Ascending time. [s]
+    value : ndarray, shape (n,)
+        Temperature. [°C]
+    step : float
+        Step of the register. [°C]
+    n_changes : int
+        Changes of the register from which the knots come.
     """
 
     time: Array
@@ -50,36 +59,59 @@ class Knots:
 
 
 def longest_change_interval(period: float) -> float:
-    """Return the longest time [s] between two samples that still tells when a change was."""
-    return max(_LONGEST_WAIT, _LONGEST_WAIT_PERIODS * period)
+    """Return the longest time between two samples that still dates a change [s].
+
+    Parameters
+    ----------
+    period : float
+        Median time between samples. [s]
+    """
+    return max(_CHANGE_INTERVAL, _CHANGE_INTERVAL_PERIODS * period)
 
 
-def find_changes(time: Array, reading: Array, *, wait: float) -> Changes:
+def find_changes(time: Array, reading: Array, *, longest: float) -> RegisterChanges:
     """Return the changes of a register between consecutive samples.
 
     Parameters
     ----------
     time : ndarray, shape (n,)
-        Ascending. [s]
+        Ascending time. [s]
     reading : ndarray, shape (n,)
-        What it showed. [°C]
-    wait : float
-        Samples further apart do not tell when the change was. [s]
+        Readings. [°C]
+    longest : float
+        Longest time between two samples that still dates a change. [s]
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> reading = np.array([20.0, 20.0, 21.0])
+    >>> find_changes(np.array([0.0, 1.0, 2.0]), reading, longest=2.0).time
+    array([1.5])
     """
     at = np.flatnonzero(reading[1:] != reading[:-1])
-    at = at[time[at + 1] - time[at] <= wait]
-    return Changes((time[at] + time[at + 1]) / 2, reading[at], reading[at + 1])
+    at = at[time[at + 1] - time[at] <= longest]
+    return RegisterChanges((time[at] + time[at + 1]) / 2, reading[at], reading[at + 1])
 
 
 def find_step(levels: Array) -> float | None:
-    """Return the step of a register from the distinct readings it showed.
-
-    None where they lie on no grid of at least 0.5 °C, or there is only one.
+    """Return the step of a register, found from its distinct readings.
 
     Parameters
     ----------
     levels : ndarray, shape (n,)
         Distinct readings. [°C]
+
+    Returns
+    -------
+    float or None
+        The step; None where the readings lie on no grid of at least 0.5 °C, or there is only one.
+        [°C]
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> find_step(np.array([20.0, 21.0, 25.0]))
+    1.0
     """
     levels = np.unique(np.round(levels, 6))
     if len(levels) < 2 or is_continuous(levels):
@@ -91,7 +123,9 @@ def find_step(levels: Array) -> float | None:
 
 
 def is_continuous(levels: Array) -> bool:
-    """Tell whether some readings, whatever others follow, rule a register of steps out.
+    """Return whether readings lie too close together, or are too many, for a quantized register.
+
+    More readings cannot change the answer from true to false.
 
     Parameters
     ----------
@@ -101,34 +135,42 @@ def is_continuous(levels: Array) -> bool:
     return len(levels) > _MAX_LEVELS or bool(np.min(np.diff(levels), initial=np.inf) < _MIN_STEP)
 
 
-def knots(changes: Changes, *, step: float, span: tuple[float, float]) -> Knots | None:
-    """Return the moments to interpolate between; None when fewer than two levels were crossed.
+def interpolation_knots(
+    changes: RegisterChanges, *, step: float, span: tuple[float, float]
+) -> Knots | None:
+    """Return the points between which the temperature is interpolated.
 
-    Before the first and after the last change the temperature goes on with the neighbouring slope
-    to the middle of the reading's band, or beyond where it is so slow that no change was due.
+    Before the first and after the last change the temperature continues with the neighbouring slope
+    to the middle of the reading's band; where the next change would be due only outside the span,
+    it continues to the edge of the band.
 
     Parameters
     ----------
-    changes : Changes
-        Of a whole run, ascending in time.
+    changes : RegisterChanges
+        All changes of a run, ascending in time.
     step : float
         Step of the register. [°C]
     span : tuple of float
         First and last time of the run. [s]
+
+    Returns
+    -------
+    Knots or None
+        None where fewer than two levels were crossed.
     """
     single = np.abs(np.abs(changes.after - changes.before) - step) < _GRID_TOLERANCE * step
     time, before, after = changes.time[single], changes.before[single], changes.after[single]
     value = (before + after) / 2
-    edges = np.flatnonzero(np.diff(value)) + 1  # first knot of each stretch of equal values
+    edges = np.flatnonzero(np.diff(value)) + 1  # first of each group of equal values
     if not len(edges):
         return None
     slopes = (value[edges] - value[edges - 1]) / (time[edges] - time[edges - 1])
     turn_time, turn_value = _turns(time, value, after - value, edges, slopes, step)
-    whole = step / np.abs(slopes[[0, -1]])  # how long a whole step takes before and after
-    rest = np.array([time[0] - span[0], span[1] - time[-1]])
-    part = np.where(rest <= whole, 1.0, 0.5)
-    ends = 2 * part * (np.array([before[0], after[-1]]) - value[[0, -1]]) + value[[0, -1]]
-    head, tail = part * whole
+    step_duration = step / np.abs(slopes[[0, -1]])  # before the first and after the last change
+    remaining = np.array([time[0] - span[0], span[1] - time[-1]])
+    fraction = np.where(remaining <= step_duration, 1.0, 0.5)
+    ends = 2 * fraction * (np.array([before[0], after[-1]]) - value[[0, -1]]) + value[[0, -1]]
+    head, tail = fraction * step_duration
     all_time = np.concatenate(([time[0] - head], time, turn_time, [time[-1] + tail]))
     all_value = np.concatenate(([ends[0]], value, turn_value, [ends[1]]))
     order = np.argsort(all_time, kind="stable")
@@ -143,42 +185,54 @@ def _turns(
     slopes: Array,
     step: float,
 ) -> tuple[Array, Array]:
-    """Return points where the temperature turns between two changes at the same value.
+    """Return time and value of knots where the temperature turns between two equal changes.
 
-    There it leaves the value with the slope from before, comes back with the slope of after, and
-    in between goes no further than to the middle of the reading's band.
+    The temperature leaves the value with the slope before it and returns with the slope after it.
+    In between it goes no further than to the middle of the reading's band.
     """
-    stretch = np.searchsorted(edges, np.arange(len(value)), side="right")
-    known = np.concatenate(([-slopes[0]], slopes, [-slopes[-1]]))
+    group = np.searchsorted(edges, np.arange(len(value)), side="right")
+    all_slopes = np.concatenate(([-slopes[0]], slopes, [-slopes[-1]]))
     at = np.flatnonzero(np.diff(value) == 0)
     direction = np.sign(towards[at])
-    leaving = known[stretch[at]] * direction
-    returning = -known[stretch[at] + 1] * direction
+    leaving = all_slopes[group[at]] * direction
+    returning = -all_slopes[group[at] + 1] * direction
     turning = (leaving > 0) & (returning > 0)
     at, direction = at[turning], direction[turning]
     leaving, returning = leaving[turning], returning[turning]
     pause = time[at + 1] - time[at]
     height = np.minimum(pause * leaving * returning / (leaving + returning), step / 2)
-    high = value[at] + direction * height
+    turn = value[at] + direction * height
     return (
         np.concatenate((time[at] + height / leaving, time[at + 1] - height / returning)),
-        np.concatenate((high, high)),
+        np.concatenate((turn, turn)),
     )
 
 
-def rebuild(points: Knots, time: Array, reading: Array) -> Array:
-    """Return the rebuilt temperature [°C], always within half a step of the reading.
-
-    Outside the known moments it is the reading itself.
+def interpolate_temperature(knots: Knots, time: Array, reading: Array) -> Array:
+    """Return the temperature interpolated between knots, within half a step of the reading.
 
     Parameters
     ----------
-    points : Knots
-        From :func:`knots`.
-    time, reading : ndarray, shape (n,)
-        Samples; NaN readings stay NaN. [s, °C]
+    knots : Knots
+        Result of :func:`interpolation_knots`.
+    time : ndarray, shape (n,)
+        Time of the samples. [s]
+    reading : ndarray, shape (n,)
+        Readings of the register; NaN stays NaN. [°C]
+
+    Returns
+    -------
+    ndarray, shape (n,)
+        Temperature; the reading itself before the first and after the last knot. [°C]
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> knots = Knots(np.array([0.0, 10.0]), np.array([19.5, 20.5]), step=1.0, n_changes=2)
+    >>> interpolate_temperature(knots, np.array([2.0, 5.0, 12.0]), np.array([20.0, 20.0, 21.0]))
+    array([19.7, 20. , 21. ])
     """
-    smooth = np.interp(time, points.time, points.value)
-    inside = (time > points.time[0]) & (time < points.time[-1])
-    clipped = np.clip(smooth, reading - points.step / 2, reading + points.step / 2)
+    interpolated = np.interp(time, knots.time, knots.value)
+    inside = (time > knots.time[0]) & (time < knots.time[-1])
+    clipped = np.clip(interpolated, reading - knots.step / 2, reading + knots.step / 2)
     return np.where(inside, clipped, reading)

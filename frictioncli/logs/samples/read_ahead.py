@@ -1,9 +1,15 @@
-"""Work done ahead in threads: results come in the order of the tasks, whoever was first."""
+"""Logs read in chunks, parsed ahead in threads."""
 
 from collections import deque
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from concurrent.futures import Future, ThreadPoolExecutor
+from dataclasses import dataclass
+from functools import partial
+from itertools import chain, groupby
 from typing import TypeVar
+
+from frictioncli.logs.log_source import RawBatch, ReadTask, UnreadableLog
+from frictioncli.logs.samples.chunks import Chunk, PlannedLog, convert_chunk, empty_chunk
 
 T = TypeVar("T")
 
@@ -13,9 +19,31 @@ THREADS = 2
 _WAITING = 2
 """Results that may wait per thread: enough to even out, few enough to bound memory."""
 
+_GROUP_BYTES = 1 << 21
+"""Smaller tasks go to a thread in groups of this size: handing one over takes its own time."""
+
+
+def read_chunks(
+    logs: Sequence[PlannedLog], batch_bytes: int
+) -> Iterator[tuple[PlannedLog, Iterator[Chunk]]]:
+    """Yield each log with its chunks in order; parsing runs ahead, into the next logs too.
+
+    The iterator of chunks raises ``UnreadableLog`` where a log cannot be read further.
+
+    Parameters
+    ----------
+    logs : sequence of PlannedLog
+        The logs.
+    batch_bytes : int
+        Size of a chunk in the file. [byte]
+    """
+    results = chain.from_iterable(in_order(_grouped(_tasks(logs, batch_bytes))))
+    for number, group in groupby(results, key=lambda result: result.number):
+        yield logs[number], _chunks(group)
+
 
 def in_order(tasks: Iterable[Callable[[], T]]) -> Iterator[T]:
-    """Yield what the tasks return, in their order; a few are done ahead in threads.
+    """Yield the results of tasks in their order; a few are computed ahead in threads.
 
     Tasks are taken from the iterable in the caller's thread. An error of a task is raised where
     its result would come.
@@ -31,3 +59,58 @@ def in_order(tasks: Iterable[Callable[[], T]]) -> Iterator[T]:
             yield waiting.popleft().result()
     finally:
         pool.shutdown(cancel_futures=True)
+
+
+@dataclass(frozen=True, slots=True)
+class _ChunkResult:
+    """A chunk of the log with this number, or why the log cannot be read further."""
+
+    number: int
+    chunk: Chunk | UnreadableLog
+
+
+def _chunks(results: Iterable[_ChunkResult]) -> Iterator[Chunk]:
+    for result in results:
+        if isinstance(result.chunk, UnreadableLog):
+            raise result.chunk
+        yield result.chunk
+
+
+def _tasks(logs: Iterable[PlannedLog], batch_bytes: int) -> Iterator[ReadTask[_ChunkResult]]:
+    """Yield the tasks of all logs one after the other; each log has at least one."""
+    for number, planned in enumerate(logs):
+        last: Chunk | UnreadableLog | None = empty_chunk(planned)
+        try:
+            for task in planned.log.source.tasks(planned.columns, batch_bytes):
+                yield ReadTask(partial(_read, number, planned, task), task.size)
+                last = None
+        except UnreadableLog as error:
+            last = error
+        if last is not None:
+            yield ReadTask(partial(_ChunkResult, number, last), 0)
+
+
+def _read(number: int, planned: PlannedLog, task: ReadTask[RawBatch]) -> _ChunkResult:
+    try:
+        return _ChunkResult(number, convert_chunk(task.read(), planned))
+    except UnreadableLog as error:
+        return _ChunkResult(number, error)
+
+
+def _grouped(
+    tasks: Iterable[ReadTask[_ChunkResult]],
+) -> Iterator[Callable[[], list[_ChunkResult]]]:
+    """Yield tasks that each do a group of consecutive small tasks."""
+    group: list[ReadTask[_ChunkResult]] = []
+    group_bytes = 0
+    for task in tasks:
+        if group and group_bytes + task.size > _GROUP_BYTES:
+            yield partial(_read_all, group)
+            group, group_bytes = [], 0
+        group.append(task)
+        group_bytes += task.size
+    yield partial(_read_all, group)
+
+
+def _read_all(tasks: Iterable[ReadTask[_ChunkResult]]) -> list[_ChunkResult]:
+    return [task.read() for task in tasks]

@@ -1,4 +1,4 @@
-"""A log read to its end: usable rows in order, rejected lines, what was seen on the way."""
+"""One log read to its end: samples in order of time, and a summary of the recording."""
 
 from collections.abc import Callable, Collection, Iterable, Iterator
 from dataclasses import dataclass
@@ -9,43 +9,43 @@ from frictioncli.arrays import Array
 from frictioncli.logs.channels import aliases as names
 from frictioncli.logs.log_source import Refusal, UnreadableLog
 from frictioncli.logs.runs.opening import OpenedLog
-from frictioncli.logs.samples import quantized_temperature
 from frictioncli.logs.samples.chunks import Chunk, PlannedLog
 from frictioncli.logs.samples.differentiation import half_window, max_gap
+from frictioncli.logs.samples.log_rows import NO_VALUES, REASONS, LogRows, RejectedRows
+from frictioncli.logs.samples.quantized_temperature import longest_change_interval
 from frictioncli.logs.samples.row_checks import (
-    EMPTY,
-    REASONS,
-    LogRows,
-    RejectedRows,
-    ascending,
+    add_velocity,
+    drop_non_increasing_time,
     drop_stale_first_rows,
-    with_velocity,
 )
 from frictioncli.logs.samples.temperature_register import TemperatureRegister
 
 _EXAMPLE_BYTES = 1 << 16
 _MIN_ROWS = 3
 
+SampleSink = Callable[[LogRows, Array], None]
+"""Takes samples of all joints, and their times since the recording's first sample [s]."""
+
 
 @dataclass(frozen=True, slots=True)
 class RecordingSummary:
-    """A log that was read to its end.
+    """Summary of a log that was read to its end.
 
     Attributes
     ----------
-    reading : PlannedLog
-        Which, and how.
+    planned : PlannedLog
+        The log.
     registers : dict of int to TemperatureRegister
-        Joint -> what its temperature register showed.
+        Joint -> its motor temperature register.
     rows_read, rows_kept : int
-        Rows of the file.
+        Rows of the file, and those that became samples.
     rejected : dict of str to int
-        Reason -> rows that were not kept.
+        Reason -> number of rejected rows.
     duration : float
-        Last sample's time from the first. [s]
+        Time from the first sample to the last. [s]
     """
 
-    reading: PlannedLog
+    planned: PlannedLog
     registers: dict[int, TemperatureRegister]
     rows_read: int
     rows_kept: int
@@ -55,7 +55,7 @@ class RecordingSummary:
     @property
     def log(self) -> OpenedLog:
         """The log."""
-        return self.reading.log
+        return self.planned.log
 
     @property
     def joints(self) -> tuple[int, ...]:
@@ -63,116 +63,104 @@ class RecordingSummary:
         return tuple(self.registers)
 
 
-def usable_rows(
-    reading: PlannedLog, parts: Iterable[Chunk], faults: RejectedRows
-) -> Iterator[LogRows]:
-    """Yield the rows that become samples, all channels present, in ascending time.
-
-    Parameters
-    ----------
-    reading : PlannedLog
-        The log.
-    parts : iterable of Chunk
-        Its rows.
-    faults : RejectedRows
-        Takes the lines of all others.
-    """
-
-    def blocks() -> Iterator[LogRows]:
-        for part in parts:
-            faults.extend(part.faults)
-            yield part.block
-
-    positions = [(plan.channels.joint, names.POSITION) for plan in reading.plans]
-    derived = {
-        (plan.channels.joint, names.VELOCITY): (plan.channels.joint, names.POSITION)
-        for plan in reading.plans
-        if names.VELOCITY not in plan.conversions
-    }
-    growing = drop_stale_first_rows(ascending(blocks(), faults), positions, faults)
-    half, gap = half_window(reading.period), max_gap(reading.period)
-    for block in with_velocity(growing, derived, faults, half=half, gap=gap):
-        if len(block):
-            yield block
-
-
-Sink = Callable[[LogRows, Array], None]
-"""Takes samples of all joints, and their times from the recording's first sample [s]."""
-
-
-def record(
-    reading: PlannedLog,
-    parts: Iterable[Chunk],
-    faults: RejectedRows,
-    sink: Sink,
-    smooth: Collection[int] = (),
+def read_recording(
+    planned: PlannedLog,
+    chunks: Iterable[Chunk],
+    rejected: RejectedRows,
+    sink: SampleSink,
+    continuous: Collection[int] = (),
 ) -> RecordingSummary | Refusal:
-    """Hand all samples of a log to ``sink``.
+    """Hand all samples of a log to a sink.
 
     Parameters
     ----------
-    reading : PlannedLog
+    planned : PlannedLog
         The log.
-    parts : iterable of Chunk
+    chunks : iterable of Chunk
         Its rows.
-    faults : RejectedRows
+    rejected : RejectedRows
         Takes the lines that are rejected.
     sink : callable
         Takes the samples.
-    smooth : collection of int
-        Joints whose temperature is known not to come from a register of steps.
+    continuous : collection of int
+        Joints whose motor temperature is known to be continuous, not quantized.
 
     Returns
     -------
     RecordingSummary or Refusal
-        ``too_few_rows``, ``unreadable_file``, or the most frequent reason when more than half
-        of the rows are bad. Samples that went to the sink are then void.
+        A refusal with the reason ``too_few_rows`` or ``unreadable_file``, or with the most frequent
+        reason where more rows are rejected than kept. Samples that went to the sink are then void.
 
     Raises
     ------
     LogError
         If positions contradict the unit that the survey found.
     """
-    rows = 0
+    rows_read = 0
 
     def counted() -> Iterator[Chunk]:
-        nonlocal rows
-        for part in parts:
-            rows += part.rows
-            yield part
+        nonlocal rows_read
+        for chunk in chunks:
+            rows_read += chunk.rows_read
+            yield chunk
 
-    joints = [plan.channels.joint for plan in reading.plans]
-    registers = {joint: TemperatureRegister(smooth=joint in smooth) for joint in joints}
-    wait = quantized_temperature.longest_change_interval(reading.period)
-    kept, begin, time = 0, 0.0, np.zeros(1)
+    joints = [plan.channels.joint for plan in planned.plans]
+    registers = {joint: TemperatureRegister(continuous=joint in continuous) for joint in joints}
+    longest = longest_change_interval(planned.period)
+    kept, first, time = 0, 0.0, np.zeros(1)
     try:
-        for block in usable_rows(reading, counted(), faults):
-            begin = begin if kept else float(block.time[0])
-            kept += len(block)
-            time = block.time - begin if begin else block.time
+        for rows in _usable_rows(planned, counted(), rejected):
+            first = first if kept else float(rows.time[0])
+            kept += len(rows)
+            time = rows.time - first if first else rows.time
             for joint, register in registers.items():
-                shown = block.columns.get((joint, names.MOTOR_TEMPERATURE))
-                if shown is not None:
-                    register.see(time, shown, wait)
-            sink(block, time)
+                reading = rows.columns.get((joint, names.MOTOR_TEMPERATURE))
+                if reading is not None:
+                    register.update(time, reading, longest)
+            sink(rows, time)
     except UnreadableLog as error:
         return Refusal("unreadable_file", str(error))
-    counts = faults.counts()
-    refusal = _refusal(reading.log, rows, kept, counts, faults)
-    return refusal or RecordingSummary(reading, registers, rows, kept, counts, float(time[-1]))
+    counts = rejected.counts()
+    refusal = _refusal(planned.log, rows_read, kept, counts, rejected)
+    return refusal or RecordingSummary(planned, registers, rows_read, kept, counts, float(time[-1]))
+
+
+def _usable_rows(
+    planned: PlannedLog, chunks: Iterable[Chunk], rejected: RejectedRows
+) -> Iterator[LogRows]:
+    """Yield the rows that become samples, with all channels, in ascending time."""
+
+    def blocks() -> Iterator[LogRows]:
+        for chunk in chunks:
+            rejected.extend(chunk.rejected)
+            yield chunk.rows
+
+    positions = [(plan.channels.joint, names.POSITION) for plan in planned.plans]
+    derived = {
+        (plan.channels.joint, names.VELOCITY): (plan.channels.joint, names.POSITION)
+        for plan in planned.plans
+        if names.VELOCITY not in plan.conversions
+    }
+    increasing = drop_non_increasing_time(blocks(), rejected)
+    started = drop_stale_first_rows(increasing, positions, rejected)
+    half, gap = half_window(planned.period), max_gap(planned.period)
+    for rows in add_velocity(started, derived, rejected, half=half, gap=gap):
+        if len(rows):
+            yield rows
 
 
 def _refusal(
-    log: OpenedLog, rows: int, kept: int, counts: dict[str, int], faults: RejectedRows
+    log: OpenedLog, rows_read: int, kept: int, counts: dict[str, int], rejected: RejectedRows
 ) -> Refusal | None:
-    counts = {reason: n for reason, n in counts.items() if reason != EMPTY}
-    rejected = sum(counts.values())
-    if rejected > kept:
+    """Return why a log cannot be used as a whole; None where it can."""
+    counts = {reason: n for reason, n in counts.items() if reason != NO_VALUES}
+    n_rejected = sum(counts.values())
+    if n_rejected > kept:
         reason = max(counts, key=lambda name: (counts[name], -REASONS.index(name)))
-        line, text = next(iter(log.source.texts(faults.first(reason), _EXAMPLE_BYTES)))
+        line, text = next(iter(log.source.texts(rejected.first_line(reason), _EXAMPLE_BYTES)))
         return Refusal(
             reason,
-            f"{rejected} of {rows} rows cannot be used, mostly {reason}, for example line"
+            f"{n_rejected} of {rows_read} rows cannot be used, mostly {reason}, for example line"
             f" {line}: {text}",
         )
     if kept < _MIN_ROWS:

@@ -1,8 +1,9 @@
-"""Samples on their way to the table: one draft per joint, in the order of reading.
+"""Writer of the table ``samples``: one file per joint while logs are read, one table in the end.
 
-What a sample's row is can be known at once, but for two things: the order, as a run's joints follow
-one another, and the motor temperature between the steps of its register, which needs the whole run.
-Where neither matters the draft becomes the table as it is; else it is gone through once more.
+A row of the table is known as soon as it is read, but for two things: the order, as the joints of a
+run follow one another, and the motor temperature between the changes of its register, which needs
+the whole run. Where neither matters the file of the joint becomes the table as it is; else the
+files are copied once more.
 """
 
 import os
@@ -20,15 +21,15 @@ import pyarrow as pa
 from frictioncli import schemas, tables
 from frictioncli.arrays import Array
 from frictioncli.logs.channels import aliases as names
-from frictioncli.logs.samples import quantized_temperature
-from frictioncli.logs.samples.row_checks import LogRows
+from frictioncli.logs.samples.log_rows import LogRows
+from frictioncli.logs.samples.quantized_temperature import Knots, interpolate_temperature
 from frictioncli.provenance import Provenance
 from frictioncli.tables import TableWriter
 
 _TABLE_ROWS = 1 << 17
-"""Making a table of the rows of a short log takes longer than they do: so many are one."""
+"""Rows of short logs are collected up to this number: one large table is faster than many."""
 
-_AS_READ = (
+_COPIED_CHANNELS = (
     names.POSITION,
     names.VELOCITY,
     names.TORQUE,
@@ -37,68 +38,68 @@ _AS_READ = (
     names.LOAD,
 )
 
-Temperatures = Mapping[tuple[str, int], Sequence[quantized_temperature.Knots | None]]
-"""Run and joint -> known motor temperatures for each recording of the run."""
+RunKnots = Mapping[tuple[str, int], Sequence[Knots | None]]
+"""Run and joint -> knots of the motor temperature for each recording of the run."""
 
 
 @dataclass(slots=True)
-class _Stretch:
-    """The rows of one recording in a draft; void when the recording turned out unusable."""
+class _WrittenRecording:
+    """Number of rows of a recording in a joint's file; discarded if it turned out unusable."""
 
     run: str
     rows: int = 0
-    void: bool = False
+    discarded: bool = False
 
 
 @dataclass(frozen=True, slots=True)
-class _Piece:
-    """Samples of one recording, with their time since the run's first one [s]."""
+class _SampleRows:
+    """Rows of one recording, with their time since the run's first sample [s]."""
 
     run: str
     recording: str
     time: Array
-    block: LogRows
+    rows: LogRows
 
 
 @dataclass(slots=True)
-class _JointDraft:
-    """The samples of one joint; those of short logs are held until they make a table."""
+class _JointFile:
+    """File with the samples of one joint; rows of short logs wait until they fill a table."""
 
     joint: int
     writer: TableWriter
-    stretches: deque[_Stretch] = field(default_factory=deque)
-    held: list[_Piece] = field(default_factory=list)
-    held_rows: int = 0
+    recordings: deque[_WrittenRecording] = field(default_factory=deque)
+    waiting: list[_SampleRows] = field(default_factory=list)
+    waiting_rows: int = 0
 
-    def add(self, piece: _Piece) -> None:
-        """Take samples of the newest stretch."""
-        self.stretches[-1].rows += len(piece.block)
-        self.held.append(piece)
-        self.held_rows += len(piece.block)
-        if self.held_rows >= _TABLE_ROWS:
-            self.write()
+    def add(self, samples: _SampleRows) -> None:
+        """Add rows of the newest recording."""
+        self.recordings[-1].rows += len(samples.rows)
+        self.waiting.append(samples)
+        self.waiting_rows += len(samples.rows)
+        if self.waiting_rows >= _TABLE_ROWS:
+            self.flush()
 
-    def write(self) -> None:
-        """Write what is held."""
-        if self.held:
-            self.writer.write(_table(self.held, self.joint))
-        self.held, self.held_rows = [], 0
+    def flush(self) -> None:
+        """Write the rows that wait."""
+        if self.waiting:
+            self.writer.write(_table(self.waiting, self.joint))
+        self.waiting, self.waiting_rows = [], 0
 
 
 class SampleWriter:
-    """Takes samples recording by recording and makes the table ``samples`` of them.
+    """Takes samples recording by recording and writes the table ``samples``.
 
     Parameters
     ----------
     folder : Path
-        Where the drafts may lie, on the disk of the table.
+        Folder for the files of the joints, on the same disk as the table.
     """
 
     def __init__(self, folder: Path) -> None:
         self._folder = folder
         self._stack = ExitStack()
-        self._drafts: dict[int, _JointDraft] = {}
-        self._label: tuple[str, str] = ("", "")
+        self._files: dict[int, _JointFile] = {}
+        self._run = self._recording = ""
         self._start = 0.0
 
     def __enter__(self) -> Self:
@@ -112,134 +113,135 @@ class SampleWriter:
     ) -> None:
         self._stack.__exit__(kind, error, trace)
 
-    def begin(self, run: str, recording: str, joints: Sequence[int], start: float) -> None:
-        """Get ready for the samples of a recording, which starts at ``start`` [s] of its run."""
-        self._label, self._start = (run, recording), start
+    def begin_recording(
+        self, run: str, recording: str, joints: Sequence[int], start: float
+    ) -> None:
+        """Begin a recording of some joints, which starts at ``start`` [s] of its run."""
+        self._run, self._recording, self._start = run, recording, start
         for joint in joints:
-            if joint not in self._drafts:
+            if joint not in self._files:
                 writer = TableWriter(self._path(joint), schemas.SAMPLES, Provenance("ingest"))
-                self._drafts[joint] = _JointDraft(joint, self._stack.enter_context(writer))
-            self._drafts[joint].stretches.append(_Stretch(run))
+                self._files[joint] = _JointFile(joint, self._stack.enter_context(writer))
+            self._files[joint].recordings.append(_WrittenRecording(run))
 
-    def add(self, block: LogRows, time: Array) -> None:
-        """Take samples of the recording begun last, ``time`` from its first sample [s]."""
-        piece = _Piece(*self._label, time + self._start if self._start else time, block)
-        for joint in {joint for joint, _ in block.columns}:
-            self._drafts[joint].add(piece)
+    def add(self, rows: LogRows, time: Array) -> None:
+        """Add samples of the newest recording, ``time`` since its first sample [s]."""
+        time = time + self._start if self._start else time
+        samples = _SampleRows(self._run, self._recording, time, rows)
+        for joint in {joint for joint, _ in rows.columns}:
+            self._files[joint].add(samples)
 
-    def forget(self, joints: Sequence[int]) -> None:
-        """Declare what was taken of the recording begun last void."""
+    def discard_recording(self, joints: Sequence[int]) -> None:
+        """Discard the newest recording of these joints."""
         for joint in joints:
-            self._drafts[joint].stretches[-1].void = True
+            self._files[joint].recordings[-1].discarded = True
 
     def finish(
         self,
         target: Path,
-        temperatures: Temperatures,
+        knots: RunKnots,
         provenance: Provenance,
         facts: Mapping[str, Any],
     ) -> None:
-        """Make the table: by run, joint and time, with the temperatures rebuilt.
+        """Write the table in the order of run, joint and time, with interpolated temperatures.
 
         Parameters
         ----------
         target : Path
-            The table's path, on the disk of the drafts.
-        temperatures : Temperatures
-            Known motor temperatures; runs and joints that are not there have no samples.
+            The table's path, on the same disk as the files of the joints.
+        knots : RunKnots
+            Knots of the motor temperatures; runs and joints that are not there have no samples.
         provenance, facts
             As for :class:`TableWriter`.
         """
-        for draft in self._drafts.values():
-            draft.write()
-            draft.writer.provenance, draft.writer.facts = provenance, facts
+        for file in self._files.values():
+            file.flush()
+            file.writer.provenance, file.writer.facts = provenance, facts
         self._stack.close()
-        if self._is_final(temperatures):
-            os.replace(self._path(next(iter(self._drafts))), target)
+        if self._is_final(knots):
+            os.replace(self._path(next(iter(self._files))), target)
             return
-        # else what reading has freed stays beside what this needs
+        # memory that reading has freed would otherwise add to what the copy needs
         pa.default_memory_pool().release_unused()
-        rows = {joint: _Rows(self._path(joint)) for joint in self._drafts}
+        readers = {joint: _RowReader(self._path(joint)) for joint in self._files}
         with TableWriter(target, schemas.SAMPLES, provenance, facts) as writer:
-            for run in dict.fromkeys(run for run, _ in temperatures):
-                for joint in sorted(joint for name, joint in temperatures if name == run):
-                    for table in self._of_run(run, joint, rows[joint], temperatures[run, joint]):
+            for run in dict.fromkeys(run for run, _ in knots):
+                for joint in sorted(joint for name, joint in knots if name == run):
+                    for table in self._run_rows(run, joint, readers[joint], knots[run, joint]):
                         writer.write(table)
 
     def _path(self, joint: int) -> Path:
         return self._folder / f"samples-{joint}.parquet"
 
-    def _is_final(self, temperatures: Temperatures) -> bool:
-        rebuilt = any(known is not None for knots in temperatures.values() for known in knots)
-        void = any(one.void for draft in self._drafts.values() for one in draft.stretches)
-        return len(self._drafts) == 1 and not rebuilt and not void
+    def _is_final(self, knots: RunKnots) -> bool:
+        """Return whether the only file is the table already."""
+        interpolated = any(one is not None for of_joint in knots.values() for one in of_joint)
+        discarded = any(one.discarded for file in self._files.values() for one in file.recordings)
+        return len(self._files) == 1 and not interpolated and not discarded
 
-    def _of_run(
-        self,
-        run: str,
-        joint: int,
-        rows: "_Rows",
-        knots: Sequence[quantized_temperature.Knots | None],
+    def _run_rows(
+        self, run: str, joint: int, reader: "_RowReader", knots: Sequence[Knots | None]
     ) -> Iterator[pa.Table]:
-        """Yield the rows of a run, whose stretches follow one another in each draft."""
-        known = iter(knots)
-        stretches = self._drafts[joint].stretches
-        while stretches and (stretches[0].run == run or stretches[0].void):
-            stretch = stretches.popleft()
-            points = None if stretch.void else next(known)
-            for table in rows.take(stretch.rows):
-                if not stretch.void:
-                    yield table if points is None else _rebuilt(table, points)
+        """Yield the rows of a run, whose recordings follow one another in the joint's file."""
+        knots_of_recordings = iter(knots)
+        recordings = self._files[joint].recordings
+        while recordings and (recordings[0].run == run or recordings[0].discarded):
+            recording = recordings.popleft()
+            own_knots = None if recording.discarded else next(knots_of_recordings)
+            for table in reader.read(recording.rows):
+                if not recording.discarded:
+                    yield table if own_knots is None else _interpolated(table, own_knots)
 
 
-class _Rows:
-    """The rows of a draft, taken in order."""
+class _RowReader:
+    """Reads the rows of a joint's file in order."""
 
     def __init__(self, path: Path) -> None:
         self._batches = tables.batches(path, schemas.SAMPLES)
         self._rest: pa.RecordBatch | None = None
 
-    def take(self, count: int) -> Iterator[pa.Table]:
-        """Yield the next rows, as many as asked for."""
+    def read(self, count: int) -> Iterator[pa.Table]:
+        """Yield the next ``count`` rows."""
         while count:
             batch = self._rest if self._rest is not None else next(self._batches)
-            part = batch.slice(0, count)
+            rows = batch.slice(0, count)
             self._rest = batch.slice(count) if batch.num_rows > count else None
-            count -= part.num_rows
-            yield pa.Table.from_batches([part])
+            count -= rows.num_rows
+            yield pa.Table.from_batches([rows])
 
 
-def _rebuilt(rows: pa.Table, points: quantized_temperature.Knots) -> pa.Table:
+def _interpolated(rows: pa.Table, knots: Knots) -> pa.Table:
+    """Return rows with the motor temperature interpolated between knots."""
     reading = rows.column("motor_temperature_reading").to_numpy()
-    smooth = quantized_temperature.rebuild(points, rows.column("time").to_numpy(), reading)
+    temperature = interpolate_temperature(knots, rows.column("time").to_numpy(), reading)
     at = rows.schema.get_field_index("motor_temperature")
-    return rows.set_column(at, "motor_temperature", _column(smooth))
+    return rows.set_column(at, "motor_temperature", _column(temperature))
 
 
-def _table(pieces: Sequence[_Piece], joint: int) -> pa.Table:
-    """Return the samples of a joint, piece after piece; numbers are not copied."""
-    rows = [len(piece.block) for piece in pieces]
-    found = {
-        name: pa.chunked_array([_column(_values(piece.block, joint, name)) for piece in pieces])
-        for name in _AS_READ
-        if any((joint, name) in piece.block.columns for piece in pieces)
+def _table(samples: Sequence[_SampleRows], joint: int) -> pa.Table:
+    """Return the samples of a joint in one table; numbers are not copied."""
+    counts = [len(one.rows) for one in samples]
+    channels = {
+        name: pa.chunked_array([_column(_values(one.rows, joint, name)) for one in samples])
+        for name in _COPIED_CHANNELS
+        if any((joint, name) in one.rows.columns for one in samples)
     }
-    if names.MOTOR_TEMPERATURE in found:
-        found["motor_temperature_reading"] = found[names.MOTOR_TEMPERATURE]
+    if names.MOTOR_TEMPERATURE in channels:
+        channels["motor_temperature_reading"] = channels[names.MOTOR_TEMPERATURE]
     return pa.table(
         {
-            "run": _repeated([piece.run for piece in pieces], rows),
-            "recording": _repeated([piece.recording for piece in pieces], rows),
-            "joint": pa.array(np.full(sum(rows), joint, np.int16)),
-            "time": pa.chunked_array([pa.array(piece.time) for piece in pieces]),
-            **found,
+            "run": _repeated([one.run for one in samples], counts),
+            "recording": _repeated([one.recording for one in samples], counts),
+            "joint": pa.array(np.full(sum(counts), joint, np.int16)),
+            "time": pa.chunked_array([pa.array(one.time) for one in samples]),
+            **channels,
         }
     )
 
 
-def _values(block: LogRows, joint: int, name: str) -> Array:
-    values = block.columns.get((joint, name))
-    return values if values is not None else np.full(len(block), np.nan)
+def _values(rows: LogRows, joint: int, name: str) -> Array:
+    values = rows.columns.get((joint, name))
+    return values if values is not None else np.full(len(rows), np.nan)
 
 
 def _column(values: Array) -> pa.Array:
@@ -247,9 +249,9 @@ def _column(values: Array) -> pa.Array:
     return pa.array(values, from_pandas=bool(len(values)) and bool(np.isnan(values.min())))
 
 
-def _repeated(texts: Sequence[str], rows: Sequence[int]) -> pa.DictionaryArray:
-    """Return each text so many times."""
+def _repeated(texts: Sequence[str], counts: Sequence[int]) -> pa.DictionaryArray:
+    """Return a dictionary column in which each text is repeated so many times."""
     codes = {text: code for code, text in enumerate(dict.fromkeys(texts))}
     each = np.array([codes[text] for text in texts], np.int32)
-    labels = pa.array(np.repeat(each, rows))
+    labels = pa.array(np.repeat(each, counts))
     return pa.DictionaryArray.from_arrays(labels, pa.array(list(codes)), safe=False)
