@@ -15,8 +15,8 @@ from frictioncli.inspection.monitors.velocity_agreement import VelocityAgreement
 from frictioncli.inspection.monitors.windows import Window, Windows
 from frictioncli.inspection.unit_reasons import evidence, gear_ratio
 from frictioncli.logs.channels import aliases as names
-from frictioncli.logs.channels.recognition import LogChannel
 from frictioncli.logs.channels.joint_plan import JointPlan
+from frictioncli.logs.channels.recognition import LogChannel
 from frictioncli.logs.samples.chunks import Chunk, PlannedLog
 
 _SPIKY = (names.POSITION, names.VELOCITY, names.TORQUE)

@@ -10,8 +10,8 @@ import numpy as np
 from frictioncli.arrays import Array, Flags
 from frictioncli.errors import LogError
 from frictioncli.logs.channels import aliases as names
-from frictioncli.logs.channels.recognition import LogChannel
 from frictioncli.logs.channels.joint_plan import JointPlan
+from frictioncli.logs.channels.recognition import LogChannel
 from frictioncli.logs.channels.units import plausible_temperature
 from frictioncli.logs.log_source import RawBatch, UnreadableLog
 from frictioncli.logs.runs.opening import OpenedLog
@@ -99,7 +99,9 @@ def plan_log(log: OpenedLog, plans: Iterable[JointPlan]) -> PlannedLog:
 def empty_chunk(planned: PlannedLog) -> Chunk:
     """Return a chunk without rows."""
     columns = {
-        (plan.channels.joint, name): np.empty(0) for plan in planned.plans for name in plan.conversions
+        (plan.channels.joint, name): np.empty(0)
+        for plan in planned.plans
+        for name in plan.conversions
     }
     return Chunk(LogRows(np.empty(0, np.int64), np.empty(0), columns), RejectedRows(), 0)
 
