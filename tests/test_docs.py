@@ -1,4 +1,4 @@
-"""What the README says is true: its table of commands, its quick start, its comparison."""
+"""README and docs are true: table of commands, quick start, comparison with the paper, links."""
 
 import re
 import shlex
@@ -8,15 +8,17 @@ from pathlib import Path
 
 import pytest
 
+from docs import folders
 from docs.compare_with_paper import comparison, markdown
 from frictioncli.cli.commands import app
 
 ROOT = Path(__file__).parents[1]
+PAGES = [ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md"))]
 README = (ROOT / "README.md").read_text(encoding="utf-8")
 
 
-def between(name):
-    return README.split(f"<!-- {name} -->\n")[1].split(f"<!-- /{name} -->")[0].strip()
+def between(name, text=README):
+    return text.split(f"<!-- {name} -->\n")[1].split(f"<!-- /{name} -->")[0].strip()
 
 
 def quick_start():
@@ -49,10 +51,11 @@ def test_quick_start_leaves_a_report(work):
     assert "What the simulation gets wrong" in (folder / "report" / "index.html").read_text("utf-8")
 
 
-def test_comparison_in_the_readme_is_what_the_sample_logs_give(work):
+def test_comparison_with_the_paper_is_what_the_sample_logs_give(work):
     """To the last digit but one: libraries may differ in the last."""
     _, published = work
-    stated, found = between("comparison").splitlines(), published.splitlines()
+    page = (ROOT / "docs" / "paper.md").read_text(encoding="utf-8")
+    stated, found = between("comparison", page).splitlines(), published.splitlines()
     assert len(stated) == len(found)
     number = re.compile(r"-?\d+\.?\d*")
     for one, other in zip(stated, found, strict=True):
@@ -67,6 +70,27 @@ def test_table_of_commands_lists_every_command():
     assert set(listed) == registered
 
 
-def test_files_that_the_readme_points_to_exist():
-    for target in re.findall(r"\]\((?!https)([^)#]+)\)", README):
-        assert (ROOT / target).exists(), target
+@pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)
+def test_files_that_a_page_links_to_exist(page):
+    for target in re.findall(r"\]\((?!https)([^)#]+)\)", page.read_text(encoding="utf-8")):
+        assert (page.parent / target).exists(), target
+
+
+def test_the_readme_is_short():
+    assert len(README.splitlines()) < 150
+
+
+def test_the_table_of_folders_is_made_from_the_package():
+    page = (ROOT / "docs" / "design.md").read_text(encoding="utf-8")
+    assert between("folders", page) == folders.table().strip(), "run python docs/folders.py"
+
+
+@pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)
+def test_modules_that_a_page_names_exist(page):
+    """Paths below the package, as ``logs/formats/ros.py``, and folders, as ``logs/formats/``."""
+    package = {path.name for path in (ROOT / "frictioncli").iterdir()}
+    for text in re.findall(
+        r"`(?:frictioncli/)?([a-z_]+/[\w./]*(?:\.py|\.c|\.js|/))`", page.read_text("utf-8")
+    ):
+        if text.split("/")[0] in package:
+            assert (ROOT / "frictioncli" / text).exists(), text
