@@ -1,43 +1,38 @@
-"""What the page says of the data's way through the stages: counts, notes, settings, inputs."""
+"""Sections of the page on data quality and provenance: counts, notes, settings, inputs."""
 
 import json
 from collections import Counter
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
-from pathlib import Path
 from typing import Any
 
 import pandas as pd
 
-from frictioncli import schemas, tables
-from frictioncli.report.labels import count_text, thousands_text
+from frictioncli.report.labels import count_text, in_words, thousands_text
 from frictioncli.report.page_tables import TextTable
 from frictioncli.report.quality_ratings import IngestCounts
-from frictioncli.report.results import JointResults, read_optional
-
-_STORED = ("samples", "recordings", "rejected", "pairs", "torques", "schedule", "evaluation")
-
-_MODELS = ("model.json", "diagnosis.json", "extended-model.json")
+from frictioncli.report.results import JointResults, WorkFolderResults
+from frictioncli.workfiles import PAIRS
 
 _MOST_INPUTS = 200
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class FileOrigin:
-    """Where one file of the work folder comes from.
+    """Provenance of one file of the work folder.
 
     Attributes
     ----------
     file, stage, version : str
-        Its name, and the stage and version of the program that made it.
+        File name, and the stage and version of the program that wrote it.
     settings : tuple of (str, str)
-        The stage's settings.
+        Settings of the stage.
     inputs : tuple of (str, str)
-        Name and SHA-256 of what it was made from.
+        Name and SHA-256 of each file that it was made from.
     more_inputs : int
-        Inputs that are not listed.
-    like : str
-        Another file made from the same inputs, which are listed there; empty where there is none.
+        Number of inputs that are not listed.
+    same_inputs_as : str
+        Another file made from the same inputs, which are listed there; empty if there is none.
     """
 
     file: str
@@ -46,104 +41,97 @@ class FileOrigin:
     settings: tuple[tuple[str, str], ...]
     inputs: tuple[tuple[str, str], ...]
     more_inputs: int
-    like: str = ""
+    same_inputs_as: str = ""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class DataSection:
-    """What became of the data.
+    """Data quality and provenance as the page states them.
 
     Attributes
     ----------
-    counts : tuple of TextTable
-        Rows read, rejected and left out by pairing.
-    notes : tuple of (str, str)
-        Stage and what it noted.
-    origins : tuple of FileOrigin
-        Settings, versions and inputs per file.
     sentence : str
         The counts in a sentence.
-    files : tuple of str
-        The logs that were read.
-    reading : IngestCounts
-        The counts that the lights judge.
+    counts : tuple of TextTable
+        Rows read, rejected, and left out by pairing.
+    notes : tuple of (str, str)
+        Stage and its note or warning.
+    origins : tuple of FileOrigin
+        Provenance per file.
     """
 
+    sentence: str
     counts: tuple[TextTable, ...]
     notes: tuple[tuple[str, str], ...]
     origins: tuple[FileOrigin, ...]
-    sentence: str
-    files: tuple[str, ...]
-    reading: IngestCounts
 
 
-def data_section(work: Path, results: list[JointResults]) -> DataSection:
-    """Collect counts, notes and provenance from the files of a work folder.
+def ingest_counts(results: WorkFolderResults) -> IngestCounts:
+    """Return how many rows and files of the logs were read and rejected.
 
     Parameters
     ----------
-    work : Path
-        The work folder.
-    results : list of JointResults
-        What the report draws from.
+    results : WorkFolderResults
+        Contents of the work folder.
     """
-    documents = {
-        f"{name}.parquet": tables.document(work / f"{name}.parquet")
-        for name in _STORED
-        if (work / f"{name}.parquet").exists()
-    }
-    recordings = read_optional(work, schemas.RECORDINGS)
-    # a file's rows stand once per joint that they hold
-    files = recordings.drop_duplicates(["run", "recording"])
-    rejected = read_optional(work, schemas.REJECTED)
-    pairing = documents.get("pairs.parquet", {}).get("facts", {})
-    torques = pd.read_parquet(work / "torques.parquet", columns=["joint", "n_forward", "n_reverse"])
-    used = int(torques["n_forward"].sum() + torques["n_reverse"].sum())
-    counts = [_read_table(files), _rejected_table(rejected), _dropped_table(pairing, used)]
-    origins = [_origin(file, document) for file, document in documents.items()]
-    for name in _MODELS:
-        if (work / name).exists():
-            model = json.loads((work / name).read_text(encoding="utf-8"))
-            origins.append(_origin(name, model.get("provenance") or {}))
-    return DataSection(
-        counts=tuple(table for table in counts if table.rows),
-        notes=(*_left_out(torques, results), *_notes(documents, recordings, results)),
-        origins=_listed_once(origins),
-        sentence=_sentence(files, rejected, pairing, used),
-        files=tuple(str(file) for file in files["file"]),
-        reading=_reading(files, rejected, documents.get("pairs.parquet", {}).get("facts", {})),
-    )
-
-
-def _reading(files: pd.DataFrame, rejected: pd.DataFrame, facts: Mapping[str, Any]) -> IngestCounts:
+    files = results.log_files
+    facts = _pairing_facts(results)
     return IngestCounts(
         rows=int(files["rows_read"].sum()),
         rejected=int(files["rows_rejected"].sum()),
         files=len(files),
-        lost=int(rejected["row"].isna().sum()),
+        unusable_files=_unusable_files(results.rejected),
         time_known=facts.get("time_known"),
         warnings=len(_as_list(facts.get("warnings"))),
     )
 
 
-def _left_out(torques: pd.DataFrame, results: list[JointResults]) -> list[tuple[str, str]]:
-    without = sorted({int(joint) for joint in torques["joint"]} - {own.joint for own in results})
+def data_section(results: WorkFolderResults) -> DataSection:
+    """Return counts, notes and provenance of the files of a work folder.
+
+    Parameters
+    ----------
+    results : WorkFolderResults
+        Contents of the work folder.
+    """
+    pairing = _pairing_facts(results)
+    used = int(results.torques["n_forward"].sum() + results.torques["n_reverse"].sum())
+    counts = (
+        _ingest_table(results.log_files),
+        _rejected_table(results.rejected),
+        _dropped_table(pairing, used),
+    )
+    origins = [_file_origin(file, metadata) for file, metadata in results.metadata.items()]
+    return DataSection(
+        sentence=_counts_sentence(results, pairing, used),
+        counts=tuple(table for table in counts if table.rows),
+        notes=(*_joints_without_model(results), *_notes(results)),
+        origins=_without_repeated_inputs(origins),
+    )
+
+
+def _pairing_facts(results: WorkFolderResults) -> Mapping[str, Any]:
+    return dict(results.metadata.get(PAIRS, {}).get("facts", {}))
+
+
+def _unusable_files(rejected: pd.DataFrame) -> int:
+    """Return the number of files rejected as a whole; their entries name no row."""
+    return int(rejected["row"].isna().sum())
+
+
+def _joints_without_model(results: WorkFolderResults) -> list[tuple[str, str]]:
+    measured = {int(joint) for joint in results.torques["joint"]}
+    without = sorted(measured - {joint.joint for joint in results.joints})
     return [
         ("fit", f"joint {joint} has pairs but no model; 'frictioncli fit' says why")
         for joint in without
     ]
 
 
-def _read_table(files: pd.DataFrame) -> TextTable:
+def _ingest_table(files: pd.DataFrame) -> TextTable:
+    columns = ("rows_read", "rows_kept", "rows_rejected")
     rows = [
-        (
-            str(run),
-            str(len(own)),
-            *(
-                thousands_text(int(own[c].sum()))
-                for c in ("rows_read", "rows_kept", "rows_rejected")
-            ),
-        )
+        (str(run), str(len(own)), *(thousands_text(int(own[name].sum())) for name in columns))
         for run, own in files.groupby("run")
     ]
     return TextTable(
@@ -158,13 +146,15 @@ def _rejected_table(rejected: pd.DataFrame) -> TextTable:
     return TextTable(
         title="Rejected rows and files",
         header=("reason", "count"),
-        rows=tuple((_words(reason), thousands_text(int(n))) for reason, n in reasons.items()),
+        rows=tuple(
+            (in_words(str(reason)), thousands_text(int(n))) for reason, n in reasons.items()
+        ),
     )
 
 
 def _dropped_table(pairing: Mapping[str, Any], used: int) -> TextTable:
     dropped = pairing.get("dropped") or {}
-    rows = [(_words(reason), thousands_text(int(n))) for reason, n in dropped.items() if n]
+    rows = [(in_words(str(reason)), thousands_text(int(n))) for reason, n in dropped.items() if n]
     if rows:
         rows.append(("used in pairs", thousands_text(used)))
     return TextTable(
@@ -172,50 +162,52 @@ def _dropped_table(pairing: Mapping[str, Any], used: int) -> TextTable:
     )
 
 
-def _words(reason: object) -> str:
-    return str(reason).replace("_", " ")
-
-
-def _sentence(
-    files: pd.DataFrame, rejected: pd.DataFrame, pairing: Mapping[str, Any], used: int
-) -> str:
+def _counts_sentence(results: WorkFolderResults, pairing: Mapping[str, Any], used: int) -> str:
+    files = results.log_files
     parts = []
     if len(files):
-        gone = int(files["rows_rejected"].sum())
+        rejected = int(files["rows_rejected"].sum())
         parts.append(
             f"{count_text(int(files['rows_read'].sum()), 'row')} were read from"
-            f" {count_text(len(files), 'file')}, {count_text(gone, 'row')} rejected"
+            f" {count_text(len(files), 'file')}, {count_text(rejected, 'row')} rejected"
         )
-    whole_files = int(rejected["row"].isna().sum())
-    if whole_files:
-        parts.append(f"{count_text(whole_files, 'file')} could not be used at all")
+    unusable = _unusable_files(results.rejected)
+    if unusable:
+        parts.append(f"{count_text(unusable, 'file')} could not be used at all")
     if pairing.get("samples"):
         share = 100.0 * used / float(pairing["samples"])
         parts.append(f"{share:.0f} % of the samples went into pairs")
     return f"{'; '.join(parts)}." if parts else ""
 
 
-def _notes(
-    documents: Mapping[str, Mapping[str, Any]],
-    recordings: pd.DataFrame,
-    results: list[JointResults],
-) -> list[tuple[str, str]]:
-    """Return what the stages noted, each note once, with the stage that noted it first."""
-    found: dict[str, str] = {}
-    for document in documents.values():
-        facts = document.get("facts", {})
+def _notes(results: WorkFolderResults) -> list[tuple[str, str]]:
+    """Return the notes of the stages, each once, with the first stage that made it."""
+    stages: dict[str, str] = {}
+    for metadata in results.metadata.values():
+        facts = metadata.get("facts", {})
         for note in (*_as_list(facts.get("warnings")), *_as_list(facts.get("notes"))):
-            found.setdefault(note, str(document.get("stage", "")))
-    if not found:
-        told = [n for notes in recordings["notes"].dropna() for n in str(notes).splitlines() if n]
-        for note, count in Counter(told).items():
-            where = "" if count == len(recordings) else f" ({count_text(count, 'recording')})"
-            found[f"{note}{where}"] = "ingest"
-    for joint in results:
-        where = f"joint {joint.joint}: " if len(results) > 1 else ""
-        for note in joint.model.notes:
-            found.setdefault(f"{where}{note}", "fit")
-    return [(stage, note) for note, stage in found.items()]
+            stages.setdefault(note, str(metadata.get("stage", "")))
+    if not stages:
+        for note in _recording_notes(results.recordings):
+            stages[note] = "ingest"
+    for joint in results.joints:
+        for note in _model_notes(joint, several_joints=len(results.joints) > 1):
+            stages.setdefault(note, "fit")
+    return [(stage, note) for note, stage in stages.items()]
+
+
+def _recording_notes(recordings: pd.DataFrame) -> list[str]:
+    """Return the notes on recordings, each once, with the number of recordings if not all."""
+    lines = [line for notes in recordings["notes"].dropna() for line in str(notes).splitlines()]
+    return [
+        note if count == len(recordings) else f"{note} ({count_text(count, 'recording')})"
+        for note, count in Counter(line for line in lines if line).items()
+    ]
+
+
+def _model_notes(joint: JointResults, *, several_joints: bool) -> list[str]:
+    prefix = f"joint {joint.joint}: " if several_joints else ""
+    return [f"{prefix}{note}" for note in joint.model.notes]
 
 
 def _as_list(notes: Any) -> list[str]:
@@ -224,31 +216,33 @@ def _as_list(notes: Any) -> list[str]:
     return [str(note) for note in notes or ()]
 
 
-def _origin(file: str, document: Mapping[str, Any]) -> FileOrigin:
-    settings = document.get("settings") or {}
-    inputs = sorted((document.get("inputs") or {}).items())
+def _file_origin(file: str, metadata: Mapping[str, Any]) -> FileOrigin:
+    settings = metadata.get("settings") or {}
+    inputs = sorted((metadata.get("inputs") or {}).items())
     return FileOrigin(
         file=file,
-        stage=str(document.get("stage", "unknown")),
-        version=str(document.get("version", "unknown")),
-        settings=tuple((str(name), _shown(value)) for name, value in settings.items()),
+        stage=str(metadata.get("stage", "unknown")),
+        version=str(metadata.get("version", "unknown")),
+        settings=tuple((str(name), _setting_text(value)) for name, value in settings.items()),
         inputs=tuple((str(name), str(digest)) for name, digest in inputs[:_MOST_INPUTS]),
         more_inputs=max(len(inputs) - _MOST_INPUTS, 0),
     )
 
 
-def _listed_once(origins: list[FileOrigin]) -> tuple[FileOrigin, ...]:
-    """Let a file refer to the first one with the same inputs, where those are many."""
+def _without_repeated_inputs(origins: Sequence[FileOrigin]) -> tuple[FileOrigin, ...]:
+    """Replace long lists of inputs by a reference to the first file with the same inputs."""
     first: dict[tuple[tuple[str, str], ...], str] = {}
-    told = []
+    shortened = []
     for origin in origins:
-        known = first.setdefault(origin.inputs, origin.file)
-        repeats = len(origin.inputs) > 2 and known != origin.file
-        told.append(replace(origin, inputs=(), more_inputs=0, like=known) if repeats else origin)
-    return tuple(told)
+        file = first.setdefault(origin.inputs, origin.file)
+        repeated = len(origin.inputs) > 2 and file != origin.file
+        shortened.append(
+            replace(origin, inputs=(), more_inputs=0, same_inputs_as=file) if repeated else origin
+        )
+    return tuple(shortened)
 
 
-def _shown(value: Any) -> str:
+def _setting_text(value: Any) -> str:
     if value is None or value == {}:
         return "not set"
     return value if isinstance(value, str) else json.dumps(value, ensure_ascii=False)

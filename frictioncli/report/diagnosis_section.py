@@ -1,23 +1,21 @@
-"""The section of the page on what the simulation gets wrong."""
+"""Section of the page on the diagnosis: text, tables, and the list of its figures."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import partial
-from pathlib import Path
-from typing import Any
 
 from matplotlib.figure import Figure
 
-from frictioncli.diagnosis.documents.reload import Reloaded, is_current, read_documents, reload
+from frictioncli.diagnosis.documents.reload import Reloaded
 from frictioncli.report.diagnosis_text import (
     CauseText,
     cause_texts,
+    cause_title,
     detectable_table,
     evidence_caption,
     gain_caption,
     gain_sentence,
     map_caption,
-    section_title,
     simulation_caption,
     unnamed_texts,
     verdict_sentence,
@@ -36,28 +34,23 @@ from frictioncli.report.simulation_figures import gain_figure, simulation_figure
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class DiagnosisSection:
-    """What the page says of one joint's diagnosis.
+    """Text and tables on one joint's diagnosis.
 
     Attributes
     ----------
     missing : str
-        Why there is nothing to say; empty where there is.
-    document : dict or None
-        The joint's part of ``diagnosis.json``.
+        Why there is no diagnosis; empty if there is one.
     verdict, gain : str
-        The verdict and the worth of the extended model, in words.
+        The verdict and the gain by the extended model, in words.
     causes, unnamed : tuple of CauseText
-        Causes found, and structure that no effect explains.
+        Causes found, and structure that no effect of the catalogue explains.
     visible : tuple of str
-        What stands out of the noise but is not worth modelling.
+        Effects that are significant but do not improve the prediction.
     worst, detectable : TextTable or None
-        Where the simulation misses most; how large an effect must be to be found.
-    entries : tuple of FigureSpec
-        The pictures.
+        Largest misfits of the simulation; smallest size at which each effect would be found.
     """
 
     missing: str = ""
-    document: Mapping[str, Any] | None = None
     verdict: str = ""
     causes: tuple[CauseText, ...] = ()
     unnamed: tuple[CauseText, ...] = ()
@@ -65,57 +58,21 @@ class DiagnosisSection:
     gain: str = ""
     worst: TextTable | None = None
     detectable: TextTable | None = None
-    entries: tuple[FigureSpec, ...] = ()
 
 
-def diagnosis_sections(work: Path, results: list[JointResults]) -> dict[int, DiagnosisSection]:
-    """Return the section of each joint.
-
-    Parameters
-    ----------
-    work : Path
-        The work folder.
-    results : list of JointResults
-        What the report draws from.
-
-    Raises
-    ------
-    TableError
-        If ``diagnosis.json`` or ``extended-model.json`` is damaged.
-    """
-    documents = read_documents(work)
-    sections = {}
-    for joint in results:
-        if not documents:
-            missing = "The simulation has not been judged yet; 'frictioncli diagnose' does it."
-        elif joint.joint not in documents:
-            missing = "This joint has no diagnosis; 'frictioncli diagnose' says why."
-        elif not is_current(documents[joint.joint][0], joint.torques):
-            missing = (
-                "The diagnosis is of other runs than those measured; run 'frictioncli diagnose'"
-                " again."
-            )
-        else:
-            sections[joint.joint] = section(joint, reload(joint.torques, *documents[joint.joint]))
-            continue
-        sections[joint.joint] = DiagnosisSection(missing=missing)
-    return sections
-
-
-def section(results: JointResults, recalled: Reloaded) -> DiagnosisSection:
-    """Return one joint's section.
+def diagnosis_section(results: JointResults) -> DiagnosisSection:
+    """Return the text and tables on one joint's diagnosis.
 
     Parameters
     ----------
     results : JointResults
         The joint's results.
-    recalled : Reloaded
-        Its diagnosis.
     """
-    document, unit = recalled.document, results.unit
+    if results.diagnosis is None:
+        return DiagnosisSection(missing=results.diagnosis_missing)
+    document, unit = results.diagnosis.document, results.unit
     worst = worst_table(document, unit)
     return DiagnosisSection(
-        document=document,
         verdict=verdict_sentence(document, unit),
         causes=tuple(cause_texts(document, unit)),
         unnamed=tuple(unnamed_texts(document, unit)),
@@ -123,56 +80,57 @@ def section(results: JointResults, recalled: Reloaded) -> DiagnosisSection:
         gain=gain_sentence(document, unit),
         worst=worst if worst.rows else None,
         detectable=detectable_table(document, unit),
-        entries=tuple(diagnosis_figures(recalled)),
     )
 
 
-def diagnosis_figures(recalled: Reloaded) -> list[FigureSpec]:
-    """Return the pictures of a diagnosis: simulation, maps, one per cause, gain.
+def diagnosis_figures(diagnosis: Reloaded | None) -> list[FigureSpec]:
+    """Return the figures of a diagnosis: simulation, maps, one per cause, gain.
 
     Parameters
     ----------
-    recalled : Reloaded
-        The diagnosis.
+    diagnosis : Reloaded or None
+        The diagnosis, if there is one.
     """
-    document = recalled.document
-    pictures = [
-        _entry(
+    if diagnosis is None:
+        return []
+    document = diagnosis.document
+    figures = [
+        _figure(
             "diagnosis-simulation",
             "Measured and simulated torque",
             partial(simulation_caption, held_out=document["held_out"]),
-            partial(simulation_figure, recalled=recalled),
+            partial(simulation_figure, diagnosis=diagnosis),
         ),
-        _entry(
+        _figure(
             "diagnosis-maps",
             "Where the simulated torque is wrong",
-            partial(map_caption, extended=bool(recalled.seen.terms)),
-            partial(residual_map_figure, recalled=recalled),
+            partial(map_caption, extended=bool(diagnosis.seen.terms)),
+            partial(residual_map_figure, diagnosis=diagnosis),
         ),
     ]
-    for number, cause in enumerate(recalled.causes):
-        fitted = in_words(recalled.seen.terms[number].effect.name)
-        pictures.append(
-            _entry(
-                f"diagnosis-{number + 1}",
-                section_title(cause, number + 1),
+    for index, cause in enumerate(diagnosis.causes):
+        fitted = in_words(diagnosis.seen.terms[index].effect.name)
+        figures.append(
+            _figure(
+                f"diagnosis-{index + 1}",
+                cause_title(cause, index + 1),
                 partial(evidence_caption, cause=cause, fitted=fitted),
-                partial(evidence_figure, recalled=recalled, number=number),
+                partial(evidence_figure, diagnosis=diagnosis, index=index),
             )
         )
     if document["gain"] is not None:
-        pictures.append(
-            _entry(
+        figures.append(
+            _figure(
                 "diagnosis-gain",
                 "What the extended model is worth",
                 partial(gain_caption, document=document),
-                partial(gain_figure, recalled=recalled),
+                partial(gain_figure, diagnosis=diagnosis),
             )
         )
-    return pictures
+    return figures
 
 
-def _entry(
+def _figure(
     name: str,
     title: str,
     caption: Callable[[JointResults], str],

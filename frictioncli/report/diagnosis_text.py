@@ -257,8 +257,8 @@ def gain_caption(results: JointResults, *, document: Mapping[str, Any]) -> str:
     )
 
 
-def section_title(cause: Mapping[str, Any], number_: int) -> str:
-    """Return the heading of a cause's picture."""
-    return f"Cause {number_}. {' or '.join(in_words(name) for name in cause['effects'][:3])}" + (
+def cause_title(cause: Mapping[str, Any], number: int) -> str:
+    """Return the heading of a cause's figure."""
+    return f"Cause {number}. {' or '.join(in_words(name) for name in cause['effects'][:3])}" + (
         f" or {count_text(len(cause['effects']) - 3, 'other')}" if len(cause["effects"]) > 3 else ""
     )

@@ -39,19 +39,19 @@ _CHOSEN = "#0072B2"
 _PANELS = ("base model", "without this cause", "extended model")
 
 
-def evidence_figure(results: JointResults, *, recalled: Reloaded, number: int) -> Figure:
+def evidence_figure(results: JointResults, *, diagnosis: Reloaded, index: int) -> Figure:
     """Draw one cause: the base model's residuals, the fitted term, what is left, its rivals.
 
     Parameters
     ----------
     results : JointResults
         One joint's results.
-    recalled : Reloaded
+    diagnosis : Reloaded
         Its diagnosis.
-    number : int
-        Place of the cause, from 0.
+    index : int
+        Index of the cause, from 0.
     """
-    seen, cause = recalled.seen, recalled.causes[number]
+    seen, cause = diagnosis.seen, diagnosis.causes[index]
     axis, channel = str(cause["seen_in"]), str(cause["channel"])
     bars = shown_probabilities(cause["probabilities"], cause["effects"])
     low = 0.62 + 0.24 * len(bars)
@@ -64,10 +64,10 @@ def evidence_figure(results: JointResults, *, recalled: Reloaded, number: int) -
             "bin": bin_numbers(axis, getattr(table, axis)),
             "pair": table.pair,
             "at": getattr(table, axis) * _AXES[axis][1] + (axis == "order"),
-            "term": seen.terms[number].of(channel),
+            "term": seen.terms[index].of(channel),
         }
     )
-    drawn = (seen.before[channel], seen.without(number, channel), seen.after[channel])
+    drawn = (seen.before[channel], seen.without(index, channel), seen.after[channel])
     for panel, title, residual in zip(panels, _PANELS, drawn, strict=True):
         for one in residual_series(table, axis, channel):
             found = bin_means(rows.assign(mean=residual)[one.rows])

@@ -1,21 +1,18 @@
-"""What the explorer on the page shows: k and tmax of the evaluated grid, replayed, in few bytes."""
+"""Data of the interactive explorer: corrections and errors over a grid of k and tmax."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from itertools import product
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pandas as pd
 
-from frictioncli import tables
 from frictioncli.arrays import Array
 from frictioncli.correction.settings import CorrectionSettings, ScheduleSettings
 from frictioncli.diagnosis.documents.apply_extension import without_effects
-from frictioncli.diagnosis.documents.extended_model import ExtendedModel, read_extended
+from frictioncli.diagnosis.documents.extended_model import ExtendedModel
 from frictioncli.errors import NotEnoughData
-from frictioncli.model.document import FrictionModel, read_models
 from frictioncli.plain_text import without_control_characters
 from frictioncli.report.evaluation_figure import compared_criterion
 from frictioncli.report.grid_replay import ReplayedPhase, ScheduleGrid, replayed_phases
@@ -28,13 +25,12 @@ from frictioncli.report.labels import (
 from frictioncli.report.missing_data import evaluation_missing
 from frictioncli.report.results import MOST_RUNS, JointResults
 from frictioncli.report.style import PHASE_WORDS
-from frictioncli.workfiles import EVALUATION, EXTENDED
 
 _MOST_POINTS = 400
-"""Pairs of a phase that are drawn; ε is of all of them."""
+"""Greatest number of pairs drawn per phase; ε is computed from all pairs."""
 
-_SAME = 1e-6
-"""Two replays of one schedule differ by less than this, relatively, whatever the machine."""
+_TOLERANCE = 1e-6
+"""Relative tolerance in comparing errors of the same schedule computed on different machines."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -44,11 +40,11 @@ class Explorer:
     Attributes
     ----------
     missing : str
-        Why there is none; empty where there is.
+        Why there is none; empty if there is one.
     data : dict
-        What its script draws, as JSON takes it.
+        Data for its script, to be written as JSON.
     without_extended : str
-        Why it has no switch for the extended model; empty where it has.
+        Why it has no switch for the extended model; empty if it has one.
     """
 
     missing: str = ""
@@ -56,68 +52,37 @@ class Explorer:
     without_extended: str = ""
 
 
-def explorers(work: Path, results: list[JointResults]) -> dict[int, Explorer]:
-    """Return the explorer of each joint.
+def explorer(results: JointResults) -> Explorer:
+    """Return the explorer of one joint, or why there is none.
 
     Parameters
     ----------
-    work : Path
-        The work folder.
-    results : list of JointResults
-        What the report draws from.
+    results : JointResults
+        One joint's results.
     """
-    path = work / EVALUATION
-    stated = tables.document(path).get("settings", {}) if path.exists() else {}
-    extensions, models = _extended(work)
-    found = {}
-    for joint in results:
-        if missing := evaluation_missing(joint) or _unevaluated(joint):
-            found[joint.joint] = Explorer(missing=missing)
-            continue
-        try:
-            found[joint.joint] = explorer(
-                joint, stated, models.get(joint.joint), extensions.get(joint.joint)
-            )
-        except NotEnoughData as fault:
-            found[joint.joint] = Explorer(missing=str(fault))
-    return found
+    if missing := evaluation_missing(results) or _criterion_missing(results):
+        return Explorer(missing=missing)
+    try:
+        return _explorer(results)
+    except NotEnoughData as fault:
+        return Explorer(missing=str(fault))
 
 
-def _extended(work: Path) -> tuple[dict[int, ExtendedModel], dict[int, FrictionModel]]:
-    if not (work / EXTENDED).exists():
-        return {}, {}
-    models = read_models(work / EXTENDED)
-    return read_extended(work / EXTENDED), {model.joint: model for model in models}
-
-
-def _unevaluated(results: JointResults) -> str:
+def _criterion_missing(results: JointResults) -> str:
     if compared_criterion(results, bounded=False):
         return ""
     return "No criterion with k and tmax was evaluated. It needs 'frictioncli evaluate'."
 
 
-def explorer(
-    results: JointResults,
-    stated: Mapping[str, Any],
-    model: FrictionModel | None,
-    extension: ExtendedModel | None,
-) -> Explorer:
-    """Return the explorer of one joint.
-
-    Parameters
-    ----------
-    results : JointResults
-        The joint's results, evaluated by criterion ``first_degree`` or ``latest_degree``.
-    stated : dict
-        Settings of the evaluation.
-    model, extension : FrictionModel and ExtendedModel, or None
-        The extended model, if there is one.
+def _explorer(results: JointResults) -> Explorer:
+    """Replay the evaluated grid with the base model and, if there is one, the extended model.
 
     Raises
     ------
     NotEnoughData
-        If the model cannot be corrected, or no phase heats or cools.
+        If the base model cannot be corrected, or no phase heats or cools.
     """
+    stated = results.evaluation_settings
     settings = CorrectionSettings(
         correction_speed=stated.get("correction_speed"),
         smoothing_degree=int(stated.get("smoothing_degree", 3)),
@@ -130,17 +95,16 @@ def explorer(
         tmax=tuple(sorted(float(tmax) for tmax in rows["tmax"].unique())),
     )
     runs = sorted(str(run) for run in rows["run"].unique())[:MOST_RUNS]
-    replays = {
-        "base": replayed_phases(results.torques, results.model, settings, grid, runs),
-    }
-    lacking = _lacking(extension)
-    if model is not None and extension is not None and not lacking:
-        bare, base, _ = without_effects(results.torques, model, extension)
+    replays = {"base": replayed_phases(results.torques, results.model, settings, grid, runs)}
+    model, extension = results.extended_model, results.extension
+    without_extended = _extension_missing(extension)
+    if model is not None and extension is not None and not without_extended:
+        torques, base, _ = without_effects(results.torques, model, extension)
         try:
-            replays["extended"] = replayed_phases(bare, base, settings, grid, runs)
+            replays["extended"] = replayed_phases(torques, base, settings, grid, runs)
         except NotEnoughData as fault:
-            lacking = f"The extended model cannot be corrected: {fault}."
-    evaluated = "extended" if stated.get("extended") else "base"
+            without_extended = f"The extended model cannot be corrected: {fault}."
+    evaluated = "extended" if results.evaluated_extended else "base"
     if evaluated not in replays or not _agree(replays[evaluated], results.evaluation, grid):
         return Explorer(
             missing="The evaluation is of another model than the one at hand, so its grid cannot be"
@@ -160,16 +124,16 @@ def explorer(
                 for speed, style in sorted(results.styles.items())
             ],
             "models": {
-                name: [_packed(phase, results) for phase in phases]
+                name: [_phase_data(phase, results) for phase in phases]
                 for name, phases in replays.items()
             },
         },
-        without_extended=lacking,
+        without_extended=without_extended,
     )
 
 
-def _lacking(extension: ExtendedModel | None) -> str:
-    """Return why there is no extended model to switch to; empty where there is."""
+def _extension_missing(extension: ExtendedModel | None) -> str:
+    """Return why there is no extended model to switch to; empty if there is one."""
     if extension is None:
         return "There is no extended model to switch to; 'frictioncli diagnose' makes one."
     if not extension.effects:
@@ -178,42 +142,44 @@ def _lacking(extension: ExtendedModel | None) -> str:
 
 
 def _agree(phases: list[ReplayedPhase], evaluation: pd.DataFrame, grid: ScheduleGrid) -> bool:
-    """Return whether the evaluation has the same errors and corrections as the replays."""
+    """Return whether errors and numbers of corrections of evaluation and replays agree."""
     keys = ["run", "phase", "k", "tmax"]
     table = evaluation[evaluation["criterion"].isin(("none", grid.criterion))].set_index(keys)
     settings = [(np.nan, np.nan), *product(grid.k, grid.tmax)]
-    wanted = pd.MultiIndex.from_tuples(
+    settings_index = pd.MultiIndex.from_tuples(
         [(phase.run, phase.name, *setting) for phase in phases for setting in settings], names=keys
     )
-    if not table.index.is_unique or not wanted.isin(table.index).all():
+    if not table.index.is_unique or not settings_index.isin(table.index).all():
         return False
-    own = table.reindex(wanted)
+    own = table.reindex(settings_index)
     errors = [value for phase in phases for value in (phase.uncorrected, *phase.epsilon)]
-    tried = [n for phase in phases for n in (0, *(len(events.time) for events in phase.events))]
+    corrections = [
+        n for phase in phases for n in (0, *(len(events.time) for events in phase.events))
+    ]
     return bool(
-        np.allclose(own["epsilon"], errors, rtol=_SAME, atol=0.0)
-        and np.array_equal(own["corrections"], tried)
+        np.allclose(own["epsilon"], errors, rtol=_TOLERANCE, atol=0.0)
+        and np.array_equal(own["corrections"], corrections)
     )
 
 
 def _start(results: JointResults, grid: ScheduleGrid) -> tuple[int, int]:
-    """Return the place of the simulated setting in the grid; of the usual one without it."""
-    usual = ScheduleSettings()
-    k, tmax = usual.k, usual.tmax
+    """Return the indices in the grid of the simulated setting, or else of the default setting."""
+    default = ScheduleSettings()
+    k, tmax = default.k, default.tmax
     if not results.schedule.empty and pd.notna(results.schedule["k"].iloc[0]):
         k, tmax = (float(results.schedule[name].iloc[0]) for name in ("k", "tmax"))
     return _nearest(grid.k, k), _nearest(grid.tmax, tmax)
 
 
-def _nearest(values: tuple[float, ...], wanted: float) -> int:
-    return int(np.argmin(np.abs(np.array(values) - wanted)))
+def _nearest(values: Sequence[float], target: float) -> int:
+    return int(np.argmin(np.abs(np.array(values) - target)))
 
 
-def _packed(phase: ReplayedPhase, results: JointResults) -> dict[str, Any]:
-    """Return a phase as the script takes it: schedules that several settings share stand once.
+def _phase_data(phase: ReplayedPhase, results: JointResults) -> dict[str, Any]:
+    """Return a phase in the form that the script reads; equal schedules are stored once.
 
-    Of each drawn pair the script gets the friction's error as a function of the correction: the
-    temperature, what the temperature term is there, and what would be missed without it.
+    For each drawn pair it holds what the script needs to compute the error of friction for any
+    temperature correction: the temperature, the temperature term, and the error without correction.
     """
     known: dict[tuple[Any, ...], int] = {}
     schedules: list[dict[str, Any]] = []
@@ -232,7 +198,7 @@ def _packed(phase: ReplayedPhase, results: JointResults) -> dict[str, Any]:
         np.linspace(0, len(phase.time) - 1, min(len(phase.time), _MOST_POINTS)).astype(int)
     )
     speeds = sorted(results.styles)
-    nearest = [int(np.argmin(np.abs(np.array(speeds) - speed))) for speed in phase.speed[shown]]
+    nearest = [_nearest(speeds, speed) for speed in phase.speed[shown]]
     return {
         "run": without_control_characters(phase.run),
         "phase": phase.name,

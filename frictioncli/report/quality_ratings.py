@@ -1,4 +1,4 @@
-"""Data quality at a glance: each light good, fair or poor, with the reason in words."""
+"""Ratings of data quality: good, fair or poor, each with its reason."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -20,28 +20,36 @@ from frictioncli.report.style import PHASE_WORDS, PHASES
 GOOD, FAIR, POOR = "good", "fair", "poor"
 
 _REJECTED = (0.001, 0.05)
-"""Shares of rejected rows up to which reading is good, and fair."""
+"""Greatest shares of rejected rows that are rated good, and fair."""
 
 _PAIRS = (100, 30)
+"""Least numbers of pairs that are rated good, and fair."""
+
 _SPEEDS = (4, 2)
+"""Least numbers of speeds that are rated good, and fair."""
+
 _SPEED_RATIOS = (4.0, 1.5)
+"""Least ratios of the highest to the lowest speed that are rated good, and fair."""
+
 _TEMPERATURE_SPANS = (20.0, 10.0)
-_VAGUE = 0.5
-"""A parameter whose half interval exceeds this share of it is known only roughly."""
+"""Least ranges of motor temperature that are rated good, and fair. [°C]"""
+
+_IMPRECISE = 0.5
+"""Relative half-width of a 95 % interval above which a parameter counts as imprecise."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class QualityRating:
-    """One light.
+    """Rating of one aspect of data quality.
 
     Attributes
     ----------
     level : {"good", "fair", "poor"}
-        Shown green, amber or red.
+        The rating, shown green, amber or red.
     name : str
-        What is judged.
+        The aspect that is rated.
     reason : str
-        Why it has that level.
+        Why it has this rating.
     """
 
     level: str
@@ -51,45 +59,45 @@ class QualityRating:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class IngestCounts:
-    """What became of the logs.
+    """Numbers of rows and files of the logs that were read and rejected.
 
     Attributes
     ----------
     rows, rejected : int
-        Rows read, and those of them that were rejected.
-    files, lost : int
+        Rows read, and how many of them were rejected.
+    files, unusable_files : int
         Files used, and files that could not be used at all.
     time_known : bool or None
-        Whether the logs tell when each recording began; none where that is not known.
+        Whether the start time of each recording is known; None if that is not recorded.
     warnings : int
-        Warnings of the stages.
+        Number of warnings.
     """
 
     rows: int
     rejected: int
     files: int
-    lost: int
+    unusable_files: int
     time_known: bool | None
     warnings: int
 
 
 def quality_ratings(
-    results: JointResults, reading: IngestCounts, diagnosis: Mapping[str, Any] | None
+    results: JointResults, counts: IngestCounts, diagnosis: Mapping[str, Any] | None
 ) -> list[QualityRating]:
-    """Return all lights of one joint.
+    """Return all ratings for one joint.
 
     Parameters
     ----------
     results : JointResults
         The joint's results.
-    reading : IngestCounts
-        What became of the logs.
+    counts : IngestCounts
+        Rows and files of the logs that were read and rejected.
     diagnosis : dict or None
         The joint's part of ``diagnosis.json``, if there is one.
     """
     return [
-        *([reading_rating(reading)] if reading.files else []),
-        *([time_rating(reading)] if reading.time_known is not None else []),
+        *([reading_rating(counts)] if counts.files else []),
+        *([time_rating(counts)] if counts.time_known is not None else []),
         runs_rating(results),
         pairs_rating(results),
         speeds_rating(results),
@@ -99,35 +107,39 @@ def quality_ratings(
     ]
 
 
-def reading_rating(reading: IngestCounts) -> QualityRating:
-    """Judge how much of the logs could be read."""
-    share = reading.rejected / max(reading.rows, 1)
+def reading_rating(counts: IngestCounts) -> QualityRating:
+    """Rate the share of rows that could be read."""
+    share = counts.rejected / max(counts.rows, 1)
     level = _at_most(share, _REJECTED)
-    if reading.lost and level == GOOD:
+    if counts.unusable_files and level == GOOD:
         level = FAIR
-    lost = f"; {count_text(reading.lost, 'file')} could not be used at all" if reading.lost else ""
+    unusable = (
+        f"; {count_text(counts.unusable_files, 'file')} could not be used at all"
+        if counts.unusable_files
+        else ""
+    )
     return QualityRating(
         level=level,
         name="Reading",
-        reason=f"{thousands_text(reading.rejected)} of {count_text(reading.rows, 'row')} in"
-        f" {count_text(reading.files, 'file')} rejected{lost}.",
+        reason=f"{thousands_text(counts.rejected)} of {count_text(counts.rows, 'row')} in"
+        f" {count_text(counts.files, 'file')} rejected{unusable}.",
     )
 
 
-def time_rating(reading: IngestCounts) -> QualityRating:
-    """Judge whether times and units of the logs are sure."""
-    if not reading.time_known:
+def time_rating(counts: IngestCounts) -> QualityRating:
+    """Rate whether start times are known and units are certain."""
+    if not counts.time_known:
         return QualityRating(
             level=POOR,
             name="Time",
             reason="The logs do not tell when each recording began, so effects of time and of"
             " temperature history cannot be judged. A manifest.csv tells it.",
         )
-    if reading.warnings:
+    if counts.warnings:
         return QualityRating(
             level=FAIR,
             name="Time and units",
-            reason=f"{count_text(reading.warnings, 'warning')} of reading; see the notes below.",
+            reason=f"{count_text(counts.warnings, 'warning')} of reading; see the notes below.",
         )
     return QualityRating(
         level=GOOD, name="Time and units", reason="Start times are known; reading gave no warning."
@@ -135,7 +147,7 @@ def time_rating(reading: IngestCounts) -> QualityRating:
 
 
 def runs_rating(results: JointResults) -> QualityRating:
-    """Judge whether there are runs enough to try the model on new data."""
+    """Rate whether there is more than one run, so that the model can be tested on a new one."""
     count = len(results.runs)
     if count > 1:
         return QualityRating(
@@ -152,7 +164,7 @@ def runs_rating(results: JointResults) -> QualityRating:
 
 
 def pairs_rating(results: JointResults) -> QualityRating:
-    """Judge the number of pairs of counter-directed moves."""
+    """Rate the number of pairs of counter-directed moves."""
     count = len(results.pairs)
     return QualityRating(
         level=_at_least(count, _PAIRS),
@@ -162,12 +174,12 @@ def pairs_rating(results: JointResults) -> QualityRating:
 
 
 def speeds_rating(results: JointResults) -> QualityRating:
-    """Judge whether the speeds tell Coulomb from viscous friction."""
+    """Rate whether the speeds can separate Coulomb from viscous friction."""
     speeds = sorted(results.styles)
     level = _worst(
         _at_least(len(speeds), _SPEEDS), _at_least(speeds[-1] / speeds[0], _SPEED_RATIOS)
     )
-    told = (
+    measured = (
         speed_text(speeds[0])
         if len(speeds) == 1
         else f"{len(speeds)} speeds, {speed_text(speeds[0])} to {speed_text(speeds[-1])}"
@@ -175,15 +187,15 @@ def speeds_rating(results: JointResults) -> QualityRating:
     return QualityRating(
         level=level,
         name="Speeds",
-        reason=f"{told}; good from {_SPEEDS[0]} speeds over a ratio of {_SPEED_RATIOS[0]:g}.",
+        reason=f"{measured}; good from {_SPEEDS[0]} speeds over a ratio of {_SPEED_RATIOS[0]:g}.",
     )
 
 
 def temperature_rating(results: JointResults) -> QualityRating:
-    """Judge whether the joint was heated and cooled far enough, in every run."""
+    """Rate the range of motor temperature and whether both heating and cooling were measured."""
     warm = results.thermal_pairs["motor_temperature"].dropna()
     if warm.empty:
-        lacking = (
+        fault = (
             "No heating or cooling of the motor was found"
             if results.has("motor_temperature")
             else "The log has no motor temperature"
@@ -191,7 +203,7 @@ def temperature_rating(results: JointResults) -> QualityRating:
         return QualityRating(
             level=POOR,
             name="Temperature",
-            reason=f"{lacking}: what temperature does to friction stays unknown.",
+            reason=f"{fault}: what temperature does to friction stays unknown.",
         )
     span = float(warm.max() - warm.min())
     found = [phase for phase in PHASES if (results.thermal_pairs["phase"] == phase).any()]
@@ -210,51 +222,51 @@ def temperature_rating(results: JointResults) -> QualityRating:
 
 
 def parameters_rating(results: JointResults) -> QualityRating:
-    """Judge how well the data determine the model's parameters."""
+    """Rate how well the data determine the model's parameters."""
     stated = results.model.parameters
-    unknown = [PARAMETER_SYMBOLS[name] for name in PARAMETERS if not stated[name].determined]
-    if unknown:
+    undetermined = [PARAMETER_SYMBOLS[name] for name in PARAMETERS if not stated[name].determined]
+    if undetermined:
         return QualityRating(
             level=POOR,
             name="Parameters",
-            reason=f"The data do not determine {list_text(unknown)}.",
+            reason=f"The data do not determine {list_text(undetermined)}.",
         )
-    rough = [PARAMETER_SYMBOLS[name] for name in imprecise_parameters(results)]
-    if rough:
+    imprecise = [PARAMETER_SYMBOLS[name] for name in imprecise_parameters(results)]
+    if imprecise:
         return QualityRating(
             level=FAIR,
             name="Parameters",
-            reason=f"All determined, but {list_text(rough)} only to within more than"
-            f" ±{100 * _VAGUE:.0f} %.",
+            reason=f"All determined, but {list_text(imprecise)} only to within more than"
+            f" ±{100 * _IMPRECISE:.0f} %.",
         )
     return QualityRating(
         level=GOOD,
         name="Parameters",
-        reason=f"All determined to within ±{100 * _VAGUE:.0f} % or better.",
+        reason=f"All determined to within ±{100 * _IMPRECISE:.0f} % or better.",
     )
 
 
 def imprecise_parameters(results: JointResults) -> list[str]:
-    """Return the parameters whose interval is wider than ±50 % of the estimate."""
-    rough = []
+    """Return the parameters whose 95 % interval is wider than ±50 % of the estimate."""
+    imprecise = []
     for name in PARAMETERS:
         stated = results.model.parameters[name]
         if stated.determined and stated.ci95 is not None:
             low, high = stated.ci95
-            if high - low > 2 * _VAGUE * abs(stated.estimate):
-                rough.append(name)
-    return rough
+            if high - low > 2 * _IMPRECISE * abs(stated.estimate):
+                imprecise.append(name)
+    return imprecise
 
 
 def model_rating(results: JointResults, diagnosis: Mapping[str, Any] | None) -> QualityRating:
-    """Judge whether the friction function describes the joint."""
+    """Rate whether the friction function describes the joint."""
     if diagnosis is None:
         return QualityRating(
             level=FAIR, name="Model", reason="What the model misses has not been judged yet."
         )
     missed = f"{number_text(diagnosis['simulation']['rmse'])} {results.unit} (RMS)"
     causes = [[in_words(name) for name in cause["effects"]] for cause in diagnosis["causes"]]
-    told = list_text([" or ".join(names) for names in causes if names] or ["nothing"])
+    named = list_text([" or ".join(names) for names in causes if names] or ["nothing"])
     if diagnosis["verdict"] == "no_evidence":
         return QualityRating(
             level=GOOD,
@@ -271,7 +283,7 @@ def model_rating(results: JointResults, diagnosis: Mapping[str, Any] | None) -> 
     return QualityRating(
         level=FAIR,
         name="Model",
-        reason=f"Equation (16) lacks {told}: alone it misses {missed}. The extended model has it.",
+        reason=f"Equation (16) lacks {named}: alone it misses {missed}. The extended model has it.",
     )
 
 

@@ -42,17 +42,17 @@ class MapAxis:
         return np.searchsorted(self.edges[1:-1], self.values, side="right")
 
 
-def residual_map_figure(results: JointResults, *, recalled: Reloaded) -> Figure:
+def residual_map_figure(results: JointResults, *, diagnosis: Reloaded) -> Figure:
     """Draw the misfit of both channels over speed, temperature, angle and time.
 
     Parameters
     ----------
     results : JointResults
         One joint's results.
-    recalled : Reloaded
+    diagnosis : Reloaded
         Its diagnosis.
     """
-    seen = recalled.seen
+    seen = diagnosis.seen
     sets = [("base model", seen.before)]
     if seen.terms:
         sets.append(("extended model", seen.after))

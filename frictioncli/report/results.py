@@ -1,8 +1,10 @@
-"""What the report draws from: the tables of one joint, read from the work folder."""
+"""Contents of a work folder as the report uses them, read once and passed on."""
 
-from collections.abc import Mapping
-from dataclasses import dataclass, field, replace
+import json
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pandas as pd
@@ -10,38 +12,50 @@ from numpy.typing import ArrayLike
 
 from frictioncli import schemas, tables
 from frictioncli.arrays import Array
+from frictioncli.diagnosis.documents.extended_model import ExtendedModel, read_extended
+from frictioncli.diagnosis.documents.reload import Reloaded, is_current, read_documents, reload
 from frictioncli.errors import TableError
 from frictioncli.model.document import FrictionModel, read_models
 from frictioncli.model.friction import friction_torque
 from frictioncli.model.zero_load import PAIR_KEY, friction_at_zero_load, temperature_of
 from frictioncli.report.style import PHASES, SpeedStyle, speed_styles
-from frictioncli.workfiles import MODEL, TORQUES
+from frictioncli.workfiles import DIAGNOSIS, EVALUATION, EXTENDED, MODEL, SCHEDULE, TORQUES
 
 MOST_RUNS = 3
-"""Runs drawn in a figure; more would not fit a page."""
+"""Greatest number of runs drawn in a figure, to fit a page."""
 
-_CORRECTED = (schemas.SCHEDULE, schemas.EVALUATION)
+_TABLES = ("samples", "recordings", "rejected", "pairs", "torques", "schedule", "evaluation")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class JointResults:
-    """Everything the report knows of one joint.
+    """Results of one joint.
 
     Attributes
     ----------
     model : FrictionModel
-        Its friction model.
+        Friction model.
     torques : DataFrame
-        Its rows of :data:`frictioncli.schemas.TORQUES`.
+        The joint's rows of :data:`frictioncli.schemas.TORQUES`.
     pairs : DataFrame
         One row per pair with the friction torque at zero load, ``temperature``, the one that the
         model uses, and ``bins``, the number of its angle bins.
     schedule, evaluation : DataFrame
-        Its rows of these tables; empty where the stage has not been run.
+        The joint's rows of these tables; empty if the stage has not been run.
     styles : dict
         Colour and marker per speed.
-    simulated_extended, evaluated_extended : bool
-        Whether these two tables are of the extended model.
+    simulated_extended : bool
+        Whether the schedule was simulated with the extended model.
+    evaluation_settings : mapping
+        Settings of the evaluation; empty without one.
+    extended_model : FrictionModel or None
+        Friction function of the extended model.
+    extension : ExtendedModel or None
+        Effects of the extended model.
+    diagnosis : Reloaded or None
+        Diagnosis of these runs.
+    diagnosis_missing : str
+        Why there is no diagnosis of these runs; empty if there is one.
     """
 
     model: FrictionModel
@@ -51,7 +65,11 @@ class JointResults:
     evaluation: pd.DataFrame
     styles: Mapping[float, SpeedStyle] = field(default_factory=dict)
     simulated_extended: bool = False
-    evaluated_extended: bool = False
+    evaluation_settings: Mapping[str, Any] = field(default_factory=dict)
+    extended_model: FrictionModel | None = None
+    extension: ExtendedModel | None = None
+    diagnosis: Reloaded | None = None
+    diagnosis_missing: str = ""
 
     @property
     def joint(self) -> int:
@@ -65,7 +83,7 @@ class JointResults:
 
     @property
     def load_unit(self) -> str:
-        """Unit of the load torque, N·m where the log has a load channel of its own."""
+        """Unit of load torque: N·m if the log has a load channel, else that of friction torque."""
         return "N·m" if self.torques["load"].notna().any() else self.unit
 
     @property
@@ -78,12 +96,23 @@ class JointResults:
         """Pairs of the heating and cooling phases."""
         return self.pairs[self.pairs["phase"].isin(PHASES)]
 
+    @property
+    def evaluated_extended(self) -> bool:
+        """Whether corrections were evaluated with the extended model."""
+        return bool(self.evaluation_settings.get("extended"))
+
     def style(self, speed: float) -> SpeedStyle:
-        """Return colour and marker of the known speed nearest to ``speed``, in deg/s."""
+        """Return colour and marker of the measured speed nearest to ``speed``.
+
+        Parameters
+        ----------
+        speed : float
+            Joint speed. [deg/s]
+        """
         return self.styles[min(self.styles, key=lambda known: abs(known - speed))]
 
     def predict(self, *, load: ArrayLike, speed: ArrayLike, temperature: ArrayLike) -> Array:
-        """Return the modelled friction torque; a model without temperature needs none.
+        """Return the modelled friction torque. [torque unit].
 
         Parameters
         ----------
@@ -92,7 +121,7 @@ class JointResults:
         speed : array_like
             Absolute joint velocity. [deg/s]
         temperature : array_like
-            Temperature parameter. [°C]
+            Temperature parameter; ignored by a model without temperature. [°C]
         """
         known = np.asarray(temperature, dtype=float)
         if not self.model.knows_temperature:
@@ -104,19 +133,141 @@ class JointResults:
         return bool(self.pairs[column].notna().any())
 
 
-def joint_results(
-    model: FrictionModel, torques: pd.DataFrame, schedule: pd.DataFrame, evaluation: pd.DataFrame
-) -> JointResults:
-    """Pick one joint's rows out of the tables and reduce its torques to pairs.
+@dataclass(frozen=True, slots=True, kw_only=True)
+class WorkFolderResults:
+    """Contents of a work folder.
+
+    Attributes
+    ----------
+    joints : tuple of JointResults
+        Results of each joint that has a model.
+    torques : DataFrame
+        Rows of :data:`frictioncli.schemas.TORQUES` of all joints.
+    recordings, rejected : DataFrame
+        Recordings and rejected rows of the logs; empty if there is no such table.
+    metadata : mapping of str to mapping
+        Per file its provenance and, for tables, facts about their rows.
+    """
+
+    joints: tuple[JointResults, ...]
+    torques: pd.DataFrame
+    recordings: pd.DataFrame
+    rejected: pd.DataFrame
+    metadata: Mapping[str, Mapping[str, Any]]
+
+    @property
+    def runs(self) -> list[str]:
+        """Names of all runs, in order."""
+        return sorted({run for joint in self.joints for run in joint.runs})
+
+    @property
+    def log_files(self) -> pd.DataFrame:
+        """The recordings, each once; the table has one row per recording and joint."""
+        return self.recordings.drop_duplicates(["run", "recording"])
+
+
+def by_speed(rows: pd.DataFrame) -> list[tuple[float, pd.DataFrame]]:
+    """Return the rows of each speed, slowest first."""
+    return [(float(str(speed)), group) for speed, group in rows.groupby("speed")]
+
+
+def read_results(work: Path) -> WorkFolderResults:
+    """Read everything in a work folder that the report uses.
 
     Parameters
     ----------
-    model : FrictionModel
-        The joint's model.
-    torques, schedule, evaluation : DataFrame
-        Whole tables.
+    work : Path
+        The work folder.
+
+    Raises
+    ------
+    TableError
+        If ``torques.parquet`` or ``model.json`` is missing, or a file is damaged.
     """
-    own = torques[torques["joint"] == model.joint].reset_index(drop=True)
+    path = work / TORQUES
+    if not path.exists():
+        raise TableError(f"{path} is missing; 'frictioncli separate -w {work}' makes it")
+    torques = tables.read(path, schemas.TORQUES)
+    models = read_models(work / MODEL)
+    schedule, evaluation, recordings, rejected = (
+        _read_if_present(work, table)
+        for table in (schemas.SCHEDULE, schemas.EVALUATION, schemas.RECORDINGS, schemas.REJECTED)
+    )
+    diagnoses = read_documents(work)
+    extended_models, extensions = _read_extended_models(work)
+    metadata = dict(_read_metadata(work))
+    simulated_extended = bool(_settings(metadata, SCHEDULE).get("extended"))
+    joints = []
+    for model in models:
+        own, pairs = _pairs_of(torques, model)
+        diagnosis, missing = _diagnosis_of(model.joint, own, diagnoses)
+        joints.append(
+            JointResults(
+                model=model,
+                torques=own,
+                pairs=pairs,
+                schedule=_rows_of(schedule, model.joint),
+                evaluation=_rows_of(evaluation, model.joint),
+                styles=speed_styles(pairs),
+                simulated_extended=simulated_extended,
+                evaluation_settings=_settings(metadata, EVALUATION),
+                extended_model=extended_models.get(model.joint),
+                extension=extensions.get(model.joint),
+                diagnosis=diagnosis,
+                diagnosis_missing=missing,
+            )
+        )
+    return WorkFolderResults(
+        joints=tuple(joints),
+        torques=torques,
+        recordings=recordings,
+        rejected=rejected,
+        metadata=metadata,
+    )
+
+
+def _read_if_present(work: Path, table: schemas.Table) -> pd.DataFrame:
+    """Return a table of the work folder, without rows if the file does not exist."""
+    path = work / f"{table.name}.parquet"
+    if path.exists():
+        return tables.read(path, table)
+    return pd.DataFrame(columns=list(table.names))
+
+
+def _read_extended_models(
+    work: Path,
+) -> tuple[dict[int, FrictionModel], dict[int, ExtendedModel]]:
+    """Return the friction function and the effects of each joint's extended model."""
+    path = work / EXTENDED
+    if not path.exists():
+        return {}, {}
+    return {model.joint: model for model in read_models(path)}, read_extended(path)
+
+
+def _read_metadata(work: Path) -> Iterator[tuple[str, Mapping[str, Any]]]:
+    """Yield the name and the metadata of each file with provenance."""
+    for table in _TABLES:
+        path = work / f"{table}.parquet"
+        if path.exists():
+            yield path.name, tables.document(path)
+    for name in (MODEL, DIAGNOSIS, EXTENDED):
+        path = work / name
+        if path.exists():
+            document = json.loads(path.read_text(encoding="utf-8"))
+            yield name, document.get("provenance") or {}
+
+
+def _settings(metadata: Mapping[str, Mapping[str, Any]], file: str) -> Mapping[str, Any]:
+    return metadata.get(file, {}).get("settings") or {}
+
+
+def _rows_of(table: pd.DataFrame, joint: int) -> pd.DataFrame:
+    return table[table["joint"] == joint].reset_index(drop=True)
+
+
+def _pairs_of(torques: pd.DataFrame, model: FrictionModel) -> tuple[pd.DataFrame, pd.DataFrame]:
+    """Return the joint's torques, and its pairs with friction torque at zero load."""
+    own = _rows_of(torques, model.joint)
     if own.empty:
         raise TableError(
             f"model.json: has joint {model.joint}, which torques.parquet has not;"
@@ -127,58 +278,22 @@ def joint_results(
     pairs = pairs.merge(bins, on=PAIR_KEY).assign(
         temperature=temperature_of(pairs, model.temperature)
     )
-    return JointResults(
-        model=model,
-        torques=own,
-        pairs=pairs,
-        schedule=schedule[schedule["joint"] == model.joint].reset_index(drop=True),
-        evaluation=evaluation[evaluation["joint"] == model.joint].reset_index(drop=True),
-        styles=speed_styles(pairs),
-    )
+    return own, pairs
 
 
-def by_speed(rows: pd.DataFrame) -> list[tuple[float, pd.DataFrame]]:
-    """Return the rows of each speed, slowest first."""
-    return [(float(str(speed)), group) for speed, group in rows.groupby("speed")]
-
-
-def read_results(work: Path) -> list[JointResults]:
-    """Read what the report draws from, one entry per joint.
-
-    Parameters
-    ----------
-    work : Path
-        The work folder.
-
-    Raises
-    ------
-    TableError
-        If ``torques.parquet`` or ``model.json`` is missing or damaged.
-    """
-    path = work / TORQUES
-    if not path.exists():
-        raise TableError(f"{path} is missing; 'frictioncli separate -w {work}' makes it")
-    torques = tables.read(path, schemas.TORQUES)
-    models = read_models(work / MODEL)
-    schedule = read_optional(work, schemas.SCHEDULE)
-    evaluation = read_optional(work, schemas.EVALUATION)
-    joints = [joint_results(model, torques, schedule, evaluation) for model in models]
-    simulated, evaluated = (_is_extended(work, table) for table in _CORRECTED)
-    return [
-        replace(joint, simulated_extended=simulated, evaluated_extended=evaluated)
-        for joint in joints
-    ]
-
-
-def _is_extended(work: Path, table: schemas.Table) -> bool:
-    path = work / f"{table.name}.parquet"
-    settings = tables.document(path).get("settings") or {} if path.exists() else {}
-    return bool(settings.get("extended"))
-
-
-def read_optional(work: Path, table: schemas.Table) -> pd.DataFrame:
-    """Return a table of the work folder, without rows where the file does not exist."""
-    path = work / f"{table.name}.parquet"
-    if path.exists():
-        return tables.read(path, table)
-    return pd.DataFrame(columns=list(table.names))
+def _diagnosis_of(
+    joint: int,
+    torques: pd.DataFrame,
+    diagnoses: Mapping[int, tuple[Mapping[str, Any], ExtendedModel]],
+) -> tuple[Reloaded | None, str]:
+    """Return the joint's diagnosis if it is of these runs, else None and the reason."""
+    if not diagnoses:
+        return None, "The simulation has not been judged yet; 'frictioncli diagnose' does it."
+    if joint not in diagnoses:
+        return None, "This joint has no diagnosis; 'frictioncli diagnose' says why."
+    document, extension = diagnoses[joint]
+    if not is_current(document, torques):
+        return None, (
+            "The diagnosis is of other runs than those measured; run 'frictioncli diagnose' again."
+        )
+    return reload(torques, document, extension), ""

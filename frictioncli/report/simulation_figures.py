@@ -25,7 +25,7 @@ _TAIL = 99.5
 _BANDS = 61
 
 
-def simulated_rows(results: JointResults, recalled: Reloaded) -> pd.DataFrame:
+def simulated_rows(results: JointResults, diagnosis: Reloaded) -> pd.DataFrame:
     """Return measured and simulated torque of both directions, one row per pair and angle bin.
 
     Columns are ``time`` [h], ``run``, ``pair``, ``speed``, ``bin`` and ``position``, then per
@@ -36,10 +36,10 @@ def simulated_rows(results: JointResults, recalled: Reloaded) -> pd.DataFrame:
     ----------
     results : JointResults
         One joint's results.
-    recalled : Reloaded
+    diagnosis : Reloaded
         Its diagnosis.
     """
-    parts = [_rows_of(results, one) for one in (recalled.seen, recalled.new) if one is not None]
+    parts = [_rows_of(results, one) for one in (diagnosis.seen, diagnosis.new) if one is not None]
     rows = pd.concat(parts, ignore_index=True)
     return rows.assign(
         speed=merge_close_values(rows["speed"].to_numpy()),
@@ -68,23 +68,23 @@ def _rows_of(results: JointResults, one: Misfits) -> pd.DataFrame:
     return pd.DataFrame(columns)
 
 
-def simulation_figure(results: JointResults, *, recalled: Reloaded) -> Figure:
+def simulation_figure(results: JointResults, *, diagnosis: Reloaded) -> Figure:
     """Draw measured and simulated torque over time and angle, and their difference below.
 
     Parameters
     ----------
     results : JointResults
         One joint's results.
-    recalled : Reloaded
+    diagnosis : Reloaded
         Its diagnosis.
     """
-    rows = simulated_rows(results, recalled)
+    rows = simulated_rows(results, diagnosis)
     figure = Figure(figsize=(WIDTH, 6.4), layout="constrained")
     grid = figure.subplots(2, 2, sharex="col", width_ratios=(1.25, 1), height_ratios=(1.25, 1))
     pairs = rows.groupby(["run", "pair", "speed"], as_index=False).mean(numeric_only=True)
     shown = _shown_speeds(pairs)
     _both(grid[:, 0], results, pairs, shown, "time")
-    _runs(grid[0, 0], pairs, recalled)
+    _runs(grid[0, 0], pairs, diagnosis)
     reached = rows.groupby(["speed", "bin"])["time"].transform("size")
     usual = reached >= _USUAL * reached.groupby(rows["speed"]).transform("max")
     angles = rows[usual].groupby(["speed", "bin"], as_index=False).mean(numeric_only=True)
@@ -150,10 +150,10 @@ def _look(style: SpeedStyle, *, filled: bool) -> dict[str, Any]:
     }
 
 
-def _runs(panel: Axes, pairs: pd.DataFrame, recalled: Reloaded) -> None:
+def _runs(panel: Axes, pairs: pd.DataFrame, diagnosis: Reloaded) -> None:
     """Name the runs above the panel, and say which one was kept out."""
     spans = pairs.groupby("run")["time"].agg(["min", "max"]).sort_values("min")
-    held_out = recalled.document["held_out"]
+    held_out = diagnosis.document["held_out"]
     for run, span in spans.iterrows():
         new = " (new)" if run == held_out else ""
         panel.annotate(
@@ -168,17 +168,17 @@ def _runs(panel: Axes, pairs: pd.DataFrame, recalled: Reloaded) -> None:
         panel.axvline(start, color=FAINT, linestyle=":", linewidth=1.2)
 
 
-def gain_figure(results: JointResults, *, recalled: Reloaded) -> Figure:
+def gain_figure(results: JointResults, *, diagnosis: Reloaded) -> Figure:
     """Draw how the misfit of the torque is distributed before and after the extension.
 
     Parameters
     ----------
     results : JointResults
         One joint's results.
-    recalled : Reloaded
+    diagnosis : Reloaded
         Its diagnosis.
     """
-    judged, floor = recalled.judged, float(recalled.document["gain"]["noise_floor"])
+    judged, floor = diagnosis.judged, float(diagnosis.document["gain"]["noise_floor"])
     sides = (
         ("base model", judged.torque(judged.before), _BEFORE, "--"),
         ("extended model", judged.torque(judged.after), _AFTER, "-"),

@@ -4,8 +4,6 @@ matplotlib's global settings stay as they are: :func:`style_context` applies the
 ``with`` block only.
 """
 
-import io
-import re
 from collections.abc import Sequence
 from contextlib import AbstractContextManager
 from dataclasses import dataclass
@@ -15,18 +13,14 @@ import matplotlib
 import numpy as np
 import pandas as pd
 from matplotlib.axes import Axes
-from matplotlib.backends.backend_agg import FigureCanvasAgg
-from matplotlib.backends.backend_svg import FigureCanvasSVG
 from matplotlib.colors import to_hex, to_rgb
 from matplotlib.figure import Figure
 from numpy.typing import ArrayLike
 
-from frictioncli.report.tooltips import set_tooltips, tooltips_as_titles
+from frictioncli.report.tooltips import set_tooltips
 
 WIDTH = 8.0
 """Width of every figure, so that its text has one size on the page. [inch]"""
-
-PNG_DPI = 200
 
 RASTER_FROM = 3000
 """More points than this are stored as a picture inside the SVG, which would else grow large."""
@@ -260,39 +254,3 @@ def _apart(wanted: np.ndarray, gap: float) -> np.ndarray:
             before, size = blocks.pop()
             blocks.append([(mean * count + before * size) / (count + size), count + size])
     return np.concatenate([np.full(int(size), mean) for mean, size in blocks]) + offsets
-
-
-def svg(figure: Figure, name: str, title: str) -> str:
-    """Return the figure as an SVG element that can stand in a page beside others.
-
-    Parameters
-    ----------
-    figure : Figure
-        The figure.
-    name : str
-        Prefix of all identifiers in it, so that those of two figures differ.
-    title : str
-        What a screen reader says. It must be escaped already.
-    """
-    stream = io.StringIO()
-    # printing by the canvas draws once, where Figure.savefig draws twice
-    FigureCanvasSVG(figure).print_svg(
-        stream, metadata={"Date": None, "Creator": None, "Format": None, "Type": None}
-    )
-    # the layout is found now: the next drawing need not find it again
-    figure.set_layout_engine("none")
-    text = tooltips_as_titles(stream.getvalue())
-    text = text[text.index("<svg") :]
-    # two pictures of the same content would have one identifier, and nothing refers to them
-    text = re.sub(r' id="image[0-9a-f]+"', "", text)
-    text = re.sub(r'\bid="', f'id="{name}-', text)
-    text = text.replace("url(#", f"url(#{name}-").replace('href="#', f'href="#{name}-')
-    return text.replace("<svg ", f'<svg role="img" aria-label="{title}" ', 1)
-
-
-def png(figure: Figure) -> bytes:
-    """Return the figure as a PNG without dates or program names."""
-    stream = io.BytesIO()
-    figure.dpi = PNG_DPI
-    FigureCanvasAgg(figure).print_png(stream, metadata={"Software": None})
-    return stream.getvalue()

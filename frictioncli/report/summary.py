@@ -36,7 +36,7 @@ class KeyNumber:
 
     name: str
     value: str
-    beside: str
+    context: str
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -119,7 +119,7 @@ def key_numbers(results: JointResults, diagnosis: Mapping[str, Any] | None) -> l
                 KeyNumber(
                     name=f"error ε in {PHASE_WORDS[phase]}",
                     value=f"{gained.error} {results.unit}",
-                    beside=f"with {gained.tried}{never}",
+                    context=f"with {gained.tried}{never}",
                 )
             )
     if needed := corrections_needed(results):
@@ -128,7 +128,7 @@ def key_numbers(results: JointResults, diagnosis: Mapping[str, Any] | None) -> l
         KeyNumber(
             name="misfit of the fitted function",
             value=f"{number_text(results.model.rmse)} {results.unit}",
-            beside=f"RMS without correction; single points scatter by"
+            context=f"RMS without correction; single points scatter by"
             f" {number_text(results.model.noise.point)} {results.unit}",
         )
     )
@@ -143,7 +143,7 @@ def key_numbers(results: JointResults, diagnosis: Mapping[str, Any] | None) -> l
             KeyNumber(
                 name="misfit of the extended model",
                 value=f"{number_text(gain['rmse_after'])} {results.unit}",
-                beside=f"RMS of the torque without correction, {new}; base model"
+                context=f"RMS of the torque without correction, {new}; base model"
                 f" {number_text(gain['rmse_before'])} {results.unit}",
             )
         )
@@ -184,7 +184,7 @@ def corrections_needed(results: JointResults) -> KeyNumber | None:
     return KeyNumber(
         name="corrections needed",
         value=", ".join(told),
-        beside=f"fewest of all settings tried whose ε is at most {small}; criterion"
+        context=f"fewest of all settings tried whose ε is at most {small}; criterion"
         f" “{CRITERION_WORDS.get(criterion, criterion)}”"
         f"{', extended model' if results.evaluated_extended else ''}",
     )

@@ -11,16 +11,15 @@ from matplotlib.axes import Axes
 from matplotlib.dates import AutoDateLocator, ConciseDateFormatter
 from matplotlib.figure import Figure
 
+from frictioncli.report.figure_files import png, svg, svg_file
 from frictioncli.report.labels import figure_text, number_text, speed_text
 from frictioncli.report.style import (
     FAINT,
     MODEL,
     WIDTH,
     legend_above,
-    png,
     speed_styles,
     style_context,
-    svg,
 )
 
 _LEVEL = "#2B6CB0"
@@ -42,8 +41,7 @@ def trend_files(document: Mapping[str, Any]) -> tuple[str, bytes]:
     title = f"Friction of joint {document['joint']} over {len(document['runs'])} runs"
     with style_context(_NAME):
         figure = trend_figure(document)
-        drawn = svg(figure, _NAME, escape(title))
-        return f'<?xml version="1.0" encoding="utf-8"?>\n{drawn}', png(figure)
+        return svg_file(svg(figure, _NAME, escape(title))), png(figure)
 
 
 def trend_figure(document: Mapping[str, Any]) -> Figure:

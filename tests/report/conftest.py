@@ -259,23 +259,23 @@ def write_work_fixture() -> Callable[..., Path]:
 @pytest.fixture(scope="session")
 def two_runs(tmp_path_factory: pytest.TempPathFactory) -> JointResults:
     work = write_work(tmp_path_factory.mktemp("two_runs"))
-    return read_results(work)[0]
+    return read_results(work).joints[0]
 
 
 @pytest.fixture(scope="session")
 def current_log(tmp_path_factory: pytest.TempPathFactory) -> JointResults:
     """One run whose torque is a motor current."""
     work = write_work(tmp_path_factory.mktemp("current"), runs=("day-1",), unit="A")
-    return read_results(work)[0]
+    return read_results(work).joints[0]
 
 
 @pytest.fixture(scope="session")
 def without_temperature(tmp_path_factory: pytest.TempPathFactory) -> JointResults:
     work = write_work(tmp_path_factory.mktemp("cold"), runs=("day-1",), temperature=False)
-    return read_results(work)[0]
+    return read_results(work).joints[0]
 
 
 @pytest.fixture
 def without_figures(monkeypatch: pytest.MonkeyPatch) -> None:
     """For tests of what the page says: drawing takes most of a report's time."""
-    monkeypatch.setattr("frictioncli.report.page.FIGURES", ())
+    monkeypatch.setattr("frictioncli.report.drawing.FIGURES", ())

@@ -3,6 +3,7 @@
 import json
 import re
 from copy import deepcopy
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -10,9 +11,10 @@ import pytest
 from frictioncli.diagnosis.documents.extended_model import extended_model
 from frictioncli.diagnosis.documents.reload import is_current, read_documents, reload
 from frictioncli.errors import TableError
-from frictioncli.report.diagnosis_section import diagnosis_figures, diagnosis_sections, section
+from frictioncli.report.diagnosis_section import diagnosis_figures, diagnosis_section
 from frictioncli.report.diagnosis_text import UNDETECTABLE, gain_sentence, p_value_text
-from frictioncli.report.page import page_figure, write_report
+from frictioncli.report.drawing import draw_figure
+from frictioncli.report.page import write_report
 from frictioncli.report.results import read_results
 from tests.report.planted import EXPONENT, OFFSET, SHIFT, TORQUE, VELOCITY, extended
 
@@ -97,7 +99,7 @@ def boundary(speed):
 
 def diagnosed(folder):
     """Write a diagnosis into a work folder."""
-    torques = read_results(folder)[0].torques
+    torques = read_results(folder).joints[0].torques
     (folder / "diagnosis.json").write_text(json.dumps(DIAGNOSIS), encoding="utf-8")
     model = extended(folder, torques)
     (folder / "extended-model.json").write_text(json.dumps(model), encoding="utf-8")
@@ -111,16 +113,16 @@ def work(tmp_path_factory, write_work):
 
 @pytest.fixture(scope="module")
 def results(work):
-    return read_results(work)[0]
+    return read_results(work).joints[0]
 
 
 @pytest.fixture(scope="module")
-def recalled(work, results):
-    return reload(results.torques, *read_documents(work)[2])
+def diagnosis(results):
+    return results.diagnosis
 
 
-def test_recalled_misfits_are_those_of_the_files(recalled):
-    seen, new = recalled.seen, recalled.new
+def test_recalled_misfits_are_those_of_the_files(diagnosis):
+    seen, new = diagnosis.seen, diagnosis.new
     assert seen.problem.runs == ("day-1",)
     assert new.problem.runs == ("day-2",)
     for one in (seen, new):
@@ -137,8 +139,8 @@ def test_recalled_misfits_are_those_of_the_files(recalled):
     np.testing.assert_allclose(both, [11.0, 22.0, 9.0, 18.0])
 
 
-def test_section_says_what_was_found(results, recalled):
-    told = section(results, recalled)
+def test_section_says_what_was_found(results, diagnosis):
+    told = diagnosis_section(results)
     assert "2.10 N·m (RMS, day-1)" in told.verdict
     assert "The model lacks stribeck." in told.verdict
     assert "one of direction asymmetry and dress pack" in told.verdict
@@ -159,7 +161,7 @@ def test_section_says_what_was_found(results, recalled):
     assert told.detectable.rows[0][2] == "0.40"
     assert told.detectable.rows[1][2] == UNDETECTABLE
     assert told.worst.rows[0] == ("temperature 25.0 to 31.0 °C", "67.5 deg/s", "friction", "−4.50")
-    names = [entry.name for entry in diagnosis_figures(recalled)]
+    names = [figure.name for figure in diagnosis_figures(diagnosis)]
     assert names == [
         "diagnosis-simulation",
         "diagnosis-maps",
@@ -192,29 +194,31 @@ def test_silence_is_explained_and_draws_no_gain(results, work):
     model["effects"] = []
     found = reload(results.torques, document, extended_model(model))
     assert found.seen.after is found.seen.before
-    told = section(results, found)
+    silent = replace(results, diagnosis=found)
+    told = diagnosis_section(silent)
     assert "No cause was found in that" in told.verdict
-    assert [entry.name for entry in told.entries] == ["diagnosis-simulation", "diagnosis-maps"]
-    for entry in told.entries:
-        assert page_figure(entry, results, "joint2-").name == f"joint2-{entry.name}"
+    figures = diagnosis_figures(found)
+    assert [figure.name for figure in figures] == ["diagnosis-simulation", "diagnosis-maps"]
+    for figure in figures:
+        assert draw_figure(figure, silent, "joint2-").name == f"joint2-{figure.name}"
 
 
 def test_without_a_diagnosis_the_section_names_the_command(tmp_path, write_work):
     work = write_work(tmp_path, runs=("day-1",), temperature=False)
-    results = read_results(work)
-    assert "'frictioncli diagnose' does it" in diagnosis_sections(work, results)[2].missing
+    results = read_results(work).joints[0]
+    assert "'frictioncli diagnose' does it" in diagnosis_section(results).missing
     document = deepcopy(DIAGNOSIS) | {"causes": [], "gain": None}
     (work / "diagnosis.json").write_text(json.dumps(document))
     (work / "extended-model.json").write_text((work / "model.json").read_text())
     with pytest.raises(TableError, match="diagnose"):
-        diagnosis_sections(work, results)
+        read_results(work)
     model = json.loads((work / "model.json").read_text()) | {"effects": []}
     (work / "extended-model.json").write_text(json.dumps(model))
-    assert not is_current(document, results[0].torques)
-    assert "other runs" in diagnosis_sections(work, results)[2].missing
+    assert not is_current(document, results.torques)
+    assert "other runs" in diagnosis_section(read_results(work).joints[0]).missing
     (work / "diagnosis.json").write_text(json.dumps(document | {"joint": 5}))
     (work / "extended-model.json").write_text(json.dumps(model | {"joint": 5}))
-    assert "no diagnosis" in diagnosis_sections(work, results)[2].missing
+    assert "no diagnosis" in diagnosis_section(read_results(work).joints[0]).missing
 
 
 @pytest.mark.parametrize(
@@ -258,9 +262,8 @@ def test_page_has_the_section_after_the_figures_escaped_and_the_same_twice(work)
     known = re.findall(r'\bid="([^"]+)"', text)
     assert len(known) == len(set(known))
     # the whole page's bytes are compared elsewhere; drawing takes long
-    results = read_results(work)
-    told = diagnosis_sections(work, results)[2]
-    for entry in (told.entries[1], told.entries[2]):
-        again = page_figure(entry, results[0])
+    results = read_results(work).joints[0]
+    for figure in diagnosis_figures(results.diagnosis)[1:3]:
+        again = draw_figure(figure, results)
         assert again.svg in text
-        assert again.png == (page.parent / f"{entry.name}.png").read_bytes()
+        assert again.png == (page.parent / f"{figure.name}.png").read_bytes()

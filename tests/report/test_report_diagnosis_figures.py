@@ -11,7 +11,6 @@ from matplotlib.container import ErrorbarContainer
 from matplotlib.patches import Rectangle
 from matplotlib.text import Text
 
-from frictioncli.diagnosis.documents.reload import read_documents, reload
 from frictioncli.report import style
 from frictioncli.report.binning import (
     bin_means,
@@ -34,12 +33,12 @@ def work(tmp_path_factory, write_work):
 
 @pytest.fixture(scope="module")
 def results(work):
-    return read_results(work)[0]
+    return read_results(work).joints[0]
 
 
 @pytest.fixture(scope="module")
-def recalled(work, results):
-    return reload(results.torques, *read_documents(work)[2])
+def diagnosis(results):
+    return results.diagnosis
 
 
 def texts(figure):
@@ -53,11 +52,11 @@ def points_of(panel):
     )
 
 
-def test_evidence_shows_residuals_the_term_and_what_is_left(results, recalled):
+def test_evidence_shows_residuals_the_term_and_what_is_left(results, diagnosis):
     with style.style_context():
-        figure = evidence_figure(results, recalled=recalled, number=0)
+        figure = evidence_figure(results, diagnosis=diagnosis, index=0)
     left, middle, right, bars = figure.axes
-    table, raw = recalled.seen.problem.table, recalled.seen.before["friction"]
+    table, raw = diagnosis.seen.problem.table, diagnosis.seen.before["friction"]
     curves = [
         line
         for line in middle.lines
@@ -114,8 +113,8 @@ def test_bins_follow_what_was_measured():
     assert set(bin_numbers("temperature", np.linspace(20, 60, 500))) == set(range(12))
 
 
-def test_rows_are_split_where_an_effect_would_cancel(recalled):
-    table = recalled.seen.problem.table
+def test_rows_are_split_where_an_effect_would_cancel(diagnosis):
+    table = diagnosis.seen.problem.table
     warm, cool = residual_series(table, "motor_temperature", "friction")
     assert not (warm.rows & cool.rows).any()
     hours = table.time / 3600
@@ -127,10 +126,10 @@ def test_rows_are_split_where_an_effect_would_cancel(recalled):
     assert len(residual_series(table, "clock", "friction")) == 1
 
 
-def test_maps_hold_cell_means_about_zero(results, recalled):
+def test_maps_hold_cell_means_about_zero(results, diagnosis):
     with style.style_context():
-        figure = residual_map_figure(results, recalled=recalled)
-    table, missed = recalled.seen.problem.table, recalled.seen.before["friction"]
+        figure = residual_map_figure(results, diagnosis=diagnosis)
+    table, missed = diagnosis.seen.problem.table, diagnosis.seen.before["friction"]
     mesh = figure.axes[0].collections[0]
     assert mesh.norm.vmin == -mesh.norm.vmax
     shown = np.ma.filled(mesh.get_array().astype(float), np.nan)
@@ -158,18 +157,18 @@ def test_empty_cells_are_not_zero_and_noise_is_pale():
     assert colour_limit([(mean, error)]) == pytest.approx(4.0)
 
 
-def test_simulated_torque_is_measured_less_the_misfit(results, recalled):
-    rows = simulated_rows(results, recalled).sort_values(["run", "pair", "position"])
+def test_simulated_torque_is_measured_less_the_misfit(results, diagnosis):
+    rows = simulated_rows(results, diagnosis).sort_values(["run", "pair", "position"])
     torques = results.torques.sort_values(["run", "time", "pair", "position"])
     np.testing.assert_allclose(np.sort(rows["forward"]), np.sort(torques["torque_forward"]))
     np.testing.assert_allclose(np.sort(rows["reverse"]), np.sort(torques["torque_reverse"]))
-    missed = np.concatenate([one.torque(one.before) for one in (recalled.seen, recalled.new)])
+    missed = np.concatenate([one.torque(one.before) for one in (diagnosis.seen, diagnosis.new)])
     shown = np.concatenate(
         [rows[name] - rows[f"{name}_simulated"] for name in ("forward", "reverse")]
     )
     np.testing.assert_allclose(np.sort(shown), np.sort(missed), atol=1e-9)
     with style.style_context():
-        figure = simulation_figure(results, recalled=recalled)
+        figure = simulation_figure(results, diagnosis=diagnosis)
     said = texts(figure)
     assert "torque u [N·m]" in said
     assert "measured − simulated [N·m]" in said
@@ -181,10 +180,10 @@ def test_simulated_torque_is_measured_less_the_misfit(results, recalled):
     np.testing.assert_allclose(first.get_ydata(), means.sort_values("time")["torque"])
 
 
-def test_gain_shows_the_new_run_and_the_noise_floor(results, recalled):
+def test_gain_shows_the_new_run_and_the_noise_floor(results, diagnosis):
     with style.style_context():
-        figure = gain_figure(results, recalled=recalled)
-    new = recalled.new
+        figure = gain_figure(results, diagnosis=diagnosis)
+    new = diagnosis.new
     label = next(text for text in texts(figure) if text.startswith("base model"))
     rms = np.sqrt(np.mean(np.square(new.before["friction"]) + np.square(new.before["load"])))
     assert float(re.findall(r"RMS ([\d.]+)", label)[0]) == pytest.approx(rms, rel=5e-3)

@@ -11,7 +11,7 @@ import pytest
 from frictioncli import schemas, tables
 from frictioncli.correction.settings import EvaluationGrid, ScheduleSettings
 from frictioncli.provenance import Provenance
-from frictioncli.report.explorer import explorers
+from frictioncli.report.explorer import explorer
 from frictioncli.report.labels import number_text
 from frictioncli.report.page import write_report
 from frictioncli.report.results import read_results
@@ -25,7 +25,7 @@ GRID = EvaluationGrid(k=(1.0, 2.5, 5.0, 10.0), tmax=(1800.0, 3600.0, 14400.0))
 @pytest.fixture(scope="module")
 def work(tmp_path_factory, write_work):
     folder = write_work(tmp_path_factory.mktemp("explored"), schedule=False)
-    torques = read_results(folder)[0].torques
+    torques = read_results(folder).joints[0].torques
     model = extended(folder, torques)
     (folder / "extended-model.json").write_text(json.dumps(model), encoding="utf-8")
     simulate(folder, ScheduleSettings(k=2.5, tmax=3600.0))
@@ -39,7 +39,7 @@ def copied(work, tmp_path):
 
 
 def explored(folder):
-    return explorers(folder, read_results(folder))[2]
+    return explorer(read_results(folder).joints[0])
 
 
 def every_cell(data, phases):

@@ -6,8 +6,9 @@ import xml.etree.ElementTree as ElementTree
 import numpy as np
 
 from frictioncli.report.evaluation_figure import error_figure
+from frictioncli.report.figure_files import svg
 from frictioncli.report.load_speed_figures import friction_at_reference_temperature, speed_figure
-from frictioncli.report.style import panels, style_context, svg
+from frictioncli.report.style import panels, style_context
 from frictioncli.report.tooltips import set_tooltips
 
 

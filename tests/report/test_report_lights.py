@@ -21,7 +21,9 @@ from frictioncli.report.quality_ratings import (
     time_rating,
 )
 
-CLEAN = IngestCounts(rows=10_000, rejected=0, files=8, lost=0, time_known=True, warnings=0)
+CLEAN = IngestCounts(
+    rows=10_000, rejected=0, files=8, unusable_files=0, time_known=True, warnings=0
+)
 
 
 @pytest.mark.parametrize(
@@ -32,7 +34,7 @@ CLEAN = IngestCounts(rows=10_000, rejected=0, files=8, lost=0, time_known=True, 
         ({"rejected": 11}, FAIR),
         ({"rejected": 500}, FAIR),
         ({"rejected": 501}, POOR),
-        ({"lost": 1}, FAIR),
+        ({"unusable_files": 1}, FAIR),
     ],
 )
 def test_reading_goes_by_the_share_of_rejected_rows(changed, level):
@@ -40,7 +42,9 @@ def test_reading_goes_by_the_share_of_rejected_rows(changed, level):
 
 
 def test_reading_tells_its_numbers():
-    told = reading_rating(replace(CLEAN, rejected=11, lost=2)).reason.replace("\u202f", " ")
+    told = reading_rating(replace(CLEAN, rejected=11, unusable_files=2)).reason.replace(
+        "\u202f", " "
+    )
     assert told == "11 of 10 000 rows in 8 files rejected; 2 files could not be used at all."
 
 

@@ -73,8 +73,8 @@ def test_errors_of_two_models_are_not_set_against_each_other(two_runs):
 
 
 def test_what_was_evaluated_with_the_extended_model_says_so(two_runs):
-    extended = replace(two_runs, evaluated_extended=True)
-    assert corrections_needed(extended).beside.endswith(", extended model")
+    extended = replace(two_runs, evaluation_settings={"extended": True})
+    assert corrections_needed(extended).context.endswith(", extended model")
     assert epsilon_tables(extended)[0].title.startswith("day-1, extended model: error")
     never = replace(two_runs, schedule=two_runs.schedule.assign(corrected=False, failed=False))
     assert "(0 corrections)" in summary_text(never)
@@ -111,10 +111,10 @@ def test_fewest_corrections_that_suffice(two_runs, tmp_path, write_work):
     assert corrections_needed(two_runs).value == "2 in heating, 3 in cooling"
     poor = replace(two_runs, evaluation=two_runs.evaluation.assign(epsilon=9.0))
     assert corrections_needed(poor).value == "never enough in heating, never enough in cooling"
-    current = read_results(write_work(tmp_path, runs=("day-1",), unit="A"))[0]
+    current = read_results(write_work(tmp_path, runs=("day-1",), unit="A")).joints[0]
     # in another unit, a quarter of the error without correction: 4/n <= 1, 5/n <= 1.25
     assert corrections_needed(current).value == "6 in heating, 6 in cooling"
-    assert "a quarter" in corrections_needed(current).beside
+    assert "a quarter" in corrections_needed(current).context
     empty = replace(two_runs, evaluation=two_runs.evaluation[:0])
     assert corrections_needed(empty) is None
 
@@ -130,7 +130,7 @@ def test_key_figures_have_units_and_what_to_read_them_with(two_runs, without_tem
     ]
     last = key_numbers(two_runs, DIAGNOSIS)[-1]
     assert last.value == "1.00 N·m"
-    assert "on day-2, a run it has not seen; base model 5.00 N·m" in last.beside
+    assert "on day-2, a run it has not seen; base model 5.00 N·m" in last.context
     assert [figure.name for figure in key_numbers(without_temperature, None)] == [names[3]]
 
 

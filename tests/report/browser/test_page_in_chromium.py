@@ -25,7 +25,7 @@ WIDTHS = (390, 1440)
 def work(tmp_path_factory, write_work):
     """A work folder with a page; the base model's evaluation stands there, the other beside it."""
     work = write_work(tmp_path_factory.mktemp("browser"), runs=("day-1", HOSTILE), schedule=False)
-    model = extended(work, read_results(work)[0].torques, held_out=HOSTILE)
+    model = extended(work, read_results(work).joints[0].torques, held_out=HOSTILE)
     (work / "extended-model.json").write_text(json.dumps(model), encoding="utf-8")
     evaluate(work, GRID, extended=True)
     (work / "evaluation.parquet").rename(work / "extended.parquet")
