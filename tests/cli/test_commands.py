@@ -12,6 +12,7 @@ import pytest
 from frictioncli import schemas, tables
 from frictioncli.cli.commands import app
 from frictioncli.stages.settings import RunSettings
+from tests.command_line import invoke
 from tests.equation_16 import friction, write_recording
 from tests.moves import journey
 
@@ -115,6 +116,22 @@ def test_each_stage_works_alone(finished):
     for stage in ("pair", "separate", "fit", "report"):
         result = frictioncli(stage, "-w", folder / "work")
         assert (result.returncode, result.stderr) == (0, "")
+
+
+def test_options_are_in_the_provenance_of_what_is_written(tmp_path):
+    write_log(tmp_path / "logs" / "trace.csv")
+    work = tmp_path / "work"
+    invoke("ingest", tmp_path / "logs", "-w", work, "--joint", 2, "--torque-unit", "Nm")
+    invoke("pair", "--work", work, "--bin-width", 10, "--min-samples", 7)
+    invoke("separate", "-w", work, "--sign", "+1")
+    invoke("fit", "-w", work, "--temperature", "motor")
+    samples = tables.document(work / "samples.parquet")["settings"]
+    assert (samples["joints"], samples["units"]) == ([2], {"torque": "N·m"})
+    pairs = tables.document(work / "pairs.parquet")["settings"]
+    assert (pairs["bin_width"], pairs["steady"]["min_samples"]) == (10.0, 7)
+    assert tables.document(work / "torques.parquet")["settings"] == {"sign": 1}
+    model = json.loads((work / "model.json").read_text(encoding="utf-8"))
+    assert model["provenance"]["settings"]["temperature"] == "motor"
 
 
 def test_a_second_run_gives_the_same_bytes(finished, tmp_path):
