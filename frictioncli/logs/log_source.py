@@ -15,6 +15,9 @@ from frictioncli.errors import LogError
 
 T = TypeVar("T")
 
+MAX_ROW_TEXT = 200
+"""Longest text that is kept of a row. [characters]"""
+
 
 class UnreadableLog(LogError):
     """A file that cannot be opened, or cannot be read to its end."""

@@ -14,7 +14,7 @@ from hypothesis import strategies as st
 from frictioncli import schemas, tables
 from frictioncli.errors import LogError
 from frictioncli.logs.formats.compression import open_bytes
-from frictioncli.logs.formats.encoding import head_of, pieces
+from frictioncli.logs.formats.encoding import line_blocks, read_head
 from frictioncli.logs.ingest import ingest
 from frictioncli.logs.log_source import UnreadableLog
 
@@ -65,13 +65,13 @@ def test_a_packed_log_gives_the_samples_of_the_plain_one(tmp_path, ending):
 def test_the_ending_does_not_matter(tmp_path, ending):
     log = tmp_path / "log.csv"
     log.write_bytes(PACKERS[ending](b"a;b\n1;2\n"))
-    assert head_of(log).content == b"a;b\n1;2\n"
+    assert read_head(log).content == b"a;b\n1;2\n"
 
 
 def test_text_that_begins_like_a_packed_file_is_text(tmp_path):
     log = tmp_path / "log.csv"
     log.write_bytes(b"BZhub;Winkel\n1;2\n")
-    assert head_of(log).content == b"BZhub;Winkel\n1;2\n"
+    assert read_head(log).content == b"BZhub;Winkel\n1;2\n"
 
 
 @packed
@@ -81,7 +81,7 @@ def test_a_stream_cut_anywhere_is_refused(tmp_path, ending):
     for share in (0.02, 0.5, 0.98):
         log.write_bytes(whole[: int(share * len(whole))])
         with pytest.raises(UnreadableLog, match=r"cannot be (opened|read beyond line \d+)"):
-            list(pieces(log, "utf-8", 1 << 12))
+            list(line_blocks(log, "utf-8", 1 << 12))
 
 
 @packed
@@ -107,7 +107,7 @@ def test_memory_stays_bounded_whatever_a_file_unpacks_to(tmp_path, ending):
     del lines
     tracemalloc.start()
     try:
-        assert sum(len(piece.content) for piece in pieces(log, "utf-8", 1 << 20)) == size
+        assert sum(len(piece.content) for piece in line_blocks(log, "utf-8", 1 << 20)) == size
         peak = tracemalloc.get_traced_memory()[1]
     finally:
         tracemalloc.stop()
@@ -126,4 +126,4 @@ def test_an_xz_header_cannot_ask_for_gigabytes(tmp_path):
     log = tmp_path / "log.csv.xz"
     log.write_bytes(packed)
     with pytest.raises(UnreadableLog, match=r"[Mm]emory"):
-        head_of(log)
+        read_head(log)

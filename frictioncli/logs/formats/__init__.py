@@ -1,4 +1,7 @@
-"""File formats that can be read. A new one is a module beside these and a line in ``READERS``."""
+"""Readers of log file formats.
+
+A new format is a module in this folder and an entry in :data:`READERS`.
+"""
 
 from collections.abc import Iterable
 from pathlib import Path
@@ -7,14 +10,14 @@ from typing import Protocol
 from frictioncli.logs.formats.arrow_tables import read_arrow
 from frictioncli.logs.formats.delimited import DelimitedText, read_delimited
 from frictioncli.logs.formats.diadem import read_diadem
-from frictioncli.logs.formats.encoding import head_of
+from frictioncli.logs.formats.encoding import read_head
 from frictioncli.logs.formats.hdf5 import read_hdf5
 from frictioncli.logs.formats.mdf import read_mdf
 from frictioncli.logs.formats.ros import read_ros
 from frictioncli.logs.formats.rtde import read_rtde
 from frictioncli.logs.formats.split_time import with_joined_time
 from frictioncli.logs.formats.struct_cells import read_struct_cells
-from frictioncli.logs.formats.unsupported import read_foreign
+from frictioncli.logs.formats.unsupported import refuse_unsupported
 from frictioncli.logs.log_source import CsvHints, LogSource, Refusal, UnreadableLog
 
 
@@ -33,15 +36,30 @@ READERS: tuple[Reader, ...] = (
     read_mdf,
     read_ros,
     read_rtde,
-    read_foreign,
+    refuse_unsupported,
     read_struct_cells,
     read_delimited,
 )
-"""Asked in this order; the first that knows the file's beginning decides."""
+"""Tried in this order; the first that recognises the beginning of a file decides."""
 
 
 def open_logs(paths: Iterable[Path], hints: CsvHints) -> list[LogSource | Refusal]:
-    """Open files by their content; logs of a folder mostly look like the one before."""
+    """Open files by their content.
+
+    Each is first compared with the one before it, as the logs of a folder usually share a layout.
+
+    Parameters
+    ----------
+    paths : iterable of Path
+        The files.
+    hints : CsvHints
+        Form of text files, given by the user.
+
+    Returns
+    -------
+    list of LogSource or Refusal
+        The opened log of each file, or why it cannot be read.
+    """
     found: list[LogSource | Refusal] = []
     for path in paths:
         found.append(open_log(path, hints, found[-1] if found else None))
@@ -51,22 +69,36 @@ def open_logs(paths: Iterable[Path], hints: CsvHints) -> list[LogSource | Refusa
 def open_log(
     path: Path, hints: CsvHints, like: LogSource | Refusal | None = None
 ) -> LogSource | Refusal:
-    """Open a file by its content, whatever its name ends in.
+    r"""Open a file by its content, whatever the suffix of its name.
 
     Parameters
     ----------
     path : Path
         The file.
     hints : CsvHints
-        What the user says of a text's form.
+        Form of a text file, given by the user.
     like : LogSource or Refusal, optional
-        What another file was found to be; a text of just that form needs no search.
+        Another opened file; a text file with the same layout needs no detection.
+
+    Examples
+    --------
+    >>> from tempfile import TemporaryDirectory
+    >>> with TemporaryDirectory() as folder:
+    ...     file = Path(folder, "log.csv")
+    ...     _ = file.write_text("time;position\n0,0;1,5\n0,1;2,5\n")
+    ...     log = open_log(file, CsvHints())
+    ...     batch = next(log.batches([0, 1], 1000))
+    >>> log.columns, log.form
+    (('time', 'position'), "text, ';', decimal comma, UTF-8")
+    >>> batch.values[1]
+    array([1.5, 2.5])
     """
     try:
-        head = head_of(path)
-        alike = like.like(path, head) if isinstance(like, DelimitedText) else None
-        if alike is not None:
-            return alike
+        head = read_head(path)
+        if isinstance(like, DelimitedText):
+            same_layout = like.with_same_layout(path, head)
+            if same_layout is not None:
+                return same_layout
         for reader in READERS:
             found = reader(path, head.content, hints)
             if found is not None:

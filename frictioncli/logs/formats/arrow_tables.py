@@ -12,8 +12,14 @@ import pyarrow.compute as pc
 import pyarrow.parquet as pq
 
 from frictioncli.arrays import Array
-from frictioncli.logs.formats.compression import refuse_packed
-from frictioncli.logs.formats.containers import ContainerLog, Rows, listed, readable, with_unit
+from frictioncli.logs.formats.compression import refuse_compressed
+from frictioncli.logs.formats.containers import (
+    ContainerLog,
+    Rows,
+    first_names,
+    unreadable_on_error,
+    with_unit,
+)
 from frictioncli.logs.log_source import CsvHints, Refusal
 
 _PARQUET = b"PAR1"
@@ -65,10 +71,10 @@ def read_arrow(path: Path, head: bytes, hints: CsvHints) -> ContainerLog | Refus
         what, batches = "an Arrow table", _arrow_batches
     else:
         return None
-    packed = refuse_packed(path, what)
+    packed = refuse_compressed(path, what)
     if packed is not None:
         return packed
-    with readable(f"cannot be read as {what}"):
+    with unreadable_on_error(f"cannot be read as {what}"):
         schema = _schema(path)
         if _OWN in (schema.metadata or {}):
             return Refusal(
@@ -85,7 +91,7 @@ def read_arrow(path: Path, head: bytes, hints: CsvHints) -> ContainerLog | Refus
     if texts:
         return Refusal(
             "not_a_number",
-            f"{what} whose columns {listed(texts)} hold numbers as text; save them as numbers",
+            f"{what} whose columns {first_names(texts)} hold numbers as text; save them as numbers",
         )
     columns = tuple(with_unit(leaf.name, _unit(schema, leaf)) for leaf in leaves)
     return ContainerLog(path, columns, what, partial(_rows, path, batches, tuple(leaves)))

@@ -1,4 +1,4 @@
-"""Packed files: recognised by their first bytes and unpacked as a stream, never as a whole."""
+"""Compressed files: recognised by their first bytes and decompressed as a stream."""
 
 import bz2
 import gzip
@@ -15,10 +15,10 @@ from frictioncli.logs.log_source import Refusal
 if TYPE_CHECKING:
     from _typeshed import WriteableBuffer
 
-DAMAGED = (OSError, EOFError, zlib.error, lzma.LZMAError)
-"""What reading a damaged or truncated stream raises."""
-ENDINGS = (".gz", ".zst", ".xz", ".bz2")
-"""Endings of packed files, for names only: what a file is, its first bytes decide."""
+STREAM_ERRORS = (OSError, EOFError, zlib.error, lzma.LZMAError)
+"""Exceptions that reading a damaged or truncated stream raises."""
+SUFFIXES = (".gz", ".zst", ".xz", ".bz2")
+"""Suffixes of compressed files, to name them only; their first bytes decide what they are."""
 
 _MAGIC = (
     (b"\x1f\x8b", "gzip"),
@@ -27,16 +27,16 @@ _MAGIC = (
     (b"BZh", "bzip2"),
 )
 _BZIP2_BLOCKS = (b"1AY&SY", b"\x17rE8P\x90")
-"""How the first block of a bzip2 stream begins; text may begin with ``BZh`` too."""
-_START = 10
-"""So many first bytes tell how a file is packed."""
+"""Beginnings of the first block of a bzip2 stream; text may begin with ``BZh`` too."""
+_MAGIC_BYTES = 10
+"""Length of the beginning that identifies the compression. [byte]"""
 _XZ_MEMORY = 1 << 27
-"""What an xz stream may ask for: twice the need of the strongest preset. [bytes]"""
-_XZ_READ = 1 << 16
+"""Memory limit of an xz stream, twice what the strongest preset needs. [byte]"""
+_XZ_READ = 1 << 16  # [byte]
 
 
-def packing_of(path: Path) -> str | None:
-    """Return how a file is packed by its first bytes: gzip, zstd, xz, bzip2, or None.
+def _compression_of(path: Path) -> str | None:
+    """Return the compression of a file, ``gzip``, ``zstd``, ``xz`` or ``bzip2``; None if plain.
 
     Raises
     ------
@@ -44,21 +44,21 @@ def packing_of(path: Path) -> str | None:
         If the file cannot be opened.
     """
     with path.open("rb") as stream:
-        return _packing(stream.read(_START))
+        return _compression(stream.read(_MAGIC_BYTES))
 
 
-def _packing(start: bytes) -> str | None:
+def _compression(beginning: bytes) -> str | None:
     for magic, name in _MAGIC:
-        if start.startswith(magic) and (name != "bzip2" or start[4:] in _BZIP2_BLOCKS):
+        if beginning.startswith(magic) and (name != "bzip2" or beginning[4:] in _BZIP2_BLOCKS):
             return name
     return None
 
 
 def open_bytes(path: Path) -> BinaryIO:
-    """Open a file for reading, unpacking it on the way.
+    """Open a file for reading and decompress it while it is read.
 
-    What the file is packed with must be whole: reading raises one of :data:`DAMAGED` where it is
-    not. Memory does not grow with the size of the content.
+    Reading raises one of :data:`STREAM_ERRORS` where the compressed stream is damaged or
+    truncated. Memory does not grow with the size of the content.
 
     Raises
     ------
@@ -66,49 +66,49 @@ def open_bytes(path: Path) -> BinaryIO:
         If the file cannot be opened.
     """
     stream = path.open("rb")
-    packing = _packing(stream.read(_START))
-    if packing is None:
+    compression = _compression(stream.read(_MAGIC_BYTES))
+    if compression is None:
         stream.seek(0)
         return stream
     stream.close()
-    if packing == "gzip":
+    if compression == "gzip":
         return cast(BinaryIO, gzip.open(path, "rb"))
-    if packing == "zstd":
+    if compression == "zstd":
         return cast(BinaryIO, pa.CompressedInputStream(pa.OSFile(str(path)), "zstd"))
-    if packing == "xz":
+    if compression == "xz":
         return cast(BinaryIO, io.BufferedReader(_XzStream(path.open("rb"))))
     return cast(BinaryIO, bz2.open(path, "rb"))
 
 
-def is_packed(stream: BinaryIO) -> bool:
-    """Tell whether what :func:`open_bytes` opened is unpacked on the way."""
+def is_compressed(stream: BinaryIO) -> bool:
+    """Return whether a stream from :func:`open_bytes` is decompressed while it is read."""
     return not isinstance(getattr(stream, "raw", None), io.FileIO)
 
 
-def refuse_packed(path: Path, what: str) -> Refusal | None:
-    """Return why a packed container cannot be read, or None where it is not packed.
+def refuse_compressed(path: Path, what: str) -> Refusal | None:
+    """Return why a compressed container cannot be read, or None where it is not compressed.
 
     Parameters
     ----------
     path : Path
-        A file whose unpacked beginning is a container's.
+        A file whose decompressed beginning is that of a container.
     what : str
-        The container, for example ``a Parquet table``.
+        The container in words, for example ``a Parquet table``.
     """
-    packing = packing_of(path)
-    if packing is None:
+    compression = _compression_of(path)
+    if compression is None:
         return None
     return Refusal(
         "format_not_read",
-        f"{what} packed with {packing}: it cannot be read from the middle; unpack it first",
+        f"{what} packed with {compression}: it cannot be read from the middle; unpack it first",
     )
 
 
 class _XzStream(io.RawIOBase):
-    """An xz file unpacked; unlike ``lzma.open``, with a limit to the memory a header can ask."""
+    """Decompressed content of an xz file; unlike ``lzma.open``, with a memory limit."""
 
-    def __init__(self, packed: BinaryIO) -> None:
-        self._packed = packed
+    def __init__(self, compressed: BinaryIO) -> None:
+        self._compressed = compressed
         self._decoder = _xz_decoder()
         self._next = b""
 
@@ -119,7 +119,7 @@ class _XzStream(io.RawIOBase):
         view = memoryview(buffer)
         while not self._decoder.eof or self._find_next_stream():
             if self._decoder.needs_input and not self._next:
-                self._next = self._packed.read(_XZ_READ)
+                self._next = self._compressed.read(_XZ_READ)
                 if not self._next:
                     raise EOFError("the xz stream ends before its end mark")
             content = self._decoder.decompress(self._next, len(view))
@@ -130,16 +130,16 @@ class _XzStream(io.RawIOBase):
         return 0
 
     def _find_next_stream(self) -> bool:
-        """Get ready for a stream that follows the one just ended; False where there is none."""
+        """Prepare for the next of several concatenated streams; False where there is none."""
         self._next = self._decoder.unused_data.lstrip(b"\0")
-        while not self._next and (block := self._packed.read(_XZ_READ)):
+        while not self._next and (block := self._compressed.read(_XZ_READ)):
             self._next = block.lstrip(b"\0")
         if self._next:
             self._decoder = _xz_decoder()
         return bool(self._next)
 
     def close(self) -> None:
-        self._packed.close()
+        self._compressed.close()
         super().close()
 
 

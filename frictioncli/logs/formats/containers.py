@@ -1,4 +1,4 @@
-"""What binary containers share: a source of numbered rows, and what may go wrong with them."""
+"""Parts shared by the readers of binary containers: the log source, errors, column names."""
 
 from collections.abc import Callable, Collection, Iterator, Sequence
 from contextlib import contextmanager
@@ -9,14 +9,20 @@ import numpy as np
 
 from frictioncli.arrays import Array, Numbers
 from frictioncli.logs.channels.recognition import recognise_channels, split_unit
-from frictioncli.logs.log_source import RawBatch, Refusal, SequentialSource, UnreadableLog
+from frictioncli.logs.log_source import (
+    MAX_ROW_TEXT,
+    RawBatch,
+    Refusal,
+    SequentialSource,
+    UnreadableLog,
+)
 
 Rows = dict[int, Array]
-"""Column index to values of consecutive rows, NaN where there is none."""
+"""Values of consecutive rows by column index, NaN where a value is missing."""
 
-_TEXT_LIMIT = 200
+_MAX_REASON = 200
 _NUMBER_BYTES = 8
-_LEAST_ROWS = 64
+_MIN_ROWS = 64
 
 
 @dataclass(frozen=True, slots=True)
@@ -28,12 +34,16 @@ class ContainerLog(SequentialSource):
     path : Path
         The file.
     columns : tuple of str
-        Column names, units in brackets where given.
+        Column names, with units in brackets where given.
     form : str
         The container in words.
     rows : callable
-        Takes column indices (ascending) and how many rows to hold at a time, yields :data:`Rows`
-        in order. Line numbers are row numbers from 1.
+        Takes ascending column indices and the number of rows to hold at a time; yields
+        :data:`Rows` in order.
+
+    Notes
+    -----
+    Line numbers are row numbers from 1.
     """
 
     path: Path
@@ -42,12 +52,12 @@ class ContainerLog(SequentialSource):
     rows: Callable[[Sequence[int], int], Iterator[Rows]]
 
     def batches(self, columns: Collection[int], size: int) -> Iterator[RawBatch]:
-        """Yield the rows in order, about ``size`` bytes of numbers at a time."""
+        """Yield the rows in order, in batches of about ``size`` bytes of numbers."""
         wanted = sorted(columns)
-        at_a_time = max(size // (_NUMBER_BYTES * max(len(wanted), 1)), _LEAST_ROWS)
+        rows_at_a_time = max(size // (_NUMBER_BYTES * max(len(wanted), 1)), _MIN_ROWS)
         line = 1
-        with readable(f"cannot be read to its end as {self.form}"):
-            for values in self.rows(wanted, at_a_time):
+        with unreadable_on_error(f"cannot be read to its end as {self.form}"):
+            for values in self.rows(wanted, rows_at_a_time):
                 count = len(next(iter(values.values()), ()))
                 if not count:
                     continue
@@ -56,9 +66,9 @@ class ContainerLog(SequentialSource):
                 line += count
 
     def texts(self, lines: Numbers, size: int) -> Iterator[tuple[int, str]]:
-        """Yield (line, text) for the asked lines, which must be ascending.
+        """Yield (line, text) for the given line numbers, which must be ascending.
 
-        A row's text is its values with their names.
+        The text of a row lists its values with their names.
         """
         named = [index for index, name in enumerate(self.columns) if name]
         position = 0
@@ -66,45 +76,45 @@ class ContainerLog(SequentialSource):
             while position < len(lines) and lines[position] <= batch.lines[-1]:
                 row = int(lines[position] - batch.lines[0])
                 cells = (f"{self.columns[i]} {batch.values[i][row]:.9g}" for i in named)
-                yield int(lines[position]), "; ".join(cells)[:_TEXT_LIMIT]
+                yield int(lines[position]), "; ".join(cells)[:MAX_ROW_TEXT]
                 position += 1
             if position == len(lines):
                 return
 
 
 @contextmanager
-def readable(what: str) -> Iterator[None]:
-    """Turn whatever a container's library raises over a damaged file into an UnreadableLog.
+def unreadable_on_error(problem: str) -> Iterator[None]:
+    """Turn any exception that a container's library raises into an :class:`UnreadableLog`.
 
     Parameters
     ----------
-    what : str
-        What then cannot be done, for the message.
+    problem : str
+        Beginning of the message, for example ``cannot be read as an Arrow table``.
 
     Raises
     ------
     UnreadableLog
-        If anything is raised inside.
+        If anything is raised inside the block.
     """
     try:
         yield
     except UnreadableLog:
         raise
     except Exception as error:  # libraries raise anything, from KeyError to RuntimeError
-        said = str(error).strip().splitlines()
-        why = said[0][:_TEXT_LIMIT] if said else type(error).__name__
-        raise UnreadableLog(f"{what} ({why}); expected a whole file: copy it again") from error
+        lines = str(error).strip().splitlines()
+        why = lines[0][:_MAX_REASON] if lines else type(error).__name__
+        raise UnreadableLog(f"{problem} ({why}); expected a whole file: copy it again") from error
 
 
-def lacks_package(what: str, extra: str) -> Refusal:
+def refuse_without_package(what: str, extra: str) -> Refusal:
     """Return the refusal of a container whose optional package is not installed.
 
     Parameters
     ----------
     what : str
-        The container, for example ``an HDF5 file``.
+        The container in words, for example ``an HDF5 file``.
     extra : str
-        The optional extra that brings the package.
+        The optional extra that installs the package.
     """
     return Refusal(
         "package_missing",
@@ -114,16 +124,28 @@ def lacks_package(what: str, extra: str) -> Refusal:
 
 
 def with_unit(name: str, unit: str) -> str:
-    """Return a column name with its unit in brackets, unless it is unknown or there already."""
+    """Return a column name with its unit in brackets, unless it has one or none is known.
+
+    Examples
+    --------
+    >>> with_unit("torque", "N·m"), with_unit("torque [A]", "N·m"), with_unit("torque", "")
+    ('torque [N·m]', 'torque [A]', 'torque')
+    """
     return f"{name} [{unit}]" if unit and not split_unit(name)[1] else name
 
 
-def quantities(columns: Sequence[str]) -> set[str]:
-    """Return which quantities some columns hold by their names."""
+def recognised_quantities(columns: Sequence[str]) -> set[str]:
+    """Return the quantities that column names are recognised as."""
     return {channel.quantity for channel in recognise_channels(columns)}
 
 
-def listed(names: Sequence[str], most: int = 6) -> str:
-    """Return names for a message, the first few of many."""
-    rest = len(names) - most
-    return ", ".join(names[:most]) + (f" and {rest} more" if rest > 0 else "")
+def first_names(names: Sequence[str], count: int = 6) -> str:
+    """Return the first names for a message, and how many more there are.
+
+    Examples
+    --------
+    >>> first_names(["a", "b", "c"], 2)
+    'a, b and 1 more'
+    """
+    rest = len(names) - count
+    return ", ".join(names[:count]) + (f" and {rest} more" if rest > 0 else "")

@@ -8,7 +8,7 @@ from datetime import UTC, datetime, timedelta
 from pathlib import Path
 
 from frictioncli.errors import LogError
-from frictioncli.logs.formats.compression import DAMAGED, open_bytes
+from frictioncli.logs.formats.compression import STREAM_ERRORS, open_bytes
 from frictioncli.logs.log_source import UnreadableLog
 
 MAGIC = b"DIAEXTENDED"
@@ -142,7 +142,7 @@ def read_header(path: Path) -> Header | None:
             if not is_header(content):
                 return None
             content += stream.read(_LONGEST)
-    except DAMAGED as error:
+    except STREAM_ERRORS as error:
         raise UnreadableLog(f"cannot be read ({error}); expected a DIAdem header") from error
     if len(content) > _LONGEST:
         raise UnreadableLog(f"longer than {_LONGEST >> 20} MiB; expected a DIAdem header")

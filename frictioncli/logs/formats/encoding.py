@@ -1,4 +1,4 @@
-"""Bytes of a text log: encoding found, then streamed as UTF-8 in pieces of whole lines."""
+"""Text logs as bytes: detect the encoding and stream the content as blocks of whole lines."""
 
 import codecs
 import os
@@ -10,7 +10,7 @@ from typing import BinaryIO
 import numpy as np
 
 from frictioncli.arrays import Numbers
-from frictioncli.logs.formats.compression import DAMAGED, is_packed, open_bytes
+from frictioncli.logs.formats.compression import STREAM_ERRORS, is_compressed, open_bytes
 from frictioncli.logs.formats.plain_numbers import line_feeds
 from frictioncli.logs.log_source import UnreadableLog
 
@@ -23,22 +23,28 @@ _BOMS = (
 )
 ASCII_BASED = ("utf-8", "cp1252")
 """Encodings in which line ends and numbers are the same bytes as in ASCII."""
-_HEAD_BYTES = 1 << 16
-_LONGEST_LINE = 1 << 25
-"""Text without line ends must not fill the memory. [byte]"""
-
-_LINE_BYTES = 1 << 16
-"""Blocks of a file end with a whole line if no line is longer. [byte]"""
-
-# bytes that no text log holds; tab, line feed, form feed, carriage return and Ctrl-Z are fine
+HEAD_BYTES = 1 << 16
+"""Length of the beginning from which the format is detected. [byte]"""
+_MAX_LINE = 1 << 25
+"""Longest line; text without line ends must not fill the memory. [byte]"""
+_EXPECTED_LINE = 1 << 16
+"""Up to this line length, blocks of a file end with a whole line. [byte]"""
+# bytes that occur in no text log; tab, line feed, form feed, carriage return and Ctrl-Z may occur
 _CONTROL = bytes(set(range(32)) - {9, 10, 12, 13, 26})
 
 
 @dataclass(frozen=True, slots=True)
-class Piece:
-    """Whole lines of a log as UTF-8 (or an ASCII-based code page), and where they stand.
+class LineBlock:
+    """Consecutive whole lines of a log.
 
-    ``first_line`` counts from 1; the end of ``n_lines`` lines may lack its line feed.
+    Attributes
+    ----------
+    first_line : int
+        Number of the first line, from 1.
+    n_lines : int
+        Number of lines; the last one may lack its line feed.
+    content : bytes
+        The lines in UTF-8 or an ASCII-based code page.
     """
 
     first_line: int
@@ -52,31 +58,45 @@ class Piece:
 
 
 @dataclass(frozen=True, slots=True)
-class Head:
-    """The first 64 KiB of a file, unpacked, and the file's size; None where it is packed."""
+class FileHead:
+    """The beginning of a file.
+
+    Attributes
+    ----------
+    content : bytes
+        The first 64 KiB, decompressed.
+    file_size : int or None
+        Size of the file; None where it is compressed. [byte]
+    """
 
     content: bytes
-    plain_bytes: int | None
+    file_size: int | None
 
 
-def head_of(path: Path) -> Head:
-    """Return how a file begins.
+def read_head(path: Path) -> FileHead:
+    """Read the beginning of a file.
 
     Raises
     ------
     UnreadableLog
-        If the file cannot be opened or its packed stream is damaged.
+        If the file cannot be opened, or its compressed stream is damaged.
     """
     try:
         with open_bytes(path) as stream:
-            size = None if is_packed(stream) else os.fstat(stream.fileno()).st_size
-            return Head(stream.read(_HEAD_BYTES), size)
-    except DAMAGED as error:
+            size = None if is_compressed(stream) else os.fstat(stream.fileno()).st_size
+            return FileHead(stream.read(HEAD_BYTES), size)
+    except STREAM_ERRORS as error:
         raise UnreadableLog(f"cannot be opened ({error}); expected a readable file") from error
 
 
-def encoding_of(head: bytes) -> str | None:
-    """Return the encoding of a text file's beginning, or None for binary content."""
+def detect_encoding(head: bytes) -> str | None:
+    """Return the encoding of the beginning of a text file, or None for binary content.
+
+    Examples
+    --------
+    >>> detect_encoding("Drehmoment; Gehäuse".encode("cp1252"))
+    'cp1252'
+    """
     for bom, encoding in _BOMS:
         if head.startswith(bom):
             return encoding
@@ -88,7 +108,7 @@ def encoding_of(head: bytes) -> str | None:
             return "utf-16-le"
         if even > 0.6 * half and odd < 0.05 * half:
             return "utf-16-be"
-        # a few stray zero bytes are damage, many are a binary file
+        # a few zero bytes are damage, many mean a binary file
         if head.count(0) > 0.01 * len(head):
             return None
     control = len(head) - len(head.translate(None, _CONTROL))
@@ -102,46 +122,57 @@ def encoding_of(head: bytes) -> str | None:
 
 
 def decode_head(head: bytes, encoding: str) -> str:
-    """Return the beginning as text; bytes that do not decode become replacement characters."""
+    """Return the beginning as text; undecodable bytes become replacement characters."""
     return codecs.getincrementaldecoder(encoding)("replace").decode(head)
 
 
-def pieces(path: Path, encoding: str, size: int) -> Iterator[Piece]:
-    """Yield a file as pieces of whole lines, each at most about ``size`` bytes plus one line.
+def line_blocks(path: Path, encoding: str, size: int) -> Iterator[LineBlock]:
+    """Yield a file in blocks of whole lines.
 
-    ASCII-based encodings pass through as they are, others become UTF-8. Line ends become line
-    feeds where a file has lone carriage returns.
-
-    Raises
-    ------
-    UnreadableLog
-        If the file cannot be read to its end.
-    """
-    return _of_whole_lines(_blocks(path, encoding, size), 1)
-
-
-def rest_of(path: Path, start: int, line: int, size: int) -> Iterator[Piece]:
-    """Yield what stands from a byte on, which begins a line, as :func:`pieces` does.
+    The content of ASCII-based encodings is unchanged; other encodings are converted to UTF-8.
+    Carriage returns become line feeds where there are no line feeds.
 
     Parameters
     ----------
     path : Path
-        A file that is not packed, in one of :data:`ASCII_BASED`.
-    start, line : int
-        Where to begin, and which line begins there.
+        A text file, compressed or not.
+    encoding : str
+        Its encoding.
     size : int
-        How much to read at once. [byte]
+        Approximate size of a block, to which part of a line may be added. [byte]
 
     Raises
     ------
     UnreadableLog
         If the file cannot be read to its end.
     """
-    return _of_whole_lines(_blocks_from(path, start, size), line)
+    return _split_at_lines(_blocks(path, encoding, size), 1)
 
 
-def _of_whole_lines(blocks: Iterable[bytes], line: int) -> Iterator[Piece]:
-    """Yield blocks as pieces of whole lines, of which the first is this one."""
+def line_blocks_from(path: Path, start: int, line: int, size: int) -> Iterator[LineBlock]:
+    """Yield the rest of a file in blocks of whole lines, from a byte that begins a line.
+
+    Parameters
+    ----------
+    path : Path
+        A file that is not compressed, in one of :data:`ASCII_BASED`.
+    start : int
+        Offset of the first byte. [byte]
+    line : int
+        Number of the line that begins there.
+    size : int
+        Approximate size of a block. [byte]
+
+    Raises
+    ------
+    UnreadableLog
+        If the file cannot be read to its end.
+    """
+    return _split_at_lines(_blocks_from(path, start, size), line)
+
+
+def _split_at_lines(blocks: Iterable[bytes], line: int) -> Iterator[LineBlock]:
+    """Yield blocks of bytes as blocks of whole lines; ``line`` is the number of the first."""
     rest = b""
     try:
         for block in blocks:
@@ -149,25 +180,24 @@ def _of_whole_lines(blocks: Iterable[bytes], line: int) -> Iterator[Piece]:
                 block = block.replace(b"\r", b"\n")
             cut = block.rfind(b"\n") + 1
             if cut:
-                ends_here = not rest and cut == len(block)
-                content = block if ends_here else b"".join((rest, memoryview(block)[:cut]))
+                is_whole = not rest and cut == len(block)
+                content = block if is_whole else b"".join((rest, memoryview(block)[:cut]))
                 n_lines = line_feeds(content)
-                yield Piece(line, n_lines, content)
+                yield LineBlock(line, n_lines, content)
                 line += n_lines
                 rest = block[cut:]
             else:
                 rest += block
-            if len(rest) > _LONGEST_LINE:
+            if len(rest) > _MAX_LINE:
                 raise UnreadableLog(
-                    f"line {line} is longer than {_LONGEST_LINE >> 20} MiB; expected rows of"
-                    " numbers"
+                    f"line {line} is longer than {_MAX_LINE >> 20} MiB; expected rows of numbers"
                 )
-    except DAMAGED as error:
+    except STREAM_ERRORS as error:
         raise UnreadableLog(
             f"cannot be read beyond line {line} ({error}); expected a whole file: copy it again"
         ) from error
     if rest:
-        yield Piece(line, 1, rest)
+        yield LineBlock(line, 1, rest)
 
 
 def _blocks_from(path: Path, start: int, size: int) -> Iterator[bytes]:
@@ -180,8 +210,8 @@ def _blocks_from(path: Path, start: int, size: int) -> Iterator[bytes]:
 def _blocks(path: Path, encoding: str, size: int) -> Iterator[bytes]:
     with open_bytes(path) as stream:
         if encoding in ASCII_BASED:
-            if not is_packed(stream):
-                yield from _whole_lines(stream, size)
+            if not is_compressed(stream):
+                yield from _blocks_of_lines(stream, size)
                 return
             while block := stream.read(size):
                 yield block
@@ -193,17 +223,17 @@ def _blocks(path: Path, encoding: str, size: int) -> Iterator[bytes]:
             yield last.encode("utf-8")
 
 
-def _whole_lines(stream: BinaryIO, size: int) -> Iterator[bytes]:
-    """Yield blocks that end where lines do, so that nothing is copied to join lines.
+def _blocks_of_lines(stream: BinaryIO, size: int) -> Iterator[bytes]:
+    """Yield blocks that end with a line, so that no bytes are copied to join lines.
 
-    Lines that are very long are cut.
+    Very long lines are split.
     """
     block, length, end = b"", 0, os.fstat(stream.fileno()).st_size
     while len(block) == length:
         start, length = stream.tell(), size
         if start + size < end:
             stream.seek(start + size)
-            length += len(stream.readline(_LINE_BYTES))
+            length += len(stream.readline(_EXPECTED_LINE))
             stream.seek(start)
         block = stream.read(length)
         if block:

@@ -10,14 +10,14 @@ import numpy as np
 
 from frictioncli.arrays import Array
 from frictioncli.logs.channels.aliases import POSITION, TIME, TORQUE
-from frictioncli.logs.formats.compression import refuse_packed
+from frictioncli.logs.formats.compression import refuse_compressed
 from frictioncli.logs.formats.containers import (
     ContainerLog,
     Rows,
-    lacks_package,
-    listed,
-    quantities,
-    readable,
+    first_names,
+    recognised_quantities,
+    refuse_without_package,
+    unreadable_on_error,
     with_unit,
 )
 from frictioncli.logs.log_source import CsvHints, Refusal
@@ -98,14 +98,14 @@ def read_hdf5(path: Path, head: bytes, hints: CsvHints) -> ContainerLog | Refusa
     """
     if not any(head.startswith(_MAGIC, begin) for begin in _USER_BLOCKS):
         return None
-    packed = refuse_packed(path, _WHAT)
+    packed = refuse_compressed(path, _WHAT)
     if packed is not None:
         return packed
     try:
         import h5py
     except ImportError:
-        return lacks_package(_WHAT, "hdf5")
-    with readable(f"cannot be read as {_WHAT}"), h5py.File(path, "r") as file:
+        return refuse_without_package(_WHAT, "hdf5")
+    with unreadable_on_error(f"cannot be read as {_WHAT}"), h5py.File(path, "r") as file:
         tables = _tables(file)
         table = _chosen(tables)
         if isinstance(table, Refusal):
@@ -121,7 +121,7 @@ def read_hdf5(path: Path, head: bytes, hints: CsvHints) -> ContainerLog | Refusa
     others = sorted({leaf.dataset for t in tables for leaf in t.leaves if leaf not in table.leaves})
     form = f"{_WHAT}, group {table.group}" if table.group != "/" else _WHAT
     if others:
-        form += f" (left out: {listed(others)})"
+        form += f" (left out: {first_names(others)})"
     return ContainerLog(path, table.columns, form, partial(_rows, path, table.leaves))
 
 
@@ -185,7 +185,11 @@ def _chosen(tables: Sequence[_Table]) -> _Table | Refusal:
     """Return the one table that holds a joint's motion, else the widest: a map may name it."""
     if not tables:
         return Refusal("not_a_log", f"{_WHAT} without columns of numbers")
-    moving = [table for table in tables if {TIME, POSITION, TORQUE} <= quantities(table.columns)]
+    moving = [
+        table
+        for table in tables
+        if {TIME, POSITION, TORQUE} <= recognised_quantities(table.columns)
+    ]
     # a table in a group is also one in the groups around it
     outer = [
         table
@@ -196,7 +200,7 @@ def _chosen(tables: Sequence[_Table]) -> _Table | Refusal:
         return Refusal(
             "several_recordings",
             f"{_WHAT} with several recordings, in groups"
-            f" {listed([table.group for table in outer])}; save each in a file of its own",
+            f" {first_names([table.group for table in outer])}; save each in a file of its own",
         )
     return outer[0] if outer else max(tables, key=lambda table: len(table.leaves))
 

@@ -12,8 +12,13 @@ from typing import IO, Any
 
 import pyarrow as pa
 
-from frictioncli.logs.formats.compression import refuse_packed
-from frictioncli.logs.formats.containers import ContainerLog, Rows, lacks_package, listed
+from frictioncli.logs.formats.compression import refuse_compressed
+from frictioncli.logs.formats.containers import (
+    ContainerLog,
+    Rows,
+    first_names,
+    refuse_without_package,
+)
 from frictioncli.logs.log_source import CsvHints, Refusal, UnreadableLog
 
 _MAGICS = (b"MDF     ", b"UnFinMF ")
@@ -38,11 +43,11 @@ def read_mdf(path: Path, head: bytes, hints: CsvHints) -> ContainerLog | Refusal
     """
     if not head.startswith(_MAGICS):
         return None
-    packed = refuse_packed(path, _WHAT)
+    packed = refuse_compressed(path, _WHAT)
     if packed is not None:
         return packed
     if find_spec("asammdf") is None:
-        return lacks_package(_WHAT, "mdf")
+        return refuse_without_package(_WHAT, "mdf")
     with _answer({"path": str(path)}) as (found, _):
         base, signals = found["base"], [_signal(*signal) for signal in found["signals"]]
     if base is None:
@@ -53,7 +58,7 @@ def read_mdf(path: Path, head: bytes, hints: CsvHints) -> ContainerLog | Refusal
     form = f"{_WHAT} {found['version']}, samples of group {base + 1}"
     others = [str(group + 1) for group in sorted({group for _, group, _ in signals} - {base})]
     if others:
-        form += f", last values of group{'s' if len(others) > 1 else ''} {listed(others)}"
+        form += f", last values of group{'s' if len(others) > 1 else ''} {first_names(others)}"
     names = tuple(name for name, *_ in columns)
     return ContainerLog(path, names, form, partial(_rows, path, base, columns))
 

@@ -25,7 +25,7 @@ from numpy.typing import NDArray
 
 from frictioncli.arrays import Array
 from frictioncli.logs.channels.aliases import TORQUE
-from frictioncli.logs.formats.containers import Rows, quantities, with_unit
+from frictioncli.logs.formats.containers import Rows, recognised_quantities, with_unit
 
 _BROKEN_OFF = b"UnFinMF "
 _FRAGMENT_BYTES = 1 << 20
@@ -139,7 +139,11 @@ def signals_of(file: Any) -> list[Signal]:
 def base_of(file: Any, signals: Sequence[Signal]) -> int | None:
     """Return the group that holds the torque, of several the longest; else just the longest."""
     groups = {signal.group for signal in signals}
-    torque = {g for g in groups if TORQUE in quantities([s.name for s in signals if s.group == g])}
+    torque = {
+        g
+        for g in groups
+        if TORQUE in recognised_quantities([s.name for s in signals if s.group == g])
+    }
     return max(
         sorted(torque or groups),
         key=lambda group: int(file.groups[group].channel_group.cycles_nr),

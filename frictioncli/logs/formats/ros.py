@@ -15,8 +15,14 @@ import numpy as np
 import pyarrow as pa
 
 from frictioncli.arrays import Array
-from frictioncli.logs.formats.compression import refuse_packed
-from frictioncli.logs.formats.containers import ContainerLog, Rows, lacks_package, listed, readable
+from frictioncli.logs.formats.compression import refuse_compressed
+from frictioncli.logs.formats.containers import (
+    ContainerLog,
+    Rows,
+    first_names,
+    refuse_without_package,
+    unreadable_on_error,
+)
 from frictioncli.logs.log_source import CsvHints, Refusal
 
 _MCAP, _SQLITE, _BAG_1 = b"\x89MCAP0\r\n", b"SQLite format 3\0", b"#ROSBAG V2.0"
@@ -90,7 +96,7 @@ def read_ros(path: Path, head: bytes, hints: CsvHints) -> ContainerLog | Refusal
     """
     if not head.startswith((_MCAP, _SQLITE, _BAG_1)):
         return None
-    packed = refuse_packed(path, _WHAT)
+    packed = refuse_compressed(path, _WHAT)
     if packed is not None:
         return packed
     profile = _PROFILE.match(head)
@@ -105,19 +111,19 @@ def read_ros(path: Path, head: bytes, hints: CsvHints) -> ContainerLog | Refusal
     try:
         import rosbags.rosbag2  # noqa: F401
     except ImportError:
-        return lacks_package(_WHAT, "mcap")
-    with readable(f"cannot be read as {_WHAT}"):
+        return refuse_without_package(_WHAT, "mcap")
+    with unreadable_on_error(f"cannot be read as {_WHAT}"):
         topics, groups = _scanned(path)
     if not groups:
         return Refusal(
             "not_a_log",
-            f"{_WHAT} without {_TYPE} messages; its topics are {listed(sorted(topics))}",
+            f"{_WHAT} without {_TYPE} messages; its topics are {first_names(sorted(topics))}",
         )
     best = max(groups, key=lambda group: (len(group.with_effort), group.count))
     if not best.with_effort:
         return Refusal(
             "no_torque_channel",
-            f"effort of {listed(best.joints)} is empty in all {best.count} messages of"
+            f"effort of {first_names(best.joints)} is empty in all {best.count} messages of"
             f" {best.topic}; record joint states with efforts",
         )
     numbers = joint_numbers(best.joints)
@@ -155,16 +161,16 @@ def _form(best: _Group, groups: Sequence[_Group], numbers: dict[str, int]) -> st
     for name in _FIELDS:
         empty = [joint for joint in best.joints if not best.filled[name, joint]]
         if empty:
-            parts.append(f"{name} of {listed(empty)} is empty in all messages")
+            parts.append(f"{name} of {first_names(empty)} is empty in all messages")
     if not best.is_stamped:
         parts.append("no time stamps: times of reception are read")
     others = [
-        f"{other.count} messages of {other.topic} ({listed(other.joints, 3)})"
+        f"{other.count} messages of {other.topic} ({first_names(other.joints, 3)})"
         for other in sorted(groups, key=lambda group: -group.count)
         if other is not best
     ]
     if others:
-        parts.append(f"left out: {listed(others)}")
+        parts.append(f"left out: {first_names(others)}")
     return "; ".join(parts)
 
 

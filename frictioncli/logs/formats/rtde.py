@@ -1,4 +1,4 @@
-"""Universal Robots' ``record.py --binary``: two lines of text, then packed numbers."""
+"""Recordings of Universal Robots' ``record.py --binary``: two lines of text, then numbers."""
 
 from collections.abc import Iterator, Sequence
 from functools import partial
@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 
 from frictioncli.logs.formats.compression import open_bytes
-from frictioncli.logs.formats.containers import ContainerLog, Rows, listed
+from frictioncli.logs.formats.containers import ContainerLog, Rows, first_names
 from frictioncli.logs.log_source import CsvHints, Refusal
 
 _WHAT = "an RTDE recording (binary)"
@@ -19,8 +19,8 @@ _TYPES = {
     b"UINT8": "u1",
     b"BOOL": "u1",
 }
-"""How the client library names what it packs, big-endian and without gaps."""
-_BLOCK_BYTES = 1 << 22
+"""numpy type by RTDE type; values are big-endian and follow each other without gaps."""
+_MAX_BLOCK = 1 << 22  # [byte]
 
 
 def read_rtde(path: Path, head: bytes, hints: CsvHints) -> ContainerLog | Refusal | None:
@@ -33,8 +33,8 @@ def read_rtde(path: Path, head: bytes, hints: CsvHints) -> ContainerLog | Refusa
     if len(names) != len(types):
         return Refusal(
             "wrong_field_count",
-            f"{_WHAT} that names {len(names)} columns ({listed(names)}) and {len(types)} types;"
-            " expected as many",
+            f"{_WHAT} that names {len(names)} columns ({first_names(names)}) and {len(types)}"
+            " types; expected as many",
         )
     row = np.dtype([(str(i), _TYPES[kind]) for i, kind in enumerate(types)])
     begin = len(head) - len(lines[2])
@@ -44,15 +44,15 @@ def read_rtde(path: Path, head: bytes, hints: CsvHints) -> ContainerLog | Refusa
 def _rows(
     path: Path, begin: int, row: np.dtype[np.void], columns: Sequence[int], rows: int
 ) -> Iterator[Rows]:
-    """Yield the values of the asked columns; see :class:`ContainerLog`."""
-    most = min(rows, max(_BLOCK_BYTES // row.itemsize, 1))
+    """Yield the values of the given columns; see :class:`ContainerLog`."""
+    rows_at_a_time = min(rows, max(_MAX_BLOCK // row.itemsize, 1))
     with open_bytes(path) as stream:
         stream.read(begin)
-        while content := stream.read(most * row.itemsize):
-            whole, cut = divmod(len(content), row.itemsize)
-            found = np.frombuffer(content, row, whole)
+        while content := stream.read(rows_at_a_time * row.itemsize):
+            complete, rest = divmod(len(content), row.itemsize)
+            found = np.frombuffer(content, row, complete)
             yield {
-                # a recording that was broken off ends within a row: one without values
-                column: np.append(found[str(column)].astype(np.float64), [np.nan] * bool(cut))
+                # an interrupted recording ends within a row, which has no values
+                column: np.append(found[str(column)].astype(np.float64), [np.nan] * bool(rest))
                 for column in columns
             }

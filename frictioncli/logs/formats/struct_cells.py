@@ -14,7 +14,7 @@ import numpy as np
 
 from frictioncli.arrays import Numbers
 from frictioncli.logs.formats.dialect import NOT_NUMBERS
-from frictioncli.logs.formats.encoding import decode_head, encoding_of, pieces
+from frictioncli.logs.formats.encoding import decode_head, detect_encoding, line_blocks
 from frictioncli.logs.log_source import CsvHints, RawBatch, Refusal, SequentialSource
 
 _NUMBER = r"[+-]?\d+(?:[.,]\d+)?(?:[eE][+-]?\d+)?"
@@ -30,7 +30,7 @@ _LOOKED_AT = 20
 
 def read_struct_cells(path: Path, head: bytes, hints: CsvHints) -> "StructCells | Refusal | None":
     """Open a log of KUKA variables with structures in its cells; None when there are none."""
-    encoding = hints.encoding or encoding_of(head)
+    encoding = hints.encoding or detect_encoding(head)
     if encoding is None:
         return None
     lines = decode_head(head, encoding).splitlines()[:_LOOKED_AT]
@@ -122,9 +122,9 @@ class StructCells(SequentialSource):
     def _lines(self, size: int) -> Iterator[list[tuple[int, str]]]:
         """Yield the numbers and texts of the rows, blank ones left out."""
         charset = "cp1252" if self.encoding == "cp1252" else "utf-8"
-        for piece in pieces(self.path, self.encoding, size):
-            texts = piece.content.decode(charset, "replace").split("\n")
-            numbered = enumerate(texts, piece.first_line)
+        for block in line_blocks(self.path, self.encoding, size):
+            texts = block.content.decode(charset, "replace").split("\n")
+            numbered = enumerate(texts, block.first_line)
             yield [(n, text) for n, text in numbered if n >= self.data_line and text.strip()]
 
     def _row(self, text: str, wanted: list[int]) -> list[float] | str:

@@ -1,13 +1,13 @@
-"""Files that are no delimited text: named, so that the user knows what was left out and why."""
+"""Files that are not read: known formats without a reader, and files that are not logs."""
 
 from pathlib import Path
 
-from frictioncli.logs.formats.encoding import encoding_of
+from frictioncli.logs.formats.encoding import detect_encoding
 from frictioncli.logs.log_source import CsvHints, Refusal
 
 _NOT_READ = "format_not_read"
 _NOT_A_LOG = "not_a_log"
-# beginning of the file, reason, what it is
+# beginning of the file, reason, description
 _MAGIC: tuple[tuple[bytes, str, str], ...] = (
     (b"TDSm", _NOT_READ, "TDMS measurement; export the log as CSV"),
     (b"PK\x03\x04", _NOT_READ, "Excel workbook or zip archive; save the log as CSV"),
@@ -23,8 +23,8 @@ _MAGIC: tuple[tuple[bytes, str, str], ...] = (
 )
 
 
-def read_foreign(path: Path, head: bytes, hints: CsvHints) -> Refusal | None:
-    """Return what a file is that cannot be read as a log, or None when it may be one."""
+def refuse_unsupported(path: Path, head: bytes, hints: CsvHints) -> Refusal | None:
+    """Return why a file cannot be read as a log, or None when it may be a text log."""
     if not head:
         return Refusal("empty_file", "empty file; expected a header line and rows of numbers")
     start = head.removeprefix(b"\xef\xbb\xbf").lstrip(b" \t\r\n")
@@ -33,7 +33,7 @@ def read_foreign(path: Path, head: bytes, hints: CsvHints) -> Refusal | None:
             return Refusal(reason, what)
     if start.startswith(b"#BEGINHEADER") or b"#BEGINMOTIONINFO" in head:
         return Refusal(_NOT_A_LOG, "KUKA motion information (_PROG), no samples")
-    if hints.encoding is None and encoding_of(head) is None:
+    if hints.encoding is None and detect_encoding(head) is None:
         if path.suffix.lower() == ".r64":
             return Refusal(
                 _NOT_READ,

@@ -9,7 +9,7 @@ from functools import cached_property
 from pathlib import Path
 
 from frictioncli.errors import LogError
-from frictioncli.logs.formats.compression import ENDINGS
+from frictioncli.logs.formats.compression import SUFFIXES
 from frictioncli.logs.runs import manifest
 
 Logs = Sequence[Path] | Mapping[str, Path]
@@ -27,7 +27,7 @@ class LogFile:
     @cached_property
     def stem(self) -> str:
         """The name without its ending, ``.csv.gz`` counting as one."""
-        packed = self.path.suffix.lower() in ENDINGS
+        packed = self.path.suffix.lower() in SUFFIXES
         return Path(self.path.stem).stem if packed else self.path.stem
 
 

@@ -1,0 +1,220 @@
+"""Rows of a delimited text parsed into numbers: damaged rows are found and named."""
+
+import re
+from dataclasses import dataclass
+
+import numpy as np
+import pyarrow as pa
+import pyarrow.compute as pc
+import pyarrow.csv as pcsv
+
+from frictioncli.arrays import Array, Flags, Numbers
+from frictioncli.logs.formats.dialect import NOT_NUMBERS, Dialect, split
+from frictioncli.logs.formats.encoding import LineBlock
+from frictioncli.logs.formats.plain_numbers import plain_columns
+from frictioncli.logs.log_source import RawBatch
+
+_NULLS = ["", *NOT_NUMBERS]
+_NO_VALUE = 9e34
+"""DIAdem writes 9.9e34 where a value is missing. [any unit]"""
+
+
+@dataclass(frozen=True, slots=True)
+class RowParser:
+    """Parser of the rows of a text with a known dialect.
+
+    Three parsers are tried, the fastest first: one for text of nothing but numbers, pyarrow for
+    all rows at once, and pyarrow for those rows that are left after damaged ones are removed.
+    """
+
+    dialect: Dialect
+
+    def parse(self, block: LineBlock, wanted: list[int]) -> RawBatch:
+        """Return the numbers in a block of lines, and which lines are damaged.
+
+        Parameters
+        ----------
+        block : LineBlock
+            Rows of the text.
+        wanted : list of int
+            Columns to read, ascending.
+        """
+        content = self._with_single_blanks(block.content)
+        numbers = self._plain_numbers(content, block.n_lines, wanted)
+        if numbers is not None:
+            values = dict(zip(wanted, numbers, strict=True))
+            return RawBatch(block.lines, values, np.empty(0, np.int64), ())
+        table = self._table(content, self._types(wanted))
+        if table is not None and table.num_rows == block.n_lines:
+            return raw_batch(table, block.lines, wanted, np.empty(0, np.int64), ())
+        return self._parse_damaged(content, block.first_line, wanted)
+
+    def _plain_numbers(self, content: bytes, n_lines: int, wanted: list[int]) -> Array | None:
+        """Return the wanted columns of text that holds nothing but numbers, else None."""
+        if not self.dialect.dates.isdisjoint(wanted):
+            return None
+        form = (self.dialect.delimiter, self.dialect.decimal, len(self.dialect.columns))
+        return plain_columns(content, *form, wanted, n_lines)
+
+    def _parse_damaged(self, content: bytes, first_line: int, wanted: list[int]) -> RawBatch:
+        """Parse rows of which some are blank or damaged, and give a reason for each damaged one."""
+        texts = content.split(b"\n")
+        lines = np.array(
+            [first_line + i for i, text in enumerate(texts) if text.strip(b" \r")], np.int64
+        )
+        texts = [text for text in texts if text.strip(b" \r")]
+        has_width = np.array([self._has_width(text) for text in texts], bool)
+        right_width = [text for text, ok in zip(texts, has_width, strict=True) if ok]
+        readable = has_width.copy()
+        readable[has_width] = self._look_like_numbers(right_width, wanted)
+        rows = [text for text, ok in zip(texts, readable, strict=True) if ok]
+        tables, parsed = self._bisected(rows, self._types(wanted))
+        readable[readable] = parsed
+        table = pa.concat_tables(tables) if tables else None
+        reasons = tuple(
+            "not_a_number" if ok else "wrong_field_count" for ok in has_width[~readable]
+        )
+        return raw_batch(table, lines[readable], wanted, lines[~readable], reasons)
+
+    def _bisected(
+        self, rows: list[bytes], types: dict[str, pa.DataType]
+    ) -> tuple[list[pa.Table], Flags]:
+        """Parse rows, bisecting them where some fail; return tables and which rows they hold.
+
+        Rows still fail where an open quote joins lines, or a cell only looks like a number.
+        """
+        if not rows:
+            return [], np.zeros(0, bool)
+        # without the line feed, pyarrow would skip a byte order mark at the beginning
+        table = self._table(b"\n" + b"\n".join(rows), types)
+        if table is not None and table.num_rows == len(rows):
+            return [table], np.ones(len(rows), bool)
+        if len(rows) == 1:
+            return [], np.zeros(1, bool)
+        middle = len(rows) // 2
+        first, first_parsed = self._bisected(rows[:middle], types)
+        second, second_parsed = self._bisected(rows[middle:], types)
+        return first + second, np.concatenate((first_parsed, second_parsed))
+
+    def _has_width(self, text: bytes) -> bool:
+        """Return whether a row has as many fields as the header."""
+        if b'"' not in text:
+            count = text.count(self.dialect.delimiter.encode())
+            return count + 1 == len(self.dialect.columns)
+        if text.count(b'"') % 2:
+            return False
+        fields = split(text.decode("utf-8", "replace").strip("\r"), self.dialect.delimiter)
+        return len(fields) == len(self.dialect.columns)
+
+    def _look_like_numbers(self, rows: list[bytes], wanted: list[int]) -> Flags:
+        """Return for each row whether its wanted cells look like numbers or dates or are empty."""
+        good = np.ones(len(rows), bool)
+        texts = self._table(b"\n".join(rows), {str(i): pa.string() for i in wanted})
+        if texts is not None and texts.num_rows == len(rows):
+            for column in set(wanted) - self.dialect.dates:
+                good &= self._are_numbers(texts.column(str(column)))
+        return good
+
+    def _are_numbers(self, cells: pa.ChunkedArray) -> Flags:
+        decimal = re.escape(self.dialect.decimal)
+        number = rf"^\s*([+-]?inf|[+-]?(\d+({decimal}\d*)?|{decimal}\d+)([eE][+-]?\d+)?)\s*$"
+        is_null = pc.is_in(cells, value_set=pa.array(_NULLS))
+        is_number = pc.match_substring_regex(cells, number)
+        return np.asarray(pc.or_(is_null, is_number).to_numpy(), bool)
+
+    def _types(self, wanted: list[int]) -> dict[str, pa.DataType]:
+        dates = self.dialect.dates
+        return {str(i): pa.string() if i in dates else pa.float64() for i in wanted}
+
+    def _table(self, content: bytes, types: dict[str, pa.DataType]) -> pa.Table | None:
+        """Return the columns of the given types, or None where pyarrow rejects a row."""
+        if not content:
+            return None
+        try:
+            return pcsv.read_csv(
+                pa.BufferReader(content),
+                read_options=pcsv.ReadOptions(
+                    column_names=[str(i) for i in range(len(self.dialect.columns))],
+                    # one block, so that columns are contiguous; blocks are parsed in threads anyway
+                    block_size=len(content) + 1,
+                    use_threads=False,
+                ),
+                parse_options=pcsv.ParseOptions(
+                    delimiter=self.dialect.delimiter,
+                    # parsing quotes takes a tenth of the time
+                    quote_char='"' if b'"' in content else False,
+                ),
+                convert_options=pcsv.ConvertOptions(
+                    column_types=types,
+                    include_columns=list(types),
+                    decimal_point=self.dialect.decimal,
+                    null_values=_NULLS,
+                    check_utf8=False,
+                ),
+            )
+        except pa.ArrowInvalid:
+            return None
+
+    def _with_single_blanks(self, content: bytes) -> bytes:
+        """Return text delimited by blanks with each run of blanks and tabs as one blank."""
+        if self.dialect.delimiter != " ":
+            return content
+        return re.sub(rb"(?m)^ | (?=\r?$)", b"", re.sub(rb"[ \t]+", b" ", content))
+
+
+def raw_batch(
+    table: pa.Table | None,
+    lines: Numbers,
+    wanted: list[int],
+    bad_lines: Numbers,
+    reasons: tuple[str, ...],
+) -> RawBatch:
+    """Return a batch of parsed rows; without rows where the table is None."""
+    values: dict[int, Array] = {}
+    for column in wanted:
+        if table is None:
+            values[column] = np.empty(0)
+            continue
+        cells = table.column(str(column))
+        if pa.types.is_string(cells.type):
+            values[column] = seconds_since_1970(cells.to_pylist())
+            continue
+        values[column] = _without_placeholders(cells.to_numpy())
+    return RawBatch(lines, values, bad_lines, reasons)
+
+
+def seconds_since_1970(texts: list[str]) -> Array:
+    """Return ISO 8601 dates as time since 1970, NaN where a text is no date.
+
+    Parameters
+    ----------
+    texts : list of str, length n
+        Dates; without a time zone they are taken as UTC.
+
+    Returns
+    -------
+    ndarray, shape (n,)
+        Time since 1970-01-01 00:00 UTC. [s]
+
+    Examples
+    --------
+    >>> seconds_since_1970(["1970-01-02 00:00:00,5", ""])
+    array([86400.5,     nan])
+    """
+    import pandas as pd  # takes longer to import than most logs to read
+
+    cleaned = pd.Series([text.strip().replace(",", ".") for text in texts], dtype="str")
+    dates = pd.to_datetime(cleaned, format="ISO8601", errors="coerce", utc=True)
+    # in seconds: nanoseconds would overflow for the year 1
+    epoch = pd.Timestamp("1970-01-01", tz="UTC").as_unit("s")
+    seconds = (dates - epoch) / pd.Timedelta(seconds=1)
+    return np.asarray(seconds.to_numpy(dtype=float), np.float64)
+
+
+def _without_placeholders(numbers: Array) -> Array:
+    """Return numbers with NaN in place of those that stand for a missing value."""
+    # with a NaN the extremes are NaN too, and the comparison is False
+    if not len(numbers) or -_NO_VALUE <= numbers.min() <= numbers.max() <= _NO_VALUE:
+        return numbers
+    beyond = np.isfinite(numbers) & (np.abs(numbers) > _NO_VALUE)
+    return np.where(beyond, np.nan, numbers)
