@@ -5,10 +5,10 @@ physical effects, with noise that drifts. The last run is kept out and judges th
 """
 
 # %%
-import json
 import sys
 from pathlib import Path
 
+from frictioncli.diagnosis.documents.document import read_diagnoses
 from frictioncli.stages import run as pipeline
 from frictioncli.stages.simulate import simulate
 
@@ -18,29 +18,29 @@ if not (work / "diagnosis.json").exists():
     pipeline.analyse([logs], work)
 
 # %% The verdict, and each cause with its size and its parameters
-diagnosis = json.loads((work / "diagnosis.json").read_text(encoding="utf-8"))
-print("verdict:", diagnosis["verdict"])
-for cause in diagnosis["causes"]:
-    print(f"\n{' or '.join(cause['effects'])}: {cause['claim']}")
-    print(f"  {cause['equation']}")
-    print(f"  size {cause['size']:.2f} N·m RMS, by chance with p = {cause['p_value']:.1g}")
-    for name, parameter in cause["parameters"].items():
-        low, high = parameter["ci95"] or (float("nan"), float("nan"))
-        value = f"{parameter['estimate']:.3g} {parameter['unit']}"
+(diagnosis,) = read_diagnoses(work / "diagnosis.json").values()
+print("verdict:", diagnosis.verdict)
+for cause in diagnosis.causes:
+    print(f"\n{' or '.join(cause.effects)}: {cause.claim}")
+    print(f"  {cause.equation}")
+    print(f"  size {cause.size:.2f} N·m RMS, by chance with p = {cause.p_value:.1g}")
+    for name, parameter in cause.parameters.items():
+        low, high = parameter.ci95 or (float("nan"), float("nan"))
+        value = f"{parameter.estimate:.3g} {parameter.unit}"
         print(f"  {name} = {value} (95 %: {low:.3g} to {high:.3g})")
-    print(f"  to settle it: {cause['experiment']}")
+    print(f"  to settle it: {cause.experiment}")
 
 # %% What it is worth on a day that it has not seen
-gain = diagnosis["gain"]
+gain = diagnosis.gain
 print(
-    f"\nmisfit of the simulated torque on a {gain['basis'].replace('_', ' ')}:"
-    f" {gain['rmse_before']:.2f} -> {gain['rmse_after']:.2f} N·m;"
-    f" no model can go below {gain['noise_floor']:.2f}"
+    f"\nmisfit of the simulated torque on a {gain.basis.replace('_', ' ')}:"
+    f" {gain.rmse_before:.2f} -> {gain.rmse_after:.2f} N·m;"
+    f" no model can go below {gain.noise_floor:.2f}"
 )
 
 # %% What these data could have shown, the smallest size found 4 times in 5
 print("\nwould have been found from:")
-for name, size in diagnosis["detectable"].items():
+for name, size in diagnosis.detectable.items():
     print(f"  {name:20s} {'cannot show it' if size is None else f'{size:.2f} N·m'}")
 
 # %% Corrections with the extended model: hardly any is left to make

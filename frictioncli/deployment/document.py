@@ -114,6 +114,12 @@ def _extension(document: Mapping[str, Any]) -> DeployedExtension:
         about=FrictionParameters(**document["linear_about"]),
         parameters=FrictionParameters(**document["parameters"]),
         gear=None if gear is None else GearLag.of(gear),
-        terms=tuple(FittedEffect.of(entry) for entry in document["effects"]),
+        terms=tuple(_fitted(entry) for entry in document["effects"]),
         left_out=dict(document["left_out"]),
     )
+
+
+def _fitted(entry: Mapping[str, Any]) -> FittedEffect:
+    shape = {name: float(value) for name, value in entry["shape"].items()}
+    estimates = {name: float(one["estimate"]) for name, one in entry["coefficients"].items()}
+    return FittedEffect.of(entry["name"], shape, estimates)

@@ -2,7 +2,6 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import Any
 
 import numpy as np
 import pandas as pd
@@ -19,6 +18,7 @@ from frictioncli.design.steps import Step
 from frictioncli.design.thermal_model import thermal_model_of
 from frictioncli.diagnosis.data.gravity import NAMES
 from frictioncli.diagnosis.data.problem import Problem, build_problems
+from frictioncli.diagnosis.documents.document import DiagnosisDocument
 from frictioncli.diagnosis.documents.extended_model import ExtendedModel
 from frictioncli.errors import NotEnoughData
 from frictioncli.model.friction import PUBLISHED, FrictionParameters
@@ -104,7 +104,7 @@ class Plan:
 def plan_joint(
     torques: pd.DataFrame,
     torque_unit: str,
-    document: Mapping[str, Any],
+    document: DiagnosisDocument,
     extended: ExtendedModel,
     settings: PlanSettings,
 ) -> Plan:
@@ -116,7 +116,7 @@ def plan_joint(
         Rows of :data:`frictioncli.schemas.TORQUES` of a single joint.
     torque_unit : str
         Unit of everything torque-like.
-    document : mapping
+    document : DiagnosisDocument
         The joint's part of ``diagnosis.json``.
     extended : ExtendedModel
         Its extended model.
@@ -154,7 +154,7 @@ def plan_joint(
     check = choose_check(criterion, blocks, rest, payload, settings.seed)
     return Plan(
         joint=_joint_number(torques),
-        verdict=str(document["verdict"]),
+        verdict=document.verdict,
         torque_unit=torque_unit,
         limits=limits,
         criterion=criterion,
@@ -168,7 +168,7 @@ def plan_joint(
 
 
 def criterion_of(
-    torques: pd.DataFrame, document: Mapping[str, Any], extended: ExtendedModel, limits: Limits
+    torques: pd.DataFrame, document: DiagnosisDocument, extended: ExtendedModel, limits: Limits
 ) -> DesignCriterion:
     """Return the design criterion of one joint; parameters as for :func:`plan_joint`."""
     problem, _ = build_problems(torques, extended.temperature)
@@ -182,7 +182,7 @@ def criterion_of(
     return DesignCriterion.of(
         joint,
         open_questions_of(problem, document, extended),
-        unnamed=document["verdict"] == "unnamed",
+        unnamed=document.verdict == "unnamed",
     )
 
 

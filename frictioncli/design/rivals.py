@@ -1,13 +1,13 @@
 """Rival explanations that a diagnosis leaves open, fitted to all observed rows."""
 
 from collections import Counter
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import Any
 
 import numpy as np
 
 from frictioncli.diagnosis.data.problem import Problem
+from frictioncli.diagnosis.documents.document import DiagnosisDocument
 from frictioncli.diagnosis.documents.extended_model import ExtendedModel
 from frictioncli.diagnosis.fit.columns import hypothesis_of
 from frictioncli.diagnosis.fit.judgement import Score
@@ -107,7 +107,7 @@ class OpenQuestions:
 
 
 def open_questions_of(
-    problem: Problem, document: Mapping[str, Any], extended: ExtendedModel
+    problem: Problem, document: DiagnosisDocument, extended: ExtendedModel
 ) -> OpenQuestions:
     """Return what is open after a diagnosis.
 
@@ -117,7 +117,7 @@ def open_questions_of(
     ----------
     problem : Problem
         All observed rows.
-    document : mapping
+    document : DiagnosisDocument
         The joint's part of ``diagnosis.json``.
     extended : ExtendedModel
         Its extended model.
@@ -128,21 +128,19 @@ def open_questions_of(
         Settled causes, questions and noise.
     """
     precomputed = Precomputed.of(problem)
-    named = [cause for cause in document["causes"] if cause["effects"]]
+    named = document.named_causes
     scores = [
         Score(one.effect, dict(one.shape), one.coefficients, np.zeros((0, 0)), 0.0)
         for one in extended.effects
     ]
-    settled = [
-        score for cause, score in zip(named, scores, strict=True) if len(cause["effects"]) == 1
-    ]
+    settled = [score for cause, score in zip(named, scores, strict=True) if len(cause.effects) == 1]
     questions = []
     for number, cause in enumerate(named):
-        if len(cause["effects"]) == 1:
+        if len(cause.effects) == 1:
             continue
         others = [score for place, score in enumerate(scores) if place != number]
-        likely = [n for n, share in cause["probabilities"].items() if share >= _LEAST_PROBABILITY]
-        names = list(dict.fromkeys([*cause["effects"], *likely]))
+        likely = [n for n, share in cause.probabilities.items() if share >= _LEAST_PROBABILITY]
+        names = list(dict.fromkeys([*cause.effects, *likely]))
         question = _fit_rivals(Step.of(precomputed, others), names[:_MOST_RIVALS])
         if len(question.rivals) > 1:
             questions.append(question)

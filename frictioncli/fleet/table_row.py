@@ -1,17 +1,17 @@
 """One joint's row of the fleet's table, from the files of its work folder."""
 
-import json
 import math
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Sequence
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pandas as pd
 
-from frictioncli import schemas, tables
+from frictioncli import documents, schemas, tables
 from frictioncli.comparison.change import change_of_last_run
 from frictioncli.correction.evaluation import epsilon
+from frictioncli.diagnosis.documents.document import CauseRecord, DiagnosisDocument
 from frictioncli.model.document import FrictionModel, read_models
 from frictioncli.model.friction import friction_torque
 from frictioncli.workfiles import DIAGNOSIS, MODEL, SCHEDULE, TORQUES
@@ -99,24 +99,24 @@ def _per_run(schedule: pd.DataFrame) -> float:
 def _diagnosis_columns(work: Path) -> dict[str, Any]:
     if not (work / DIAGNOSIS).exists():
         return {}
-    document = json.loads((work / DIAGNOSIS).read_text(encoding="utf-8"))
-    row = {"verdict": document["verdict"], "causes": causes_text(document)}
-    gain = document["gain"]
+    document = documents.read(work / DIAGNOSIS, DiagnosisDocument, "diagnose")
+    row: dict[str, Any] = {"verdict": document.verdict, "causes": causes_text(document.causes)}
+    gain = document.gain
     if gain is not None:
-        row |= _with_interval("gain", gain["reduction"], gain["ci95"])
-        row["gain_basis"] = gain["basis"]
+        row |= _with_interval("gain", gain.reduction, gain.ci95)
+        row["gain_basis"] = gain.basis
     return row
 
 
-def causes_text(document: Mapping[str, Any]) -> str:
+def causes_text(causes: Sequence[CauseRecord]) -> str:
     """Return the causes of a diagnosis, strongest first: ``thermal_lag; drift or run_in``.
 
     Parameters
     ----------
-    document : mapping
-        A joint's part of ``diagnosis.json``.
+    causes : sequence of CauseRecord
+        The causes.
     """
-    named = [" or ".join(cause["effects"]) or "unnamed" for cause in document["causes"]]
+    named = [" or ".join(cause.effects) or "unnamed" for cause in causes]
     return "; ".join(named)
 
 

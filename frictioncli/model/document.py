@@ -4,11 +4,17 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from html import escape
 from pathlib import Path
+from typing import Annotated
+
+import msgspec
 
 from frictioncli import documents
 from frictioncli.model.friction import FORM, FrictionParameters
 from frictioncli.model.noise import Noise
 from frictioncli.provenance import Provenance
+
+TemperatureKind = Annotated[str, msgspec.Meta(pattern="^(motor|housing|mean)$")]
+"""Which temperature the friction function is given: motor, housing, or the mean of both."""
 
 PARAMETERS = ("tau_c", "alpha", "beta", "gamma", "delta")
 """Names of the parameters of equation (16), in the order in which they are shown."""
@@ -99,7 +105,7 @@ class FrictionModel:
     speed_unit: str = "deg/s"
     joint: int = 1
     method: str = "joint"
-    temperature: str
+    temperature: TemperatureKind
     torque_unit: str
     torque_side: str = "joint"
     sign: int

@@ -98,7 +98,7 @@ def diagnosis_figures(diagnosis: Reloaded | None) -> list[FigureSpec]:
         _figure(
             "diagnosis-simulation",
             "Measured and simulated torque",
-            partial(simulation_caption, held_out=document["held_out"]),
+            partial(simulation_caption, held_out=document.held_out),
             partial(simulation_figure, diagnosis=diagnosis),
         ),
         _figure(
@@ -118,13 +118,13 @@ def diagnosis_figures(diagnosis: Reloaded | None) -> list[FigureSpec]:
                 partial(evidence_figure, diagnosis=diagnosis, index=index),
             )
         )
-    if document["gain"] is not None:
+    if document.gain is not None:
         figures.append(
             _figure(
                 "diagnosis-gain",
                 "What the extended model is worth",
                 partial(gain_caption, document=document),
-                partial(gain_figure, diagnosis=diagnosis),
+                partial(gain_figure, diagnosis=diagnosis, floor=document.gain.noise_floor),
             )
         )
     return figures

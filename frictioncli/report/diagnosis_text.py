@@ -1,9 +1,9 @@
 """What the page says of a diagnosis: verdict, causes, gain, detectable sizes."""
 
-from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any
 
+from frictioncli.diagnosis.documents.document import CauseRecord, DiagnosisDocument
+from frictioncli.diagnosis.documents.extended_model import ParameterRecord
 from frictioncli.effects import BY_NAME
 from frictioncli.report.labels import (
     count_text,
@@ -35,23 +35,23 @@ class CauseText:
     experiment: str
 
 
-def verdict_sentence(document: Mapping[str, Any], unit: str) -> str:
+def verdict_sentence(document: DiagnosisDocument, unit: str) -> str:
     """Return the verdict in words.
 
     Parameters
     ----------
-    document : dict
+    document : DiagnosisDocument
         The joint's part of ``diagnosis.json``.
     unit : str
         Unit of torque.
     """
-    named = [cause["effects"] for cause in document["causes"] if cause["effects"]]
+    named = [cause.effects for cause in document.causes if cause.effects]
     missed = (
         f"The simulated torque misses the measured one by"
-        f" {number_text(document['simulation']['rmse'])} {unit} (RMS,"
-        f" {list_text(document['runs'])})."
+        f" {number_text(document.simulation.rmse)} {unit} (RMS,"
+        f" {list_text(document.runs)})."
     )
-    if document["verdict"] == "no_evidence":
+    if document.verdict == "no_evidence":
         return (
             f"{missed} No cause was found in that: no effect of the catalogue and no other"
             " structure. The table below says how large each effect would have to be to be found."
@@ -67,40 +67,38 @@ def verdict_sentence(document: Mapping[str, Any], unit: str) -> str:
         for several in named
         if len(several) > 1
     ]
-    if document["verdict"] == "unnamed":
+    if document.verdict == "unnamed":
         start = "Beside that, structure" if named else "Structure"
         found.append(f"{start} is left that no effect of the catalogue explains.")
     return " ".join([missed, *found])
 
 
-def cause_texts(document: Mapping[str, Any], unit: str) -> list[CauseText]:
+def cause_texts(document: DiagnosisDocument, unit: str) -> list[CauseText]:
     """Return the causes that effects of the catalogue stand for, strongest first."""
-    return [_cause(cause, unit) for cause in document["causes"] if cause["effects"]]
+    return [_cause(cause, unit) for cause in document.causes if cause.effects]
 
 
-def unnamed_texts(document: Mapping[str, Any], unit: str) -> list[CauseText]:
+def unnamed_texts(document: DiagnosisDocument, unit: str) -> list[CauseText]:
     """Return the structure that no effect explains."""
-    return [_cause(cause, unit) for cause in document["causes"] if not cause["effects"]]
+    return [_cause(cause, unit) for cause in document.causes if not cause.effects]
 
 
-def _cause(cause: Mapping[str, Any], unit: str) -> CauseText:
-    probabilities = cause["probabilities"]
+def _cause(cause: CauseRecord, unit: str) -> CauseText:
+    probabilities = cause.probabilities
     return CauseText(
         effects=" or ".join(
             f"{in_words(name)} {probability_text(probabilities[name])}"
             if name in probabilities
             else in_words(name)
-            for name in cause["effects"]
+            for name in cause.effects
         ),
-        channel=cause["channel"],
-        size=f"{number_text(cause['size'], 2)} {unit}",
-        chance=p_value_text(cause["p_value"]),
-        claim=cause["claim"],
-        equation=cause["equation"],
-        parameters="; ".join(
-            _parameter(name, stated) for name, stated in cause["parameters"].items()
-        ),
-        experiment=cause["experiment"],
+        channel=cause.channel,
+        size=f"{number_text(cause.size, 2)} {unit}",
+        chance=p_value_text(cause.p_value),
+        claim=cause.claim,
+        equation=cause.equation,
+        parameters="; ".join(_parameter(name, stated) for name, stated in cause.parameters.items()),
+        experiment=cause.experiment,
     )
 
 
@@ -111,50 +109,50 @@ def p_value_text(chance: float) -> str:
     return f"{chance:.0e}".replace("-", "−") if chance < 1e-3 else number_text(chance, 2)
 
 
-def _parameter(name: str, stated: Mapping[str, Any]) -> str:
-    unit = "" if stated["unit"] == "1" else f" {stated['unit']}"
-    interval = stated["ci95"]
+def _parameter(name: str, stated: ParameterRecord) -> str:
+    unit = "" if stated.unit == "1" else f" {stated.unit}"
+    interval = stated.ci95
     span = f" ({number_text(interval[0])} to {number_text(interval[1])})" if interval else ""
-    return f"{in_words(name)} {number_text(stated['estimate'])}{unit}{span}"
+    return f"{in_words(name)} {number_text(stated.estimate)}{unit}{span}"
 
 
-def visible_sentences(document: Mapping[str, Any], unit: str) -> tuple[str, ...]:
+def visible_sentences(document: DiagnosisDocument, unit: str) -> tuple[str, ...]:
     """Return what stands out of the noise but is too small to be worth modelling."""
     return tuple(
-        f"{' or '.join(in_words(name) for name in one['effects'])} stands out of the noise"
-        f" ({number_text(one['size'], 2)} {unit} RMS, chance {p_value_text(one['p_value'])}), but"
+        f"{' or '.join(in_words(name) for name in one.effects)} stands out of the noise"
+        f" ({number_text(one.size, 2)} {unit} RMS, chance {p_value_text(one.p_value)}), but"
         " the"
         " extended model is no better with it: it is not worth modelling."
-        for one in document.get("visible", ())
+        for one in document.visible
     )
 
 
-def gain_sentence(document: Mapping[str, Any], unit: str) -> str:
+def gain_sentence(document: DiagnosisDocument, unit: str) -> str:
     """Return what the extended model is worth, empty where nothing was found.
 
     Parameters
     ----------
-    document : dict
+    document : DiagnosisDocument
         The joint's part of ``diagnosis.json``.
     unit : str
         Unit of torque.
     """
-    gain = document["gain"]
+    gain = document.gain
     if gain is None:
         return ""
-    low, high = gain["ci95"]
-    if gain["basis"] == "new_run":
-        where = f"On run {document['held_out']}, which the diagnosis has not seen,"
+    low, high = gain.ci95
+    if gain.basis == "new_run":
+        where = f"On run {document.held_out}, which the diagnosis has not seen,"
     else:
         where = "On the same data that it was fitted to"
     changed = (
-        f"{where} the extended model misses the torque by {number_text(gain['rmse_after'])}"
+        f"{where} the extended model misses the torque by {number_text(gain.rmse_after)}"
         f" {unit} (RMS)"
-        f" instead of {number_text(gain['rmse_before'])} {unit}: {_less(gain['reduction'])}"
+        f" instead of {number_text(gain.rmse_before)} {unit}: {_less(gain.reduction)}"
         f" (95 % interval: {_less(low)} to {_less(high)}). Noise that no model can predict is"
-        f" {number_text(gain['noise_floor'])} {unit}."
+        f" {number_text(gain.noise_floor)} {unit}."
     )
-    if gain["basis"] != "new_run":
+    if gain.basis != "new_run":
         changed += " A gain on data already used flatters; log a second run to know it."
     if high < 0:
         changed += " The extended model is worse than the base model: do not use it."
@@ -167,17 +165,17 @@ def _less(share: float) -> str:
     return f"{100 * share:.0f} % less" if share >= 0 else f"{-100 * share:.0f} % more"
 
 
-def detectable_table(document: Mapping[str, Any], unit: str) -> TextTable:
+def detectable_table(document: DiagnosisDocument, unit: str) -> TextTable:
     """Return how large each effect must be to be found in these data.
 
     Parameters
     ----------
-    document : dict
+    document : DiagnosisDocument
         The joint's part of ``diagnosis.json``.
     unit : str
         Unit of torque.
     """
-    sizes = document["detectable"]
+    sizes = document.detectable
     names = [name for name in BY_NAME if name in sizes]
     names += sorted(set(sizes) - set(names))
     return TextTable(
@@ -195,29 +193,29 @@ def detectable_table(document: Mapping[str, Any], unit: str) -> TextTable:
     )
 
 
-def worst_table(document: Mapping[str, Any], unit: str) -> TextTable:
+def worst_table(document: DiagnosisDocument, unit: str) -> TextTable:
     """Return where the simulated torque misses the measured one most."""
     return TextTable(
         title="Where the simulated torque misses most",
         header=("where", "speed", "channel", f"measured − simulated, mean [{unit}]"),
         rows=tuple(
             (
-                f"{place['axis']} {number_text(place['low'])} to {number_text(place['high'])}"
-                f" {_AXIS_UNITS.get(place['axis'], '')}".rstrip(),
-                speed_text(place["speed"]),
-                place["channel"],
-                number_text(place["misfit"]),
+                f"{place.axis} {number_text(place.low)} to {number_text(place.high)}"
+                f" {_AXIS_UNITS.get(place.axis, '')}".rstrip(),
+                speed_text(place.speed),
+                place.channel,
+                number_text(place.misfit),
             )
-            for place in document["simulation"].get("worst") or ()
+            for place in document.simulation.worst
         ),
         texts=3,
     )
 
 
-def evidence_caption(results: JointResults, *, cause: Mapping[str, Any], fitted: str) -> str:
+def evidence_caption(results: JointResults, *, cause: CauseRecord, fitted: str) -> str:
     """Return what to see in the picture of one cause."""
     return (
-        f"{cause['claim']} Points: mean misfit of the {cause['channel']} in bins, with twice its"
+        f"{cause.claim} Points: mean misfit of the {cause.channel} in bins, with twice its"
         " standard error over pairs; a point without a bar is a single pair. Left: the base model."
         f" Middle: the extended model without this cause, and the term fitted for it, {fitted};"
         " it may exceed the misfit on the left, where the base model's parameters make up for it."
@@ -247,9 +245,9 @@ def map_caption(results: JointResults, *, extended: bool) -> str:
     )
 
 
-def gain_caption(results: JointResults, *, document: Mapping[str, Any]) -> str:
+def gain_caption(results: JointResults, *, document: DiagnosisDocument) -> str:
     """Return what to see in the distributions."""
-    run = f"run {document['held_out']}" if document["held_out"] else "the data fitted"
+    run = f"run {document.held_out}" if document.held_out else "the data fitted"
     return (
         f"What the simulated torque misses on {run}, both directions, by the base and by the"
         " extended model. Left: how the misfit is distributed. Right: how many points miss by more"
@@ -257,8 +255,8 @@ def gain_caption(results: JointResults, *, document: Mapping[str, Any]) -> str:
     )
 
 
-def cause_title(cause: Mapping[str, Any], number: int) -> str:
+def cause_title(cause: CauseRecord, number: int) -> str:
     """Return the heading of a cause's figure."""
-    return f"Cause {number}. {' or '.join(in_words(name) for name in cause['effects'][:3])}" + (
-        f" or {count_text(len(cause['effects']) - 3, 'other')}" if len(cause["effects"]) > 3 else ""
+    return f"Cause {number}. {' or '.join(in_words(name) for name in cause.effects[:3])}" + (
+        f" or {count_text(len(cause.effects) - 3, 'other')}" if len(cause.effects) > 3 else ""
     )

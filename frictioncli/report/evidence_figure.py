@@ -1,5 +1,7 @@
 """The evidence of one cause: residuals without it, its fitted term, what is left, its rivals."""
 
+from collections.abc import Mapping, Sequence
+
 import numpy as np
 import pandas as pd
 from matplotlib.axes import Axes
@@ -52,8 +54,8 @@ def evidence_figure(results: JointResults, *, diagnosis: Reloaded, index: int) -
         Index of the cause, from 0.
     """
     seen, cause = diagnosis.seen, diagnosis.causes[index]
-    axis, channel = str(cause["seen_in"]), str(cause["channel"])
-    bars = shown_probabilities(cause["probabilities"], cause["effects"])
+    axis, channel = str(cause.seen_in), str(cause.channel)
+    bars = shown_probabilities(cause.probabilities, cause.effects)
     low = 0.62 + 0.24 * len(bars)
     figure = Figure(figsize=(WIDTH, 3.3 + low), layout="constrained")
     upper, lower = figure.subfigures(2, 1, squeeze=False, height_ratios=(3.3, low))[:, 0]
@@ -85,20 +87,20 @@ def evidence_figure(results: JointResults, *, diagnosis: Reloaded, index: int) -
     panels[0].set_ylabel(f"{channel}: measured − simulated [{unit}]")
     handles, labels = panels[1].get_legend_handles_labels()
     upper.legend(handles, labels, loc="outside lower center", ncols=len(labels))
-    _bars(lower.subplots(), bars, set(cause["effects"]))
+    _bars(lower.subplots(), bars, set(cause.effects))
     return figure
 
 
 def shown_probabilities(
-    probabilities: dict[str, float], chosen: list[str]
+    probabilities: Mapping[str, float], chosen: Sequence[str]
 ) -> list[tuple[str, float]]:
     """Return the bars: the credible set, the most probable others, and what is left over.
 
     Parameters
     ----------
-    probabilities : dict of str to float
+    probabilities : mapping of str to float
         Probability of each effect.
-    chosen : list of str
+    chosen : sequence of str
         The credible set.
     """
     ordered = sorted(probabilities.items(), key=lambda entry: (entry[0] not in chosen, -entry[1]))

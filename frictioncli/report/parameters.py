@@ -1,10 +1,9 @@
 """What the page says of the model's parameters: values, correlations, what the data do not tell."""
 
-from collections.abc import Mapping
 from dataclasses import dataclass
 from itertools import combinations
-from typing import Any
 
+from frictioncli.diagnosis.documents.document import DiagnosisDocument
 from frictioncli.model.document import PARAMETERS
 from frictioncli.model.friction import PUBLISHED
 from frictioncli.report.labels import PARAMETER_SYMBOLS, in_words, list_text, number_text
@@ -120,14 +119,14 @@ def correlation_text(value: float) -> str:
     return "0" if float(shown) == 0 else shown.replace("-", "−")
 
 
-def limitations(results: JointResults, diagnosis: Mapping[str, Any] | None) -> list[str]:
+def limitations(results: JointResults, diagnosis: DiagnosisDocument | None) -> list[str]:
     """Return what the data cannot determine, a sentence each.
 
     Parameters
     ----------
     results : JointResults
         One joint's results.
-    diagnosis : dict or None
+    diagnosis : DiagnosisDocument or None
         The joint's part of ``diagnosis.json``, if there is one.
     """
     model = results.model
@@ -156,17 +155,17 @@ def limitations(results: JointResults, diagnosis: Mapping[str, Any] | None) -> l
     return told + _open_causes(results, diagnosis)
 
 
-def _open_causes(results: JointResults, diagnosis: Mapping[str, Any] | None) -> list[str]:
+def _open_causes(results: JointResults, diagnosis: DiagnosisDocument | None) -> list[str]:
     if diagnosis is None:
         return ["What the simulated torque misses, and why, has not been judged."]
     told = [
-        f"Which of {list_text([in_words(name) for name in cause['effects']])} is at work: these"
+        f"Which of {list_text([in_words(name) for name in cause.effects])} is at work: these"
         " data"
-        f" cannot tell them apart. {cause['experiment']}"
-        for cause in diagnosis["causes"]
-        if len(cause["effects"]) > 1
+        f" cannot tell them apart. {cause.experiment}"
+        for cause in diagnosis.causes
+        if len(cause.effects) > 1
     ]
-    blind = [in_words(name) for name, size in diagnosis["detectable"].items() if size is None]
+    blind = [in_words(name) for name, size in diagnosis.detectable.items() if size is None]
     if blind:
         told.append(f"Whether there is {' or '.join(blind)}: these data cannot show it.")
     if len(results.runs) == 1:

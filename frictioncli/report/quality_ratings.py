@@ -1,9 +1,8 @@
 """Ratings of data quality: good, fair or poor, each with its reason."""
 
-from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any
 
+from frictioncli.diagnosis.documents.document import DiagnosisDocument
 from frictioncli.model.document import PARAMETERS
 from frictioncli.report.labels import (
     PARAMETER_SYMBOLS,
@@ -82,7 +81,7 @@ class IngestCounts:
 
 
 def quality_ratings(
-    results: JointResults, counts: IngestCounts, diagnosis: Mapping[str, Any] | None
+    results: JointResults, counts: IngestCounts, diagnosis: DiagnosisDocument | None
 ) -> list[QualityRating]:
     """Return all ratings for one joint.
 
@@ -92,7 +91,7 @@ def quality_ratings(
         The joint's results.
     counts : IngestCounts
         Rows and files of the logs that were read and rejected.
-    diagnosis : dict or None
+    diagnosis : DiagnosisDocument or None
         The joint's part of ``diagnosis.json``, if there is one.
     """
     return [
@@ -258,22 +257,22 @@ def imprecise_parameters(results: JointResults) -> list[str]:
     return imprecise
 
 
-def model_rating(results: JointResults, diagnosis: Mapping[str, Any] | None) -> QualityRating:
+def model_rating(results: JointResults, diagnosis: DiagnosisDocument | None) -> QualityRating:
     """Rate whether the friction function describes the joint."""
     if diagnosis is None:
         return QualityRating(
             level=FAIR, name="Model", reason="What the model misses has not been judged yet."
         )
-    missed = f"{number_text(diagnosis['simulation']['rmse'])} {results.unit} (RMS)"
-    causes = [[in_words(name) for name in cause["effects"]] for cause in diagnosis["causes"]]
+    missed = f"{number_text(diagnosis.simulation.rmse)} {results.unit} (RMS)"
+    causes = [[in_words(name) for name in cause.effects] for cause in diagnosis.causes]
     named = list_text([" or ".join(names) for names in causes if names] or ["nothing"])
-    if diagnosis["verdict"] == "no_evidence":
+    if diagnosis.verdict == "no_evidence":
         return QualityRating(
             level=GOOD,
             name="Model",
             reason=f"No cause was found in what the simulated torque misses, {missed}.",
         )
-    if diagnosis["verdict"] == "unnamed":
+    if diagnosis.verdict == "unnamed":
         return QualityRating(
             level=POOR,
             name="Model",

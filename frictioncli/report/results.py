@@ -12,6 +12,7 @@ from numpy.typing import ArrayLike
 
 from frictioncli import schemas, tables
 from frictioncli.arrays import Array
+from frictioncli.diagnosis.documents.document import DiagnosisDocument
 from frictioncli.diagnosis.documents.extended_model import ExtendedModel, read_extended
 from frictioncli.diagnosis.documents.reload import Reloaded, is_current, read_documents, reload
 from frictioncli.errors import TableError
@@ -284,7 +285,7 @@ def _pairs_of(torques: pd.DataFrame, model: FrictionModel) -> tuple[pd.DataFrame
 def _diagnosis_of(
     joint: int,
     torques: pd.DataFrame,
-    diagnoses: Mapping[int, tuple[Mapping[str, Any], ExtendedModel]],
+    diagnoses: Mapping[int, tuple[DiagnosisDocument, ExtendedModel]],
 ) -> tuple[Reloaded | None, str]:
     """Return the joint's diagnosis if it is of these runs, else None and the reason."""
     if not diagnoses:

@@ -153,7 +153,7 @@ def _look(style: SpeedStyle, *, filled: bool) -> dict[str, Any]:
 def _runs(panel: Axes, pairs: pd.DataFrame, diagnosis: Reloaded) -> None:
     """Name the runs above the panel, and say which one was kept out."""
     spans = pairs.groupby("run")["time"].agg(["min", "max"]).sort_values("min")
-    held_out = diagnosis.document["held_out"]
+    held_out = diagnosis.document.held_out
     for run, span in spans.iterrows():
         new = " (new)" if run == held_out else ""
         panel.annotate(
@@ -168,7 +168,7 @@ def _runs(panel: Axes, pairs: pd.DataFrame, diagnosis: Reloaded) -> None:
         panel.axvline(start, color=FAINT, linestyle=":", linewidth=1.2)
 
 
-def gain_figure(results: JointResults, *, diagnosis: Reloaded) -> Figure:
+def gain_figure(results: JointResults, *, diagnosis: Reloaded, floor: float) -> Figure:
     """Draw how the misfit of the torque is distributed before and after the extension.
 
     Parameters
@@ -177,8 +177,10 @@ def gain_figure(results: JointResults, *, diagnosis: Reloaded) -> Figure:
         One joint's results.
     diagnosis : Reloaded
         Its diagnosis.
+    floor : float
+        RMS of the noise, which no model can predict. [torque unit]
     """
-    judged, floor = diagnosis.judged, float(diagnosis.document["gain"]["noise_floor"])
+    judged = diagnosis.judged
     sides = (
         ("base model", judged.torque(judged.before), _BEFORE, "--"),
         ("extended model", judged.torque(judged.after), _AFTER, "-"),

@@ -1,12 +1,11 @@
 """The top of the page: the verdict in a paragraph, the figures that matter, what was measured."""
 
-from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 import pandas as pd
 
+from frictioncli.diagnosis.documents.document import DiagnosisDocument
 from frictioncli.model.document import PARAMETERS
 from frictioncli.report.evaluation_figure import compared_criterion, setting_text
 from frictioncli.report.labels import (
@@ -48,14 +47,14 @@ class _Gained:
     never: str
 
 
-def summary_text(results: JointResults, diagnosis: Mapping[str, Any] | None = None) -> str:
+def summary_text(results: JointResults, diagnosis: DiagnosisDocument | None = None) -> str:
     """Return the verdict on one joint.
 
     Parameters
     ----------
     results : JointResults
         One joint's results.
-    diagnosis : dict or None
+    diagnosis : DiagnosisDocument or None
         The joint's part of ``diagnosis.json``, if there is one.
     """
     sentences = [
@@ -101,14 +100,14 @@ def measurement_text(results: JointResults) -> str:
     )
 
 
-def key_numbers(results: JointResults, diagnosis: Mapping[str, Any] | None) -> list[KeyNumber]:
+def key_numbers(results: JointResults, diagnosis: DiagnosisDocument | None) -> list[KeyNumber]:
     """Return the figures that matter, those that there are.
 
     Parameters
     ----------
     results : JointResults
         One joint's results.
-    diagnosis : dict or None
+    diagnosis : DiagnosisDocument or None
         The joint's part of ``diagnosis.json``, if there is one.
     """
     found = []
@@ -132,19 +131,19 @@ def key_numbers(results: JointResults, diagnosis: Mapping[str, Any] | None) -> l
             f" {number_text(results.model.noise.point)} {results.unit}",
         )
     )
-    gain = (diagnosis or {}).get("gain")
+    gain = diagnosis.gain if diagnosis else None
     if diagnosis and gain:
         new = (
-            f"on {diagnosis['held_out']}, a run it has not seen"
-            if gain["basis"] == "new_run"
+            f"on {diagnosis.held_out}, a run it has not seen"
+            if gain.basis == "new_run"
             else "on the data that it was fitted to"
         )
         found.append(
             KeyNumber(
                 name="misfit of the extended model",
-                value=f"{number_text(gain['rmse_after'])} {results.unit}",
+                value=f"{number_text(gain.rmse_after)} {results.unit}",
                 context=f"RMS of the torque without correction, {new}; base model"
-                f" {number_text(gain['rmse_before'])} {results.unit}",
+                f" {number_text(gain.rmse_before)} {results.unit}",
             )
         )
     return found
@@ -244,29 +243,25 @@ def _error(own: pd.DataFrame) -> float:
     return float(np.sqrt(np.mean(np.square(own["friction_smoothed"] - own["friction_predicted"]))))
 
 
-def _judged(results: JointResults, diagnosis: Mapping[str, Any] | None) -> str:
+def _judged(results: JointResults, diagnosis: DiagnosisDocument | None) -> str:
     if diagnosis is None:
         return ""
     lacking = [
-        " or ".join(in_words(n) for n in one["effects"])
-        for one in diagnosis["causes"]
-        if one["effects"]
+        " or ".join(in_words(n) for n in one.effects) for one in diagnosis.causes if one.effects
     ]
-    if diagnosis["verdict"] == "no_evidence":
+    if diagnosis.verdict == "no_evidence":
         return "No cause was found in what the function misses."
     told = f"The function lacks {list_text(lacking)}" if lacking else "No known effect is named"
-    if diagnosis["verdict"] == "unnamed":
+    if diagnosis.verdict == "unnamed":
         told += ", and structure is left that no known effect explains"
-    gain = diagnosis["gain"]
-    if gain is None or gain["ci95"][0] <= 0:
+    gain = diagnosis.gain
+    if gain is None or gain.ci95[0] <= 0:
         return f"{told}."
-    where = (
-        f" on {diagnosis['held_out']}, which it has not seen," if gain["basis"] == "new_run" else ""
-    )
+    where = f" on {diagnosis.held_out}, which it has not seen," if gain.basis == "new_run" else ""
     return (
         f"{told}; extended by that, it misses the torque{where} by"
-        f" {number_text(gain['rmse_after'])}"
-        f" {results.unit} instead of {number_text(gain['rmse_before'])} {results.unit}, without any"
+        f" {number_text(gain.rmse_after)}"
+        f" {results.unit} instead of {number_text(gain.rmse_before)} {results.unit}, without any"
         " correction."
     )
 

@@ -1,16 +1,13 @@
 """From torques and a model to what the simulated torque gets wrong: ``diagnose``."""
 
-import json
 from dataclasses import asdict
 from pathlib import Path
 
 from frictioncli import schemas, tables
 from frictioncli.diagnosis.diagnose import diagnose_joint
-from frictioncli.diagnosis.documents.document import (
-    diagnosis_document,
-    extended_document,
-    verdict_text,
-)
+from frictioncli.diagnosis.documents.document import read_diagnoses
+from frictioncli.diagnosis.documents.from_diagnosis import diagnosis_document, extended_document
+from frictioncli.diagnosis.documents.text import verdict_text
 from frictioncli.diagnosis.ramps.evidence import ramp_logs
 from frictioncli.diagnosis.settings import DiagnosisSettings
 from frictioncli.documents import write_joints
@@ -53,8 +50,6 @@ def diagnose(work: Path, settings: DiagnosisSettings | None = None) -> Done:
 
 def has_finding(work: Path, *, named_only: bool) -> bool:
     """Return whether ``diagnosis.json`` holds a cause, or one that has a single name."""
-    whole = json.loads((work / DIAGNOSIS).read_text(encoding="utf-8"))
-    causes = [
-        cause for part in whole.get("joints", {"": whole}).values() for cause in part["causes"]
-    ]
-    return any(len(cause["effects"]) == 1 or not named_only for cause in causes)
+    diagnoses = read_diagnoses(work / DIAGNOSIS).values()
+    causes = [cause for diagnosis in diagnoses for cause in diagnosis.causes]
+    return any(len(cause.effects) == 1 or not named_only for cause in causes)

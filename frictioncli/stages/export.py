@@ -1,7 +1,6 @@
 """The model outside this program: ``export``."""
 
 from pathlib import Path
-from typing import Any
 
 from frictioncli import __version__, schemas, tables
 from frictioncli.correction.settings import ScheduleSettings
@@ -84,15 +83,10 @@ def _extension(work: Path, model: FrictionModel) -> DeployedExtension | None:
             f"{work / DIAGNOSIS}: has no joint {model.joint}; run 'frictioncli diagnose' first"
         )
     diagnosis, extended = documents[model.joint]
-    causes = [cause for cause in diagnosis["causes"] if cause["effects"]]
     interval = None
-    for fitted, cause in zip(extended.effects, causes, strict=True):
+    for fitted, cause in zip(extended.effects, diagnosis.named_causes, strict=True):
         if fitted.effect.name == LAG:
-            interval = _interval(cause["parameters"].get("time_constant", {}))
+            stated = cause.parameters.get("time_constant")
+            interval = stated.ci95 if stated else None
     torques = tables.read(work / TORQUES, schemas.TORQUES)
     return carried(torques[torques["joint"] == model.joint], extended, interval)
-
-
-def _interval(parameter: dict[str, Any]) -> tuple[float, float] | None:
-    ends = parameter.get("ci95")
-    return None if ends is None else (float(ends[0]), float(ends[1]))

@@ -46,7 +46,7 @@ def plan(work: Path, settings: PlanSettings | None = None) -> Done:
         raise TableError(
             f"{work / DIAGNOSIS} is of other runs than {TORQUES}; run 'frictioncli diagnose' again"
         )
-    if document["verdict"] == "unnamed" and torques["motor_temperature"].isna().all():
+    if document.verdict == "unnamed" and torques["motor_temperature"].isna().all():
         raise NotEnoughData(
             f"joint {joint}: structure without a name, and no motor temperature in the log to plan"
             " with; log the temperature first"

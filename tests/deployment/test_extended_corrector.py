@@ -17,6 +17,7 @@ from frictioncli.correction.settings import CorrectionSettings, ScheduleSettings
 from frictioncli.deployment.extended_corrector import ExtendedCorrector
 from frictioncli.deployment.extension import MEMORYLESS, carried
 from frictioncli.deployment.gear_temperature import GearTemperature
+from frictioncli.diagnosis.data.gravity import GravityCoefficients
 from frictioncli.diagnosis.documents.apply_extension import (
     friction_beyond,
     with_effects,
@@ -30,7 +31,7 @@ from tests.deployment.joints import LAG, effect
 from tests.deployment.logged_pairs import pairs_of, powers
 from tests.equation_16 import torques
 
-GRAVITY = {"cosine": 95.0, "sine": 0.0, "offset": 0.0}
+GRAVITY = GravityCoefficients(cosine=95.0, sine=0.0, offset=0.0)
 LAGGING = FittedEffect(
     effect=BY_NAME["thermal_lag"],
     shape={"time_constant": 1500.0},

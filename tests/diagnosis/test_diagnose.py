@@ -9,7 +9,7 @@ import pytest
 
 from frictioncli import schemas, tables
 from frictioncli.diagnosis.diagnose import diagnose_joint
-from frictioncli.diagnosis.documents.document import verdict_text
+from frictioncli.diagnosis.documents.text import verdict_text
 from frictioncli.diagnosis.settings import DiagnosisSettings
 from frictioncli.effects import BY_NAME
 from frictioncli.errors import NotEnoughData, OptionError, TableError

@@ -3,6 +3,7 @@
 import json
 import shutil
 from dataclasses import replace
+from types import SimpleNamespace
 
 import pytest
 
@@ -154,5 +155,5 @@ def test_a_folder_that_something_else_has_filled_is_left_alone(tmp_path):
 
 def test_causes_in_words():
     sets = [["thermal_lag"], ["drift", "run_in"], []]
-    causes = [{"effects": names} for names in sets]
-    assert causes_text({"causes": causes}) == "thermal_lag; drift or run_in; unnamed"
+    causes = [SimpleNamespace(effects=names) for names in sets]
+    assert causes_text(causes) == "thermal_lag; drift or run_in; unnamed"

@@ -7,8 +7,10 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from msgspec import convert, structs
 
-from frictioncli.diagnosis.documents.extended_model import extended_model
+from frictioncli.diagnosis.documents.document import DiagnosisDocument
+from frictioncli.diagnosis.documents.extended_model import ExtendedDocument, extended_model
 from frictioncli.diagnosis.documents.reload import is_current, read_documents, reload
 from frictioncli.errors import TableError
 from frictioncli.report.diagnosis_section import diagnosis_figures, diagnosis_section
@@ -172,18 +174,22 @@ def test_section_says_what_was_found(results, diagnosis):
 
 
 def test_a_gain_that_is_none_is_said_to_be_none():
-    document = deepcopy(DIAGNOSIS)
-    document["gain"] |= {"reduction": -0.3, "ci95": [-0.5, -0.1]}
-    assert "30 % more" in gain_sentence(document, "A")
-    assert "worse than the base model" in gain_sentence(document, "A")
-    document["gain"] |= {"ci95": [-0.5, 0.1]}
-    assert "The interval holds zero" in gain_sentence(document, "A")
-    document["gain"] |= {"basis": "within_run"}
-    assert "flatters" in gain_sentence(document, "A")
-    assert " A " in gain_sentence(document, "A")
-    assert "N·m" not in gain_sentence(document, "A")
-    document["gain"] = None
-    assert gain_sentence(document, "A") == ""
+    document = convert(DIAGNOSIS, DiagnosisDocument)
+
+    def sentence(**changed):
+        gain = structs.replace(document.gain, **changed)
+        return gain_sentence(structs.replace(document, gain=gain), "A")
+
+    worse = {"reduction": -0.3, "ci95": (-0.5, -0.1)}
+    assert "30 % more" in sentence(**worse)
+    assert "worse than the base model" in sentence(**worse)
+    unsure = {"reduction": -0.3, "ci95": (-0.5, 0.1)}
+    assert "The interval holds zero" in sentence(**unsure)
+    unsure |= {"basis": "within_run"}
+    assert "flatters" in sentence(**unsure)
+    assert " A " in sentence(**unsure)
+    assert "N·m" not in sentence(**unsure)
+    assert gain_sentence(structs.replace(document, gain=None), "A") == ""
     assert p_value_text(0.0) == "below 1e−300"
     assert p_value_text(0.031) == "0.031"
 
@@ -192,7 +198,11 @@ def test_silence_is_explained_and_draws_no_gain(results, work):
     document, model = deepcopy(DIAGNOSIS), json.loads((work / "extended-model.json").read_text())
     document |= {"verdict": "no_evidence", "causes": [], "gain": None}
     model["effects"] = []
-    found = reload(results.torques, document, extended_model(model))
+    found = reload(
+        results.torques,
+        convert(document, DiagnosisDocument),
+        extended_model(convert(model, ExtendedDocument)),
+    )
     assert found.seen.after is found.seen.before
     silent = replace(results, diagnosis=found)
     told = diagnosis_section(silent)
@@ -214,7 +224,7 @@ def test_without_a_diagnosis_the_section_names_the_command(tmp_path, write_work)
         read_results(work)
     model = json.loads((work / "model.json").read_text()) | {"effects": []}
     (work / "extended-model.json").write_text(json.dumps(model))
-    assert not is_current(document, results.torques)
+    assert not is_current(convert(document, DiagnosisDocument), results.torques)
     assert "other runs" in diagnosis_section(read_results(work).joints[0]).missing
     (work / "diagnosis.json").write_text(json.dumps(document | {"joint": 5}))
     (work / "extended-model.json").write_text(json.dumps(model | {"joint": 5}))

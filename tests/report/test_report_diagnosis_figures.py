@@ -182,7 +182,9 @@ def test_simulated_torque_is_measured_less_the_misfit(results, diagnosis):
 
 def test_gain_shows_the_new_run_and_the_noise_floor(results, diagnosis):
     with style.style_context():
-        figure = gain_figure(results, diagnosis=diagnosis)
+        figure = gain_figure(
+            results, diagnosis=diagnosis, floor=diagnosis.document.gain.noise_floor
+        )
     new = diagnosis.new
     label = next(text for text in texts(figure) if text.startswith("base model"))
     rms = np.sqrt(np.mean(np.square(new.before["friction"]) + np.square(new.before["load"])))

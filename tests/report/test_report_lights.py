@@ -20,6 +20,7 @@ from frictioncli.report.quality_ratings import (
     temperature_rating,
     time_rating,
 )
+from tests.report.planted import diagnosis
 
 CLEAN = IngestCounts(
     rows=10_000, rejected=0, files=8, unusable_files=0, time_known=True, warnings=0
@@ -108,7 +109,7 @@ def test_parameters(two_runs, without_temperature):
     ],
 )
 def test_model_goes_by_the_verdict(two_runs, verdict, effects, level, word):
-    document = {"verdict": verdict, "causes": [{"effects": effects}], "simulation": {"rmse": 3.0}}
+    document = diagnosis(verdict=verdict, sets=(effects,), rmse=3.0)
     light = model_rating(two_runs, document)
     assert light.level == level
     assert word in light.reason

@@ -1,11 +1,12 @@
 """The top of the page: verdict, formula, figures that matter; what the data do not tell."""
 
-from copy import deepcopy
 from dataclasses import replace
 
 import numpy as np
 import pytest
+from msgspec import structs
 
+from frictioncli.diagnosis.documents.document import GainRecord
 from frictioncli.model.document import ParameterEstimate
 from frictioncli.report.formula import formula_symbols, friction_formula, unit_markup
 from frictioncli.report.page_tables import epsilon_tables
@@ -17,20 +18,20 @@ from frictioncli.report.summary import (
     measurement_text,
     summary_text,
 )
+from tests.report.planted import cause, diagnosis
 
-DIAGNOSIS = {
-    "verdict": "named",
-    "causes": [{"effects": ["thermal_lag"], "experiment": "Wait."}],
-    "held_out": "day-2",
-    "gain": {
-        "basis": "new_run",
-        "rmse_before": 5.0,
-        "rmse_after": 1.0,
-        "ci95": [0.7, 0.9],
-    },
-    "detectable": {"stribeck": 0.5, "drift": None},
-    "simulation": {"rmse": 5.2},
-}
+GAIN = GainRecord(
+    basis="new_run",
+    rmse_before=5.0,
+    rmse_after=1.0,
+    reduction=0.8,
+    ci95=(0.7, 0.9),
+    noise_floor=0.5,
+)
+OPEN = cause(["run_in", "drift"], experiment="Rest a day.")
+DIAGNOSIS = diagnosis(
+    sets=[["thermal_lag"]], gain=GAIN, detectable={"stribeck": 0.5, "drift": None}, rmse=5.2
+)
 
 
 def error(results, run, phase):
@@ -85,12 +86,11 @@ def test_verdict_tells_the_causes_and_their_worth(two_runs):
     text = summary_text(two_runs, DIAGNOSIS)
     assert "The function lacks thermal lag; extended by that" in text
     assert "on day-2, which it has not seen, by 1.00 N·m instead of 5.00 N·m" in text
-    unsure = deepcopy(DIAGNOSIS)
-    unsure["gain"]["ci95"] = [-0.1, 0.9]
+    unsure = structs.replace(DIAGNOSIS, gain=structs.replace(GAIN, ci95=(-0.1, 0.9)))
     assert summary_text(two_runs, unsure).endswith("The function lacks thermal lag.")
-    unsure |= {"verdict": "unnamed", "causes": [{"effects": []}], "gain": None}
+    unsure = diagnosis(verdict="unnamed", sets=[[]], rmse=5.2)
     assert "No known effect is named, and structure is left" in summary_text(two_runs, unsure)
-    silent = unsure | {"verdict": "no_evidence", "causes": []}
+    silent = diagnosis(verdict="no_evidence", sets=[], rmse=5.2)
     assert "No cause was found" in summary_text(two_runs, silent)
 
 
@@ -161,7 +161,7 @@ def test_unknowns_are_told(correlated, without_temperature):
     parameters = dict(correlated.model.parameters) | {"beta": vague}
     told = limitations(
         replace(correlated, model=replace(correlated.model, parameters=parameters)),
-        DIAGNOSIS | {"causes": [{"effects": ["run_in", "drift"], "experiment": "Rest a day."}]},
+        structs.replace(DIAGNOSIS, causes=(OPEN,)),
     )
     assert told == [
         "β is known only roughly: 0.500 to 3.50 N·m.",

@@ -12,8 +12,8 @@ from frictioncli.design.selection import steps_of
 from frictioncli.design.settings import PlanSettings
 from frictioncli.diagnosis.data.problem import build_problems
 from frictioncli.diagnosis.diagnose import Diagnosis, diagnose_joint
-from frictioncli.diagnosis.documents.document import diagnosis_document, extended_document
 from frictioncli.diagnosis.documents.extended_model import extended_model
+from frictioncli.diagnosis.documents.from_diagnosis import diagnosis_document, extended_document
 from frictioncli.diagnosis.search.cause_search import find_causes
 from frictioncli.diagnosis.search.holdout import SLIGHT
 from frictioncli.diagnosis.settings import DiagnosisSettings

@@ -11,8 +11,7 @@ some rows have a payload and others none, those are taken as moved without paylo
 what is left empty beside filled cells. If it is wrong, it shows as misfit too.
 """
 
-from collections.abc import Mapping
-
+import msgspec
 import numpy as np
 import pandas as pd
 
@@ -88,19 +87,44 @@ def carried_load(columns: Array, gravity: Array) -> Array:
     return np.asarray(without_offset(columns) @ gravity)
 
 
-def gravity_document(gravity: Array) -> dict[str, float]:
+class GravityCoefficients(msgspec.Struct, frozen=True, kw_only=True, omit_defaults=True):
+    """Coefficients of the gravity torque, as ``extended-model.json`` states them.
+
+    Attributes
+    ----------
+    cosine, sine : float
+        Coefficients of the cosine and the sine of the joint angle. [N·m]
+    offset : float
+        Constant. [N·m]
+    cosine_per_kg, sine_per_kg : float or None
+        Coefficients of the cosine and the sine times the payload; none where no two payloads are
+        known. [N·m/kg]
+    """
+
+    cosine: float
+    sine: float
+    offset: float
+    cosine_per_kg: float | None = None
+    sine_per_kg: float | None = None
+
+    def __post_init__(self) -> None:
+        if (self.cosine_per_kg is None) != (self.sine_per_kg is None):
+            raise ValueError("expected both cosine_per_kg and sine_per_kg, or none")
+
+
+def gravity_document(gravity: Array) -> GravityCoefficients:
     """Return three or five coefficients by name."""
     names = (*NAMES, *PER_MASS)[: len(gravity)]
-    return dict(zip(names, map(float, gravity), strict=True))
+    return GravityCoefficients(**dict(zip(names, map(float, gravity), strict=True)))
 
 
-def stated_gravity(document: Mapping[str, float], count: int | None = None) -> Array:
-    """Return the coefficients that a document states.
+def stated_gravity(stated: GravityCoefficients, count: int | None = None) -> Array:
+    """Return the coefficients that a document states, shape (3,) or (5,).
 
     Parameters
     ----------
-    document : mapping of str to float
-        As from :func:`gravity_document`.
+    stated : GravityCoefficients
+        The coefficients.
     count : int, optional
         How many are wanted; a document without payloads then changes nothing per mass. Else as many
         as are stated.
@@ -110,8 +134,10 @@ def stated_gravity(document: Mapping[str, float], count: int | None = None) -> A
     TableError
         If the document states coefficients of payloads and the rows have none.
     """
-    names = NAMES + PER_MASS if PER_MASS[0] in document else NAMES
-    found = np.array([float(document[name]) for name in names])
+    coefficients = [stated.cosine, stated.sine, stated.offset]
+    if stated.cosine_per_kg is not None and stated.sine_per_kg is not None:
+        coefficients += [stated.cosine_per_kg, stated.sine_per_kg]
+    found = np.array(coefficients)
     if count is None or count == len(found):
         return found
     if count < len(found):

@@ -1,243 +1,203 @@
-"""``diagnosis.json`` and ``extended-model.json``, and the verdict in plain words."""
+"""The records of ``diagnosis.json``."""
 
-from dataclasses import asdict
-from typing import Any
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Annotated
 
-import numpy as np
+import msgspec
 
-from frictioncli.diagnosis.data.gravity import gravity_document
-from frictioncli.diagnosis.diagnose import Diagnosis
-from frictioncli.diagnosis.fit.extension import Extension
-from frictioncli.diagnosis.search.cause_search import Cause
+from frictioncli import documents
+from frictioncli.diagnosis.diagnose import Misfit
+from frictioncli.diagnosis.documents.extended_model import ParameterRecord
 from frictioncli.diagnosis.settings import DiagnosisSettings
-from frictioncli.effects.base import Parameter
-from frictioncli.model.document import PARAMETERS, FrictionModel
-from frictioncli.quantities import TORQUE
 
-_Z95 = 1.96
+Channel = Annotated[str, msgspec.Meta(pattern="^(friction|load)$")]
+"""The part of the torque in which something shows."""
 
 
-def diagnosis_document(diagnosis: Diagnosis, settings: DiagnosisSettings) -> dict[str, Any]:
-    """Return one joint's diagnosis as plain values, in the form of the contract."""
-    causes = [
-        _cause_document(diagnosis, cause, number + 1)
-        for number, cause in enumerate(diagnosis.causes)
-    ]
-    if diagnosis.structure is not None:
-        causes.append(_unnamed_document(diagnosis))
-    gain = diagnosis.gain
-    return {
-        "joint": diagnosis.joint,
-        "verdict": diagnosis.verdict,
-        "causes": causes,
-        "visible": [
-            {"effects": list(cause.effects), "size": cause.size, "p_value": cause.judged.p_value}
-            for cause in diagnosis.visible
-        ],
-        "gain": None
-        if gain is None
-        else {
-            "basis": gain.basis,
-            "rmse_before": gain.before,
-            "rmse_after": gain.after,
-            "reduction": gain.reduction,
-            "ci95": list(gain.interval),
-            "noise_floor": gain.floor,
-        },
-        "detectable": diagnosis.detectable,
-        "simulation": {
-            "rmse": diagnosis.rmse,
-            "worst": [asdict(place) for place in diagnosis.worst],
-        },
-        "ramps": _ramps_document(diagnosis),
-        "torque_unit": diagnosis.torque_unit,
-        "runs": list(diagnosis.runs),
-        "held_out": diagnosis.held_out,
-        "settings": asdict(settings),
-    }
+class CauseRecord(msgspec.Struct, frozen=True, kw_only=True):
+    """A cause of what the simulated torque misses.
+
+    Attributes
+    ----------
+    effects : tuple of str
+        The credible set: effects that these data cannot tell apart; empty for structure that no
+        effect of the catalogue explains.
+    probabilities : mapping of str to float
+        Probability of each effect. [1]
+    channel : {"friction", "load"}
+        The part of the torque in which it shows.
+    claim, equation : str
+        The cause in words and in symbols.
+    parameters : mapping of str to ParameterRecord
+        Its shape parameters and coefficients.
+    size : float
+        RMS in these data. [torque unit]
+    p_value : float
+        Probability that noise alone gives as much, corrected for the number of candidates. [1]
+    seen_in : str
+        The quantity against which it shows best.
+    figure : str or None
+        Name of its figure in the report.
+    experiment : str
+        What to measure next.
+    """
+
+    effects: tuple[str, ...]
+    probabilities: Mapping[str, float]
+    channel: Channel
+    claim: str
+    equation: str
+    parameters: Mapping[str, ParameterRecord]
+    size: float
+    p_value: float
+    seen_in: str
+    figure: str | None
+    experiment: str
 
 
-def _ramps_document(diagnosis: Diagnosis) -> dict[str, Any] | None:
-    """Return what was measured outside the constant-velocity parts, if the log tells."""
-    said = diagnosis.ramps
-    if said is None:
-        return None
-    return {
-        "inertia": {
-            "estimate": said.inertia.value,
-            "ci95": [said.inertia.low, said.inertia.high],
-            "unit": f"{diagnosis.torque_unit}/(deg/s²)",
-        },
-        "rmse_before": said.rms_before,
-        "rmse_after": said.rms_after,
-        "log_odds_reversal_transient": said.log_odds,
-        "moves": said.moves,
-    }
+class VisibleRecord(msgspec.Struct, frozen=True, kw_only=True):
+    """A cause that stands out of the noise, but does not improve the extended model.
+
+    Attributes
+    ----------
+    effects : tuple of str
+        The credible set.
+    size : float
+        RMS in these data. [torque unit]
+    p_value : float
+        Probability that noise alone gives as much. [1]
+    """
+
+    effects: tuple[str, ...]
+    size: float
+    p_value: float
 
 
-def extended_document(diagnosis: Diagnosis, model: FrictionModel) -> dict[str, Any]:
-    """Return the base model with the causes found, refitted, as plain values."""
-    document = asdict(model)
-    document["effects"] = []
-    extension = diagnosis.extension
-    if extension is None:
-        return document
-    base = diagnosis.base.parameters
-    document["linear_about"] = {name: float(getattr(base, name)) for name in PARAMETERS}
-    for name, change, error in zip(
-        extension.names, extension.changes, extension.errors, strict=False
-    ):
-        value = getattr(base, name) + float(change)
-        document["parameters"][name] |= {
-            "estimate": value,
-            "ci95": [value - _Z95 * float(error), value + _Z95 * float(error)],
-        }
-    document["gravity_about"] = gravity_document(diagnosis.base.gravity)
-    document["gravity"] = gravity_document(extension.gravity)
-    document["effects"] = [
-        {
-            "name": one.effect.name,
-            "equation": one.effect.equation,
-            "channel": one.effect.channel,
-            "shape": one.shape,
-            "coefficients": _coefficients(extension, number, diagnosis.torque_unit),
-        }
-        for number, one in enumerate(extension.effects)
-    ]
-    return document
+class GainRecord(msgspec.Struct, frozen=True, kw_only=True):
+    """How much less the extended model misses the torque.
+
+    Attributes
+    ----------
+    basis : {"new_run", "within_run"}
+        Whether it was measured on a run that the diagnosis has not used.
+    rmse_before, rmse_after : float
+        RMS misfit of the base model and of the extended model. [torque unit]
+    reduction : float
+        1 - rmse_after / rmse_before. [1]
+    ci95 : (float, float)
+        95 % confidence interval of the reduction. [1]
+    noise_floor : float
+        RMS of the noise, which no model can predict. [torque unit]
+    """
+
+    basis: str
+    rmse_before: float
+    rmse_after: float
+    reduction: float
+    ci95: tuple[float, float]
+    noise_floor: float
 
 
-def verdict_text(diagnosis: Diagnosis) -> str:
-    """Return what is wrong, where, why we think so, what it is worth, what to measure next."""
-    unit = diagnosis.torque_unit
-    lines = [
-        f"joint {diagnosis.joint}: {diagnosis.verdict}; the simulated torque misses the measured"
-        f" one by {diagnosis.rmse:.3g} {unit} (RMS)"
-    ]
-    for cause in diagnosis.causes:
-        effect = cause.score.effect
-        shares = ", ".join(
-            f"{name} {cause.probabilities.get(name, 0.0):.0%}" for name in cause.effects
-        )
-        lines.append(
-            f"  {' or '.join(cause.effects)} ({shares}): {effect.summary} {cause.size:.2g} {unit}"
-            f" RMS in the {effect.channel}, chance {cause.judged.p_value:.1g}"
-        )
-        lines.append(f"    seen: {effect.signature.claim}")
-        lines.append(f"    next: {effect.experiment}")
-    if diagnosis.structure is not None:
-        left = diagnosis.structure
-        lines.append(
-            f"  structure that no effect of the catalogue explains: along {left.axis}, in the"
-            f" {left.channel}, {left.size:.2g} {unit} RMS, chance {left.p_value:.1g}"
-        )
-    for cause in diagnosis.visible:
-        lines.append(
-            f"  {' or '.join(cause.effects)}: stands out of the noise ({cause.size:.2g} {unit} RMS,"
-            f" chance {cause.judged.p_value:.1g}), but is not worth modelling"
-        )
-    if not diagnosis.causes and diagnosis.structure is None:
-        lines.append(f"  no cause found; {_silence(diagnosis)}")
-    if diagnosis.gain is not None:
-        lines.append(f"  {_gain_text(diagnosis)}")
-    return "\n".join(lines)
+class SimulationRecord(msgspec.Struct, frozen=True, kw_only=True):
+    """What the simulated torque of the base model misses.
+
+    Attributes
+    ----------
+    rmse : float
+        RMS misfit. [torque unit]
+    worst : tuple of Misfit
+        Where it misses most.
+    """
+
+    rmse: float
+    worst: tuple[Misfit, ...] = ()
 
 
-def _gain_text(diagnosis: Diagnosis) -> str:
-    gain, unit = diagnosis.gain, diagnosis.torque_unit
-    assert gain is not None  # only asked where something was found
-    where = (
-        f"on run {diagnosis.held_out}, new to the extension"
-        if gain.basis == "new_run"
-        else "within the same run, which flatters"
-    )
-    return (
-        f"extended model: {gain.before:.3g} -> {gain.after:.3g} {unit} {where}, a gain of"
-        f" {gain.reduction:.0%} ({gain.interval[0]:.0%} to {gain.interval[1]:.0%}); noise floor"
-        f" {gain.floor:.2g} {unit}"
-    )
+class RampsRecord(msgspec.Struct, frozen=True, kw_only=True):
+    """What the ramps of the moves show.
+
+    Attributes
+    ----------
+    inertia : ParameterRecord
+        Inertia.
+    rmse_before, rmse_after : float
+        RMS misfit of the ramps without and with inertia and transient. [torque unit]
+    log_odds_reversal_transient : float
+        Natural logarithm of the odds of a transient after reversals. [1]
+    moves : int
+        Moves that begin with a reversal.
+    """
+
+    inertia: ParameterRecord
+    rmse_before: float
+    rmse_after: float
+    log_odds_reversal_transient: float
+    moves: int
 
 
-def _silence(diagnosis: Diagnosis) -> str:
-    sizes = [(size, name) for name, size in diagnosis.detectable.items() if size is not None]
-    if not sizes:
-        return "the data can show none of the effects"
-    least, most = min(sizes), max(sizes)
-    return (
-        f"an effect would have been found four times in five from {least[0]:.2g}"
-        f" ({least[1]}) to {most[0]:.2g} {diagnosis.torque_unit} RMS ({most[1]})"
-    )
+class DiagnosisDocument(msgspec.Struct, frozen=True, kw_only=True):
+    """One joint of ``diagnosis.json``.
+
+    Attributes
+    ----------
+    joint : int
+        Joint number, from 1.
+    verdict : {"no_evidence", "named", "ambiguous", "unnamed"}
+        Whether all causes have one name, several, or none.
+    causes : tuple of CauseRecord
+        The causes, strongest first; structure without a name is the last.
+    visible : tuple of VisibleRecord
+        Causes that do not improve the extended model.
+    gain : GainRecord or None
+        How much less the extended model misses; none without causes.
+    detectable : mapping of str to (float or None)
+        Smallest RMS of each effect that is found four times in five; none where these data cannot
+        show it. [torque unit]
+    simulation : SimulationRecord
+        What the base model misses.
+    ramps : RampsRecord or None
+        What the ramps show; none where the log has no ramps.
+    torque_unit : str
+        Unit of torque.
+    runs : tuple of str
+        Runs that the diagnosis has used.
+    held_out : str or None
+        The run that was kept for the gain.
+    settings : DiagnosisSettings
+        Settings of the diagnosis.
+    """
+
+    joint: int
+    verdict: str
+    causes: tuple[CauseRecord, ...]
+    visible: tuple[VisibleRecord, ...] = ()
+    gain: GainRecord | None
+    detectable: Mapping[str, float | None]
+    simulation: SimulationRecord
+    ramps: RampsRecord | None = None
+    torque_unit: str
+    runs: tuple[str, ...]
+    held_out: str | None
+    settings: DiagnosisSettings
+
+    @property
+    def named_causes(self) -> tuple[CauseRecord, ...]:
+        """The causes that effects of the catalogue explain, in the order of the extended model."""
+        return tuple(cause for cause in self.causes if cause.effects)
 
 
-def _cause_document(diagnosis: Diagnosis, cause: Cause, number: int) -> dict[str, Any]:
-    found = cause.score
-    effect = found.effect
-    extension = diagnosis.extension
-    assert extension is not None  # there is one wherever there is a cause
-    return {
-        "effects": list(cause.effects),
-        "probabilities": cause.probabilities,
-        "channel": effect.channel,
-        "claim": effect.signature.claim,
-        "equation": effect.equation,
-        "parameters": _shapes(extension, number - 1)
-        | _coefficients(extension, number - 1, diagnosis.torque_unit),
-        "size": cause.size,
-        "p_value": cause.judged.p_value,
-        "seen_in": effect.signature.axis,
-        "figure": f"diagnosis-{number}.svg",
-        "experiment": effect.experiment,
-    }
+def read_diagnoses(path: Path) -> dict[int, DiagnosisDocument]:
+    """Return the diagnosis of each joint, by number.
 
+    Parameters
+    ----------
+    path : Path
+        ``diagnosis.json``.
 
-def _unnamed_document(diagnosis: Diagnosis) -> dict[str, Any]:
-    left = diagnosis.structure
-    assert left is not None  # only asked where structure is left
-    return {
-        "effects": [],
-        "probabilities": {},
-        "channel": left.channel,
-        "claim": f"Residuals of the {left.channel} have structure along {left.axis}.",
-        "equation": "",
-        "parameters": {},
-        "size": left.size,
-        "p_value": left.p_value,
-        "seen_in": left.axis,
-        "figure": None,
-        "experiment": f"Measure more values of {left.axis}, in random order, on another day.",
-    }
-
-
-def _coefficients(extension: Extension, number: int, unit: str) -> dict[str, dict[str, Any]]:
-    start = len(extension.names) + len(extension.gravity)
-    start += sum(len(one.effect.coefficients) for one in extension.effects[:number])
-    one = extension.effects[number]
-    errors = extension.errors[start : start + len(one.coefficients)]
-    return {
-        parameter.name: _entry(parameter, value, error, unit)
-        for parameter, value, error in zip(
-            one.effect.coefficients, one.coefficients, errors, strict=True
-        )
-    }
-
-
-def _entry(parameter: Parameter, value: float, error: float, unit: str) -> dict[str, Any]:
-    return {
-        "estimate": float(value),
-        "ci95": [float(value - _Z95 * error), float(value + _Z95 * error)],
-        "unit": parameter.unit.replace(TORQUE, unit),
-    }
-
-
-def _shapes(extension: Extension, number: int) -> dict[str, dict[str, Any]]:
-    """Return an effect's shape parameters; what the data cannot tell spans its whole range."""
-    start = sum(len(one.effect.shape) for one in extension.effects[:number])
-    found = {}
-    for axis, error in zip(
-        extension.effects[number].effect.shape, extension.shape_errors[start:], strict=False
-    ):
-        value = extension.effects[number].shape[axis.name]
-        reach = _Z95 * float(error) if error > 0 else np.inf
-        interval = [max(value - reach, axis.lower), min(value + reach, axis.upper)]
-        found[axis.name] = {"estimate": value, "ci95": interval, "unit": axis.unit}
-    return found
+    Raises
+    ------
+    TableError
+        If the file is missing or damaged.
+    """
+    return {one.joint: one for one in documents.read_joints(path, DiagnosisDocument, "diagnose")}

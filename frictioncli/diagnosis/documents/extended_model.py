@@ -1,23 +1,24 @@
 """The extended model as ``extended-model.json`` holds it: read once, evaluated in one place."""
 
-import json
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, TypeVar
 
+import msgspec
 import numpy as np
+from msgspec import UNSET, UnsetType
 
+from frictioncli import documents
 from frictioncli.arrays import Array
-from frictioncli.diagnosis.data.gravity import stated_gravity
+from frictioncli.diagnosis.data.gravity import GravityCoefficients, stated_gravity
 from frictioncli.diagnosis.data.problem import Problem
 from frictioncli.effects import BY_NAME
 from frictioncli.effects.base import Effect
 from frictioncli.errors import TableError
-from frictioncli.model.document import PARAMETERS
+from frictioncli.model.document import FrictionModel
 from frictioncli.model.friction import FrictionParameters
 
-Part = TypeVar("Part")
+_NO_GRAVITY = GravityCoefficients(cosine=0.0, sine=0.0, offset=0.0)
 
 
 @dataclass(frozen=True, slots=True)
@@ -42,29 +43,108 @@ class FittedEffect:
     coefficients: Array
 
     @classmethod
-    def of(cls, document: Mapping[str, Any]) -> "FittedEffect":
-        """Return the effect that a document states, which is one of the catalogue.
+    def of(
+        cls, name: str, shape: Mapping[str, float], coefficients: Mapping[str, float]
+    ) -> "FittedEffect":
+        """Return an effect of the catalogue with stated parameters.
+
+        Parameters
+        ----------
+        name : str
+            Name of the effect.
+        shape : mapping of str to float
+            Its shape parameters.
+        coefficients : mapping of str to float
+            Its coefficients.
 
         Raises
         ------
         TableError
-            If its shape has other parameters than the catalogue's, as of another version.
+            If the catalogue does not have it, or with other parameters, as of another version.
         """
-        effect = BY_NAME[document["name"]]
-        shape = {name: float(value) for name, value in document["shape"].items()}
+        if name not in BY_NAME:
+            raise TableError(f"unknown effects {name}")
+        effect = BY_NAME[name]
         known = {axis.name for axis in effect.shape}
         if set(shape) != known:
             raise TableError(
-                f"{effect.name} has the shape parameters {sorted(shape)}, expected {sorted(known)}"
+                f"{name} has the shape parameters {sorted(shape)}, expected {sorted(known)}"
             )
-        stated = [document["coefficients"][parameter.name] for parameter in effect.coefficients]
-        coefficients = np.array([float(coefficient["estimate"]) for coefficient in stated])
-        return cls(effect=effect, shape=shape, coefficients=coefficients)
+        missing = [one.name for one in effect.coefficients if one.name not in coefficients]
+        if missing:
+            raise TableError(f"{name} lacks the coefficients {missing}")
+        values = np.array([coefficients[one.name] for one in effect.coefficients])
+        return cls(effect=effect, shape=shape, coefficients=values)
 
     def at(self, problem: Problem) -> Term:
         """Return what it adds to a problem's rows."""
         basis = problem.basis(self.effect, self.shape)
         return Term(self.effect, basis.friction @ self.coefficients, basis.load @ self.coefficients)
+
+
+class ParameterRecord(msgspec.Struct, frozen=True, kw_only=True):
+    """A fitted parameter.
+
+    Attributes
+    ----------
+    estimate : float
+        Its value. [unit]
+    ci95 : (float, float) or None
+        95 % confidence interval. [unit]
+    unit : str
+        Its unit.
+    """
+
+    estimate: float
+    ci95: tuple[float, float] | None
+    unit: str
+
+
+class EffectRecord(msgspec.Struct, frozen=True, kw_only=True):
+    """An effect of the extended model.
+
+    Attributes
+    ----------
+    name, equation : str
+        Its name in the catalogue, and its equation.
+    channel : {"friction", "load"}
+        The torque that it adds to.
+    shape : mapping of str to float
+        Its shape parameters, in the units of the catalogue.
+    coefficients : mapping of str to ParameterRecord
+        Its coefficients.
+    """
+
+    name: str
+    equation: str
+    channel: str
+    shape: Mapping[str, float]
+    coefficients: Mapping[str, ParameterRecord]
+
+    def fitted(self) -> FittedEffect:
+        """Return the effect of the catalogue with these parameters."""
+        estimates = {name: one.estimate for name, one in self.coefficients.items()}
+        return FittedEffect.of(self.name, self.shape, estimates)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ExtendedDocument(FrictionModel):
+    """One joint of ``extended-model.json``: the model with the effects found, all refitted.
+
+    Attributes
+    ----------
+    effects : tuple of EffectRecord
+        The effects, in the order of the causes. Without any the following fields are absent.
+    linear_about : FrictionParameters
+        Parameters of the base about which the extended model is linear.
+    gravity_about, gravity : GravityCoefficients
+        Gravity of the base, and as refitted.
+    """
+
+    effects: tuple[EffectRecord, ...]
+    linear_about: FrictionParameters | UnsetType = UNSET
+    gravity_about: GravityCoefficients | UnsetType = UNSET
+    gravity: GravityCoefficients | UnsetType = UNSET
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -88,8 +168,8 @@ class ExtendedModel:
         Parameters of friction as refitted.
     about : FrictionParameters
         The base's, about which it is linear.
-    gravity, gravity_about : mapping of str to float
-        Coefficients of gravity as refitted, and the base's; empty without effects.
+    gravity, gravity_about : GravityCoefficients
+        Gravity as refitted, and the base's; not used without effects.
     effects : tuple of FittedEffect
         The effects, in the order of the causes; without any it adds nothing to its base.
     """
@@ -97,8 +177,8 @@ class ExtendedModel:
     temperature: str
     parameters: FrictionParameters
     about: FrictionParameters
-    gravity: Mapping[str, float]
-    gravity_about: Mapping[str, float]
+    gravity: GravityCoefficients
+    gravity_about: GravityCoefficients
     effects: tuple[FittedEffect, ...]
 
     def beyond(self, problem: Problem) -> Beyond:
@@ -127,67 +207,43 @@ class ExtendedModel:
 
 
 def read_extended(path: Path) -> dict[int, ExtendedModel]:
-    """Return the extended model of each joint.
+    """Return the extended model of each joint, by number.
 
     Raises
     ------
     TableError
         If the file is missing, damaged, or names an effect that the catalogue does not have.
     """
-    return read_by_joint(path, extended_model)
+    stated = documents.read_joints(path, ExtendedDocument, "diagnose")
+    with documents.locate_faults(path, "diagnose"):
+        return {one.joint: extended_model(one) for one in stated}
 
 
-def extended_model(document: Mapping[str, Any]) -> ExtendedModel:
-    """Return a joint's extended model from its part of ``extended-model.json``.
+def extended_model(document: ExtendedDocument) -> ExtendedModel:
+    """Return a joint's extended model from its document.
 
     Raises
     ------
     TableError
-        If it names an effect that the catalogue does not have, or with another shape.
+        If it names an effect that the catalogue does not have, or with other parameters, or lacks
+        what the effects are refitted with.
     """
-    entries = document["effects"]
-    unknown = sorted({entry["name"] for entry in entries} - set(BY_NAME))
-    if unknown:
-        raise TableError(f"unknown effects {', '.join(unknown)}")
-    stated = {name: float(document["parameters"][name]["estimate"]) for name in PARAMETERS}
-    about = {name: float(document["linear_about"][name]) for name in PARAMETERS if entries}
-    for name in ("gravity", "gravity_about"):
-        if entries:
-            stated_gravity(document[name])
+    if not document.effects:
+        return ExtendedModel(
+            temperature=document.temperature,
+            parameters=document.friction,
+            about=document.friction,
+            gravity=_NO_GRAVITY,
+            gravity_about=_NO_GRAVITY,
+            effects=(),
+        )
+    if not (document.linear_about and document.gravity and document.gravity_about):
+        raise TableError("expected linear_about, gravity and gravity_about beside effects")
     return ExtendedModel(
-        temperature=str(document["temperature"]),
-        parameters=FrictionParameters(**stated),
-        about=FrictionParameters(**(about or stated)),
-        gravity=document["gravity"] if entries else {},
-        gravity_about=document["gravity_about"] if entries else {},
-        effects=tuple(FittedEffect.of(entry) for entry in entries),
+        temperature=document.temperature,
+        parameters=document.friction,
+        about=document.linear_about,
+        gravity=document.gravity,
+        gravity_about=document.gravity_about,
+        effects=tuple(one.fitted() for one in document.effects),
     )
-
-
-def read_by_joint(path: Path, take: Callable[[Mapping[str, Any]], Part]) -> dict[int, Part]:
-    """Return what a file of the diagnosis holds of each joint.
-
-    Parameters
-    ----------
-    path : Path
-        ``diagnosis.json`` or ``extended-model.json``.
-    take : callable
-        Makes a joint's part into what is wanted.
-
-    Raises
-    ------
-    TableError
-        If the file is missing, or not of this program's form.
-    """
-    if not path.exists():
-        raise TableError(f"{path} is missing; run 'frictioncli diagnose' first")
-    try:
-        whole = json.loads(path.read_text(encoding="utf-8"))
-        parts = whole.get("joints", {"": whole}).values()
-        return {int(part["joint"]): take(part) for part in parts}
-    except TableError as error:
-        raise TableError(f"{path}: {error}; run 'frictioncli diagnose' again") from error
-    except (ValueError, KeyError, TypeError, AttributeError) as error:
-        raise TableError(
-            f"{path}: is not of this program's form ({error!r}); run 'frictioncli diagnose' again"
-        ) from error

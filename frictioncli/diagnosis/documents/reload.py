@@ -3,19 +3,18 @@
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import pandas as pd
 
 from frictioncli.arrays import Array
 from frictioncli.diagnosis.data.problem import Problem, build_problems
-from frictioncli.diagnosis.documents.extended_model import (
-    ExtendedModel,
-    Term,
-    read_by_joint,
-    read_extended,
+from frictioncli.diagnosis.documents.document import (
+    CauseRecord,
+    DiagnosisDocument,
+    read_diagnoses,
 )
+from frictioncli.diagnosis.documents.extended_model import ExtendedModel, Term, read_extended
 from frictioncli.errors import TableError
 from frictioncli.workfiles import DIAGNOSIS, EXTENDED
 
@@ -66,7 +65,7 @@ class Reloaded:
 
     Attributes
     ----------
-    document : dict
+    document : DiagnosisDocument
         The joint's part of ``diagnosis.json``.
     seen : Misfits
         The runs that the diagnosis has learned from.
@@ -74,7 +73,7 @@ class Reloaded:
         The run that was kept out of it.
     """
 
-    document: Mapping[str, Any]
+    document: DiagnosisDocument
     seen: Misfits
     new: Misfits | None
 
@@ -84,12 +83,12 @@ class Reloaded:
         return self.new or self.seen
 
     @property
-    def causes(self) -> list[Mapping[str, Any]]:
+    def causes(self) -> tuple[CauseRecord, ...]:
         """Causes that effects of the catalogue stand for, in the order of the terms."""
-        return [cause for cause in self.document["causes"] if cause["effects"]]
+        return self.document.named_causes
 
 
-def read_documents(work: Path) -> dict[int, tuple[Mapping[str, Any], ExtendedModel]]:
+def read_documents(work: Path) -> dict[int, tuple[DiagnosisDocument, ExtendedModel]]:
     """Return each joint's part of ``diagnosis.json``, and its extended model.
 
     Without the first there are none.
@@ -101,10 +100,10 @@ def read_documents(work: Path) -> dict[int, tuple[Mapping[str, Any], ExtendedMod
     """
     if not (work / DIAGNOSIS).exists():
         return {}
-    diagnoses = read_by_joint(work / DIAGNOSIS, _looked_through)
+    diagnoses = read_diagnoses(work / DIAGNOSIS)
     models = read_extended(work / EXTENDED)
     for joint, document in diagnoses.items():
-        named = sum(bool(cause["effects"]) for cause in document["causes"])
+        named = len(document.named_causes)
         effects = models[joint].effects if joint in models else ()
         if joint not in models or len(effects) != named:
             raise TableError(
@@ -114,38 +113,25 @@ def read_documents(work: Path) -> dict[int, tuple[Mapping[str, Any], ExtendedMod
     return {joint: (document, models[joint]) for joint, document in diagnoses.items()}
 
 
-def _looked_through(part: Mapping[str, Any]) -> Mapping[str, Any]:
-    """Touch what every reader relies on, so that a damaged file is found here."""
-    for cause in part["causes"]:
-        for key in ("effects", "probabilities", "channel", "size", "p_value", "seen_in", "claim"):
-            cause[key]
-        for key in ("equation", "experiment", "parameters"):
-            cause[key]
-    for key in ("verdict", "gain", "detectable", "runs", "held_out"):
-        part[key]
-    float(part["simulation"]["rmse"])
-    return part
-
-
-def is_current(document: Mapping[str, Any], torques: pd.DataFrame) -> bool:
+def is_current(document: DiagnosisDocument, torques: pd.DataFrame) -> bool:
     """Return whether a joint's diagnosis is of the runs that its torques have now."""
-    known = {*document["runs"], *filter(None, [document["held_out"]])}
+    known = {*document.runs, *filter(None, [document.held_out])}
     return known == {str(run) for run in torques["run"].unique()}
 
 
-def reload(torques: pd.DataFrame, document: Mapping[str, Any], extended: ExtendedModel) -> Reloaded:
+def reload(torques: pd.DataFrame, document: DiagnosisDocument, extended: ExtendedModel) -> Reloaded:
     """Rebuild what a diagnosis has seen.
 
     Parameters
     ----------
     torques : DataFrame
         Rows of :data:`frictioncli.schemas.TORQUES` of a single joint.
-    document : dict
+    document : DiagnosisDocument
         The joint's part of ``diagnosis.json``.
     extended : ExtendedModel
         Its extended model.
     """
-    seen, new = build_problems(torques, extended.temperature, document["held_out"])
+    seen, new = build_problems(torques, extended.temperature, document.held_out)
     return Reloaded(
         document=document,
         seen=misfits(seen, extended),
