@@ -1,1 +1,1 @@
-"""The same joint on different days: what changed, how sure that is, and what it looks like."""
+"""Comparison of the runs of one joint on different days: changes, intervals and causes."""

@@ -1,10 +1,10 @@
-"""Which entry of the catalogue the change looks like; what cannot be told apart is said together.
+"""Attribution of a change between runs to effects of the catalogue.
 
-Over months a run is a point: each effect that changes friction from run to run has a course over
-the runs. Courses are weighed by the marginal likelihood of the levels, averaged over their shapes;
-probabilities and the credible set are made of that as ``diagnose`` makes them. The load torque is
-the witness: if it changed by the same share as friction, the scale of the logged torque did, and if
-it changed alone, the payload.
+Over months each run is one point. An effect that changes friction from run to run has time courses
+over the runs. They are compared by the marginal likelihood of the levels, averaged over the time
+courses of each effect; probabilities and credible set follow as in ``diagnose``. The load torque is
+the second channel: if it changed by the same share as friction, the scale of the logged torque
+changed; if it changed alone, the payload did.
 """
 
 from collections.abc import Iterator
@@ -13,13 +13,14 @@ from dataclasses import dataclass
 import numpy as np
 
 from frictioncli.arrays import Array
-from frictioncli.comparison.day_to_day import LevelEstimate, Scatter
+from frictioncli.comparison.day_to_day import LevelEstimate, LevelModel
 from frictioncli.diagnosis.noise.significance import credible_set, probabilities
 
-_RATES = (1.0, 2.0, 4.0)
-"""Pace of running in: 63 % of it are over after the whole time divided by this."""
+_RUN_IN_RATES = (1.0, 2.0, 4.0)
+"""Rates of running in, as multiples of one over the whole time."""
 
 _ALPHA = 0.05
+"""Probability of a false alarm per comparison."""
 
 _CLAIMS = {
     (
@@ -34,145 +35,167 @@ _CLAIMS = {
         "Friction and load torque changed by the same share: the scale of the logged torque did."
     ),
 }
-"""What an effect is when runs are its points."""
+"""Claim by effect and channel."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class TimeCourse:
-    """How a change may go on from the first run to the last.
+    """Time course of a change over the runs.
 
     Attributes
     ----------
     effect : str
-        Name in the catalogue.
+        Name of the effect in the catalogue.
     values : ndarray, shape (runs,)
-        From 0 at the first run to 1 at the last.
-    moment : int or None
-        Number of the first run after a change that happens at once.
-    falls : bool
-        Whether only a fall of friction can go that way.
+        Share of the change that has happened: 0 at the first run, 1 at the last.
+    change_point : int or None
+        Number of the first run after a step change.
+    only_decreasing : bool
+        Whether friction can only decrease in this way.
     """
 
     effect: str
     values: Array
-    moment: int | None = None
-    falls: bool = False
+    change_point: int | None = None
+    only_decreasing: bool = False
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class CauseOfChange:
-    """A cause of a change, or several that these runs cannot tell apart.
+    """Cause of a change: one effect, or several that these runs cannot distinguish.
 
     Attributes
     ----------
     effects : tuple of str
-        The credible set, most probable first.
+        Credible set, most probable first.
     probabilities : dict of str to float
-        Of all that were weighed.
+        Probabilities of all effects that were compared.
     channel : {"friction", "load"}
-        Where it shows.
+        Channel that changed.
     change : LevelEstimate
-        From the first run to the last, by the most probable course. [%]
-    moment : int or None
-        Number of the first run after the change, if it happened at once.
+        Change from the first run to the last, by the most probable time course [%].
+    change_point : int or None
+        Number of the first run after the change, if it is a step change.
     """
 
     effects: tuple[str, ...]
     probabilities: dict[str, float]
     channel: str
     change: LevelEstimate
-    moment: int | None
+    change_point: int | None
 
     @property
     def claim(self) -> str:
-        """What the most probable effect says of the runs."""
+        """What the most probable effect means for the runs."""
         return _CLAIMS[self.effects[0], self.channel]
 
 
-def courses(time: Array) -> Iterator[TimeCourse]:
-    """Yield the courses that a change may take over runs at these times.
+def time_courses(time: Array) -> Iterator[TimeCourse]:
+    """Yield the time courses that a change may have.
 
     Parameters
     ----------
     time : ndarray, shape (runs,)
-        Of each run, growing. Any unit.
+        Time of each run, increasing [any unit].
+
+    Yields
+    ------
+    TimeCourse
+        Drift, each possible step change, and running in at several rates.
+
+    Examples
+    --------
+    >>> [course.effect for course in time_courses(np.array([0.0, 7.0]))]
+    ['drift', 'step_change', 'run_in', 'run_in', 'run_in']
     """
     share = (time - time[0]) / (time[-1] - time[0])
     yield TimeCourse(effect="drift", values=share)
-    for moment in range(1, len(time)):
-        after = (np.arange(len(time)) >= moment).astype(float)
-        yield TimeCourse(effect="step_change", values=after, moment=moment)
-    for rate in _RATES:
+    for number in range(1, len(time)):
+        after = (np.arange(len(time)) >= number).astype(float)
+        yield TimeCourse(effect="step_change", values=after, change_point=number)
+    for rate in _RUN_IN_RATES:
         values = np.expm1(-rate * share) / np.expm1(-rate)
-        yield TimeCourse(effect="run_in", values=values, falls=True)
+        yield TimeCourse(effect="run_in", values=values, only_decreasing=True)
 
 
-def cause_of(levels: Array, scatter: Scatter, time: Array, channel: str) -> CauseOfChange:
-    """Return the cause that the course of levels over time tells.
+def cause_of(levels: Array, model: LevelModel, time: Array, channel: str) -> CauseOfChange:
+    """Return the most credible cause of a change of levels.
 
     Parameters
     ----------
     levels : ndarray, shape (runs,)
-        Of friction or of load torque. [%]
-    scatter : Scatter
-        What they do without a change.
+        Levels of friction or of the load torque [%].
+    model : LevelModel
+        Covariance of levels without a change.
     time : ndarray, shape (runs,)
-        Of each run.
+        Time of each run, increasing.
     channel : {"friction", "load"}
-        Of a load, what steps is the payload, and what drifts is named as in friction.
+        A step of the load torque is a change of payload.
+
+    Returns
+    -------
+    CauseOfChange
+        Credible set of effects and the change.
     """
-    tried: dict[str, list[tuple[float, TimeCourse, LevelEstimate]]] = {}
-    for course in courses(time):
-        fitted = scatter.fitted(levels, np.column_stack([np.ones_like(time), course.values]))
-        change = fitted.estimate(np.array([0.0, 1.0]))
-        if course.falls and (change.value >= 0 or channel == "load"):
+    fits: dict[str, list[tuple[float, TimeCourse, LevelEstimate]]] = {}
+    for course in time_courses(time):
+        fit = model.fit(levels, np.column_stack([np.ones_like(time), course.values]))
+        change = fit.estimate(np.array([0.0, 1.0]))
+        if course.only_decreasing and (change.value >= 0 or channel == "load"):
             continue
-        name = "payload_change" if channel == "load" and course.moment else course.effect
-        tried.setdefault(name, []).append((fitted.likelihood, course, change))
+        name = "payload_change" if channel == "load" and course.change_point else course.effect
+        fits.setdefault(name, []).append((fit.log_marginal_likelihood, course, change))
     evidence = {
         name: float(np.logaddexp.reduce([one for one, _, _ in own]) - np.log(len(own)))
-        for name, own in tried.items()
+        for name, own in fits.items()
     }
     share = probabilities(evidence)
-    chosen = credible_set(share)
-    _, course, change = max(tried[chosen[0]], key=lambda entry: entry[0])
+    credible = credible_set(share)
+    _, course, change = max(fits[credible[0]], key=lambda entry: entry[0])
+    is_step = credible == (course.effect,) or channel == "load"
     return CauseOfChange(
-        effects=chosen,
+        effects=credible,
         probabilities={name: value for name, value in share.items() if value >= 1e-3},
         channel=channel,
         change=change,
-        moment=course.moment if chosen == (course.effect,) or channel == "load" else None,
+        change_point=course.change_point if is_step else None,
     )
 
 
-def with_witness(
+def reconcile_channels(
     friction: CauseOfChange | None, load: CauseOfChange | None
 ) -> tuple[CauseOfChange, ...]:
-    """Return the causes, the load torque heard: the same share in both is the scale of the torque.
+    """Return the causes of both channels; one common cause if both changed by the same share.
 
     Parameters
     ----------
     friction, load : CauseOfChange or None
-        Of each channel that changed.
+        Cause of each channel that changed.
+
+    Returns
+    -------
+    tuple of CauseOfChange
+        The scale of the torque (``torque_constant``) if the shares agree within their 95 %
+        intervals, else the causes as given.
     """
     if friction is None or load is None:
         return tuple(cause for cause in (friction, load) if cause is not None)
-    apart = abs(friction.change.value - load.change.value)
-    reach = np.hypot(
+    difference = abs(friction.change.value - load.change.value)
+    half_width = np.hypot(
         friction.change.high - friction.change.value, load.change.high - load.change.value
     )
-    if apart > reach:
+    if difference > half_width:
         return friction, load
     scale = CauseOfChange(
         effects=("torque_constant",),
         probabilities={"torque_constant": 1.0},
         channel="load",
         change=load.change,
-        moment=load.moment,
+        change_point=load.change_point,
     )
     return (scale,)
 
 
-def changed(estimate: LevelEstimate, tests: int) -> bool:
-    """Tell whether an estimate stands out of chance, with so many of them looked at."""
+def is_significant(estimate: LevelEstimate, tests: int) -> bool:
+    """Return whether an estimate differs from zero, with Bonferroni's correction for all tests."""
     return tests * estimate.p_value < _ALPHA

@@ -1,14 +1,14 @@
-"""How far the friction of the last run is from that of the runs before.
+"""Change of friction in the last run against the earlier runs.
 
-Equation (16) is fitted to all runs at once. About that fit, each run gets an offset of its own, the
-same at all speeds, loads and temperatures. The change is the offset of the last run less the mean
-of the earlier ones, by generalised least squares: runs over other temperatures or speeds are
-compared as far as the fitted parameters allow.
+Equation (16) is fitted to all runs together. In addition, each run has an offset, the same at all
+speeds, loads and temperatures. The change is the offset of the last run less the mean of the
+earlier ones, by generalised least squares: runs at other temperatures or speeds are compared as far
+as the fitted parameters allow.
 
-How far a run can be off by chance, the earlier runs tell by how they differ among themselves: the
-interval is Student's for one more run of the same kind, wider where the last one was measured under
-conditions that tell its offset less well. With a single earlier run only the noise within the two
-is known, of points, pairs and slow drift.
+The deviation that a run may have by chance is estimated from the scatter of the earlier runs: the
+interval is Student's prediction interval for one more run, wider where the conditions of the last
+run determine its offset less precisely. With a single earlier run only the noise within both runs
+is known: that of points, pairs and slow drift.
 """
 
 from dataclasses import dataclass
@@ -18,7 +18,7 @@ import pandas as pd
 from scipy import stats
 
 from frictioncli.arrays import Array
-from frictioncli.comparison.noise_averaged_fit import averaged_fit, estimable
+from frictioncli.comparison.noise_averaged_fit import is_estimable, noise_averaged_fit
 from frictioncli.logs.runs.discovery import natural_key
 from frictioncli.model.document import FrictionModel
 from frictioncli.model.equations import COEFFICIENTS, jacobian
@@ -30,14 +30,14 @@ from frictioncli.model.zero_load import temperature_of
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Change:
-    """The friction of the last run less the mean of the runs before.
+    """Friction of the last run less the mean of the earlier runs.
 
     Attributes
     ----------
     estimate : float
-        The difference, at any speed, load and temperature. [torque unit]
+        Difference, the same at any speed, load and temperature [torque unit].
     ci95 : (float, float)
-        Its 95 % confidence interval. [torque unit]
+        95 % confidence interval [torque unit].
     """
 
     estimate: float
@@ -45,14 +45,19 @@ class Change:
 
 
 def change_of_last_run(torques: pd.DataFrame, model: FrictionModel) -> Change | None:
-    """Return how far the last run is from the runs before; none where that cannot be told.
+    """Return the change of friction in the last run against the earlier runs.
 
     Parameters
     ----------
     torques : DataFrame
         Rows of :data:`frictioncli.schemas.TORQUES` of the model's joint.
     model : FrictionModel
-        Fitted to all runs.
+        Model fitted to all runs.
+
+    Returns
+    -------
+    Change or None
+        None where there is one run only, or the runs share too few conditions.
     """
     known = temperature_of(torques, model.temperature).notna()
     rows = torques[known] if known.any() else torques
@@ -66,11 +71,11 @@ def change_of_last_run(torques: pd.DataFrame, model: FrictionModel) -> Change | 
     earlier = np.delete(np.arange(len(runs)), last)
     contrast = np.full(len(runs), -1.0 / len(earlier))
     contrast[last] = 1.0
-    # columns of the design have length 1
-    size = np.sqrt(np.bincount(observed.run))
-    asked = np.zeros((1, design.shape[1]))
-    asked[0, : len(runs)] = contrast / size
-    if not estimable(design, asked):
+    # the design has columns of length 1
+    length = np.sqrt(np.bincount(observed.run))
+    contrasts = np.zeros((1, design.shape[1]))
+    contrasts[0, : len(runs)] = contrast / length
+    if not is_estimable(design, contrasts):
         return None
     residual = pair_residual(observed, model.friction)
     noises = plausible_noise(
@@ -81,7 +86,7 @@ def change_of_last_run(torques: pd.DataFrame, model: FrictionModel) -> Change | 
         bins=observed.bins,
         point=point_noise(observed, model.friction.alpha),
     )
-    offsets, covariance = averaged_fit(
+    offsets, covariance = noise_averaged_fit(
         design,
         residual,
         noises,
@@ -90,22 +95,22 @@ def change_of_last_run(torques: pd.DataFrame, model: FrictionModel) -> Change | 
         bins=observed.bins,
         count=len(runs),
     )
-    offsets, covariance = offsets / size, covariance / np.outer(size, size)
-    steps = freedom(observed, noises[0][0], design.shape[1])
+    offsets, covariance = offsets / length, covariance / np.outer(length, length)
+    degrees = freedom(observed, noises[0][0], design.shape[1])
     estimate = float(contrast @ offsets)
     variance = float(contrast @ covariance @ contrast)
     if len(earlier) > 1:
         own = covariance[np.ix_(earlier, earlier)]
-        variance = _variance_of_one_more(offsets[earlier], own, variance)
-        steps = len(earlier) - 1
-    reach = float(stats.t.ppf(0.975, steps) * np.sqrt(variance))
-    return Change(estimate=estimate, ci95=(estimate - reach, estimate + reach))
+        variance = _prediction_variance(offsets[earlier], own, variance)
+        degrees = len(earlier) - 1
+    half_width = float(stats.t.ppf(0.975, degrees) * np.sqrt(variance))
+    return Change(estimate=estimate, ci95=(estimate - half_width, estimate + half_width))
 
 
 def _design(observed: Observations, model: FrictionModel) -> Array:
-    """Return one column per run, and the derivatives by the fitted parameters but tau_c.
+    """Return one column per run and the derivatives by the fitted parameters without tau_c.
 
-    Only differences between runs have a meaning: what they have in common is tau_c.
+    The common part of all offsets is tau_c.
     """
     terms = tuple(name for name in COEFFICIENTS if model.parameters[name].ci95 is not None)
     shape = jacobian(pair_equations(observed), terms, model.friction)
@@ -116,21 +121,21 @@ def _design(observed: Observations, model: FrictionModel) -> Array:
     return np.asarray(design / np.maximum(np.linalg.norm(design, axis=0), 1e-300))
 
 
-def _variance_of_one_more(offsets: Array, covariance: Array, noise: float) -> float:
-    """Return the variance of one more run about the mean of some, as these differ. [(N·m)²].
+def _prediction_variance(offsets: Array, covariance: Array, noise: float) -> float:
+    """Return the variance of one more run about the mean of the earlier ones [(N·m)²].
 
     Parameters
     ----------
     offsets : ndarray, shape (runs,)
-        Offsets of two runs or more. [N·m]
+        Offsets of the earlier runs, two or more [N·m].
     covariance : ndarray, shape (runs, runs)
-        Of the offsets, by noise within the runs. [(N·m)²]
+        Covariance of the offsets by noise within the runs [(N·m)²].
     noise : float
-        Variance of the difference by noise within the runs. [(N·m)²]
+        Variance of the difference by noise within the runs [(N·m)²].
     """
     count = len(offsets)
-    share = 1 + 1 / count
-    seen = float(np.var(offsets, ddof=1))
-    explained = (float(np.trace(covariance)) - float(covariance.sum()) / count) / (count - 1)
-    # a run under other conditions may tell its offset less well than the earlier ones do theirs
-    return share * seen * max(1.0, noise / (share * explained))
+    factor = 1 + 1 / count
+    observed = float(np.var(offsets, ddof=1))
+    expected = (float(np.trace(covariance)) - float(covariance.sum()) / count) / (count - 1)
+    # the conditions of the last run may determine its offset less precisely than the earlier ones
+    return factor * observed * max(1.0, noise / (factor * expected))

@@ -1,40 +1,43 @@
-"""The change of friction at given temperatures and speeds."""
+"""Change of friction at reference temperatures and speeds."""
 
 from dataclasses import dataclass
 
 import numpy as np
 
 from frictioncli.arrays import Array
-from frictioncli.comparison.day_to_day import LevelEstimate, Scatter
-from frictioncli.comparison.run_levels import Levels
+from frictioncli.comparison.day_to_day import LevelEstimate, LevelModel
+from frictioncli.comparison.run_levels import RunLevels
 from frictioncli.diagnosis.data.pair_layout import speed_level
 from frictioncli.diagnosis.data.problem import Problem
 from frictioncli.model.friction import friction_torque
 from frictioncli.schemas import REFERENCE_TEMPERATURES
 
 _MOST_SPEEDS = 5
+"""Greatest number of reference speeds."""
 
-_REACHED = 0.5
-"""A temperature is measured if a run comes so near: controllers register whole degrees. [°C]"""
+_TOLERANCE = 0.5
+"""A run covers a temperature within this tolerance: controllers state whole degrees. [°C]"""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Condition:
-    """Friction at one temperature and speed, at the usual load, and how it changed.
+class ReferenceCondition:
+    """Friction at one temperature and speed, at the usual load, and its change.
 
     Attributes
     ----------
-    temperature, speed : float
-        Where. [°C], [deg/s]
+    temperature : float
+        Reference temperature [°C].
+    speed : float
+        Reference speed [deg/s].
     load : float
-        Root mean square of the load torque in the data: how the load term changed on its own is not
-        asked. [torque unit, or that of the log's load channel]
+        RMS load torque of the data; changes of the load term alone are not considered [torque unit,
+        or that of the log's load channel].
     friction : float
-        Of the model that all runs share. [torque unit]
+        Friction torque of the model that all runs share [torque unit].
     change : LevelEstimate
-        From the first run to the last. [%]
+        Change from the first run to the last [%].
     extrapolated : bool
-        Whether not all runs have measured this temperature.
+        Whether some runs did not reach this temperature.
     """
 
     temperature: float
@@ -45,57 +48,74 @@ class Condition:
     extrapolated: bool
 
 
-def changes_at(
+def changes_at_references(
     problem: Problem,
-    levels: Levels,
-    surroundings: Array,
+    levels: RunLevels,
+    ambient: Array,
     day_to_day: float,
     design: Array,
-) -> tuple[Condition, ...]:
-    """Return the change at the reference temperatures and the speeds of the data.
+) -> tuple[ReferenceCondition, ...]:
+    """Return the change at the reference temperatures and at the speeds of the data.
 
     Parameters
     ----------
     problem : Problem
         All runs.
-    levels : Levels
-        Of a constant and a viscous part.
-    surroundings : ndarray, shape (runs,)
-        Temperature around the joint. [°C]
+    levels : RunLevels
+        Levels of the constant and the viscous component.
+    ambient : ndarray, shape (runs,)
+        Ambient temperature [°C].
     day_to_day : float
-        Assumed scatter. [%]
+        Assumed day-to-day standard deviation [%].
     design : ndarray, shape (runs, 2)
-        Ones, and the course that the change takes from 0 to 1.
+        Ones, and the time course of the change from 0 to 1.
+
+    Returns
+    -------
+    tuple of ReferenceCondition
+        One per temperature and speed.
     """
     parameters = problem.parameters
     load = float(np.sqrt(np.mean(np.square(problem.table.load))))
     coldest, warmest = _common_range(problem)
-    found = []
+    conditions = []
     for temperature in REFERENCE_TEMPERATURES:
         for speed in common_speeds(problem):
             friction = float(
                 friction_torque(parameters, load=load, speed=speed, temperature=temperature)
             )
-            fall = parameters.gamma * np.exp(-parameters.delta * temperature)
-            weights = np.array([1.0, (parameters.beta + fall) * np.sqrt(speed)]) * 100 / friction
-            spread = np.kron(np.eye(len(design)), weights)
-            scatter = Scatter.of(spread @ levels.covariance @ spread.T, surroundings, day_to_day)
-            fitted = scatter.fitted(levels.coefficients @ weights, design)
-            found.append(
-                Condition(
+            decay = parameters.gamma * np.exp(-parameters.delta * temperature)
+            weights = np.array([1.0, (parameters.beta + decay) * np.sqrt(speed)]) * 100 / friction
+            per_run = np.kron(np.eye(len(design)), weights)
+            within = per_run @ levels.covariance @ per_run.T
+            model = LevelModel.of(within, ambient, day_to_day)
+            fit = model.fit(levels.coefficients @ weights, design)
+            conditions.append(
+                ReferenceCondition(
                     temperature=float(temperature),
                     speed=speed,
                     load=load,
                     friction=friction,
-                    change=fitted.estimate(np.array([0.0, 1.0])),
-                    extrapolated=not coldest - _REACHED <= temperature <= warmest + _REACHED,
+                    change=fit.estimate(np.array([0.0, 1.0])),
+                    extrapolated=not coldest - _TOLERANCE <= temperature <= warmest + _TOLERANCE,
                 )
             )
-    return tuple(found)
+    return tuple(conditions)
 
 
 def common_speeds(problem: Problem) -> list[float]:
-    """Return speeds that all runs have, at most five; the median of all where they have none."""
+    """Return up to five speeds that all runs have, or the median speed if there are none.
+
+    Parameters
+    ----------
+    problem : Problem
+        All runs.
+
+    Returns
+    -------
+    list of float
+        Speeds [deg/s].
+    """
     layout, table = problem.layout, problem.table
     speed = layout.means(table.speed[:, np.newaxis])[:, 0]
     level = speed_level(speed)
@@ -108,7 +128,7 @@ def common_speeds(problem: Problem) -> list[float]:
 
 
 def _common_range(problem: Problem) -> tuple[float, float]:
-    """Return the temperatures that all runs have reached. [°C]."""
+    """Return the temperature range that all runs cover [°C]."""
     temperature, run = problem.table.temperature, problem.table.run
-    reached = [temperature[run == number] for number in np.unique(run)]
-    return max(float(one.min()) for one in reached), min(float(one.max()) for one in reached)
+    of_runs = [temperature[run == number] for number in np.unique(run)]
+    return max(float(one.min()) for one in of_runs), min(float(one.max()) for one in of_runs)

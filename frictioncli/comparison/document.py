@@ -20,7 +20,8 @@ def comparison_document(comparison: Comparison) -> dict[str, Any]:
     comparison : Comparison
         The comparison.
     """
-    days, model = comparison.days, comparison.days.models[-1]
+    history = comparison.history
+    model = history.models[-1]
     unit = model.torque_unit
     threshold = comparison.settings.fail_above
     return {
@@ -30,7 +31,7 @@ def comparison_document(comparison: Comparison) -> dict[str, Any]:
         "torque_unit": unit,
         "load_unit": load_unit(comparison),
         "temperature": model.temperature,
-        "folders": list(days.folders),
+        "folders": list(history.folders),
         "mean_friction": {"estimate": comparison.mean_friction, "unit": unit},
         "trend": _trend(comparison),
         "last_run": None
@@ -64,10 +65,10 @@ def comparison_document(comparison: Comparison) -> dict[str, Any]:
         },
         "runs": _runs(comparison),
         "scatter": {
-            "day_to_day": comparison.scatter,
+            "day_to_day": comparison.day_to_day,
             "assumed": comparison.settings.day_to_day,
             "unit": "%",
-            "surroundings_from": days.surroundings_from,
+            "surroundings_from": history.ambient_source,
         },
         "margin": {"value": comparison.margin, "unit": "%"},
         "threshold": None
@@ -82,7 +83,7 @@ def comparison_document(comparison: Comparison) -> dict[str, Any]:
 
 def load_unit(comparison: Comparison) -> str:
     """Return the unit of the load torque: alpha is 1 over it, or torque over its square."""
-    return comparison.days.models[-1].parameters["alpha"].unit.split("(")[1].split(")")[0]
+    return comparison.history.models[-1].parameters["alpha"].unit.split("(")[1].split(")")[0]
 
 
 def _percent(estimate: LevelEstimate) -> dict[str, Any]:
@@ -99,13 +100,13 @@ def _change(comparison: Comparison, estimate: LevelEstimate) -> dict[str, Any]:
     return {
         "change": estimate.value * factor,
         "ci95": [estimate.low * factor, estimate.high * factor],
-        "unit": comparison.days.models[-1].torque_unit,
+        "unit": comparison.history.models[-1].torque_unit,
         "percent": _percent(estimate),
     }
 
 
 def _trend(comparison: Comparison) -> dict[str, Any]:
-    trend, days = comparison.trend, comparison.days
+    trend, history = comparison.trend, comparison.history
     steps = len(comparison.levels) - 1
     found = _change(comparison, trend) | {
         "per_run": {
@@ -115,8 +116,8 @@ def _trend(comparison: Comparison) -> dict[str, Any]:
         },
         "per_1000_h": None,
     }
-    if days.dated:
-        factor = _HOURS / (24 * float(days.time[-1]))
+    if history.dated:
+        factor = _HOURS / (24 * float(history.time[-1]))
         found["per_1000_h"] = {
             "estimate": trend.value * factor,
             "ci95": [trend.low * factor, trend.high * factor],
@@ -132,31 +133,33 @@ def _cause(comparison: Comparison, cause: CauseOfChange) -> dict[str, Any]:
         "channel": cause.channel,
         "claim": cause.claim,
         "change": _percent(cause.change),
-        "since": None if cause.moment is None else comparison.days.days[cause.moment].label,
+        "since": None
+        if cause.change_point is None
+        else comparison.history.runs[cause.change_point].label,
         "experiment": BY_NAME[cause.effects[0]].experiment,
     }
 
 
 def _runs(comparison: Comparison) -> list[dict[str, Any]]:
     rows = zip(
-        comparison.days.days,
-        comparison.days.time.tolist(),
+        comparison.history.runs,
+        comparison.history.time.tolist(),
         comparison.levels.tolist(),
         comparison.adjusted.tolist(),
-        comparison.errors.tolist(),
+        comparison.half_widths.tolist(),
         strict=True,
     )
     return [
         {
-            "folder": day.folder,
-            "run": day.run,
-            "started_at": None if day.begun is None else day.begun.isoformat(),
-            "days": time if comparison.days.dated else None,
-            "surroundings": day.surroundings if np.isfinite(day.surroundings) else None,
+            "folder": run.folder,
+            "run": run.run,
+            "started_at": None if run.started_at is None else run.started_at.isoformat(),
+            "days": time if comparison.history.dated else None,
+            "surroundings": run.ambient if np.isfinite(run.ambient) else None,
             "measured": measured,
             "level": level,
-            "ci95": [level - reach, level + reach],
+            "ci95": [level - half_width, level + half_width],
             "unit": "%",
         }
-        for day, time, measured, level, reach in rows
+        for run, time, measured, level, half_width in rows
     ]

@@ -1,4 +1,4 @@
-"""The parameters of the first work folder's model and of the last one's, side by side."""
+"""Changes of the model parameters from the first to the last work folder."""
 
 from dataclasses import dataclass
 
@@ -9,18 +9,18 @@ from frictioncli.model.document import PARAMETERS, FrictionModel
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ParameterChange:
-    """How far one parameter of equation (16) is from what it was.
+    """Change of one parameter of equation (16).
 
     Attributes
     ----------
-    name, unit : str, str
-        Which one.
+    name, unit : str
+        Name and unit of the parameter.
     first, last : float
-        Its estimates.
+        Estimates.
     change : float or None
-        Last less first; none where one of the models lacks the parameter.
+        Last less first; None where one of the models lacks the parameter.
     ci95 : (float, float) or None
-        Its 95 % interval, by the noise that each model knows of.
+        95 % interval of the change, from the intervals of both models.
     """
 
     name: str
@@ -32,23 +32,28 @@ class ParameterChange:
 
 
 def parameter_changes(first: FrictionModel, last: FrictionModel) -> tuple[ParameterChange, ...]:
-    """Return the difference of every parameter of two models fitted to different runs.
+    """Return the change of every parameter between two models fitted to different runs.
 
     Parameters
     ----------
     first, last : FrictionModel
-        Of the same joint.
+        Models of the same joint.
+
+    Returns
+    -------
+    tuple of ParameterChange
+        One per parameter.
     """
-    found = []
+    changes = []
     for name in PARAMETERS:
         one, two = first.parameters[name], last.parameters[name]
         change = interval = None
         if one.ci95 is not None and two.ci95 is not None:
             change = two.estimate - one.estimate
-            # model.json cuts intervals off at zero: the upper half tells their width
-            reach = float(np.hypot(one.ci95[1] - one.estimate, two.ci95[1] - two.estimate))
-            interval = (change - reach, change + reach)
-        found.append(
+            # model.json cuts intervals off at zero: the upper half has the full width
+            half_width = float(np.hypot(one.ci95[1] - one.estimate, two.ci95[1] - two.estimate))
+            interval = (change - half_width, change + half_width)
+        changes.append(
             ParameterChange(
                 name=name,
                 unit=two.unit,
@@ -58,4 +63,4 @@ def parameter_changes(first: FrictionModel, last: FrictionModel) -> tuple[Parame
                 ci95=interval,
             )
         )
-    return tuple(found)
+    return tuple(changes)

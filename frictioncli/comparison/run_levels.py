@@ -1,10 +1,10 @@
-"""How high the friction of each run lies above what all runs have in common.
+"""Level of friction and of the load torque in each run.
 
-All runs share equation (16), and a gear that is not as warm as the motor's sensor: its temperature
-lies between motor and housing, or lags behind the motor. So heating and cooling, cold days and long
-ones are no change by themselves. About that, each run gets a level of its own, estimated together
-with the rest by generalised least squares. Noise is that of :mod:`frictioncli.model.noise`: points,
-pairs and a slow drift within each run.
+All runs share equation (16) and the thermal lag of a gear that is not as warm as the motor's
+sensor: its temperature lies between those of motor and housing, or lags behind that of the motor.
+Heating, cooling, cold days and long days are therefore no change by themselves. In addition, each
+run has a level of its own, estimated together with the rest by generalised least squares under the
+noise of :mod:`frictioncli.model.noise`.
 """
 
 from collections.abc import Sequence
@@ -13,28 +13,36 @@ from dataclasses import dataclass
 import numpy as np
 
 from frictioncli.arrays import Array
-from frictioncli.comparison.noise_averaged_fit import RANK, averaged_fit, estimable
+from frictioncli.comparison.day_to_day import LevelModel
+from frictioncli.comparison.noise_averaged_fit import RANK, is_estimable, noise_averaged_fit
+from frictioncli.diagnosis.data.gravity import without_offset
 from frictioncli.diagnosis.data.problem import Problem
 from frictioncli.effects import thermal_lag
 from frictioncli.effects.availability import missing_columns
 from frictioncli.linear_algebra import least_squares_residual
 from frictioncli.model.noise import Noise, plausible_noise
 
+LOAD_DAY_TO_DAY = 0.5
+"""Assumed day-to-day standard deviation of the load torque. [%]"""
+
+_LEAST_GRAVITY = 0.05
+"""Least standard deviation of the gravity torque, relative to the mean friction."""
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Levels:
-    """The friction of each run against what all runs share.
+class RunLevels:
+    """Friction components of each run.
 
-    Only differences between runs have a meaning: what they have in common belongs to the model.
+    Only differences between runs are meaningful: the common part belongs to the model.
 
     Attributes
     ----------
-    coefficients : ndarray, shape (runs, shapes)
-        Of what may change, for each run. [N·m for a constant]
-    covariance : ndarray, shape (runs * shapes, runs * shapes)
-        By noise within the runs, in the order of the flattened coefficients.
+    coefficients : ndarray, shape (runs, components)
+        Coefficient of each component in each run [N·m for the constant component].
+    covariance : ndarray, shape (runs * components, runs * components)
+        Covariance by noise within the runs, in the order of the flattened coefficients.
     comparable : bool
-        Whether the runs share enough conditions for all of that to be compared.
+        Whether the runs share enough conditions for all differences to be estimable.
     """
 
     coefficients: Array
@@ -42,17 +50,22 @@ class Levels:
     comparable: bool
 
 
-def noises_of(problem: Problem, load_scale: Array) -> list[tuple[Noise, float]]:
-    """Return noises that agree with what is left when every run has levels of its own.
+def plausible_noises(problem: Problem, load_scale: Array) -> list[tuple[Noise, float]]:
+    """Return noises that agree with the residuals when each run has its own levels.
 
     Parameters
     ----------
     problem, load_scale
-        As of :func:`run_levels`.
+        As for :func:`run_levels`.
+
+    Returns
+    -------
+    list of (Noise, float)
+        Noises and their plausibility.
     """
     layout = problem.layout
-    misfit = _misfit(problem, load_scale)
-    design, _ = _design(problem, constant_and_viscous(problem), misfit)
+    misfit = _pair_misfit(problem, load_scale)
+    design, _ = _design(problem, constant_and_viscous_components(problem), misfit)
     return plausible_noise(
         residual=misfit,
         design=design,
@@ -65,75 +78,120 @@ def noises_of(problem: Problem, load_scale: Array) -> list[tuple[Noise, float]]:
 
 def run_levels(
     problem: Problem,
-    shapes: Array,
+    components: Array,
     noises: Sequence[tuple[Noise, float]],
     load_scale: Array,
-) -> Levels:
-    """Return the levels of each run.
+) -> RunLevels:
+    """Return the levels of friction in each run.
 
     Parameters
     ----------
     problem : Problem
         All runs of a joint, with the base model fitted to them.
-    shapes : ndarray, shape (pairs, shapes)
-        What may change from run to run, as one value per pair: a column of ones is friction that
+    components : ndarray, shape (pairs, components)
+        Friction components that may change from run to run: a column of ones is friction that
         changes by the same torque at every speed and temperature.
     noises : sequence of (Noise, float)
-        Noises and how plausible they are.
+        Noises and their plausibility.
     load_scale : ndarray, shape (runs,)
-        Load torque of each run against the common gravity: friction that grows with another
-        payload's weight is no change of the joint. [-]
+        Load torque of each run relative to the common gravity torque: friction that increases with
+        the weight of another payload is no change of the joint [-].
+
+    Returns
+    -------
+    RunLevels
+        Levels with their covariance.
     """
     layout = problem.layout
-    misfit = _misfit(problem, load_scale)
-    design, size = _design(problem, shapes, misfit)
-    count = len(problem.runs) * shapes.shape[1]
-    found, covariance = averaged_fit(
+    misfit = _pair_misfit(problem, load_scale)
+    design, length = _design(problem, components, misfit)
+    count = len(problem.runs) * components.shape[1]
+    coefficients, covariance = noise_averaged_fit(
         design, misfit, noises, time=layout.time, run=layout.run, bins=layout.bins, count=count
     )
-    scale = size[:count]
-    return Levels(
-        coefficients=(found / scale).reshape(-1, shapes.shape[1]),
+    scale = length[:count]
+    return RunLevels(
+        coefficients=(coefficients / scale).reshape(-1, components.shape[1]),
         covariance=covariance / np.outer(scale, scale),
-        comparable=bool(shapes.any(axis=0).all())
-        and estimable(design, _differences(size, count, shapes.shape[1])),
+        comparable=bool(components.any(axis=0).all())
+        and is_estimable(design, _differences(length, count, components.shape[1])),
     )
 
 
-def _misfit(problem: Problem, load_scale: Array) -> Array:
-    """Return the misfit of the pairs' mean friction, each run with the load that it had. [N·m]."""
-    weight = problem.parameters.alpha * np.square(problem.table.load)
-    heavier = weight * (np.square(load_scale[problem.table.run]) - 1)
-    return problem.layout.means((problem.friction_misfit - heavier)[:, np.newaxis])[:, 0]
-
-
-def _design(problem: Problem, shapes: Array, misfit: Array) -> tuple[Array, Array]:
-    """Return unit columns, those of the runs first, and the lengths that they had."""
-    own = (problem.layout.run[:, np.newaxis] == np.arange(len(problem.runs))).astype(float)
-    changing = (own[:, :, np.newaxis] * shapes[:, np.newaxis, :]).reshape(len(own), -1)
-    whole = np.hstack([changing, _shared(problem, changing, misfit)])
-    size = np.linalg.norm(whole, axis=0)
-    size = np.where(size > 0, size, 1.0)
-    return whole / size, size
-
-
-def constant(problem: Problem) -> Array:
-    """Return the shape of friction that changes by the same torque everywhere."""
+def constant_component(problem: Problem) -> Array:
+    """Return the component of a constant change of friction, shape (pairs, 1)."""
     return np.ones((len(problem.layout.time), 1))
 
 
-def constant_and_viscous(problem: Problem) -> Array:
-    """Return the shapes of friction whose constant and viscous parts change on their own."""
+def constant_and_viscous_components(problem: Problem) -> Array:
+    """Return the components of constant and of viscous friction, shape (pairs, 2)."""
     table = problem.table
     viscous = (table.viscous * np.sqrt(table.speed))[:, np.newaxis]
-    return np.hstack([constant(problem), problem.layout.means(viscous)])
+    return np.hstack([constant_component(problem), problem.layout.means(viscous)])
 
 
-def _shared(problem: Problem, changing: Array, misfit: Array) -> Array:
-    """Return columns that all runs share: of the base, and of the gear's own temperature.
+def load_levels(problem: Problem) -> tuple[Array, LevelModel] | None:
+    """Return the level of the load torque in each run, and its covariance without a change.
 
-    That lies somewhere on the way from motor to housing; where the housing's temperature is not
-    known, it follows the motor's with the delay that explains most.
+    The load torque of each run is fitted by the common gravity torque times a factor, plus an
+    offset of the sensor.
+
+    Parameters
+    ----------
+    problem : Problem
+        All runs.
+
+    Returns
+    -------
+    levels : ndarray, shape (runs,)
+        Factors less 1 [%].
+    model : LevelModel
+        Their covariance without a change. None in place of both where the joint carries nearly no
+        load.
+    """
+    table = problem.table
+    gravity = without_offset(problem.load_base) @ problem.gravity
+    if np.std(gravity) < _LEAST_GRAVITY * np.mean(np.abs(problem.friction)):
+        return None
+    runs = len(problem.runs)
+    levels, variances = np.zeros(runs), np.zeros(runs)
+    for run in range(runs):
+        own = table.run == run
+        columns = np.column_stack([gravity[own], np.ones(own.sum())])
+        coefficients, squares, rank, _ = np.linalg.lstsq(columns, problem.load[own], rcond=1e-9)
+        if rank < 2:
+            return None
+        pairs = len(np.unique(table.pair[own]))
+        residual_variance = float(squares[0]) / own.sum() if len(squares) else 0.0
+        levels[run] = 100 * (coefficients[0] - 1)
+        # deviations that the bins of a pair share do not average out: a pair counts once
+        variances[run] = 1e4 * residual_variance / (np.var(gravity[own]) * max(pairs - 2, 1))
+    # gravity does not depend on the ambient temperature
+    return levels, LevelModel.of(np.diag(variances), np.zeros(runs), LOAD_DAY_TO_DAY)
+
+
+def _pair_misfit(problem: Problem, load_scale: Array) -> Array:
+    """Return the misfit of each pair's mean friction, given the load of its run [N·m]."""
+    load_term = problem.parameters.alpha * np.square(problem.table.load)
+    added = load_term * (np.square(load_scale[problem.table.run]) - 1)
+    return problem.layout.means((problem.friction_misfit - added)[:, np.newaxis])[:, 0]
+
+
+def _design(problem: Problem, components: Array, misfit: Array) -> tuple[Array, Array]:
+    """Return columns of length 1, those of the runs first, and their original lengths."""
+    runs = (problem.layout.run[:, np.newaxis] == np.arange(len(problem.runs))).astype(float)
+    changing = (runs[:, :, np.newaxis] * components[:, np.newaxis, :]).reshape(len(runs), -1)
+    columns = np.hstack([changing, _shared_columns(problem, changing, misfit)])
+    length = np.linalg.norm(columns, axis=0)
+    length = np.where(length > 0, length, 1.0)
+    return columns / length, length
+
+
+def _shared_columns(problem: Problem, changing: Array, misfit: Array) -> Array:
+    """Return the columns that all runs share: base model and gear temperature.
+
+    The gear temperature lies between those of motor and housing; where the latter is not known, it
+    follows that of the motor with the lag that fits best.
     """
     layout, table = problem.layout, problem.table
     base = layout.means(problem.friction_base)
@@ -143,31 +201,34 @@ def _shared(problem: Problem, changing: Array, misfit: Array) -> Array:
     effect = thermal_lag.EFFECT
     if missing_columns(effect, table):
         return base
-    tried = [
+    candidates = [
         np.hstack([base, layout.means(problem.basis(effect, shape).friction[:, :1])])
         for shape in effect.shapes(table)
     ]
-    return min(tried, key=lambda columns: _left(np.hstack([changing, columns]), misfit))
+    return min(
+        candidates, key=lambda columns: _residual_square(np.hstack([changing, columns]), misfit)
+    )
 
 
-def _left(design: Array, misfit: Array) -> float:
-    """Return the sum of squares that a least-squares fit leaves. [(N·m)²]."""
-    left = least_squares_residual(design, misfit, tolerance=RANK)
-    return float(left @ left)
+def _residual_square(design: Array, misfit: Array) -> float:
+    """Return the residual sum of squares of a least-squares fit [(N·m)²]."""
+    residual = least_squares_residual(design, misfit, tolerance=RANK)
+    return float(residual @ residual)
 
 
 def _point_noise(problem: Problem) -> float:
-    """Return the standard deviation of one angle bin about its pair. [N·m]."""
+    """Return the standard deviation of single angle bins within their pairs [N·m]."""
     layout, misfit = problem.layout, problem.friction_misfit
     inside = misfit - layout.means(misfit[:, np.newaxis])[layout.row_pair, 0]
-    freedom = max(len(inside) - len(layout.bins), 1)
+    degrees = max(len(inside) - len(layout.bins), 1)
     floor = 1e-6 * max(float(np.mean(np.abs(problem.friction))), 1e-12)
-    return max(float(np.sqrt(inside @ inside / freedom)), floor)
+    return max(float(np.sqrt(inside @ inside / degrees)), floor)
 
 
-def _differences(size: Array, count: int, shapes: int) -> Array:
-    """Return the differences between the levels of each run and those of the first."""
-    rows = np.zeros((count - shapes, len(size)))
-    for number, row in enumerate(rows, start=shapes):
-        row[number % shapes], row[number] = -1 / size[number % shapes], 1 / size[number]
-    return rows
+def _differences(length: Array, count: int, components: int) -> Array:
+    """Return contrasts of the levels of each run with those of the first."""
+    contrasts = np.zeros((count - components, len(length)))
+    for number, row in enumerate(contrasts, start=components):
+        first = number % components
+        row[first], row[number] = -1 / length[first], 1 / length[number]
+    return contrasts

@@ -37,6 +37,11 @@ class Threshold:
         -------
         float
             Threshold. [%]
+
+        Examples
+        --------
+        >>> Threshold(1.5, "torque").percent(mean_friction=50.0)
+        3.0
         """
         return self.value if self.unit == "%" else 100 * self.value / mean_friction
 
@@ -53,14 +58,19 @@ def threshold_of(text: str) -> Threshold:
     ------
     OptionError
         If the text is neither.
+
+    Examples
+    --------
+    >>> threshold_of("3%")
+    Threshold(value=3.0, unit='%')
     """
-    found = re.fullmatch(r"\s*(\d+\.?\d*|\.\d+)\s*(%?)\s*", text)
-    if found is None:
+    match = re.fullmatch(r"\s*(\d+\.?\d*|\.\d+)\s*(%?)\s*", text)
+    if match is None:
         raise OptionError(
             f"--fail-above {text}: expected a percentage of the mean friction, as 3%, or a number"
             " in the unit of torque, as 1.5"
         )
-    return Threshold(float(found[1]), found[2] or "torque")
+    return Threshold(float(match[1]), match[2] or "torque")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -1,4 +1,4 @@
-"""A comparison in plain words."""
+"""Text of a comparison for the terminal."""
 
 from frictioncli.comparison.causes import CauseOfChange
 from frictioncli.comparison.compare import Comparison
@@ -12,16 +12,18 @@ _WEAK = (
 
 
 def comparison_text(comparison: Comparison) -> str:
-    """Return what changed, how sure that is, what it looks like and what to do."""
-    days, model = comparison.days, comparison.days.models[-1]
+    """Return the changes with intervals, their causes and advice."""
+    model = comparison.history.models[-1]
     unit = model.torque_unit
     lines = [
-        f"joint {model.joint}, {len(comparison.levels)} runs{_span(comparison)}:"
+        f"joint {model.joint}, {len(comparison.levels)} runs{_period_text(comparison)}:"
         f" {comparison.verdict.replace('_', ' ')}",
-        f"  friction, first run to last: {_words(comparison, comparison.trend)}",
+        f"  friction, first run to last: {_estimate_text(comparison, comparison.trend)}",
     ]
     if comparison.last_run is not None:
-        lines.append(f"  last run to the earlier:     {_words(comparison, comparison.last_run)}")
+        lines.append(
+            f"  last run to the earlier:     {_estimate_text(comparison, comparison.last_run)}"
+        )
     if comparison.load is not None:
         load = comparison.load
         lines.append(
@@ -35,29 +37,29 @@ def comparison_text(comparison: Comparison) -> str:
         lines.append(f"  a change of {comparison.margin:.2g} % is not ruled out; measure more days")
     lines.append(
         f"  mean friction {comparison.mean_friction:.3g} {unit}; from day to day"
-        f" {comparison.scatter:.2g} % (1 sigma) beside noise within the runs; surroundings from"
-        f" {days.surroundings_from}"
+        f" {comparison.day_to_day:.2g} % (1 sigma) beside noise within the runs; surroundings from"
+        f" {comparison.history.ambient_source}"
     )
     lines += _conditions_text(comparison, unit)
     lines += _parameters_text(comparison)
     if comparison.exceeded is not None:
         found = "a change above it was found" if comparison.exceeded else "no change above it found"
-        lines.append(f"  threshold {_threshold(comparison, unit)}: {found}")
+        lines.append(f"  threshold {_threshold_text(comparison, unit)}: {found}")
     return "\n".join(lines)
 
 
-def _span(comparison: Comparison) -> str:
-    days = comparison.days
-    folders = len(days.folders)
+def _period_text(comparison: Comparison) -> str:
+    history = comparison.history
+    folders = len(history.folders)
     where = f" of {folders} folders" if folders > 1 else ""
-    first, last = days.days[0], days.days[-1]
-    if first.begun is None or last.begun is None:
+    first, last = history.runs[0], history.runs[-1]
+    if first.started_at is None or last.started_at is None:
         return f"{where}, in the order given (dates are not known)"
-    return f"{where}, {first.begun:%Y-%m-%d} to {last.begun:%Y-%m-%d}"
+    return f"{where}, {first.started_at:%Y-%m-%d} to {last.started_at:%Y-%m-%d}"
 
 
-def _words(comparison: Comparison, estimate: LevelEstimate) -> str:
-    unit, factor = comparison.days.models[-1].torque_unit, comparison.mean_friction / 100
+def _estimate_text(comparison: Comparison, estimate: LevelEstimate) -> str:
+    unit, factor = comparison.history.models[-1].torque_unit, comparison.mean_friction / 100
     return (
         f"{estimate.value:+.2f} % ({estimate.low:+.2f} to {estimate.high:+.2f}),"
         f" {estimate.value * factor:+.3g} {unit} ({estimate.low * factor:+.3g} to"
@@ -67,7 +69,9 @@ def _words(comparison: Comparison, estimate: LevelEstimate) -> str:
 
 def _cause_text(comparison: Comparison, cause: CauseOfChange) -> str:
     shares = ", ".join(f"{name} {cause.probabilities[name]:.0%}" for name in cause.effects)
-    since = "" if cause.moment is None else f" since {comparison.days.days[cause.moment].label}"
+    since = ""
+    if cause.change_point is not None:
+        since = f" since {comparison.history.runs[cause.change_point].label}"
     return (
         f"  looks like {' or '.join(cause.effects)} ({shares}), {cause.change.value:+.2g} % in the"
         f" {cause.channel}{since}: {cause.claim}"
@@ -98,14 +102,14 @@ def _parameters_text(comparison: Comparison) -> list[str]:
         " rely on the friction above"
     ]
     for one in comparison.parameters:
-        told = "not in both models"
+        change = "not in both models"
         if one.change is not None and one.ci95 is not None:
-            told = f"{one.change:+.3g} ({one.ci95[0]:+.3g} to {one.ci95[1]:+.3g}) {one.unit}"
-        lines.append(f"    {one.name:6s} {one.first:9.4g} -> {one.last:9.4g}  {told}")
+            change = f"{one.change:+.3g} ({one.ci95[0]:+.3g} to {one.ci95[1]:+.3g}) {one.unit}"
+        lines.append(f"    {one.name:6s} {one.first:9.4g} -> {one.last:9.4g}  {change}")
     return lines
 
 
-def _threshold(comparison: Comparison, unit: str) -> str:
+def _threshold_text(comparison: Comparison, unit: str) -> str:
     threshold = comparison.settings.fail_above
-    assert threshold is not None  # only asked where there is one
+    assert threshold is not None  # only called with a threshold
     return f"{threshold.value:g} {'%' if threshold.unit == '%' else unit}"

@@ -10,8 +10,8 @@ import pandas as pd
 
 from frictioncli import schemas, tables
 from frictioncli.comparison.compare import compare_runs
-from frictioncli.comparison.days import Folder, distinct_names, in_order
 from frictioncli.comparison.document import comparison_document
+from frictioncli.comparison.run_history import ComparedFolder, distinct_names, run_history_of
 from frictioncli.comparison.settings import ComparisonSettings
 from frictioncli.comparison.text import comparison_text
 from frictioncli.documents import to_json
@@ -58,7 +58,7 @@ def compare(runs: Sequence[Path], work: Path, settings: ComparisonSettings | Non
     }
     joint = _joint(settings.joint, models)
     folders = [_folder(path, name, models[name][joint]) for name, path in sources.items()]
-    comparison = compare_runs(in_order(folders), settings)
+    comparison = compare_runs(run_history_of(folders), settings)
     inputs = {
         f"{name}/{file}": sha256(path / file)
         for name, path in sources.items()
@@ -105,19 +105,19 @@ def _joint(asked: int | None, models: dict[str, dict[int, FrictionModel]]) -> in
     raise OptionError(f"--joint {said}: the work folders have joints {known}; {advice}")
 
 
-def _folder(path: Path, name: str, model: FrictionModel) -> Folder:
+def _folder(path: Path, name: str, model: FrictionModel) -> ComparedFolder:
     torques = tables.read(path / TORQUES, schemas.TORQUES)
-    begun, ambient = {}, {}
+    started_at, ambient = {}, {}
     if (path / RECORDINGS).exists():
         recordings = tables.read(path / RECORDINGS, schemas.RECORDINGS)
         for run, own in recordings[recordings["joint"] == model.joint].groupby("run"):
-            begun[str(run)] = _first(own["started_at"])
+            started_at[str(run)] = _first(own["started_at"])
             ambient[str(run)] = float(own["ambient"].mean())
-    return Folder(
+    return ComparedFolder(
         name=name,
         torques=torques[torques["joint"] == model.joint],
         model=model,
-        begun={run: start for run, start in begun.items() if start is not None},
+        started_at={run: start for run, start in started_at.items() if start is not None},
         ambient=ambient,
     )
 

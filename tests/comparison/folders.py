@@ -13,10 +13,10 @@ from frictioncli.provenance import Provenance
 FIRST = datetime(2026, 1, 5, 8)
 
 
-def write_folder(folder, torques, *, begun=None, unit="N·m", side="joint", ambient=None):
+def write_folder(folder, torques, *, started_at=None, unit="N·m", side="joint", ambient=None):
     """Write ``torques.parquet``, ``model.json`` and, where times are told, ``recordings.parquet``.
 
-    ``begun`` and ``ambient`` map runs to their start (datetime) and surroundings [°C].
+    ``started_at`` and ``ambient`` map runs to their start (datetime) and ambient temperature [°C].
     """
     folder.mkdir(parents=True, exist_ok=True)
     facts = {"torque_unit": unit, "torque_side": side, "sign": {}}
@@ -24,7 +24,7 @@ def write_folder(folder, torques, *, begun=None, unit="N·m", side="joint", ambi
     tables.write(folder / "torques.parquet", complete(torques), schemas.TORQUES, made, facts)
     models = [fit_joint(own, facts, FitSettings()) for _, own in torques.groupby("joint")]
     write_models(folder / "model.json", models, Provenance("fit"))
-    if begun is not None:
+    if started_at is not None:
         rows = [
             {
                 "run": run,
@@ -40,7 +40,7 @@ def write_folder(folder, torques, *, begun=None, unit="N·m", side="joint", ambi
                 "period": 0.012,
                 "notes": "",
             }
-            for run, start in begun.items()
+            for run, start in started_at.items()
             for joint in torques["joint"].unique()
         ]
         table = pd.DataFrame(rows).astype({"joint": "int16", "ambient": float})
@@ -65,6 +65,6 @@ def one_each(root, torques, *, weekly=True):
     """Write a work folder per run, a week apart; return their paths in the order of runs."""
     paths = []
     for number, (run, own) in enumerate(torques.groupby("run", sort=True)):
-        begun = {run: FIRST + timedelta(days=7 * number)} if weekly else None
-        paths.append(write_folder(root / f"run-{number + 1:02d}", own, begun=begun))
+        started_at = {run: FIRST + timedelta(days=7 * number)} if weekly else None
+        paths.append(write_folder(root / f"run-{number + 1:02d}", own, started_at=started_at))
     return paths

@@ -93,8 +93,10 @@ def test_below_the_threshold_the_status_is_0_and_the_text_says_so(worn, tmp_path
 
 def test_runs_of_one_folder_and_a_motor_current(tmp_path):
     table = daily_torques(3, seed=4)
-    begun = {run: FIRST + timedelta(days=n) for n, run in enumerate(sorted(table["run"].unique()))}
-    folder = write_folder(tmp_path / "joint=2", table, begun=begun, unit="A")
+    started_at = {
+        run: FIRST + timedelta(days=n) for n, run in enumerate(sorted(table["run"].unique()))
+    }
+    folder = write_folder(tmp_path / "joint=2", table, started_at=started_at, unit="A")
     done = stage([folder], tmp_path / "out")
     assert "mean friction" in str(done)
     assert "N·m" not in str(done)

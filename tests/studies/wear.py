@@ -17,7 +17,7 @@ from pathlib import Path
 import pandas as pd
 
 from frictioncli.comparison.compare import Comparison, compare_runs
-from frictioncli.comparison.days import Folder, in_order
+from frictioncli.comparison.run_history import ComparedFolder, run_history_of
 from frictioncli.comparison.settings import ComparisonSettings, Threshold
 from frictioncli.model.fitting import fit_joint
 from frictioncli.model.settings import FitSettings
@@ -94,8 +94,8 @@ def _compared(torques: pd.DataFrame) -> Comparison:
     # of the folder's model only the temperature is used here: one run will do
     first = torques[torques["run"] == torques["run"].min()]
     model = fit_joint(first, {}, FitSettings())
-    folder = Folder(name="joint", torques=torques, model=model, begun={}, ambient={})
-    return compare_runs(in_order([folder]), _SETTINGS)
+    folder = ComparedFolder(name="joint", torques=torques, model=model, started_at={}, ambient={})
+    return compare_runs(run_history_of([folder]), _SETTINGS)
 
 
 def _said(found: Comparison, prefix: str) -> dict[str, object]:

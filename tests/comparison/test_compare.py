@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from frictioncli.comparison.compare import compare_runs
-from frictioncli.comparison.days import Folder, in_order
 from frictioncli.comparison.document import comparison_document
+from frictioncli.comparison.run_history import ComparedFolder, run_history_of
 from frictioncli.comparison.settings import ComparisonSettings, Threshold, threshold_of
 from frictioncli.comparison.text import comparison_text
 from frictioncli.errors import NotEnoughData, OptionError
@@ -18,8 +18,8 @@ from tests.studies.wear_world import Life, torques_of
 def compared(table, **settings):
     first = table[table["run"] == table["run"].min()]
     model = fit_joint(first, {}, FitSettings())
-    folder = Folder(name="joint", torques=table, model=model, begun={}, ambient={})
-    return compare_runs(in_order([folder]), ComparisonSettings(**settings))
+    folder = ComparedFolder(name="joint", torques=table, model=model, started_at={}, ambient={})
+    return compare_runs(run_history_of([folder]), ComparisonSettings(**settings))
 
 
 @pytest.fixture(scope="module")
@@ -29,7 +29,7 @@ def worn():
 
 
 def test_wear_is_found_with_its_size(worn):
-    # 8 % of the first run's friction, told against the mean of all, which have 4 % more
+    # 8 % of the first run's friction, stated against the mean of all, which have 4 % more
     assert worn.trend.low < 8 / 1.04 < worn.trend.high
     assert worn.trend.high - worn.trend.low < 4
     assert worn.verdict == "changed"
@@ -135,6 +135,6 @@ def test_other_thresholds_are_refused(text):
 def test_a_joint_of_three_zones_is_not_blamed_for_the_weather():
     """Days of 10 to 35 °C move the friction of the simulated joint by a tenth and more."""
     found = compared(torques_of(Life(kind="unchanged", runs=5, seed=77)))
-    assert np.ptp(found.days.surroundings) > 8
+    assert np.ptp(found.history.ambient) > 8
     assert found.trend.low < 0 < found.trend.high
     assert found.verdict != "changed"

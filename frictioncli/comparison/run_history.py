@@ -1,4 +1,4 @@
-"""The runs of one joint from several work folders, in the order of time."""
+"""Runs of one joint from several work folders in the order of time."""
 
 from collections import Counter
 from collections.abc import Mapping, Sequence
@@ -15,110 +15,121 @@ from frictioncli.model.document import FrictionModel
 from frictioncli.model.zero_load import temperature_of
 
 _DAY = 86400.0
+"""Seconds per day. [s]"""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Folder:
-    """What a work folder says of one joint.
+class ComparedFolder:
+    """Torques and model of one joint in a work folder.
 
     Attributes
     ----------
     name : str
-        What to call it.
+        Name of the folder in texts and figures.
     torques : DataFrame
         Rows of :data:`frictioncli.schemas.TORQUES` of the joint.
     model : FrictionModel
         Its model.
-    begun : mapping of str to datetime
-        Start of each run, where the logs tell.
+    started_at : mapping of str to datetime
+        Start of each run, where the logs state it.
     ambient : mapping of str to float
-        Temperature of the surroundings of each run, where the manifest tells. [°C]
+        Ambient temperature of each run, where the manifest states it [°C].
     """
 
     name: str
     torques: pd.DataFrame
     model: FrictionModel
-    begun: Mapping[str, datetime]
+    started_at: Mapping[str, datetime]
     ambient: Mapping[str, float]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Day:
+class ComparedRun:
     """One run.
 
     Attributes
     ----------
-    folder, run : str, str
-        Where it is from.
+    folder, run : str
+        Names of its work folder and of the run.
     label : str
-        What it is called in texts and figures.
-    begun : datetime or None
-        When it began, where all logs tell.
-    surroundings : float
-        Temperature around the joint; NaN where nothing tells. [°C]
+        Name of the run in texts and figures.
+    started_at : datetime or None
+        Start, where the logs of all runs state it.
+    ambient : float
+        Ambient temperature; NaN where unknown [°C].
     """
 
     folder: str
     run: str
     label: str
-    begun: datetime | None
-    surroundings: float
+    started_at: datetime | None
+    ambient: float
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Days:
-    """All runs of a joint.
+class RunHistory:
+    """All runs of a joint in the order of time.
 
     Attributes
     ----------
     torques : DataFrame
-        Rows of all runs, each run named by its number.
-    days : tuple of Day
-        The runs in the order of time.
+        Rows of all runs; each run is named by its number.
+    runs : tuple of ComparedRun
+        The runs.
     models : tuple of FrictionModel
-        Of the folders, in the order in which they begin.
+        Models of the folders, in the order of their first runs.
     folders : tuple of str
-        Their names.
+        Names of the folders, in the same order.
     dated : bool
-        Whether the times between runs are known; else only their order is.
-    surroundings_from : str
-        What tells the surroundings' temperature.
+        Whether the times between runs are known, or only their order.
+    ambient_source : str
+        Source of the ambient temperatures.
     """
 
     torques: pd.DataFrame
-    days: tuple[Day, ...]
+    runs: tuple[ComparedRun, ...]
     models: tuple[FrictionModel, ...]
     folders: tuple[str, ...]
     dated: bool
-    surroundings_from: str
+    ambient_source: str
 
     @property
     def time(self) -> Array:
-        """Time of each run since the first one. [days], or its number where dates are unknown."""
-        begun = [day.begun for day in self.days]
+        """Time of each run since the first one [days], or its number where dates are unknown."""
+        starts = [run.started_at for run in self.runs]
         if not self.dated:
-            return np.arange(len(begun), dtype=float)
-        first = begun[0]
-        return np.array([(one - first).total_seconds() / _DAY for one in begun])  # type: ignore[operator]
+            return np.arange(len(starts), dtype=float)
+        first = starts[0]
+        return np.array([(one - first).total_seconds() / _DAY for one in starts])  # type: ignore[operator]
 
     @property
-    def surroundings(self) -> Array:
-        """Temperature around the joint in each run; NaN where nothing tells. [°C]."""
-        return np.array([day.surroundings for day in self.days])
+    def ambient(self) -> Array:
+        """Ambient temperature of each run; NaN where unknown [°C]."""
+        return np.array([run.ambient for run in self.runs])
 
 
-def in_order(folders: Sequence[Folder]) -> Days:
+def run_history_of(folders: Sequence[ComparedFolder]) -> RunHistory:
     """Return the runs of all folders in the order of time.
 
-    They are ordered by date where all logs tell when they began; else as the folders are given, and
-    within a folder by name.
+    They are ordered by date where the logs of all runs state it; else by the given order of the
+    folders, and by name within a folder.
+
+    Parameters
+    ----------
+    folders : sequence of ComparedFolder
+        Folders of the same joint.
+
+    Returns
+    -------
+    RunHistory
+        The runs.
 
     Raises
     ------
     OptionError
-        If the folders are not of the same joint, or a run is there twice.
+        If the folders are not of the same joint, or a run occurs twice.
     NotEnoughData
-        If there is one run only.
+        If there is only one run.
     """
     _check_same(folders)
     found = [
@@ -132,45 +143,47 @@ def in_order(folders: Sequence[Folder]) -> Days:
             " folders of further days"
         )
     _check_once(found)
-    begun = [folder.begun.get(run) for folder, run in found]
-    dates = [one for one in begun if one is not None]
+    starts = [folder.started_at.get(run) for folder, run in found]
+    dates = [one for one in starts if one is not None]
     dated = len(dates) == len(found) and len(set(dates)) == len(dates)
     if dated:
         order = sorted(range(len(found)), key=lambda number: dates[number])
-        found, begun = [found[number] for number in order], [begun[number] for number in order]
+        found = [found[number] for number in order]
+        starts = [starts[number] for number in order]
     tables = [folder.torques[folder.torques["run"] == run] for folder, run in found]
-    source, surroundings = _surroundings(found, tables)
-    days = tuple(
-        Day(
+    source, ambient = _ambient(found, tables)
+    runs = tuple(
+        ComparedRun(
             folder=folder.name,
             run=run,
             label=run if len(folders) == 1 else _label(folder, run),
-            begun=start if dated else None,
-            surroundings=float(warmth),
+            started_at=start if dated else None,
+            ambient=float(temperature),
         )
-        for (folder, run), start, warmth in zip(found, begun, surroundings, strict=True)
+        for (folder, run), start, temperature in zip(found, starts, ambient, strict=True)
     )
-    first = list(dict.fromkeys(folder.name for folder, _ in found))
+    names = list(dict.fromkeys(folder.name for folder, _ in found))
     models = {folder.name: folder.model for folder in folders}
     digits = len(str(len(tables) - 1))
-    return Days(
+    return RunHistory(
         torques=pd.concat(
             [table.assign(run=f"{number:0{digits}d}") for number, table in enumerate(tables)],
             ignore_index=True,
         ),
-        days=days,
-        models=tuple(models[name] for name in first),
-        folders=tuple(first),
+        runs=runs,
+        models=tuple(models[name] for name in names),
+        folders=tuple(names),
         dated=dated,
-        surroundings_from=source,
+        ambient_source=source,
     )
 
 
-def _label(folder: Folder, run: str) -> str:
+def _label(folder: ComparedFolder, run: str) -> str:
     return folder.name if len(folder.torques["run"].unique()) == 1 else f"{folder.name}/{run}"
 
 
-def _check_same(folders: Sequence[Folder]) -> None:
+def _check_same(folders: Sequence[ComparedFolder]) -> None:
+    """Raise OptionError if the folders differ in joint, unit, side or temperature."""
     first = folders[0]
     for other in folders[1:]:
         for what, attribute, advice in (
@@ -186,8 +199,8 @@ def _check_same(folders: Sequence[Folder]) -> None:
                 )
 
 
-def _check_once(found: Sequence[tuple[Folder, str]]) -> None:
-    """Raise OptionError if two runs hold the same measurements."""
+def _check_once(found: Sequence[tuple[ComparedFolder, str]]) -> None:
+    """Raise OptionError if two runs have the same measurements."""
     seen: dict[int, str] = {}
     for folder, run in found:
         rows = folder.torques.loc[folder.torques["run"] == run, ["time", "position"]].assign(
@@ -202,13 +215,13 @@ def _check_once(found: Sequence[tuple[Folder, str]]) -> None:
         seen[digest] = here
 
 
-def _surroundings(
-    found: Sequence[tuple[Folder, str]], tables: Sequence[pd.DataFrame]
+def _ambient(
+    found: Sequence[tuple[ComparedFolder, str]], tables: Sequence[pd.DataFrame]
 ) -> tuple[str, list[float]]:
-    """Return what tells the surroundings' temperature, and that of each run. [°C]."""
-    told = [folder.ambient.get(run, np.nan) for folder, run in found]
-    if np.isfinite(told).all():
-        return "manifest", told
+    """Return the source of the ambient temperatures and that of each run [°C]."""
+    stated = [folder.ambient.get(run, np.nan) for folder, run in found]
+    if np.isfinite(stated).all():
+        return "manifest", stated
     for kind in ("housing", "motor"):
         coldest = [float(temperature_of(table, kind).min()) for table in tables]
         if np.isfinite(coldest).all():
@@ -217,17 +230,27 @@ def _surroundings(
 
 
 def distinct_names(paths: Sequence[str]) -> list[str]:
-    """Return the shortest ends of paths that tell them apart.
+    """Return the shortest ends of paths that are distinct.
 
     Parameters
     ----------
     paths : sequence of str
         Paths with forward slashes.
 
+    Returns
+    -------
+    list of str
+        One end per path, all of the same depth.
+
     Raises
     ------
     OptionError
-        If a path is there twice.
+        If a path occurs twice.
+
+    Examples
+    --------
+    >>> distinct_names(["/robot1/may", "/robot2/may"])
+    ['robot1/may', 'robot2/may']
     """
     parts = [path.split("/") for path in paths]
     for depth in range(1, max(len(one) for one in parts) + 1):
