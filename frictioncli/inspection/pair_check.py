@@ -13,7 +13,7 @@ from frictioncli.errors import NotEnoughData
 from frictioncli.pairs.pair_tables import pair_rows
 from frictioncli.pairs.pairing import pair_segments
 from frictioncli.pairs.partitioned_store import PartitionedStore
-from frictioncli.pairs.segments import Joint, Segments, find_segments
+from frictioncli.pairs.segments import Joint, SegmentTables, find_segments
 from frictioncli.pairs.settings import PairingSettings
 
 FORWARD, REVERSE = "forward", "reverse"
@@ -73,14 +73,14 @@ def segments_and_pairs(
         return _moves(found), pd.concat(parts, ignore_index=True)
 
 
-def _moves(found: Segments) -> SegmentCounts:
+def _moves(found: SegmentTables) -> SegmentCounts:
     """Return how often each joint held a constant speed in each recording."""
     moves: SegmentCounts = {}
     for run, joint in found.counts:
-        for (spans,) in found.pages.of((run, joint), "spans"):
+        for (segments,) in found.store.read((run, joint), "segments"):
             for way, sign in ((FORWARD, 1), (REVERSE, -1)):
                 numbers, counts = np.unique(
-                    spans["recording"][spans["direction"] == sign], return_counts=True
+                    segments["recording"][segments["direction"] == sign], return_counts=True
                 )
                 for number, count in zip(numbers.tolist(), counts.tolist(), strict=True):
                     key = (*found.recordings[number], joint)
@@ -89,7 +89,7 @@ def _moves(found: Segments) -> SegmentCounts:
 
 
 def _heads(rows: pa.Table) -> pd.DataFrame:
-    """Return one row per pair of a page of pairs."""
+    """Return one row per pair."""
     frame = rows.to_pandas()
     half = (frame["torque_forward"] - frame["torque_reverse"]) / 2
     load = (frame["torque_forward"] + frame["torque_reverse"]) / 2

@@ -11,7 +11,7 @@ from frictioncli.errors import NotEnoughData
 from frictioncli.inspection.pair_check import FORWARD, REVERSE
 from frictioncli.model.fitting import LEAST_PAIRS as LEAST_TO_FIT
 from frictioncli.model.identifiability import MIN_SPEED_RATIO, MIN_TEMPERATURE_SPAN
-from frictioncli.pairs.separation import SignTally, inferred_sign
+from frictioncli.pairs.separation import HalfDifferences, inferred_sign
 from frictioncli.pairs.thermal_phases import SWEEP
 
 YES, IN_PART, NO = "yes", "in part", "no"
@@ -148,9 +148,9 @@ def _pair(moves: Mapping[str, int], pairs: pd.DataFrame) -> Stage:
 
 def _separate(joint: int, pairs: pd.DataFrame) -> Stage:
     """Judge the half differences: friction opposes motion in nearly every pair."""
-    runs: dict[str, SignTally] = {}
+    runs: dict[str, HalfDifferences] = {}
     for run, half in pairs.groupby("run")["half_difference"]:
-        runs.setdefault(str(run), SignTally()).add(half.to_numpy(float))
+        runs.setdefault(str(run), HalfDifferences()).add(half.to_numpy(float))
     try:
         friction = inferred_sign(joint, runs) * pairs["half_difference"]
     except NotEnoughData as fault:

@@ -60,16 +60,16 @@ static PyObject *runs(PyObject *Py_UNUSED(module), PyObject *args) {
                           &start, &stop, &width, &sums, &count, &end))
         return NULL;
     Py_ssize_t samples = position.len / (Py_ssize_t)sizeof(double);
-    Py_ssize_t spans = start.len / (Py_ssize_t)sizeof(int64_t);
+    Py_ssize_t segments = start.len / (Py_ssize_t)sizeof(int64_t);
     Py_ssize_t room = count.len / (Py_ssize_t)sizeof(int64_t);
     const int64_t *from = start.buf, *to = stop.buf;
     int right = torque.len == position.len && load.len == position.len &&
                 time.len == position.len && stop.len == start.len && end.len == start.len &&
                 sums.len == 5 * count.len && width > 0;
     int64_t together = 0;
-    for (Py_ssize_t span = 0; right && span < spans; span++) {
-        right = from[span] >= 0 && from[span] < to[span] && to[span] <= samples;
-        if (right) together += to[span] - from[span];
+    for (Py_ssize_t segment = 0; right && segment < segments; segment++) {
+        right = from[segment] >= 0 && from[segment] < to[segment] && to[segment] <= samples;
+        if (right) together += to[segment] - from[segment];
     }
     if (right && together <= room) {
         Samples in = {position.buf, torque.buf, load.buf, time.buf};
@@ -79,8 +79,8 @@ static PyObject *runs(PyObject *Py_UNUSED(module), PyObject *args) {
         int64_t *last = end.buf;
         Py_BEGIN_ALLOW_THREADS
         Py_ssize_t run = 0;
-        for (Py_ssize_t span = 0; span < spans; span++)
-            last[span] = run = followed(from[span], to[span], width, &in, &out, run);
+        for (Py_ssize_t segment = 0; segment < segments; segment++)
+            last[segment] = run = followed(from[segment], to[segment], width, &in, &out, run);
         Py_END_ALLOW_THREADS
     } else {
         right = 0;

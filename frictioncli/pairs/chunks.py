@@ -1,7 +1,7 @@
-"""Samples, batch by batch, cut into stretches in which no move is cut.
+"""Samples, read batch by batch, in chunks in which no move is cut.
 
-Nothing depends on how the batches were cut: the sampling period is that of a recording's first
-samples, and every stretch brings the neighbours that its means need.
+Nothing depends on the size of the batches: the sampling period is that of a recording's first
+samples, and every chunk has the neighbouring samples that its moving means need.
 """
 
 from collections.abc import Iterable, Iterator, Sequence
@@ -15,9 +15,8 @@ import pyarrow.compute as pc
 
 from frictioncli.arrays import Array, Numbers
 from frictioncli.errors import TableError
-from frictioncli.pairs.array_runs import keep_freed_memory
 from frictioncli.pairs.moves import (
-    LONGEST,
+    LONGEST_MOVE,
     SMOOTHING,
     directions,
     moves,
@@ -25,25 +24,26 @@ from frictioncli.pairs.moves import (
     samples_in,
 )
 from frictioncli.pairs.settings import SteadySettings
+from frictioncli.pairs.slices import keep_freed_memory
 from frictioncli.schemas import SAMPLES
 
 Channels = dict[str, Array]
 
-BEHIND = 4096
-"""Samples before a stretch that it brings along, to see where the joint came from."""
+NEIGHBOURS_BEFORE = 4096
+"""Samples before a chunk that it contains, to see from where the joint came."""
 
-_BLOCK = 1 << 17
-"""Samples that are gathered before they are looked at; fewer at a recording's end."""
+_CHUNK_SAMPLES = 1 << 17
+"""Samples that are gathered for a chunk; fewer at the end of a recording."""
 
-_FIRST = 1 << 14
+_PERIOD_SAMPLES = 1 << 14
 """Samples from whose times the sampling period is taken."""
 
-_BEYOND = 3
+_RAMP_MARGIN = 3
 """Samples by which ramps reach further than the moving mean."""
 
 
 class SampleSource(NamedTuple):
-    """Where samples come from."""
+    """Run, recording and joint that samples belong to."""
 
     run: str
     recording: str
@@ -59,41 +59,41 @@ class Chunk:
     source : SampleSource
         Run, recording and joint.
     channels : dict of str to ndarray, shape (samples,)
-        Channels by name, neighbours before and behind included.
+        Channels by name, neighbouring samples before and behind included.
     total : ndarray, shape (samples + 1,)
         Running sum of the velocity. [deg/s]
-    number : int
-        Which sample of the recording the first one is, from 0.
+    offset : int
+        Number of the first sample in the recording, from 0.
     begin, end : int
-        First and past-the-end sample of what the stretch stands for; the rest are neighbours.
-    first, last : ndarray of int, shape (moves,)
+        First and past-the-end sample of the chunk proper; the others are neighbours.
+    move_start, move_stop : ndarray of int, shape (moves,)
         First and past-the-end sample of each move.
     period : float
-        Time between the samples of the recording. [s]
+        Sampling period of the recording. [s]
     """
 
     source: SampleSource
     channels: Channels
     total: Array
-    number: int
+    offset: int
     begin: int
     end: int
-    first: Numbers
-    last: Numbers
+    move_start: Numbers
+    move_stop: Numbers
     period: float
 
     @property
     def standing(self) -> int:
-        """Samples that belong to no move."""
-        return self.end - self.begin - int(np.sum(self.last - self.first))
+        """Number of samples that belong to no move."""
+        return self.end - self.begin - int(np.sum(self.move_stop - self.move_start))
 
 
 @dataclass(slots=True)
-class _Tail:
-    """What of a recording and joint has not been looked at, with neighbours before it."""
+class _Buffer:
+    """Samples of a recording and joint that wait for the next chunk, with neighbours before."""
 
-    pieces: list[Channels] = field(default_factory=list)
-    number: int = 0
+    batches: list[Channels] = field(default_factory=list)
+    offset: int = 0
     begin: int = 0
     waiting: int = 0
     period: float = 0.0
@@ -102,7 +102,7 @@ class _Tail:
 def chunks(
     batches: Iterable[pa.RecordBatch], names: Sequence[str], settings: SteadySettings
 ) -> Iterator[Chunk]:
-    """Yield the samples in stretches with whole moves, recording by recording.
+    """Yield samples in chunks with whole moves, recording by recording.
 
     Parameters
     ----------
@@ -110,32 +110,42 @@ def chunks(
         Rows of :data:`frictioncli.schemas.SAMPLES`; those of one recording stand together, those of
         one of its joints in time order.
     names : sequence of str
-        Channels wanted beside time and velocity.
+        Channels to read beside time and velocity.
     settings : SteadySettings
-        What is standing.
+        ``min_speed`` decides what is standing.
+
+    Yields
+    ------
+    Chunk
+        Samples of one recording and joint.
+
+    Raises
+    ------
+    TableError
+        If a required channel has values that are no numbers.
     """
     keep_freed_memory()
     wanted = tuple(dict.fromkeys(("time", "velocity", *names)))
-    here: tuple[str, str] | None = None
-    tails: dict[SampleSource, _Tail] = {}
-    for source, channels in _pieces(batches, wanted):
-        if source[:2] != here:
-            for done, tail in tails.items():
-                yield _cut(done, tail, settings, ended=True)
-            here, tails = source[:2], {}
-        tail = tails.setdefault(source, _Tail())
-        tail.pieces.append(channels)
-        tail.waiting += len(channels["time"])
-        if tail.waiting >= _BLOCK:
-            yield _cut(source, tail, settings, ended=False)
-    for source, tail in tails.items():
-        yield _cut(source, tail, settings, ended=True)
+    recording: tuple[str, str] | None = None
+    buffers: dict[SampleSource, _Buffer] = {}
+    for source, channels in _by_source(batches, wanted):
+        if source[:2] != recording:
+            for ended, buffer in buffers.items():
+                yield _next_chunk(ended, buffer, settings, ended=True)
+            recording, buffers = source[:2], {}
+        buffer = buffers.setdefault(source, _Buffer())
+        buffer.batches.append(channels)
+        buffer.waiting += len(channels["time"])
+        if buffer.waiting >= _CHUNK_SAMPLES:
+            yield _next_chunk(source, buffer, settings, ended=False)
+    for source, buffer in buffers.items():
+        yield _next_chunk(source, buffer, settings, ended=True)
 
 
-def _pieces(
+def _by_source(
     batches: Iterable[pa.RecordBatch], names: Sequence[str]
 ) -> Iterator[tuple[SampleSource, Channels]]:
-    """Yield rows of one recording and joint that stand together in a batch."""
+    """Yield the rows of each batch by recording and joint."""
     for batch in batches:
         channels = {name: _values(batch, name) for name in names}
         for name in SAMPLES.required:
@@ -143,24 +153,24 @@ def _pieces(
                 raise TableError(f"samples: {name} has values that are no numbers, expected none")
         runs, recordings = (_labels(batch.column(name)) for name in ("run", "recording"))
         joints = batch.column("joint").to_numpy(zero_copy_only=False)
-        place = runs.indices.to_numpy(), recordings.indices.to_numpy()
+        codes = runs.indices.to_numpy(), recordings.indices.to_numpy()
         edge = np.ones(batch.num_rows + 1, dtype=bool)
-        edge[1:-1] = (place[0][1:] != place[0][:-1]) | (place[1][1:] != place[1][:-1])
+        edge[1:-1] = (codes[0][1:] != codes[0][:-1]) | (codes[1][1:] != codes[1][:-1])
         edges = np.flatnonzero(edge)
         for start, stop in pairwise(edges.tolist()):
-            label = (
-                runs.dictionary[place[0][start]].as_py(),
-                recordings.dictionary[place[1][start]].as_py(),
+            labels = (
+                runs.dictionary[codes[0][start]].as_py(),
+                recordings.dictionary[codes[1][start]].as_py(),
             )
-            own = joints[start:stop]
-            if (own == own[0]).all():
-                part = {name: values[start:stop] for name, values in channels.items()}
-                yield SampleSource(*label, int(own[0])), part
+            joint_of_row = joints[start:stop]
+            if (joint_of_row == joint_of_row[0]).all():
+                rows = {name: values[start:stop] for name, values in channels.items()}
+                yield SampleSource(*labels, int(joint_of_row[0])), rows
                 continue
-            for joint in np.unique(own):
-                rows = start + np.flatnonzero(own == joint)
-                part = {name: values[rows] for name, values in channels.items()}
-                yield SampleSource(*label, int(joint)), part
+            for joint in np.unique(joint_of_row):
+                index = start + np.flatnonzero(joint_of_row == joint)
+                rows = {name: values[index] for name, values in channels.items()}
+                yield SampleSource(*labels, int(joint)), rows
 
 
 def _labels(column: pa.Array) -> pa.DictionaryArray:
@@ -177,40 +187,43 @@ def _values(batch: pa.RecordBatch, name: str) -> Array:
     return column.to_numpy(zero_copy_only=False)
 
 
-def _cut(source: SampleSource, tail: _Tail, settings: SteadySettings, *, ended: bool) -> Chunk:
-    """Return what holds whole moves, and leave the rest in the tail."""
+def _next_chunk(
+    source: SampleSource, buffer: _Buffer, settings: SteadySettings, *, ended: bool
+) -> Chunk:
+    """Return the samples that hold whole moves, and leave the others in the buffer."""
     channels = {
-        name: np.concatenate([piece[name] for piece in tail.pieces]) for name in tail.pieces[0]
+        name: np.concatenate([batch[name] for batch in buffer.batches])
+        for name in buffer.batches[0]
     }
     time = channels["time"]
-    if not tail.number and not tail.begin:
-        steps = np.diff(time[:_FIRST])
-        tail.period = float(np.median(steps)) if len(steps) else 0.0
-    half = samples_in(SMOOTHING, tail.period)
+    if not buffer.offset and not buffer.begin:
+        steps = np.diff(time[:_PERIOD_SAMPLES])
+        buffer.period = float(np.median(steps)) if len(steps) else 0.0
+    half = samples_in(SMOOTHING, buffer.period)
     total = running_sum(channels["velocity"])
     direction = directions(total, half, settings)
-    # behind this the neighbours that would change the mean have not come yet
-    known = len(time) if ended else max(len(time) - half - _BEYOND, tail.begin)
-    window = slice(tail.begin, known)
-    first, last = moves(direction[window], time[window], tail.period)
-    first, last = first + tail.begin, last + tail.begin
+    # behind this the moving mean may still change with samples that have not been read
+    known = len(time) if ended else max(len(time) - half - _RAMP_MARGIN, buffer.begin)
+    window = slice(buffer.begin, known)
+    start, stop = moves(direction[window], time[window], buffer.period)
+    start, stop = start + buffer.begin, stop + buffer.begin
     end = known
-    if not ended and len(last) and last[-1] == known and last[-1] - first[-1] < LONGEST:
-        end = int(first[-1])
-        first, last = first[:-1], last[:-1]
-    found = Chunk(
+    if not ended and len(stop) and stop[-1] == known and stop[-1] - start[-1] < LONGEST_MOVE:
+        end = int(start[-1])
+        start, stop = start[:-1], stop[:-1]
+    chunk = Chunk(
         source=source,
         channels=channels,
         total=total,
-        number=tail.number,
-        begin=tail.begin,
+        offset=buffer.offset,
+        begin=buffer.begin,
         end=end,
-        first=first,
-        last=last,
-        period=tail.period,
+        move_start=start,
+        move_stop=stop,
+        period=buffer.period,
     )
-    behind = max(end - max(BEHIND, 2 * (half + _BEYOND)), 0)
-    tail.pieces = [{name: values[behind:] for name, values in channels.items()}]
-    tail.number += behind
-    tail.begin, tail.waiting = end - behind, 0
-    return found
+    behind = max(end - max(NEIGHBOURS_BEFORE, 2 * (half + _RAMP_MARGIN)), 0)
+    buffer.batches = [{name: values[behind:] for name, values in channels.items()}]
+    buffer.offset += behind
+    buffer.begin, buffer.waiting = end - behind, 0
+    return chunk

@@ -1,7 +1,7 @@
-"""The constant-velocity parts of a joint's motion.
+"""Constant-speed segments of a joint's moves.
 
 Only they may enter the separation (8): acceleration adds inertial torque, and so does the
-oscillation that follows it. All moves of a stretch of samples are looked at together, as a log has
+oscillation that follows it. All moves of a chunk of samples are treated together, as a log has
 millions of them.
 """
 
@@ -11,18 +11,25 @@ import numpy as np
 from numpy.lib.stride_tricks import as_strided
 
 from frictioncli.arrays import Array, Numbers
-from frictioncli.pairs.array_runs import means, members, offsets, over_samples, reduced, runs
 from frictioncli.pairs.moves import SMOOTHING, half_window
 from frictioncli.pairs.settings import SteadySettings
+from frictioncli.pairs.slices import (
+    fill_slices,
+    reduce_slices,
+    slice_indices,
+    slice_means,
+    slice_offsets,
+    true_runs,
+)
 
 REASONS = ("standing", "accelerating", "settling", "constant speed too short")
-"""Why samples are in no constant-velocity part."""
+"""Reasons why samples are in no constant-speed segment."""
 
 _SMOOTHED_SHARE = 0.02
 """Half width of the moving mean as a share of the move's duration: short moves stay sharp."""
 
 _CORE = 0.15
-"""Share of a move's samples whose speeds stand closest together: they are its plateau."""
+"""Share of a move's samples, those with the most similar speeds, that defines its plateau."""
 
 _GAUSSIAN_CORE = 0.189
 """Half width of the densest 15 % of a normal distribution, in standard deviations."""
@@ -31,78 +38,95 @@ _DIP = 0.1
 """A joint that slows down below this share of its peak speed begins another move."""
 
 _LONG_CORE = 7
-"""Stretches of one core above this differ by fewer samples than it: 1 / 0.15 at most. [samples]"""
+"""Candidates with the same core above this differ in length by fewer samples than the core."""
 
 
 @dataclass(frozen=True, slots=True)
-class ConstantSpeedParts:
-    """Constant-velocity parts in time order, and what became of the samples of moves.
+class ConstantSpeedSegments:
+    """Constant-speed segments in time order, and the samples of moves that are in none.
 
     Attributes
     ----------
-    start, stop : ndarray of int, shape (parts,)
-        First and past-the-end sample of each part.
-    speed : ndarray, shape (parts,)
+    start, stop : ndarray of int, shape (segments,)
+        First and past-the-end sample of each segment.
+    speed : ndarray, shape (segments,)
         Mean velocity, with the direction's sign. [deg/s]
-    first, last : ndarray of int, shape (parts,)
-        First and past-the-end sample of the move it belongs to, ramps included.
+    move_start, move_stop : ndarray of int, shape (segments,)
+        First and past-the-end sample of the move that it belongs to, ramps included.
     dropped : dict of str to int
-        Samples of the moves that are in no part, by reason.
+        Samples of the moves that are in no segment, by reason.
     """
 
     start: Numbers
     stop: Numbers
     speed: Array
-    first: Numbers
-    last: Numbers
+    move_start: Numbers
+    move_stop: Numbers
     dropped: dict[str, int]
 
 
-def constant_speed_parts(
+def constant_speed_segments(
     time: Array,
     velocity: Array,
     total: Array,
-    first: Numbers,
-    last: Numbers,
+    move_start: Numbers,
+    move_stop: Numbers,
     settings: SteadySettings,
-) -> ConstantSpeedParts:
-    """Find the constant-velocity part of every move; of one that dips, those between its dips.
+) -> ConstantSpeedSegments:
+    """Return the constant-speed segment of every move; of a move that dips, those between dips.
 
     Parameters
     ----------
     time : ndarray, shape (samples,)
-        Growing times of one recording and joint. [s]
+        Increasing times of one recording and joint. [s]
     velocity : ndarray, shape (samples,)
         Joint velocity. [deg/s]
     total : ndarray, shape (samples + 1,)
-        Its :func:`~frictioncli.pairs.moves.running_sum`. [deg/s]
-    first, last : ndarray of int, shape (moves,)
+        :func:`~frictioncli.pairs.moves.running_sum` of the velocity. [deg/s]
+    move_start, move_stop : ndarray of int, shape (moves,)
         First and past-the-end sample of each move, in time order.
     settings : SteadySettings
-        What counts as constant.
+        What counts as constant speed.
+
+    Returns
+    -------
+    ConstantSpeedSegments
+        The segments.
+
+    Examples
+    --------
+    A move with ramps of 0.1 s that holds 50 deg/s:
+
+    >>> from frictioncli.pairs.moves import running_sum
+    >>> time = 0.01 * np.arange(220)
+    >>> velocity = np.interp(time, [0.0, 0.1, 2.1, 2.2], [0.0, 50.0, 50.0, 0.0])
+    >>> total, move = running_sum(velocity), (np.array([0]), np.array([220]))
+    >>> found = constant_speed_segments(time, velocity, total, *move, SteadySettings())
+    >>> found.speed.round(3)
+    array([50.])
     """
-    length = last - first
-    width = np.minimum(SMOOTHING, _SMOOTHED_SHARE * (time[last - 1] - time[first]))
-    start, stop, move = _between_dips(velocity, first, last, settings)
-    speed = _smoothed_speed(time, total, first, last, width)
-    begin, end, stretch = _plateaus(speed, start, stop, settings)
+    length = move_stop - move_start
+    width = np.minimum(SMOOTHING, _SMOOTHED_SHARE * (time[move_stop - 1] - time[move_start]))
+    start, stop, move = _between_dips(velocity, move_start, move_stop, settings)
+    speed = _smoothed_speed(time, total, move_start, move_stop, width)
+    begin, end, candidate = _plateaus(speed, start, stop, settings)
     # from samples of moves end to end to samples of the recording
-    shift = (first - offsets(length))[move]
-    low, high = _bounds(start + shift, stop + shift, move, first, last)
-    begin, end, move = begin + shift[stretch], end + shift[stretch], move[stretch]
+    shift = (move_start - slice_offsets(length))[move]
+    low, high = _bounds(start + shift, stop + shift, move, move_start, move_stop)
+    begin, end, move = begin + shift[candidate], end + shift[candidate], move[candidate]
     settled, margin = _trimmed(time, begin, end, width[move], settings)
     long_enough = margin - settled >= settings.min_samples
     held = int(np.sum(end - begin))
     too_short = int(np.sum((end - begin)[~long_enough]))
-    settled, margin, stretch = (x[long_enough] for x in (settled, margin, stretch))
+    settled, margin, candidate = (x[long_enough] for x in (settled, margin, candidate))
     steady = int(np.sum(margin - settled))
     lost = (0, int(length.sum()) - held, held - too_short - steady, too_short)
-    return ConstantSpeedParts(
+    return ConstantSpeedSegments(
         start=settled,
         stop=margin,
-        speed=means(velocity, settled, margin),
-        first=low[stretch],
-        last=high[stretch],
+        speed=slice_means(velocity, settled, margin),
+        move_start=low[candidate],
+        move_stop=high[candidate],
         dropped=dict(zip(REASONS, lost, strict=True)),
     )
 
@@ -113,14 +137,14 @@ def _smoothed_speed(
     """Return the moving mean of speed of all moves end to end, each within its own bounds."""
     length = last - first
     half = half_window(time, first, last, width)
-    low = members(first - half, last - half)
+    low = slice_indices(first - half, last - half)
     high = low + np.repeat(2 * half + 1, length)
     speed = total.take(high, mode="clip")
     speed -= total.take(low, mode="clip")
     speed /= np.repeat(2.0 * half + 1, length)
     # near the ends of a move the mean is one of fewer neighbours
-    begin, end = offsets(length), np.cumsum(length)
-    near = np.concatenate([members(begin, begin + half), members(end - half, end)])
+    begin, end = slice_offsets(length), np.cumsum(length)
+    near = np.concatenate([slice_indices(begin, begin + half), slice_indices(end - half, end)])
     move = np.tile(np.repeat(np.arange(len(half)), half), 2)
     low, high = np.maximum(low[near], first[move]), np.minimum(high[near], last[move])
     speed[near] = (total[high] - total[low]) / (high - low)
@@ -130,23 +154,23 @@ def _smoothed_speed(
 def _between_dips(
     velocity: Array, first: Numbers, last: Numbers, settings: SteadySettings
 ) -> tuple[Numbers, Numbers, Numbers]:
-    """Return start, stop and move of the stretches between slow places that can hold a plateau.
+    """Return start, stop and move of the candidates: where a move is not slower than its dips.
 
     They count in samples of the moves end to end.
     """
     length = last - first
-    begin, end = offsets(length), np.cumsum(length)
-    speed = velocity[members(first, last)]
+    begin, end = slice_offsets(length), np.cumsum(length)
+    speed = velocity[slice_indices(first, last)]
     np.abs(speed, out=speed)
-    # of three neighbours the median: one bad sample is no dip
-    middle = speed.copy()
+    # the median of three neighbours: one bad sample is no dip
+    median = speed.copy()
     before, here, after = speed[:-2], speed[1:-1], speed[2:]
     low, high = np.minimum(before, here), np.maximum(before, here)
-    np.maximum(low, np.minimum(high, after, out=high), out=middle[1:-1])
+    np.maximum(low, np.minimum(high, after, out=high), out=median[1:-1])
     for edge in (begin, end - 1):
-        middle[edge] = speed[edge]
-    peak = reduced(np.maximum, middle, begin, end)
-    start, stop, move = runs(middle >= np.repeat(_DIP * peak, length), begin)
+        median[edge] = speed[edge]
+    peak = reduce_slices(np.maximum, median, begin, end)
+    start, stop, move = true_runs(median >= np.repeat(_DIP * peak, length), begin)
     kept = stop - start >= settings.min_samples
     return start[kept], stop[kept], move[kept]
 
@@ -154,7 +178,7 @@ def _between_dips(
 def _bounds(
     start: Numbers, stop: Numbers, move: Numbers, first: Numbers, last: Numbers
 ) -> tuple[Numbers, Numbers]:
-    """Return the bounds of stretches; the outer ones of a move have those of the move."""
+    """Return the bounds of candidates; the outer ones of a move have those of the move."""
     opens = np.diff(move, prepend=-1) != 0
     closes = np.diff(move, append=-1) != 0
     return np.where(opens, first[move], start), np.where(closes, last[move], stop)
@@ -163,17 +187,17 @@ def _bounds(
 def _plateaus(
     speed: Array, start: Numbers, stop: Numbers, settings: SteadySettings
 ) -> tuple[Numbers, Numbers, Numbers]:
-    """Return the longest part at the speed that each stretch holds most, where it holds one."""
+    """Return the longest plateau at the most frequent speed of each candidate that has one."""
     level, spread = _densest(speed, start, stop)
     noise = spread / 2 / _GAUSSIAN_CORE
     tolerance = np.maximum(3 * noise, settings.speed_tolerance * level)
     held = (tolerance <= 4 * settings.speed_tolerance * level) & (level >= settings.min_speed)
-    stretch = np.flatnonzero(held)
-    start, stop = start[stretch], stop[stretch]
-    away = speed - over_samples(level[stretch], start, stop, len(speed), 0.0)
-    np.abs(away, out=away)
-    begin, end, owner = runs(
-        away <= over_samples(tolerance[stretch], start, stop, len(speed), -1.0), start
+    candidate = np.flatnonzero(held)
+    start, stop = start[candidate], stop[candidate]
+    deviation = speed - fill_slices(level[candidate], start, stop, len(speed), 0.0)
+    np.abs(deviation, out=deviation)
+    begin, end, owner = true_runs(
+        deviation <= fill_slices(tolerance[candidate], start, stop, len(speed), -1.0), start
     )
     # a few noisy samples inside a plateau do not end it
     gap = begin[1:] - end[:-1] > np.maximum(3, (stop - start)[owner[1:]] // 50)
@@ -181,14 +205,14 @@ def _plateaus(
     begin = begin[np.append(True, apart)] if len(begin) else begin
     end = end[np.append(apart, True)] if len(end) else end
     owner = np.searchsorted(start, begin, side="right") - 1
-    # the first of the longest ones of each stretch
+    # the first of the longest ones of each candidate
     order = np.lexsort((begin - end, owner))
     chosen = order[np.diff(owner[order], prepend=-1) != 0]
-    return begin[chosen], end[chosen], stretch[owner[chosen]]
+    return begin[chosen], end[chosen], candidate[owner[chosen]]
 
 
 def _densest(speed: Array, start: Numbers, stop: Numbers) -> tuple[Array, Array]:
-    """Return median and width of the narrowest range that holds the core of each stretch."""
+    """Return median and width of the narrowest range that holds the core of each candidate."""
     length = stop - start
     cores = np.minimum(np.maximum(np.ceil(_CORE * length).astype(np.int64), 2), length - 1)
     level, spread = np.empty(len(start)), np.empty(len(start))
@@ -200,10 +224,10 @@ def _densest(speed: Array, start: Numbers, stop: Numbers) -> tuple[Array, Array]
     # sorted together: of long ones those with the same core, whose lengths hardly differ
     for one in np.unique(kind):
         rows = np.flatnonzero(kind == one)
-        core, own = int(cores[rows[0]]), length[rows]
-        ordered = following[:, : own.max()][start[rows]]
-        ends = ordered[:, own.min() :]
-        np.copyto(ends, np.inf, where=np.arange(own.min(), own.max()) >= own[:, None])
+        core, count = int(cores[rows[0]]), length[rows]
+        ordered = following[:, : count.max()][start[rows]]
+        ends = ordered[:, count.min() :]
+        np.copyto(ends, np.inf, where=np.arange(count.min(), count.max()) >= count[:, None])
         ordered.sort(axis=1)
         width = ordered[:, core:] - ordered[:, :-core]
         row, densest = np.arange(len(rows)), width.argmin(axis=1)
@@ -216,7 +240,7 @@ def _densest(speed: Array, start: Numbers, stop: Numbers) -> tuple[Array, Array]
 def _trimmed(
     time: Array, begin: Numbers, end: Numbers, width: Array, settings: SteadySettings
 ) -> tuple[Numbers, Numbers]:
-    """Return plateaus without the settling at their start and the smeared edge at their end."""
+    """Return plateaus without the settling at their start and the smoothed edge at their end."""
     quarter = (time[end - 1] - time[begin]) / 4
     settled = np.searchsorted(time, time[begin] + np.minimum(settings.settling, quarter))
     margin = np.minimum(half_window(time, begin, end, width), (end - begin) // 4)

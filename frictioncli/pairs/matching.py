@@ -1,132 +1,152 @@
-"""Which angle-bin visits of counter-directed spans belong together; arrays only."""
+"""Matching of counter-directed segments bin by bin; arrays only."""
 
 from dataclasses import dataclass
 
 import numpy as np
 
 from frictioncli.arrays import Array, Flags, Numbers
-from frictioncli.pairs.array_runs import members
 from frictioncli.pairs.settings import PairingSettings
+from frictioncli.pairs.slices import slice_indices
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class SegmentArrays:
-    """Spans, and their visits to angle bins: those of a span stand together, in span order.
+    """Segments, and a row for each bin of each segment, in the order of segments.
 
     Attributes
     ----------
-    direction : ndarray of int, shape (spans,)
+    direction : ndarray of int, shape (segments,)
         +1 or -1.
-    start, stop, temperature : ndarray, shape (spans,)
-        Times and motor temperature, NaN where unknown. [s], [°C]
-    visit_span, visit_bin : ndarray of int, shape (visits,)
-        Span and bin of each visit; the bins of a span grow.
-    visit_time : ndarray, shape (visits,)
-        Time of each visit. [s]
+    start, stop : ndarray, shape (segments,)
+        Times. [s]
+    temperature : ndarray, shape (segments,)
+        Motor temperature, NaN where unknown. [°C]
+    bin_segment : ndarray of int, shape (rows,)
+        Segment of each row.
+    bin_number : ndarray of int, shape (rows,)
+        Bin of each row; the bins of a segment ascend.
+    bin_time : ndarray, shape (rows,)
+        Mean time of the segment in the bin. [s]
     """
 
     direction: Numbers
     start: Array
     stop: Array
     temperature: Array
-    visit_span: Numbers
-    visit_bin: Numbers
-    visit_time: Array
+    bin_segment: Numbers
+    bin_number: Numbers
+    bin_time: Array
 
-    def visits_of(self, spans: Numbers) -> tuple[Numbers, Numbers]:
-        """Return the first and past-the-end visit of spans."""
-        first, last = (np.searchsorted(self.visit_span, spans + i) for i in (0, 1))
+    def rows_of(self, segments: Numbers) -> tuple[Numbers, Numbers]:
+        """Return the first and past-the-end row of segments."""
+        first, last = (np.searchsorted(self.bin_segment, segments + i) for i in (0, 1))
         return first, last
 
 
 @dataclass(frozen=True, slots=True)
 class Matches:
-    """Couples of spans, and each visit's couple, -1 where it has none."""
+    """Matched segments.
+
+    Attributes
+    ----------
+    forward, reverse : ndarray of int, shape (matches,)
+        The two segments of each match.
+    bin_match : ndarray of int, shape (rows,)
+        Match of each row, -1 where it has none.
+    """
 
     forward: Numbers
     reverse: Numbers
-    visit_couple: Numbers
+    bin_match: Numbers
 
 
 def match_bins(arrays: SegmentArrays, groups: list[Numbers], settings: PairingSettings) -> Matches:
-    """Match the visits of counter-directed spans within groups of the same joint and speed.
+    """Match the bins of counter-directed segments within groups of the same joint and speed.
 
-    Neighbours in time are matched first, as whole spans; what is left over in the bins that they do
-    not share is then matched bin by bin, so that moves between random angles find partners too.
+    Neighbours in time are matched first, in all bins that they share. Bins that remain are then
+    matched one by one, so that moves between random angles find partners too.
 
     Parameters
     ----------
     arrays : SegmentArrays
-        All spans.
+        All segments.
     groups : list of ndarray of int
-        Spans that may pair with each other, in time order.
+        Segments that may match each other, in time order.
     settings : PairingSettings
         What makes a pair.
+
+    Returns
+    -------
+    Matches
+        The matches.
     """
-    couples = np.empty((0, 2), dtype=np.int64)
-    visit_couple = np.full(len(arrays.visit_span), -1, dtype=np.int64)
+    matches = np.empty((0, 2), dtype=np.int64)
+    bin_match = np.full(len(arrays.bin_segment), -1, dtype=np.int64)
     for group in groups:
-        found = _neighbours(arrays, group, settings)
-        ahead, back, number = _shared(arrays, found[:, 0], found[:, 1])
-        visit_couple[ahead] = visit_couple[back] = len(couples) + number
-        couples = np.concatenate([couples, found])
-        forward, reverse = _leftovers(arrays, group, visit_couple, settings)
-        spans = np.column_stack([arrays.visit_span[forward], arrays.visit_span[reverse]])
-        found, number = np.unique(spans, axis=0, return_inverse=True)
-        visit_couple[forward] = visit_couple[reverse] = len(couples) + number.ravel()
-        couples = np.concatenate([couples, found])
-    return Matches(couples[:, 0], couples[:, 1], visit_couple)
+        found = _match_neighbours(arrays, group, settings)
+        forward, reverse, number = _shared_bins(arrays, found[:, 0], found[:, 1])
+        bin_match[forward] = bin_match[reverse] = len(matches) + number
+        matches = np.concatenate([matches, found])
+        forward, reverse = _match_single_bins(arrays, group, bin_match, settings)
+        segments = np.column_stack([arrays.bin_segment[forward], arrays.bin_segment[reverse]])
+        found, number = np.unique(segments, axis=0, return_inverse=True)
+        bin_match[forward] = bin_match[reverse] = len(matches) + number.ravel()
+        matches = np.concatenate([matches, found])
+    return Matches(matches[:, 0], matches[:, 1], bin_match)
 
 
-def _agree(arrays: SegmentArrays, one: Numbers, other: Numbers, settings: PairingSettings) -> Flags:
+def _compatible(
+    arrays: SegmentArrays, one: Numbers, other: Numbers, settings: PairingSettings
+) -> Flags:
+    """Return whether segments are near enough to each other in time and temperature."""
     ordered = arrays.start[one] <= arrays.start[other]
     first, second = np.where(ordered, one, other), np.where(ordered, other, one)
     pause = arrays.start[second] - arrays.stop[first]
-    warmer = np.abs(arrays.temperature[one] - arrays.temperature[other])
+    difference = np.abs(arrays.temperature[one] - arrays.temperature[other])
     # without temperatures the difference is NaN and cannot forbid a pair
-    return (pause <= settings.longest_pause) & ~(warmer > settings.same_temperature)
+    return (pause <= settings.longest_pause) & ~(difference > settings.same_temperature)
 
 
-def _shared(
+def _shared_bins(
     arrays: SegmentArrays, one: Numbers, other: Numbers
 ) -> tuple[Numbers, Numbers, Numbers]:
-    """Return the visits of couples of spans to the bins that both crossed, and their couple."""
-    ahead, back = arrays.visits_of(one), arrays.visits_of(other)
-    low = arrays.visit_bin.min(initial=0)
-    many = arrays.visit_bin.max(initial=0) - low + 1
-    visits, keys = [], []
-    for first, last in (ahead, back):
-        visit = members(first, last)
+    """Return the rows of both segments of couples in the bins that they share, and the couple."""
+    low = arrays.bin_number.min(initial=0)
+    count = arrays.bin_number.max(initial=0) - low + 1
+    rows, keys = [], []
+    for first, last in (arrays.rows_of(one), arrays.rows_of(other)):
+        row = slice_indices(first, last)
         couple = np.repeat(np.arange(len(first)), last - first)
-        visits.append(visit)
-        keys.append(couple * many + arrays.visit_bin[visit] - low)
+        rows.append(row)
+        keys.append(couple * count + arrays.bin_number[row] - low)
     key, i, j = np.intersect1d(keys[0], keys[1], assume_unique=True, return_indices=True)
-    return visits[0][i], visits[1][j], key // many
+    return rows[0][i], rows[1][j], key // count
 
 
-def _neighbours(arrays: SegmentArrays, group: Numbers, settings: PairingSettings) -> Numbers:
-    """Return (forward, reverse) spans: neighbours in time, then neighbours among what is left."""
+def _match_neighbours(arrays: SegmentArrays, group: Numbers, settings: PairingSettings) -> Numbers:
+    """Return matched segments (forward, reverse): neighbours in time, again among the remaining."""
     found: list[Numbers] = []
-    waiting = group
+    remaining = group
     while True:
-        one, other = waiting[:-1], waiting[1:]
-        fit = np.flatnonzero(
+        one, other = remaining[:-1], remaining[1:]
+        candidate = np.flatnonzero(
             (arrays.direction[one] != arrays.direction[other])
-            & _agree(arrays, one, other, settings)
+            & _compatible(arrays, one, other, settings)
         )
-        fit = fit[np.isin(np.arange(len(fit)), _shared(arrays, one[fit], other[fit])[2])]
-        taken = _apart(fit)
-        if not len(taken):
+        sharing = _shared_bins(arrays, one[candidate], other[candidate])[2]
+        candidate = candidate[np.isin(np.arange(len(candidate)), sharing)]
+        chosen = _without_successors(candidate)
+        if not len(chosen):
             return np.concatenate([*found, np.empty((0, 2), dtype=np.int64)])
-        couple = np.column_stack([waiting[taken], waiting[taken + 1]])
-        back = arrays.direction[couple[:, 0]] < 0
-        couple[back] = couple[back, ::-1]
+        couple = np.column_stack([remaining[chosen], remaining[chosen + 1]])
+        reverse_first = arrays.direction[couple[:, 0]] < 0
+        couple[reverse_first] = couple[reverse_first, ::-1]
         found.append(couple)
-        waiting = np.delete(waiting, np.concatenate([taken, taken + 1]))
+        remaining = np.delete(remaining, np.concatenate([chosen, chosen + 1]))
 
 
-def _apart(numbers: Numbers) -> Numbers:
-    """Return growing numbers without those that follow right on one that is kept."""
+def _without_successors(numbers: Numbers) -> Numbers:
+    """Return ascending numbers without those that follow directly on one that is kept."""
     kept, last = [], -2
     for number in numbers.tolist():
         if number > last + 1:
@@ -135,43 +155,46 @@ def _apart(numbers: Numbers) -> Numbers:
     return np.array(kept, dtype=np.int64)
 
 
-def _leftovers(
-    arrays: SegmentArrays, group: Numbers, visit_couple: Numbers, settings: PairingSettings
+def _match_single_bins(
+    arrays: SegmentArrays, group: Numbers, bin_match: Numbers, settings: PairingSettings
 ) -> tuple[Numbers, Numbers]:
-    """Return visits forward and reverse to one bin that were still free, nearest in time first."""
-    visits = members(*arrays.visits_of(group))
-    free = visits[visit_couple[visits] < 0]
-    ahead = arrays.direction[arrays.visit_span[free]] > 0
-    found: list[tuple[Numbers, Numbers]] = [(visits[:0], visits[:0])]
-    for number in np.intersect1d(arrays.visit_bin[free[ahead]], arrays.visit_bin[free[~ahead]]):
-        here = arrays.visit_bin[free] == number
-        forward, reverse = free[here & ahead], free[here & ~ahead]
-        apart = np.abs(arrays.visit_time[forward][:, None] - arrays.visit_time[reverse])
+    """Return unmatched rows forward and in reverse of the same bin, nearest in time first."""
+    rows = slice_indices(*arrays.rows_of(group))
+    free = rows[bin_match[rows] < 0]
+    is_forward = arrays.direction[arrays.bin_segment[free]] > 0
+    found: list[tuple[Numbers, Numbers]] = [(rows[:0], rows[:0])]
+    for number in np.intersect1d(
+        arrays.bin_number[free[is_forward]], arrays.bin_number[free[~is_forward]]
+    ):
+        in_bin = arrays.bin_number[free] == number
+        forward, reverse = free[in_bin & is_forward], free[in_bin & ~is_forward]
+        distance = np.abs(arrays.bin_time[forward][:, None] - arrays.bin_time[reverse])
         one, other = np.meshgrid(
-            arrays.visit_span[forward], arrays.visit_span[reverse], indexing="ij"
+            arrays.bin_segment[forward], arrays.bin_segment[reverse], indexing="ij"
         )
-        apart[~_agree(arrays, one, other, settings)] = np.inf
-        i, j = _nearest_first(apart)
+        distance[~_compatible(arrays, one, other, settings)] = np.inf
+        i, j = _nearest_first(distance)
         found.append((forward[i], reverse[j]))
-    forward, reverse = (np.concatenate(parts) for parts in zip(*found, strict=True))
+    forward, reverse = (np.concatenate(rows) for rows in zip(*found, strict=True))
     return forward, reverse
 
 
-def _nearest_first(apart: Array) -> tuple[Numbers, Numbers]:
-    """Return rows and columns matched by taking the smallest distance left, again and again.
+def _nearest_first(distance: Array) -> tuple[Numbers, Numbers]:
+    """Return rows and columns matched by taking the smallest remaining distance, repeatedly.
 
-    Whoever are each other's nearest are matched sooner or later, so all of them are at once.
+    Rows and columns that are each other's nearest are matched sooner or later, so all of them are
+    matched at once.
     """
-    rows, columns = np.arange(apart.shape[0]), np.arange(apart.shape[1])
+    rows, columns = np.arange(distance.shape[0]), np.arange(distance.shape[1])
     found: list[tuple[Numbers, Numbers]] = [(rows[:0], columns[:0])]
     while rows.size and columns.size:
-        left = apart[np.ix_(rows, columns)]
-        nearest = left.argmin(axis=1)
-        mutual = left.argmin(axis=0)[nearest] == np.arange(len(rows))
-        mutual &= np.isfinite(left[np.arange(len(rows)), nearest])
+        remaining = distance[np.ix_(rows, columns)]
+        nearest = remaining.argmin(axis=1)
+        mutual = remaining.argmin(axis=0)[nearest] == np.arange(len(rows))
+        mutual &= np.isfinite(remaining[np.arange(len(rows)), nearest])
         if not mutual.any():
             break
         found.append((rows[mutual], columns[nearest[mutual]]))
         rows, columns = rows[~mutual], np.delete(columns, nearest[mutual])
-    i, j = (np.concatenate(parts) for parts in zip(*found, strict=True))
+    i, j = (np.concatenate(numbers) for numbers in zip(*found, strict=True))
     return i, j

@@ -1,4 +1,4 @@
-"""A joint's spans in sections of which no two hold partners, so that each is matched alone."""
+"""Groups of a joint's segments of which no two hold partners, so that each is matched alone."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -7,69 +7,76 @@ import numpy as np
 
 from frictioncli.pairs.partitioned_store import Columns, PartitionedStore
 
-MOST_SPANS = 4096
-"""A run and joint with more is parted at the longest pause of the later half of so many. [spans]
+MOST_SEGMENTS = 4096
+"""A run and joint with more segments is split at the longest pause within the later half of them.
 
-A joint that never rests for longer than partners may be apart loses a pair there at most.
+A joint that never rests for longer than the longest pause between partners may lose a pair there.
 """
 
 
 @dataclass(frozen=True, slots=True)
 class MatchingGroup:
-    """Spans, and their visits to angle bins; ``span`` counts in the section."""
+    """Segments and their bins; ``bins["segment"]`` counts within the group."""
 
-    spans: Columns
-    visits: Columns
+    segments: Columns
+    bins: Columns
 
 
 def matching_groups(
-    pages: PartitionedStore[tuple[str, int]], joint: tuple[str, int]
+    store: PartitionedStore[tuple[str, int]], joint: tuple[str, int]
 ) -> Iterator[MatchingGroup]:
-    """Yield the spans of a run and joint in order, with their visits.
+    """Yield the segments of a run and joint in time order, with their bins, group by group.
 
     Parameters
     ----------
-    pages : PartitionedStore
-        Pages of ``spans`` and ``visits``, as :class:`frictioncli.pairs.segments.Spans` has them.
+    store : PartitionedStore
+        Tables ``segments`` and ``bins`` of :class:`frictioncli.pairs.segments.SegmentTables`.
     joint : tuple of str and int
         Run and joint.
+
+    Yields
+    ------
+    MatchingGroup
+        Segments that may be partners of each other.
     """
-    held: MatchingGroup | None = None
+    waiting: MatchingGroup | None = None
     before = 0
-    for spans, visits in pages.of(joint, "spans", "visits"):
-        page = MatchingGroup(spans, visits | {"span": visits["span"] - before})
-        held = page if held is None else _joined(held, page)
-        while len(held.spans["start"]) > MOST_SPANS:
-            section, held = _parted(held, _seam(held.spans))
-            before += len(section.spans["start"])
-            yield section
-    if held is not None:
-        yield held
+    for segments, bins in store.read(joint, "segments", "bins"):
+        read = MatchingGroup(segments, bins | {"segment": bins["segment"] - before})
+        waiting = read if waiting is None else _joined(waiting, read)
+        while len(waiting.segments["start"]) > MOST_SEGMENTS:
+            group, waiting = _split(waiting, _longest_pause(waiting.segments))
+            before += len(group.segments["start"])
+            yield group
+    if waiting is not None:
+        yield waiting
 
 
-def _seam(spans: Columns) -> int:
-    """Return the first span behind the longest pause."""
-    earliest = MOST_SPANS // 2 + 1
-    stop = np.maximum.accumulate(spans["stop"][:MOST_SPANS])[earliest - 1 :]
-    return earliest + int(np.argmax(spans["start"][earliest : MOST_SPANS + 1] - stop))
+def _longest_pause(segments: Columns) -> int:
+    """Return the first segment behind the longest pause."""
+    earliest = MOST_SEGMENTS // 2 + 1
+    stop = np.maximum.accumulate(segments["stop"][:MOST_SEGMENTS])[earliest - 1 :]
+    return earliest + int(np.argmax(segments["start"][earliest : MOST_SEGMENTS + 1] - stop))
 
 
-def _parted(section: MatchingGroup, seam: int) -> tuple[MatchingGroup, MatchingGroup]:
-    cut = int(np.searchsorted(section.visits["span"], seam))
-    parts = []
-    for rows, own, number in (
-        (slice(seam), slice(cut), 0),
-        (slice(seam, None), slice(cut, None), seam),
+def _split(group: MatchingGroup, segment: int) -> tuple[MatchingGroup, MatchingGroup]:
+    """Return the group before a segment, and from it on."""
+    row = int(np.searchsorted(group.bins["segment"], segment))
+    halves = []
+    for segment_rows, bin_rows, first in (
+        (slice(segment), slice(row), 0),
+        (slice(segment, None), slice(row, None), segment),
     ):
-        visits = {name: values[own] for name, values in section.visits.items()}
-        visits["span"] = visits["span"] - number
-        parts.append(MatchingGroup({name: of[rows] for name, of in section.spans.items()}, visits))
-    return parts[0], parts[1]
+        segments = {name: values[segment_rows] for name, values in group.segments.items()}
+        bins = {name: values[bin_rows] for name, values in group.bins.items()}
+        bins["segment"] = bins["segment"] - first
+        halves.append(MatchingGroup(segments, bins))
+    return halves[0], halves[1]
 
 
 def _joined(one: MatchingGroup, other: MatchingGroup) -> MatchingGroup:
-    spans, visits = (
+    segments, bins = (
         {name: np.concatenate([first[name], second[name]]) for name in first}
-        for first, second in ((one.spans, other.spans), (one.visits, other.visits))
+        for first, second in ((one.segments, other.segments), (one.bins, other.bins))
     )
-    return MatchingGroup(spans, visits)
+    return MatchingGroup(segments, bins)

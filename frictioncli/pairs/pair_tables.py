@@ -1,75 +1,118 @@
-"""Rows of the tables ``pairs`` and ``ramps``, page by page."""
+"""Rows of the tables ``pairs`` and ``ramps``, and the text about them."""
 
-from collections.abc import Iterator
+from collections import Counter
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pandas as pd
 import pyarrow as pa
 from numpy.typing import NDArray
 
+from frictioncli import schemas, tables
 from frictioncli.arrays import Numbers
 from frictioncli.pairs.pairing import Pairing
 from frictioncli.pairs.partitioned_store import Columns
 from frictioncli.pairs.ramps import COLUMNS, PARTS
-from frictioncli.pairs.segments import TEMPERATURES, Joint, Segments
+from frictioncli.pairs.segments import TEMPERATURES, Joint, SegmentTables
 from frictioncli.pairs.thermal_phases import phases, phases_of
 
+_KEY = ["run", "recording"]
+_FROM_MANIFEST = ["phase", "payload"]
 
-def pair_rows(found: Segments, paired: Pairing, phase: pd.Series) -> Iterator[pa.Table]:
+_LISTED_SPEEDS = 12
+"""Speeds of a joint that the text lists."""
+
+
+def read_phase_and_payload(path: Path) -> pd.DataFrame:
+    """Return phase and payload [kg] by run and recording as the manifest gives them.
+
+    Parameters
+    ----------
+    path : Path
+        The table ``recordings``; without that file the result is empty.
+
+    Returns
+    -------
+    DataFrame
+        Columns ``phase`` and ``payload``, missing where the manifest gives none.
+    """
+    if not path.exists():
+        return pd.DataFrame(columns=[*_KEY, *_FROM_MANIFEST]).set_index(_KEY)
+    recordings = tables.read(path, schemas.RECORDINGS)
+    return recordings.drop_duplicates(_KEY).set_index(_KEY)[_FROM_MANIFEST]
+
+
+def pair_rows(segments: SegmentTables, pairing: Pairing, phase: pd.Series) -> Iterator[pa.Table]:
     """Yield rows of :data:`frictioncli.schemas.PAIRS`, ordered by run, joint, pair and angle.
 
     Parameters
     ----------
-    found, paired : Segments, Pairing
-        Spans, and the pairs made of them.
+    segments : SegmentTables
+        The segments.
+    pairing : Pairing
+        Pairs of these segments.
     phase : Series
-        Phase by run and recording as the manifest says; missing where it does not, and then found
-        from the trend of the motor temperature.
+        Phase by run and recording from the manifest. Where it is missing, the phase is found from
+        the trend of the motor temperature.
+
+    Yields
+    ------
+    Table
+        Whole pairs of one run and joint.
     """
-    for joint in sorted(paired.pages.keys):
+    for joint in sorted(pairing.store.keys):
         trend = phases(
             value
-            for (heads,) in paired.pages.of(joint, "heads")
-            for value in heads["motor_temperature"].tolist()
+            for (pairs,) in pairing.store.read(joint, "pairs")
+            for value in pairs["motor_temperature"].tolist()
         )
-        for heads, rows in paired.pages.of(joint, "heads", "rows"):
-            head = rows["pair"] - heads["pair"][0]
-            said = _said(found, heads["recording"], phase)
-            name = np.where(pd.isna(said), phases_of(heads["pair"], trend), said)
-            speed = paired.speed_of(joint[1], heads)
+        for pairs, bins in pairing.store.read(joint, "pairs", "bins"):
+            row = bins["pair"] - pairs["pair"][0]
+            given = _of_recordings(segments, pairs["recording"], phase)
+            name = np.where(pd.isna(given), phases_of(pairs["pair"], trend), given)
+            speed = pairing.speed_of(joint[1], pairs)
             yield _table(
                 joint,
                 {
-                    "pair": rows["pair"],
-                    "speed": speed[head],
-                    "time": heads["time"][head],
-                    "phase": name[head],
-                    **{name: heads[name][head] for name in TEMPERATURES},
-                    "position": (rows["bin"] + 0.5) * found.bin_width,
-                    "torque_forward": rows["torque_forward"],
-                    "torque_reverse": rows["torque_reverse"],
-                    "n_forward": rows["n_forward"],
-                    "n_reverse": rows["n_reverse"],
-                    "load": rows["load"],
-                    "payload": heads["payload"][head],
+                    "pair": bins["pair"],
+                    "speed": speed[row],
+                    "time": pairs["time"][row],
+                    "phase": name[row],
+                    **{name: pairs[name][row] for name in TEMPERATURES},
+                    "position": (bins["bin"] + 0.5) * segments.bin_width,
+                    "torque_forward": bins["torque_forward"],
+                    "torque_reverse": bins["torque_reverse"],
+                    "n_forward": bins["n_forward"],
+                    "n_reverse": bins["n_reverse"],
+                    "load": bins["load"],
+                    "payload": pairs["payload"][row],
                 },
             )
 
 
-def ramp_rows(found: Segments, payload: pd.Series) -> Iterator[pa.Table]:
+def ramp_rows(segments: SegmentTables, payload: pd.Series) -> Iterator[pa.Table]:
     """Yield rows of :data:`frictioncli.schemas.RAMPS`, ordered by run, joint and time.
 
     Parameters
     ----------
-    found : Segments
-        Spans and ramps.
+    segments : SegmentTables
+        Segments and ramps.
     payload : Series
         Payload by run and recording, missing where unknown. [kg]
+
+    Yields
+    ------
+    Table
+        Ramps of one run and joint.
     """
-    names = np.array([recording for _, recording in found.recordings], dtype=object)
+    names = np.array([recording for _, recording in segments.recordings], dtype=object)
     before = 0
-    for joint in sorted(found.counts):
-        for (ramps,) in found.pages.of(joint, "ramps"):
+    for joint in sorted(segments.counts):
+        for (ramps,) in segments.store.read(joint, "ramps"):
+            carried = _of_recordings(segments, ramps["recording"], payload)
             yield _table(
                 joint,
                 {name: ramps[name] for name in COLUMNS}
@@ -77,20 +120,22 @@ def ramp_rows(found: Segments, payload: pd.Series) -> Iterator[pa.Table]:
                     "recording": names[ramps["recording"]],
                     "move": ramps["move"] + before,
                     "part": np.array(PARTS, dtype=object)[ramps["part"]],
-                    "payload": _said(found, ramps["recording"], payload).astype(float),
+                    "payload": carried.astype(float),
                 },
             )
-        before += found.counts[joint]
+        before += segments.counts[joint]
 
 
-def _said(found: Segments, recording: Numbers, said: pd.Series) -> NDArray[np.object_]:
-    """Return what the manifest says of recordings that are given by number."""
-    keys = pd.MultiIndex.from_tuples(found.recordings, names=["run", "recording"])
-    return said.reindex(keys).to_numpy()[recording]
+def _of_recordings(
+    segments: SegmentTables, recording: Numbers, values: pd.Series
+) -> NDArray[np.object_]:
+    """Return the values of recordings that are given by number."""
+    keys = pd.MultiIndex.from_tuples(segments.recordings, names=_KEY)
+    return values.reindex(keys).to_numpy()[recording]
 
 
 def _table(joint: Joint, columns: Columns) -> pa.Table:
-    """Return rows of one run and joint; what is not a number has no value."""
+    """Return rows of one run and joint; NaN becomes null."""
     rows = len(next(iter(columns.values())))
     run, number = joint
     return pa.table(
@@ -100,3 +145,56 @@ def _table(joint: Joint, columns: Columns) -> pa.Table:
         }
         | {name: pa.array(values, from_pandas=True) for name, values in columns.items()}
     )
+
+
+@dataclass(slots=True)
+class PairCounts:
+    """Counts of pairs by joint and speed, and of their samples."""
+
+    speeds: dict[int, Counter[float]] = field(default_factory=dict)
+    samples: int = 0
+
+    def count(self, tables: Iterable[pa.Table]) -> Iterator[pa.Table]:
+        """Yield tables of :func:`pair_rows` unchanged, and count them."""
+        for rows in tables:
+            joint = int(rows["joint"][0].as_py())
+            _, first = np.unique(rows["pair"].to_numpy(), return_index=True)
+            speed = np.round(rows["speed"].to_numpy()[first], 1)
+            self.speeds.setdefault(joint, Counter()).update(speed.tolist())
+            for name in ("n_forward", "n_reverse"):
+                self.samples += int(rows[name].to_numpy().sum())
+            yield rows
+
+
+def pairing_text(counts: PairCounts, facts: Mapping[str, Any], requested_width: float) -> str:
+    """Return the text on pairs per speed and samples dropped per reason.
+
+    Parameters
+    ----------
+    counts : PairCounts
+        Counts of the pairs.
+    facts : mapping
+        ``samples``, ``dropped`` and ``bin_width`` of the pairing.
+    requested_width : float
+        Requested width of the angle bins. [deg]
+    """
+    lines = []
+    if facts["bin_width"] > requested_width:
+        lines.append(
+            f"angle bins widened from {requested_width:g} to {facts['bin_width']:g} deg: the joint"
+            " moves that far between samples"
+        )
+    for joint, speeds in sorted(counts.speeds.items()):
+        listed = sorted(speeds)[:_LISTED_SPEEDS]
+        text = ", ".join(f"{speeds[speed]} at {speed:g}" for speed in listed)
+        more = (
+            f" and {len(speeds) - _LISTED_SPEEDS} other speeds"
+            if len(speeds) > _LISTED_SPEEDS
+            else ""
+        )
+        lines.append(f"joint {joint}: {speeds.total()} pairs: {text}{more} deg/s")
+    dropped = "; ".join(f"{reason} {count}" for reason, count in facts["dropped"].items() if count)
+    lines.append(
+        f"samples: {facts['samples']} read, {counts.samples} in pairs; dropped: {dropped or 0}"
+    )
+    return "\n".join(lines)

@@ -1,4 +1,4 @@
-"""Stage ``pair``: counter-directed motion at the same speed, joint, temperature and angle."""
+"""Pairs of counter-directed segments of the same speed, joint, temperature and angles."""
 
 import math
 from dataclasses import dataclass, field
@@ -11,7 +11,7 @@ from frictioncli.errors import NotEnoughData
 from frictioncli.pairs.matching import Matches, SegmentArrays, match_bins
 from frictioncli.pairs.matching_groups import MatchingGroup, matching_groups
 from frictioncli.pairs.partitioned_store import Columns, PartitionedStore
-from frictioncli.pairs.segments import TEMPERATURES, Joint, Segments
+from frictioncli.pairs.segments import TEMPERATURES, Joint, SegmentTables
 from frictioncli.pairs.settings import PairingSettings
 from frictioncli.pairs.speed_levels import SpeedCounts, speed_levels, steps_of
 
@@ -21,160 +21,171 @@ _ALONE = "no counter-directed partner"
 _NOT_SHARED = "angle not shared with the partner"
 _OTHER_PAYLOAD = "the partner has another payload"
 
-_ALIKE = 0.01
-"""Speeds this close to the middle one of their level are one commanded speed."""
+_SAME_COMMAND = 0.01
+"""Speeds this close to the median of their level, as a share, are one commanded speed."""
 
 
 @dataclass(frozen=True, slots=True)
 class Pairing:
-    """Pairs, and what was left over.
+    """Pairs, and the samples that are in none.
 
     Attributes
     ----------
-    pages : PartitionedStore
-        Pages by run and joint, of two tables. ``heads``, one row per pair in time order: pair (its
-        number), level, recording (its number), speed, time, the temperatures, payload. ``rows``,
-        one row per pair and angle bin: pair, bin, torques and samples of both directions, load.
+    store : PartitionedStore
+        Two tables by run and joint. ``pairs``, one row per pair in time order: pair (its number),
+        level, recording (its number), speed [deg/s], time [s], the temperatures [°C], payload [kg].
+        ``bins``, one row per pair and angle bin: pair, bin, torques and samples of both directions,
+        load.
     speeds : dict of (int, int) to float
-        The number that stands for a commanded speed, by joint and level. [deg/s]
-    middles : dict of (int, int) to float
+        The value that stands for a commanded speed, by joint and level. [deg/s]
+    medians : dict of (int, int) to float
         Median speed of the pairs, by joint and level. [deg/s]
     dropped : dict of str to int
         Samples by reason; with the samples of the pairs they are all samples.
     """
 
-    pages: PartitionedStore[Joint]
+    store: PartitionedStore[Joint]
     speeds: dict[Level, float]
-    middles: dict[Level, float]
+    medians: dict[Level, float]
     dropped: dict[str, int]
 
-    def speed_of(self, joint: int, heads: Columns) -> Array:
-        """Return the speed of pairs: one commanded speed gets one number [deg/s]."""
-        common, middle = (
-            np.array([by_level[joint, level] for level in heads["level"].tolist()])
-            for by_level in (self.speeds, self.middles)
+    def speed_of(self, joint: int, pairs: Columns) -> Array:
+        """Return the speed of pairs; one commanded speed has one value [deg/s]."""
+        common, median = (
+            np.array([by_level[joint, level] for level in pairs["level"].tolist()])
+            for by_level in (self.speeds, self.medians)
         )
-        return np.where(_alike(heads["speed"], middle), common, heads["speed"])
+        return np.where(_is_same_command(pairs["speed"], median), common, pairs["speed"])
 
 
 def pair_segments(
-    found: Segments,
+    segments: SegmentTables,
     settings: PairingSettings,
-    pages: PartitionedStore[Joint],
+    store: PartitionedStore[Joint],
     payload: pd.Series | None = None,
 ) -> Pairing:
-    """Pair counter-directed spans and put both torques of each angle bin side by side.
+    """Pair counter-directed segments and put both torques of each angle bin side by side.
 
-    Moves with different payloads are loaded differently and make no pair; nor do a move whose
-    payload is known and one whose is not. Of the latter two are taken to carry the same.
+    Moves with different payloads are loaded differently and make no pair, nor do a move whose
+    payload is known and one whose payload is not. Two moves of unknown payload are taken to have
+    the same.
 
     Parameters
     ----------
-    found : Segments
-        The constant-velocity spans.
+    segments : SegmentTables
+        The constant-speed segments.
     settings : PairingSettings
         What makes a pair.
-    pages : PartitionedStore
-        Where the pairs go.
+    store : PartitionedStore
+        Store for the pairs.
     payload : Series, optional
         Payload by run and recording, missing where unknown. [kg]
+
+    Returns
+    -------
+    Pairing
+        The pairs.
 
     Raises
     ------
     NotEnoughData
-        If nothing moves at constant velocity, or nothing has a counter-directed partner.
+        If nothing moves at constant speed, or nothing has a counter-directed partner.
     """
-    if not found.counts:
+    if not segments.counts:
         raise NotEnoughData(
-            f"no constant-velocity motion in {found.samples} samples"
-            f" ({_told(found.dropped)}); expected moves that hold a speed above"
+            f"no constant-velocity motion in {segments.samples} samples"
+            f" ({_dropped_text(segments.dropped)}); expected moves that hold a speed above"
             f" {settings.steady.min_speed:g} deg/s; look at the velocity, or loosen --min-speed,"
             " --speed-tolerance, --settling"
         )
-    work = _Matching(
+    pairer = _Pairer(
         settings,
-        _steps_and_levels(found, settings),
-        _payloads(found, payload),
-        pages,
+        _steps_and_levels(segments, settings),
+        _payloads(segments, payload),
+        store,
         dict.fromkeys((_ALONE, _NOT_SHARED, _OTHER_PAYLOAD), 0),
     )
-    for joint in sorted(found.counts):
+    for joint in sorted(segments.counts):
         count = 0
-        for section in matching_groups(found.pages, joint):
-            count += work.add(joint, section, count)
-    if not work.middles:
-        mixed = f", {_OTHER_PAYLOAD}" if work.dropped[_OTHER_PAYLOAD] else ""
+        for group in matching_groups(segments.store, joint):
+            count += pairer.add(joint, group, count)
+    if not pairer.speeds:
+        mixed = f", {_OTHER_PAYLOAD}" if pairer.dropped[_OTHER_PAYLOAD] else ""
         raise NotEnoughData(
-            f"no pair of counter-directed moves: {_directions(found)}{mixed}; expected motion there"
-            " and back over the same angles at the same speed; log both directions, or loosen"
-            " --same-speed, --same-temperature, --longest-pause"
+            f"no pair of counter-directed moves: {_directions_text(segments)}{mixed}; expected"
+            " motion there and back over the same angles at the same speed; log both directions,"
+            " or loosen --same-speed, --same-temperature, --longest-pause"
         )
-    middles = {level: counts.median for level, counts in work.middles.items()}
-    return Pairing(pages, _common(pages, middles), middles, found.dropped | work.dropped)
+    medians = {level: counts.median for level, counts in pairer.speeds.items()}
+    speeds = _common_speeds(store, medians)
+    return Pairing(store, speeds, medians, segments.dropped | pairer.dropped)
 
 
 @dataclass(slots=True)
-class _Matching:
-    """Pairs section by section, and counts."""
+class _Pairer:
+    """Pairs the segments group by group, and counts."""
 
     settings: PairingSettings
-    levels: tuple[Numbers, Numbers]
+    steps_and_levels: tuple[Numbers, Numbers]
     payloads: Array
-    pages: PartitionedStore[Joint]
+    store: PartitionedStore[Joint]
     dropped: dict[str, int]
-    middles: dict[Level, SpeedCounts] = field(default_factory=dict)
+    speeds: dict[Level, SpeedCounts] = field(default_factory=dict)
 
-    def add(self, joint: Joint, section: MatchingGroup, count: int) -> int:
-        """Pair the spans of a section, numbered from ``count``; return how many pairs they make."""
-        spans, visits = section.spans, section.visits
-        level = self.levels[1][np.searchsorted(self.levels[0], steps_of(spans["speed"]))]
-        payload = self.payloads[spans["recording"]]
-        arrays = _arrays(spans, visits)
-        matches = match_bins(arrays, _groups(spans["start"], level, payload), self.settings)
-        used = matches.visit_couple >= 0
-        other = ~used
+    def add(self, joint: Joint, group: MatchingGroup, count: int) -> int:
+        """Pair the segments of a group, numbered from ``count``; return the number of pairs."""
+        segments, bins = group.segments, group.bins
+        steps, levels = self.steps_and_levels
+        level = levels[np.searchsorted(steps, steps_of(segments["speed"]))]
+        payload = self.payloads[segments["recording"]]
+        arrays = _arrays(segments, bins)
+        matches = match_bins(arrays, _groups(segments["start"], level, payload), self.settings)
+        matched = matches.bin_match >= 0
+        other_payload = ~matched
         if len(np.unique(payload)) > 1:
-            # those of one payload have been matched as far as they can be
-            rest = _arrays(spans, {name: values[~used] for name, values in visits.items()})
-            again = match_bins(rest, _groups(spans["start"], level), self.settings)
-            other[~used] = again.visit_couple >= 0
+            # the bins that remain would match with another payload
+            rest = _arrays(segments, {name: values[~matched] for name, values in bins.items()})
+            again = match_bins(rest, _groups(segments["start"], level), self.settings)
+            other_payload[~matched] = again.bin_match >= 0
         else:
-            other[:] = False
-        coupled = np.concatenate([matches.forward, matches.reverse])
-        alone = ~np.isin(visits["span"], coupled)
+            other_payload[:] = False
+        paired = np.concatenate([matches.forward, matches.reverse])
+        alone = ~np.isin(bins["segment"], paired)
         for reason, rows in (
-            (_ALONE, ~used & ~other & alone),
-            (_NOT_SHARED, ~used & ~other & ~alone),
-            (_OTHER_PAYLOAD, other),
+            (_ALONE, ~matched & ~other_payload & alone),
+            (_NOT_SHARED, ~matched & ~other_payload & ~alone),
+            (_OTHER_PAYLOAD, other_payload),
         ):
-            self.dropped[reason] += int(visits["n"][rows].sum())
-        if not len(coupled):
+            self.dropped[reason] += int(bins["n"][rows].sum())
+        if not len(paired):
             return 0
-        heads, number = _heads(spans, matches, level, payload, count)
-        for one in np.unique(heads["level"]).tolist():
-            counts = self.middles.setdefault((joint[1], one), SpeedCounts())
-            counts.add(heads["speed"][heads["level"] == one])
-        self.pages.add(joint, {"heads": heads, "rows": _rows(visits, matches, number)})
-        return len(heads["pair"])
+        pairs, number = _pairs(segments, matches, level, payload, count)
+        for one in np.unique(pairs["level"]).tolist():
+            counts = self.speeds.setdefault((joint[1], one), SpeedCounts())
+            counts.add(pairs["speed"][pairs["level"] == one])
+        self.store.add(joint, {"pairs": pairs, "bins": _paired_bins(bins, matches, number)})
+        return len(pairs["pair"])
 
 
-def _steps_and_levels(found: Segments, settings: PairingSettings) -> tuple[Numbers, Numbers]:
-    """Return the steps of speed that occur, growing, and the speed level of each."""
+def _steps_and_levels(
+    segments: SegmentTables, settings: PairingSettings
+) -> tuple[Numbers, Numbers]:
+    """Return the steps of speed that occur, ascending, and the speed level of each."""
     counts = SpeedCounts()
-    for part in found.speeds.values():
-        counts.add(part.speeds)
+    for of_direction in segments.speeds.values():
+        counts.add(of_direction.speeds)
     return counts.steps, speed_levels(counts.speeds, settings.same_speed)
 
 
-def _payloads(found: Segments, payload: pd.Series | None) -> Array:
+def _payloads(segments: SegmentTables, payload: pd.Series | None) -> Array:
     """Return the payload of each recording, NaN where unknown [kg]."""
     if payload is None:
-        return np.full(len(found.recordings), np.nan)
-    return payload.reindex(pd.MultiIndex.from_tuples(found.recordings)).to_numpy(float)
+        return np.full(len(segments.recordings), np.nan)
+    return payload.reindex(pd.MultiIndex.from_tuples(segments.recordings)).to_numpy(float)
 
 
 def _groups(start: Array, level: Numbers, payload: Array | None = None) -> list[Numbers]:
-    """Return the spans that may pair with each other, in time order."""
+    """Return the segments that may pair with each other, in time order."""
     kind = np.zeros(len(level)) if payload is None else payload
     order = np.lexsort((start, kind, level))
     # an unknown payload is equal to another unknown one
@@ -183,90 +194,92 @@ def _groups(start: Array, level: Numbers, payload: Array | None = None) -> list[
     return np.split(order, np.flatnonzero(new) + 1)
 
 
-def _arrays(spans: Columns, visits: Columns) -> SegmentArrays:
+def _arrays(segments: Columns, bins: Columns) -> SegmentArrays:
     return SegmentArrays(
-        direction=spans["direction"],
-        start=spans["start"],
-        stop=spans["stop"],
-        temperature=spans["motor_temperature"],
-        visit_span=visits["span"],
-        visit_bin=visits["bin"],
-        visit_time=visits["time"],
+        direction=segments["direction"],
+        start=segments["start"],
+        stop=segments["stop"],
+        temperature=segments["motor_temperature"],
+        bin_segment=bins["segment"],
+        bin_number=bins["bin"],
+        bin_time=bins["time"],
     )
 
 
-def _heads(
-    spans: Columns, matches: Matches, level: Numbers, payload: Array, count: int
+def _pairs(
+    segments: Columns, matches: Matches, level: Numbers, payload: Array, count: int
 ) -> tuple[Columns, Numbers]:
-    """Return what the two spans of each pair have in common, in time order; and their numbers."""
+    """Return a row per pair in time order, and the number of the pair of each match."""
     one, other = matches.forward, matches.reverse
-    start, stop = spans["start"], spans["stop"]
+    start, stop = segments["start"], segments["stop"]
     time = (start[one] + stop[one] + start[other] + stop[other]) / 4
     order = np.lexsort((one, time))
     number = np.empty(len(order), dtype=np.int64)
     number[order] = np.arange(count, count + len(order))
-    heads = {
+    pairs = {
         "level": level[one],
-        "recording": spans["recording"][one],
+        "recording": segments["recording"][one],
         "time": time,
         "payload": payload[one],
     }
     for name in ("speed", *TEMPERATURES):
-        heads[name] = (spans[name][one] + spans[name][other]) / 2
-    heads = {name: values[order] for name, values in heads.items()}
-    return {"pair": number[order]} | heads, number
+        pairs[name] = (segments[name][one] + segments[name][other]) / 2
+    pairs = {name: values[order] for name, values in pairs.items()}
+    return {"pair": number[order]} | pairs, number
 
 
-def _rows(visits: Columns, matches: Matches, number: Numbers) -> Columns:
+def _paired_bins(bins: Columns, matches: Matches, number: Numbers) -> Columns:
     """Return one row per pair and bin, in the order of pairs and angles."""
-    used = np.flatnonzero(matches.visit_couple >= 0)
-    couple = matches.visit_couple[used]
-    ahead = visits["span"][used] == matches.forward[couple]
-    sides = []
-    for side in (used[ahead], used[~ahead]):
-        pair = number[matches.visit_couple[side]]
-        sides.append(side[np.lexsort((visits["bin"][side], pair))])
-    forward, reverse = sides
+    matched = np.flatnonzero(matches.bin_match >= 0)
+    match = matches.bin_match[matched]
+    is_forward = bins["segment"][matched] == matches.forward[match]
+    by_direction = []
+    for rows in (matched[is_forward], matched[~is_forward]):
+        pair = number[matches.bin_match[rows]]
+        by_direction.append(rows[np.lexsort((bins["bin"][rows], pair))])
+    forward, reverse = by_direction
     return {
-        "pair": number[matches.visit_couple[forward]],
-        "bin": visits["bin"][forward],
-        "torque_forward": visits["torque"][forward],
-        "torque_reverse": visits["torque"][reverse],
-        "n_forward": visits["n"][forward],
-        "n_reverse": visits["n"][reverse],
-        "load": (visits["load"][forward] + visits["load"][reverse]) / 2,
+        "pair": number[matches.bin_match[forward]],
+        "bin": bins["bin"][forward],
+        "torque_forward": bins["torque"][forward],
+        "torque_reverse": bins["torque"][reverse],
+        "n_forward": bins["n"][forward],
+        "n_reverse": bins["n"][reverse],
+        "load": (bins["load"][forward] + bins["load"][reverse]) / 2,
     }
 
 
-def _alike(speed: Array, middle: Array | float) -> Flags:
-    return np.abs(speed - middle) < _ALIKE * middle
+def _is_same_command(speed: Array, median: Array | float) -> Flags:
+    return np.abs(speed - median) < _SAME_COMMAND * median
 
 
-def _common(pages: PartitionedStore[Joint], middles: dict[Level, float]) -> dict[Level, float]:
-    """Return the mean of the speeds that are alike, by joint and level [deg/s]."""
-    sums: dict[Level, list[float]] = {level: [] for level in middles}
-    counts = dict.fromkeys(middles, 0)
-    for joint in pages.keys:
-        for (heads,) in pages.of(joint, "heads"):
-            for one in np.unique(heads["level"]).tolist():
+def _common_speeds(
+    store: PartitionedStore[Joint], medians: dict[Level, float]
+) -> dict[Level, float]:
+    """Return the mean of the speeds that are one commanded speed, by joint and level [deg/s]."""
+    sums: dict[Level, list[float]] = {level: [] for level in medians}
+    counts = dict.fromkeys(medians, 0)
+    for joint in store.keys:
+        for (pairs,) in store.read(joint, "pairs"):
+            for one in np.unique(pairs["level"]).tolist():
                 level = joint[1], one
-                speed = heads["speed"][heads["level"] == one]
-                alike = speed[_alike(speed, middles[level])]
-                sums[level].append(math.fsum(alike))
-                counts[level] += len(alike)
-    return {level: math.fsum(sums[level]) / max(counts[level], 1) for level in middles}
+                speed = pairs["speed"][pairs["level"] == one]
+                same = speed[_is_same_command(speed, medians[level])]
+                sums[level].append(math.fsum(same))
+                counts[level] += len(same)
+    return {level: math.fsum(sums[level]) / max(counts[level], 1) for level in medians}
 
 
-def _told(dropped: dict[str, int]) -> str:
+def _dropped_text(dropped: dict[str, int]) -> str:
     return ", ".join(f"{reason}: {count}" for reason, count in dropped.items() if count)
 
 
-def _directions(found: Segments) -> str:
-    told = []
+def _directions_text(segments: SegmentTables) -> str:
+    texts = []
     for name, sign in (("forward", 1), ("reverse", -1)):
-        counts = found.speeds[sign]
-        reach = (
+        counts = segments.speeds[sign]
+        speeds = (
             f" at {counts.speeds[0]:.3g} to {counts.speeds[-1]:.3g} deg/s" if counts.total else ""
         )
-        told.append(f"{counts.total} constant-velocity parts {name}{reach}")
-    return ", ".join(told)
+        texts.append(f"{counts.total} constant-velocity parts {name}{speeds}")
+    return ", ".join(texts)

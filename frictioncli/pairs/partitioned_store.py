@@ -1,4 +1,4 @@
-"""Tables on disk between two passes: pages of columns by key, so that memory stays bounded."""
+"""Column store on disk, partitioned by key."""
 
 import tempfile
 from collections.abc import Hashable, Iterator, Mapping
@@ -16,20 +16,22 @@ from frictioncli.files import DRAFT, cannot_write
 Columns = dict[str, NDArray]
 Key = TypeVar("Key", bound=Hashable)
 
-_HELD = 1 << 23
+_BUFFER_BYTES = 1 << 23
 """Bytes that wait in memory before they are written."""
 
-_OVERHEAD = 256
+_ARRAY_OVERHEAD = 256
 """Bytes that an array needs beside its values."""
 
 
 class PartitionedStore(Generic[Key]):
-    """Tables that belong together, in pages of some rows of each, by key.
+    """Tables that belong together, with rows by key, in a temporary folder.
+
+    Rows are read in batches, in the order in which they were added, so that memory stays bounded.
 
     Parameters
     ----------
     folder : Path
-        Where they may lie until the block ends.
+        Folder in which the temporary folder lies until the block ends.
 
     Raises
     ------
@@ -40,9 +42,9 @@ class PartitionedStore(Generic[Key]):
     def __init__(self, folder: Path) -> None:
         self._folder = folder
         self._stack = ExitStack()
-        self._waiting: dict[Key, list[Mapping[str, Columns]]] = {}
-        self._held = 0
-        self._pages: dict[Key, list[int]] = {}
+        self._buffer: dict[Key, list[Mapping[str, Columns]]] = {}
+        self._buffer_bytes = 0
+        self._batches: dict[Key, list[int]] = {}
         self._writers: dict[str, pa.ipc.RecordBatchFileWriter] = {}
         self._readers: dict[str, pa.ipc.RecordBatchFileReader] = {}
         self._count = 0
@@ -50,12 +52,12 @@ class PartitionedStore(Generic[Key]):
     def __enter__(self) -> Self:
         try:
             self._folder.mkdir(parents=True, exist_ok=True)
-            box = tempfile.TemporaryDirectory(
+            temporary = tempfile.TemporaryDirectory(
                 prefix=DRAFT, dir=self._folder, ignore_cleanup_errors=True
             )
         except OSError as error:
             raise cannot_write(self._folder, error) from error
-        self._box = Path(self._stack.enter_context(box))
+        self._temporary = Path(self._stack.enter_context(temporary))
         return self
 
     def __exit__(
@@ -67,54 +69,56 @@ class PartitionedStore(Generic[Key]):
         self._stack.close()
 
     def add(self, key: Key, tables: Mapping[str, Columns]) -> None:
-        """Append rows of every table to a key's; all calls have the same tables and columns."""
-        self._waiting.setdefault(key, []).append(tables)
-        self._held += sum(
-            values.nbytes + _OVERHEAD for table in tables.values() for values in table.values()
+        """Append rows of every table to a key; all calls have the same tables and columns."""
+        self._buffer.setdefault(key, []).append(tables)
+        self._buffer_bytes += sum(
+            values.nbytes + _ARRAY_OVERHEAD
+            for table in tables.values()
+            for values in table.values()
         )
-        if self._held > _HELD:
+        if self._buffer_bytes > _BUFFER_BYTES:
             self._flush()
 
     @property
     def keys(self) -> list[Key]:
-        """Keys in the order in which they came."""
+        """Keys in the order in which they were first added."""
         self._flush()
-        return list(self._pages)
+        return list(self._batches)
 
-    def of(self, key: Key, *names: str) -> Iterator[tuple[Columns, ...]]:
-        """Yield a key's rows page by page, of the tables named; nothing may be added any more."""
+    def read(self, key: Key, *names: str) -> Iterator[tuple[Columns, ...]]:
+        """Yield a key's rows of the named tables in batches; nothing may be added afterwards."""
         self._flush()
-        for number in self._pages[key]:
-            yield tuple(self._page(name, number) for name in names)
+        for number in self._batches[key]:
+            yield tuple(self._read_batch(name, number) for name in names)
 
     def _flush(self) -> None:
         try:
-            for key, parts in self._waiting.items():
-                for name in parts[0]:
-                    self._write(name, _joined([part[name] for part in parts]))
-                self._pages.setdefault(key, []).append(self._count)
+            for key, added in self._buffer.items():
+                for name in added[0]:
+                    self._write(name, _joined([tables[name] for tables in added]))
+                self._batches.setdefault(key, []).append(self._count)
                 self._count += 1
         except OSError as error:
             raise cannot_write(self._folder, error) from error
-        self._waiting, self._held = {}, 0
+        self._buffer, self._buffer_bytes = {}, 0
 
     def _write(self, name: str, columns: Columns) -> None:
         batch = pa.RecordBatch.from_pydict({key: pa.array(of) for key, of in columns.items()})
         if name not in self._writers:
-            sink = self._stack.enter_context(pa.OSFile(str(self._box / name), "wb"))
+            sink = self._stack.enter_context(pa.OSFile(str(self._temporary / name), "wb"))
             self._writers[name] = pa.ipc.new_file(
                 sink, batch.schema, options=pa.ipc.IpcWriteOptions(compression="lz4")
             )
         self._writers[name].write_batch(batch)
 
-    def _page(self, name: str, number: int) -> Columns:
+    def _read_batch(self, name: str, number: int) -> Columns:
         if name not in self._readers:
             self._writers[name].close()
-            source = self._stack.enter_context(pa.OSFile(str(self._box / name), "rb"))
+            source = self._stack.enter_context(pa.OSFile(str(self._temporary / name), "rb"))
             self._readers[name] = pa.ipc.open_file(source)
         batch = self._readers[name].get_batch(number)
         return {key: batch.column(key).to_numpy(zero_copy_only=False) for key in batch.schema.names}
 
 
-def _joined(parts: list[Columns]) -> Columns:
-    return {name: np.concatenate([part[name] for part in parts]) for name in parts[0]}
+def _joined(tables: list[Columns]) -> Columns:
+    return {name: np.concatenate([table[name] for table in tables]) for name in tables[0]}

@@ -1,9 +1,9 @@
-"""The ramps of moves: what lies before and behind the constant-velocity part, as a small table.
+"""Ramps of moves: means per bin of distance from the turning point.
 
-Accelerating after a reversal and braking before the next one are of no use for separating friction
-from load, but they show what the constant-velocity part hides: inertia, and friction that is not
-yet built up. A ramp takes a few tenths of a second, so it is reduced by the angle from the turning
-point in geometric steps, and follows the first stretch at constant velocity too.
+Accelerating after a reversal and braking before the next one cannot be used to separate friction
+from load, but they show what a constant-speed segment hides: inertia, and friction that has not
+built up yet. A ramp takes a few tenths of a second. It is averaged in bins of the angle from the
+turning point, in geometric steps, which reach into the constant-speed segment.
 """
 
 from typing import NamedTuple
@@ -11,16 +11,16 @@ from typing import NamedTuple
 import numpy as np
 
 from frictioncli.arrays import Array, Flags, Numbers
-from frictioncli.pairs.array_runs import members, reduced
-from frictioncli.pairs.chunks import BEHIND
-from frictioncli.pairs.constant_speed import ConstantSpeedParts
+from frictioncli.pairs.chunks import NEIGHBOURS_BEFORE
+from frictioncli.pairs.constant_speed import ConstantSpeedSegments
 from frictioncli.pairs.moves import samples_in
+from frictioncli.pairs.slices import reduce_slices, slice_indices
 
 EDGES = np.geomspace(0.1, 30.0, 13)
 """Edges of the bins of distance from the turning point. [deg]"""
 
 PARTS = ("accelerating", "braking")
-"""The two halves of a move: distance counts from its beginning, or to its end."""
+"""Halves of a move: distance counts from its start, or to its end."""
 
 LAGS = {
     "acceleration": 0,
@@ -29,7 +29,7 @@ LAGS = {
     "acceleration_2_before": -2,
     "acceleration_2_after": 2,
 }
-"""By how many samples acceleration is taken later than torque: what lags may be told from."""
+"""Samples by which acceleration is taken later than torque, for models with a lag."""
 
 MEANS = (
     "time",
@@ -43,7 +43,7 @@ MEANS = (
 _MOTION = (*LAGS, "distance", "spread", "elapsed")
 
 COLUMNS = ("move", "part", "direction", "reversal", "speed", "bin", *MEANS, *_MOTION, "samples")
-"""Columns of the rows; ``move`` counts from 0 in the parts given, ``part`` in :data:`PARTS`."""
+"""Columns of the rows; ``move`` is the number of the segment, ``part`` that in :data:`PARTS`."""
 
 _KINDS = dict.fromkeys(COLUMNS, np.float64) | {
     "move": np.int64,
@@ -54,31 +54,39 @@ _KINDS = dict.fromkeys(COLUMNS, np.float64) | {
     "samples": np.int64,
 }
 
-_HALF_SPAN = 0.015
+_HALF_WINDOW = 0.015
 """Half of the time over which velocity is differentiated. [s]"""
 
 _MOST_NEIGHBOURS = 500
-"""A clock that is read in a wrong unit must not make windows of a million samples."""
+"""Bound on the window, for clocks that were read in a wrong unit. [samples]"""
 
-_ROLLING = 0.25
-"""A move that begins or ends above this share of its speed is cut off there, not turned round."""
+_CUT_OFF_SPEED = 0.25
+"""A move that begins or ends above this share of its speed is cut off there, not reversed."""
 
-_AWAY = 1.0
-"""A joint that rings about its turning point stays nearer to it. [deg]"""
+_RINGING = 1.0
+"""Greatest oscillation of a joint about its turning point. [deg]"""
 
 
-class ComingFrom(NamedTuple):
-    """The last move before some samples: its direction, 0 where not known, and where it ended.
+class PreviousMove(NamedTuple):
+    """The last move before a chunk.
 
-    ``since`` counts in those samples, and is below 0 where the move ended before them.
+    Attributes
+    ----------
+    direction : int
+        +1 or -1; 0 where unknown.
+    stop : int
+        Past-the-end sample of its segment, counted in the chunk; negative where it lies before.
     """
 
-    way: int = 0
-    since: int = 0
+    direction: int = 0
+    stop: int = 0
 
 
-def ramp_rows(
-    channels: dict[str, Array], parts: ConstantSpeedParts, period: float, came_from: ComingFrom
+def ramp_means(
+    channels: dict[str, Array],
+    segments: ConstantSpeedSegments,
+    period: float,
+    previous: PreviousMove,
 ) -> dict[str, Array]:
     """Return the ramps of moves as means per bin of distance from the turning point.
 
@@ -87,22 +95,22 @@ def ramp_rows(
     channels : dict of str to ndarray, shape (samples,)
         time, position, velocity, torque, load, motor_temperature, housing_temperature of one
         recording and joint. [s], [deg], [deg/s], [N·m], [N·m], [°C], [°C]
-    parts : ConstantSpeedParts
-        The constant-velocity parts, with the bounds of their moves.
+    segments : ConstantSpeedSegments
+        Constant-speed segments, with the bounds of their moves.
     period : float
-        Time between samples. [s]
-    came_from : ComingFrom
-        The last move before these parts.
+        Sampling period. [s]
+    previous : PreviousMove
+        The last move before these segments.
 
     Returns
     -------
     dict of str to ndarray, shape (rows,)
-        The :data:`COLUMNS`. Accelerations at :data:`LAGS` [deg/s²]; ``spread`` is the standard
-        deviation of the angle [deg], ``elapsed`` the time since the move began, or until it
-        ends [s].
+        The :data:`COLUMNS`: accelerations at :data:`LAGS` [deg/s²]; ``spread`` is the standard
+        deviation of the angle [deg]; ``elapsed`` is the time since the start of the move, or until
+        its end [s].
     """
-    low, high, origin, clock = _halves(channels, parts)
-    index = members(low, high)
+    low, high, origin, clock = _halves(channels, segments)
+    index = slice_indices(low, high)
     owner = np.repeat(np.arange(len(low)), high - low)
     distance = np.abs(channels["position"][index] - origin[owner])
     inside = (distance >= EDGES[0]) & (distance < EDGES[-1])
@@ -112,7 +120,7 @@ def ramp_rows(
     number = np.searchsorted(EDGES, distance, side="right") - 1
     values = {name: channels[name][index] for name in MEANS}
     time = channels["time"]
-    half = min(max(samples_in(_HALF_SPAN, period), 1), _MOST_NEIGHBOURS)
+    half = min(max(samples_in(_HALF_WINDOW, period), 1), _MOST_NEIGHBOURS)
     acceleration = slope(time, channels["velocity"], half)
     for name, shift in LAGS.items():
         values[name] = acceleration[np.clip(index + shift, 0, len(time) - 1)]
@@ -127,12 +135,12 @@ def ramp_rows(
     means = {name: np.bincount(key, value)[hit] / count[hit] for name, value in values.items()}
     means["spread"] = np.sqrt(np.maximum(means["spread"] - np.square(means["distance"]), 0.0))
     owner, number = np.divmod(hit, len(EDGES) - 1)
-    speed = parts.speed[owner // 2]
+    speed = segments.speed[owner // 2]
     rows = means | {
         "move": owner // 2,
         "part": owner % 2,
         "direction": np.sign(speed).astype(np.int64),
-        "reversal": _turned(channels["position"], parts, came_from)[owner // 2],
+        "reversal": _reversed(channels["position"], segments, previous)[owner // 2],
         "speed": np.abs(speed),
         "bin": number,
         "samples": count[hit],
@@ -146,19 +154,24 @@ def slope(time: Array, values: Array, half: int) -> Array:
     Parameters
     ----------
     time, values : ndarray, shape (samples,)
-        Growing times and the channel. [s], any
+        Increasing times and the channel. [s], [any unit]
     half : int
-        Neighbours on either side; beyond the ends stands the last sample.
+        Neighbours on either side; beyond the ends the last sample is repeated.
 
     Returns
     -------
     ndarray, shape (samples,)
-        Slope. [1/s] of the channel's unit
+        Slope. [unit of the channel per s]
+
+    Examples
+    --------
+    >>> slope(np.arange(4.0), np.array([0.0, 2.0, 4.0, 6.0]), 1)
+    array([2., 2., 2., 2.])
     """
     rise, run = (np.zeros(len(time)) for _ in range(2))
     for step in range(1, half + 1):
-        rise += step * _across(values, step)
-        run += step * _across(time, step)
+        rise += step * _central_difference(values, step)
+        run += step * _central_difference(time, step)
     return np.divide(rise, run, out=np.zeros_like(rise), where=run > 0)
 
 
@@ -168,9 +181,19 @@ def window_mean(time: Array, values: Array, half: int) -> Array:
     Parameters
     ----------
     time, values : ndarray, shape (samples,)
-        Growing times and the channel. [s], any
+        Increasing times and the channel. [s], [any unit]
     half : int
         Neighbours on either side.
+
+    Returns
+    -------
+    ndarray, shape (samples,)
+        Means. [unit of the channel]
+
+    Examples
+    --------
+    >>> window_mean(np.arange(4.0), np.full(4, 3.0), 1)
+    array([3., 3., 3., 3.])
     """
     area = np.diff(time) * (values[1:] + values[:-1]) / 2
     padded = np.concatenate([np.zeros(half), area, np.zeros(half)])
@@ -178,52 +201,56 @@ def window_mean(time: Array, values: Array, half: int) -> Array:
     for step in range(1, half + 1):
         window += padded[half + step - 1 :][: len(time)] + padded[half - step :][: len(time)]
         rise += step * window
-        run += step * _across(time, step)
+        run += step * _central_difference(time, step)
     return np.divide(rise, run, out=np.zeros_like(rise), where=run > 0)
 
 
-def _across(values: Array, step: int) -> Array:
-    """Return the difference between the samples so many steps later and earlier."""
+def _central_difference(values: Array, step: int) -> Array:
+    """Return the difference between the samples ``step`` later and ``step`` earlier."""
     padded = np.pad(values, step, mode="edge")
     return padded[2 * step :] - padded[: -2 * step]
 
 
 def _halves(
-    channels: dict[str, Array], parts: ConstantSpeedParts
+    channels: dict[str, Array], segments: ConstantSpeedSegments
 ) -> tuple[Numbers, Numbers, Array, Array]:
-    """Return first and past-the-end sample, turning angle and its time of both halves of moves.
+    """Return first and past-the-end sample, turning angle and its time for both halves of moves.
 
-    A half whose end is cut off by the recording has no samples.
+    A half whose end is cut off by the recording is empty.
     """
     time, position, velocity = (channels[name] for name in ("time", "position", "velocity"))
-    middle = (parts.first + parts.last) // 2
-    low = np.column_stack([parts.first, middle]).ravel()
-    high = np.column_stack([middle, parts.last]).ravel()
-    end = np.column_stack([parts.first, parts.last - 1]).ravel()
-    forward = parts.speed > 0
+    middle = (segments.move_start + segments.move_stop) // 2
+    low = np.column_stack([segments.move_start, middle]).ravel()
+    high = np.column_stack([middle, segments.move_stop]).ravel()
+    end = np.column_stack([segments.move_start, segments.move_stop - 1]).ravel()
+    forward = segments.speed > 0
     lowest = np.column_stack([forward, ~forward]).ravel()
     turn = np.where(
-        lowest, reduced(np.minimum, position, low, high), reduced(np.maximum, position, low, high)
+        lowest,
+        reduce_slices(np.minimum, position, low, high),
+        reduce_slices(np.maximum, position, low, high),
     )
-    cut_off = np.abs(velocity[end]) > _ROLLING * np.repeat(np.abs(parts.speed), 2)
+    cut_off = np.abs(velocity[end]) > _CUT_OFF_SPEED * np.repeat(np.abs(segments.speed), 2)
     return low, np.where(cut_off, low, high), turn, time[end]
 
 
-def _turned(position: Array, parts: ConstantSpeedParts, came_from: ComingFrom) -> Flags:
-    """Return whether each move goes the other way than the joint came; so does one after nothing.
+def _reversed(position: Array, segments: ConstantSpeedSegments, previous: PreviousMove) -> Flags:
+    """Return whether each move goes against the motion before it; true where that is unknown.
 
-    The way it came is that of the last angle further away than :data:`_AWAY`, or else that of the
-    move before. Standing is looked through: friction remembers the way, not the rest.
+    The direction before is that from the last angle further away than :data:`_RINGING`, or else
+    that of the previous move. A rest in between makes no difference to friction.
     """
-    way = np.sign(parts.speed).astype(np.int64)
-    since = np.append(came_from.since, parts.stop[:-1])
-    since = np.clip(since, parts.first - BEHIND, parts.first).clip(min=0)
-    length = parts.first - since
-    behind = position[members(since, parts.first)] - np.repeat(position[parts.first], length)
-    away = np.flatnonzero(np.abs(behind) > _AWAY)
+    direction = np.sign(segments.speed).astype(np.int64)
+    since = np.append(previous.stop, segments.stop[:-1])
+    since = np.clip(since, segments.move_start - NEIGHBOURS_BEFORE, segments.move_start).clip(min=0)
+    length = segments.move_start - since
+    offset = position[slice_indices(since, segments.move_start)] - np.repeat(
+        position[segments.move_start], length
+    )
+    distant = np.flatnonzero(np.abs(offset) > _RINGING)
     end = np.cumsum(length)
-    last = np.searchsorted(away, end) - 1
-    seen = last >= np.searchsorted(away, end - length)
-    came = np.append(came_from.way, way[:-1])
-    came[seen] = -np.sign(behind[away[last[seen]]])
-    return way != came
+    last = np.searchsorted(distant, end) - 1
+    seen = last >= np.searchsorted(distant, end - length)
+    before = np.append(previous.direction, direction[:-1])
+    before[seen] = -np.sign(offset[distant[last[seen]]])
+    return direction != before

@@ -1,7 +1,6 @@
-"""Samples, batch by batch, to constant-velocity spans and their means per angle bin.
+"""Constant-speed segments of all samples, and their means per angle bin.
 
-Memory is bounded: of a long recording only the move that a batch cuts is kept for the next one, and
-what is found goes to pages on disk.
+Samples are read in chunks, and what is found goes to a store on disk, so memory stays bounded.
 """
 
 from collections.abc import Iterable
@@ -12,13 +11,17 @@ import numpy as np
 import pyarrow as pa
 
 from frictioncli.arrays import Array
-from frictioncli.pairs.array_runs import means
 from frictioncli.pairs.bins import bin_means
 from frictioncli.pairs.chunks import Chunk, chunks
-from frictioncli.pairs.constant_speed import REASONS, ConstantSpeedParts, constant_speed_parts
+from frictioncli.pairs.constant_speed import (
+    REASONS,
+    ConstantSpeedSegments,
+    constant_speed_segments,
+)
 from frictioncli.pairs.partitioned_store import Columns, PartitionedStore
-from frictioncli.pairs.ramps import MEANS, ComingFrom, ramp_rows
+from frictioncli.pairs.ramps import MEANS, PreviousMove, ramp_means
 from frictioncli.pairs.settings import SteadySettings
+from frictioncli.pairs.slices import slice_means
 from frictioncli.pairs.speed_levels import SpeedCounts
 
 Joint = tuple[str, int]
@@ -26,43 +29,43 @@ Joint = tuple[str, int]
 TEMPERATURES = ("motor_temperature", "housing_temperature", "motor_temperature_reading")
 _CHANNELS = (*MEANS, "motor_temperature_reading")
 
-_HEAD_ROWS = 1 << 17
-"""Samples that are looked at to find out whether the angle bins must be wider."""
+_FIRST_ROWS = 1 << 17
+"""Samples from which it is found whether the angle bins must be wider."""
 
-_LEAST_COVER = 0.5
-"""Share of an angle bin that a span must have crossed for its mean to stand for the bin."""
+_LEAST_COVERAGE = 0.5
+"""Share of an angle bin that a segment must cover for its mean to represent the bin."""
 
 _BARELY = "angle bin barely crossed"
 
 
 @dataclass(frozen=True, slots=True)
-class Segments:
-    """What has been found in the samples of a work folder.
+class SegmentTables:
+    """Segments, bins and ramps of all samples.
 
     Attributes
     ----------
-    pages : PartitionedStore
-        Pages by run and joint, of three tables. ``spans``, one row per span: recording (its number
-        in ``recordings``), direction (+1, -1), speed [deg/s], start, stop [s], motor_temperature,
-        housing_temperature, motor_temperature_reading [°C]. ``visits``, one row per span and angle
-        bin: span (number within run and joint), bin (number), n (samples), torque at the bin's
-        centre, load, time [s]. ``ramps``: rows of :func:`frictioncli.pairs.ramps.ramp_rows` with
-        recording; ``move`` is the span's number.
+    store : PartitionedStore
+        Three tables by run and joint. ``segments``, one row per segment: recording (its number in
+        ``recordings``), direction (+1, -1), speed [deg/s], start, stop [s], motor_temperature,
+        housing_temperature, motor_temperature_reading [°C]. ``bins``, one row per segment and angle
+        bin: segment (number within run and joint), bin (number), n (samples), torque at the bin's
+        centre, load, time [s]. ``ramps``: rows of :func:`frictioncli.pairs.ramps.ramp_means` with
+        recording; ``move`` is the number of the segment.
     counts : dict of (str, int) to int
-        Spans of each run and joint that has some.
+        Number of segments of each run and joint that has some.
     recordings : list of tuple of str
         Run and recording.
     bin_width : float
         Width of the bins. [deg]
     dropped : dict of str to int
-        Samples that are in no visit, by reason.
+        Samples that are in no bin, by reason.
     speeds : dict of int to SpeedCounts
-        How many spans have which speed, by direction.
+        Counts of the segments' speeds, by direction.
     samples : int
-        Samples read.
+        Number of samples read.
     """
 
-    pages: PartitionedStore[Joint]
+    store: PartitionedStore[Joint]
     counts: dict[Joint, int]
     recordings: list[tuple[str, str]]
     bin_width: float
@@ -75,9 +78,9 @@ def find_segments(
     batches: Iterable[pa.RecordBatch],
     settings: SteadySettings,
     bin_width: float,
-    pages: PartitionedStore[Joint],
-) -> Segments:
-    """Find the constant-velocity spans in samples that come in order, in batches of any size.
+    store: PartitionedStore[Joint],
+) -> SegmentTables:
+    """Find the constant-speed segments in samples that come in order, in batches of any size.
 
     Parameters
     ----------
@@ -85,51 +88,56 @@ def find_segments(
         Rows of :data:`frictioncli.schemas.SAMPLES`; those of one recording stand together, those of
         one of its joints in time order.
     settings : SteadySettings
-        What counts as constant velocity.
+        What counts as constant speed.
     bin_width : float
         Width of an angle bin; widened where a log is sampled so slowly that bins stay empty. [deg]
-    pages : PartitionedStore
-        Where spans, visits and ramps go.
+    store : PartitionedStore
+        Store for segments, bins and ramps.
+
+    Returns
+    -------
+    SegmentTables
+        The segments.
     """
     batches = iter(batches)
-    head = _head(batches)
-    found = _Finding(settings, max(bin_width, _least_width(head, settings, bin_width)), pages)
-    for stretch in chunks(chain(head, batches), _CHANNELS, settings):
-        found.add(stretch)
-    return found.result()
+    first = _first_batches(batches)
+    finder = _Finder(settings, max(bin_width, _least_width(first, settings, bin_width)), store)
+    for chunk in chunks(chain(first, batches), _CHANNELS, settings):
+        finder.add(chunk)
+    return finder.result()
 
 
-def _head(batches: Iterable[pa.RecordBatch]) -> list[pa.RecordBatch]:
-    head, rows = [], 0
+def _first_batches(batches: Iterable[pa.RecordBatch]) -> list[pa.RecordBatch]:
+    first, rows = [], 0
     for batch in batches:
-        head.append(batch)
+        first.append(batch)
         rows += batch.num_rows
-        if rows >= _HEAD_ROWS:
+        if rows >= _FIRST_ROWS:
             break
-    return head
+    return first
 
 
-def _least_width(head: list[pa.RecordBatch], settings: SteadySettings, step: float) -> float:
-    """Return the width, in whole multiples of ``step``, that no move steps over between samples."""
-    if not head:
+def _least_width(first: list[pa.RecordBatch], settings: SteadySettings, step: float) -> float:
+    """Return the width, in whole multiples of ``step``, that no move exceeds between samples."""
+    if not first:
         return 0.0
     names = ["run", "recording", "joint", "time", "velocity"]
-    rows = pa.Table.from_batches([batch.select(names) for batch in head]).slice(0, _HEAD_ROWS)
+    rows = pa.Table.from_batches([batch.select(names) for batch in first]).slice(0, _FIRST_ROWS)
     frame = rows.unify_dictionaries().to_pandas()
     grouped = frame.groupby(names[:3], sort=False, observed=True)
-    way = (frame["velocity"].abs() * grouped["time"].diff())[
+    turned = (frame["velocity"].abs() * grouped["time"].diff())[
         frame["velocity"].abs() > settings.min_speed
     ].dropna()
-    return 0.0 if way.empty else float(np.ceil(way.median() / step - 1e-9) * step)
+    return 0.0 if turned.empty else float(np.ceil(turned.median() / step - 1e-9) * step)
 
 
 @dataclass(slots=True)
-class _Finding:
-    """Takes what is found, stretch by stretch, to its pages, and counts."""
+class _Finder:
+    """Adds the segments of each chunk to the store, and counts."""
 
     settings: SteadySettings
     width: float
-    pages: PartitionedStore[Joint]
+    store: PartitionedStore[Joint]
     counts: dict[Joint, int] = field(default_factory=dict)
     recordings: list[tuple[str, str]] = field(default_factory=list)
     samples: int = 0
@@ -137,61 +145,61 @@ class _Finding:
     speeds: dict[int, SpeedCounts] = field(
         default_factory=lambda: {1: SpeedCounts(), -1: SpeedCounts()}
     )
-    _ways: dict[int, tuple[int, int]] = field(default_factory=dict)
+    _last_moves: dict[int, tuple[int, int]] = field(default_factory=dict)
 
-    def add(self, stretch: Chunk) -> None:
-        source, channels = stretch.source, stretch.channels
+    def add(self, chunk: Chunk) -> None:
+        source, channels = chunk.source, chunk.channels
         if not self.recordings or self.recordings[-1] != source[:2]:
             self.recordings.append(source[:2])
-            self._ways = {}
-        parts = constant_speed_parts(
+            self._last_moves = {}
+        found = constant_speed_segments(
             channels["time"],
             channels["velocity"],
-            stretch.total,
-            stretch.first,
-            stretch.last,
+            chunk.total,
+            chunk.move_start,
+            chunk.move_stop,
             self.settings,
         )
-        self.samples += stretch.end - stretch.begin
-        self.dropped["standing"] += stretch.standing
-        for reason, count in parts.dropped.items():
+        self.samples += chunk.end - chunk.begin
+        self.dropped["standing"] += chunk.standing
+        for reason, count in found.dropped.items():
             self.dropped[reason] += count
-        if not len(parts.start):
+        if not len(found.start):
             return
         for direction, counts in self.speeds.items():
-            counts.add(np.abs(parts.speed[np.sign(parts.speed) == direction]))
-        way, since = self._ways.get(source.joint, (0, 0))
-        came_from = ComingFrom(way, since - stretch.number)
+            counts.add(np.abs(found.speed[np.sign(found.speed) == direction]))
+        direction, stop = self._last_moves.get(source.joint, (0, 0))
+        previous = PreviousMove(direction, stop - chunk.offset)
         tables = {
-            "spans": self._spans(channels, parts),
-            "visits": self._visits(channels, parts),
-            "ramps": ramp_rows(channels, parts, stretch.period, came_from),
+            "segments": self._segments(channels, found),
+            "bins": self._bins(channels, found),
+            "ramps": ramp_means(channels, found, chunk.period, previous),
         }
-        for name in ("spans", "ramps"):
+        for name in ("segments", "ramps"):
             rows = len(tables[name]["speed"])
             tables[name]["recording"] = np.full(rows, len(self.recordings) - 1)
         joint = source.run, source.joint
         before = self.counts.get(joint, 0)
-        tables["visits"]["span"] = tables["visits"]["span"] + before
+        tables["bins"]["segment"] = tables["bins"]["segment"] + before
         tables["ramps"]["move"] = tables["ramps"]["move"] + before
-        self.counts[joint] = before + len(parts.start)
-        self.pages.add(joint, tables)
-        self._ways[source.joint] = (
-            int(np.sign(parts.speed[-1])),
-            int(stretch.number + parts.stop[-1]),
+        self.counts[joint] = before + len(found.start)
+        self.store.add(joint, tables)
+        self._last_moves[source.joint] = (
+            int(np.sign(found.speed[-1])),
+            int(chunk.offset + found.stop[-1]),
         )
 
-    def _spans(self, channels: dict[str, Array], parts: ConstantSpeedParts) -> Columns:
+    def _segments(self, channels: dict[str, Array], found: ConstantSpeedSegments) -> Columns:
         return {
-            "direction": np.sign(parts.speed).astype(np.int64),
-            "speed": np.abs(parts.speed),
-            "start": channels["time"][parts.start],
-            "stop": channels["time"][parts.stop - 1],
-        } | {name: means(channels[name], parts.start, parts.stop) for name in TEMPERATURES}
+            "direction": np.sign(found.speed).astype(np.int64),
+            "speed": np.abs(found.speed),
+            "start": channels["time"][found.start],
+            "stop": channels["time"][found.stop - 1],
+        } | {name: slice_means(channels[name], found.start, found.stop) for name in TEMPERATURES}
 
-    def _visits(self, channels: dict[str, Array], parts: ConstantSpeedParts) -> Columns:
-        time, start, stop = channels["time"], parts.start, parts.stop
-        visits = bin_means(
+    def _bins(self, channels: dict[str, Array], found: ConstantSpeedSegments) -> Columns:
+        time, start, stop = channels["time"], found.start, found.stop
+        means = bin_means(
             position=channels["position"],
             torque=channels["torque"],
             load=channels["load"],
@@ -200,18 +208,18 @@ class _Finding:
             stop=stop,
             width=self.width,
         )
-        step = np.abs(parts.speed) * (time[stop - 1] - time[start]) / (stop - start - 1)
+        step = np.abs(found.speed) * (time[stop - 1] - time[start]) / (stop - start - 1)
         expected = np.maximum(self.width / np.maximum(step, 1e-9), 1.0)
-        covered = visits.n >= _LEAST_COVER * expected[visits.span]
-        self.dropped[_BARELY] += int(visits.n[~covered].sum())
+        covered = means.n >= _LEAST_COVERAGE * expected[means.segment]
+        self.dropped[_BARELY] += int(means.n[~covered].sum())
         return {
-            name: getattr(visits, name)[covered]
-            for name in ("span", "bin", "n", "torque", "load", "time")
+            name: getattr(means, name)[covered]
+            for name in ("segment", "bin", "n", "torque", "load", "time")
         }
 
-    def result(self) -> Segments:
-        return Segments(
-            self.pages,
+    def result(self) -> SegmentTables:
+        return SegmentTables(
+            self.store,
             self.counts,
             self.recordings,
             self.width,

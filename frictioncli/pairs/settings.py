@@ -56,7 +56,7 @@ class PairingSettings:
     same_speed : float
         Greatest difference of speed, relative to it. [-]
     same_temperature : float
-        Greatest difference of motor temperature. [°C]
+        Greatest difference of motor temperature. [K]
     longest_pause : float
         Longest time between the end of one segment and the start of the other. [s]
     """

@@ -1,4 +1,4 @@
-"""Commanded speeds: which speeds of a log are meant to be the same, whatever its size."""
+"""Commanded speeds: levels of speeds that are meant to be the same."""
 
 import math
 from dataclasses import dataclass, field
@@ -13,25 +13,40 @@ _STEP = math.log1p(1e-4)
 
 
 def steps_of(speed: ArrayLike) -> Numbers:
-    """Return speeds as numbers of steps of one part in 10,000.
+    """Return the logarithms of speeds in whole steps of one part in 10,000.
 
     Parameters
     ----------
     speed : array_like
         Speeds, > 0. [deg/s]
+
+    Returns
+    -------
+    ndarray of int
+        Steps above 1 deg/s.
     """
     return np.rint(np.log(speed) / _STEP).astype(np.int64)
 
 
 def speed_levels(speed: Array, same: float) -> Numbers:
-    """Return the number of the speed level of each span; a level spans at most ``2 * same``.
+    """Return the number of the speed level of each segment; a level is at most ``2 * same`` wide.
 
     Parameters
     ----------
-    speed : ndarray, shape (spans,)
+    speed : ndarray, shape (segments,)
         Speeds. [deg/s]
     same : float
-        Greatest difference between neighbours of a level, as a share.
+        Greatest difference between neighbours of a level, as a share. [-]
+
+    Returns
+    -------
+    ndarray of int, shape (segments,)
+        Levels, numbered from 0 by ascending speed.
+
+    Examples
+    --------
+    >>> speed_levels(np.array([50.0, 20.0, 50.5]), 0.03)
+    array([1, 0, 1])
     """
     level = np.zeros(len(speed), dtype=np.int64)
     number, floor, last = -1, -np.inf, -np.inf
@@ -44,7 +59,7 @@ def speed_levels(speed: Array, same: float) -> Numbers:
 
 @dataclass(slots=True)
 class SpeedCounts:
-    """How often which speed occurs; there are only so many, however long a log is."""
+    """Counts of speeds in steps of one part in 10,000, so that their number stays bounded."""
 
     steps: Numbers = field(default_factory=lambda: np.empty(0, np.int64))
     counts: Numbers = field(default_factory=lambda: np.empty(0, np.int64))
@@ -52,8 +67,8 @@ class SpeedCounts:
     def add(self, speed: Array) -> None:
         """Count more speeds [deg/s]."""
         steps, counts = np.unique(steps_of(speed), return_counts=True)
-        both, place = np.unique(np.concatenate([self.steps, steps]), return_inverse=True)
-        total = np.bincount(place, np.concatenate([self.counts, counts]), len(both))
+        both, position = np.unique(np.concatenate([self.steps, steps]), return_inverse=True)
+        total = np.bincount(position, np.concatenate([self.counts, counts]), len(both))
         self.steps, self.counts = both, total.astype(np.int64)
 
     @property
@@ -63,7 +78,7 @@ class SpeedCounts:
 
     @property
     def speeds(self) -> Array:
-        """The speeds that occur, growing [deg/s]."""
+        """Speeds that occur, ascending [deg/s]."""
         return np.exp(self.steps * _STEP)
 
     @property

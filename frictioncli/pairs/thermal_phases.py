@@ -13,10 +13,10 @@ from frictioncli.arrays import Numbers
 HEAT_UP, COOL_DOWN, SWEEP = "heat-up", "cool-down", "sweep"
 
 _TURN = 3.0
-"""A reversal smaller than this is noise of the temperature, not a new phase. [°C]"""
+"""A smaller reversal of the temperature is noise, not a new phase. [K]"""
 
 _LEAST_SWING = 5.0
-"""A phase that changes the temperature by less is neither heating nor cooling. [°C]"""
+"""A smaller change of temperature is neither heating nor cooling. [K]"""
 
 
 class _Point(NamedTuple):
@@ -25,7 +25,7 @@ class _Point(NamedTuple):
 
 
 class ThermalPhase(NamedTuple):
-    """Pairs ``begin`` to ``end`` (excluded) of a run and joint heat up or cool down."""
+    """Heat-up or cool-down from pair ``begin`` to ``end`` (excluded) of a run and joint."""
 
     begin: int
     end: int
@@ -33,17 +33,27 @@ class ThermalPhase(NamedTuple):
 
 
 def phases(temperature: Iterable[float]) -> list[ThermalPhase]:
-    """Return the phases of a run in time order; what lies between them is a sweep.
+    """Return the thermal phases of a run in time order; pairs in none of them belong to a sweep.
 
     Parameters
     ----------
     temperature : iterable of float
-        Motor temperature of each pair in time order, NaN where unknown; looked at once. [°C]
+        Motor temperature of each pair in time order, NaN where unknown. [°C]
+
+    Returns
+    -------
+    list of ThermalPhase
+        Heat-up and cool-down phases.
 
     Notes
     -----
-    The temperatures are cut where they turn by more than 3 °C. A stretch that rises by 5 °C or more
-    is heat-up, one that falls as much is cool-down, anything else is a sweep.
+    The temperatures are cut where they reverse by more than 3 K. Between two cuts, a rise by 5 K or
+    more is heat-up, a fall by as much is cool-down, and anything else is a sweep.
+
+    Examples
+    --------
+    >>> phases([20.0, 25.0, 30.0, 27.0, 22.0])
+    [ThermalPhase(begin=0, end=3, name='heat-up'), ThermalPhase(begin=3, end=5, name='cool-down')]
     """
     known = (_Point(pair, value) for pair, value in enumerate(temperature) if math.isfinite(value))
     turns = _turning_points(known)
@@ -64,7 +74,12 @@ def phases_of(pair: Numbers, found: list[ThermalPhase]) -> NDArray[np.object_]:
     pair : ndarray of int, shape (pairs,)
         Numbers of the pairs, as :func:`phases` counted them.
     found : list of ThermalPhase
-        The phases of their run and joint.
+        Phases of their run and joint.
+
+    Returns
+    -------
+    ndarray of str, shape (pairs,)
+        ``heat-up``, ``cool-down`` or ``sweep``.
     """
     names = np.array([*(phase.name for phase in found), SWEEP], dtype=object)
     begin, end = (np.array([phase[i] for phase in found], dtype=np.int64) for i in (0, 1))
@@ -75,7 +90,7 @@ def phases_of(pair: Numbers, found: list[ThermalPhase]) -> NDArray[np.object_]:
 
 
 def _turning_points(points: Iterable[_Point]) -> list[_Point]:
-    """Return first, last and turning points of a sequence, small reversals ignored."""
+    """Return first, last and turning points of a sequence, without small reversals."""
     points = iter(points)
     first = next(points, None)
     if first is None:

@@ -4,13 +4,17 @@ from dataclasses import asdict
 from pathlib import Path
 
 from frictioncli import schemas, tables
-from frictioncli.pairs.manifest_facts import given
-from frictioncli.pairs.pair_tables import pair_rows, ramp_rows
+from frictioncli.pairs.pair_tables import (
+    PairCounts,
+    pair_rows,
+    pairing_text,
+    ramp_rows,
+    read_phase_and_payload,
+)
 from frictioncli.pairs.pairing import pair_segments
 from frictioncli.pairs.partitioned_store import PartitionedStore
 from frictioncli.pairs.segments import Joint, find_segments
 from frictioncli.pairs.settings import PairingSettings
-from frictioncli.pairs.summary import PairTally, pairing_text
 from frictioncli.provenance import Provenance, hashes
 from frictioncli.stages.stage import Done, present, stage
 from frictioncli.workfiles import PAIRS, RAMPS, RECORDINGS, SAMPLES
@@ -23,25 +27,25 @@ def pair(work: Path, settings: PairingSettings | None = None) -> Done:
     source = work / SAMPLES
     facts = tables.facts(source)
     provenance = Provenance("pair", asdict(settings), hashes(present(source, work / RECORDINGS)))
-    said = given(work / RECORDINGS)
-    tally = PairTally()
+    manifest = read_phase_and_payload(work / RECORDINGS)
+    counts = PairCounts()
     with (
-        PartitionedStore[Joint](work) as moving,
-        PartitionedStore[Joint](work) as paired,
+        PartitionedStore[Joint](work) as segment_store,
+        PartitionedStore[Joint](work) as pair_store,
         tables.TableWriter(work / RAMPS, schemas.RAMPS, provenance) as ramps,
         tables.TableWriter(work / PAIRS, schemas.PAIRS, provenance) as pairs,
     ):
         samples = tables.ahead(tables.batches(source, schemas.SAMPLES))
-        found = find_segments(samples, settings.steady, settings.bin_width, moving)
-        pairing = pair_segments(found, settings, paired, said["payload"])
+        segments = find_segments(samples, settings.steady, settings.bin_width, segment_store)
+        pairing = pair_segments(segments, settings, pair_store, manifest["payload"])
         facts |= {
-            "samples": found.samples,
+            "samples": segments.samples,
             "dropped": pairing.dropped,
-            "bin_width": found.bin_width,
+            "bin_width": segments.bin_width,
         }
         ramps.facts = pairs.facts = facts
-        for rows in ramp_rows(found, said["payload"]):
+        for rows in ramp_rows(segments, manifest["payload"]):
             ramps.write(rows)
-        for rows in tally.counted(pair_rows(found, pairing, said["phase"])):
+        for rows in counts.count(pair_rows(segments, pairing, manifest["phase"])):
             pairs.write(rows)
-    return Done(work / PAIRS, pairing_text(tally, facts, settings.bin_width))
+    return Done(work / PAIRS, pairing_text(counts, facts, settings.bin_width))

@@ -4,10 +4,9 @@ from dataclasses import asdict
 from pathlib import Path
 
 from frictioncli import schemas, tables
+from frictioncli.pairs.separation import TorqueRanges, separation_text, sign_conventions
 from frictioncli.pairs.separation import separate as separate_pairs
-from frictioncli.pairs.separation import sign_conventions
 from frictioncli.pairs.settings import SeparationSettings
-from frictioncli.pairs.summary import TorqueRanges, separation_text
 from frictioncli.provenance import Provenance, hashes
 from frictioncli.stages.stage import Done, stage
 from frictioncli.workfiles import PAIRS, TORQUES
@@ -25,10 +24,10 @@ def separate(work: Path, settings: SeparationSettings | None = None) -> Done:
     ranges = TorqueRanges()
     with tables.TableWriter(work / TORQUES, schemas.TORQUES, provenance) as torques:
         pairs = tables.ahead(tables.batches(source, schemas.PAIRS))
-        for rows in ranges.seen(separate_pairs(batch, signs) for batch in pairs):
+        for rows in ranges.update(separate_pairs(batch, signs) for batch in pairs):
             torques.write(rows)
-        facts |= {"load_unit": "N·m"} if ranges.own_load else {}
+        facts |= {"load_unit": "N·m"} if ranges.load_is_measured else {}
         torques.facts = facts
     return Done(
-        work / TORQUES, separation_text(ranges, signs, facts, told=settings.sign is not None)
+        work / TORQUES, separation_text(ranges, signs, facts, given=settings.sign is not None)
     )

@@ -5,14 +5,14 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from frictioncli.pairs import bin_runs as module
-from frictioncli.pairs.bin_runs import bin_runs
+from frictioncli.pairs import bins
+from frictioncli.pairs.bins import bin_runs
 from tests.compiler import has_compiler
 
 
 @pytest.mark.skipif(not has_compiler(), reason="no C compiler")
 def test_sums_are_compiled_where_a_compiler_is():
-    assert module._bin_runs is not None
+    assert bins._bin_runs is not None
 
 
 def in_a_loop(*, position, torque, load, time, start, stop, width):
@@ -35,7 +35,7 @@ def in_a_loop(*, position, torque, load, time, start, stop, width):
 
 @st.composite
 def recordings(draw):
-    """Spans with gaps whose angles waver over the edges of bins, and lie on them exactly."""
+    """Segments with gaps whose angles waver over the edges of bins, and lie on them exactly."""
     generator = np.random.default_rng(draw(st.integers(0, 10**6)))
     width = draw(st.sampled_from([5.0, 0.1, 1 / 3, 2e-7]))
     length = generator.integers(1, 40, 5)
@@ -61,7 +61,7 @@ def recordings(draw):
 def test_runs_are_those_of_a_plain_loop_to_the_last_bit(compiled, recording):
     with pytest.MonkeyPatch.context() as patch:
         if not compiled:
-            patch.setattr(module, "_bin_runs", None)
+            patch.setattr(bins, "_bin_runs", None)
         found = bin_runs(**recording)
     (number, *sums, count), end = in_a_loop(**recording)
     assert found.bin.tolist() == number.tolist()
@@ -73,13 +73,13 @@ def test_runs_are_those_of_a_plain_loop_to_the_last_bit(compiled, recording):
         np.testing.assert_array_equal(values, expected)
 
 
-@pytest.mark.skipif(module._bin_runs is None, reason="installed without a C compiler")
+@pytest.mark.skipif(bins._bin_runs is None, reason="installed without a C compiler")
 @pytest.mark.parametrize(
     ("start", "stop"), [([0], [5]), ([-1], [3]), ([3], [3]), ([0, 2], [4]), ([2**62], [2**62 + 1])]
 )
-def test_spans_outside_the_samples_are_refused(start, stop):
+def test_segments_outside_the_samples_are_refused(start, stop):
     samples, room = np.zeros(4), 8
     sums, count, end = np.empty((5, room)), np.empty(room, np.int64), np.empty(len(start), np.int64)
-    spans = np.array(start, np.int64), np.array(stop, np.int64)
+    bounds = np.array(start, np.int64), np.array(stop, np.int64)
     with pytest.raises(ValueError, match="spans inside them"):
-        module._bin_runs.runs(*[samples] * 4, *spans, 1.0, sums, count, end)
+        bins._bin_runs.runs(*[samples] * 4, *bounds, 1.0, sums, count, end)

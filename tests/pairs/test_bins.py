@@ -1,4 +1,4 @@
-"""Bin means of many spans at once are those of each span alone."""
+"""Bin means of many segments at once are those of each segment alone."""
 
 import numpy as np
 import pytest
@@ -9,7 +9,7 @@ from frictioncli.pairs.bins import bin_means, slopes
 
 
 def alone(position, torque, width):
-    """One span, bin by bin, in plain steps; the slope is numpy's."""
+    """One segment, bin by bin, in plain steps; the slope is numpy's."""
     numbers = sorted({int(np.floor(q / width)) for q in position})
     means, places, counts = [], [], []
     for number in numbers:
@@ -29,8 +29,8 @@ def alone(position, torque, width):
     noise=st.sampled_from([0.0, 0.02, 2.0]),
     unknown=st.sampled_from([0.0, 0.02, 0.5, 1.0]),
 )
-def test_many_spans_at_once_are_as_each_alone(seed, noise, unknown):
-    """Spans either way, with gaps, angles that waver over edges of bins, loads partly unknown."""
+def test_many_segments_at_once_are_as_each_alone(seed, noise, unknown):
+    """Segments either way, with gaps, angles that waver over bin edges, loads partly unknown."""
     generator = np.random.default_rng(seed)
     lengths = generator.integers(2, 60, 7)
     gaps = generator.integers(0, 4, 7)
@@ -47,8 +47,8 @@ def test_many_spans_at_once_are_as_each_alone(seed, noise, unknown):
     found = bin_means(
         position=position, torque=torque, load=load, time=time, start=start, stop=stop, width=5.0
     )
-    for span, own in enumerate(map(slice, start, stop)):
-        here = found.span == span
+    for segment, own in enumerate(map(slice, start, stop)):
+        here = found.segment == segment
         for values, name in ((torque, "torque"), (load, "load")):
             numbers, counts, means = alone(position[own], values[own], 5.0)
             assert found.bin[here].tolist() == numbers
@@ -75,7 +75,7 @@ def test_partly_crossed_bins_are_carried_to_their_centre():
     assert np.isnan(means.load).all()
 
 
-def test_no_spans_have_no_means():
+def test_no_segments_have_no_means():
     none = np.empty(0)
     empty = np.empty(0, np.int64)
     means = bin_means(

@@ -15,17 +15,19 @@ SETTINGS = PairingSettings(longest_pause=30.0, same_temperature=2.0)
 
 
 def plain(arrays, settings):
-    """The couples of one group, span by span and visit by visit."""
+    """The matches of one group, segment by segment and bin by bin."""
 
     def agree(one, other):
-        first, second = sorted((one, other), key=lambda span: arrays.start[span])
+        first, second = sorted((one, other), key=lambda segment: arrays.start[segment])
         pause = arrays.start[second] - arrays.stop[first]
         warmer = abs(arrays.temperature[one] - arrays.temperature[other])
         return pause <= settings.longest_pause and not warmer > settings.same_temperature
 
-    visits = {
-        span: {int(b): v for v, b in enumerate(arrays.visit_bin) if arrays.visit_span[v] == span}
-        for span in range(len(arrays.start))
+    rows = {
+        segment: {
+            int(b): v for v, b in enumerate(arrays.bin_number) if arrays.bin_segment[v] == segment
+        }
+        for segment in range(len(arrays.start))
     }
     partner = {}
     waiting = list(range(len(arrays.start)))
@@ -34,22 +36,22 @@ def plain(arrays, settings):
         for one, other in pairwise(waiting):
             if one in taken or arrays.direction[one] == arrays.direction[other]:
                 continue
-            shared = visits[one].keys() & visits[other].keys()
+            shared = rows[one].keys() & rows[other].keys()
             if agree(one, other) and shared:
                 taken |= {one, other}
                 for number in shared:
-                    a, b = visits[one][number], visits[other][number]
+                    a, b = rows[one][number], rows[other][number]
                     partner[a], partner[b] = b, a
         if not taken:
             break
-        waiting = [span for span in waiting if span not in taken]
+        waiting = [segment for segment in waiting if segment not in taken]
     edges = []
-    for a in range(len(arrays.visit_bin)):
-        for b in range(len(arrays.visit_bin)):
-            one, other = int(arrays.visit_span[a]), int(arrays.visit_span[b])
+    for a in range(len(arrays.bin_number)):
+        for b in range(len(arrays.bin_number)):
+            one, other = int(arrays.bin_segment[a]), int(arrays.bin_segment[b])
             counter = arrays.direction[one] > 0 > arrays.direction[other]
-            if counter and arrays.visit_bin[a] == arrays.visit_bin[b] and agree(one, other):
-                edges.append((abs(arrays.visit_time[a] - arrays.visit_time[b]), a, b))
+            if counter and arrays.bin_number[a] == arrays.bin_number[b] and agree(one, other):
+                edges.append((abs(arrays.bin_time[a] - arrays.bin_time[b]), a, b))
     for _, a, b in sorted(edges):
         if a not in partner and b not in partner:
             partner[a], partner[b] = b, a
@@ -63,24 +65,24 @@ def test_matches_are_those_of_plain_loops(seed, count):
     start = np.cumsum(generator.uniform(1, 12, count))
     lengths = generator.integers(0, 5, count)
     bins = [np.sort(generator.choice(7, n, replace=False)) for n in lengths]
-    span = np.repeat(np.arange(count), lengths)
+    segment = np.repeat(np.arange(count), lengths)
     arrays = SegmentArrays(
         direction=generator.choice([-1, 1], count),
         start=start,
         stop=start + 1.0,
         temperature=generator.choice([20.0, 21.5, 23.0, np.nan], count),
-        visit_span=span,
-        visit_bin=np.concatenate(bins).astype(np.int64),
-        visit_time=start[span] + generator.uniform(0, 1, len(span)),
+        bin_segment=segment,
+        bin_number=np.concatenate(bins).astype(np.int64),
+        bin_time=start[segment] + generator.uniform(0, 1, len(segment)),
     )
     found = match_bins(arrays, [np.arange(count)], SETTINGS)
     partner = {}
     for couple in range(len(found.forward)):
-        own = np.flatnonzero(found.visit_couple == couple)
-        for number in np.unique(arrays.visit_bin[own]):
-            a, b = own[arrays.visit_bin[own] == number]
+        own = np.flatnonzero(found.bin_match == couple)
+        for number in np.unique(arrays.bin_number[own]):
+            a, b = own[arrays.bin_number[own] == number]
             partner[int(a)], partner[int(b)] = int(b), int(a)
-            assert {arrays.visit_span[a], arrays.visit_span[b]} == {
+            assert {arrays.bin_segment[a], arrays.bin_segment[b]} == {
                 found.forward[couple],
                 found.reverse[couple],
             }

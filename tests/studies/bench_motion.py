@@ -48,7 +48,7 @@ def _parts(name: str, rows: int, speeds: tuple[float, ...]) -> Work:
             function(
                 "frictioncli",
                 "tests.studies.bench_motion:parts_of_frictioncli",
-                shown="frictioncli.pairs.constant_speed.steady_parts over tables.batches(samples)",
+                shown="frictioncli.pairs.constant_speed_segments over tables.batches(samples)",
             ),
             function(
                 "pandas",
@@ -98,9 +98,8 @@ def _bins(pairs: int) -> Work:
         ],
         sources=(
             "pairs/bins.py",
-            "pairs/bin_runs.py",
             "pairs/_bin_runs.c",
-            "pairs/array_runs.py",
+            "pairs/slices.py",
         ),
     )
 
@@ -157,10 +156,10 @@ def parts_of_frictioncli(data: Path, out: Path) -> Callable[[], int]:
     import pandas as pd  # noqa: F401
 
     from frictioncli import schemas, tables
-    from frictioncli.pairs.array_runs import means
     from frictioncli.pairs.chunks import chunks
-    from frictioncli.pairs.constant_speed import constant_speed_parts
+    from frictioncli.pairs.constant_speed import constant_speed_segments
     from frictioncli.pairs.settings import SteadySettings
+    from frictioncli.pairs.slices import slice_means
 
     wanted = [column for column in schemas.SAMPLES.columns if column.name in PART_COLUMNS]
     table, settings = replace(schemas.SAMPLES, columns=tuple(wanted)), SteadySettings()
@@ -168,13 +167,13 @@ def parts_of_frictioncli(data: Path, out: Path) -> Callable[[], int]:
     def act() -> int:
         found = []
         batches = tables.ahead(tables.batches(data / "samples.parquet", table))
-        for stretch in chunks(batches, ("torque",), settings):
-            time, velocity = stretch.channels["time"], stretch.channels["velocity"]
-            parts = constant_speed_parts(
-                time, velocity, stretch.total, stretch.first, stretch.last, settings
+        for chunk in chunks(batches, ("torque",), settings):
+            time, velocity = chunk.channels["time"], chunk.channels["velocity"]
+            segments = constant_speed_segments(
+                time, velocity, chunk.total, chunk.move_start, chunk.move_stop, settings
             )
-            torque = means(stretch.channels["torque"], parts.start, parts.stop)
-            found.append(np.stack([parts.speed, torque]))
+            torque = slice_means(chunk.channels["torque"], segments.start, segments.stop)
+            found.append(np.stack([segments.speed, torque]))
         return left(out, np.concatenate(found, axis=1))
 
     return act
@@ -231,8 +230,8 @@ def write_pairs(data: Path, *, pairs: int) -> None:
 
 def bins_of_frictioncli(data: Path, out: Path) -> Callable[[], float]:
     """Prepare bin means of all moves; the act returns the RMS error of friction. [N·m]"""
-    from frictioncli.pairs.array_runs import keep_freed_memory
     from frictioncli.pairs.bins import bin_means
+    from frictioncli.pairs.slices import keep_freed_memory
 
     keep_freed_memory()
     position, torque = np.load(data / "pairs.npy")

@@ -1,4 +1,4 @@
-"""Only the part at constant velocity is kept."""
+"""Only the segment at constant speed is kept."""
 
 from typing import NamedTuple
 
@@ -7,7 +7,7 @@ import pytest
 
 from frictioncli.errors import OptionError
 from frictioncli.pairs import constant_speed
-from frictioncli.pairs.constant_speed import constant_speed_parts
+from frictioncli.pairs.constant_speed import constant_speed_segments
 from frictioncli.pairs.moves import (
     SMOOTHING,
     directions,
@@ -20,33 +20,33 @@ from frictioncli.pairs.settings import SteadySettings
 from tests.moves import journey, trapezoid
 
 
-class Part(NamedTuple):
+class Segment(NamedTuple):
     start: int
     stop: int
     speed: float
 
 
-def parts_of(motion, **settings):
-    """Parts of a whole recording, and samples dropped from its moves by reason."""
+def segments_of(motion, **settings):
+    """Segments of a whole recording, and samples dropped from its moves by reason."""
     chosen = SteadySettings(**settings)
     time, velocity = motion["time"].to_numpy(), motion["velocity"].to_numpy()
     period = float(np.median(np.diff(time)))
     total = running_sum(velocity)
     direction = directions(total, samples_in(SMOOTHING, period), chosen)
-    first, last = moves(direction, time, period)
-    found = constant_speed_parts(time, velocity, total, first, last, chosen)
-    dropped = found.dropped | {"standing": len(time) - int(np.sum(last - first))}
-    return list(map(Part, found.start, found.stop, found.speed)), dropped
+    start, stop = moves(direction, time, period)
+    found = constant_speed_segments(time, velocity, total, start, stop, chosen)
+    dropped = found.dropped | {"standing": len(time) - int(np.sum(stop - start))}
+    return list(map(Segment, found.start, found.stop, found.speed)), dropped
 
 
 @pytest.mark.parametrize("speed", [2.3, 19.1, 67.5, 101.2, 290.0])
 def test_plateau_of_a_trapezoid_holds_no_acceleration(speed):
     motion = trapezoid(0, 180, speed, acceleration=2000.0)
-    (part,), _ = parts_of(motion)
-    inside = motion.iloc[part.start : part.stop]
+    (segment,), _ = segments_of(motion)
+    inside = motion.iloc[segment.start : segment.stop]
     assert (inside["acceleration"] == 0).all()
-    assert part.speed == pytest.approx(speed, rel=1e-9)
-    # the constant part lasts 180/v - v/a seconds, of which at most a quarter settles
+    assert segment.speed == pytest.approx(speed, rel=1e-9)
+    # the constant speed lasts 180/v - v/a seconds, of which at most a quarter settles
     cruise = 180 / speed - speed / 2000
     assert inside["time"].iloc[-1] - inside["time"].iloc[0] > 0.6 * min(cruise, cruise - 0.25)
 
@@ -68,30 +68,30 @@ def test_smoothed_speed_is_the_mean_of_neighbours_within_the_move():
 
 
 def test_direction_is_in_the_sign_of_the_speed():
-    parts, _ = parts_of(journey([0, 180, 0], [50, 50]))
-    assert [np.sign(part.speed) for part in parts] == [1, -1]
+    segments, _ = segments_of(journey([0, 180, 0], [50, 50]))
+    assert [np.sign(segment.speed) for segment in segments] == [1, -1]
 
 
 def test_settling_is_dropped():
     motion = trapezoid(0, 180, 50.0)
     begun = motion.loc[motion["velocity"] == 50.0, "time"].iloc[0]
-    (part,), _ = parts_of(motion, settling=0.5)
-    assert motion["time"].iloc[part.start] >= begun + 0.5 - 0.02
+    (segment,), _ = segments_of(motion, settling=0.5)
+    assert motion["time"].iloc[segment.start] >= begun + 0.5 - 0.02
 
 
 def test_a_move_that_never_holds_its_speed_is_dropped():
     motion = trapezoid(0, 60, 1000.0)
-    parts, dropped = parts_of(motion)
-    assert parts == []
+    segments, dropped = segments_of(motion)
+    assert segments == []
     assert sum(dropped.values()) == len(motion)
 
 
-def test_stop_and_go_without_rest_gives_two_parts():
+def test_stop_and_go_without_rest_gives_two_segments():
     """The joint slows down to 2 % of its speed and goes on in the same direction."""
     motion = journey([0, 90, 180], [60, 60], rest=0.0)
     motion["velocity"] = np.maximum(motion["velocity"], 1.2)
-    parts, _ = parts_of(motion)
-    assert len(parts) == 2
+    segments, _ = segments_of(motion)
+    assert len(segments) == 2
 
 
 @pytest.mark.parametrize("speed", [2.3, 20.0, 100.0])
@@ -99,8 +99,8 @@ def test_noise_on_the_velocity_does_not_hide_the_plateau(speed):
     generator = np.random.default_rng(3)
     motion = trapezoid(0, 180, speed)
     motion["velocity"] += generator.normal(0, 0.02 * speed, len(motion))
-    (part,), _ = parts_of(motion)
-    inside = motion.iloc[part.start : part.stop]
+    (segment,), _ = segments_of(motion)
+    inside = motion.iloc[segment.start : segment.stop]
     assert (inside["acceleration"] == 0).mean() > 0.98
     cruise = 180 / speed - speed / 400
     assert inside["time"].iloc[-1] - inside["time"].iloc[0] > 0.5 * cruise
@@ -109,15 +109,17 @@ def test_noise_on_the_velocity_does_not_hide_the_plateau(speed):
 def test_slow_sampling_keeps_a_plateau_of_a_few_samples():
     """2 Hz, 50 deg/s over 200 deg: about seven samples at full speed."""
     motion = trapezoid(-100, 100, 50.0, period=0.5, rest=2.0)
-    (part,), _ = parts_of(motion)
-    assert part.stop - part.start >= 4
-    assert part.speed == pytest.approx(50.0)
+    (segment,), _ = segments_of(motion)
+    assert segment.stop - segment.start >= 4
+    assert segment.speed == pytest.approx(50.0)
 
 
-def test_every_sample_is_in_a_part_or_counted():
+def test_every_sample_is_in_a_segment_or_counted():
     motion = journey([0, 180, 20, 150], [19.1, 67.5, 400.0])
-    parts, dropped = parts_of(motion)
-    assert sum(part.stop - part.start for part in parts) + sum(dropped.values()) == len(motion)
+    segments, dropped = segments_of(motion)
+    assert sum(segment.stop - segment.start for segment in segments) + sum(dropped.values()) == len(
+        motion
+    )
     # 0.3 s before and behind each move, less half of the moving mean
     assert dropped["standing"] == pytest.approx(3 * (0.6 - 2 * SMOOTHING) / 0.012, abs=12)
 

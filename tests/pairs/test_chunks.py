@@ -32,17 +32,22 @@ def noisy(seed, period, count=6):
 
 
 def whole(frame, rows):
-    """All that stage pair finds: spans, visits, ramps and counts."""
-    with found.spans(frame, rows) as spans:
+    """All that stage pair finds: segments, bins, ramps and counts."""
+    with found.segments(frame, rows) as all_tables:
         held = {
             (joint, name): pd.concat(
-                [pd.DataFrame(page) for (page,) in spans.pages.of(joint, name)],
+                [pd.DataFrame(batch) for (batch,) in all_tables.store.read(joint, name)],
                 ignore_index=True,
             )
-            for joint in sorted(spans.counts)
-            for name in ("spans", "visits", "ramps")
+            for joint in sorted(all_tables.counts)
+            for name in ("segments", "bins", "ramps")
         }
-        return held, (spans.samples, spans.dropped, spans.recordings, spans.bin_width)
+        return held, (
+            all_tables.samples,
+            all_tables.dropped,
+            all_tables.recordings,
+            all_tables.bin_width,
+        )
 
 
 def same(one, other):
@@ -53,10 +58,10 @@ def same(one, other):
 
 
 @pytest.fixture
-def small_blocks(monkeypatch):
+def small_chunks(monkeypatch):
     """Samples are looked at as soon as they come, so that batches decide where borders are."""
-    monkeypatch.setattr(chunks, "_BLOCK", 1)
-    monkeypatch.setattr(chunks, "_FIRST", 8)
+    monkeypatch.setattr(chunks, "_CHUNK_SAMPLES", 1)
+    monkeypatch.setattr(chunks, "_PERIOD_SAMPLES", 8)
 
 
 # the fixture is set once for all examples, as it should be
@@ -72,43 +77,43 @@ shared = settings(
     seed=st.integers(0, 10**6),
     period=st.sampled_from([0.002, 0.004, 0.012, 0.05]),
 )
-def test_batches_of_any_size_give_the_same(small_blocks, rows, seed, period):
+def test_batches_of_any_size_give_the_same(small_chunks, rows, seed, period):
     frame = samples(noisy(seed, period), friction=8.0)
     same(whole(frame, rows), whole(frame, 10**7))
 
 
 @pytest.mark.parametrize("rows", [1, 2, 7])
-def test_tiny_batches_give_the_same(small_blocks, rows):
+def test_tiny_batches_give_the_same(small_chunks, rows):
     frame = samples(noisy(3, 0.05, count=3), friction=8.0)
     same(whole(frame, rows), whole(frame, 10**7))
 
 
 @pytest.mark.parametrize("rows", [50, 333])
-def test_joints_that_take_turns_give_the_same_as_one_after_the_other(small_blocks, rows):
+def test_joints_that_take_turns_give_the_same_as_one_after_the_other(small_chunks, rows):
     motion = noisy(5, 0.012, count=4)
     parts = [samples(motion, friction=5.0 * joint, joint=joint) for joint in (1, 2, 3)]
     turns = pd.concat(parts).sort_values(["time", "joint"], ignore_index=True)
     same(whole(turns, rows), whole(pd.concat(parts, ignore_index=True), 10**7))
 
 
-def test_a_move_without_end_is_cut_at_the_same_places(small_blocks, monkeypatch):
-    monkeypatch.setattr(moves, "LONGEST", 700)
-    monkeypatch.setattr(chunks, "LONGEST", 700)
+def test_a_move_without_end_is_cut_at_the_same_places(small_chunks, monkeypatch):
+    monkeypatch.setattr(moves, "LONGEST_MOVE", 700)
+    monkeypatch.setattr(chunks, "LONGEST_MOVE", 700)
     frame = samples(journey([0, 900], [20.0]), friction=8.0)
     assert len(frame) > 3500
     held, counts = whole(frame, 210)
     same((held, counts), whole(frame, 10**7))
-    assert len(held[("day1", 2), "spans"]) == 6
+    assert len(held[("day1", 2), "segments"]) == 6
 
 
 def test_a_recording_is_the_same_among_others():
     parts = [samples(noisy(seed, 0.012), friction=8.0) for seed in range(4)]
     many = [part.assign(recording=f"log{i}") for i, part in enumerate(parts)]
     together, _ = whole(pd.concat(many, ignore_index=True), 1000)
-    spans = together[("day1", 2), "spans"]
+    segments = together[("day1", 2), "segments"]
     for i, part in enumerate(parts):
-        own = whole(part, 10**7)[0][("day1", 2), "spans"]
-        here = spans[spans["recording"] == i].assign(recording=0).reset_index(drop=True)
+        own = whole(part, 10**7)[0][("day1", 2), "segments"]
+        here = segments[segments["recording"] == i].assign(recording=0).reset_index(drop=True)
         pd.testing.assert_frame_equal(here, own, check_exact=True)
 
 
@@ -133,28 +138,28 @@ def test_a_folder_of_files_is_read_as_one_table(tmp_path):
     pd.testing.assert_frame_equal(*ramps, check_exact=True)
 
 
-def test_sections_between_long_pauses_pair_as_the_whole_does(monkeypatch):
-    """Ten bouts of six moves, more than the longest pause apart, in sections of one or two."""
+def test_groups_between_long_pauses_pair_as_all_segments_do(monkeypatch):
+    """Ten bouts of six moves, more than the longest pause apart, in groups of one or two."""
     bouts = [noisy(seed, 0.012) for seed in range(10)]
     for i, bout in enumerate(bouts):
         bout["time"] += 2000.0 * i
     frame = samples(pd.concat(bouts, ignore_index=True), friction=8.0)
     expected = found.pairs(frame)
-    monkeypatch.setattr(matching_groups, "MOST_SPANS", 7)
-    parted = found.pairs(frame)
-    pd.testing.assert_frame_equal(parted.pairs, expected.pairs, check_exact=True)
-    assert parted.dropped == expected.dropped
+    monkeypatch.setattr(matching_groups, "MOST_SEGMENTS", 7)
+    grouped = found.pairs(frame)
+    pd.testing.assert_frame_equal(grouped.pairs, expected.pairs, check_exact=True)
+    assert grouped.dropped == expected.dropped
 
 
-def test_sections_without_a_pause_lose_little(monkeypatch):
+def test_groups_without_a_pause_lose_little(monkeypatch):
     frame = samples(journey([0, 60] * 50, [60.0] * 99), friction=8.0)
     expected = found.pairs(frame)
-    monkeypatch.setattr(matching_groups, "MOST_SPANS", 9)
-    parted = found.pairs(frame)
+    monkeypatch.setattr(matching_groups, "MOST_SEGMENTS", 9)
+    grouped = found.pairs(frame)
     assert expected.pairs["pair"].nunique() == 49
-    assert parted.pairs["pair"].nunique() >= 36
-    kept = int(parted.pairs["n_forward"].sum() + parted.pairs["n_reverse"].sum())
-    assert kept + sum(parted.dropped.values()) == parted.samples == len(frame)
+    assert grouped.pairs["pair"].nunique() >= 36
+    kept = int(grouped.pairs["n_forward"].sum() + grouped.pairs["n_reverse"].sum())
+    assert kept + sum(grouped.dropped.values()) == grouped.samples == len(frame)
 
 
 def test_foreign_types_are_converted_and_empty_cells_refused(tmp_path):

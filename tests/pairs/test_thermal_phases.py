@@ -3,14 +3,14 @@
 import numpy as np
 import pandas as pd
 
-from frictioncli.pairs import thermal_phases as motion_phases
+from frictioncli.pairs import thermal_phases
 from tests.found import pairs
 from tests.moves import journey, samples
 
 
 def phases_of(temperature):
-    found = motion_phases.phases(temperature)
-    return motion_phases.phases_of(np.arange(len(temperature)), found)
+    found = thermal_phases.phases(temperature)
+    return thermal_phases.phases_of(np.arange(len(temperature)), found)
 
 
 def test_a_thermal_cycle_is_heat_up_then_cool_down():
