@@ -1,1 +1,1 @@
-"""Samples to pairs to torques: constant-velocity parts, counter-directed partners, separation."""
+"""Samples to pairs to torques: constant-speed segments, counter-directed pairs, separation."""
