@@ -66,7 +66,7 @@ def store_samples(
 def stored_samples(store: SampleStore, run: str) -> Iterator[pa.RecordBatch]:
     """Yield the samples of a store as rows of :data:`frictioncli.schemas.SAMPLES`."""
     for recording in store.keys:
-        for (columns,) in store.of(recording, _SAMPLES):
+        for (columns,) in store.read(recording, _SAMPLES):
             n = len(columns["time"])
             labels = [_repeated(run, n), _repeated(recording, n)]
             values = [pa.array(columns[name]) for name in _SCHEMA.names[2:]]
