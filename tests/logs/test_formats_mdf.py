@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 
 from frictioncli.errors import LogError
 from frictioncli.logs.formats import open_log
-from frictioncli.logs.formats.mdf_process import base_of, opened, rows_at, signals_of
+from frictioncli.logs.formats.mdf_process import base_of, merged_rows, opened, signals_of
 from frictioncli.logs.ingest import ingest
 from frictioncli.logs.log_source import CsvHints, Refusal
 
@@ -105,7 +105,7 @@ def test_last_values_by_hand(tmp_path_factory, slow, rows):
     with opened(path) as file:
         signals = signals_of(file)
         asked = [s for s in signals if s.name in ("torque [Nm]", "count")]
-        parts = list(rows_at(file, asked, base_of(file, signals), rows))
+        parts = list(merged_rows(file, asked, base_of(file, signals), rows))
     assert all(len(part[0]) <= rows for part in parts)
     np.testing.assert_array_equal(np.concatenate([part[0] for part in parts]), TORQUE)
     found = np.concatenate([part[1] for part in parts])

@@ -1,11 +1,11 @@
-/* Plain numbers of delimited text, parsed exactly or not at all.
+/* Parser of delimited text that holds nothing but plain numbers.
  *
- * Whatever is not plain (quotes, blanks, words, rows of another width, more digits than a double
- * holds) makes a whole text "not plain", and pyarrow parses it. So nothing here decides about
- * damaged logs: it is only faster where nothing is damaged.
+ * Anything else (quotes, blanks, words, rows with another number of fields, more digits than a
+ * double holds) makes the whole text "not plain", and pyarrow parses it instead. Damaged logs are
+ * therefore never handled here.
  *
- * A number m * 10^e with m <= 2^53 and |e| <= 22 takes one operation on two doubles that are both
- * exact. It is rounded once, and so correctly (Clinger 1990, https://doi.org/10.1145/93542.93557).
+ * A number m * 10^e with m <= 2^53 and |e| <= 22 needs one operation on two doubles that are both
+ * exact, so it is rounded once and correctly (Clinger 1990, https://doi.org/10.1145/93542.93557).
  */
 #define PY_SSIZE_T_CLEAN
 #define Py_LIMITED_API 0x030B0000
@@ -19,9 +19,9 @@
 #error "doubles must be rounded after each operation"
 #endif
 
-#define MOST_DIGITS 19 /* as many fit into 64 bits */
+#define MOST_DIGITS 19 /* this many fit into 64 bits */
 #define LARGEST_POWER 22
-#define LARGEST_UP 18 /* DIAdem's 9.9e34 is no value: nothing here becomes as large */
+#define LARGEST_UP 18 /* keeps results below 9.9e34, which marks a missing value in DIAdem */
 #define LARGEST_EXACT ((uint64_t)1 << 53)
 
 static const double POWERS[LARGEST_POWER + 1] = {
@@ -30,18 +30,18 @@ static const double POWERS[LARGEST_POWER + 1] = {
 
 typedef struct {
     char delimiter, decimal;
-    const char *wanted; /* per field, whether its numbers are asked for */
+    const char *wanted; /* for each field, whether it is to be read */
     Py_ssize_t fields, rows;
 } Form;
 
-/* Texts end with a zero byte, which is no digit, so that no loop looks for the end. */
+/* Texts end with a zero byte, which is not a digit, so no loop has to check for the end. */
 static const char *digits(const char *at, uint64_t *number) {
     for (unsigned digit; (digit = (unsigned char)*at - '0') <= 9; at++)
         *number = *number * 10 + digit;
     return at;
 }
 
-/* Returns the end of the number that begins at `at`, or NULL where it is not plain. */
+/* Returns the end of the number that begins at `at`, or NULL if it is not plain. */
 static const char *number(const char *at, char decimal, double *value) {
     int negative = *at == '-';
     const char *start = at + negative;
@@ -70,14 +70,14 @@ static const char *number(const char *at, char decimal, double *value) {
     return at;
 }
 
-/* Returns the end of a field that nobody asked for, or NULL where it is not plain. */
+/* Returns the end of a field that is not to be read, or NULL if it is not plain. */
 static const char *passed_over(const char *at, const char *end, char delimiter) {
     while (at < end && *at != delimiter && *at != '\n' && *at != '\r')
         if (*at++ == '"') return NULL;
     return at;
 }
 
-/* Fills `out`, a column after the other, and tells whether all of the text is plain. */
+/* Fills `out` column by column; returns whether all of the text is plain. */
 static int filled(const char *at, const char *end, const Form *form, double *out) {
     for (Py_ssize_t row = 0; row < form->rows; row++) {
         double *cell = out + row;
@@ -130,7 +130,7 @@ static PyObject *columns(PyObject *Py_UNUSED(module), PyObject *args) {
     return result;
 }
 
-#define COUNTED 255 /* bytes: as many fit into a counter of one byte, and so into a vector */
+#define COUNTED 255 /* bytes counted in a one-byte counter, so that the loop is vectorised */
 
 static PyObject *line_feeds(PyObject *Py_UNUSED(module), PyObject *text) {
     char *at;

@@ -25,23 +25,31 @@ from frictioncli.logs.log_source import CsvHints, Refusal
 _PARQUET = b"PAR1"
 _ARROW = b"ARROW1\0\0"
 _FEATHER_1 = b"FEA1"
-_OWN = b"frictioncli"
+_OWN_METADATA = b"frictioncli"
+"""Metadata key of the tables that this package writes."""
 _BUFFER_BYTES = 1 << 20
-_LOOKED_AT = 512
-_LONGEST_LIST = 64
-_UNIT = (b"unit", b"units")
+_INSPECTED_ROWS = 512
+_MAX_LIST = 64
+_UNIT_KEYS = (b"unit", b"units")
 _NUMBER = r"^\s*[+-]?(\d+([.,]\d*)?|[.,]\d+)([eE][+-]?\d+)?\s*$"
 _PER_SECOND = {"s": 1, "ms": 10**3, "us": 10**6, "ns": 10**9}
 
 _Batches = Callable[[Path, Sequence[str], int], Iterator[pa.RecordBatch]]
-"""Takes a file, fields and how many rows to hold at a time; yields the fields."""
+"""Takes a file, field names and the number of rows to hold at a time; yields the fields."""
 
 
 @dataclass(frozen=True, slots=True)
 class _Leaf:
-    """Where a column's numbers are: in a field, in struct fields below it, in lists of one length.
+    """Location of a column's numbers in a table with nested fields.
 
-    ``element`` is the place in the list; ``length`` is 0 where there is no list.
+    Attributes
+    ----------
+    path : tuple of str
+        The field and the struct fields below it.
+    element : int
+        Index in a list.
+    length : int
+        Length of the list; 0 where there is none.
     """
 
     path: tuple[str, ...]
@@ -50,7 +58,7 @@ class _Leaf:
 
     @property
     def name(self) -> str:
-        """The column's name: path with dots, place in the list in brackets."""
+        """The column's name: the path with dots, the index in the list in brackets."""
         return ".".join(self.path) + (f"[{self.element}]" if self.length else "")
 
 
@@ -60,7 +68,7 @@ def read_arrow(path: Path, head: bytes, hints: CsvHints) -> ContainerLog | Refus
     Raises
     ------
     UnreadableLog
-        If it is damaged.
+        If the file is damaged.
     """
     if head.startswith(_FEATHER_1):
         return Refusal("format_not_read", "Feather table of version 1; save it as version 2")
@@ -71,19 +79,19 @@ def read_arrow(path: Path, head: bytes, hints: CsvHints) -> ContainerLog | Refus
         what, batches = "an Arrow table", _arrow_batches
     else:
         return None
-    packed = refuse_compressed(path, what)
-    if packed is not None:
-        return packed
+    compressed = refuse_compressed(path, what)
+    if compressed is not None:
+        return compressed
     with unreadable_on_error(f"cannot be read as {what}"):
         schema = _schema(path)
-        if _OWN in (schema.metadata or {}):
+        if _OWN_METADATA in (schema.metadata or {}):
             return Refusal(
                 "not_a_log",
                 "a table that frictioncli wrote, no log; name the logs it was made from, or go on"
                 " from it with -w and its folder",
             )
         fields = list(dict.fromkeys(schema.names))
-        first = next(batches(path, fields, _LOOKED_AT), None)
+        first = next(batches(path, fields, _INSPECTED_ROWS), None)
         if first is None or not first.num_rows:
             return Refusal("too_few_rows", f"{what} without rows; expected rows of numbers")
         leaves = [leaf for name in fields for leaf in _leaves(_column(first, name), (name,))]
@@ -104,13 +112,13 @@ def _schema(path: Path) -> pa.Schema:
 
 
 def _parquet_batches(path: Path, fields: Sequence[str], rows: int) -> Iterator[pa.RecordBatch]:
-    # pre_buffer would hold a whole row group's bytes beside its values
+    # pre_buffer would hold the bytes of a whole row group in addition to its values
     with pq.ParquetFile(path, pre_buffer=False, buffer_size=_BUFFER_BYTES) as file:
         yield from file.iter_batches(batch_size=rows, columns=list(fields), use_threads=False)
 
 
 def _arrow_batches(path: Path, fields: Sequence[str], rows: int) -> Iterator[pa.RecordBatch]:
-    # a batch of the file may be as large as the file: mapped, only what is looked at is loaded
+    # a batch may be as large as the file; of a mapped file only the slice in use is loaded
     memory = _mapped(path)
     file = pa.ipc.open_file(memory)
     for number in range(file.num_record_batches):
@@ -127,38 +135,42 @@ def _mapped(path: Path) -> mmap.mmap:
 
 
 def _column(batch: pa.RecordBatch, name: str) -> pa.Array:
-    """Return a column by its name; of several of one name the first."""
+    """Return a column by its name; the first where several have the same name."""
     return batch.column(batch.schema.get_all_field_indices(name)[0])
 
 
 def _leaves(array: pa.Array, path: tuple[str, ...]) -> Iterator[_Leaf]:
-    """Yield the columns of numbers in a field; texts and the like have none."""
+    """Yield the columns of numbers in a field; other types have none."""
     kind = array.type
     if pa.types.is_struct(kind):
         for field in kind:
             yield from _leaves(pc.struct_field(array, [field.name]), (*path, field.name))
     elif _is_list(kind) and _is_number(kind.value_type):
-        # a row whose list has another length is one without values
+        # a row whose list has another length has no values
         lengths = pc.mode(pc.list_value_length(array)).to_pylist()
         usual = lengths[0] if lengths else {"mode": 0, "count": 0}
-        if usual["mode"] <= _LONGEST_LIST and usual["count"] > len(array) / 2:
+        if usual["mode"] <= _MAX_LIST and usual["count"] > len(array) / 2:
             yield from (_Leaf(path, element, usual["mode"]) for element in range(usual["mode"]))
     elif _is_number(kind):
         yield _Leaf(path)
 
 
 def _is_list(kind: pa.DataType) -> bool:
-    of = pa.types
-    return of.is_list(kind) or of.is_large_list(kind) or of.is_fixed_size_list(kind)
+    types = pa.types
+    return types.is_list(kind) or types.is_large_list(kind) or types.is_fixed_size_list(kind)
 
 
 def _is_number(kind: pa.DataType) -> bool:
-    of = pa.types
-    if of.is_dictionary(kind):
+    if pa.types.is_dictionary(kind):
         kind = kind.value_type
-    if of.is_integer(kind) or of.is_floating(kind) or of.is_decimal(kind) or of.is_boolean(kind):
-        return True
-    return _is_time(kind)
+    checks = (
+        pa.types.is_integer,
+        pa.types.is_floating,
+        pa.types.is_decimal,
+        pa.types.is_boolean,
+        _is_time,
+    )
+    return any(check(kind) for check in checks)
 
 
 def _is_time(kind: pa.DataType) -> bool:
@@ -166,7 +178,7 @@ def _is_time(kind: pa.DataType) -> bool:
 
 
 def _holds_numbers_as_text(array: pa.Array) -> bool:
-    """Tell whether a column of texts is one of measured numbers: all are, and they differ."""
+    """Return whether all texts of a column are numbers, and not all the same one."""
     kind = array.type.value_type if pa.types.is_dictionary(array.type) else array.type
     if not (pa.types.is_string(kind) or pa.types.is_large_string(kind)):
         return False
@@ -175,20 +187,22 @@ def _holds_numbers_as_text(array: pa.Array) -> bool:
 
 
 def _unit(schema: pa.Schema, leaf: _Leaf) -> str:
-    """Return the unit that a field's metadata tells; times are brought to seconds."""
+    """Return the unit in a field's metadata; "s" for times, which are converted to seconds."""
     field = schema.field(schema.names.index(leaf.path[0]))
     for name in leaf.path[1:]:
         field = field.type.field(name)
     if _is_time(field.type):
         return "s"
     metadata = field.metadata or {}
-    return next((metadata[key].decode("utf-8", "replace") for key in _UNIT if key in metadata), "")
+    return next(
+        (metadata[key].decode("utf-8", "replace") for key in _UNIT_KEYS if key in metadata), ""
+    )
 
 
 def _rows(
     path: Path, batches: _Batches, leaves: Sequence[_Leaf], columns: Sequence[int], rows: int
 ) -> Iterator[Rows]:
-    """Yield the values of the asked columns; see :class:`ContainerLog`."""
+    """Yield the values of the given columns; see :class:`ContainerLog`."""
     fields = list(dict.fromkeys(leaves[column].path[0] for column in columns))
     for batch in batches(path, fields, rows):
         yield {column: _values(batch, leaves[column]) for column in columns}
@@ -201,26 +215,26 @@ def _values(batch: pa.RecordBatch, leaf: _Leaf) -> Array:
     if not leaf.length:
         return _numbers(array)
     lengths = np.asarray(pc.fill_null(pc.list_value_length(array), 0).to_numpy())
-    whole = lengths == leaf.length
+    has_length = lengths == leaf.length
     values = np.full(len(array), np.nan)
     begin = np.cumsum(lengths) - lengths
-    values[whole] = _numbers(array.flatten())[begin[whole] + leaf.element]
+    values[has_length] = _numbers(array.flatten())[begin[has_length] + leaf.element]
     return values
 
 
 def _numbers(array: pa.Array) -> Array:
-    """Return numbers, NaN where there is none; times in seconds."""
+    """Return an array as numbers, NaN where a value is null; times in seconds."""
     if pa.types.is_dictionary(array.type):
         array = array.dictionary_decode()
     if _is_time(array.type):
-        steps = _PER_SECOND[array.type.unit]
-        bare = pc.fill_null(array.view(f"int{array.type.bit_width}"), 0).to_numpy()
-        # a count of nanoseconds since 1970 has more digits than a float: whole seconds apart
-        rest = np.fmod(bare, steps)
-        seconds = (bare - rest) // steps + rest / steps
+        per_second = _PER_SECOND[array.type.unit]
+        counts = pc.fill_null(array.view(f"int{array.type.bit_width}"), 0).to_numpy()
+        # nanoseconds since 1970 have more digits than a float: whole seconds are converted apart
+        rest = np.fmod(counts, per_second)
+        seconds = (counts - rest) // per_second + rest / per_second
         return np.where(array.is_null().to_numpy(zero_copy_only=False), np.nan, seconds)
     if pa.types.is_boolean(array.type):
         array = array.cast(pa.uint8())
     numbers = pc.fill_null(array.cast(pa.float64(), safe=False), np.nan)
-    # a copy: the file's memory does not outlive its reading
+    # a copy, as the memory of the file is released after reading
     return np.array(numbers.to_numpy(zero_copy_only=False), np.float64)

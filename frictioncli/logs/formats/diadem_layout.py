@@ -1,4 +1,4 @@
-"""Where the numbers of a DIAdem recording lie: files, types, positions."""
+"""Layout of the samples of a DIAdem recording: files, data types and positions."""
 
 import re
 from collections.abc import Sequence
@@ -24,10 +24,21 @@ _TYPES = {
 
 
 @dataclass(frozen=True, slots=True)
-class Place:
-    """Where the numbers of a channel lie: byte of the first, bytes from one to the next.
+class SampleLocation:
+    """Location of a channel's numbers.
 
-    ``in_rows`` where the file is made of rows that hold one number of each channel.
+    Attributes
+    ----------
+    file : Path
+        File of the samples.
+    dtype : dtype
+        Data type with byte order.
+    first : int
+        Offset of the first number. [byte]
+    step : int
+        Distance from one number to the next. [byte]
+    in_rows : bool
+        Whether the file consists of rows with one number of each channel.
     """
 
     file: Path
@@ -37,17 +48,25 @@ class Place:
     in_rows: bool
 
     def end(self, n: int) -> int:
-        """Return the byte after the last of ``n`` numbers."""
+        """Return the offset of the end of ``n`` numbers [byte]."""
         return self.first + (n - 1) * self.step + self.dtype.itemsize
 
 
-def places(header: Header, explicit: Sequence[HeaderSection]) -> dict[str, Place]:
-    """Return where the numbers of each explicit channel lie, by its section's name."""
+def sample_locations(
+    header: Header, explicit: Sequence[HeaderSection]
+) -> dict[str, SampleLocation]:
+    """Return the location of the numbers of each explicit channel, by the name of its section.
+
+    Raises
+    ------
+    DamagedHeader
+        If the header contradicts itself.
+    """
     order = _byte_order(header.general)
     files = {c.text(_FILE): _samples_file(header.path, c) for c in explicit}
     dtypes = {c.where: _dtype(c, order) for c in explicit}
     blocks: dict[Path, list[HeaderSection]] = {}
-    found: dict[str, Place] = {}
+    found: dict[str, SampleLocation] = {}
     for section in explicit:
         file, dtype = files[section.text(_FILE)], dtypes[section.where]
         storage = section.text(_STORAGE).upper()
@@ -55,7 +74,7 @@ def places(header: Header, explicit: Sequence[HeaderSection]) -> dict[str, Place
             blocks.setdefault(file, []).append(section)
         elif storage == "CHANNEL":
             first = (_pointer(section) - 1) * dtype.itemsize
-            found[section.where] = Place(file, dtype, first, dtype.itemsize, in_rows=False)
+            found[section.where] = SampleLocation(file, dtype, first, dtype.itemsize, in_rows=False)
         else:
             raise section.damaged(_STORAGE, "BLOCK or CHANNEL")
     for file, sections in blocks.items():
@@ -65,27 +84,28 @@ def places(header: Header, explicit: Sequence[HeaderSection]) -> dict[str, Place
 
 def _interleaved(
     file: Path, sections: Sequence[HeaderSection], dtypes: dict[str, np.dtype]
-) -> dict[str, Place]:
-    """Return the places of channels that share each row of a file."""
+) -> dict[str, SampleLocation]:
+    """Return the locations of channels whose numbers alternate in a file."""
     ordered = sorted(sections, key=_pointer)
     pointers = [_pointer(section) for section in ordered]
     widths = [dtypes[section.where].itemsize for section in ordered]
-    told = {section.count(_STEP) for section in ordered} - {0, 1}
-    values = told.pop() if len(told) == 1 else len(ordered)
-    whole = pointers == list(range(1, len(pointers) + 1))
-    partly = len(set(widths)) == 1 and len(set(pointers)) == len(pointers)
-    if told or pointers[-1] > values or not (partly or (whole and values == len(ordered))):
+    steps = {section.count(_STEP) for section in ordered} - {0, 1}
+    values = steps.pop() if len(steps) == 1 else len(ordered)
+    gapless = pointers == list(range(1, len(pointers) + 1))
+    # gaps are allowed where all numbers have the same width
+    separable = len(set(widths)) == 1 and len(set(pointers)) == len(pointers)
+    if steps or pointers[-1] > values or not (separable or (gapless and values == len(ordered))):
         raise DamagedHeader(
             f"the channels of {file.name} lie at {_listed(pointers)} of {values} values per row"
             " (keys 221, 222); expected 1, 2, 3 without gap"
         )
-    if whole:
+    if gapless:
         firsts = [sum(widths[:i]) for i in range(len(widths))]
     else:
         firsts = [(pointer - 1) * widths[0] for pointer in pointers]
     step = sum(widths) if values == len(ordered) else values * widths[0]
     return {
-        section.where: Place(file, dtypes[section.where], first, step, in_rows=True)
+        section.where: SampleLocation(file, dtypes[section.where], first, step, in_rows=True)
         for section, first in zip(ordered, firsts, strict=True)
     }
 
@@ -98,7 +118,7 @@ def _pointer(section: HeaderSection) -> int:
 
 
 def _byte_order(general: HeaderSection) -> str:
-    """Return numpy's sign of the byte order; DIAdem calls little-endian ``High -> Low``."""
+    """Return numpy's byte order character; DIAdem calls little-endian ``High -> Low``."""
     text = general.text(_BYTE_ORDER, "High -> Low")
     if re.fullmatch(r"(?i)high\s*->\s*low", text):
         return "<"
@@ -115,30 +135,30 @@ def _dtype(section: HeaderSection, order: str) -> np.dtype:
 
 
 def _samples_file(header: Path, section: HeaderSection) -> Path:
-    """Return the file of samples: the one named, else the header's name with its ending.
+    """Return the file of samples: the one named, else one named like the header.
 
-    Only the header's own folder is looked at, whatever folder the name has.
+    It is searched for only in the header's folder, whatever folder the header names.
 
     Raises
     ------
     DamagedHeader
-        If the name climbs out of the folder.
+        If the name leads out of the folder.
     """
     named = PureWindowsPath(section.text(_FILE))
     if ".." in named.parts or "\0" in named.name:
         raise section.damaged(_FILE, "a file in the header's own folder")
-    beside = [header.with_name(named.name)] if named.name else []
+    candidates = [header.with_name(named.name)] if named.name else []
     stem = header.name.split(".dat", 1)[0] if ".dat" in header.name else header.stem
-    endings = dict.fromkeys((named.suffix or ".r64", ".r64", ".R64"))
-    beside += [header.with_name(stem + ending) for ending in endings]
-    return next((file for file in beside if file != header and is_file(file)), beside[0])
+    suffixes = dict.fromkeys((named.suffix or ".r64", ".r64", ".R64"))
+    candidates += [header.with_name(stem + suffix) for suffix in suffixes]
+    return next((file for file in candidates if file != header and is_file(file)), candidates[0])
 
 
 def is_file(path: Path) -> bool:
-    """Return whether there is such a file, whatever a header has named it."""
+    """Return whether a file exists; False for a name that no file can have."""
     try:
         return path.is_file()
-    except OSError:  # a name that no file can have
+    except OSError:  # an invalid name
         return False
 
 

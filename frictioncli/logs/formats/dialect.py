@@ -1,4 +1,4 @@
-"""The form of a delimited text: delimiter, decimal sign, header, found from its first lines."""
+"""Dialect of a delimited text: delimiter, decimal sign and header, from its first lines."""
 
 import csv
 import re
@@ -20,18 +20,20 @@ NOT_NUMBERS = ("nan", "NaN", "NAN", "-nan", "NA", "N/A", "n/a", "null", "NULL", 
 
 @dataclass(frozen=True, slots=True)
 class Dialect:
-    """How a text log is written.
+    """Form of a text log.
 
     Attributes
     ----------
-    delimiter, decimal : str
-        A blank as delimiter stands for any run of blanks and tabs.
+    delimiter : str
+        One character; a blank stands for any run of blanks and tabs.
+    decimal : str
+        ``.`` or ``,``.
     columns : tuple of str
-        Column names, one per field of a row; "" where the header names none.
+        Column names, one per field of a row; "" where the header has none.
     data_line : int
-        Line of the first row, from 1.
+        Line number of the first row, from 1.
     dates : frozenset of int
-        Columns that hold ISO 8601 dates.
+        Columns of ISO 8601 dates.
     """
 
     delimiter: str
@@ -49,6 +51,8 @@ class Dialect:
 
 @dataclass(frozen=True, slots=True)
 class _Candidate:
+    """Delimiter and decimal sign, the number of fields, and the share of cells that are numbers."""
+
     delimiter: str
     decimal: str
     width: int
@@ -56,9 +60,19 @@ class _Candidate:
 
 
 def split(line: str, delimiter: str) -> list[str]:
-    """Return the fields of a line; quotes are honoured, a blank stands for any run of blanks.
+    """Return the fields of a line; none where its quotes are not balanced.
 
-    A line that breaks the rules of quoting has no fields.
+    Parameters
+    ----------
+    line : str
+        The line without its line end.
+    delimiter : str
+        One character; a blank stands for any run of blanks.
+
+    Examples
+    --------
+    >>> split('1,5;"a;b"', ";")
+    ['1,5', 'a;b']
     """
     if delimiter == " ":
         return line.replace('"', "").split()
@@ -69,30 +83,36 @@ def split(line: str, delimiter: str) -> list[str]:
 
 
 def detect(lines: Sequence[str], hints: CsvHints) -> Dialect | Refusal:
-    """Find the form of a text from its first lines.
+    """Detect the dialect of a text from its first lines.
 
     Parameters
     ----------
     lines : sequence of str
-        The first lines without line ends; blank ones included, so that line numbers hold.
+        The first lines without line ends, including blank ones.
     hints : CsvHints
-        What the user says.
+        Form given by the user.
 
     Returns
     -------
     Dialect or Refusal
-        ``too_few_rows``, ``one_column``, ``wrong_delimiter``, ``wrong_field_count`` or
+        Refused as ``too_few_rows``, ``one_column``, ``wrong_delimiter``, ``wrong_field_count`` or
         ``not_a_log``.
+
+    Examples
+    --------
+    >>> dialect = detect(["Zeit;Moment", "[s];[Nm]", "0,0;1,5", "0,1;2,5"], CsvHints())
+    >>> dialect.columns, dialect.decimal, dialect.data_line
+    (('Zeit [s]', 'Moment [Nm]'), ',', 3)
     """
     filled = [line for line in lines if line.strip()]
     if len(filled) < 2:
-        return _too_short(filled)
+        return _refuse_too_short(filled)
     sample = filled[1:][-_SAMPLE_LINES:]
     allowed = _DELIMITERS if hints.delimiter is None else (hints.delimiter,)
     candidates = [_candidate(sample, delimiter, hints.decimal) for delimiter in allowed]
     best = max(candidates, key=lambda candidate: (round(candidate.share, 2), candidate.width))
     if best.share < 0.3:
-        return _no_table(filled, hints)
+        return _refuse_no_table(filled, hints)
     start, first = _first_row(lines, best)
     header = _header(lines[:start], best)
     if isinstance(header, Refusal):
@@ -100,7 +120,7 @@ def detect(lines: Sequence[str], hints: CsvHints) -> Dialect | Refusal:
     names, data_line = header
     surplus = [cell for cell in first[len(names) :] if cell.strip()]
     if names and surplus:
-        return _unequal(len(names), best.width)
+        return _refuse_unequal(len(names), best.width)
     columns = tuple((names + [""] * best.width)[: best.width])
     if not names:
         columns = tuple(f"column {i + 1}" for i in range(best.width))
@@ -138,10 +158,10 @@ def _first_row(lines: Sequence[str], form: _Candidate) -> tuple[int, list[str]]:
 
 
 def _header(above: Sequence[str], form: _Candidate) -> tuple[list[str], int] | Refusal:
-    """Return the column names and the number of the line after them.
+    """Return the column names and the line number of the first row.
 
-    The header is the line above the first row with the most names; lines between it and that row
-    are damaged rows.
+    The header is the line with the most names above the first row of numbers; lines between the
+    two are damaged rows. A line of units may follow the header.
     """
     pattern = _COMMA if form.decimal == "," else _POINT
     lines = {
@@ -158,22 +178,22 @@ def _header(above: Sequence[str], form: _Candidate) -> tuple[list[str], int] | R
         return [], 1 + next((i for i, line in enumerate(above) if line.strip()), len(above))
     fitting = {index: fields for index, fields in named.items() if len(fields) <= form.width}
     if not fitting:
-        return _unequal(len(next(iter(named.values()))), form.width)
-    at = max(fitting, key=lambda index: (len(fitting[index]), -index))
-    names = fitting[at]
-    below = next((index for index in lines if index > at), None)
+        return _refuse_unequal(len(next(iter(named.values()))), form.width)
+    header = max(fitting, key=lambda index: (len(fitting[index]), -index))
+    names = fitting[header]
+    below = next((index for index in lines if index > header), None)
     units = lines[below] if below is not None else []
     if below is None or len(units) > len(names) or not _are_units(units):
-        return names, at + 2
+        return names, header + 2
     padded = units + [""] * (len(names) - len(units))
     paired = zip(names, padded, strict=True)
     return [f"{name} [{unit.strip('[]()')}]" if unit else name for name, unit in paired], below + 2
 
 
 def _header_fields(line: str, delimiter: str) -> list[str]:
-    """Return the fields of a line without empty ones at its end."""
+    """Return the fields of a line without trailing empty ones."""
     if delimiter == " ":
-        # "Zeit [s]" is one name
+        # "Zeit [s]" is one field
         line = re.sub(r"\s+(?=[\[(])", "", line)
     fields = [field.strip().strip('"').strip() for field in split(line, delimiter)]
     while fields and not fields[-1]:
@@ -181,7 +201,7 @@ def _header_fields(line: str, delimiter: str) -> list[str]:
     return fields
 
 
-def _unequal(names: int, width: int) -> Refusal:
+def _refuse_unequal(names: int, width: int) -> Refusal:
     return Refusal(
         "wrong_field_count",
         f"the header names {names} columns but the rows have {width} fields; expected as many;"
@@ -195,7 +215,7 @@ def _are_units(names: Sequence[str]) -> bool:
     return known >= 2 and all(_UNIT_CELL.fullmatch(name) for name in names)
 
 
-def _too_short(filled: Sequence[str]) -> Refusal:
+def _refuse_too_short(filled: Sequence[str]) -> Refusal:
     if filled and max(len(split(filled[0], d)) for d in _DELIMITERS) >= 2:
         return Refusal(
             "too_few_rows", "a header line and no rows; expected at least two rows of numbers"
@@ -203,7 +223,7 @@ def _too_short(filled: Sequence[str]) -> Refusal:
     return Refusal("not_a_log", "text without rows; expected a header line and rows of numbers")
 
 
-def _no_table(filled: Sequence[str], hints: CsvHints) -> Refusal:
+def _refuse_no_table(filled: Sequence[str], hints: CsvHints) -> Refusal:
     if hints.delimiter is not None:
         return Refusal(
             "wrong_delimiter",

@@ -1,4 +1,4 @@
-"""ASAM MDF measurements, merged over their channel groups, read with asammdf (extra ``mdf``)."""
+"""ASAM MDF measurements, their channel groups merged, read with asammdf (extra ``mdf``)."""
 
 import json
 import subprocess
@@ -24,37 +24,38 @@ from frictioncli.logs.log_source import CsvHints, Refusal, UnreadableLog
 _MAGICS = (b"MDF     ", b"UnFinMF ")
 _WHAT = "an MDF measurement"
 _PROCESS = "frictioncli.logs.formats.mdf_process"
-_PATIENCE = 10.0  # [s]
+_TIMEOUT = 10.0
+"""Time that the process is given to end by itself. [s]"""
 
 _Signal = tuple[str, int, int]
-"""Name with unit, channel group and place in there, as the process names it."""
+"""Name with unit, channel group, and index of the channel in the group."""
 
 
 def read_mdf(path: Path, head: bytes, hints: CsvHints) -> ContainerLog | Refusal | None:
     """Open an ASAM MDF measurement; None when it is another format.
 
-    Rows are the samples of the group that holds the torque. Values of other groups are merged by
-    their last value before each of them.
+    Rows are the samples of the group that holds the torque. The values of other groups are added
+    by zero-order hold: the last value before each row.
 
     Raises
     ------
     UnreadableLog
-        If it is damaged.
+        If the file is damaged.
     """
     if not head.startswith(_MAGICS):
         return None
-    packed = refuse_compressed(path, _WHAT)
-    if packed is not None:
-        return packed
+    compressed = refuse_compressed(path, _WHAT)
+    if compressed is not None:
+        return compressed
     if find_spec("asammdf") is None:
         return refuse_without_package(_WHAT, "mdf")
     with _answer({"path": str(path)}) as (found, _):
         base, signals = found["base"], [_signal(*signal) for signal in found["signals"]]
     if base is None:
         return Refusal("not_a_log", f"{_WHAT} without samples in time")
-    own = [signal for signal in signals if signal[1] == base]
-    taken = {name for name, *_ in own}
-    columns = (*own, *(s for s in signals if s[1] != base and s[0] not in taken))
+    of_base = [signal for signal in signals if signal[1] == base]
+    base_names = {name for name, *_ in of_base}
+    columns = (*of_base, *(s for s in signals if s[1] != base and s[0] not in base_names))
     form = f"{_WHAT} {found['version']}, samples of group {base + 1}"
     others = [str(group + 1) for group in sorted({group for _, group, _ in signals} - {base})]
     if others:
@@ -70,9 +71,9 @@ def _signal(name: str, group: int, index: int) -> _Signal:
 def _rows(
     path: Path, base: int, signals: Sequence[_Signal], columns: Sequence[int], rows: int
 ) -> Iterator[Rows]:
-    """Yield the values of the asked columns; see :class:`ContainerLog`."""
-    asked = [signals[column] for column in columns]
-    request = {"path": str(path), "base": base, "asked": asked, "rows": rows}
+    """Yield the values of the given columns; see :class:`ContainerLog`."""
+    wanted = [signals[column] for column in columns]
+    request = {"path": str(path), "base": base, "signals": wanted, "rows": rows}
     with _answer(request) as (_, stream), pa.ipc.open_stream(stream) as batches:
         for batch in batches:
             values = (column.to_numpy() for column in batch.columns)
@@ -81,15 +82,20 @@ def _rows(
 
 @contextmanager
 def _answer(request: dict[str, Any]) -> Iterator[tuple[dict[str, Any], IO[bytes]]]:
-    """Ask the process that uses asammdf; give its answer's first line, and what follows that.
+    """Send a request to the process that uses asammdf.
+
+    Yields
+    ------
+    dict, binary stream
+        The first line of the answer, and the stream of what follows.
 
     Raises
     ------
     UnreadableLog
-        If it fails, or breaks down before the end.
+        If the process reports an error or crashes before its end.
     """
     package = str(Path(__file__).parents[3])
-    # not as a module by name alone: the same package is to be found whatever the folder
+    # with its path, so that the same package is imported whatever the working directory is
     command = f"import sys; sys.path.insert(0, {package!r}); from {_PROCESS} import main; main()"
     process = subprocess.Popen(
         [sys.executable, "-c", command],
@@ -107,12 +113,12 @@ def _answer(request: dict[str, Any]) -> Iterator[tuple[dict[str, Any], IO[bytes]
             if "error" in first:
                 raise UnreadableLog(f"cannot be read as {_WHAT} ({first['error']})")
             yield first, process.stdout
-            # an Arrow stream that breaks off between two batches looks whole
+            # an Arrow stream that ends between two batches looks complete
             if process.wait() != 0:
                 raise UnreadableLog(f"cannot be read to its end as {_WHAT}: asammdf broke down")
         finally:
-            # a process that is asked no more ends by itself, and takes its temporary files along
+            # the process ends by itself when its output is closed, and removes its temporary files
             process.stdout.close()
             with suppress(subprocess.TimeoutExpired):
-                process.wait(_PATIENCE)
+                process.wait(_TIMEOUT)
             process.kill()

@@ -1,13 +1,13 @@
-"""The part of the MDF reader that uses asammdf, run as a process of its own.
+"""The part of the MDF reader that uses asammdf, run in a process of its own.
 
-On a damaged file asammdf may bring its process down or never end; here that costs one log. The
-request is a JSON object on stdin, the answer a line of JSON on stdout, then an Arrow stream:
+On a damaged file asammdf may crash or never end; in a process of its own that costs one log only.
+The request is a JSON object on stdin; the answer on stdout is a line of JSON, then an Arrow stream.
 
 ``{"path": ...}``
-    is answered by ``{"version": ..., "base": ..., "signals": [[name, group, index], ...]}``, where
-    ``base`` is the group whose samples become rows, or by ``{"error": ...}``;
-``{"path": ..., "base": ..., "asked": [[name, group, index], ...], "rows": ...}``
-    by ``{}`` and the values of the signals asked for, in parts of at most as many rows.
+    The answer is ``{"version": ..., "base": ..., "signals": [[name, group, index], ...]}``, where
+    ``base`` is the group whose samples become rows, or ``{"error": ...}``.
+``{"path": ..., "base": ..., "signals": [[name, group, index], ...], "rows": ...}``
+    The answer is ``{}`` and the values of the given signals in batches of at most ``rows`` rows.
 """
 
 import json
@@ -27,18 +27,18 @@ from frictioncli.arrays import Array
 from frictioncli.logs.channels.aliases import TORQUE
 from frictioncli.logs.formats.containers import Rows, recognised_quantities, with_unit
 
-_BROKEN_OFF = b"UnFinMF "
+_UNFINISHED = b"UnFinMF "
 _FRAGMENT_BYTES = 1 << 20
-_NUMBERS = "iufb"
-_ROUNDED = 1.001
-"""A wait is as long as another up to this factor."""
-_MEMORY = 4 << 30
-"""What a damaged file can make this process take at most. [bytes]"""
+_NUMBER_KINDS = "iufb"
+_TOLERANCE = 1.001
+"""Factor by which the hold time may exceed the longest sampling interval: rounding errors."""
+_MEMORY_LIMIT = 4 << 30
+"""Memory limit of the process; a damaged file may request any amount. [byte]"""
 
 
 @dataclass(frozen=True, slots=True)
 class Signal:
-    """A channel of numbers: its name with unit, its group and its place in there."""
+    """A channel of numbers: name with unit, channel group, and index in the group."""
 
     name: str
     group: int
@@ -47,7 +47,15 @@ class Signal:
 
 @dataclass(frozen=True, slots=True)
 class _Fragment:
-    """Consecutive samples of one group: times [s], and per column the values, shape (n,)."""
+    """Consecutive samples of one channel group.
+
+    Attributes
+    ----------
+    times : ndarray, shape (n,)
+        Time. [s]
+    values : dict of int to ndarray, shape (n,)
+        Values by column.
+    """
 
     times: Array
     values: Rows
@@ -55,34 +63,34 @@ class _Fragment:
 
 def main() -> None:
     """Answer the request on stdin."""
-    # asammdf prints: only the answer shall reach the pipe
+    # asammdf prints to stdout; only the answer may reach the pipe
     with os.fdopen(os.dup(sys.stdout.fileno()), "wb") as answer:
         os.dup2(sys.stderr.fileno(), sys.stdout.fileno())
         _limit_memory()
         request = json.load(sys.stdin)
         try:
             with opened(Path(request["path"])) as file:
-                if "asked" in request:
+                if "signals" in request:
                     _send_rows(answer, file, request)
                 else:
-                    _send(answer, _described(file))
+                    _send(answer, _description(file))
         except Exception as error:  # asammdf raises anything, from KeyError to struct.error
             _send(answer, {"error": str(error) or type(error).__name__})
             raise
 
 
 def _limit_memory() -> None:
-    with suppress(ImportError, ValueError):  # there is no such limit on Windows
+    with suppress(ImportError, ValueError):  # not available on Windows
         import resource
 
-        resource.setrlimit(resource.RLIMIT_AS, (_MEMORY, _MEMORY))
+        resource.setrlimit(resource.RLIMIT_AS, (_MEMORY_LIMIT, _MEMORY_LIMIT))
 
 
 def _send(answer: BinaryIO, document: dict[str, Any]) -> None:
     answer.write(json.dumps(document).encode() + b"\n")
 
 
-def _described(file: Any) -> dict[str, Any]:
+def _description(file: Any) -> dict[str, Any]:
     signals = signals_of(file)
     return {
         "version": file.version,
@@ -92,33 +100,33 @@ def _described(file: Any) -> dict[str, Any]:
 
 
 def _send_rows(answer: BinaryIO, file: Any, request: dict[str, Any]) -> None:
-    asked = [Signal(*signal) for signal in request["asked"]]
-    schema = pa.schema([(str(column), pa.float64()) for column in range(len(asked))])
+    signals = [Signal(*signal) for signal in request["signals"]]
+    schema = pa.schema([(str(column), pa.float64()) for column in range(len(signals))])
     _send(answer, {})
     stream = pa.ipc.new_stream(answer, schema)
-    for values in rows_at(file, asked, request["base"], request["rows"]):
-        columns = [values[column] for column in range(len(asked))]
+    for values in merged_rows(file, signals, request["base"], request["rows"]):
+        columns = [values[column] for column in range(len(signals))]
         stream.write_batch(pa.record_batch(columns, schema=schema))
     stream.close()
 
 
 @contextmanager
 def opened(path: Path) -> Iterator[Any]:
-    """Open a measurement to be read in small parts."""
+    """Open a measurement for reading in small parts."""
     from asammdf import MDF
 
     with path.open("rb") as stream:
-        # of a path, asammdf would map the whole file into memory; one that was broken off it has
-        # to mend first, in a copy
-        broken_off = stream.read(len(_BROKEN_OFF)) == _BROKEN_OFF
+        # given a path, asammdf maps the whole file into memory; it needs the path of an
+        # unfinished file, to complete a copy of it
+        is_unfinished = stream.read(len(_UNFINISHED)) == _UNFINISHED
         stream.seek(0)
-        with MDF(path if broken_off else stream) as file:
+        with MDF(path if is_unfinished else stream) as file:
             file.configure(read_fragment_size=_FRAGMENT_BYTES)
             yield file
 
 
 def signals_of(file: Any) -> list[Signal]:
-    """Return the channels of numbers that have a time; a group's time stands first."""
+    """Return the channels of numbers in groups with a time, which is the first of each group."""
     found: list[Signal] = []
     for group, content in enumerate(file.groups):
         master = file.masters_db.get(group)
@@ -131,34 +139,46 @@ def signals_of(file: Any) -> list[Signal]:
             first = next(file.iter_get(group=group, index=index), None)
             if first is None or first.samples.ndim > 1:
                 continue
-            if first.samples.dtype.kind in _NUMBERS:
+            if first.samples.dtype.kind in _NUMBER_KINDS:
                 found.append(Signal(with_unit(channel.name, first.unit), group, index))
     return found
 
 
 def base_of(file: Any, signals: Sequence[Signal]) -> int | None:
-    """Return the group that holds the torque, of several the longest; else just the longest."""
+    """Return the longest group that holds the torque; the longest of all where none does."""
     groups = {signal.group for signal in signals}
-    torque = {
+    with_torque = {
         g
         for g in groups
         if TORQUE in recognised_quantities([s.name for s in signals if s.group == g])
     }
     return max(
-        sorted(torque or groups),
+        sorted(with_torque or groups),
         key=lambda group: int(file.groups[group].channel_group.cycles_nr),
         default=None,
     )
 
 
-def rows_at(file: Any, asked: Sequence[Signal], base: int, rows: int) -> Iterator[Rows]:
-    """Yield the values of some signals at the times of the base group's samples."""
+def merged_rows(file: Any, signals: Sequence[Signal], base: int, rows: int) -> Iterator[Rows]:
+    """Yield the values of signals at the sample times of the base group.
+
+    Parameters
+    ----------
+    file : asammdf.MDF
+        The measurement.
+    signals : sequence of Signal
+        The columns.
+    base : int
+        Group whose samples become rows; the others are held between their samples.
+    rows : int
+        Most rows at a time.
+    """
     wanted: dict[int, dict[int, Signal]] = {base: {}}
-    for column, signal in enumerate(asked):
+    for column, signal in enumerate(signals):
         wanted.setdefault(signal.group, {})[column] = signal
-    own = _fragments(file, base, wanted.pop(base))
-    others = [_Held(_fragments(file, group, signals)) for group, signals in wanted.items()]
-    for fragment in own:
+    base_fragments = _fragments(file, base, wanted.pop(base))
+    others = [_ZeroOrderHold(_fragments(file, group, part)) for group, part in wanted.items()]
+    for fragment in base_fragments:
         for begin in range(0, len(fragment.times), rows):
             part = slice(begin, begin + rows)
             values = {column: found[part] for column, found in fragment.values.items()}
@@ -168,7 +188,7 @@ def rows_at(file: Any, asked: Sequence[Signal], base: int, rows: int) -> Iterato
 
 
 def _fragments(file: Any, group: int, wanted: dict[int, Signal]) -> Iterator[_Fragment]:
-    """Yield some channels of one group in step with each other."""
+    """Yield the given channels of one group, fragment by fragment."""
     master = file.masters_db[group]
     streams = [file.iter_get(group=group, index=signal.index) for signal in wanted.values()]
     for time, *parts in zip(file.iter_get(group=group, index=master), *streams, strict=True):
@@ -182,28 +202,36 @@ def _fragments(file: Any, group: int, wanted: dict[int, Signal]) -> Iterator[_Fr
         )
 
 
-def _aligned(times: Array, own: Array, samples: NDArray[np.generic]) -> Array:
-    """Return a value per time, NaN where the measurement marks a sample as invalid."""
+def _aligned(times: Array, sample_times: Array, samples: NDArray[np.generic]) -> Array:
+    """Return a value at each time; invalid samples, which asammdf leaves out, become NaN."""
     if len(samples) == len(times):
         return np.asarray(samples, np.float64)
     values = np.full(len(times), np.nan)
-    values[np.searchsorted(times, own)] = samples
+    values[np.searchsorted(times, sample_times)] = samples
     return values
 
 
-class _Held:
-    """The last values of a group at the times of another; asked in ascending order."""
+class _ZeroOrderHold:
+    """Values of one group at the times of another, held from sample to sample.
+
+    Times must be given in ascending order.
+    """
 
     def __init__(self, fragments: Iterator[_Fragment]) -> None:
         self._fragments = fragments
         self._known = next(fragments)
-        self._longest_wait = float(np.max(np.diff(self._known.times), initial=0.0))
+        self._longest_interval = float(np.max(np.diff(self._known.times), initial=0.0))
         self._ended = False
 
     def at(self, times: Array) -> Rows:
-        """Return the values at some times [s]; NaN before the first sample and after the last.
+        """Return the last values before each time; NaN where there is none.
 
-        The last stands for as long as the longest wait between two samples.
+        The last sample of the group is held for the longest interval between two samples.
+
+        Parameters
+        ----------
+        times : ndarray, shape (n,)
+            Ascending times. [s]
         """
         while not self._ended and self._known.times[-1] <= times[-1]:
             following = next(self._fragments, None)
@@ -211,17 +239,17 @@ class _Held:
                 self._ended = True
             else:
                 self._known = _joined(self._known, following)
-                waits = np.diff(self._known.times)
-                self._longest_wait = max(self._longest_wait, float(waits.max()))
-        place = np.searchsorted(self._known.times, times, side="right") - 1
-        outside = place < 0
+                intervals = np.diff(self._known.times)
+                self._longest_interval = max(self._longest_interval, float(intervals.max()))
+        index = np.searchsorted(self._known.times, times, side="right") - 1
+        outside = index < 0
         if self._ended:
-            outside |= times > self._known.times[-1] + _ROUNDED * self._longest_wait
+            outside |= times > self._known.times[-1] + _TOLERANCE * self._longest_interval
         held = {
-            column: np.where(outside, np.nan, values[np.maximum(place, 0)])
+            column: np.where(outside, np.nan, values[np.maximum(index, 0)])
             for column, values in self._known.values.items()
         }
-        self._known = _after(self._known, max(int(place[-1]) - 1, 0))
+        self._known = _after(self._known, max(int(index[-1]) - 1, 0))
         return held
 
 

@@ -1,6 +1,6 @@
 """ROS recordings: the JointState messages of a bag, read with rosbags (extra ``mcap``).
 
-ROS 2 in SQLite or MCAP files, ROS 1 in ``.bag`` files.
+Bags of ROS 2 are SQLite or MCAP files, those of ROS 1 are ``.bag`` files.
 """
 
 import re
@@ -28,8 +28,8 @@ from frictioncli.logs.log_source import CsvHints, Refusal
 _MCAP, _SQLITE, _BAG_1 = b"\x89MCAP0\r\n", b"SQLite format 3\0", b"#ROSBAG V2.0"
 _PROFILE = re.compile(rb"\x89MCAP0\r\n\x01.{8}(?P<length>.)\0\0\0", re.DOTALL)
 _ZSTD = b"\x28\xb5\x2f\xfd"
-_LARGEST_MESSAGE = 1 << 20
-_MOST_ROWS = 1 << 16
+_MAX_MESSAGE = 1 << 20  # [byte]
+_MAX_ROWS = 1 << 16
 _WHAT = "a ROS recording"
 _TYPE = "sensor_msgs/msg/JointState"
 _FIELDS = {
@@ -39,12 +39,24 @@ _FIELDS = {
 }
 _LAST_NUMBER = re.compile(r"(\d{1,2})$")
 _UNIVERSAL_ROBOTS = ("shoulder_pan", "shoulder_lift", "elbow", "wrist_1", "wrist_2", "wrist_3")
-"""From the base on; their drivers publish these joints in the order of the alphabet."""
+"""Joints from the base on; the drivers publish them in alphabetical order."""
 
 
 @dataclass(frozen=True, slots=True)
-class _Message:
-    """One JointState; ``received`` and ``stamp`` (0 where not set) in s since 1970."""
+class _JointState:
+    """One JointState message.
+
+    Attributes
+    ----------
+    topic : str
+        Name of the topic.
+    received, stamp : float
+        Time of reception, and time stamp (0 where it is not set), since 1970. [s]
+    joints : tuple of str
+        Names of the joints.
+    values : dict of str to ndarray, shape (joints,)
+        Values by field; empty where the message has none.
+    """
 
     topic: str
     received: float
@@ -55,9 +67,20 @@ class _Message:
 
 @dataclass(slots=True)
 class _Group:
-    """What the messages of one topic about the same joints hold.
+    """Summary of the messages of one topic with the same joints.
 
-    ``joints`` are in the order of the first message, ``filled`` counts numbers per field and joint.
+    Attributes
+    ----------
+    topic : str
+        Name of the topic.
+    joints : tuple of str
+        Names in the order of the first message.
+    count : int
+        Number of messages.
+    is_stamped : bool
+        Whether a message has a time stamp.
+    filled : Counter
+        Number of finite values by field and joint.
     """
 
     topic: str
@@ -68,11 +91,11 @@ class _Group:
 
     @property
     def with_effort(self) -> list[str]:
-        """The joints whose effort is known at times."""
+        """The joints whose effort is known in some message."""
         return [joint for joint in self.joints if self.filled["effort", joint]]
 
-    def see(self, message: _Message) -> None:
-        """Count what a message holds."""
+    def add(self, message: _JointState) -> None:
+        """Count the values of a message."""
         self.count += 1
         self.is_stamped = self.is_stamped or message.stamp != 0
         for name, values in message.values.items():
@@ -86,34 +109,34 @@ class _Group:
 def read_ros(path: Path, head: bytes, hints: CsvHints) -> ContainerLog | Refusal | None:
     """Open a ROS 1 or 2 recording; None when it is another format.
 
-    Joints are told by name, as their order may change from message to message, and numbered by the
-    number at the end of their names or else in order of first appearance.
+    Joints are identified by name, as their order may change from message to message, and numbered
+    by :func:`joint_numbers`.
 
     Raises
     ------
     UnreadableLog
-        If it is damaged.
+        If the file is damaged.
     """
     if not head.startswith((_MCAP, _SQLITE, _BAG_1)):
         return None
-    packed = refuse_compressed(path, _WHAT)
-    if packed is not None:
-        return packed
+    compressed = refuse_compressed(path, _WHAT)
+    if compressed is not None:
+        return compressed
     profile = _PROFILE.match(head)
     if profile is not None:
-        named = head[profile.end() : profile.end() + ord(profile["length"])]
-        if named != b"ros2":
+        profile_name = head[profile.end() : profile.end() + ord(profile["length"])]
+        if profile_name != b"ros2":
             return Refusal(
                 "format_not_read",
-                f"MCAP recording of profile {named.decode('utf-8', 'replace')!r}, expected 'ros2'"
-                " with JointState messages; export the joint states as CSV",
+                f"MCAP recording of profile {profile_name.decode('utf-8', 'replace')!r}, expected"
+                " 'ros2' with JointState messages; export the joint states as CSV",
             )
     try:
         import rosbags.rosbag2  # noqa: F401
     except ImportError:
         return refuse_without_package(_WHAT, "mcap")
     with unreadable_on_error(f"cannot be read as {_WHAT}"):
-        topics, groups = _scanned(path)
+        topics, groups = _scan(path)
     if not groups:
         return Refusal(
             "not_a_log",
@@ -136,8 +159,15 @@ def read_ros(path: Path, head: bytes, hints: CsvHints) -> ContainerLog | Refusal
 def joint_numbers(joints: Sequence[str]) -> dict[str, int]:
     """Return the number of each joint, from 1.
 
-    By the number at the end of the names where all have one and no two the same, by the arm's
-    order where the names are those of Universal Robots, else in the order given.
+    It is the number at the end of the name where all names have different ones. Joints with the
+    names of Universal Robots are numbered from the base on. Others are numbered in the order given.
+
+    Examples
+    --------
+    >>> joint_numbers(["joint_b_2", "joint_a_1"])
+    {'joint_b_2': 2, 'joint_a_1': 1}
+    >>> joint_numbers(["ur_elbow_joint", "ur_shoulder_pan_joint"])
+    {'ur_elbow_joint': 3, 'ur_shoulder_pan_joint': 1}
     """
     found = [_LAST_NUMBER.search(joint) for joint in joints]
     numbers = [int(match[1]) for match in found if match is not None]
@@ -152,7 +182,7 @@ def joint_numbers(joints: Sequence[str]) -> dict[str, int]:
 
 
 def _form(best: _Group, groups: Sequence[_Group], numbers: dict[str, int]) -> str:
-    """Return in words what is read, and what is not."""
+    """Return the form in words: what is read, and what is left out."""
     named = ", ".join(
         f"{number} {joint}"
         for number, joint in sorted((number, joint) for joint, number in numbers.items())
@@ -174,13 +204,13 @@ def _form(best: _Group, groups: Sequence[_Group], numbers: dict[str, int]) -> st
     return "; ".join(parts)
 
 
-def _scanned(path: Path) -> tuple[set[str], list[_Group]]:
-    """Return all topics, and what the JointState messages hold by topic and set of joints."""
+def _scan(path: Path) -> tuple[set[str], list[_Group]]:
+    """Return all topics, and a summary of JointState messages by topic and set of joints."""
     groups: dict[tuple[str, frozenset[str]], _Group] = {}
     with _Bag(path) as bag:
         for message in bag.joint_states():
             key = (message.topic, frozenset(message.joints))
-            groups.setdefault(key, _Group(message.topic, message.joints)).see(message)
+            groups.setdefault(key, _Group(message.topic, message.joints)).add(message)
         return bag.topics, list(groups.values())
 
 
@@ -193,9 +223,9 @@ def _rows(
     columns: Sequence[int],
     rows: int,
 ) -> Iterator[Rows]:
-    """Yield the values of the asked columns; see :class:`ContainerLog`."""
+    """Yield the values of the given columns; see :class:`ContainerLog`."""
     columns = (0, *(column for column in columns if column))
-    block = np.empty((len(columns), min(rows, _MOST_ROWS)))
+    block = np.empty((len(columns), min(rows, _MAX_ROWS)))
     filled = 0
     with _Bag(path) as bag:
         for message in bag.joint_states():
@@ -205,8 +235,8 @@ def _rows(
             for row, column in enumerate(columns[1:], 1):
                 name, joint = cells[column - 1]
                 values = message.values[name]
-                known = len(values) == len(message.joints)
-                block[row, filled] = values[message.joints.index(joint)] if known else np.nan
+                has_values = len(values) == len(message.joints)
+                block[row, filled] = values[message.joints.index(joint)] if has_values else np.nan
             filled += 1
             if filled == block.shape[1]:
                 yield dict(zip(columns, block.copy(), strict=True))
@@ -230,7 +260,7 @@ class _Bag:
             self._reader = rosbag1.Reader(path)
             self._decode = get_typestore(Stores.ROS1_NOETIC).deserialize_ros1
         else:
-            # by what it is, not by the ending of its name
+            # by the content, not by the suffix of the name
             kind = ".mcap" if magic.startswith(_MCAP) else ".db3"
             self._reader = rosbag2.Reader.STORAGE_PLUGINS[kind](path)
             self._decode = get_typestore(Stores.LATEST).deserialize_cdr
@@ -247,18 +277,18 @@ class _Bag:
         """The names of all topics."""
         return {connection.topic for connection in self._reader.connections}
 
-    def joint_states(self) -> Iterator[_Message]:
+    def joint_states(self) -> Iterator[_JointState]:
         """Yield the JointState messages in order of reception."""
         wanted = [c for c in self._reader.connections if c.msgtype == _TYPE]
         if not wanted:
             return
         for connection, received, raw in self._reader.messages(wanted):
-            if bytes(raw[:4]) == _ZSTD:  # a bag may pack each message
-                with pa.CompressedInputStream(pa.BufferReader(raw), "zstd") as packed:
-                    raw = packed.read(_LARGEST_MESSAGE)
+            if bytes(raw[:4]) == _ZSTD:  # messages may be compressed one by one
+                with pa.CompressedInputStream(pa.BufferReader(raw), "zstd") as compressed:
+                    raw = compressed.read(_MAX_MESSAGE)
             message = self._decode(raw, _TYPE)
             stamp = message.header.stamp
-            yield _Message(
+            yield _JointState(
                 connection.topic,
                 received * 1e-9,
                 stamp.sec + stamp.nanosec * 1e-9,

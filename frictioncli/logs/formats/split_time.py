@@ -1,4 +1,4 @@
-"""Time in two columns, seconds and nanoseconds, as one."""
+"""Time that a log splits into two columns, seconds and nanoseconds."""
 
 import re
 from collections.abc import Collection, Iterator, Sequence
@@ -14,16 +14,18 @@ _NANOSECONDS = re.compile(r"^(?P<stem>.*?)n(?:ano)?sec(?:onds|s)?$")
 
 
 def with_joined_time(source: LogSource) -> LogSource:
-    """Return a source whose first pair of seconds and nanoseconds is one time.
+    """Return a source whose first pair of seconds and nanoseconds is joined into one time.
 
-    Pairs are named alike: ``tsec`` and ``tnsec``, ``ZeitInSec`` and ``ZeitInNanoSec``,
-    ``header.stamp.sec`` and ``header.stamp.nanosec``.
+    The names of a pair have the same stem: ``tsec`` and ``tnsec``, ``ZeitInSec`` and
+    ``ZeitInNanoSec``, ``header.stamp.sec`` and ``header.stamp.nanosec``. A source without such a
+    pair is returned unchanged.
     """
     pair = _pair(source.columns)
     return source if pair is None else JoinedTime(source, *pair)
 
 
 def _pair(columns: Sequence[str]) -> tuple[int, int] | None:
+    """Return the columns of seconds and nanoseconds, None where there is no pair."""
     plain = [re.sub(r"[^a-z0-9]", "", column.lower()) for column in columns]
     parts: dict[str, int] = {}
     for index, name in enumerate(plain):
@@ -44,9 +46,9 @@ class JoinedTime:
     Attributes
     ----------
     source : LogSource
-        The log as it stands.
+        The log with two columns.
     seconds, nanoseconds : int
-        The two columns. The first becomes the time, the second loses its name.
+        The two columns. The first becomes the time, the second has no name.
     """
 
     source: LogSource
@@ -65,7 +67,7 @@ class JoinedTime:
 
     @property
     def columns(self) -> tuple[str, ...]:
-        """Column names; the time is named so."""
+        """Column names, with ``time [s]`` for the joined column."""
         names = list(self.source.columns)
         names[self.seconds], names[self.nanoseconds] = "time [s]", ""
         return tuple(names)
@@ -77,20 +79,20 @@ class JoinedTime:
         return f"{self.source.form}, time from {seconds} and {nanoseconds}"
 
     def batches(self, columns: Collection[int], size: int) -> Iterator[RawBatch]:
-        """Yield the rows in order, about ``size`` bytes of the file at a time."""
-        for batch in self.source.batches(self._asked(columns), size):
+        """Yield the rows in order, in batches of about ``size`` bytes of the file."""
+        for batch in self.source.batches(self._with_nanoseconds(columns), size):
             yield self._joined(batch)
 
     def tasks(self, columns: Collection[int], size: int) -> Iterator[ReadTask[RawBatch]]:
-        """Yield in order what makes the batches, each of at most about ``size`` bytes."""
-        for task in self.source.tasks(self._asked(columns), size):
+        """Yield in order the tasks that read the batches, each of at most about ``size`` bytes."""
+        for task in self.source.tasks(self._with_nanoseconds(columns), size):
             yield ReadTask(partial(self._read, task), task.size)
 
     def texts(self, lines: Numbers, size: int) -> Iterator[tuple[int, str]]:
-        """Yield (line, text) for the asked lines, which must be ascending."""
+        """Yield (line, text) for the given line numbers, which must be ascending."""
         return self.source.texts(lines, size)
 
-    def _asked(self, columns: Collection[int]) -> set[int]:
+    def _with_nanoseconds(self, columns: Collection[int]) -> set[int]:
         return {*columns, *([self.nanoseconds] if self.seconds in columns else [])}
 
     def _read(self, task: ReadTask[RawBatch]) -> RawBatch:

@@ -1,7 +1,7 @@
-"""Logs of KUKA variables: delimited text in which a cell may hold a whole axis structure.
+"""Logs of KUKA variables: delimited text whose cells may hold a whole axis structure.
 
-Such a cell reads ``{E6AXIS: A1 45.2, A2 -12.3}`` or ``A1 45.2 A2 -12.3``; it becomes one column per
-axis. Separators and decimal signs may differ from row to row.
+Such a cell reads ``{E6AXIS: A1 45.2, A2 -12.3}`` or ``A1 45.2 A2 -12.3`` and becomes one column
+per axis. Delimiters and decimal signs may differ from row to row.
 """
 
 import re
@@ -15,30 +15,31 @@ import numpy as np
 from frictioncli.arrays import Numbers
 from frictioncli.logs.formats.dialect import NOT_NUMBERS
 from frictioncli.logs.formats.encoding import decode_head, detect_encoding, line_blocks
-from frictioncli.logs.log_source import CsvHints, RawBatch, Refusal, SequentialSource
+from frictioncli.logs.log_source import MAX_ROW_TEXT, CsvHints, RawBatch, Refusal, SequentialSource
 
 _NUMBER = r"[+-]?\d+(?:[.,]\d+)?(?:[eE][+-]?\d+)?"
 _MEMBER = re.compile(rf"\b([A-Z]\d?)\s+({_NUMBER})")
 _STRUCT = re.compile(
     rf"\{{?\s*(?:[A-Z]\w*\s*:)?\s*[A-Z]\d?\s+{_NUMBER}(?:\s*[,\s]\s*[A-Z]\d?\s+{_NUMBER})+\s*\}}?"
 )
-_MARK = "\0"
-_SEPARATORS = ";\t,"
-_TEXT_LIMIT = 200
-_LOOKED_AT = 20
+_PLACEHOLDER = "\0"
+_DELIMITERS = ";\t,"
+_INSPECTED_LINES = 20
 
 
 def read_struct_cells(path: Path, head: bytes, hints: CsvHints) -> "StructCells | Refusal | None":
-    """Open a log of KUKA variables with structures in its cells; None when there are none."""
+    """Open a log of KUKA variables; None where no cell holds a structure."""
     encoding = hints.encoding or detect_encoding(head)
     if encoding is None:
         return None
-    lines = decode_head(head, encoding).splitlines()[:_LOOKED_AT]
+    lines = decode_head(head, encoding).splitlines()[:_INSPECTED_LINES]
     header = next((number for number, line in enumerate(lines) if line.strip()), None)
     if header is None or _STRUCT.search(lines[header]):
         return None
-    whole = (line for line in lines[header + 1 :] if _STRUCT.search(line) and _MARK not in line)
-    first = next(map(_cells, whole), None)
+    rows = (
+        line for line in lines[header + 1 :] if _STRUCT.search(line) and _PLACEHOLDER not in line
+    )
+    first = next(map(_cells, rows), None)
     if first is None:
         return None
     names = [name.strip().strip('"') for name in _split(lines[header])]
@@ -56,7 +57,7 @@ def read_struct_cells(path: Path, head: bytes, hints: CsvHints) -> "StructCells 
 
 @dataclass(frozen=True, slots=True)
 class StructCells(SequentialSource):
-    """A log with structures in its cells.
+    """A log of KUKA variables.
 
     Attributes
     ----------
@@ -65,11 +66,11 @@ class StructCells(SequentialSource):
     encoding : str
         A Python encoding name.
     data_line : int
-        Line of the first row, from 1.
+        Line number of the first row, from 1.
     fields : tuple of str
         Names of the fields of a row.
-    members : tuple
-        Per field the names of its structure's members, None where it is a plain number.
+    members : tuple of (tuple of str or None)
+        For each field the names of its structure's members; None where it is a plain number.
     """
 
     path: Path
@@ -80,7 +81,7 @@ class StructCells(SequentialSource):
 
     @property
     def columns(self) -> tuple[str, ...]:
-        """The names of the fields; a structure's members follow its name."""
+        """Names of the fields; those of a structure are followed by the name of each member."""
         names: list[str] = []
         for field, members in zip(self.fields, self.members, strict=True):
             names += [field] if members is None else [f"{field}_{member}" for member in members]
@@ -92,7 +93,7 @@ class StructCells(SequentialSource):
         return f"text with structures in cells, {self.encoding.upper()}"
 
     def batches(self, columns: Collection[int], size: int) -> Iterator[RawBatch]:
-        """Yield the rows in order, about ``size`` bytes of the file at a time."""
+        """Yield the rows in order, in batches of about ``size`` bytes of the file."""
         wanted = sorted(columns)
         for lines in self._lines(size):
             rows: list[list[float]] = []
@@ -114,13 +115,13 @@ class StructCells(SequentialSource):
             )
 
     def texts(self, lines: Numbers, size: int) -> Iterator[tuple[int, str]]:
-        """Yield (line, text) for the asked lines, which must be ascending."""
-        asked = {int(line) for line in lines}
+        """Yield (line, text) for the given line numbers, which must be ascending."""
+        wanted = {int(line) for line in lines}
         for part in self._lines(size):
-            yield from ((number, text[:_TEXT_LIMIT]) for number, text in part if number in asked)
+            yield from ((number, text[:MAX_ROW_TEXT]) for number, text in part if number in wanted)
 
     def _lines(self, size: int) -> Iterator[list[tuple[int, str]]]:
-        """Yield the numbers and texts of the rows, blank ones left out."""
+        """Yield the line numbers and texts of rows that are not blank."""
         charset = "cp1252" if self.encoding == "cp1252" else "utf-8"
         for block in line_blocks(self.path, self.encoding, size):
             texts = block.content.decode(charset, "replace").split("\n")
@@ -128,8 +129,8 @@ class StructCells(SequentialSource):
             yield [(n, text) for n, text in numbered if n >= self.data_line and text.strip()]
 
     def _row(self, text: str, wanted: list[int]) -> list[float] | str:
-        """Return the asked numbers of a row, or the reason why it has none."""
-        if _MARK in text:  # bytes are lost: what stands around them is no number
+        """Return the wanted numbers of a row, or the reason why it is damaged."""
+        if _PLACEHOLDER in text:  # damaged: a NUL byte stands in place of other characters
             return "not_a_number"
         cells = _cells(text)
         flat: list[str] = []
@@ -149,22 +150,22 @@ class StructCells(SequentialSource):
 
 
 def _split(text: str) -> list[str]:
-    """Return the fields of a line by whichever separator stands in it."""
-    return text.split(next((sign for sign in _SEPARATORS if sign in text), ";"))
+    """Return the fields of a line, split at the first delimiter that occurs in it."""
+    return text.split(next((sign for sign in _DELIMITERS if sign in text), ";"))
 
 
 def _cells(text: str) -> list[str | list[tuple[str, str]]]:
-    """Return the fields of a row without NUL: plain texts, and of structures names and numbers."""
+    """Return the fields of a row without NUL: texts, or the names and numbers of a structure."""
     structures = [_MEMBER.findall(found) for found in _STRUCT.findall(text)]
-    following = iter(structures)
+    next_structure = iter(structures)
     return [
-        next(following) if _MARK in cell else cell.strip().strip('"').strip()
-        for cell in _split(_STRUCT.sub(_MARK, text))
+        next(next_structure) if _PLACEHOLDER in cell else cell.strip().strip('"').strip()
+        for cell in _split(_STRUCT.sub(_PLACEHOLDER, text))
     ]
 
 
 def _number(cell: str) -> float:
-    """Return a number or the seconds since 1970 of a date; NaN for an empty cell."""
+    """Return a number, or a date as seconds since 1970; NaN for an empty cell."""
     if not cell or cell in NOT_NUMBERS:
         return np.nan
     number = cell.replace(",", ".")

@@ -74,7 +74,7 @@ def scaled(source: LogSource) -> LogSource:
     scales = [(1.0, 0.0)] * len(source.columns)
     for column, name in enumerate(source.columns):
         index = stored.get(split_unit(name)[0])
-        if index is None or recording.channels[index].place is None:
+        if index is None or recording.channels[index].location is None:
             continue
         channel = recording.channels[index]
         if not _holds_raw(rows.values[column], recording, index):
