@@ -1,29 +1,29 @@
-"""The faults that a user can mend.
+"""Errors that a user can correct.
 
-Each message says where (file, row or column), what was found, what was expected and what to do.
-The command line prints it and exits with status 2; any other exception is a bug.
+Each message states where the error is (file, row or column), what was found, what was expected and
+what to do. The command line prints it and exits with status 2. Any other exception is a bug.
 """
 
 
 class FrictionError(Exception):
-    """Base of every fault that lies in the input, an option or the work folder."""
+    """Base of all errors in the input, an option or the work folder."""
 
 
 class LogError(FrictionError):
-    """A log file cannot be used: nothing in it that could be read as a joint's motion."""
+    """A log file holds nothing that can be read as the motion of a joint."""
 
 
 class MappingError(FrictionError):
-    """A mapping file or manifest says something that cannot be followed."""
+    """A mapping file or manifest has an entry that cannot be applied."""
 
 
 class TableError(FrictionError):
-    """A table of the work folder is missing, damaged or not of the expected form."""
+    """A table or document of the work folder is missing, damaged or not of the expected form."""
 
 
 class NotEnoughData(FrictionError):
-    """The data are readable but do not hold what this step needs."""
+    """The data can be read but do not contain what this step needs."""
 
 
 class OptionError(FrictionError):
-    """An option has a value that makes no sense here."""
+    """An option has an invalid value."""

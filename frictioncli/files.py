@@ -1,4 +1,4 @@
-"""Output files and folders that appear whole or not at all, whenever the process is killed."""
+"""Atomic writing: an output appears completely or not at all, even if the process is killed."""
 
 import ctypes
 import os
@@ -11,20 +11,30 @@ from pathlib import Path
 
 from frictioncli.errors import FrictionError
 
-DRAFT = ".writing."
-"""Beginning of the names of the folders in which outputs are prepared."""
+DRAFT_PREFIX = ".writing."
+"""Prefix of the temporary folders in which outputs are prepared."""
 
-# system -> its call that exchanges two names, and its number for "relative to this folder"
-_EXCHANGE = {"linux": ("renameat2", -100), "darwin": ("renameatx_np", -2)}
-_SWAP = 2
+# platform -> system call that exchanges two names, and its constant for "relative to this folder"
+_EXCHANGE_CALLS = {"linux": ("renameat2", -100), "darwin": ("renameatx_np", -2)}
+_EXCHANGE_FLAG = 2
 
 
 @contextmanager
-def whole(target: Path) -> Iterator[Path]:
-    """Yield a path beside ``target`` to write to; it takes ``target``'s place at the end.
+def atomic_write(target: Path) -> Iterator[Path]:
+    """Yield a path to write to; it replaces ``target`` when the block ends without error.
 
-    When the body fails, what it wrote is removed and the old ``target`` stays. The body may write
-    a file or make a folder there.
+    The block may write a file or make a folder there. If it fails, what it wrote is removed and the
+    old ``target`` stays.
+
+    Parameters
+    ----------
+    target : Path
+        File or folder to write; its folder is made.
+
+    Yields
+    ------
+    Path
+        Path in a temporary folder beside ``target``.
 
     Raises
     ------
@@ -33,34 +43,34 @@ def whole(target: Path) -> Iterator[Path]:
     """
     try:
         target.parent.mkdir(parents=True, exist_ok=True)
-        box = Path(tempfile.mkdtemp(prefix=DRAFT, dir=target.parent))
+        temporary = Path(tempfile.mkdtemp(prefix=DRAFT_PREFIX, dir=target.parent))
     except OSError as error:
         raise cannot_write(target, error) from error
     try:
-        draft = box / target.name
+        draft = temporary / target.name
         yield draft
-        _on_disk(draft)
-        _placed(draft, target)
+        _synchronize(draft)
+        _replace(draft, target)
     except OSError as error:
         raise cannot_write(target, error) from error
     finally:
-        shutil.rmtree(box, ignore_errors=True)
+        shutil.rmtree(temporary, ignore_errors=True)
 
 
 def write_text(target: Path, text: str) -> None:
-    """Write a UTF-8 text file with plain line feeds, whole or not at all."""
-    with whole(target) as draft:
+    """Write a UTF-8 text file with plain line feeds, completely or not at all."""
+    with atomic_write(target) as draft:
         draft.write_text(text, encoding="utf-8", newline="\n")
 
 
 def cannot_write(target: Path, error: OSError) -> FrictionError:
-    """Return the message for a file or folder that the system does not let us write."""
+    """Return the error for a file or folder that the system does not allow to be written."""
     reason = error.strerror or str(error)
     return FrictionError(f"{target}: cannot be written ({reason}); choose another folder with -w")
 
 
-def _on_disk(draft: Path) -> None:
-    """Wait until the contents are on the disk: a name must not get there before them."""
+def _synchronize(draft: Path) -> None:
+    """Wait until the contents are on disk: they must get there before the name."""
     parts = [*draft.rglob("*"), draft] if draft.is_dir() else [draft]
     for part in parts:
         if part.is_file():
@@ -68,23 +78,25 @@ def _on_disk(draft: Path) -> None:
                 os.fsync(stream.fileno())
 
 
-def _placed(draft: Path, target: Path) -> None:
-    """Give the draft the target's name; what had it is left under the draft's."""
+def _replace(draft: Path, target: Path) -> None:
+    """Rename the draft to the target; a replaced folder keeps the name of the draft."""
     if not target.is_dir():
         os.replace(draft, target)
-    elif not _exchanged(draft, target):
-        # the one way where the system cannot exchange two names: for a moment there is neither
+    elif not _exchange_names(draft, target):
+        # where the system cannot exchange two names there is no target for a moment
         os.replace(target, draft.with_name("replaced"))
         os.replace(draft, target)
 
 
-def _exchanged(first: Path, second: Path) -> bool:
+def _exchange_names(first: Path, second: Path) -> bool:
     """Exchange the names of two files or folders in one step; False where the system cannot."""
-    if sys.platform not in _EXCHANGE:
+    if sys.platform not in _EXCHANGE_CALLS:
         return False
-    name, here = _EXCHANGE[sys.platform]
+    name, folder = _EXCHANGE_CALLS[sys.platform]
     exchange = getattr(ctypes.CDLL(None), name, None)
     if exchange is None:
         return False
-    done = exchange(here, os.fsencode(first), here, os.fsencode(second), ctypes.c_uint(_SWAP))
-    return bool(done == 0)
+    status = exchange(
+        folder, os.fsencode(first), folder, os.fsencode(second), ctypes.c_uint(_EXCHANGE_FLAG)
+    )
+    return bool(status == 0)

@@ -1,4 +1,4 @@
-"""Where a result comes from: program version, stage, settings and the hashes of its inputs."""
+"""Provenance of results: program version, stage, settings and hashes of the inputs."""
 
 import hashlib
 from collections.abc import Iterable, Mapping
@@ -9,23 +9,23 @@ from typing import Any
 from frictioncli import __version__
 
 _BLOCK_BYTES = 1 << 20
-"""Most logs are hashed at once: threads that read them would have to wait for one another."""
+"""Bytes that are read at once; most logs are shorter. [bytes]"""
 
 
 @dataclass(frozen=True, slots=True)
 class Provenance:
-    """What made an output.
+    """Origin of an output.
 
     Attributes
     ----------
     program, version : str
         Name and version of the program.
     stage : str
-        The command.
+        The command that made it.
     settings : mapping
-        Its settings.
+        Settings of the command.
     inputs : mapping of str to str
-        Name of each input -> its SHA-256.
+        SHA-256 of each input, by name.
     """
 
     program: str = field(default="frictioncli", kw_only=True)
@@ -35,12 +35,12 @@ class Provenance:
     inputs: Mapping[str, str] = field(default_factory=dict)
 
     def as_dict(self) -> dict[str, Any]:
-        """Return plain values."""
+        """Return the fields as plain values for JSON."""
         return asdict(self)
 
 
 def sha256(path: Path) -> str:
-    """Return the SHA-256 of a file, or of a folder's files in name order."""
+    """Return the SHA-256 of a file, or of the digests of a folder's files in name order."""
     if path.is_dir():
         digest = hashlib.sha256()
         for part in sorted(p for p in path.rglob("*") if p.is_file()):
@@ -53,6 +53,6 @@ def sha256(path: Path) -> str:
     return digest.hexdigest()
 
 
-def hashes(paths: Iterable[Path]) -> dict[str, str]:
-    """Return name -> SHA-256 for the files of a work folder that a stage has read."""
+def input_hashes(paths: Iterable[Path]) -> dict[str, str]:
+    """Return the SHA-256 of files of a work folder, by name."""
     return {path.name: sha256(path) for path in paths}

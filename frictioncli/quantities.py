@@ -1,21 +1,21 @@
-"""The glossary: what each measured or computed quantity is called, and in which unit.
+"""Glossary: name, symbol, unit and meaning of each measured or computed quantity.
 
-One unit system inside: deg, deg/s, s, N·m, °C. Only :mod:`frictioncli.logs` converts.
+The package uses deg, deg/s, s, N·m and °C throughout; only :mod:`frictioncli.logs` converts units.
 
 Sign of friction: with ``sign = +1`` the logged torque is ``load + friction`` while the joint moves
-forward (position grows) and ``load - friction`` in reverse; with ``sign = -1`` (the source paper's
-equation (7)) it is the other way round. Friction torque itself is positive where it opposes motion.
+forward (position increases) and ``load - friction`` in reverse; with ``sign = -1`` (equation (7) of
+the source paper) it is the opposite. Friction torque itself is positive where it opposes motion.
 """
 
 from dataclasses import dataclass
 
 TORQUE = "torque"
-"""Stands for the unit of everything torque-like: N·m, or A where the log has motor current."""
+"""Placeholder for the torque unit of a log: N·m, or A where it holds motor current."""
 
 
 @dataclass(frozen=True, slots=True)
 class Quantity:
-    """A named quantity with its symbol in formulas, its unit and what it means."""
+    """A quantity: name, symbol in formulas, unit and meaning."""
 
     name: str
     symbol: str

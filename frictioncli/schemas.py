@@ -1,4 +1,4 @@
-"""The tables that the stages hand to each other: one row per what, which columns, which units."""
+"""Schemas of the tables that the stages exchange: rows, columns, types and units."""
 
 from dataclasses import dataclass
 
@@ -17,7 +17,7 @@ _FLAG = pa.bool_()
 
 @dataclass(frozen=True, slots=True)
 class Column:
-    """One column: its name, Arrow type, unit ("" where it has none) and meaning."""
+    """A column: name, Arrow type, unit ("" where it has none) and meaning."""
 
     name: str
     type: pa.DataType
@@ -28,7 +28,7 @@ class Column:
 
 @dataclass(frozen=True, slots=True)
 class Table:
-    """A table's file stem, what one of its rows is, and its columns in order."""
+    """A table: file stem, meaning of a row, and columns in order."""
 
     name: str
     row: str
@@ -41,7 +41,7 @@ class Table:
 
     @property
     def required(self) -> tuple[str, ...]:
-        """Names of the columns that must have a value in every row."""
+        """Names of the columns that have a value in every row."""
         return tuple(column.name for column in self.columns if not column.nullable)
 
 
@@ -223,23 +223,23 @@ _ESTIMATED = ("tau_c", "alpha", "beta", "gamma", "delta")
 _IN_UNIT = "torque unit"
 
 
-def _maybe(name: str, kind: pa.DataType, unit: str, description: str) -> Column:
+def _nullable(name: str, kind: pa.DataType, unit: str, description: str) -> Column:
     return Column(name, kind, unit, description, nullable=True)
 
 
 def _interval(name: str, unit: str, description: str) -> tuple[Column, ...]:
     return (
-        _maybe(name, _REAL, unit, description),
-        _maybe(f"{name}_low", _REAL, unit, f"{name}: lower end of its 95 % interval"),
-        _maybe(f"{name}_high", _REAL, unit, f"{name}: upper end of its 95 % interval"),
+        _nullable(name, _REAL, unit, description),
+        _nullable(f"{name}_low", _REAL, unit, f"{name}: lower end of its 95 % interval"),
+        _nullable(f"{name}_high", _REAL, unit, f"{name}: upper end of its 95 % interval"),
     )
 
 
 def _estimated(name: str) -> tuple[Column, ...]:
     return (
         *_interval(name, f"{name}_unit", f"parameter {name} of equation (16)"),
-        _maybe(f"{name}_unit", _LABEL, "", f"unit of {name}"),
-        _maybe(f"{name}_determined", _FLAG, "", f"the data tell {name}"),
+        _nullable(f"{name}_unit", _LABEL, "", f"unit of {name}"),
+        _nullable(f"{name}_determined", _FLAG, "", f"the data tell {name}"),
     )
 
 
@@ -249,25 +249,25 @@ FLEET = Table(
     (
         Column("robot", _TEXT, "", "name of the robot"),
         _JOINT_COLUMN,
-        _maybe("runs", _COUNT, "", "runs read"),
+        _nullable("runs", _COUNT, "", "runs read"),
         Column("status", _LABEL, "", "done or failed"),
         Column("message", _TEXT, "", "why it failed, or what was left out"),
-        _maybe("torque_unit", _LABEL, "", "unit of everything torque-like in this row"),
+        _nullable("torque_unit", _LABEL, "", "unit of everything torque-like in this row"),
         *(column for name in _ESTIMATED for column in _estimated(name)),
-        _maybe("temperature", _LABEL, "", "temperature that the model is given"),
-        _maybe("rmse", _REAL, _IN_UNIT, "error of the model over all pairs and angle bins"),
-        _maybe("n_pairs", _COUNT, "", "pairs used"),
-        _maybe("epsilon_heating", _REAL, _IN_UNIT, "error (21) with corrections, heat-up"),
-        _maybe("epsilon_cooling", _REAL, _IN_UNIT, "error (21) with corrections, cool-down"),
-        _maybe("corrections_heating", _REAL, "", "corrections per run, heat-up"),
-        _maybe("corrections_cooling", _REAL, "", "corrections per run, cool-down"),
-        _maybe("verdict", _LABEL, "", "verdict of the diagnosis"),
-        _maybe("causes", _TEXT, "", "its causes, strongest first"),
+        _nullable("temperature", _LABEL, "", "temperature that the model is given"),
+        _nullable("rmse", _REAL, _IN_UNIT, "error of the model over all pairs and angle bins"),
+        _nullable("n_pairs", _COUNT, "", "pairs used"),
+        _nullable("epsilon_heating", _REAL, _IN_UNIT, "error (21) with corrections, heat-up"),
+        _nullable("epsilon_cooling", _REAL, _IN_UNIT, "error (21) with corrections, cool-down"),
+        _nullable("corrections_heating", _REAL, "", "corrections per run, heat-up"),
+        _nullable("corrections_cooling", _REAL, "", "corrections per run, cool-down"),
+        _nullable("verdict", _LABEL, "", "verdict of the diagnosis"),
+        _nullable("causes", _TEXT, "", "its causes, strongest first"),
         *_interval("gain", "", "share of the misfit that the extended model takes"),
-        _maybe("gain_basis", _LABEL, "", "new_run, or within_run where the gain flatters"),
-        _maybe("reference_speed", _REAL, "deg/s", "middle of the speeds of the data"),
+        _nullable("gain_basis", _LABEL, "", "new_run, or within_run where the gain flatters"),
+        _nullable("reference_speed", _REAL, "deg/s", "middle of the speeds of the data"),
         *(
-            _maybe(
+            _nullable(
                 f"friction_{temperature}",
                 _REAL,
                 _IN_UNIT,
@@ -276,6 +276,6 @@ FLEET = Table(
             for temperature in REFERENCE_TEMPERATURES
         ),
         *_interval("change", _IN_UNIT, "friction of the last run less the mean of the earlier"),
-        _maybe("inputs_sha256", _TEXT, "", "digest of all files that were read"),
+        _nullable("inputs_sha256", _TEXT, "", "digest of all files that were read"),
     ),
 )

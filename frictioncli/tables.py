@@ -1,8 +1,8 @@
 """Parquet tables of the work folder: checked against their schema, with units and provenance.
 
-Every file carries, per column, ``unit`` and ``description``, and in its own metadata under
-``frictioncli`` a JSON object with the provenance and the *facts* that later stages need and that
-are no column: ``torque_unit``, ``torque_side``, notes.
+The metadata of every column hold ``unit`` and ``description``. The metadata of the file hold, under
+``frictioncli``, a JSON object with the provenance and the *facts*, which are what later stages need
+beside the columns: ``torque_unit``, ``torque_side``, notes.
 """
 
 import base64
@@ -18,16 +18,16 @@ import pyarrow as pa
 import pyarrow.parquet as pq
 
 from frictioncli.errors import TableError
-from frictioncli.files import whole
+from frictioncli.files import atomic_write
 from frictioncli.provenance import Provenance
 from frictioncli.quantities import TORQUE
 from frictioncli.schemas import Table
 
 if TYPE_CHECKING:
-    # takes longer to import than most logs to read
+    # importing it takes longer than reading most logs
     import pandas as pd
 
-_KEY = b"frictioncli"
+_METADATA_KEY = b"frictioncli"
 _BATCH_ROWS = 1 << 17
 _READ_BYTES = 1 << 20
 _Item = TypeVar("_Item")
@@ -39,26 +39,26 @@ _WRITTEN_ROWS = 1 << 16
 
 
 class TableWriter:
-    """Write a table batch by batch; the file takes its place when the block ends without error.
+    """Write a table batch by batch; the file appears when the block ends without error.
 
-    ``provenance`` and ``facts`` stand at the end of the file and may be set until the block ends:
-    some are known only when all rows have gone by.
+    ``provenance`` and ``facts`` are written at the end of the file and may be set until then, as
+    some are known only after all rows.
 
     Parameters
     ----------
     path : Path
-        The Parquet file to make.
+        The Parquet file to write.
     table : Table
         Its schema.
     provenance : Provenance
-        What makes it.
+        Its origin.
     facts : mapping, optional
-        What later stages must know beside the columns; ``torque_unit`` fills in the torque unit.
+        What later stages need beside the columns; ``torque_unit`` sets the torque unit.
 
     Notes
     -----
-    Numbers are split into their bytes before they are compressed with LZ4: logs then take half the
-    time of pyarrow's defaults to write and to read, at about the same size.
+    Numbers are split into bytes before they are compressed with LZ4. Logs are then written and read
+    in half the time of pyarrow's defaults, at about the same size.
     """
 
     def __init__(
@@ -74,12 +74,12 @@ class TableWriter:
         self._schema = bare_schema(table)
         self._path = path
         self._stack = ExitStack()
-        self._held: list[pa.Table] = []
-        self._held_bytes = 0
+        self._buffer: list[pa.Table] = []
+        self._buffer_bytes = 0
         self.rows = 0
 
     def __enter__(self) -> Self:
-        draft = self._stack.enter_context(whole(self._path))
+        draft = self._stack.enter_context(atomic_write(self._path))
         numbers = [f.name for f in self._schema if pa.types.is_floating(f.type)]
         labels = [name for name in self._schema.names if name not in numbers]
         counts = [f.name for f in self._schema if pa.types.is_integer(f.type)]
@@ -89,30 +89,30 @@ class TableWriter:
             compression="lz4",
             use_dictionary=labels,
             use_byte_stream_split=numbers,
-            # of texts they take longer to make than the texts to write
+            # statistics of texts would take longer than writing the texts
             write_statistics=[*counts, "time"],
             write_batch_size=_WRITTEN_ROWS,
             # the schema with its metadata is stored at the end
             store_schema=False,
         )
-        self._stack.push(self._ended)
+        self._stack.push(self._finish)
         self._thread = self._stack.enter_context(ThreadPoolExecutor(1))
         self._writing: Future[None] | None = None
         return self
 
     def write(self, batch: "pa.RecordBatch | pa.Table | pd.DataFrame") -> None:
-        """Append rows; columns are matched by name and those that are missing become null."""
+        """Append rows; columns are matched by name, and missing ones become null."""
         if not isinstance(batch, pa.RecordBatch | pa.Table):
             batch = pa.Table.from_pandas(batch, preserve_index=False)
         rows = conform(batch, self._table, self._schema)
         self.rows += rows.num_rows
-        self._held.append(rows)
-        self._held_bytes += rows.nbytes
-        if self._held_bytes >= _GROUP_BYTES:
+        self._buffer.append(rows)
+        self._buffer_bytes += rows.nbytes
+        if self._buffer_bytes >= _GROUP_BYTES:
             self._flush()
 
     def close(self) -> None:
-        """Put the file in its place; leaving the block then does no more."""
+        """Finish the file; leaving the block then has no further effect."""
         self.__exit__(None, None, None)
 
     def __exit__(
@@ -125,21 +125,21 @@ class TableWriter:
             if error is not None:
                 raise error
             self._flush()
-            self._written()
+            self._wait()
 
     def _flush(self) -> None:
-        """Write what is held, in a thread: the caller goes on, one group of rows ahead."""
-        self._written()
-        if self._held:
-            rows = pa.concat_tables(self._held).unify_dictionaries()
+        """Write the buffered rows in a thread, so that the caller continues with the next ones."""
+        self._wait()
+        if self._buffer:
+            rows = pa.concat_tables(self._buffer).unify_dictionaries()
             self._writing = self._thread.submit(self._writer.write_table, rows)
-        self._held, self._held_bytes = [], 0
+        self._buffer, self._buffer_bytes = [], 0
 
-    def _written(self) -> None:
+    def _wait(self) -> None:
         if self._writing is not None:
             self._writing.result()
 
-    def _ended(self, kind: type[BaseException] | None, *_: object) -> None:
+    def _finish(self, kind: type[BaseException] | None, *_: object) -> None:
         with self._writer:
             if kind is None:
                 schema = arrow_schema(self._table, self.provenance, self.facts)
@@ -164,13 +164,15 @@ def arrow_schema(table: Table, provenance: Provenance, facts: Mapping[str, Any])
         for column in table.columns
     ]
     document = provenance.as_dict() | {"table": table.name, "row": table.row, "facts": dict(facts)}
-    return pa.schema(fields, metadata={_KEY: json.dumps(document, ensure_ascii=False).encode()})
+    return pa.schema(
+        fields, metadata={_METADATA_KEY: json.dumps(document, ensure_ascii=False).encode()}
+    )
 
 
 def bare_schema(table: Table) -> pa.Schema:
     """Return the Arrow schema of a table without metadata.
 
-    What must be there is declared so: pages without marks of absence take half the time.
+    Required columns are declared as not nullable, which halves the time to read and write them.
     """
     return pa.schema([pa.field(c.name, c.type, c.nullable) for c in table.columns])
 
@@ -217,13 +219,13 @@ def write(
     provenance: Provenance,
     facts: Mapping[str, Any] | None = None,
 ) -> None:
-    """Write a whole table."""
+    """Write a table; parameters as of :class:`TableWriter`."""
     with TableWriter(path, table, provenance, facts) as writer:
         writer.write(rows)
 
 
 def read(path: Path, table: Table) -> "pd.DataFrame":
-    """Read a whole table; labels come as plain strings, columns that may be null may be absent.
+    """Read a table; labels become plain strings, and nullable columns may be absent.
 
     Raises
     ------
@@ -242,7 +244,7 @@ def read(path: Path, table: Table) -> "pd.DataFrame":
 
 
 def batches(path: Path, table: Table, rows: int = _BATCH_ROWS) -> Iterator[pa.RecordBatch]:
-    """Yield a table's rows in order, a bounded number at a time; of a folder, file by file.
+    """Yield the rows of a table in order and in batches; those of a folder file by file.
 
     Raises
     ------
@@ -252,29 +254,30 @@ def batches(path: Path, table: Table, rows: int = _BATCH_ROWS) -> Iterator[pa.Re
     for part in sorted(path.glob("*.parquet")) if path.is_dir() else [path]:
         with _opened(part, table) as file:
             present = [name for name in table.names if name in file.schema_arrow.names]
-            # handing columns to other threads costs half as much as decoding them
+            # passing columns to other threads costs half as much as decoding them
             for batch in file.iter_batches(batch_size=rows, columns=present, use_threads=False):
-                yield batch if _sound(batch, table) else _mended(batch, table, part)
+                yield batch if _conforms(batch, table) else _converted(batch, table, part)
 
 
-def ahead(items: Iterator[_Item]) -> Iterator[_Item]:
-    """Yield what an iterator yields, while a thread already fetches the next one."""
+def prefetch(items: Iterator[_Item]) -> Iterator[_Item]:
+    """Yield the items of an iterator, while a thread fetches the next one."""
     with ThreadPoolExecutor(1) as pool:
-        coming = pool.submit(next, items, None)
-        while (item := coming.result()) is not None:
-            coming = pool.submit(next, items, None)
+        fetched = pool.submit(next, items, None)
+        while (item := fetched.result()) is not None:
+            fetched = pool.submit(next, items, None)
             yield item
 
 
-def _sound(batch: pa.RecordBatch, table: Table) -> bool:
-    own = {column.name: column for column in table.columns}
+def _conforms(batch: pa.RecordBatch, table: Table) -> bool:
+    expected = {column.name: column for column in table.columns}
     return all(
-        values.type.equals(own[name].type) and (own[name].nullable or not values.null_count)
+        values.type.equals(expected[name].type)
+        and (expected[name].nullable or not values.null_count)
         for name, values in zip(batch.schema.names, batch.columns, strict=True)
     )
 
 
-def _mended(batch: pa.RecordBatch, table: Table, path: Path) -> pa.RecordBatch:
+def _converted(batch: pa.RecordBatch, table: Table, path: Path) -> pa.RecordBatch:
     try:
         return conform(batch, table, bare_schema(table)).combine_chunks().to_batches()[0]
     except TableError as error:
@@ -282,17 +285,17 @@ def _mended(batch: pa.RecordBatch, table: Table, path: Path) -> pa.RecordBatch:
 
 
 def facts(path: Path) -> dict[str, Any]:
-    """Return what earlier stages noted beside the columns; empty for a foreign file."""
-    return dict(document(path).get("facts", {}))
+    """Return the facts of a table; empty for a file that another program wrote."""
+    return dict(metadata(path).get("facts", {}))
 
 
-def document(path: Path) -> dict[str, Any]:
-    """Return the provenance and facts of a table; empty for a file made by something else."""
+def metadata(path: Path) -> dict[str, Any]:
+    """Return the provenance and facts of a table; empty for a file that another program wrote."""
     if path.is_dir():
         path = next(iter(sorted(path.glob("*.parquet"))), path)
     try:
         metadata = pq.read_schema(path).metadata or {}
-        return dict(json.loads(metadata.get(_KEY, b"{}")))
+        return dict(json.loads(metadata.get(_METADATA_KEY, b"{}")))
     except (OSError, pa.ArrowInvalid, ValueError) as error:
         raise TableError(f"{path}: cannot be read as Parquet ({error})") from error
 
@@ -302,7 +305,7 @@ def _opened(path: Path, table: Table) -> Iterator[pq.ParquetFile]:
     if not path.exists():
         raise TableError(f"{path} is missing; run the stage that makes {table.name} first")
     try:
-        # else a whole row group's bytes would be held beside its values
+        # otherwise the bytes of a whole row group would be held beside its values
         file = pq.ParquetFile(path, pre_buffer=False, buffer_size=_READ_BYTES)
     except (OSError, pa.ArrowInvalid) as error:
         raise TableError(f"{path}: cannot be read as Parquet ({error})") from error

@@ -1,4 +1,4 @@
-"""What the files of a work folder are called."""
+"""Names of the files of a work folder."""
 
 SAMPLES = "samples.parquet"
 RECORDINGS = "recordings.parquet"

@@ -1,4 +1,4 @@
-"""The work folder: one writer at a time, no left-overs of killed ones, no silent mix of data."""
+"""Work folder: lock, removal of temporary files of killed runs, and check for outdated tables."""
 
 import json
 import os
@@ -11,28 +11,33 @@ from filelock import FileLock, Timeout
 
 from frictioncli import tables
 from frictioncli.errors import FrictionError, TableError
-from frictioncli.files import DRAFT, cannot_write
+from frictioncli.files import DRAFT_PREFIX, cannot_write
 from frictioncli.provenance import sha256
 
 _LOCK = ".lock"
-_LEFT_OVERS = (DRAFT, ".reading.")
+_TEMPORARY_PREFIXES = (DRAFT_PREFIX, ".reading.")
 
 
 @contextmanager
-def alone(work: Path) -> Iterator[None]:
-    """Keep every other process from writing into a work folder while the block runs.
+def locked(work: Path) -> Iterator[None]:
+    """Lock a work folder, so that no other process writes into it while the block runs.
 
-    The folder is made; whoever holds it already may enter again, as a run does for its stages. The
-    operating system frees it when the process ends, however it ends. What a killed one left behind
-    is removed on entering.
+    A missing folder is made. A process that holds the lock may take it again, as a run does for
+    its stages. The operating system releases it when the process ends, however it ends. Temporary
+    folders of killed processes are removed.
+
+    Parameters
+    ----------
+    work : Path
+        The work folder.
 
     Raises
     ------
     FrictionError
-        If another process writes into the folder, or the system does not let this one.
+        If another process writes into the folder, or the system does not allow it.
     """
     try:
-        made = _made(work)
+        made = _make_folder(work)
         lock = FileLock(Path(os.path.realpath(work), _LOCK), timeout=0, is_singleton=True)
         lock.acquire()
     except Timeout:
@@ -45,13 +50,13 @@ def alone(work: Path) -> Iterator[None]:
     outermost = lock.lock_counter == 1
     try:
         if outermost:
-            _sweep(work)
+            _remove_temporary_folders(work)
         yield
     except OSError as error:
-        raise _refused(work, error) from error
+        raise _system_error(work, error) from error
     finally:
         if outermost:
-            # still held: whoever opened this file before finds out that it is gone
+            # still locked: a process that opened this file before finds that it is gone
             with suppress(OSError):
                 os.unlink(lock.lock_file)
         lock.release()
@@ -61,19 +66,19 @@ def alone(work: Path) -> Iterator[None]:
 
 
 def outdated(paths: Iterable[Path]) -> list[str]:
-    """Return what to say of tables that were made from others which were replaced since.
+    """Return warnings about outputs that were made from inputs which were replaced since.
 
     Parameters
     ----------
     paths : iterable of Path
-        Outputs in a work folder; they and all that they were made from are looked at.
+        Outputs in a work folder; their inputs are checked too, and so on.
 
     Returns
     -------
     list of str
-        One sentence per replaced input; none where all belong together.
+        One sentence per replaced input; empty where all outputs are up to date.
     """
-    said: dict[str, None] = {}
+    warnings: dict[str, None] = {}
     waiting, seen = list(paths), set()
     while waiting:
         output = waiting.pop(0)
@@ -85,53 +90,53 @@ def outdated(paths: Iterable[Path]) -> list[str]:
             continue
         for name, digest in inputs.items():
             path = output.with_name(name)
-            if path.exists() and _replaced(path, output, digest):
+            if path.exists() and _is_replaced(path, output, digest):
                 text = f"{output.name} was made from another {name} than the one here"
-                said[f"{text}; run 'frictioncli {stage}' again"] = None
+                warnings[f"{text}; run 'frictioncli {stage}' again"] = None
             waiting.append(path)
-    return list(said)
+    return list(warnings)
 
 
-def _made(work: Path) -> list[Path]:
-    """Make the folder; return what had to be made, innermost first."""
+def _make_folder(work: Path) -> list[Path]:
+    """Make the folder; return the folders that had to be made, innermost first."""
     missing = [path for path in (work, *work.parents) if not path.exists()]
     work.mkdir(parents=True, exist_ok=True)
     return missing
 
 
-def _refused(work: Path, error: OSError) -> FrictionError:
-    """Return the message for what the system did not let a stage do."""
+def _system_error(work: Path, error: OSError) -> FrictionError:
+    """Return the error for an operation that the system did not allow."""
     if error.filename is None or work in Path(os.fsdecode(error.filename)).parents:
         return cannot_write(work, error)
     return FrictionError(f"{error.filename}: cannot be used ({error.strerror or error})")
 
 
-def _sweep(work: Path) -> None:
+def _remove_temporary_folders(work: Path) -> None:
     for path in work.iterdir():
-        if path.name.startswith(_LEFT_OVERS) and path.is_dir():
+        if path.name.startswith(_TEMPORARY_PREFIXES) and path.is_dir():
             shutil.rmtree(path, ignore_errors=True)
 
 
 def _origin(output: Path) -> tuple[str, dict[str, str]]:
-    """Return the stage that made an output and its inputs; none where a file does not say."""
+    """Return the stage that made an output and its inputs; both empty where that is unknown."""
     try:
         if output.suffix == ".parquet":
-            provenance = tables.document(output)
+            provenance = tables.metadata(output)
         elif output.suffix == ".json":
             provenance = json.loads(output.read_text(encoding="utf-8"))["provenance"]
         else:
             return "", {}
         stage, inputs = str(provenance["stage"]), dict(provenance["inputs"])
-    except (TableError, ValueError, KeyError, TypeError):  # the file of someone else
+    except (TableError, ValueError, KeyError, TypeError):  # not written by this program
         return "", {}
     return stage, {name: digest for name, digest in inputs.items() if Path(name).name == name}
 
 
-def _replaced(source: Path, output: Path, digest: str) -> bool:
-    """Tell whether a source is no longer the one of which ``digest`` is the SHA-256."""
+def _is_replaced(source: Path, output: Path, digest: str) -> bool:
+    """Return whether ``digest`` is no longer the SHA-256 of a source."""
     if source.is_dir():
         return sha256(source) != digest
     status = source.stat()
-    # what was not touched since the output was made need not be read again
-    touched = max(status.st_mtime_ns, status.st_ctime_ns)
-    return touched >= output.stat().st_mtime_ns and sha256(source) != digest
+    # a file that was not changed since the output was made need not be read again
+    changed = max(status.st_mtime_ns, status.st_ctime_ns)
+    return changed >= output.stat().st_mtime_ns and sha256(source) != digest

@@ -28,7 +28,7 @@ from frictioncli.fleet.settings import FleetSettings
 from frictioncli.provenance import Provenance, sha256
 from frictioncli.stages.settings import RunSettings
 from frictioncli.tables import TableWriter
-from frictioncli.workfolder import alone
+from frictioncli.workfolder import locked
 
 FLEET = "fleet.parquet"
 
@@ -142,7 +142,7 @@ def run_fleet(
     for task in tasks:
         check_own(task.work)
     summary = FleetSummary(path=out / FLEET, joints=len(tasks))
-    with alone(out):
+    with locked(out):
         with closing(_outcomes(tasks, options)) as found, watch(found, len(tasks)) as outcomes:
             for outcome in outcomes:
                 summary.add(outcome)

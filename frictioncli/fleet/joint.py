@@ -21,7 +21,7 @@ from frictioncli.provenance import sha256
 from frictioncli.stages import run as pipeline
 from frictioncli.stages.settings import RunSettings
 from frictioncli.stages.stage import Done
-from frictioncli.workfolder import alone
+from frictioncli.workfolder import locked
 
 DONE, UNCHANGED, FAILED = "done", "unchanged", "failed"
 
@@ -98,7 +98,7 @@ def _run_joint(task: JointTask) -> Outcome:
         settings = _own_settings(task)
         inputs = _input_hashes(runs, settings)
         key = _key(inputs, settings_document(settings, report=task.report))
-        with alone(task.work):
+        with locked(task.work):
             kept = read_note(task.work)
             if not task.redo and kept is not None and kept.key == key:
                 return _outcome(task, UNCHANGED, kept.row)

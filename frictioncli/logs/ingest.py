@@ -12,7 +12,7 @@ from typing import Any, Self
 
 from frictioncli import schemas
 from frictioncli.errors import FrictionError, LogError, MappingError
-from frictioncli.files import whole
+from frictioncli.files import atomic_write
 from frictioncli.logs.channels.channel_map import ChannelMap, read_map
 from frictioncli.logs.log_source import Refusal
 from frictioncli.logs.run_logs import RunLogs, plan_run
@@ -227,7 +227,7 @@ def _write_tables(
             recordings.write(recording_rows(run, timeline.placed))
     outputs.samples.finish(folder / SAMPLES, ingested.knots, provenance, facts)
     for table in (schemas.REJECTED, schemas.RECORDINGS, schemas.SAMPLES):
-        with whole(work / f"{table.name}.parquet") as place:
+        with atomic_write(work / f"{table.name}.parquet") as place:
             os.replace(folder / place.name, place)
 
 

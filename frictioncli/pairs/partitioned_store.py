@@ -11,7 +11,7 @@ import numpy as np
 import pyarrow as pa
 from numpy.typing import NDArray
 
-from frictioncli.files import DRAFT, cannot_write
+from frictioncli.files import DRAFT_PREFIX, cannot_write
 
 Columns = dict[str, NDArray]
 Key = TypeVar("Key", bound=Hashable)
@@ -53,7 +53,7 @@ class PartitionedStore(Generic[Key]):
         try:
             self._folder.mkdir(parents=True, exist_ok=True)
             temporary = tempfile.TemporaryDirectory(
-                prefix=DRAFT, dir=self._folder, ignore_cleanup_errors=True
+                prefix=DRAFT_PREFIX, dir=self._folder, ignore_cleanup_errors=True
             )
         except OSError as error:
             raise cannot_write(self._folder, error) from error

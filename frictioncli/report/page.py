@@ -11,7 +11,7 @@ import jinja2
 from markupsafe import Markup
 
 from frictioncli import __version__
-from frictioncli.files import whole
+from frictioncli.files import atomic_write
 from frictioncli.plain_text import without_control_characters
 from frictioncli.report.data_section import data_section, ingest_counts
 from frictioncli.report.drawing import draw_figures
@@ -56,7 +56,7 @@ def write_report(work: Path) -> Path:
     ]
     page = _page(results, sections)
     folder = work / "report"
-    with whole(folder) as draft:
+    with atomic_write(folder) as draft:
         draft.mkdir()
         (draft / "index.html").write_text(page, encoding="utf-8", newline="\n")
         for drawn in figures:

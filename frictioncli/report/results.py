@@ -250,7 +250,7 @@ def _read_metadata(work: Path) -> Iterator[tuple[str, Mapping[str, Any]]]:
     for table in _TABLES:
         path = work / f"{table}.parquet"
         if path.exists():
-            yield path.name, tables.document(path)
+            yield path.name, tables.metadata(path)
     for name in (MODEL, DIAGNOSIS, EXTENDED):
         path = work / name
         if path.exists():

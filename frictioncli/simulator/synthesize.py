@@ -99,7 +99,7 @@ def synthesize(folder: Path, settings: SynthesisSettings | None = None) -> Synth
         planted = plant(effects, settings.seed, states, settings.sign)
     summaries: list[RunSummary] = []
     truths: list[dict[str, Any]] = []
-    with files.whole(folder) as draft:
+    with files.atomic_write(folder) as draft:
         for run in runs:
             summary, truth = write_run(draft / run.setup.name, run, planted if effects else None)
             summaries.append(summary)
@@ -115,7 +115,7 @@ def synthesize(folder: Path, settings: SynthesisSettings | None = None) -> Synth
         if not settings.blind:
             (draft / TRUTH).write_text(text, encoding="utf-8", newline="\n")
     if settings.blind:
-        with files.whole(beside) as draft:
+        with files.atomic_write(beside) as draft:
             draft.write_text(text, encoding="utf-8", newline="\n")
     return SynthesisSummary(
         folder=folder,

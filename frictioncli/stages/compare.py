@@ -16,7 +16,7 @@ from frictioncli.comparison.settings import ComparisonSettings
 from frictioncli.comparison.text import comparison_text
 from frictioncli.documents import to_json
 from frictioncli.errors import OptionError
-from frictioncli.files import whole, write_text
+from frictioncli.files import atomic_write, write_text
 from frictioncli.model.document import FrictionModel, read_models
 from frictioncli.provenance import Provenance, sha256
 from frictioncli.report.trend_figure import trend_files
@@ -68,7 +68,7 @@ def compare(runs: Sequence[Path], work: Path, settings: ComparisonSettings | Non
     document = comparison_document(comparison) | {"provenance": provenance.as_dict()}
     svg, png = trend_files(document)
     write_text(work / f"{TREND}.svg", svg)
-    with whole(work / f"{TREND}.png") as draft:
+    with atomic_write(work / f"{TREND}.png") as draft:
         draft.write_bytes(png)
     write_text(work / COMPARISON, to_json(document))
     warnings = [

@@ -11,7 +11,7 @@ from frictioncli.diagnosis.documents.apply_extension import with_effects, withou
 from frictioncli.diagnosis.documents.extended_model import read_extended
 from frictioncli.errors import NotEnoughData
 from frictioncli.model.document import FrictionModel, read_models
-from frictioncli.provenance import Provenance, hashes
+from frictioncli.provenance import Provenance, input_hashes
 from frictioncli.workfiles import EXTENDED, MODEL, TORQUES
 
 
@@ -42,7 +42,7 @@ def corrected(
         raise NotEnoughData("; ".join(faults) or f"{source} has no model of these joints")
     whole = pd.concat(rows, ignore_index=True)
     facts = tables.facts(work / TORQUES)
-    inputs = hashes([work / TORQUES, source])
+    inputs = input_hashes([work / TORQUES, source])
     provenance = Provenance(name, settings | {"extended": extended}, inputs)
     tables.write(work / f"{table.name}.parquet", whole, table, provenance, facts)
     return whole, faults, facts.get("torque_unit", "N·m")

@@ -13,7 +13,7 @@ from frictioncli.diagnosis.settings import DiagnosisSettings
 from frictioncli.documents import write_joints
 from frictioncli.errors import NotEnoughData
 from frictioncli.model.document import read_models
-from frictioncli.provenance import Provenance, hashes
+from frictioncli.provenance import Provenance, input_hashes
 from frictioncli.stages.stage import Done, present, stage
 from frictioncli.workfiles import DIAGNOSIS, EXTENDED, MODEL, RAMPS, TORQUES
 
@@ -38,7 +38,7 @@ def diagnose(work: Path, settings: DiagnosisSettings | None = None) -> Done:
             faults.append(str(fault))
     if not found:
         raise NotEnoughData("; ".join(faults))
-    provenance = Provenance("diagnose", asdict(settings), hashes(inputs))
+    provenance = Provenance("diagnose", asdict(settings), input_hashes(inputs))
     main_joint = max(found, key=lambda pair: pair[0].n_pairs)[0].joint
     for name, documents in (
         (DIAGNOSIS, {m.joint: diagnosis_document(d, settings) for m, d in found}),

@@ -12,7 +12,7 @@ from frictioncli.diagnosis.documents.reload import read_documents
 from frictioncli.errors import OptionError, TableError
 from frictioncli.files import write_text
 from frictioncli.model.document import FrictionModel, read_models
-from frictioncli.provenance import hashes
+from frictioncli.provenance import input_hashes
 from frictioncli.stages.stage import Done, stage
 from frictioncli.workfiles import DIAGNOSIS, EXTENDED, MODEL, TORQUES
 
@@ -58,7 +58,7 @@ def deployed(work: Path, settings: ExportSettings | None = None) -> DeployedMode
         schedule=ScheduleSettings(criterion=settings.criterion, k=settings.k, tmax=settings.tmax),
         correction_speed=middle_speed(model),
         extension=extension,
-        origin=hashes(used),
+        origin=input_hashes(used),
         version=__version__,
     )
 

@@ -8,7 +8,7 @@ from frictioncli.errors import NotEnoughData
 from frictioncli.model.document import write_models
 from frictioncli.model.fitting import fit_joint
 from frictioncli.model.settings import FitSettings
-from frictioncli.provenance import Provenance, hashes
+from frictioncli.provenance import Provenance, input_hashes
 from frictioncli.stages.stage import Done, stage
 from frictioncli.workfiles import MODEL, TORQUES
 
@@ -28,5 +28,5 @@ def fit(work: Path, settings: FitSettings | None = None) -> Done:
             faults.append(str(fault))
     if not models:
         raise NotEnoughData("; ".join(faults))
-    write_models(work / MODEL, models, Provenance("fit", asdict(settings), hashes([source])))
+    write_models(work / MODEL, models, Provenance("fit", asdict(settings), input_hashes([source])))
     return Done(work / MODEL, "\n".join([*(model.table() for model in models), *faults]))

@@ -15,7 +15,7 @@ from frictioncli.pairs.pairing import pair_segments
 from frictioncli.pairs.partitioned_store import PartitionedStore
 from frictioncli.pairs.segments import Joint, find_segments
 from frictioncli.pairs.settings import PairingSettings
-from frictioncli.provenance import Provenance, hashes
+from frictioncli.provenance import Provenance, input_hashes
 from frictioncli.stages.stage import Done, present, stage
 from frictioncli.workfiles import PAIRS, RAMPS, RECORDINGS, SAMPLES
 
@@ -26,7 +26,9 @@ def pair(work: Path, settings: PairingSettings | None = None) -> Done:
     settings = settings or PairingSettings()
     source = work / SAMPLES
     facts = tables.facts(source)
-    provenance = Provenance("pair", asdict(settings), hashes(present(source, work / RECORDINGS)))
+    provenance = Provenance(
+        "pair", asdict(settings), input_hashes(present(source, work / RECORDINGS))
+    )
     manifest = read_phase_and_payload(work / RECORDINGS)
     counts = PairCounts()
     with (
@@ -35,7 +37,7 @@ def pair(work: Path, settings: PairingSettings | None = None) -> Done:
         tables.TableWriter(work / RAMPS, schemas.RAMPS, provenance) as ramps,
         tables.TableWriter(work / PAIRS, schemas.PAIRS, provenance) as pairs,
     ):
-        samples = tables.ahead(tables.batches(source, schemas.SAMPLES))
+        samples = tables.prefetch(tables.batches(source, schemas.SAMPLES))
         segments = find_segments(samples, settings.steady, settings.bin_width, segment_store)
         pairing = pair_segments(segments, settings, pair_store, manifest["payload"])
         facts |= {

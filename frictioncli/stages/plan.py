@@ -19,7 +19,7 @@ from frictioncli.documents import to_json
 from frictioncli.errors import NotEnoughData, OptionError, TableError
 from frictioncli.files import write_text
 from frictioncli.model.document import read_models
-from frictioncli.provenance import Provenance, hashes
+from frictioncli.provenance import Provenance, input_hashes
 from frictioncli.stages.stage import Done, stage
 from frictioncli.workfiles import DIAGNOSIS, EXTENDED, MODEL, PLAN, TORQUES
 
@@ -60,7 +60,7 @@ def plan(work: Path, settings: PlanSettings | None = None) -> Done:
         end = found.check_timings[-1].end
         checks = _written(work, settings, f"{name}_check", joint, found.check, found.limits, end)
     units = {one: entry.unit for one, entry in models[joint].parameters.items()}
-    inputs = hashes([work / TORQUES, work / MODEL, work / DIAGNOSIS, work / EXTENDED])
+    inputs = input_hashes([work / TORQUES, work / MODEL, work / DIAGNOSIS, work / EXTENDED])
     told = plan_document(found, units, files, checks)
     _write(work, told, settings, Provenance("plan", asdict(settings), inputs))
     return Done(work / PLAN, plan_text(found, units, [*files, *checks]))

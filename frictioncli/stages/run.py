@@ -16,7 +16,7 @@ from frictioncli.stages.settings import RunSettings
 from frictioncli.stages.simulate import simulate
 from frictioncli.stages.stage import Done
 from frictioncli.workfiles import DIAGNOSIS, EVALUATION, EXTENDED, SCHEDULE
-from frictioncli.workfolder import alone
+from frictioncli.workfolder import locked
 
 Tell = Callable[[str, Done], None]
 """Is told each stage's name and what it made."""
@@ -47,7 +47,7 @@ def run(
     out, and said so, and the tables of a former run are removed. So is the diagnosis where the data
     are too few for one. A former one is removed at the start in any case: it is of other data.
     """
-    with alone(work):
+    with locked(work):
         analyse(logs, work, settings, tell)
         done = report(work)
     tell("report", done)
@@ -62,7 +62,7 @@ def analyse(
 ) -> None:
     """Run the chain but for the report; see :func:`run`."""
     chosen = settings or RunSettings()
-    with alone(work):
+    with locked(work):
         _analyse(logs, work, chosen, tell)
 
 

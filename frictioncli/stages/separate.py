@@ -7,7 +7,7 @@ from frictioncli import schemas, tables
 from frictioncli.pairs.separation import TorqueRanges, separation_text, sign_conventions
 from frictioncli.pairs.separation import separate as separate_pairs
 from frictioncli.pairs.settings import SeparationSettings
-from frictioncli.provenance import Provenance, hashes
+from frictioncli.provenance import Provenance, input_hashes
 from frictioncli.stages.stage import Done, stage
 from frictioncli.workfiles import PAIRS, TORQUES
 
@@ -20,10 +20,10 @@ def separate(work: Path, settings: SeparationSettings | None = None) -> Done:
     facts = tables.facts(source)
     signs = sign_conventions(tables.batches(source, schemas.PAIRS), settings.sign)
     facts["sign"] = {str(joint): value for joint, value in signs.items()}
-    provenance = Provenance("separate", asdict(settings), hashes([source]))
+    provenance = Provenance("separate", asdict(settings), input_hashes([source]))
     ranges = TorqueRanges()
     with tables.TableWriter(work / TORQUES, schemas.TORQUES, provenance) as torques:
-        pairs = tables.ahead(tables.batches(source, schemas.PAIRS))
+        pairs = tables.prefetch(tables.batches(source, schemas.PAIRS))
         for rows in ranges.update(separate_pairs(batch, signs) for batch in pairs):
             torques.write(rows)
         facts |= {"load_unit": "N·m"} if ranges.load_is_measured else {}

@@ -8,7 +8,7 @@ from html import escape
 from pathlib import Path
 from typing import ParamSpec
 
-from frictioncli.workfolder import alone, outdated
+from frictioncli.workfolder import locked, outdated
 
 
 @dataclass(frozen=True, slots=True)
@@ -36,7 +36,7 @@ def stage(work_on: Callable[_Arguments, Done]) -> Callable[_Arguments, Done]:
     @functools.wraps(work_on)
     def alone_with_its_folder(*args: _Arguments.args, **kwargs: _Arguments.kwargs) -> Done:
         work: Path = signature.bind(*args, **kwargs).arguments["work"]
-        with alone(work):
+        with locked(work):
             done = work_on(*args, **kwargs)
             # a page shows all tables of its folder
             used = [done.path] if done.path.parent == work else sorted(work.iterdir())

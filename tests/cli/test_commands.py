@@ -93,7 +93,7 @@ def test_every_output_says_where_it_comes_from(finished):
     folder, _ = finished
     work = folder / "work"
     for name in ("samples", "rejected", "recordings", "pairs", "torques"):
-        document = tables.document(work / f"{name}.parquet")
+        document = tables.metadata(work / f"{name}.parquet")
         assert document["program"] == "frictioncli"
         assert {"version", "stage", "settings", "inputs"} <= set(document)
     model = json.loads((work / "model.json").read_text(encoding="utf-8"))
@@ -125,11 +125,11 @@ def test_options_are_in_the_provenance_of_what_is_written(tmp_path):
     invoke("pair", "--work", work, "--bin-width", 10, "--min-samples", 7)
     invoke("separate", "-w", work, "--sign", "+1")
     invoke("fit", "-w", work, "--temperature", "motor")
-    samples = tables.document(work / "samples.parquet")["settings"]
+    samples = tables.metadata(work / "samples.parquet")["settings"]
     assert (samples["joints"], samples["units"]) == ([2], {"torque": "N·m"})
-    pairs = tables.document(work / "pairs.parquet")["settings"]
+    pairs = tables.metadata(work / "pairs.parquet")["settings"]
     assert (pairs["bin_width"], pairs["steady"]["min_samples"]) == (10.0, 7)
-    assert tables.document(work / "torques.parquet")["settings"] == {"sign": 1}
+    assert tables.metadata(work / "torques.parquet")["settings"] == {"sign": 1}
     model = json.loads((work / "model.json").read_text(encoding="utf-8"))
     assert model["provenance"]["settings"]["temperature"] == "motor"
 

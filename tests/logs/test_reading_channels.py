@@ -161,7 +161,7 @@ def test_a_map_names_columns_units_and_joint(tmp_path):
     np.testing.assert_allclose(table["time"], time, atol=1e-9)
     np.testing.assert_allclose(table["position"], position, atol=1e-9)
     np.testing.assert_allclose(table["torque"], torque, atol=1e-9)
-    assert "channels.toml" in tables.document(tmp_path / "work" / "samples.parquet")["inputs"]
+    assert "channels.toml" in tables.metadata(tmp_path / "work" / "samples.parquet")["inputs"]
 
 
 def test_a_mapped_column_that_is_missing(tmp_path):

@@ -200,7 +200,7 @@ def test_provenance_names_runs_and_files(tmp_path):
     log = write(tmp_path / "monday" / "log.csv", kuka_columns())
     ingest([log], tmp_path / "work")
     for name in ("samples", "recordings", "rejected"):
-        document = tables.document(tmp_path / "work" / f"{name}.parquet")
+        document = tables.metadata(tmp_path / "work" / f"{name}.parquet")
         assert list(document["inputs"]) == ["monday/log.csv"]
         assert document["stage"] == "ingest"
         assert document["facts"]["torque_side"] == "joint"

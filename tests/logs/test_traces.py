@@ -186,7 +186,7 @@ def test_an_axis_that_is_not_asked_for_is_listed(tmp_path):
 def test_every_file_of_a_trace_is_among_the_inputs(tmp_path):
     write_trace(tmp_path / "run")
     read(tmp_path / "run", tmp_path / "work", joints=(3,))
-    inputs = tables.document(tmp_path / "work" / "samples.parquet")["inputs"]
+    inputs = tables.metadata(tmp_path / "work" / "samples.parquet")["inputs"]
     names = {f"t_{part}.{end}" for part in ("KRCIpo", "NextGenDrive#3") for end in ("dat", "r64")}
     assert set(inputs) == {f"run/{name}" for name in names}
 

@@ -196,7 +196,7 @@ def test_fetching_ahead_keeps_order_and_errors():
 
     seen = []
     with pytest.raises(TableError, match="fifty-first"):
-        seen.extend(tables.ahead(numbers()))
-    got = tables.ahead(iter(range(50)))
+        seen.extend(tables.prefetch(numbers()))
+    got = tables.prefetch(iter(range(50)))
     assert list(got) == list(range(50))
-    assert next(tables.ahead(iter(range(3)))) == 0
+    assert next(tables.prefetch(iter(range(3)))) == 0

@@ -109,7 +109,7 @@ def test_pairs_and_ramps_name_the_recordings_that_gave_their_payload(tmp_path):
     write_folder(tmp_path / "day1", manifest=True)
     list(separated(tmp_path / "day1", tmp_path / "work"))
     for name in (PAIRS, RAMPS):
-        inputs = tables.document(tmp_path / "work" / name)["inputs"]
+        inputs = tables.metadata(tmp_path / "work" / name)["inputs"]
         assert set(inputs) == {"samples.parquet", "recordings.parquet"}
 
 

@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 
 from frictioncli.errors import FrictionError
-from frictioncli.files import whole, write_text
+from frictioncli.files import atomic_write, write_text
 from frictioncli.stages import run as pipeline
 from frictioncli.stages.diagnose import diagnose
 from frictioncli.stages.evaluate import evaluate
@@ -183,7 +183,7 @@ def test_a_body_that_fails_leaves_the_old_file_and_nothing_else(tmp_path):
     write_text(tmp_path / "a.json", "old")
 
     def fail():
-        with whole(tmp_path / "a.json") as draft:
+        with atomic_write(tmp_path / "a.json") as draft:
             draft.write_text("half", encoding="utf-8")
             raise ValueError("a bug")
 

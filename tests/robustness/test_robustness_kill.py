@@ -5,7 +5,7 @@ from functools import partial
 
 import pytest
 
-from frictioncli.files import whole
+from frictioncli.files import atomic_write
 from frictioncli.stages.fit import fit
 from frictioncli.stages.ingest import ingest
 from frictioncli.stages.pair import pair
@@ -58,7 +58,7 @@ def test_a_stage_killed_before_each_of_its_changes_on_disk(worlds, stage):
 
 
 def write_folder(target, text):
-    with whole(target) as draft:
+    with atomic_write(target) as draft:
         draft.mkdir()
         for name in ("a.svg", "b.svg", "index.html"):
             (draft / name).write_text(text, encoding="utf-8")

@@ -14,7 +14,7 @@ from frictioncli.stages.fit import fit
 from frictioncli.stages.pair import pair
 from frictioncli.stages.report import report
 from frictioncli.stages.separate import separate
-from frictioncli.workfolder import alone, outdated
+from frictioncli.workfolder import locked, outdated
 from tests.robustness.runs import digests, finished, refused, started, write_warm_up
 
 LEVELS = (25, 39, 53)
@@ -76,8 +76,8 @@ def test_the_lock_of_a_killed_run_holds_nobody_up(done, tmp_path):
 
 
 def test_who_holds_a_folder_may_enter_again_and_leaves_nothing(tmp_path):
-    with alone(tmp_path / "a" / "work"):
-        with alone(tmp_path / "a" / "work"):
+    with locked(tmp_path / "a" / "work"):
+        with locked(tmp_path / "a" / "work"):
             assert (tmp_path / "a" / "work" / ".lock").exists()
         assert (tmp_path / "a" / "work" / ".lock").exists()
     assert not (tmp_path / "a").exists()
@@ -87,7 +87,7 @@ def test_two_spellings_of_a_folder_are_one_folder(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     (tmp_path / "work").mkdir()
     (tmp_path / "link").symlink_to("work")
-    with alone(tmp_path / "work"):
+    with locked(tmp_path / "work"):
         message = refused(finished("pair", "-w", tmp_path / "link"))
     assert "another frictioncli" in message
 

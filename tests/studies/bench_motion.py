@@ -166,7 +166,7 @@ def parts_of_frictioncli(data: Path, out: Path) -> Callable[[], int]:
 
     def act() -> int:
         found = []
-        batches = tables.ahead(tables.batches(data / "samples.parquet", table))
+        batches = tables.prefetch(tables.batches(data / "samples.parquet", table))
         for chunk in chunks(batches, ("torque",), settings):
             time, velocity = chunk.channels["time"], chunk.channels["velocity"]
             segments = constant_speed_segments(
