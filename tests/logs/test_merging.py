@@ -30,9 +30,9 @@ class Columns:
 
 
 def merged(base, other, *, held=()):
-    lent = tuple(range(1, len(other.columns)))
-    lender = SecondaryFile(other, 0, 1.0, 0.004, lent, frozenset(held))
-    return MergedLog(base, 0, (lender,), (*base.columns, *other.columns[1:]))
+    columns = tuple(range(1, len(other.columns)))
+    secondary = SecondaryFile(other, 0, 1.0, 0.004, columns, frozenset(held))
+    return MergedLog(base, 0, (secondary,), (*base.columns, *other.columns[1:]))
 
 
 def rows_of(log, size):

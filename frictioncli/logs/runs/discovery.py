@@ -1,4 +1,4 @@
-"""Which files belong to which run, from the files and folders named by the user."""
+"""Discovery of logs: runs and their files, from the files and folders named by the user."""
 
 import os
 import re
@@ -13,34 +13,34 @@ from frictioncli.logs.formats.compression import SUFFIXES
 from frictioncli.logs.runs import manifest
 
 Logs = Sequence[Path] | Mapping[str, Path]
-"""Log files and folders, where each folder is a run; or, by name, what each run consists of."""
+"""Log files and folders, where each folder is a run; or run name -> its file or folder."""
 
-_SILENT = frozenset({manifest.NAME, "truth.json", "metadata.yaml", "thumbs.db", "desktop.ini"})
+_IGNORED = frozenset({manifest.NAME, "truth.json", "metadata.yaml", "thumbs.db", "desktop.ini"})
 
 
 @dataclass(frozen=True, eq=False)
 class LogFile:
-    """A file that may be a log, as it was named or found; no two of a call are one file."""
+    """A file that may be a log; instances are compared by identity."""
 
     path: Path
 
     @cached_property
     def stem(self) -> str:
-        """The name without its ending, ``.csv.gz`` counting as one."""
+        """The name without its ending; ``.csv.gz`` is one ending."""
         packed = self.path.suffix.lower() in SUFFIXES
         return Path(self.path.stem).stem if packed else self.path.stem
 
 
 @dataclass(frozen=True, slots=True)
 class LogRun:
-    """A folder of logs: one day, one thermal history.
+    """A folder of logs, usually of one day, with one thermal history.
 
     Attributes
     ----------
     name : str
         Unique among the runs.
     folder : Path
-        Where its manifest would be.
+        Folder of its manifest, if there is one.
     files : tuple of LogFile
         In natural name order (s2 before s10).
     """
@@ -51,7 +51,13 @@ class LogRun:
 
 
 def natural_key(name: str) -> list[tuple[int, int, str]]:
-    """Return a sort key that puts s2 before s10."""
+    """Return a sort key that puts s2 before s10.
+
+    Examples
+    --------
+    >>> sorted(["s10", "s2"], key=natural_key)
+    ['s2', 's10']
+    """
     parts = re.split(r"(\d+)", name.lower())
     return [(0, int(part), "") if part.isdecimal() else (1, 0, part) for part in parts if part]
 
@@ -64,12 +70,12 @@ def discover(logs: Logs, excluded: Path | None = None) -> tuple[LogRun, ...]:
     logs : Logs
         Files and folders, or run name -> its file, or folder with all that lies below.
     excluded : Path, optional
-        A folder whose files are no logs: the work folder may lie among them.
+        A folder whose files are no logs, as the work folder, which may lie among the logs.
 
     Raises
     ------
     LogError
-        If a path does not exist, is no text, or no file is found.
+        If a path does not exist, its name is not valid UTF-8, or no file is found.
     """
     paths = list(logs.values()) if isinstance(logs, Mapping) else logs
     found = {path: _files_of(path, excluded) for path in paths}
@@ -87,11 +93,13 @@ def discover(logs: Logs, excluded: Path | None = None) -> tuple[LogRun, ...]:
             for name, path in logs.items()
         )
     names = _unique_names(list(folders))
-    return tuple(LogRun(names[folder], folder, _in_order(own)) for folder, own in folders.items())
+    return tuple(
+        LogRun(names[folder], folder, _in_order(files)) for folder, files in folders.items()
+    )
 
 
 def _check_name(path: Path) -> None:
-    """Refuse a name whose bytes are no text: tables could not hold it."""
+    """Raise if a name is not valid UTF-8: tables could not hold it."""
     try:
         str(path).encode()
     except UnicodeEncodeError:
@@ -119,7 +127,7 @@ def _files_below(folder: Path, excluded: Path | None) -> list[Path]:
             folders.clear()
             continue
         folders[:] = [name for name in folders if not name.startswith(".")]
-        named = (one for one in files if not one.startswith(".") and one.lower() not in _SILENT)
+        named = (one for one in files if not one.startswith(".") and one.lower() not in _IGNORED)
         found += [path for path in map(inside.joinpath, named) if path.is_file()]
     keys = {
         place: [natural_key(part) for part in place.parts]
@@ -129,14 +137,14 @@ def _files_below(folder: Path, excluded: Path | None) -> list[Path]:
 
 
 def _unique_names(folders: list[Path]) -> dict[Path, str]:
-    """Name each folder by as many of its last parts as tell it from the others."""
+    """Return a unique name of each folder: as many of its last parts as are needed."""
     parts = {folder: folder.resolve().parts for folder in folders}
     names = {folder: parts[folder][-1] for folder in folders}
     depth = 1
     while True:
         counts = Counter(names.values())
         clashes = [folder for folder, name in names.items() if counts[name] > 1]
-        if not clashes or depth > max(len(own) for own in parts.values()):
+        if not clashes or depth > max(len(parts_of_folder) for parts_of_folder in parts.values()):
             return names
         depth += 1
         for folder in clashes:

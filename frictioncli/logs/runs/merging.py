@@ -1,7 +1,7 @@
-"""A log made of files that were recorded at once: the samples of one, with columns of others.
+"""Log merged from files that were recorded at once: rows of one, with columns of the others.
 
-Every file has its own times, counted from the same moment. The rows are those of one file; columns
-of the others are given at its times.
+All files count their time from the same moment. The rows are those of the base file; columns of the
+secondary files are given at its times.
 """
 
 from collections.abc import Collection, Iterator, Sequence
@@ -18,12 +18,12 @@ from frictioncli.logs.samples.row_checks import drop_non_increasing_time
 
 _OUTSIDE = "outside_other_file"
 _EDGE = 1e-3
-"""A sample is within the other file up to this share of a period beyond its ends."""
+"""Share of a period by which a sample may lie beyond the ends of a secondary file."""
 
 
 @dataclass(frozen=True, slots=True)
 class SecondaryFile:
-    """A file whose columns are given at the times of another.
+    """A file whose columns are given at the times of the base file.
 
     Attributes
     ----------
@@ -32,14 +32,14 @@ class SecondaryFile:
     time : int
         Its column of time.
     scale : float
-        Factor from its time to that of the other file.
+        Factor from its unit of time to that of the base file. [-]
     period : float
-        Usual time between its rows, in the other file's unit.
+        Median time between its rows, in the base file's unit.
     columns : tuple of int
-        Its columns that are lent.
-    held : frozenset of int
+        Its columns that are merged.
+    zero_order_hold : frozenset of int
         Those of them that keep their value until the next one, as registers do; the others are
-        interpolated.
+        interpolated linearly.
     """
 
     source: LogSource
@@ -47,12 +47,12 @@ class SecondaryFile:
     scale: float
     period: float
     columns: tuple[int, ...]
-    held: frozenset[int]
+    zero_order_hold: frozenset[int]
 
 
 @dataclass(frozen=True, slots=True)
 class MergedLog(SequentialSource):
-    """The rows of ``base`` with columns of its lenders behind its own.
+    """The rows of a base file with the columns of secondary files behind its own.
 
     Attributes
     ----------
@@ -60,15 +60,15 @@ class MergedLog(SequentialSource):
         The file whose rows are the samples; line numbers and texts are its own.
     time : int
         Its column of time.
-    lenders : tuple of SecondaryFile
+    secondary : tuple of SecondaryFile
         The other files.
     columns : tuple of str
-        Names of the base's columns, then of those lent.
+        Names of the base file's columns, then of the merged ones.
     """
 
     base: LogSource
     time: int
-    lenders: tuple[SecondaryFile, ...]
+    secondary: tuple[SecondaryFile, ...]
     columns: tuple[str, ...]
 
     @property
@@ -79,48 +79,48 @@ class MergedLog(SequentialSource):
     @property
     def files(self) -> tuple[Path, ...]:
         """All files that the samples come from."""
-        others = (file for one in self.lenders for file in one.source.files)
+        others = (path for file in self.secondary for path in file.source.files)
         return (*self.base.files, *others)
 
     @property
     def form(self) -> str:
         """The form in words."""
-        return f"{1 + len(self.lenders)} files of one trace: {self.base.form}"
+        return f"{1 + len(self.secondary)} files of one trace: {self.base.form}"
 
     def batches(self, columns: Collection[int], size: int) -> Iterator[RawBatch]:
-        """Yield the base's rows; where a lender has no value for one, the row is bad."""
+        """Yield the base file's rows; rows for which a secondary file has no value are bad."""
         wanted = sorted(columns)
-        own = [column for column in wanted if column < len(self.base.columns)]
-        followers = self._followers(wanted, size)
-        for batch in self.base.batches({*own, self.time}, size):
+        base_columns = [column for column in wanted if column < len(self.base.columns)]
+        alignments = self._alignments(wanted, size)
+        for batch in self.base.batches({*base_columns, self.time}, size):
             time = batch.values[self.time]
-            values = {column: batch.values[column] for column in own}
+            values = {column: batch.values[column] for column in base_columns}
             outside = np.zeros(len(time), bool)
-            for follower in followers:
-                lent, missing = follower.at(time)
-                values |= lent
+            for alignment in alignments:
+                merged, missing = alignment.values_at(time)
+                values |= merged
                 outside |= missing
-            yield _without(batch, values, outside)
+            yield _with_merged(batch, values, outside)
 
     def texts(self, lines: Numbers, size: int) -> Iterator[tuple[int, str]]:
-        """Yield (line, text) of the base for the asked lines, which must be ascending."""
+        """Yield (line, text) of the base file for the given lines, which must be ascending."""
         return self.base.texts(lines, size)
 
-    def _followers(self, wanted: Sequence[int], size: int) -> list["_Alignment"]:
-        followers = []
+    def _alignments(self, wanted: Sequence[int], size: int) -> list["_Alignment"]:
+        alignments = []
         first = len(self.base.columns)
-        for one in self.lenders:
-            lent = {
-                first + i: column for i, column in enumerate(one.columns) if first + i in wanted
+        for file in self.secondary:
+            columns = {
+                first + i: column for i, column in enumerate(file.columns) if first + i in wanted
             }
-            first += len(one.columns)
-            if lent:
-                followers.append(_Alignment(one, lent, size))
-        return followers
+            first += len(file.columns)
+            if columns:
+                alignments.append(_Alignment(file, columns, size))
+        return alignments
 
 
-def _without(batch: RawBatch, values: dict[int, Array], outside: Flags) -> RawBatch:
-    """Return the batch with other values, rows that lie outside joining the bad ones."""
+def _with_merged(batch: RawBatch, values: dict[int, Array], outside: Flags) -> RawBatch:
+    """Return a batch with other values; the rows that lie outside become bad ones."""
     if not outside.any():
         return RawBatch(batch.lines, values, batch.bad_lines, batch.bad_reasons)
     bad = np.concatenate((batch.bad_lines, batch.lines[outside]))
@@ -135,95 +135,109 @@ def _without(batch: RawBatch, values: dict[int, Array], outside: Flags) -> RawBa
 
 
 class _Alignment:
-    """Walks through a lender in step with the base; holds one batch of it at a time."""
+    """Reads a secondary file in step with the base file; holds one batch of it at a time.
 
-    def __init__(self, lender: SecondaryFile, lent: dict[int, int], size: int) -> None:
-        self._lender = lender
-        self._lent = lent
-        self._held = frozenset(c for c, own in lent.items() if own in lender.held)
+    Parameters
+    ----------
+    file : SecondaryFile
+        The file.
+    columns : dict of int to int
+        Column of the merged log -> column of the file.
+    size : int
+        Size of a batch in the file. [byte]
+    """
+
+    def __init__(self, file: SecondaryFile, columns: dict[int, int], size: int) -> None:
+        self._file = file
+        self._columns = columns
+        self._held = frozenset(c for c, own in columns.items() if own in file.zero_order_hold)
         self._size = size
-        self._begin()
+        self._restart()
 
-    def at(self, time: Array) -> tuple[dict[int, Array], Flags]:
-        """Return the lent columns at the base's times, and for which rows there is no value.
+    def values_at(self, time: Array) -> tuple[dict[int, Array], Flags]:
+        """Return the merged columns at the base file's times, and the rows that have no value.
 
         Parameters
         ----------
-        time : ndarray, shape (n,)
-            Times of the base's rows, in any order.
+        time : ndarray, shape (rows,)
+            Times of the base file's rows, in any order.
         """
-        values = {column: np.full(len(time), np.nan) for column in self._lent}
-        sought = np.isfinite(time)
-        missing = sought.copy()
-        if sought.any() and np.median(time[sought]) < self._window.begin:
-            self._begin()  # a damaged time stamp led too far ahead, or the base's clock was reset
-        self._fill(time, sought, values, missing, last=False)
-        while np.any(sought & (time > self._window.end)) and self._advance():
-            self._fill(time, sought, values, missing, last=False)
-        self._fill(time, sought, values, missing, last=True)
+        values = {column: np.full(len(time), np.nan) for column in self._columns}
+        pending = np.isfinite(time)
+        missing = pending.copy()
+        if pending.any() and np.median(time[pending]) < self._rows.begin:
+            self._restart()  # a damaged time stamp led too far, or the base file's clock was reset
+        self._fill(time, pending, values, missing, last=False)
+        while np.any(pending & (time > self._rows.end)) and self._advance():
+            self._fill(time, pending, values, missing, last=False)
+        self._fill(time, pending, values, missing, last=True)
         return values, missing
 
     def _fill(
         self,
         time: Array,
-        sought: Flags,
+        pending: Flags,
         values: dict[int, Array],
         missing: Flags,
         *,
         last: bool,
     ) -> None:
-        """Fill in the values of rows that the window covers; ``last``: at its very end too."""
-        # what is held stands for a period; a straight line ends with the last row
-        beyond = 1.0 if len(self._held) == len(self._lent) else _EDGE
-        found = sought & self._window.covers(time, beyond if last else 0.0)
-        sought &= ~found
-        for column, cells in self._window.columns.items():
+        """Fill in the values at times that the current rows cover; ``last``: at their end too."""
+        # a held value is valid for a period; interpolation ends with the last row
+        beyond = 1.0 if len(self._held) == len(self._columns) else _EDGE
+        found = pending & self._rows.covers(time, beyond if last else 0.0)
+        pending &= ~found
+        for column, cells in self._rows.columns.items():
             if column in self._held:
-                values[column][found] = self._window.latest(cells, time[found])
+                values[column][found] = self._rows.held_values(cells, time[found])
             else:
-                values[column][found] = self._window.between(cells, time[found])
-        missing[found] = len(self._held) < len(self._lent) and self._window.in_gap(time[found])
+                values[column][found] = self._rows.interpolated_values(cells, time[found])
+        missing[found] = len(self._held) < len(self._columns) and self._rows.in_gap(time[found])
 
-    def _begin(self) -> None:
-        self._windows = self._read()
-        self._window = next(self._windows, _EMPTY)
+    def _restart(self) -> None:
+        """Read the file from its beginning."""
+        self._batches = self._read()
+        self._rows = next(self._batches, _NO_ROWS)
 
     def _advance(self) -> bool:
-        """Go to the next window; False where there is none."""
-        following = next(self._windows, None)
+        """Go to the next rows; return False where there are none."""
+        following = next(self._batches, None)
         if following is not None:
-            self._window = following
+            self._rows = following
         return following is not None
 
-    def _read(self) -> Iterator["_Window"]:
-        """Yield the lender's rows; each window begins with the last row of the one before."""
-        period = self._lender.period
-        last: _Window | None = None
+    def _read(self) -> Iterator["_SecondaryRows"]:
+        """Yield the rows of the file; each batch begins with the last row of the one before."""
+        period = self._file.period
+        last: _SecondaryRows | None = None
         for block in drop_non_increasing_time(self._blocks(), RejectedRows()):
             if not len(block):
                 continue
             time = block.time
-            columns = {column: block.columns[0, str(column)] for column in self._lent}
+            columns = {column: block.columns[0, str(column)] for column in self._columns}
             if last is not None:
                 time = np.concatenate((last.time[-1:], time))
                 columns = {c: np.concatenate((last.columns[c][-1:], columns[c])) for c in columns}
             for column in self._held:
-                columns[column] = _carried_on(columns[column])
-            last = _Window(time, columns, period, first=last is None)
+                columns[column] = _forward_filled(columns[column])
+            last = _SecondaryRows(time, columns, period, first=last is None)
             yield last
 
     def _blocks(self) -> Iterator[LogRows]:
-        lender = self._lender
-        for batch in lender.source.batches({lender.time, *self._lent.values()}, self._size):
-            time = batch.values[lender.time] * lender.scale
-            good = np.isfinite(time)
-            columns = {(0, str(c)): batch.values[own][good] for c, own in self._lent.items()}
-            yield LogRows(batch.lines[good], time[good], columns)
+        file = self._file
+        for batch in file.source.batches({file.time, *self._columns.values()}, self._size):
+            time = batch.values[file.time] * file.scale
+            finite = np.isfinite(time)
+            columns = {(0, str(c)): batch.values[own][finite] for c, own in self._columns.items()}
+            yield LogRows(batch.lines[finite], time[finite], columns)
 
 
 @dataclass(frozen=True, slots=True)
-class _Window:
-    """Consecutive rows of a lender in ascending time; ``first`` where it begins there."""
+class _SecondaryRows:
+    """Consecutive rows of a secondary file in ascending time; ``first`` if the file begins there.
+
+    Times and period are in the base file's unit.
+    """
 
     time: Array
     columns: dict[int, Array]
@@ -232,25 +246,25 @@ class _Window:
 
     @property
     def begin(self) -> float:
-        """The earliest time that it covers."""
+        """The earliest time that the rows cover."""
         edge = _EDGE * self.period if self.first else 0.0
         return float(self.time[0]) - edge if len(self.time) else np.inf
 
     @property
     def end(self) -> float:
-        """Time of its last row."""
+        """Time of the last row."""
         return float(self.time[-1]) if len(self.time) else -np.inf
 
     def covers(self, time: Array, beyond: float) -> Flags:
-        """Return which times lie within, or up to some periods beyond the last row."""
+        """Return which times lie within, or up to ``beyond`` periods after the last row."""
         return (time >= self.begin) & (time <= self.end + beyond * self.period)
 
-    def between(self, cells: Array, time: Array) -> Array:
-        """Return a column on the straight lines between its rows."""
+    def interpolated_values(self, cells: Array, time: Array) -> Array:
+        """Return the values of a column by linear interpolation."""
         return np.interp(time, self.time, cells) if len(self.time) else np.empty(0)
 
-    def latest(self, cells: Array, time: Array) -> Array:
-        """Return what a column last showed."""
+    def held_values(self, cells: Array, time: Array) -> Array:
+        """Return the values of a column by zero-order hold."""
         row = np.searchsorted(self.time, time + _EDGE * self.period, side="right") - 1
         return cells[np.maximum(row, 0)]
 
@@ -264,10 +278,10 @@ class _Window:
         return (since + until > max_gap(self.period)) & ~near
 
 
-_EMPTY = _Window(np.empty(0), {}, 0.0, first=True)
+_NO_ROWS = _SecondaryRows(np.empty(0), {}, 0.0, first=True)
 
 
-def _carried_on(cells: Array) -> Array:
-    """Return a column with empty cells showing the last value before them."""
+def _forward_filled(cells: Array) -> Array:
+    """Return a column in which empty cells hold the last value before them."""
     row = np.maximum.accumulate(np.where(np.isnan(cells), 0, np.arange(len(cells))))
     return cells[row]

@@ -1,4 +1,4 @@
-"""Text that holds the raw values of a native recording, scaled as the header beside it says."""
+"""Text export of a native recording with raw values, scaled by the factors of its header."""
 
 from collections.abc import Collection, Iterator
 from dataclasses import dataclass
@@ -16,12 +16,20 @@ _COMPARED_BYTES = 1 << 14
 _MIN_ROWS = 3
 _NO_VALUE = 9e34
 _DIGITS = 1e-5
-"""Text may hold six digits only."""
+"""Relative tolerance of the comparison: text may hold six digits only. [-]"""
 
 
 @dataclass(frozen=True, slots=True)
 class ScaledLog(SequentialSource):
-    """A log whose columns are multiplied by factors: ``raw * factor + offset`` per column."""
+    """A log with linearly scaled columns.
+
+    Attributes
+    ----------
+    base : LogSource
+        The log with raw values.
+    scales : tuple of (float, float)
+        Factor and offset of each column: ``raw * factor + offset``.
+    """
 
     base: LogSource
     scales: tuple[tuple[float, float], ...]
@@ -55,10 +63,20 @@ class ScaledLog(SequentialSource):
         return self.base.texts(lines, size)
 
 
-def scaled(source: LogSource) -> LogSource:
-    """Return a log with its values scaled, if they are the raw ones of the recording beside it.
+def scale_raw_export(source: LogSource) -> LogSource:
+    """Return a log with scaled values if it holds the raw values of a native recording.
 
-    The first rows must be equal to the stored numbers, and differ from them scaled.
+    The first rows must equal the numbers stored in the recording of the same name.
+
+    Parameters
+    ----------
+    source : LogSource
+        Any log.
+
+    Returns
+    -------
+    LogSource
+        The scaled log, or the log itself.
     """
     header = source.path.with_suffix(".dat")
     if header == source.path or not header.is_file():
@@ -84,12 +102,12 @@ def scaled(source: LogSource) -> LogSource:
 
 
 def _holds_raw(cells: Array, recording: DiademRecording, index: int) -> bool:
-    """Return whether a column begins with a channel's numbers as they are stored."""
+    """Return whether a column begins with the stored numbers of a channel."""
     try:
         numbers = recording.raw(index, 0, len(cells))
     except OSError:
         return False
-    numbers[np.abs(numbers) > _NO_VALUE] = np.nan  # as in text
+    numbers[np.abs(numbers) > _NO_VALUE] = np.nan  # an empty cell in text
     n = min(len(numbers), len(cells))
     return n >= _MIN_ROWS and bool(
         np.allclose(cells[:n], numbers[:n], rtol=_DIGITS, atol=0, equal_nan=True)

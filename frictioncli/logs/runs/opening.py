@@ -1,4 +1,4 @@
-"""From files to opened logs with their channels chosen, or the reason why not."""
+"""Opening the files of a run: logs with their channels chosen, or the reason of refusal."""
 
 import os
 from collections.abc import Callable, Mapping, Sequence
@@ -16,21 +16,21 @@ from frictioncli.logs.channels.recognition import (
 from frictioncli.logs.formats import open_logs
 from frictioncli.logs.log_source import LogSource, Refusal
 from frictioncli.logs.runs.discovery import LogFile, LogRun
-from frictioncli.logs.runs.native_scale import scaled
+from frictioncli.logs.runs.native_scale import scale_raw_export
 from frictioncli.logs.runs.sidecar import Sidecar, read_sidecar
-from frictioncli.logs.runs.trace_files import duplicates_of_native, merged
+from frictioncli.logs.runs.trace_files import duplicates_of_native, merge_trace
 from frictioncli.logs.runs.trace_names import is_module, is_program, trace_of
 from frictioncli.logs.settings import IngestSettings
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class OpenedLog:
-    """A log whose channels are known.
+    """A log whose channels have been chosen.
 
     Attributes
     ----------
     run : LogRun
-        Where it belongs.
+        Its run.
     file : LogFile
         The file whose rows are its samples.
     recording : str
@@ -41,9 +41,9 @@ class OpenedLog:
     channels : tuple of LogChannel
         All recognised columns.
     joints : tuple of JointChannels
-        The ones chosen per joint.
+        The columns chosen for each joint.
     sidecar : Sidecar
-        What files beside it tell.
+        Start and payload from the files next to it.
     """
 
     run: LogRun
@@ -62,7 +62,7 @@ class OpenedLog:
 
 @dataclass(frozen=True, slots=True)
 class RefusedLog:
-    """A file that is not used as a whole."""
+    """A file that is not used as a whole, with the reason."""
 
     run: LogRun
     file: LogFile
@@ -73,10 +73,24 @@ class RefusedLog:
 def open_run(
     run: LogRun, settings: IngestSettings, channel_map: ChannelMap
 ) -> tuple[list[OpenedLog], list[RefusedLog]]:
-    """Open all files of a run; those that cannot be used come back with the reason.
+    """Open all files of a run.
 
-    Files that belong to others are not among either: samples of a native header, motion
-    information of a trace, and what was merged. With columns named by a map nothing is merged.
+    Parameters
+    ----------
+    run : LogRun
+        The run.
+    settings : IngestSettings
+        Joints to read.
+    channel_map : ChannelMap
+        Mapping file of the user; where it names columns, files of a trace are not merged.
+
+    Returns
+    -------
+    opened : list of OpenedLog
+        The logs that can be used.
+    refused : list of RefusedLog
+        The files that cannot be used. Files that belong to another log are in neither list: the
+        samples of a native header, the motion information of a trace, and merged files.
     """
     paths = [file.path for file in run.files]
     found = dict(zip(run.files, open_logs(paths, channel_map.hints), strict=True))
@@ -88,17 +102,17 @@ def open_run(
             "same_recording",
             f"the {native.path.suffix} of the same name holds the same recording and is read",
         )
-    sources = {file: scaled(source) for file, source in sources.items()}
+    sources = {file: scale_raw_export(source) for file, source in sources.items()}
     choices = _choices(sources, settings, channel_map)
     refusals |= {file: one for file, one in choices.items() if isinstance(one, Refusal)}
     usable = {file: one for file, one in choices.items() if not isinstance(one, Refusal)}
-    labels = _labels(run, usable)
+    recordings = _recording_names(run, usable)
     names = {folder: set(os.listdir(folder)) for folder in {file.path.parent for file in usable}}
     opened = [
         OpenedLog(
             run=run,
             file=file,
-            recording=labels[file],
+            recording=recordings[file],
             source=choice.source,
             channels=choice.channels,
             joints=choice.joints,
@@ -106,13 +120,13 @@ def open_run(
         )
         for file, choice in usable.items()
     ]
-    parts = {path for source in sources.values() for path in source.files[1:]}
+    belonging = {path for source in sources.values() for path in source.files[1:]}
     traces = {_trace(file) for file in sources if is_module(file.stem)}
     refused = [
         RefusedLog(run, file, file.path.name, refusals[file])
         for file in run.files
         if file in refusals
-        and file.path not in parts
+        and file.path not in belonging
         and not (is_program(file.stem) and _trace(file) in traces)
     ]
     return opened, refused
@@ -120,7 +134,7 @@ def open_run(
 
 @dataclass(frozen=True, slots=True)
 class _Choice:
-    """What is read of a file: the columns of its own and others' files, chosen per joint."""
+    """What is read of a file: its columns, merged ones included, chosen for each joint."""
 
     source: LogSource
     channels: tuple[LogChannel, ...]
@@ -130,29 +144,31 @@ class _Choice:
 def _choices(
     sources: Mapping[LogFile, LogSource], settings: IngestSettings, channel_map: ChannelMap
 ) -> dict[LogFile, _Choice | Refusal]:
-    """Return what is read of each file, files of a trace merged, or why nothing can be."""
+    """Return what is read of each file, or why it is refused; files of a trace are merged."""
     traces = _traces(sources) if not channel_map.channels else []
-    together = {one.file: one for files in traces for one in merged(files, settings.joints)}
-    used = {path for one in together.values() for path in one.source.files}
-    found: dict[LogFile, _Choice | Refusal] = {}
+    merged = {log.file: log for files in traces for log in merge_trace(files, settings.joints)}
+    used = {path for log in merged.values() for path in log.source.files}
+    choices: dict[LogFile, _Choice | Refusal] = {}
     alike: dict[tuple[tuple[str, ...], int], _Choice | Refusal] = {}
     for file, source in sources.items():
         joint = _file_joint(file, settings, channel_map)
-        if file in together:
-            one = together[file]
-            found[file] = _chosen(one.source, one.channels, one.joints, file_joint=joint)
+        if file in merged:
+            log = merged[file]
+            choices[file] = _choose(log.source, log.channels, log.joints, file_joint=joint)
         elif file.path not in used:
             # logs of a folder mostly have the same columns
             key = source.columns, joint
             if key not in alike:
                 channels = _channels(source.columns, channel_map, joint)
-                alike[key] = _chosen(source, channels, settings.joints, file_joint=joint)
+                alike[key] = _choose(source, channels, settings.joints, file_joint=joint)
             choice = alike[key]
-            found[file] = choice if isinstance(choice, Refusal) else replace(choice, source=source)
-    return found
+            choices[file] = (
+                choice if isinstance(choice, Refusal) else replace(choice, source=source)
+            )
+    return choices
 
 
-def _chosen(
+def _choose(
     source: LogSource,
     channels: tuple[LogChannel, ...] | Refusal,
     joints: tuple[int, ...] | None,
@@ -166,7 +182,7 @@ def _chosen(
 
 
 def _trace(file: LogFile) -> tuple[Path, str]:
-    """Return what the files of a trace have in common."""
+    """Return folder and name, which the files of a trace have in common."""
     return file.path.parent, trace_of(file.stem)
 
 
@@ -179,40 +195,40 @@ def _traces(sources: Mapping[LogFile, LogSource]) -> list[list[tuple[LogFile, Lo
     return [list(modules.values()) for modules in traces.values() if len(modules) > 1]
 
 
-def _labels(run: LogRun, choices: Mapping[LogFile, _Choice]) -> dict[LogFile, str]:
-    """Return the name of each recording: the trace's, else the file's, else with its folder.
+def _recording_names(run: LogRun, choices: Mapping[LogFile, _Choice]) -> dict[LogFile, str]:
+    """Return a unique name of each recording: the trace's, the file's, or the path in the run.
 
-    Files of one trace share their name where they hold different joints.
+    Files of one trace share a name if they hold different joints.
     """
-    naming: tuple[Callable[[LogFile], str], ...] = (
+    name_functions: tuple[Callable[[LogFile], str], ...] = (
         lambda file: trace_of(file.stem),
         lambda file: file.path.name,
         lambda file: file.path.relative_to(run.folder).as_posix(),
     )
-    labels: dict[LogFile, str] = {}
-    taken: set[str] = set()
-    left = list(choices)
-    for name_of in naming:
+    names: dict[LogFile, str] = {}
+    used: set[str] = set()
+    unnamed = list(choices)
+    for name_of in name_functions:
         same: dict[str, list[LogFile]] = {}
-        for file in left:
+        for file in unnamed:
             same.setdefault(name_of(file), []).append(file)
         for name, files in same.items():
-            if name not in taken and _distinct(files, choices):
-                labels |= dict.fromkeys(files, name)
-                taken.add(name)
-        left = [file for file in left if file not in labels]
-    return labels
+            if name not in used and _may_share_name(files, choices):
+                names |= dict.fromkeys(files, name)
+                used.add(name)
+        unnamed = [file for file in unnamed if file not in names]
+    return names
 
 
-def _distinct(files: Sequence[LogFile], choices: Mapping[LogFile, _Choice]) -> bool:
-    """Return whether files may share a name: one, or parts of one trace without common joints."""
-    joints = [own.joint for file in files for own in choices[file].joints]
+def _may_share_name(files: Sequence[LogFile], choices: Mapping[LogFile, _Choice]) -> bool:
+    """Return whether files may share a name: one file, or one trace without common joints."""
+    joints = [channels.joint for file in files for channels in choices[file].joints]
     one_trace = len({_trace(file) for file in files}) == 1 and is_module(files[0].stem)
     return len(files) == 1 or (one_trace and len(set(joints)) == len(joints))
 
 
 def _file_joint(file: LogFile, settings: IngestSettings, channel_map: ChannelMap) -> int:
-    """Return the joint of columns that name none."""
+    """Return the joint of columns whose names contain no joint number."""
     if channel_map.joint is not None:
         return channel_map.joint
     in_name = joint_in_name(file.stem)

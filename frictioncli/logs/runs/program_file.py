@@ -1,4 +1,4 @@
-"""``_PROG.TXT``: what a KUKA controller writes of the programme that ran during a trace."""
+"""Program file ``_PROG.TXT`` of a KUKA controller: the motions that ran during a trace."""
 
 import math
 import re
@@ -18,16 +18,16 @@ _SAME_MASS = 1e-6  # [kg]
 
 @dataclass(frozen=True, slots=True)
 class ProgramMotion:
-    """One motion of a programme.
+    """One motion of a program.
 
     Attributes
     ----------
     kind : str
-        ``PTP``, ``LIN``, ...
+        Kind of motion: ``PTP``, ``LIN``, ...
     start, end : float
-        Times in the trace; NaN where not told. [s]
+        Times in the trace; NaN where the file does not give them. [s]
     speeds : tuple of float
-        Of each axis, in percent of its highest. [%]
+        Speed of each axis as a share of its maximum. [%]
     payload : float or None
         Mass at the tool; None where not set. [kg]
     """
@@ -41,7 +41,17 @@ class ProgramMotion:
 
 @dataclass(frozen=True, slots=True)
 class ProgramFile:
-    """A file of motion information; ``motions`` in order of time."""
+    """Contents of a program file.
+
+    Attributes
+    ----------
+    path : Path
+        The file.
+    started_at : datetime or None
+        Start of the trace; UTC.
+    motions : tuple of ProgramMotion
+        Motions in the order of time.
+    """
 
     path: Path
     started_at: datetime | None
@@ -49,11 +59,11 @@ class ProgramFile:
 
     @property
     def payload(self) -> float | None:
-        """The mass that all motions carried; None where not told, or not the same [kg]."""
+        """The payload of all motions; None where it is missing or differs between motions [kg]."""
         masses = [motion.payload for motion in self.motions]
-        told = [mass for mass in masses if mass is not None]
-        same = len(told) == len(masses) and told and max(told) - min(told) < _SAME_MASS
-        return told[0] if same else None
+        known = [mass for mass in masses if mass is not None]
+        same = len(known) == len(masses) and known and max(known) - min(known) < _SAME_MASS
+        return known[0] if same else None
 
     def __str__(self) -> str:
         if not self.motions:
@@ -71,9 +81,17 @@ class ProgramFile:
 
 
 def read_program(path: Path) -> ProgramFile | None:
-    """Return what a file tells of the motions; None where it cannot be read as such.
+    """Read a program file, leaving out damaged entries.
 
-    Damaged parts are left out.
+    Parameters
+    ----------
+    path : Path
+        The file.
+
+    Returns
+    -------
+    ProgramFile or None
+        None where it is no program file.
     """
     try:
         with path.open("rb") as stream:
@@ -104,7 +122,7 @@ def read_program(path: Path) -> ProgramFile | None:
 
 
 def _motions(blocks: list[dict[str, str]]) -> list[ProgramMotion]:
-    """Return the motions; a block SIGNAL: END tells when the one begun in its line did end."""
+    """Return the motions; a block with SIGNAL: END holds the end of a motion of its line."""
     motions: list[ProgramMotion] = []
     ends: dict[str, list[float]] = {}
     for block in blocks:
@@ -114,13 +132,13 @@ def _motions(blocks: list[dict[str, str]]) -> list[ProgramMotion]:
         start = _number(block.get("TIME", ""))
         if _is_end(block) or math.isnan(start):
             continue
-        own = ends.get(block.get("LINE", ""), [])
-        after = bisect_right(own, start)
+        line_ends = ends.get(block.get("LINE", ""), [])
+        after = bisect_right(line_ends, start)
         motions.append(
             ProgramMotion(
                 block.get("TYPE", "unknown"),
                 start,
-                own[after] if after < len(own) else _number(block.get("ENDTIME", "")),
+                line_ends[after] if after < len(line_ends) else _number(block.get("ENDTIME", "")),
                 _numbers(_SPEED, block.get("VELOCITIES", "")),
                 next((m for m in _numbers(_MASS, block.get("LOAD", "")) if m >= 0), None),
             )

@@ -1,4 +1,4 @@
-"""What files beside a log tell of it: when it began, and the payload."""
+"""Start and payload of a recording, from the files next to its log."""
 
 from collections.abc import Collection
 from dataclasses import dataclass
@@ -15,16 +15,16 @@ _PROGRAM_ENDINGS = (".TXT", ".txt")
 
 @dataclass(frozen=True, slots=True)
 class Sidecar:
-    """What the files beside a log tell.
+    """Start and payload of a recording, from the files next to its log.
 
     Attributes
     ----------
     started_at : datetime or None
-        Start of the recording, by the DIAdem header or else the programme's file; UTC.
+        Start of the recording by the DIAdem header, else by the program file; UTC.
     payload : float or None
-        Mass at the tool, by the programme's file. [kg]
+        Mass at the tool by the program file. [kg]
     notes : tuple of str
-        What was taken from where.
+        The file that each value comes from.
     """
 
     started_at: datetime | None = None
@@ -33,16 +33,16 @@ class Sidecar:
 
 
 def read_sidecar(log: Path, names: Collection[str]) -> Sidecar:
-    """Return what the DIAdem header and the programme's file beside a log tell.
+    """Read the DIAdem header and the program file next to a log.
 
-    The log may be the header itself. The programme's file is called ``<trace>_PROG.TXT``.
+    The log may be the header itself. The program file is called ``<trace>_PROG.TXT``.
 
     Parameters
     ----------
     log : Path
         The log.
     names : collection of str
-        Names of all that is in its folder.
+        Names of all files in its folder.
     """
     trace, header = trace_of(log.stem), f"{log.stem}.dat"
     start = _start_by_header(log.with_name(header)) if header in names else None
@@ -52,15 +52,15 @@ def read_sidecar(log: Path, names: Collection[str]) -> Sidecar:
         return Sidecar(start, None, () if start is None else ("started as its .dat header tells",))
     program = read_program(file)
     if program is None:
-        said = "started as its .dat header tells", "its _PROG.TXT cannot be understood: not used"
-        return Sidecar(start, None, said[start is None :])
+        notes = "started as its .dat header tells", "its _PROG.TXT cannot be understood: not used"
+        return Sidecar(start, None, notes[start is None :])
     if start is not None:
-        told = "started as its .dat header tells"
+        note = "started as its .dat header tells"
     elif program.started_at is not None:
-        told = "started as its _PROG.TXT tells"
+        note = "started as its _PROG.TXT tells"
     else:
-        told = "its _PROG.TXT has no valid date"
-    return Sidecar(start or program.started_at, program.payload, (told, f"its _PROG.TXT {program}"))
+        note = "its _PROG.TXT has no valid date"
+    return Sidecar(start or program.started_at, program.payload, (note, f"its _PROG.TXT {program}"))
 
 
 def _start_by_header(header: Path) -> datetime | None:

@@ -1,4 +1,4 @@
-"""Which files belong together: two forms of one recording, and the files of one trace."""
+"""Files that belong together: two formats of one recording, and the files of one trace."""
 
 from collections.abc import Collection, Iterable, Mapping, Sequence
 from contextlib import suppress
@@ -15,34 +15,39 @@ from frictioncli.logs.runs.discovery import LogFile
 from frictioncli.logs.runs.merging import MergedLog, SecondaryFile
 from frictioncli.logs.runs.trace_names import drive_of
 
-_HELD = (names.MOTOR_TEMPERATURE, names.HOUSING_TEMPERATURE)
+_REGISTERS = (names.MOTOR_TEMPERATURE, names.HOUSING_TEMPERATURE)
 _PERIOD_BYTES = 1 << 16
 
 
 def duplicates_of_native(sources: Mapping[LogFile, LogSource]) -> dict[LogFile, LogFile]:
-    """Return the files that hold nothing beside a native recording of the same name.
+    """Return the files whose columns are all in the native recording of the same name.
+
+    Parameters
+    ----------
+    sources : mapping of LogFile to LogSource
+        The opened files.
 
     Returns
     -------
     dict of LogFile to LogFile
-        The file that is not needed -> the native one.
+        The duplicate -> the native recording.
     """
     natives = {
         (file.path.parent, file.stem): file
         for file, source in sources.items()
         if isinstance(source, DiademRecording)
     }
-    doubles: dict[LogFile, LogFile] = {}
+    duplicates: dict[LogFile, LogFile] = {}
     for file, source in sources.items():
         native = natives.get((file.path.parent, file.stem))
         if native in (None, file) or isinstance(source, DiademRecording):
             continue
-        if _bare(source.columns) <= _bare(sources[native].columns):
-            doubles[file] = native
-    return doubles
+        if _names_without_units(source.columns) <= _names_without_units(sources[native].columns):
+            duplicates[file] = native
+    return duplicates
 
 
-def _bare(columns: Iterable[str]) -> set[str]:
+def _names_without_units(columns: Iterable[str]) -> set[str]:
     return {split_unit(column)[0] for column in columns}
 
 
@@ -61,7 +66,7 @@ class _Module:
         return self.drive if channel.joint is None else channel.joint
 
     def names(self, columns: Iterable[int]) -> tuple[str, ...]:
-        """Return names of its columns; those of a drive with the number of its axis."""
+        """Return the names of its columns; those of a drive with the number of its axis."""
         return tuple(self._name(self.source.columns[i], i) for i in columns)
 
     def _name(self, column: str, index: int) -> str:
@@ -73,7 +78,17 @@ class _Module:
 
 @dataclass(frozen=True, slots=True)
 class MergedTrace:
-    """A file of a trace, with columns that others lend, for the joints whose torque it holds."""
+    """A file of a trace with columns merged from the others.
+
+    Attributes
+    ----------
+    file : LogFile
+        The file whose rows are the samples.
+    source : LogSource
+        Its columns and the merged ones.
+    joints : tuple of int
+        The joints whose torque it holds.
+    """
 
     file: LogFile
     source: LogSource
@@ -82,19 +97,17 @@ class MergedTrace:
     @property
     def channels(self) -> tuple[LogChannel, ...]:
         """The recognised columns."""
-        own = (
-            self.source.base.columns if isinstance(self.source, MergedLog) else self.source.columns
-        )
-        return recognise_channels(self.source.columns, first_merged=len(own))
+        base = self.source.base if isinstance(self.source, MergedLog) else self.source
+        return recognise_channels(self.source.columns, first_merged=len(base.columns))
 
 
-def merged(
+def merge_trace(
     files: Iterable[tuple[LogFile, LogSource]], joints: Collection[int] | None
 ) -> list[MergedTrace]:
-    """Put the files of one trace together.
+    """Merge the files of one trace.
 
-    A joint's samples are those of the file with its best torque channel; the drive's where two are
-    equal. What this file lacks of the joint comes from the other one.
+    The samples of a joint are the rows of the file with its best torque channel; of equal channels
+    the drive's. Channels that this file lacks are merged from the others.
 
     Parameters
     ----------
@@ -106,26 +119,30 @@ def merged(
     Returns
     -------
     list of MergedTrace
-        Those whose rows become samples; empty where none lends to another.
+        The files whose rows become samples; empty where nothing is merged.
     """
     modules = [_module(file, source) for file, source in files]
-    found = []
-    for base, own in _bases(modules, joints):
-        lending = [(m, _lender(m, base)) for m in modules if _lends(m, base, own)]
-        lent = [(module, one) for module, one in lending if one is not None]
-        found.append(MergedTrace(base.file, _with(base, lent), own))
-    return found if any(isinstance(one.source, MergedLog) for one in found) else []
+    traces = []
+    for base, base_joints in _base_files(modules, joints):
+        complements = [
+            (module, _secondary_file(module, base))
+            for module in modules
+            if _complements(module, base, base_joints)
+        ]
+        secondary = [(module, file) for module, file in complements if file is not None]
+        traces.append(MergedTrace(base.file, _merged_source(base, secondary), base_joints))
+    return traces if any(isinstance(trace.source, MergedLog) for trace in traces) else []
 
 
-def _with(base: _Module, lent: Sequence[tuple[_Module, SecondaryFile]]) -> LogSource:
-    """Return a file with the columns that others lend."""
-    if base.time is None or not lent:
+def _merged_source(base: _Module, secondary: Sequence[tuple[_Module, SecondaryFile]]) -> LogSource:
+    """Return the source of a base file with the columns of secondary files."""
+    if base.time is None or not secondary:
         return base.source
     columns = base.names(range(len(base.source.columns)))
-    for module, one in lent:
-        columns += module.names(one.columns)
-    lenders = tuple(one for _, one in lent)
-    return MergedLog(base.source, base.time.column, lenders, columns)
+    for module, file in secondary:
+        columns += module.names(file.columns)
+    files = tuple(file for _, file in secondary)
+    return MergedLog(base.source, base.time.column, files, columns)
 
 
 def _module(file: LogFile, source: LogSource) -> _Module:
@@ -135,10 +152,10 @@ def _module(file: LogFile, source: LogSource) -> _Module:
     return _Module(file, source, drive_of(file.stem), channels, time)
 
 
-def _bases(
+def _base_files(
     modules: Sequence[_Module], joints: Collection[int] | None
 ) -> list[tuple[_Module, tuple[int, ...]]]:
-    """Return the files whose rows become samples, each with the joints that it serves."""
+    """Return the files whose rows become samples, each with its joints."""
     best: dict[int, tuple[int, bool, int]] = {}
     for number, module in enumerate(modules):
         for channel in module.channels:
@@ -147,22 +164,22 @@ def _bases(
                 continue
             rank = (channel.meaning.rank, module.drive is None, number)
             best[joint] = min(rank, best.get(joint, rank))
-    served: dict[int, list[int]] = {}
+    joints_of: dict[int, list[int]] = {}
     for joint, (_, _, number) in sorted(best.items()):
         if joints is None or joint in joints:
-            served.setdefault(number, []).append(joint)
-    return [(modules[number], tuple(own)) for number, own in served.items()]
+            joints_of.setdefault(number, []).append(joint)
+    return [(modules[number], tuple(found)) for number, found in joints_of.items()]
 
 
-def _lends(module: _Module, base: _Module, joints: Collection[int]) -> bool:
-    """Return whether a file lends to the base: drives to the interpolator, and it to them."""
+def _complements(module: _Module, base: _Module, joints: Collection[int]) -> bool:
+    """Return whether a file may have columns for the base file: drives and interpolator may."""
     if base.drive is None:
         return module.drive in joints
     return module.drive is None
 
 
-def _lender(module: _Module, base: _Module) -> SecondaryFile | None:
-    """Return what a file lends to another; None where either has no times."""
+def _secondary_file(module: _Module, base: _Module) -> SecondaryFile | None:
+    """Return a file as a secondary one of the base file; None where either has no times."""
     time = module.time
     if time is None or base.time is None:
         return None
@@ -171,7 +188,7 @@ def _lender(module: _Module, base: _Module) -> SecondaryFile | None:
     if not period:
         return None
     columns = tuple(i for i in range(len(module.source.columns)) if i != time.column)
-    held = frozenset(c.column for c in module.channels if c.quantity in _HELD)
+    held = frozenset(c.column for c in module.channels if c.quantity in _REGISTERS)
     return SecondaryFile(module.source, time.column, scale, period, columns, held)
 
 
@@ -181,8 +198,8 @@ def _seconds(time: LogChannel) -> float:
 
 
 def _period(source: LogSource, time: int) -> float:
-    """Return the median time between the first rows; 0 where they do not tell. [raw]."""
-    with suppress(UnreadableLog):  # reading it will tell
+    """Return the median time between the first rows, in the file's unit; 0 where not known."""
+    with suppress(UnreadableLog):  # reported when the whole log is read
         for batch in source.batches([time], _PERIOD_BYTES):
             steps = np.diff(batch.values[time])
             return float(np.median(steps[steps > 0])) if np.any(steps > 0) else 0.0

@@ -1,7 +1,7 @@
-"""How the files of a KUKA trace are called.
+"""File names of a KUKA trace.
 
-A trace writes a file per module: ``<name>_KRCIpo``, the interpolator, holds all axes,
-``<name>_NextGenDrive#3`` the drive of axis 3; beside them lies ``<name>_PROG.TXT``.
+A trace has one file per module: ``<name>_KRCIpo`` of the interpolator holds all axes,
+``<name>_NextGenDrive#3`` is of the drive of axis 3. ``<name>_PROG.TXT`` is the program file.
 """
 
 import re
@@ -12,22 +12,22 @@ _PROGRAM = re.compile(rf"^(?P<trace>.+){PROGRAM}$", re.I)
 
 
 def trace_of(stem: str) -> str:
-    """Return the name of the trace that a file belongs to; its own where it is of no trace."""
+    """Return the name of the trace that a file belongs to, else the stem itself."""
     found = _MODULE.match(stem) or _PROGRAM.match(stem)
     return found["trace"] if found else stem
 
 
 def is_module(stem: str) -> bool:
-    """Return whether a file's name is that of a trace's samples."""
+    """Return whether a stem is that of a module, which holds samples."""
     return _MODULE.match(stem) is not None
 
 
 def is_program(stem: str) -> bool:
-    """Return whether a file's name is that of a trace's motion information."""
+    """Return whether a stem is that of a program file."""
     return _PROGRAM.match(stem) is not None
 
 
 def drive_of(stem: str) -> int | None:
-    """Return the axis of a drive's file; None for the interpolator's."""
+    """Return the axis of the file of a drive; None for the interpolator."""
     found = _MODULE.match(stem)
     return int(found["drive"]) if found and found["drive"] else None
