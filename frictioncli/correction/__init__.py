@@ -1,1 +1,1 @@
-"""The temperature correction of Algorithm 3, simulated and evaluated."""
+"""Temperature correction by Algorithm 3 and by a Kalman filter, simulated and evaluated."""

@@ -1,8 +1,8 @@
-r"""Algorithm 3 as it runs in a controller: told what it measures, sample by sample.
+r"""Algorithm 3 of the paper [1]_ as it runs in a controller, sample by sample.
 
-The search of :mod:`frictioncli.correction.schedule` looks at a whole log and follows many schedules
-at once; this is one schedule that knows only the past. Both make the same corrections, which a test
-holds, and ``simulate`` uses this one: what was simulated is what is deployed.
+:mod:`frictioncli.correction.schedule` processes a whole log and many schedules at once; this is one
+schedule that uses only past samples. Both make the same corrections, which a test verifies.
+``simulate`` uses this one, so that the simulated correction is the deployed one.
 
 References
 ----------
@@ -25,11 +25,11 @@ from frictioncli.model.friction import (
 
 @dataclass(slots=True)
 class TemperatureCorrector:
-    r"""The friction of a joint at work, with its temperature corrected when that is due.
+    r"""Friction model of a joint in operation, whose temperature is corrected when due.
 
     Call :meth:`update` with every sample of the motor temperature. Whenever :attr:`is_due`, move a
-    pair at the correction speed as soon as the task allows, separate its friction from its load by
-    equation (8), and hand both to :meth:`correct`. :meth:`friction` is the estimate at any time.
+    pair at the correction speed as soon as the task allows, separate its friction and load torque
+    by equation (8), and pass both to :meth:`correct`. :meth:`friction` is the estimate at any time.
 
     Parameters
     ----------
@@ -38,20 +38,20 @@ class TemperatureCorrector:
     k : float
         Scale of criterion (20).
     tmax : float
-        Time after which a correction is forced. [s]
+        Time after which a correction is forced [s].
     reading : {"first_degree", "latest_degree"}
         Which change by 1 °C counts as :math:`\Delta t`.
 
     Attributes
     ----------
     correction : float
-        Temperature correction in force, :math:`\Delta T` of (19); 0 before the first. [°C]
+        Temperature correction in force, :math:`\Delta T` of (19); 0 before the first [°C].
     motor_temperature : float
-        The latest one; NaN before the first update. [°C]
+        Latest motor temperature; NaN before the first update [°C].
 
     Examples
     --------
-    A joint that is warmer than its motor: friction at 67.5 deg/s is what (16) gives at 40 °C.
+    A gear that is warmer than the motor: friction at 67.5 deg/s is that of (16) at 40 °C.
 
     >>> from frictioncli.model.friction import PUBLISHED
     >>> corrector = TemperatureCorrector(PUBLISHED, k=5, tmax=3600)
@@ -71,10 +71,10 @@ class TemperatureCorrector:
     reading: str = "first_degree"
     correction: float = field(default=0.0, init=False)
     motor_temperature: float = field(default=math.nan, init=False)
-    # of the sample told last
+    # of the latest sample
     _time: float = field(default=math.nan, init=False)
     _registered: float = field(default=math.nan, init=False)
-    # of the last correction, and of where the change by a degree under way began
+    # of the last correction, and of the start of the current change by a degree
     _corrected_at: float = field(default=math.nan, init=False)
     _from_time: float = field(default=math.nan, init=False)
     _from_registered: float = field(default=math.nan, init=False)
@@ -87,17 +87,17 @@ class TemperatureCorrector:
     def update(
         self, time: float, motor_temperature: float, registered: float | None = None
     ) -> None:
-        """Take in a sample of the motor temperature.
+        """Process a sample of the motor temperature.
 
         Parameters
         ----------
         time : float
-            Time of the sample, not before the one told last. [s]
+            Time of the sample, not before that of the latest one [s].
         motor_temperature : float
-            Motor temperature. [°C]
+            Motor temperature [°C].
         registered : float, optional
-            The same as the criterion is to see it, in whole degrees, where a finer value is known.
-            [°C]
+            Motor temperature for the criterion, in whole degrees, where ``motor_temperature`` is
+            known more precisely [°C].
         """
         self._time, self.motor_temperature = time, motor_temperature
         self._registered = motor_temperature if registered is None else registered
@@ -109,7 +109,7 @@ class TemperatureCorrector:
 
     @property
     def is_due(self) -> bool:
-        """Whether criterion (20) asks for a correction; it does at the first sample."""
+        """Whether a correction is due by criterion (20); it is at the first sample."""
         if math.isnan(self._corrected_at):
             return not math.isnan(self._time)
         return self._time - self._corrected_at > min(self.k * self._degree_time, self.tmax)
@@ -121,43 +121,49 @@ class TemperatureCorrector:
         speed: float,
         motor_temperature: float | None = None,
     ) -> bool:
-        """Correct the temperature by a measured pair, equations (18) and (19).
+        """Correct the temperature by a measured pair with equations (18) and (19).
 
         Parameters
         ----------
         friction, load : float
-            Friction and load torque of the pair, by (8). [torque unit], [N·m]
+            Friction torque [torque unit] and load torque [N·m] of the pair, by (8).
         speed : float
-            Its speed, > 0. [deg/s]
+            Speed of the pair, > 0 [deg/s].
         motor_temperature : float, optional
-            Motor temperature while it was measured; the latest one if not told. [°C]
+            Motor temperature of the pair; by default the latest one [°C].
 
         Returns
         -------
         bool
             False where (18) has no solution: the last correction then stays in force. The criterion
-            waits anew in either case.
+            starts again in either case.
         """
-        warm = self.motor_temperature if motor_temperature is None else motor_temperature
-        found = float(
+        motor = self.motor_temperature if motor_temperature is None else motor_temperature
+        effective = float(
             temperature_from_friction(self.parameters, friction=friction, load=load, speed=speed)
         )
         self._corrected_at = self._from_time = self._time
         self._from_registered, self._degree_time = self._registered, math.inf
-        if math.isnan(found):
+        if math.isnan(effective):
             return False
-        self.correction = found - warm
+        self.correction = effective - motor
         return True
 
     def friction(self, load: float, speed: float) -> float:
-        """Return the friction torque by (16) at the corrected temperature (17). [torque unit].
+        """Return the friction torque by (16) at the corrected temperature (17).
 
         Parameters
         ----------
         load : float
-            Load torque. [N·m]
+            Load torque [N·m].
         speed : float
-            Absolute joint velocity. [deg/s]
+            Absolute joint velocity [deg/s].
+
+        Returns
+        -------
+        float
+            Friction torque [torque unit].
         """
-        warm = self.motor_temperature + self.correction
-        return float(friction_torque(self.parameters, load=load, speed=speed, temperature=warm))
+        temperature = self.motor_temperature + self.correction
+        torque = friction_torque(self.parameters, load=load, speed=speed, temperature=temperature)
+        return float(torque)

@@ -1,42 +1,48 @@
-"""When the temperature next changes by a degree, for every instant at once."""
+"""Next change of the temperature by one degree, for all instants at once."""
 
 import numpy as np
 
 from frictioncli.arrays import Array, Flags, Indices
 
 DEGREE = 1.0 - 1e-9
-"""Change of the motor temperature that the criterion waits for: 1 °C. Readings are whole degrees,
-and converting from Kelvin must not turn 1 °C into less. [°C]"""
+"""Change of the motor temperature in criterion (20): 1 °C, with a tolerance for rounding when
+readings in whole kelvins are converted. [°C]"""
 
 
-def next_changes(temperature: Array) -> Indices:
-    """Return for each instant the first later one at which the temperature is 1 °C away from it.
+def next_degree_changes(temperature: Array) -> Indices:
+    """Return for each instant the first later one at which the temperature differs by 1 °C.
 
     Parameters
     ----------
     temperature : ndarray, shape (instants,)
-        Registered temperature. [°C]
+        Registered temperature [°C].
 
     Returns
     -------
     ndarray of int, shape (instants,)
-        Indices into ``temperature``; its length where the temperature stays.
+        Indices into ``temperature``; its length where there is no such change.
+
+    Examples
+    --------
+    >>> next_degree_changes(np.array([20.0, 20.0, 21.0, 20.0]))
+    array([2, 2, 3, 4])
     """
-    # readings are a staircase: all instants of one step share the answer
+    # readings are piecewise constant: all instants of one step have the same result
     steps = np.flatnonzero(np.append(True, np.diff(temperature) != 0))
     borders = np.append(steps, len(temperature))
     return np.repeat(borders[_first_departures(temperature[steps])], np.diff(borders))
 
 
 def _first_departures(values: Array) -> Indices:
-    """Return for each value the index of the first later one that is a degree away.
+    """Return for each value the index of the first later one that differs by a degree.
 
-    Ranges without a departure are skipped by the extrema of blocks of 1, 2, 4, ... values: through
-    growing blocks up to the one that holds the departure, then into its halves.
+    The search uses the extrema of aligned blocks of 1, 2, 4, ... values: it skips blocks of growing
+    size up to the one that contains the departure, then descends into its halves.
     """
     levels = _block_extrema(values)
 
-    def clear(at: Indices, level: int) -> Flags:
+    def is_near(at: Indices, level: int) -> Flags:
+        """Return whether all values of the blocks at some indices are within a degree."""
         highest, lowest = levels[level]
         block = at >> level
         return (highest[block] - values < DEGREE) & (values - lowest[block] < DEGREE)
@@ -45,19 +51,19 @@ def _first_departures(values: Array) -> Indices:
     growing = np.ones(len(values), dtype=bool)
     for level in range(len(levels)):
         odd = growing & ((at >> level) & 1 == 1)
-        skipped = odd & clear(at, level)
+        skipped = odd & is_near(at, level)
         growing &= skipped | ~odd
         at += skipped << level
     for level in reversed(range(len(levels))):
         aligned = at & ((1 << level) - 1) == 0
-        at += (aligned & clear(at, level)) << level
+        at += (aligned & is_near(at, level)) << level
     return at
 
 
 def _block_extrema(values: Array) -> list[tuple[Array, Array]]:
-    """Return highest and lowest values of aligned blocks, level by level.
+    """Return the highest and the lowest value of aligned blocks, level by level.
 
-    After the values stands one that departs from all of them, so that every search ends there.
+    The values are padded with infinity, so that every search ends there.
     """
     size = 1 << len(values).bit_length()
     highest = np.full(size, np.inf)

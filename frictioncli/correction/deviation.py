@@ -1,20 +1,26 @@
-r"""How friction departs from what the motor temperature tells, as a random process.
+r"""Random process of the deviation of friction from the model at the motor temperature.
 
 The deviation :math:`z = (\tau - \tau(T_m)) / \sqrt{v}` at zero load, with :math:`\tau(T_m)` from
-(16), is that of the viscous coefficient :math:`\beta + \gamma e^{-\delta T}`. It is described as a
-stationary Ornstein-Uhlenbeck process about a mean:
+(16), is a deviation of the viscous coefficient :math:`\beta + \gamma e^{-\delta T}`. It is modelled
+as a stationary Ornstein-Uhlenbeck process about a mean [1]_:
 
 .. math:: z = \mu + d, \qquad \operatorname{cov}[d, d'] = \sigma_d^2 e^{-|s - s'| / \lambda}
 
-It is measured at the correction speed, with white noise :math:`\sigma_w`. Two choices are the
-data's:
+It is measured at the correction speed, with white noise :math:`\sigma_w`. Two choices follow from
+measured data:
 
-- The process is one of friction, not of the temperature parameter T that (18) makes of it. The same
-  torque is several times as many degrees in a hot joint as in a cold one; as a torque the
-  deviation is of one size all over the cycle.
-- Its clock s runs with the motor temperature, :math:`s = \int |dT_m| + r t`. Friction and motor
-  temperature part while the joint warms or cools; the rate r says how much they part at rest.
-  Neither r nor the correlation length :math:`\lambda` is known, so several have weights.
+- The process describes friction, not the temperature parameter T that (18) derives from it. The
+  same torque corresponds to several times as many degrees in a hot joint as in a cold one; as a
+  torque the deviation has the same size over the whole thermal cycle.
+- Its clock s advances with the motor temperature, :math:`s = \int |dT_m| + r t`. Friction departs
+  from the model mainly while the joint warms or cools; the rate r describes how much it does at
+  constant temperature. Neither r nor the correlation length :math:`\lambda` is known, so that
+  several candidates are weighted by their likelihood.
+
+References
+----------
+.. [1] G. E. Uhlenbeck and L. S. Ornstein, "On the theory of the Brownian motion," Phys. Rev. 36(5),
+   1930, doi:10.1103/PhysRev.36.823.
 """
 
 from dataclasses import dataclass
@@ -35,34 +41,34 @@ from frictioncli.model.noise import (
     restricted_log_likelihood,
 )
 
-LEAST_PROBES = 8
-"""Pairs at the correction speed that a mean, two deviations and a correlation length need."""
+LEAST_PAIRS = 8
+"""Least number of pairs at the correction speed, to estimate four parameters of the process."""
 
 _RATES = np.array([1.0, 10.0, 100.0]) / 3600.0
-"""What time adds to the clock: of little, equal, and more account than temperature. [°C/s]"""
+"""Candidate rates r: time matters less, as much, and more than temperature. [°C/s]"""
 
-_NEGLIGIBLE = 0.01
-"""Clocks and lengths that are so many times less likely than the best are left out."""
+_LEAST_LIKELIHOOD = 0.01
+"""Candidates less likely than this, relative to the best, are left out."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Deviation:
-    """The deviation's process, for several clocks and correlation lengths.
+class DeviationProcess:
+    """Candidate processes of the deviation with different clocks and correlation lengths.
 
     Attributes
     ----------
-    weight : ndarray, shape (ways,)
-        How likely each is; they sum to 1.
-    rate : ndarray, shape (ways,)
-        What time adds to the clock. [°C/s]
-    length : ndarray, shape (ways,)
-        Correlation length on the clock. [°C]
-    mean : ndarray, shape (ways,)
-        Mean deviation. [torque unit/(deg/s)^0.5]
-    variance : ndarray, shape (ways,)
-        Variance of the deviation about it, with that of the estimated mean. [torque unit²/(deg/s)]
-    noise : ndarray, shape (ways,)
-        Variance of the white noise of a measurement. [torque unit²/(deg/s)]
+    weight : ndarray, shape (candidates,)
+        Normalised likelihood of each candidate.
+    rate : ndarray, shape (candidates,)
+        Rate r of the clock [°C/s].
+    length : ndarray, shape (candidates,)
+        Correlation length on the clock [°C].
+    mean : ndarray, shape (candidates,)
+        Mean deviation [torque unit/(deg/s)^0.5].
+    variance : ndarray, shape (candidates,)
+        Variance about the mean, with that of the estimated mean [torque unit²/(deg/s)].
+    noise : ndarray, shape (candidates,)
+        Variance of the white measurement noise [torque unit²/(deg/s)].
     """
 
     weight: Array
@@ -74,19 +80,19 @@ class Deviation:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Probes:
-    """Pairs at the correction speed, all phases of one joint, ordered by run and time.
+class CorrectionPairs:
+    """Pairs at the correction speed in all phases of one joint, ordered by run and time.
 
     Attributes
     ----------
-    run : ndarray of int, shape (probes,)
-        Run of each pair.
-    time, travel : ndarray, shape (probes,)
-        Time, and how far the motor temperature has moved, up and down, since the first pair.
-        [s], [°C]
-    deviation : ndarray, shape (probes,)
-        Measured viscous coefficient beyond that at the motor temperature.
-        [torque unit/(deg/s)^0.5]
+    run : ndarray of int, shape (pairs,)
+        Number of the run.
+    time : ndarray, shape (pairs,)
+        Time [s].
+    travel : ndarray, shape (pairs,)
+        Sum of the absolute changes of the motor temperature since the first pair [°C].
+    deviation : ndarray, shape (pairs,)
+        Measured deviation of the viscous coefficient [torque unit/(deg/s)^0.5].
     """
 
     run: Indices
@@ -96,7 +102,7 @@ class Probes:
 
 
 def measured_deviation(data: PhaseData, parameters: FrictionParameters) -> Array:
-    """Return each pair's viscous coefficient beyond that at its motor temperature.
+    """Return each pair's deviation of the viscous coefficient from the model.
 
     Parameters
     ----------
@@ -108,86 +114,107 @@ def measured_deviation(data: PhaseData, parameters: FrictionParameters) -> Array
     Returns
     -------
     ndarray, shape (pairs,)
-        NaN where (18) has no solution: no temperature gives that friction.
-        [torque unit/(deg/s)^0.5]
+        Deviation; NaN where (18) has no solution, as no temperature gives that friction
+        [torque unit/(deg/s)^0.5].
     """
     modelled = friction_torque(parameters, load=0.0, speed=data.speed, temperature=data.temperature)
-    found = temperature_from_friction(
+    temperature = temperature_from_friction(
         parameters, friction=data.friction, load=0.0, speed=data.speed
     )
-    return np.where(np.isfinite(found), (data.friction - modelled) / np.sqrt(data.speed), np.nan)
+    deviation = (data.friction - modelled) / np.sqrt(data.speed)
+    return np.where(np.isfinite(temperature), deviation, np.nan)
 
 
-def travel(data: PhaseData) -> Array:
-    """Return how far the motor temperature has moved since the phase began, shape (pairs,). [°C].
+def temperature_travel(data: PhaseData) -> Array:
+    """Return the sum of the absolute changes of the motor temperature since the phase began.
 
-    It is that of the pairs at the correction speed, interpolated over time: a sensor that flickers
-    between two values moves less from one of these to the next than from pair to pair.
+    It is computed at the pairs at the correction speed and interpolated over time: the flicker of a
+    sensor between two values adds less from one of these to the next than from pair to pair.
+
+    Parameters
+    ----------
+    data : PhaseData
+        Pairs of one phase.
+
+    Returns
+    -------
+    ndarray, shape (pairs,)
+        Travel of the motor temperature [°C].
     """
-    rows = np.unique(data.probe)
-    moved = np.abs(np.diff(data.temperature[rows], prepend=data.temperature[rows[0]]))
-    return np.interp(data.time, data.time[rows], np.cumsum(moved))
+    rows = np.unique(data.correction_pair)
+    change = np.abs(np.diff(data.temperature[rows], prepend=data.temperature[rows[0]]))
+    return np.interp(data.time, data.time[rows], np.cumsum(change))
 
 
-def probes_of(phases: list[tuple[int, PhaseData]], parameters: FrictionParameters) -> Probes:
-    """Return the pairs at the correction speed whose inversion (18) has a solution.
+def correction_pairs_of(
+    phases: list[tuple[int, PhaseData]], parameters: FrictionParameters
+) -> CorrectionPairs:
+    """Return the pairs at the correction speed for which (18) has a solution.
 
     Parameters
     ----------
     phases : list of (int, PhaseData)
-        Number of the run, and the phase, ordered by run and time.
+        Number of the run, and the phase; ordered by run and time.
     parameters : FrictionParameters
         Parameters of (16); gamma and delta must be positive.
     """
     columns = []
     for run, data in phases:
-        rows = np.unique(data.probe)
-        found = measured_deviation(data, parameters)[rows]
+        rows = np.unique(data.correction_pair)
+        deviation = measured_deviation(data, parameters)[rows]
         columns.append(
-            np.array([np.full(len(rows), run), data.time[rows], data.temperature[rows], found])
+            np.array([np.full(len(rows), run), data.time[rows], data.temperature[rows], deviation])
         )
-    whole = np.concatenate(columns, axis=1)
-    run, time, temperature, found = whole[:, np.isfinite(whole[3])]
-    moved = np.abs(np.diff(temperature, prepend=temperature[:1]))
-    return Probes(run=run.astype(np.intp), time=time, travel=np.cumsum(moved), deviation=found)
+    table = np.concatenate(columns, axis=1)
+    run, time, temperature, deviation = table[:, np.isfinite(table[3])]
+    change = np.abs(np.diff(temperature, prepend=temperature[:1]))
+    return CorrectionPairs(
+        run=run.astype(np.intp), time=time, travel=np.cumsum(change), deviation=deviation
+    )
 
 
-def estimated_deviation(probes: Probes) -> Deviation:
-    """Estimate the process by restricted maximum likelihood, the mean being free.
+def fit_deviation_process(pairs: CorrectionPairs) -> DeviationProcess:
+    """Estimate the process of the deviation by restricted maximum likelihood.
 
     Parameters
     ----------
-    probes : Probes
+    pairs : CorrectionPairs
         Measured deviations.
+
+    Returns
+    -------
+    DeviationProcess
+        Candidates with their weights.
 
     Raises
     ------
     NotEnoughData
-        If there are fewer than :data:`LEAST_PROBES`.
+        If there are fewer pairs than :data:`LEAST_PAIRS`.
     """
-    count = len(probes.time)
-    if count < LEAST_PROBES:
+    count = len(pairs.time)
+    if count < LEAST_PAIRS:
         raise NotEnoughData(
-            f"criterion uncertainty needs {LEAST_PROBES} pairs at the correction speed whose"
+            f"criterion uncertainty needs {LEAST_PAIRS} pairs at the correction speed whose"
             f" friction gives a temperature by (18), to see how uncertain friction becomes; found"
             f" {count}: log more of them, or choose another criterion"
         )
-    even = np.ones((count, 1))
-    likelihoods, ways = [], []
+    constant = np.ones((count, 1))
+    likelihoods, candidates = [], []
     for rate in _RATES:
-        clock = probes.travel + rate * probes.time
-        pairs = {"time": clock, "run": probes.run, "bins": np.ones(count)}
-        for noise, _ in plausible_noise(residual=probes.deviation, design=even, point=0.0, **pairs):
-            covariance = pair_covariance(noise, **pairs)
-            solved = covariance.solve(even)[:, 0]
-            mean = solved @ probes.deviation / solved.sum()
+        clock = pairs.travel + rate * pairs.time
+        layout = {"time": clock, "run": pairs.run, "bins": np.ones(count)}
+        noises = plausible_noise(residual=pairs.deviation, design=constant, point=0.0, **layout)
+        for noise, _ in noises:
+            covariance = pair_covariance(noise, **layout)
+            solved = covariance.solve(constant)[:, 0]
+            mean = solved @ pairs.deviation / solved.sum()
             variance = noise.drift**2 + 1 / solved.sum()
-            likelihoods.append(restricted_log_likelihood(covariance, probes.deviation, even))
-            ways.append((rate, noise.drift_time, mean, variance, noise.pair**2))
+            likelihoods.append(restricted_log_likelihood(covariance, pairs.deviation, constant))
+            candidates.append((rate, noise.drift_time, mean, variance, noise.pair**2))
     likely = np.exp(np.array(likelihoods) - max(likelihoods))
-    kept = likely >= _NEGLIGIBLE
-    rates, lengths, means, variances, noises = np.array(ways)[kept].T
-    return Deviation(
+    kept = likely >= _LEAST_LIKELIHOOD
+    rates, lengths, means, variances, noises = np.array(candidates)[kept].T
+    return DeviationProcess(
         weight=likely[kept] / likely[kept].sum(),
         rate=rates,
         length=lengths,

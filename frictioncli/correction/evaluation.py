@@ -1,4 +1,4 @@
-"""Stages ``simulate`` and ``evaluate``: torques and model of a joint to schedule and errors."""
+"""Simulation of the correction on one joint, and evaluation of criteria over a grid."""
 
 from collections.abc import Sequence
 from typing import NamedTuple
@@ -9,18 +9,30 @@ from numpy.typing import ArrayLike
 
 from frictioncli.arrays import Indices
 from frictioncli.correction.corrector import TemperatureCorrector
-from frictioncli.correction.deviation import Deviation, estimated_deviation, probes_of
-from frictioncli.correction.phases import CorrectionPhase, phases_of
+from frictioncli.correction.deviation import (
+    DeviationProcess,
+    correction_pairs_of,
+    fit_deviation_process,
+)
+from frictioncli.correction.phases import CorrectionPhase, correction_phases
 from frictioncli.correction.replay import PhaseData, Replay, replay, replay_online
 from frictioncli.correction.schedule import BY_READING, equally_spaced
 from frictioncli.correction.settings import CorrectionSettings, EvaluationGrid, ScheduleSettings
-from frictioncli.correction.uncertainty import follow
+from frictioncli.correction.uncertainty import replay_with_filter
 from frictioncli.errors import NotEnoughData
 from frictioncli.model.document import FrictionModel
 
 
 class Evaluation(NamedTuple):
-    """Rows of :data:`frictioncli.schemas.EVALUATION`, and what could not be evaluated and why."""
+    """Result of the evaluation.
+
+    Attributes
+    ----------
+    rows : DataFrame
+        Rows of :data:`frictioncli.schemas.EVALUATION`.
+    notes : tuple of str
+        Criteria that could not be evaluated, with the reason.
+    """
 
     rows: pd.DataFrame
     notes: tuple[str, ...]
@@ -32,31 +44,36 @@ def simulate(
     settings: CorrectionSettings,
     schedule: ScheduleSettings,
 ) -> pd.DataFrame:
-    """Simulate Algorithm 3 on one joint; return rows of :data:`frictioncli.schemas.SCHEDULE`.
+    """Simulate Algorithm 3 on one joint.
 
     Parameters
     ----------
     torques : DataFrame
         Rows of :data:`frictioncli.schemas.TORQUES` of the joint.
     model : FrictionModel
-        Its model.
+        Model of the joint.
     settings : CorrectionSettings
-        How corrections are computed.
+        Settings of the corrections.
     schedule : ScheduleSettings
-        When to correct.
+        Criterion that decides when to correct.
+
+    Returns
+    -------
+    DataFrame
+        Rows of :data:`frictioncli.schemas.SCHEDULE`.
 
     Raises
     ------
     NotEnoughData
-        If the joint has no heat-up or cool-down, its model does not know temperature, or the pairs
-        are too few to see how uncertain friction becomes, where the criterion asks for it.
+        If the joint has no heat-up or cool-down, its model does not depend on temperature, or the
+        criterion is ``uncertainty`` and there are too few pairs to estimate the process.
     """
-    phases = phases_of(torques, model, settings)
+    phases = correction_phases(torques, model, settings)
     highest = float(torques["speed"].max())
-    process = _deviation(phases, model) if schedule.criterion == "uncertainty" else None
+    process = _deviation_process(phases, model) if schedule.criterion == "uncertainty" else None
     tables = []
     for phase in phases:
-        result = _simulated(phase.data, model, schedule, process, highest)
+        result = _simulate_phase(phase.data, model, schedule, process, highest)
         table = phase.pairs[["run", "joint", "pair", "speed", "time", "phase"]].assign(
             **schedule.columns(),
             temperature_parameter=phase.data.temperature + result.correction,
@@ -81,38 +98,45 @@ def evaluate(
 
     The rows with criterion ``equal`` have as many corrections, equally spaced in time, as the
     ``first_degree`` row with the same k and tmax, or the ``uncertainty`` row with the same bound.
-    Where the pairs are too few for that criterion, it is left out and a note says so.
+    With too few pairs for the criterion ``uncertainty``, it is left out and a note states why.
 
     Parameters
     ----------
     torques, model, settings
-        As :func:`simulate`.
+        As for :func:`simulate`.
     grid : EvaluationGrid
-        The values of k, tmax and the bound.
+        Values of k, tmax and the bound.
+
+    Returns
+    -------
+    Evaluation
+        Rows and notes.
     """
-    phases = phases_of(torques, model, settings)
+    phases = correction_phases(torques, model, settings)
     highest = float(torques["speed"].max())
     process, notes = None, []
     try:
-        process = _deviation(phases, model)
+        process = _deviation_process(phases, model)
     except NotEnoughData as fault:
         notes.append(f"left out: {fault}")
-    rules = _rules(grid, bounds=grid.bound if process else ())
+    schedules = _schedules(grid, bounds=grid.bound if process else ())
     rows = []
     for phase in phases:
         results = list(
-            zip(rules, _replays(phase.data, model, rules, process, highest), strict=True)
+            zip(schedules, _replays(phase.data, model, schedules, process, highest), strict=True)
         )
-        rows += [_row(phase, model, rule.criterion, rule, result) for rule, result in results]
         rows += [
-            _row(phase, model, "equal", rule, _evenly(phase.data, model, result))
-            for rule, result in results
-            if rule.criterion in ("first_degree", "uncertainty")
+            _row(phase, model, schedule.criterion, schedule, result) for schedule, result in results
+        ]
+        rows += [
+            _row(phase, model, "equal", schedule, _replay_equally_spaced(phase.data, model, result))
+            for schedule, result in results
+            if schedule.criterion in ("first_degree", "uncertainty")
         ]
     return Evaluation(_pooled(pd.DataFrame(rows)), tuple(notes))
 
 
-def _rules(grid: EvaluationGrid, bounds: Sequence[float]) -> list[ScheduleSettings]:
+def _schedules(grid: EvaluationGrid, bounds: Sequence[float]) -> list[ScheduleSettings]:
     by_time = [
         ScheduleSettings(criterion=reading, k=k, tmax=tmax)
         for reading in BY_READING
@@ -127,14 +151,14 @@ def _row(
     phase: CorrectionPhase,
     model: FrictionModel,
     criterion: str,
-    rule: ScheduleSettings,
+    schedule: ScheduleSettings,
     result: Replay,
 ) -> dict[str, object]:
     return {
         "run": phase.run,
         "joint": model.joint,
         "phase": phase.name,
-        **(rule.columns() | {"criterion": criterion}),
+        **(schedule.columns() | {"criterion": criterion}),
         "corrections": int(result.corrected.sum()),
         "failed": int(result.failed.sum()),
         "pairs": len(phase.pairs),
@@ -144,7 +168,7 @@ def _row(
 
 
 def _pooled(rows: pd.DataFrame) -> pd.DataFrame:
-    """Put several phases of one kind in a run (a second thermal cycle) into one row."""
+    """Pool the phases of one kind in a run, as of several thermal cycles, into one row."""
     keys = ["run", "joint", "phase", "criterion", "k", "tmax", "bound"]
     squares = {
         name: np.square(rows[name]) * rows["pairs"] for name in ("epsilon", "epsilon_unsmoothed")
@@ -156,32 +180,34 @@ def _pooled(rows: pd.DataFrame) -> pd.DataFrame:
     return total.drop(columns="pairs")
 
 
-def _deviation(phases: list[CorrectionPhase], model: FrictionModel) -> Deviation:
-    """Return how friction departs from the motor temperature, from all phases of the joint."""
+def _deviation_process(phases: list[CorrectionPhase], model: FrictionModel) -> DeviationProcess:
+    """Return the process of the deviation, fitted to all phases of the joint."""
     numbers = pd.factorize(np.array([phase.run for phase in phases], dtype=object))[0]
-    probes = probes_of(
+    pairs = correction_pairs_of(
         [(int(number), phase.data) for number, phase in zip(numbers, phases, strict=True)],
         model.friction,
     )
     try:
-        return estimated_deviation(probes)
+        return fit_deviation_process(pairs)
     except NotEnoughData as fault:
         raise NotEnoughData(f"joint {model.joint}: {fault}") from None
 
 
-def _simulated(
+def _simulate_phase(
     data: PhaseData,
     model: FrictionModel,
     schedule: ScheduleSettings,
-    process: Deviation | None,
+    process: DeviationProcess | None,
     highest: float,
 ) -> Replay:
-    """Return what one schedule does, as a robot at work would, told pair by pair.
+    """Simulate one schedule in one phase, as in a controller, pair by pair.
 
-    Evenly spaced corrections are as many as the paper's are.
+    Equally spaced corrections are as many as those by criterion (20).
     """
     if process is not None:
-        return follow(data, model.friction, process, bound=schedule.bound, speed=highest)
+        return replay_with_filter(
+            data, model.friction, process, bound=schedule.bound, speed=highest
+        )
     reading = schedule.criterion if schedule.criterion in BY_READING else "first_degree"
 
     def online(instants: ArrayLike | None = None) -> Replay:
@@ -200,48 +226,69 @@ def _simulated(
 def _replays(
     data: PhaseData,
     model: FrictionModel,
-    rules: Sequence[ScheduleSettings],
-    process: Deviation | None,
+    schedules: Sequence[ScheduleSettings],
+    process: DeviationProcess | None,
     highest: float,
 ) -> list[Replay]:
-    """Return what each of the rules does in a phase."""
+    """Replay each schedule in one phase."""
     instants: dict[ScheduleSettings, Indices] = {}
     for criterion, reading in BY_READING.items():
-        own = [rule for rule in rules if rule.criterion == criterion]
-        k, tmax = np.array([rule.k for rule in own]), np.array([rule.tmax for rule in own])
+        own = [one for one in schedules if one.criterion == criterion]
+        k, tmax = np.array([one.k for one in own]), np.array([one.tmax for one in own])
         found = reading(data.time, data.reading, k=k, tmax=tmax)
         instants |= dict(zip(own, found, strict=True))
     results = []
-    for rule in rules:
-        if rule.criterion == "uncertainty":
-            assert process is not None  # estimated wherever the criterion is asked for
-            result = follow(data, model.friction, process, bound=rule.bound, speed=highest)
+    for schedule in schedules:
+        if schedule.criterion == "uncertainty":
+            assert process is not None  # fitted wherever the criterion is in the grid
+            result = replay_with_filter(
+                data, model.friction, process, bound=schedule.bound, speed=highest
+            )
         else:
-            result = replay(data, model.friction, instants.get(rule, ()))
+            result = replay(data, model.friction, instants.get(schedule, ()))
         results.append(result)
     return results
 
 
-def _evenly(data: PhaseData, model: FrictionModel, like: Replay) -> Replay:
-    """Return what as many corrections do when they are equally spaced in time."""
-    count = int(like.corrected.sum())
+def _replay_equally_spaced(data: PhaseData, model: FrictionModel, other: Replay) -> Replay:
+    """Replay as many corrections as in another replay, equally spaced in time."""
+    count = int(other.corrected.sum())
     return replay(data, model.friction, equally_spaced(data.time, count))
 
 
 def epsilon(rows: pd.DataFrame, reference: str) -> float:
-    """Return the error (21) of schedule rows against one of their friction columns. [N·m]."""
+    """Return the RMS error (21) of the predicted friction.
+
+    Parameters
+    ----------
+    rows : DataFrame
+        Rows of :data:`frictioncli.schemas.SCHEDULE`.
+    reference : str
+        Column with the measured friction.
+
+    Returns
+    -------
+    float
+        Error [torque unit].
+
+    Examples
+    --------
+    >>> rows = pd.DataFrame({"friction_predicted": [50.0, 52.0], "friction_torque": [53.0, 49.0]})
+    >>> epsilon(rows, "friction_torque")
+    3.0
+    """
     return float(np.sqrt(np.mean(np.square(rows["friction_predicted"] - rows[reference]))))
 
 
 def evaluation_text(rows: pd.DataFrame, unit: str) -> str:
-    """Return the median error at each number of corrections, heating and cooling side by side."""
+    """Return the text of an evaluation: median error by number of corrections, per phase."""
     lines = []
     for (run, joint), group in rows.groupby(["run", "joint"], sort=False):
-        never = group[group["criterion"] == "none"].set_index("phase")["epsilon"]
+        uncorrected = group[group["criterion"] == "none"].set_index("phase")["epsilon"]
         lines.append(f"{run}, joint {joint}: epsilon [{unit}] by number of corrections")
         for phase, part in group.groupby("phase", sort=False):
             lines.append(
-                f"  {phase:9s} none: {never[phase]:.2f}  {_by_count(part, 'first_degree')}"
+                f"  {phase:9s} none: {uncorrected[phase]:.2f}  {_by_count(part, 'first_degree')}"
             )
             if (part["criterion"] == "uncertainty").any():
                 lines.append(f"  {'':9s} by uncertainty  {_by_count(part, 'uncertainty')}")

@@ -1,4 +1,4 @@
-"""The phases of a thermal cycle in which corrections are simulated."""
+"""Heating and cooling phases, in which corrections are simulated."""
 
 from dataclasses import dataclass
 
@@ -14,7 +14,17 @@ from frictioncli.model.zero_load import friction_at_zero_load
 
 @dataclass(frozen=True, slots=True)
 class CorrectionPhase:
-    """The pairs of one phase, and as arrays."""
+    """One heating or cooling phase.
+
+    Attributes
+    ----------
+    run, name : str
+        Name of the run and of the phase.
+    pairs : DataFrame
+        Rows of :func:`frictioncli.model.zero_load.friction_at_zero_load`.
+    data : PhaseData
+        The same as arrays.
+    """
 
     run: str
     name: str
@@ -22,24 +32,29 @@ class CorrectionPhase:
     data: PhaseData
 
 
-def phases_of(
+def correction_phases(
     torques: pd.DataFrame, model: FrictionModel, settings: CorrectionSettings
 ) -> list[CorrectionPhase]:
-    """Return each stretch of heat-up or cool-down of a joint, ordered by run and time.
+    """Return the heat-up and cool-down phases of a joint, ordered by run and time.
 
     Parameters
     ----------
     torques : DataFrame
         Rows of :data:`frictioncli.schemas.TORQUES` of the joint.
     model : FrictionModel
-        Its model.
+        Model of the joint.
     settings : CorrectionSettings
         Speed of corrections and degree of smoothing.
+
+    Returns
+    -------
+    list of CorrectionPhase
+        The phases.
 
     Raises
     ------
     NotEnoughData
-        If the model does not know temperature, or no phase heats or cools.
+        If the model does not depend on temperature, or there is no such phase.
     """
     if not model.knows_temperature:
         raise NotEnoughData(
@@ -60,9 +75,9 @@ def phases_of(
     speed = settings.correction_speed
     if speed is None:
         speed = MIDDLE_SPEED * float(pairs.loc[thermal, "speed"].max())
-    found = []
+    phases = []
     for _, group in pairs[thermal].groupby(stretch.cumsum()[thermal], sort=True):
         data = phase_data(group, correction_speed=speed, degree=settings.smoothing_degree)
         head = group.iloc[0]
-        found.append(CorrectionPhase(str(head["run"]), str(head["phase"]), group, data))
-    return found
+        phases.append(CorrectionPhase(str(head["run"]), str(head["phase"]), group, data))
+    return phases

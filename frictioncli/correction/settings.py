@@ -100,7 +100,7 @@ class ScheduleSettings:
             "bound": self.bound if self.criterion == "uncertainty" else math.nan,
         }
 
-    def told(self, unit: str) -> str:
+    def describe(self, unit: str) -> str:
         """Return the schedule as text.
 
         Parameters

@@ -100,7 +100,9 @@ class DeployedModel:
 
     def _repr_html_(self) -> str:
         """Return the model's table and the correction rule, for notebooks."""
-        rule = f"correction at about {self.correction_speed:.3g} deg/s, {self.schedule.told('')}"
+        rule = (
+            f"correction at about {self.correction_speed:.3g} deg/s, {self.schedule.describe('')}"
+        )
         said = rule if self.can_correct else f"no correction: {why_no_correction(self.model)}"
         return f"{self.model._repr_html_()}<p>{escape(said)}</p>"
 

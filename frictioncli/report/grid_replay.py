@@ -8,7 +8,7 @@ import numpy as np
 import pandas as pd
 
 from frictioncli.arrays import Array, Flags
-from frictioncli.correction.phases import phases_of
+from frictioncli.correction.phases import correction_phases
 from frictioncli.correction.replay import PhaseData, Replay, replay
 from frictioncli.correction.schedule import BY_READING
 from frictioncli.correction.settings import CorrectionSettings
@@ -120,7 +120,7 @@ def replayed_phases(
         If the model does not know temperature, or no phase heats or cools.
     """
     stretches: dict[tuple[str, str], list[PhaseData]] = {}
-    for phase in phases_of(torques, model, settings):
+    for phase in correction_phases(torques, model, settings):
         if phase.run in runs:
             stretches.setdefault((phase.run, phase.name), []).append(phase.data)
     return [

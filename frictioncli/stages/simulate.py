@@ -39,4 +39,4 @@ def simulate(
         f" ({correction.epsilon(group, 'friction_torque'):.3g} unsmoothed)"
         for (run, joint, phase), group in rows.groupby(["run", "joint", "phase"], sort=False)
     ]
-    return Done(work / SCHEDULE, "\n".join([schedule.told(unit), *lines, *faults]))
+    return Done(work / SCHEDULE, "\n".join([schedule.describe(unit), *lines, *faults]))

@@ -34,7 +34,9 @@ def phase(seed, *, length, rounded, failing, still):
         reading=np.round(temperature) if rounded else temperature,
         friction=friction,
         smoothed=friction,
-        probe=np.clip(np.arange(length) + generator.integers(-2, 3, length), 0, length - 1),
+        correction_pair=np.clip(
+            np.arange(length) + generator.integers(-2, 3, length), 0, length - 1
+        ),
     )
 
 
@@ -66,13 +68,13 @@ def test_it_corrects_when_the_search_over_the_whole_log_does(
     assert last == pytest.approx(online.predicted[-1], rel=1e-13)
 
 
-def test_instants_that_are_told_take_the_place_of_the_criterion():
+def test_given_instants_take_the_place_of_the_criterion():
     data = phase(1, length=50, rounded=True, failing=0.0, still=False)
-    told = replay_online(data, TemperatureCorrector(PUBLISHED), [3, 30])
-    assert np.flatnonzero(told.corrected).tolist() == [3, 30]
-    np.testing.assert_array_equal(told.correction[:3], 0.0)
+    given = replay_online(data, TemperatureCorrector(PUBLISHED), [3, 30])
+    assert np.flatnonzero(given.corrected).tolist() == [3, 30]
+    np.testing.assert_array_equal(given.correction[:3], 0.0)
     batch = replay(data, PUBLISHED, [3, 30])
-    np.testing.assert_allclose(told.correction, batch.correction, rtol=0, atol=1e-11)
+    np.testing.assert_allclose(given.correction, batch.correction, rtol=0, atol=1e-11)
 
 
 def test_a_day_by_hand():

@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from frictioncli.correction.degree_crossings import next_changes
+from frictioncli.correction.degree_crossings import next_degree_changes
 from frictioncli.correction.schedule import equally_spaced, first_degree, latest_degree
 
 
@@ -62,7 +62,7 @@ def test_next_change_is_the_first_departure_by_a_degree(readings):
         next((j for j in range(i + 1, len(values)) if departs[i, j]), len(values))
         for i in range(len(values))
     ]
-    assert next_changes(values).tolist() == expected
+    assert next_degree_changes(values).tolist() == expected
 
 
 def one(search, time, temperature, *, k, tmax):

@@ -6,16 +6,16 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from frictioncli.correction.deviation import (
-    LEAST_PROBES,
-    Deviation,
-    Probes,
-    estimated_deviation,
-    probes_of,
+    LEAST_PAIRS,
+    CorrectionPairs,
+    DeviationProcess,
+    correction_pairs_of,
+    fit_deviation_process,
 )
 from frictioncli.correction.evaluation import evaluate
 from frictioncli.correction.replay import PhaseData
 from frictioncli.correction.settings import CorrectionSettings, EvaluationGrid, ScheduleSettings
-from frictioncli.correction.uncertainty import FilterState, follow
+from frictioncli.correction.uncertainty import FilterState, replay_with_filter
 from frictioncli.errors import NotEnoughData, OptionError
 from frictioncli.model.friction import PUBLISHED, friction_torque
 from tests.correction.models import published_model, shifted, simulated
@@ -29,10 +29,10 @@ ROOT = np.sqrt(SPEED)
 
 
 def process(*, spread=SPREAD / ROOT, noise=NOISE / ROOT, mean=0.0, rate=0.01, length=18.0):
-    """One known way: at a constant temperature 18 °C of a clock of 0.01 °C/s are 1800 s."""
+    """one known candidate: at a constant temperature 18 °C of a clock of 0.01 °C/s are 1800 s."""
     one = {"weight": 1.0, "rate": rate, "length": length, "mean": mean}
     one |= {"variance": spread**2, "noise": noise**2}
-    return Deviation(**{name: np.array([value]) for name, value in one.items()})
+    return DeviationProcess(**{name: np.array([value]) for name, value in one.items()})
 
 
 def ornstein_uhlenbeck(steps, seed):
@@ -58,7 +58,7 @@ def phase(deviation, seed, *, every=20.0, temperature=None, noise=NOISE):
         reading=temperature,
         friction=modelled + deviation + white,
         smoothed=modelled + deviation,
-        probe=np.arange(count),
+        correction_pair=np.arange(count),
     )
 
 
@@ -68,37 +68,41 @@ def at_rest(seed, count=12000, every=20.0):
 
 
 def followed(data, bound, how=None):
-    return follow(data, PUBLISHED, how or process(), bound=bound, speed=HIGHEST)
+    return replay_with_filter(data, PUBLISHED, how or process(), bound=bound, speed=HIGHEST)
 
 
-def test_between_corrections_the_estimate_fades_and_its_variance_grows():
+def test_between_corrections_the_estimate_decays_and_its_variance_grows():
     """After half a correlation length: 0.2 + 0.8 e^-0.5, and 0.5 e^-1 + 4 (1 - e^-1)."""
     how = process(spread=2.0, mean=0.2, length=3.0)
-    belief = FilterState(clock=np.array([7.0]), mean=np.array([1.0]), variance=np.array([0.5]))
-    mean, variance = belief.at(np.array([[7.0], [8.5], [1e6]]), how)
+    state = FilterState(clock=np.array([7.0]), estimate=np.array([1.0]), variance=np.array([0.5]))
+    mean, variance = state.predict(np.array([[7.0], [8.5], [1e6]]), how)
     np.testing.assert_allclose(mean[:, 0], [1.0, 0.685225, 0.2], atol=1e-6)
     np.testing.assert_allclose(variance[:, 0], [0.5, 2.712422, 4.0], atol=1e-6)
 
 
-def test_a_correction_moves_by_the_share_that_its_noise_leaves():
-    """Variance 4 against noise 1: four fifths of the way, and 0.8 is left."""
+def test_an_update_moves_the_estimate_by_the_gain():
+    """Variance 4 against noise 1: a gain of four fifths, and a variance of 0.8."""
     how = process(spread=2.0, noise=1.0)
-    start = FilterState(clock=np.zeros(1), mean=how.mean, variance=how.variance, untouched=True)
-    after = start.corrected(5.0, np.zeros(1), how)
-    assert (after.mean[0], after.variance[0]) == (pytest.approx(4.0), pytest.approx(0.8))
-    assert not after.untouched
+    start = FilterState(
+        clock=np.zeros(1), estimate=how.mean, variance=how.variance, is_initial=True
+    )
+    after = start.update(5.0, np.zeros(1), how)
+    assert (after.estimate[0], after.variance[0]) == (pytest.approx(4.0), pytest.approx(0.8))
+    assert not after.is_initial
 
 
 def test_before_the_first_correction_nothing_is_corrected_and_the_mean_is_error():
     how = process(spread=2.0, mean=3.0)
-    start = FilterState(clock=np.zeros(1), mean=how.mean, variance=how.variance, untouched=True)
-    deviation, error = start.predicted(np.array([[0.0], [50.0]]), how)
+    start = FilterState(
+        clock=np.zeros(1), estimate=how.mean, variance=how.variance, is_initial=True
+    )
+    deviation, error = start.predicted_error(np.array([[0.0], [50.0]]), how)
     np.testing.assert_allclose(deviation, 0.0)
     np.testing.assert_allclose(error, 13.0)
 
 
-def test_ways_that_the_process_may_be_are_weighed():
-    both = Deviation(
+def test_candidate_processes_are_weighted():
+    both = DeviationProcess(
         weight=np.array([0.25, 0.75]),
         rate=np.array([0.0, 0.0]),
         length=np.array([1.0, 2.0]),
@@ -106,8 +110,8 @@ def test_ways_that_the_process_may_be_are_weighed():
         variance=np.array([1.0, 4.0]),
         noise=np.zeros(2),
     )
-    belief = FilterState(clock=np.zeros(2), mean=np.array([1.0, 2.0]), variance=np.zeros(2))
-    deviation, error = belief.predicted(np.ones((1, 2)), both)
+    state = FilterState(clock=np.zeros(2), estimate=np.array([1.0, 2.0]), variance=np.zeros(2))
+    deviation, error = state.predicted_error(np.ones((1, 2)), both)
     assert deviation[0] == pytest.approx(0.25 * np.exp(-1) + 0.75 * 2 * np.exp(-0.5))
     assert error[0] == pytest.approx(0.25 * (1 - np.exp(-2)) + 0.75 * 4 * (1 - np.exp(-1)))
 
@@ -133,7 +137,7 @@ def test_the_error_when_a_correction_is_due_is_the_bound(bound):
 @pytest.mark.parametrize("bound", [0.9, 1.4])
 def test_so_it_is_with_an_estimated_process(bound):
     data = at_rest(5, count=1500)
-    learned = estimated_deviation(probes_of([(0, data)], PUBLISHED))
+    learned = fit_deviation_process(correction_pairs_of([(0, data)], PUBLISHED))
     assert learned.weight.sum() == pytest.approx(1.0)
     assert learned.weight @ learned.noise == pytest.approx(NOISE**2 / SPEED, rel=0.3)
     new = at_rest(6, count=60000)
@@ -149,7 +153,8 @@ def test_the_clock_runs_with_temperature_where_friction_departs_with_it():
     warming = phase(SPREAD * ornstein_uhlenbeck(rests / 15, 1), 1, temperature=temperature)
     resting = phase(SPREAD * ornstein_uhlenbeck(np.full(239, 0.05), 2), 2, temperature=temperature)
     with_motion, with_time = (
-        estimated_deviation(probes_of([(0, data)], PUBLISHED)) for data in (warming, resting)
+        fit_deviation_process(correction_pairs_of([(0, data)], PUBLISHED))
+        for data in (warming, resting)
     )
     slow, fast = min(with_motion.rate), max(with_time.rate)
     assert with_motion.weight[with_motion.rate == slow].sum() > 0.5
@@ -175,11 +180,12 @@ def test_a_smaller_bound_makes_no_fewer_corrections(seed, bounds):
 
 def test_no_pair_is_used_twice_whatever_the_bound():
     data = at_rest(2, count=90)
-    probe = np.repeat(np.arange(1, 90, 3), 3)
+    nearest = np.repeat(np.arange(1, 90, 3), 3)
     shared = PhaseData(
-        **{name: getattr(data, name) for name in PhaseData.__dataclass_fields__} | {"probe": probe}
+        **{name: getattr(data, name) for name in PhaseData.__dataclass_fields__}
+        | {"correction_pair": nearest}
     )
-    used = probe[followed(shared, 1e-3).corrected]
+    used = nearest[followed(shared, 1e-3).corrected]
     assert list(used) == list(range(1, 90, 3))
 
 
@@ -218,7 +224,7 @@ def test_the_schedule_says_the_bound_and_neither_k_nor_tmax():
     assert rows[["k", "tmax"]].isna().all(axis=None)
     assert (rows["bound"] == 1.5).all()
     assert simulated(torques(2))["bound"].isna().all()
-    assert "bound = 1.5 A" in ScheduleSettings(criterion="uncertainty", bound=1.5).told("A")
+    assert "bound = 1.5 A" in ScheduleSettings(criterion="uncertainty", bound=1.5).describe("A")
 
 
 def test_evaluation_has_bounds_beside_as_many_equally_spaced():
@@ -239,15 +245,15 @@ def test_evaluation_has_bounds_beside_as_many_equally_spaced():
 
 def few(table):
     """Leave three pairs per phase at 67.5 deg/s, where corrections are made."""
-    probes = table[table["speed"] == 67.5]
-    kept = probes.groupby("phase")["pair"].unique().map(lambda pairs: pairs[:3])
+    pairs = table[table["speed"] == 67.5]
+    kept = pairs.groupby("phase")["pair"].unique().map(lambda pairs: pairs[:3])
     return table[(table["speed"] != 67.5) | table["pair"].isin(np.concatenate(list(kept)))]
 
 
 def test_too_few_pairs_are_named_by_simulate_and_skipped_by_evaluate():
     table = few(torques(2))
     settings = CorrectionSettings(correction_speed=67.5)
-    with pytest.raises(NotEnoughData, match=f"needs {LEAST_PROBES} pairs.* found 6"):
+    with pytest.raises(NotEnoughData, match=f"needs {LEAST_PAIRS} pairs.* found 6"):
         simulated(table, criterion="uncertainty")
     found, notes = evaluate(table, published_model(), settings, EvaluationGrid())
     assert "uncertainty" not in set(found["criterion"])
@@ -261,15 +267,15 @@ def test_a_model_without_temperature_is_named():
         simulated(torques(0), published_model(gamma=0.0, delta=0.0), criterion="uncertainty")
 
 
-def test_least_probes_suffice():
-    count = LEAST_PROBES
-    probes = Probes(
+def test_the_least_number_of_pairs_suffices():
+    count = LEAST_PAIRS
+    pairs = CorrectionPairs(
         run=np.zeros(count, dtype=np.intp),
         time=np.arange(count) * 60.0,
         travel=np.zeros(count),
         deviation=np.random.default_rng(0).standard_normal(count),
     )
-    assert np.isfinite(estimated_deviation(probes).variance).all()
+    assert np.isfinite(fit_deviation_process(pairs).variance).all()
 
 
 @pytest.mark.parametrize("bound", [0.0, -1.0, float("nan")])

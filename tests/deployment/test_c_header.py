@@ -190,7 +190,7 @@ def test_a_whole_log_gives_the_schedule_that_simulate_wrote(compiled, criterion)
             warm = data.temperature[i]
             lines.append(line("u", data.time[i], warm, data.reading[i], 0.0, 0.0))
             if corrects:
-                used = data.probe[i]
+                used = data.correction_pair[i]
                 measured = data.friction[used], 0.0, data.speed[used], data.temperature[used]
                 lines.append(line("c", *measured))
             lines.append(line("p", 0.0, data.speed[i]))

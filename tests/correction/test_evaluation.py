@@ -86,8 +86,8 @@ def test_corrections_use_the_pair_nearest_in_time_at_the_correction_speed():
     pairs = friction_at_zero_load(torques(0, **QUIET), PUBLISHED.alpha)
     heating = pairs[pairs["phase"] == "heat-up"]
     data = phase_data(heating, correction_speed=60.0, degree=3)
-    assert (data.speed[data.probe] == 67.5).all()
-    distance = np.abs(data.time[data.probe] - data.time)
+    assert (data.speed[data.correction_pair] == 67.5).all()
+    distance = np.abs(data.time[data.correction_pair] - data.time)
     assert distance.max() <= 20.0 + 1e-9
 
 
