@@ -177,11 +177,11 @@ def run(logs: Logs, *, work: Work = WORK, settings: RunSettings) -> None:
     """Run the whole chain, from logs to the report. Units: deg, deg/s, s, N·m, °C."""
     from frictioncli.stages.run import run as run_chain
 
-    run_chain(logs, work, settings, tell=_say_stage)
+    run_chain(logs, work, settings, progress=_say_stage)
 
 
-def _say_stage(stage: str, text: object) -> None:
-    first, *others = str(text).splitlines() or [""]
+def _say_stage(stage: str, result: object) -> None:
+    first, *others = str(result).splitlines() or [""]
     say(f"{stage:9s} {first}")
     for line in others:
         say(f"{'':9s} {line}")

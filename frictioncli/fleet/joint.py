@@ -20,7 +20,7 @@ from frictioncli.fleet.table_row import row_of, unused_runs
 from frictioncli.provenance import sha256
 from frictioncli.stages import run as pipeline
 from frictioncli.stages.settings import RunSettings
-from frictioncli.stages.stage import Done
+from frictioncli.stages.stage import StageResult
 from frictioncli.workfolder import locked
 
 DONE, UNCHANGED, FAILED = "done", "unchanged", "failed"
@@ -166,7 +166,7 @@ def _worked(task: JointTask, runs: Mapping[str, Path], settings: RunSettings) ->
     """Run the chain; return what was left out."""
     left_out = []
 
-    def note(stage: str, done: Done) -> None:
+    def note(stage: str, done: StageResult) -> None:
         if not done.path.exists():
             left_out.append(f"{stage} {done}")
 

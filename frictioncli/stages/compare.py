@@ -1,4 +1,4 @@
-"""The same joint on different days: ``compare``."""
+"""Comparison of the same joint on different days: ``compare``."""
 
 import json
 from collections.abc import Sequence
@@ -20,7 +20,7 @@ from frictioncli.files import atomic_write, write_text
 from frictioncli.model.document import FrictionModel, read_models
 from frictioncli.provenance import Provenance, sha256
 from frictioncli.report.trend_figure import trend_files
-from frictioncli.stages.stage import Done, stage
+from frictioncli.stages.stage import StageResult, stage
 from frictioncli.workfiles import COMPARISON, MODEL, RECORDINGS, TORQUES
 from frictioncli.workfolder import outdated
 
@@ -28,8 +28,10 @@ TREND = "trend"
 
 
 @stage
-def compare(runs: Sequence[Path], work: Path, settings: ComparisonSettings | None = None) -> Done:
-    """Say what changed between the runs of one joint: ``comparison.json``, ``trend.svg``.
+def compare(
+    runs: Sequence[Path], work: Path, settings: ComparisonSettings | None = None
+) -> StageResult:
+    """Find what changed between the runs of one joint: ``comparison.json``, ``trend.svg``.
 
     Parameters
     ----------
@@ -76,43 +78,46 @@ def compare(runs: Sequence[Path], work: Path, settings: ComparisonSettings | Non
         for name, path in sources.items()
         for text in outdated([path / MODEL])
     ]
-    return Done(work / COMPARISON, "\n".join([*warnings, comparison_text(comparison)]))
+    return StageResult(work / COMPARISON, "\n".join([*warnings, comparison_text(comparison)]))
 
 
 def above_threshold(work: Path) -> bool:
-    """Return whether ``comparison.json`` holds a change above the threshold that it was made with.
+    """Return whether friction has changed by more than the threshold of a comparison.
 
     Parameters
     ----------
     work : Path
-        Folder of a comparison.
+        Folder with ``comparison.json``.
     """
     document = json.loads((work / COMPARISON).read_text(encoding="utf-8"))
     threshold = document["threshold"]
     return threshold is not None and bool(threshold["exceeded"])
 
 
-def _joint(asked: int | None, models: dict[str, dict[int, FrictionModel]]) -> int:
-    """Return the joint that is asked for, or the only one that all work folders have."""
-    common = set.intersection(*(set(own) for own in models.values()))
-    if asked is None and len(common) == 1:
+def _joint(chosen: int | None, models: dict[str, dict[int, FrictionModel]]) -> int:
+    """Return the chosen joint, or the only one that all work folders have."""
+    common = set.intersection(*(set(joints) for joints in models.values()))
+    if chosen is None and len(common) == 1:
         return next(iter(common))
-    if asked is not None and asked in common:
-        return asked
-    known = "; ".join(f"{name}: {', '.join(map(str, sorted(own)))}" for name, own in models.items())
-    said = "not given" if asked is None else str(asked)
+    if chosen is not None and chosen in common:
+        return chosen
+    known = "; ".join(
+        f"{name}: {', '.join(map(str, sorted(joints)))}" for name, joints in models.items()
+    )
+    value = "not given" if chosen is None else str(chosen)
     advice = "choose one" if common else "compare folders of one joint"
-    raise OptionError(f"--joint {said}: the work folders have joints {known}; {advice}")
+    raise OptionError(f"--joint {value}: the work folders have joints {known}; {advice}")
 
 
 def _folder(path: Path, name: str, model: FrictionModel) -> ComparedFolder:
+    """Return what a work folder holds of a joint."""
     torques = tables.read(path / TORQUES, schemas.TORQUES)
     started_at, ambient = {}, {}
     if (path / RECORDINGS).exists():
         recordings = tables.read(path / RECORDINGS, schemas.RECORDINGS)
-        for run, own in recordings[recordings["joint"] == model.joint].groupby("run"):
-            started_at[str(run)] = _first(own["started_at"])
-            ambient[str(run)] = float(own["ambient"].mean())
+        for run, rows in recordings[recordings["joint"] == model.joint].groupby("run"):
+            started_at[str(run)] = _first(rows["started_at"])
+            ambient[str(run)] = float(rows["ambient"].mean())
     return ComparedFolder(
         name=name,
         torques=torques[torques["joint"] == model.joint],
@@ -123,7 +128,7 @@ def _folder(path: Path, name: str, model: FrictionModel) -> ComparedFolder:
 
 
 def _first(started: pd.Series) -> datetime | None:
-    """Return the earliest of some ISO times, none if one is missing; those of no zone are UTC."""
+    """Return the earliest of ISO times, None if one is missing; UTC where there is no zone."""
     if started.isna().any() or started.empty:
         return None
     return min(pd.Timestamp(pd.to_datetime(text, utc=True)).to_pydatetime() for text in started)

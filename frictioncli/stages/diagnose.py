@@ -1,4 +1,4 @@
-"""From torques and a model to what the simulated torque gets wrong: ``diagnose``."""
+"""Causes of the misfit between simulated and measured torque: ``diagnose``."""
 
 from dataclasses import asdict
 from pathlib import Path
@@ -14,42 +14,68 @@ from frictioncli.documents import write_joints
 from frictioncli.errors import NotEnoughData
 from frictioncli.model.document import read_models
 from frictioncli.provenance import Provenance, input_hashes
-from frictioncli.stages.stage import Done, present, stage
+from frictioncli.stages.stage import StageResult, existing, stage
 from frictioncli.workfiles import DIAGNOSIS, EXTENDED, MODEL, RAMPS, TORQUES
 
 
 @stage
-def diagnose(work: Path, settings: DiagnosisSettings | None = None) -> Done:
-    """Find what the simulated torque gets wrong: ``diagnosis.json``, ``extended-model.json``."""
+def diagnose(work: Path, settings: DiagnosisSettings | None = None) -> StageResult:
+    """Find what the simulated torque gets wrong: ``diagnosis.json``, ``extended-model.json``.
+
+    Parameters
+    ----------
+    work : Path
+        Work folder with ``torques.parquet`` and ``model.json``.
+    settings : DiagnosisSettings, optional
+        Significance level and limits of the search.
+
+    Raises
+    ------
+    NotEnoughData
+        If no joint has data enough.
+    TableError
+        If a table or the model is missing or damaged.
+    """
     settings = settings or DiagnosisSettings()
     torques = tables.read(work / TORQUES, schemas.TORQUES)
     facts = tables.facts(work / TORQUES)
     unit = facts.get("torque_unit", "N·m")
     ramps = ramp_logs(work / RAMPS, facts.get("sign", {}))
-    inputs = present(work / TORQUES, work / MODEL, work / RAMPS)
-    found, faults = [], []
+    inputs = existing(work / TORQUES, work / MODEL, work / RAMPS)
+    diagnoses, faults = [], []
     for model in read_models(work / MODEL):
         rows = torques[torques["joint"] == model.joint]
-        own = ramps.get(model.joint)
         try:
-            diagnosis = diagnose_joint(rows, model.temperature, unit, settings, ramps=own)
-            found.append((model, diagnosis))
+            diagnosis = diagnose_joint(
+                rows, model.temperature, unit, settings, ramps=ramps.get(model.joint)
+            )
+            diagnoses.append((model, diagnosis))
         except NotEnoughData as fault:
             faults.append(str(fault))
-    if not found:
+    if not diagnoses:
         raise NotEnoughData("; ".join(faults))
     provenance = Provenance("diagnose", asdict(settings), input_hashes(inputs))
-    main_joint = max(found, key=lambda pair: pair[0].n_pairs)[0].joint
+    main_joint = max(diagnoses, key=lambda pair: pair[0].n_pairs)[0].joint
     for name, documents in (
-        (DIAGNOSIS, {m.joint: diagnosis_document(d, settings) for m, d in found}),
-        (EXTENDED, {m.joint: extended_document(d, m) for m, d in found}),
+        (DIAGNOSIS, {m.joint: diagnosis_document(d, settings) for m, d in diagnoses}),
+        (EXTENDED, {m.joint: extended_document(d, m) for m, d in diagnoses}),
     ):
         write_joints(work / name, documents, main_joint, provenance)
-    return Done(work / DIAGNOSIS, "\n".join([*(verdict_text(d) for _, d in found), *faults]))
+    return StageResult(
+        work / DIAGNOSIS, "\n".join([*(verdict_text(d) for _, d in diagnoses), *faults])
+    )
 
 
 def has_finding(work: Path, *, named_only: bool) -> bool:
-    """Return whether ``diagnosis.json`` holds a cause, or one that has a single name."""
+    """Return whether the diagnosis of any joint holds a cause.
+
+    Parameters
+    ----------
+    work : Path
+        Work folder with ``diagnosis.json``.
+    named_only : bool
+        Whether only causes that have a single name count.
+    """
     diagnoses = read_diagnoses(work / DIAGNOSIS).values()
     causes = [cause for diagnosis in diagnoses for cause in diagnosis.causes]
     return any(len(cause.effects) == 1 or not named_only for cause in causes)

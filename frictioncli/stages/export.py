@@ -1,11 +1,11 @@
-"""The model outside this program: ``export``."""
+"""Export of a model to controllers, simulators and tables: ``export``."""
 
 from pathlib import Path
 
 from frictioncli import __version__, schemas, tables
 from frictioncli.correction.settings import ScheduleSettings
 from frictioncli.deployment.deployed_model import DeployedModel, middle_speed
-from frictioncli.deployment.export import export as exported
+from frictioncli.deployment.export import export as export_model
 from frictioncli.deployment.extension import LAG, DeployedExtension, carried
 from frictioncli.deployment.settings import ExportSettings
 from frictioncli.diagnosis.documents.reload import read_documents
@@ -13,31 +13,46 @@ from frictioncli.errors import OptionError, TableError
 from frictioncli.files import write_text
 from frictioncli.model.document import FrictionModel, read_models
 from frictioncli.provenance import input_hashes
-from frictioncli.stages.stage import Done, stage
+from frictioncli.stages.stage import StageResult, stage
 from frictioncli.workfiles import DIAGNOSIS, EXTENDED, MODEL, TORQUES
 
 EXPORTS = "export"
-"""Folder of the work folder that exported files go to."""
+"""Subfolder of the work folder for exported files."""
 
 
 @stage
-def export(work: Path, settings: ExportSettings) -> Done:
-    """Write a joint's model for a controller, a simulator or a table: ``export/``."""
-    found = exported(deployed(work, settings), settings)
-    target = work / EXPORTS / found.name
-    write_text(target, found.text)
-    return Done(target, "\n".join([str(target), *found.said]))
-
-
-def deployed(work: Path, settings: ExportSettings | None = None) -> DeployedModel:
-    """Return a joint of a work folder as it is deployed.
+def export(work: Path, settings: ExportSettings) -> StageResult:
+    """Write the model of a joint for a controller, a simulator or a table: ``export/``.
 
     Parameters
     ----------
     work : Path
-        Work folder with ``model.json``; for the extended model with all that ``diagnose`` needs.
+        Work folder, see :func:`deployed`.
+    settings : ExportSettings
+        Form of the file and what it holds.
+
+    Raises
+    ------
+    OptionError
+        If there are several joints and none is chosen, or not that one.
+    TableError
+        If a file is missing or damaged.
+    """
+    exported = export_model(deployed(work, settings), settings)
+    target = work / EXPORTS / exported.name
+    write_text(target, exported.text)
+    return StageResult(target, "\n".join([str(target), *exported.said]))
+
+
+def deployed(work: Path, settings: ExportSettings | None = None) -> DeployedModel:
+    """Return the model of a joint for use outside the work folder.
+
+    Parameters
+    ----------
+    work : Path
+        Work folder with ``model.json``; for the extended model also the outputs of ``diagnose``.
     settings : ExportSettings, optional
-        Joint, correction rule, and whether the extended model goes along.
+        Joint, criterion of the corrections, and whether the extended model is used.
 
     Raises
     ------
@@ -49,21 +64,22 @@ def deployed(work: Path, settings: ExportSettings | None = None) -> DeployedMode
     settings = settings or ExportSettings(to="json")
     source = EXTENDED if settings.extended else MODEL
     model = _chosen(work / source, settings.joint)
-    extension, used = None, [work / source]
+    extension, inputs = None, [work / source]
     if settings.extended:
         extension = _extension(work, model)
-        used += [work / DIAGNOSIS, work / TORQUES]
+        inputs += [work / DIAGNOSIS, work / TORQUES]
     return DeployedModel(
         model=model,
         schedule=ScheduleSettings(criterion=settings.criterion, k=settings.k, tmax=settings.tmax),
         correction_speed=middle_speed(model),
         extension=extension,
-        origin=input_hashes(used),
+        origin=input_hashes(inputs),
         version=__version__,
     )
 
 
 def _chosen(source: Path, joint: int | None) -> FrictionModel:
+    """Return the model of the chosen joint, or the only one."""
     models = {model.joint: model for model in read_models(source)}
     if joint is None and len(models) == 1:
         return next(iter(models.values()))
@@ -77,6 +93,7 @@ def _chosen(source: Path, joint: int | None) -> FrictionModel:
 
 
 def _extension(work: Path, model: FrictionModel) -> DeployedExtension | None:
+    """Return the effects of the extended model that can be deployed."""
     documents = read_documents(work)
     if model.joint not in documents:
         raise TableError(

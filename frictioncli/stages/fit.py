@@ -1,4 +1,4 @@
-"""From torques to a friction model: ``fit``."""
+"""Identification of the friction model: ``fit``."""
 
 from dataclasses import asdict
 from pathlib import Path
@@ -9,13 +9,28 @@ from frictioncli.model.document import write_models
 from frictioncli.model.fitting import fit_joint
 from frictioncli.model.settings import FitSettings
 from frictioncli.provenance import Provenance, input_hashes
-from frictioncli.stages.stage import Done, stage
+from frictioncli.stages.stage import StageResult, stage
 from frictioncli.workfiles import MODEL, TORQUES
 
 
 @stage
-def fit(work: Path, settings: FitSettings | None = None) -> Done:
-    """Identify equation (16) for every joint: ``model.json``."""
+def fit(work: Path, settings: FitSettings | None = None) -> StageResult:
+    """Identify equation (16) for every joint: ``model.json``.
+
+    Parameters
+    ----------
+    work : Path
+        Work folder with ``torques.parquet``.
+    settings : FitSettings, optional
+        Method and temperature.
+
+    Raises
+    ------
+    NotEnoughData
+        If no joint can be identified.
+    TableError
+        If a table is missing or damaged.
+    """
     settings = settings or FitSettings()
     source = work / TORQUES
     facts = tables.facts(source)
@@ -29,4 +44,4 @@ def fit(work: Path, settings: FitSettings | None = None) -> Done:
     if not models:
         raise NotEnoughData("; ".join(faults))
     write_models(work / MODEL, models, Provenance("fit", asdict(settings), input_hashes([source])))
-    return Done(work / MODEL, "\n".join([*(model.table() for model in models), *faults]))
+    return StageResult(work / MODEL, "\n".join([*(model.table() for model in models), *faults]))

@@ -1,4 +1,4 @@
-"""From samples to pairs: ``pair``."""
+"""Segmentation into constant speed, and pairs of opposite direction: ``pair``."""
 
 from dataclasses import asdict
 from pathlib import Path
@@ -16,18 +16,35 @@ from frictioncli.pairs.partitioned_store import PartitionedStore
 from frictioncli.pairs.segments import Joint, find_segments
 from frictioncli.pairs.settings import PairingSettings
 from frictioncli.provenance import Provenance, input_hashes
-from frictioncli.stages.stage import Done, present, stage
+from frictioncli.stages.stage import StageResult, existing, stage
 from frictioncli.workfiles import PAIRS, RAMPS, RECORDINGS, SAMPLES
 
 
 @stage
-def pair(work: Path, settings: PairingSettings | None = None) -> Done:
-    """Match counter-directed constant velocity: ``pairs.parquet``; the rest: ``ramps.parquet``."""
+def pair(work: Path, settings: PairingSettings | None = None) -> StageResult:
+    """Match segments of constant speed and opposite direction.
+
+    Writes ``pairs.parquet``, and ``ramps.parquet`` with the other motion.
+
+    Parameters
+    ----------
+    work : Path
+        Work folder with ``samples.parquet``.
+    settings : PairingSettings, optional
+        What is a segment, and what is a pair.
+
+    Raises
+    ------
+    NotEnoughData
+        If there is no motion at constant speed, or no pair.
+    TableError
+        If a table is missing or damaged.
+    """
     settings = settings or PairingSettings()
     source = work / SAMPLES
     facts = tables.facts(source)
     provenance = Provenance(
-        "pair", asdict(settings), input_hashes(present(source, work / RECORDINGS))
+        "pair", asdict(settings), input_hashes(existing(source, work / RECORDINGS))
     )
     manifest = read_phase_and_payload(work / RECORDINGS)
     counts = PairCounts()
@@ -50,4 +67,4 @@ def pair(work: Path, settings: PairingSettings | None = None) -> Done:
             ramps.write(rows)
         for rows in counts.count(pair_rows(segments, pairing, manifest["phase"])):
             pairs.write(rows)
-    return Done(work / PAIRS, pairing_text(counts, facts, settings.bin_width))
+    return StageResult(work / PAIRS, pairing_text(counts, facts, settings.bin_width))

@@ -1,14 +1,12 @@
-"""From a diagnosis to the next experiment: ``plan``."""
+"""Plan of the next experiment: ``plan``."""
 
 from collections.abc import Mapping
-from dataclasses import asdict
+from dataclasses import asdict, replace
 from pathlib import Path
 from typing import Any
 
 from frictioncli import schemas, tables
-from frictioncli.design.blocks import Block
 from frictioncli.design.document import block_document, limits_document, plan_document, plan_text
-from frictioncli.design.limits import Limits
 from frictioncli.design.paper_protocol import algorithms, new_limits, usual_seconds
 from frictioncli.design.plan import plan_joint
 from frictioncli.design.programs import FORMS
@@ -20,13 +18,30 @@ from frictioncli.errors import NotEnoughData, OptionError, TableError
 from frictioncli.files import write_text
 from frictioncli.model.document import read_models
 from frictioncli.provenance import Provenance, input_hashes
-from frictioncli.stages.stage import Done, stage
+from frictioncli.stages.stage import StageResult, stage
 from frictioncli.workfiles import DIAGNOSIS, EXTENDED, MODEL, PLAN, TORQUES
 
 
 @stage
-def plan(work: Path, settings: PlanSettings | None = None) -> Done:
-    """Plan the next experiment of one joint: ``plan.json`` and a robot program."""
+def plan(work: Path, settings: PlanSettings | None = None) -> StageResult:
+    """Plan the next experiment of one joint: ``plan.json`` and a robot program.
+
+    Parameters
+    ----------
+    work : Path
+        Work folder with the outputs of ``diagnose``.
+    settings : PlanSettings, optional
+        Time, limits and form of the program.
+
+    Raises
+    ------
+    OptionError
+        If the joint is not known, or the limits leave nothing to plan.
+    NotEnoughData
+        If the data do not allow a plan.
+    TableError
+        If a file is missing, damaged or out of date.
+    """
     settings = settings or PlanSettings()
     documents = read_documents(work)
     if not documents:
@@ -52,28 +67,58 @@ def plan(work: Path, settings: PlanSettings | None = None) -> Done:
             " with; log the temperature first"
         )
     unit = str(tables.facts(work / TORQUES).get("torque_unit", "N·m"))
-    found = plan_joint(torques, unit, document, extended, settings)
-    name = f"friction_a{joint}"
-    files = _written(work, settings, name, joint, found.blocks, found.limits, found.timings[-1].end)
+    experiment = plan_joint(torques, unit, document, extended, settings)
+    program = RobotProgram(
+        name=f"friction_a{joint}",
+        axis=joint,
+        blocks=experiment.blocks,
+        limits=experiment.limits,
+        seconds=experiment.timings[-1].end,
+    )
+    files = _write_program(work, program, settings.to)
     checks = []
-    if found.check:
-        end = found.check_timings[-1].end
-        checks = _written(work, settings, f"{name}_check", joint, found.check, found.limits, end)
+    if experiment.check:
+        check = replace(
+            program,
+            name=f"{program.name}_check",
+            blocks=experiment.check,
+            seconds=experiment.check_timings[-1].end,
+        )
+        checks = _write_program(work, check, settings.to)
     units = {one: entry.unit for one, entry in models[joint].parameters.items()}
     inputs = input_hashes([work / TORQUES, work / MODEL, work / DIAGNOSIS, work / EXTENDED])
-    told = plan_document(found, units, files, checks)
-    _write(work, told, settings, Provenance("plan", asdict(settings), inputs))
-    return Done(work / PLAN, plan_text(found, units, [*files, *checks]))
+    planned = plan_document(experiment, units, files, checks)
+    _write_plan(work, planned, settings, Provenance("plan", asdict(settings), inputs))
+    return StageResult(work / PLAN, plan_text(experiment, units, [*files, *checks]))
 
 
 @stage
-def plan_new(work: Path, settings: PlanSettings) -> Done:
-    """Write the paper's Algorithms 1 and 2 for a joint of which there are no data yet."""
+def plan_new(work: Path, settings: PlanSettings) -> StageResult:
+    """Write the paper's Algorithms 1 and 2 as a program, for a joint without data.
+
+    Parameters
+    ----------
+    work : Path
+        Folder that ``plan.json`` and the program are written to.
+    settings : PlanSettings
+        Joint, limits and form of the program.
+
+    Raises
+    ------
+    OptionError
+        If the joint or a limit is missing.
+    """
     limits = new_limits(settings)
-    assert settings.joint is not None  # the limits say so if it is missing
+    assert settings.joint is not None  # new_limits has checked it
     blocks, seconds = algorithms(limits), usual_seconds(limits)
-    name = f"friction_a{settings.joint}_new"
-    files = _written(work, settings, name, settings.joint, blocks, limits, seconds)
+    program = RobotProgram(
+        name=f"friction_a{settings.joint}_new",
+        axis=settings.joint,
+        blocks=blocks,
+        limits=limits,
+        seconds=seconds,
+    )
+    files = _write_program(work, program, settings.to)
     document = {
         "joint": settings.joint,
         "verdict": None,
@@ -84,7 +129,7 @@ def plan_new(work: Path, settings: PlanSettings) -> Done:
             "blocks": [block_document(block, None) for block in blocks],
         },
     }
-    _write(work, document, settings, Provenance("plan", asdict(settings), {}))
+    _write_plan(work, document, settings, Provenance("plan", asdict(settings), {}))
     sweep, cycle = blocks[0].steps[0], blocks[1].steps[1]
     text = "\n".join(
         [
@@ -96,32 +141,24 @@ def plan_new(work: Path, settings: PlanSettings) -> Done:
             f"  program: {', '.join(files)}. {SAFETY_NOTE}",
         ]
     )
-    return Done(work / PLAN, text)
+    return StageResult(work / PLAN, text)
 
 
 def _speeds(series: object) -> str:
     return ", ".join(f"{speed:.4g}" for speed in getattr(series, "speeds", ()))
 
 
-def _written(
-    work: Path,
-    settings: PlanSettings,
-    name: str,
-    joint: int,
-    blocks: tuple[Block, ...],
-    limits: Limits,
-    seconds: float,
-) -> list[str]:
-    """Write the robot program of blocks; return the names of its files."""
-    program = RobotProgram(name=name, axis=joint, blocks=blocks, limits=limits, seconds=seconds)
-    files = FORMS[settings.to](program)
+def _write_program(work: Path, program: RobotProgram, form: str) -> list[str]:
+    """Write a robot program; return the names of its files."""
+    files = FORMS[form](program)
     for file, text in files.items():
         write_text(work / file, text)
     return sorted(files)
 
 
-def _write(
+def _write_plan(
     work: Path, document: Mapping[str, Any], settings: PlanSettings, provenance: Provenance
 ) -> None:
+    """Write ``plan.json``."""
     budget = {"budget_min": settings.minutes, "provenance": provenance.as_dict()}
     write_text(work / PLAN, to_json({**document, **budget}))

@@ -1,14 +1,26 @@
-"""What is looked at: ``report``."""
+"""Figures and page: ``report``."""
 
 from pathlib import Path
 
-from frictioncli.stages.stage import Done, stage
+from frictioncli.stages.stage import StageResult, stage
 
 
 @stage
-def report(work: Path) -> Done:
-    """Draw the figures and write the page: ``report/index.html``."""
+def report(work: Path) -> StageResult:
+    """Draw the figures and write the page: ``report/index.html``.
+
+    Parameters
+    ----------
+    work : Path
+        Work folder with ``torques.parquet`` and ``model.json``; other tables are shown if they
+        exist.
+
+    Raises
+    ------
+    TableError
+        If a table or the model is missing or damaged.
+    """
     from frictioncli.report.page import write_report
 
     page = write_report(work)
-    return Done(page, str(page))
+    return StageResult(page, str(page))

@@ -14,21 +14,25 @@ from frictioncli.stages.report import report
 from frictioncli.stages.separate import separate
 from frictioncli.stages.settings import RunSettings
 from frictioncli.stages.simulate import simulate
-from frictioncli.stages.stage import Done
+from frictioncli.stages.stage import StageResult
 from frictioncli.workfiles import DIAGNOSIS, EVALUATION, EXTENDED, SCHEDULE
 from frictioncli.workfolder import locked
 
-Tell = Callable[[str, Done], None]
-"""Is told each stage's name and what it made."""
+Progress = Callable[[str, StageResult], None]
+"""Called after each stage, with its name and its result."""
+
+
+def _no_progress(stage: str, result: StageResult) -> None:
+    pass
 
 
 def run(
     logs: Logs,
     work: Path,
     settings: RunSettings | None = None,
-    tell: Tell = lambda stage, done: None,
+    progress: Progress = _no_progress,
 ) -> Path:
-    """Run the whole chain and return the report's path.
+    """Run the whole chain and return the path of the report.
 
     Parameters
     ----------
@@ -37,58 +41,72 @@ def run(
     work : Path
         Work folder; its tables are replaced.
     settings : RunSettings, optional
-        Settings of every stage.
-    tell : callable, optional
-        Called with each stage's name and what it made.
+        Settings of all stages.
+    progress : callable, optional
+        Called after each stage with its name and its result.
+
+    Returns
+    -------
+    Path
+        The report, ``report/index.html``.
+
+    Raises
+    ------
+    FrictionError
+        If a stage up to the identification fails.
 
     Notes
     -----
-    A log without a thermal cycle has no corrections to simulate; those two stages are then left
-    out, and said so, and the tables of a former run are removed. So is the diagnosis where the data
-    are too few for one. A former one is removed at the start in any case: it is of other data.
+    A log without a thermal cycle has no corrections to simulate, and few data allow no diagnosis.
+    These stages are then left out: their result says so, and their tables of an earlier run are
+    removed. An earlier diagnosis is removed at the start, because it belongs to other data.
     """
     with locked(work):
-        analyse(logs, work, settings, tell)
-        done = report(work)
-    tell("report", done)
-    return done.path
+        analyse(logs, work, settings, progress)
+        result = report(work)
+    progress("report", result)
+    return result.path
 
 
 def analyse(
     logs: Logs,
     work: Path,
     settings: RunSettings | None = None,
-    tell: Tell = lambda stage, done: None,
+    progress: Progress = _no_progress,
 ) -> None:
-    """Run the chain but for the report; see :func:`run`."""
-    chosen = settings or RunSettings()
+    """Run the whole chain without the report; see :func:`run`.
+
+    Parameters
+    ----------
+    logs, work, settings, progress
+        As in :func:`run`.
+    """
+    settings = settings or RunSettings()
     with locked(work):
-        _analyse(logs, work, chosen, tell)
-
-
-def _analyse(logs: Logs, work: Path, chosen: RunSettings, tell: Tell) -> None:
-    for name in (DIAGNOSIS, EXTENDED):
-        (work / name).unlink(missing_ok=True)
-    tell("ingest", ingest(logs, work, chosen.ingest))
-    tell("pair", pair(work, chosen.pairing))
-    tell("separate", separate(work, chosen.separation))
-    tell("fit", fit(work, chosen.fit))
-    optional: dict[str, tuple[str, Callable[[], Done]]] = {}
-    if chosen.diagnosis is not None:
-        optional["diagnose"] = (DIAGNOSIS, lambda: diagnose(work, chosen.diagnosis))
-    optional |= {
-        "simulate": (
-            SCHEDULE,
-            lambda: simulate(work, chosen.schedule, chosen.correction),
-        ),
-        "evaluate": (
-            EVALUATION,
-            lambda: evaluate(work, chosen.grid, chosen.correction),
-        ),
-    }
-    for stage, (name, make) in optional.items():
-        try:
-            tell(stage, make())
-        except NotEnoughData as fault:
+        for name in (DIAGNOSIS, EXTENDED):
             (work / name).unlink(missing_ok=True)
-            tell(stage, Done(work / name, f"left out: {fault}"))
+        progress("ingest", ingest(logs, work, settings.ingest))
+        progress("pair", pair(work, settings.pairing))
+        progress("separate", separate(work, settings.separation))
+        progress("fit", fit(work, settings.fit))
+        for stage, output, call in _optional_stages(work, settings):
+            try:
+                result = call()
+            except NotEnoughData as fault:
+                (work / output).unlink(missing_ok=True)
+                result = StageResult(work / output, f"left out: {fault}")
+            progress(stage, result)
+
+
+def _optional_stages(
+    work: Path, settings: RunSettings
+) -> list[tuple[str, str, Callable[[], StageResult]]]:
+    """Return name, output and call of the stages that need more data than the identification."""
+    schedule, grid, correction = settings.schedule, settings.grid, settings.correction
+    stages: list[tuple[str, str, Callable[[], StageResult]]] = [
+        ("simulate", SCHEDULE, lambda: simulate(work, schedule, correction)),
+        ("evaluate", EVALUATION, lambda: evaluate(work, grid, correction)),
+    ]
+    if settings.diagnosis is not None:
+        stages.insert(0, ("diagnose", DIAGNOSIS, lambda: diagnose(work, settings.diagnosis)))
+    return stages

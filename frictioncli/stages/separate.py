@@ -1,4 +1,4 @@
-"""From pairs to torques: ``separate``."""
+"""Separation of friction and load: ``separate``."""
 
 from dataclasses import asdict
 from pathlib import Path
@@ -8,13 +8,28 @@ from frictioncli.pairs.separation import TorqueRanges, separation_text, sign_con
 from frictioncli.pairs.separation import separate as separate_pairs
 from frictioncli.pairs.settings import SeparationSettings
 from frictioncli.provenance import Provenance, input_hashes
-from frictioncli.stages.stage import Done, stage
+from frictioncli.stages.stage import StageResult, stage
 from frictioncli.workfiles import PAIRS, TORQUES
 
 
 @stage
-def separate(work: Path, settings: SeparationSettings | None = None) -> Done:
-    """Separate friction torque from load torque by equation (8): ``torques.parquet``."""
+def separate(work: Path, settings: SeparationSettings | None = None) -> StageResult:
+    """Separate friction torque from load torque by equation (8): ``torques.parquet``.
+
+    Parameters
+    ----------
+    work : Path
+        Work folder with ``pairs.parquet``.
+    settings : SeparationSettings, optional
+        Sign of friction.
+
+    Raises
+    ------
+    NotEnoughData
+        If runs of a joint contradict each other in the sign of friction.
+    TableError
+        If a table is missing or damaged.
+    """
     settings = settings or SeparationSettings()
     source = work / PAIRS
     facts = tables.facts(source)
@@ -28,6 +43,6 @@ def separate(work: Path, settings: SeparationSettings | None = None) -> Done:
             torques.write(rows)
         facts |= {"load_unit": "N·m"} if ranges.load_is_measured else {}
         torques.facts = facts
-    return Done(
+    return StageResult(
         work / TORQUES, separation_text(ranges, signs, facts, given=settings.sign is not None)
     )

@@ -1,4 +1,4 @@
-"""When to correct the temperature, and the friction predicted: ``simulate``."""
+"""Simulation of the temperature correction with one schedule: ``simulate``."""
 
 from dataclasses import asdict
 from pathlib import Path
@@ -9,8 +9,8 @@ from frictioncli import schemas
 from frictioncli.correction import evaluation as correction
 from frictioncli.correction.settings import CorrectionSettings, ScheduleSettings
 from frictioncli.model.document import FrictionModel
-from frictioncli.stages.corrected import corrected
-from frictioncli.stages.stage import Done, stage
+from frictioncli.stages.correction_table import write_correction_table
+from frictioncli.stages.stage import StageResult, stage
 from frictioncli.workfiles import SCHEDULE
 
 
@@ -21,16 +21,40 @@ def simulate(
     settings: CorrectionSettings | None = None,
     *,
     extended: bool = False,
-) -> Done:
-    """Simulate Algorithm 3 with one criterion, on the base or the extended model."""
+) -> StageResult:
+    """Simulate Algorithm 3 with one schedule: ``schedule.parquet``.
+
+    Parameters
+    ----------
+    work : Path
+        Work folder with ``torques.parquet`` and the model.
+    schedule : ScheduleSettings, optional
+        When the temperature is corrected.
+    settings : CorrectionSettings, optional
+        How corrections are computed.
+    extended : bool
+        Whether the extended model is used.
+
+    Raises
+    ------
+    NotEnoughData
+        If no joint has a thermal cycle and a model that depends on temperature.
+    TableError
+        If a table or the model is missing or damaged.
+    """
     schedule = schedule or ScheduleSettings()
     settings = settings or CorrectionSettings()
 
-    def simulated(torques: pd.DataFrame, model: FrictionModel) -> pd.DataFrame:
+    def calculate(torques: pd.DataFrame, model: FrictionModel) -> pd.DataFrame:
         return correction.simulate(torques, model, settings, schedule)
 
-    rows, faults, unit = corrected(
-        work, schemas.SCHEDULE, "simulate", asdict(schedule) | asdict(settings), simulated, extended
+    rows, faults, unit = write_correction_table(
+        work,
+        schemas.SCHEDULE,
+        "simulate",
+        asdict(schedule) | asdict(settings),
+        calculate,
+        extended=extended,
     )
     lines = [
         f"{run}, joint {joint}, {phase}: {int(group['corrected'].sum())} corrections"
@@ -39,4 +63,4 @@ def simulate(
         f" ({correction.epsilon(group, 'friction_torque'):.3g} unsmoothed)"
         for (run, joint, phase), group in rows.groupby(["run", "joint", "phase"], sort=False)
     ]
-    return Done(work / SCHEDULE, "\n".join([schedule.describe(unit), *lines, *faults]))
+    return StageResult(work / SCHEDULE, "\n".join([schedule.describe(unit), *lines, *faults]))

@@ -1,4 +1,4 @@
-"""What all stages share: what is done before and after, and what comes out."""
+"""Decorator and result of the stages."""
 
 import functools
 import inspect
@@ -12,8 +12,16 @@ from frictioncli.workfolder import locked, outdated
 
 
 @dataclass(frozen=True, slots=True)
-class Done:
-    """What a stage made, and what it has to say about it."""
+class StageResult:
+    """Output of a stage.
+
+    Attributes
+    ----------
+    path : Path
+        File that the stage has written.
+    text : str
+        Summary that the command prints.
+    """
 
     path: Path
     text: str
@@ -22,30 +30,36 @@ class Done:
         return self.text
 
     def _repr_html_(self) -> str:
-        """Return the text as it is, for notebooks."""
+        """Return the text with its line breaks, for notebooks."""
         return f"<pre>{escape(self.text)}</pre>"
 
 
 _Arguments = ParamSpec("_Arguments")
 
 
-def stage(work_on: Callable[_Arguments, Done]) -> Callable[_Arguments, Done]:
-    """Let a stage have its work folder to itself, and say which of its inputs are out of date."""
-    signature = inspect.signature(work_on)
+def stage(function: Callable[_Arguments, StageResult]) -> Callable[_Arguments, StageResult]:
+    """Return a stage that locks its work folder and warns of outdated inputs.
 
-    @functools.wraps(work_on)
-    def alone_with_its_folder(*args: _Arguments.args, **kwargs: _Arguments.kwargs) -> Done:
+    Parameters
+    ----------
+    function : callable
+        The stage; its parameter ``work`` is the work folder.
+    """
+    signature = inspect.signature(function)
+
+    @functools.wraps(function)
+    def locked_stage(*args: _Arguments.args, **kwargs: _Arguments.kwargs) -> StageResult:
         work: Path = signature.bind(*args, **kwargs).arguments["work"]
         with locked(work):
-            done = work_on(*args, **kwargs)
-            # a page shows all tables of its folder
-            used = [done.path] if done.path.parent == work else sorted(work.iterdir())
-            warnings = [f"warning: {text}" for text in outdated(used)]
-        return Done(done.path, "\n".join([*warnings, done.text]))
+            result = function(*args, **kwargs)
+            # the report shows all tables of its folder
+            outputs = [result.path] if result.path.parent == work else sorted(work.iterdir())
+            warnings = [f"warning: {text}" for text in outdated(outputs)]
+        return StageResult(result.path, "\n".join([*warnings, result.text]))
 
-    return alone_with_its_folder
+    return locked_stage
 
 
-def present(*paths: Path) -> list[Path]:
-    """Return the inputs that a work folder has; those of older versions lack some."""
+def existing(*paths: Path) -> list[Path]:
+    """Return the paths that exist; work folders of older versions lack some."""
     return [path for path in paths if path.exists()]
