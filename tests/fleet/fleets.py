@@ -31,6 +31,11 @@ def write_fleet(folder):
     return folder
 
 
+def _interruptible():
+    """Let SIGINT interrupt the command even if the tests were started as a background job."""
+    signal.signal(signal.SIGINT, signal.SIG_DFL)
+
+
 def started(*arguments):
     """Start the command in a process group of its own."""
     return subprocess.Popen(
@@ -41,6 +46,7 @@ def started(*arguments):
         encoding="utf-8",
         env=ENVIRONMENT,
         start_new_session=True,
+        preexec_fn=_interruptible,
     )
 
 
