@@ -1,1 +1,1 @@
-"""A first mapping file for a table of unknown columns, from their names and their physics."""
+"""Suggest a mapping file for a log with unknown columns, from their names and their values."""

@@ -1,19 +1,48 @@
-"""The columns of a log, and what their names say of them."""
+"""The columns of a log with what their names say, and the suggestion of a column."""
 
+import re
+from collections import defaultdict
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
-from frictioncli.inspection.map_suggestion.guess import is_command
-from frictioncli.inspection.map_suggestion.numbering import joint_numbers
-from frictioncli.inspection.map_suggestion.probe import Probe
+from frictioncli.inspection.map_suggestion.log_head import LogHead
+from frictioncli.inspection.map_suggestion.measured_or_commanded import is_command
 from frictioncli.logs.channels import aliases as names
 from frictioncli.logs.channels import units
 from frictioncli.logs.channels.recognition import LogChannel, recognise_channels, split_unit
 
-OTHERS = 4
-"""Alternatives that are told."""
+SURE, LIKELY, GUESS = "sure", "likely", "a guess"
+
+MAX_ALTERNATIVES = 4
+"""Most alternatives that are named for a quantity."""
 
 _TORQUE_LIKE = (names.TORQUE, names.LOAD)
+_LAST_NUMBER = re.compile(r"^(.*?)(\d{1,2})(\D*)$")
+
+
+@dataclass(frozen=True, slots=True)
+class ColumnGuess:
+    """The column suggested for a quantity.
+
+    Attributes
+    ----------
+    column : int
+        Index in the file.
+    reason : str
+        The evidence for it.
+    confidence : str
+        ``sure``, ``likely`` or ``a guess``.
+    unit : str
+        Its unit; "" where it is unknown.
+    alternatives : tuple of (int, str)
+        Other possible columns with the evidence for them.
+    """
+
+    column: int
+    reason: str
+    confidence: str
+    unit: str = ""
+    alternatives: tuple[tuple[int, str], ...] = ()
 
 
 @dataclass(frozen=True, slots=True)
@@ -22,52 +51,95 @@ class LogColumns:
 
     Attributes
     ----------
-    found : Probe
+    head : LogHead
         Their names and first values.
-    known : mapping of int to LogChannel
-        Those whose names are known.
-    numbers : mapping of int to int
-        Joint, from 1, of those whose names count joints.
+    recognised : mapping of int to LogChannel
+        Columns with known names.
+    joints : mapping of int to int
+        Joint number from 1, of columns whose names have one.
     """
 
-    found: Probe
-    known: Mapping[int, LogChannel]
-    numbers: Mapping[int, int]
+    head: LogHead
+    recognised: Mapping[int, LogChannel]
+    joints: Mapping[int, int]
 
     def is_of(self, column: int, joint: int | None) -> bool:
-        """Return whether a name says that a column is of a joint; None is any joint."""
-        return joint is None or self.numbers.get(column) == joint
+        """Return whether a column is of a joint by its name; None stands for any joint."""
+        return joint is None or self.joints.get(column) == joint
 
     def is_of_another(self, column: int, joint: int) -> bool:
-        """Return whether a name says that a column is of another joint."""
-        return self.numbers.get(column, joint) != joint
+        """Return whether a column is of another joint by its name."""
+        return self.joints.get(column, joint) != joint
 
-    def says(self, column: int, quantity: str) -> bool:
-        """Return whether a name is known for a quantity."""
-        channel = self.known.get(column)
+    def is_named(self, column: int, quantity: str) -> bool:
+        """Return whether a column's name is a known name of a quantity."""
+        channel = self.recognised.get(column)
         return channel is not None and channel.quantity == quantity
 
     def no_torque(self) -> frozenset[int]:
         """Return the columns that are no torque by name or unit."""
-        other = {c for c, channel in self.known.items() if channel.quantity not in _TORQUE_LIKE}
-        return frozenset(other | {c for c, n in enumerate(self.found.names) if _other_unit(n)})
+        other = {
+            c for c, channel in self.recognised.items() if channel.quantity not in _TORQUE_LIKE
+        }
+        return frozenset(other | {c for c, n in enumerate(self.head.names) if _has_other_unit(n)})
 
-    def told(self, columns: Sequence[int], why: str) -> tuple[tuple[int, str], ...]:
-        """Return columns as alternatives, those that are commands by their names marked."""
+    def alternatives(self, columns: Sequence[int], reason: str) -> tuple[tuple[int, str], ...]:
+        """Return columns with the evidence for them, which mentions commands."""
         return tuple(
-            (c, f"{why}, a command by its name" if is_command(self.found.names[c]) else why)
-            for c in columns[:OTHERS]
+            (c, f"{reason}, a command by its name" if is_command(self.head.names[c]) else reason)
+            for c in columns[:MAX_ALTERNATIVES]
         )
 
 
-def columns_of(found: Probe, time: int) -> LogColumns:
-    """Return the columns of a log whose time is in a column."""
-    known = {channel.column: channel for channel in recognise_channels(found.names)}
-    said = {column: c.joint for column, c in known.items() if c.joint is not None}
-    return LogColumns(found, known, joint_numbers(found.names, time) | said)
+def log_columns(head: LogHead, time: int) -> LogColumns:
+    """Return the columns of a log.
+
+    Parameters
+    ----------
+    head : LogHead
+        The beginning of the log.
+    time : int
+        Column of the time.
+    """
+    recognised = {channel.column: channel for channel in recognise_channels(head.names)}
+    by_name = {column: c.joint for column, c in recognised.items() if c.joint is not None}
+    return LogColumns(head, recognised, joints_by_number(head.names, time) | by_name)
 
 
-def _other_unit(name: str) -> bool:
-    """Return whether a header gives a unit that is none of torque or current."""
+def joints_by_number(column_names: Sequence[str], time: int) -> dict[int, int]:
+    """Return the joint of each column whose name counts joints, also of unknown names.
+
+    Names that differ only in their last number form a family. A family that contains the time, as
+    ``c1`` to ``c9`` may, does not count joints. If one family counts from 0, all do.
+
+    Parameters
+    ----------
+    column_names : sequence of str
+        All column names.
+    time : int
+        Column of the time.
+
+    Returns
+    -------
+    dict of int to int
+        Joint number from 1 by column.
+
+    Examples
+    --------
+    >>> joints_by_number(["t", "winkel_0", "winkel_1", "strom"], 0)
+    {1: 1, 2: 2}
+    """
+    families: dict[tuple[str, str], dict[int, int]] = defaultdict(dict)
+    for column, name in enumerate(column_names):
+        parts = _LAST_NUMBER.match(name.strip())
+        if parts:
+            families[parts[1], parts[3]][column] = int(parts[2])
+    counting = [family for family in families.values() if len(family) > 1 and time not in family]
+    base = 0 if any(0 in family.values() for family in counting) else 1
+    return {c: number + 1 - base for family in counting for c, number in family.items()}
+
+
+def _has_other_unit(name: str) -> bool:
+    """Return whether a name has a unit that is not one of torque or current."""
     unit = split_unit(name)[1]
     return bool(unit) and units.canonical(unit, names.TORQUE) is None

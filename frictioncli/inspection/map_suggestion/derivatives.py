@@ -1,4 +1,4 @@
-"""Which column is the derivative of which: that tells position, velocity and their units."""
+"""Find columns that are derivatives of others: positions, velocities and their units."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -6,17 +6,18 @@ from dataclasses import dataclass
 import numpy as np
 
 from frictioncli.arrays import Array
-from frictioncli.inspection.map_suggestion.probe import Probe
+from frictioncli.inspection.map_suggestion.log_head import LogHead
 from frictioncli.logs.channels import aliases as names
 from frictioncli.logs.channels import unit_evidence
 from frictioncli.logs.channels.unit_evidence import MotionUnits
 from frictioncli.logs.channels.units import FACTORS
 
-_ALIKE = 0.97
-"""Least cosine between the change of one column and the integral of another."""
-
-_FULL = 8
-_SHORT = 200
+_LEAST_COSINE = 0.97
+"""Least cosine between the change of a column and the integral of its derivative."""
+_WINDOW = 8
+"""Length of a window in long logs. [samples]"""
+_SHORT_LOG = 200
+"""Below this length, windows are one sample long. [samples]"""
 
 
 @dataclass(frozen=True, slots=True)
@@ -28,11 +29,11 @@ class Derivative:
     position, velocity : int
         Columns.
     cosine : float
-        How alike change and integral are, 1 at most.
+        Cosine between the change of position and the integral of velocity. [-]
     units : MotionUnits
-        Units of time, position and velocity with which the two fit.
+        Units of time, position and velocity with which the two agree.
     travel : float
-        Way of the position, there and back. [its unit]
+        Total travel of the position in both directions. [raw]
     """
 
     position: int
@@ -42,64 +43,65 @@ class Derivative:
     travel: float
 
 
-def derivatives(found: Probe, time: int, time_units: Sequence[str]) -> list[Derivative]:
-    """Return pairs of a column and its derivative whose units can be told, most alike first.
+def find_derivatives(head: LogHead, time: int, time_units: Sequence[str]) -> list[Derivative]:
+    """Return the pairs of a column and its derivative that agree in some units, best first.
 
-    A velocity is no position although its acceleration may be in the file too.
+    A velocity is not returned as a position, even if the acceleration is in the log too.
 
     Parameters
     ----------
-    found : Probe
+    head : LogHead
         The beginning of the log.
     time : int
         Column of the time.
     time_units : sequence of str
-        Units that the time may have.
+        Possible units of the time.
     """
-    columns = [column for column in found.values if column != time]
+    columns = [column for column in head.values if column != time]
     if not columns:
         return []
-    changes, areas = _windows(found, time, columns)
-    cosines = _unit_rows(changes) @ _unit_rows(areas).T
+    changes, integrals = _over_windows(head, time, columns)
+    cosines = _normalised_rows(changes) @ _normalised_rows(integrals).T
     np.fill_diagonal(cosines, 0.0)
-    alike = np.abs(cosines)
-    pairs = []
-    for i, j in zip(*np.nonzero(alike > _ALIKE), strict=True):
-        if alike[:, i].max() > alike[i, j]:
-            continue  # itself a derivative: a velocity and its acceleration
-        ratio = float(changes[i] @ areas[j] / (areas[j] @ areas[j]))
-        position = found.values[columns[i]]
-        fitting = _units(position, ratio, time_units)
-        if fitting is not None:
+    similarity = np.abs(cosines)
+    found = []
+    for i, j in zip(*np.nonzero(similarity > _LEAST_COSINE), strict=True):
+        if similarity[:, i].max() > similarity[i, j]:
+            continue  # itself a derivative: a velocity with its acceleration
+        ratio = float(changes[i] @ integrals[j] / (integrals[j] @ integrals[j]))
+        position = head.values[columns[i]]
+        units = _fitting_units(position, ratio, time_units)
+        if units is not None:
             travel = float(np.abs(np.diff(position)).sum())
-            pairs.append(Derivative(columns[i], columns[j], float(alike[i, j]), fitting, travel))
-    return sorted(pairs, key=lambda pair: -pair.cosine)
+            cosine = float(similarity[i, j])
+            found.append(Derivative(columns[i], columns[j], cosine, units, travel))
+    return sorted(found, key=lambda derivative: -derivative.cosine)
 
 
-def _windows(found: Probe, time: int, columns: Sequence[int]) -> tuple[Array, Array]:
-    """Return each column's change over short windows, and its integral over the same windows."""
-    clock = found.values[time]
+def _over_windows(head: LogHead, time: int, columns: Sequence[int]) -> tuple[Array, Array]:
+    """Return the change and the integral of each column over windows, shape (columns, windows)."""
+    clock = head.values[time]
     steps = np.diff(clock)
-    width = 1 if len(steps) < _SHORT else _FULL
+    width = 1 if len(steps) < _SHORT_LOG else _WINDOW
     period = float(np.median(steps))
     elapsed = clock[width:] - clock[:-width]
-    even = (elapsed > 0) & (elapsed < 2 * width * period)
-    changes, areas = [], []
+    without_gap = (elapsed > 0) & (elapsed < 2 * width * period)
+    changes, integrals = [], []
     for column in columns:
-        values = found.values[column]
-        area = np.concatenate(([0.0], np.cumsum(steps * (values[1:] + values[:-1]) / 2)))
-        changes.append((values[width:] - values[:-width])[even])
-        areas.append((area[width:] - area[:-width])[even])
-    return np.array(changes), np.array(areas)
+        values = head.values[column]
+        integral = np.concatenate(([0.0], np.cumsum(steps * (values[1:] + values[:-1]) / 2)))
+        changes.append((values[width:] - values[:-width])[without_gap])
+        integrals.append((integral[width:] - integral[:-width])[without_gap])
+    return np.array(changes), np.array(integrals)
 
 
-def _unit_rows(rows: Array) -> Array:
+def _normalised_rows(rows: Array) -> Array:
     lengths = np.linalg.norm(rows, axis=1, keepdims=True)
     return rows / np.where(lengths > 0, lengths, 1.0)
 
 
-def _units(position: Array, ratio: float, time_units: Sequence[str]) -> MotionUnits | None:
-    """Return the units that fit; None where no usual ones do."""
+def _fitting_units(position: Array, ratio: float, time_units: Sequence[str]) -> MotionUnits | None:
+    """Return units that agree with the ratio of change to integral; None where none do."""
     possible, _ = unit_evidence.possible_position_units(
         largest=float(np.max(np.abs(position))),
         span=float(np.ptp(position)),

@@ -1,57 +1,58 @@
-"""The text of a suggested mapping file: each line with why and how sure, alternatives beside it."""
+"""Text of a suggested mapping file, with reasons, confidence and alternatives in comments."""
 
-from frictioncli.inspection.map_suggestion.guess import Guess
-from frictioncli.inspection.map_suggestion.probe import Probe
+from frictioncli.inspection.map_suggestion.columns import ColumnGuess
+from frictioncli.inspection.map_suggestion.log_head import LogHead
 from frictioncli.inspection.map_suggestion.suggestion import Suggestion
 from frictioncli.logs.channels import aliases as names
 from frictioncli.plain_text import escaped, printable
 
-_LONGEST = 90
+_MAX_COMMENT = 180
+"""Longest text in a comment. [characters]"""
 
 
-def map_text(suggested: Suggestion, found: Probe, source: str) -> str:
-    """Return the mapping file.
+def map_text(suggestion: Suggestion, head: LogHead, source: str) -> str:
+    """Return the text of the mapping file (TOML).
 
     Parameters
     ----------
-    suggested : Suggestion
-        The guesses.
-    found : Probe
-        The log they were made from.
+    suggestion : Suggestion
+        The suggested columns.
+    head : LogHead
+        The beginning of the log.
     source : str
-        The log's name.
+        The name of the log.
     """
-    columns = len(found.values) + len(found.constants)
+    columns = len(head.values) + len(head.constants)
     lines = [
-        f"# Suggested from {_comment(source)}: {found.rows} rows, {columns} columns of numbers.",
+        f"# Suggested from {_comment(source)}: {head.rows} rows, {columns} columns of numbers.",
         "# Check every line, then:",
         "# frictioncli inspect LOGS --map THIS_FILE",
         "",
         "[channels]",
     ]
-    for quantity, guess in suggested.guesses.items():
-        lines += _channel(quantity, guess, found)
-    if names.TORQUE not in suggested.guesses:
+    for quantity, guess in suggestion.guesses.items():
+        lines += _channel_lines(quantity, guess, head)
+    if names.TORQUE not in suggestion.guesses:
         lines.append('# torque = "?"  # no column changes with the direction of motion: name it')
     lines += ["", "[units]"]
-    for quantity, guess in suggested.guesses.items():
+    for quantity, guess in suggestion.guesses.items():
         doubt = ""
         if quantity == names.TORQUE:
             doubt = "  # by name only, numbers do not tell: N·m, or A if it is a current"
         lines.append(f'{quantity} = "{guess.unit}"{doubt}')
-    return "\n".join([*lines, "", "[joint]", f"number = {suggested.joint}", ""])
+    return "\n".join([*lines, "", "[joint]", f"number = {suggestion.joint}", ""])
 
 
-def _channel(quantity: str, guess: Guess, found: Probe) -> list[str]:
+def _channel_lines(quantity: str, guess: ColumnGuess, head: LogHead) -> list[str]:
     lines = [
-        f"# {guess.sure}: {_comment(guess.why)}",
-        f"{quantity} = {_quoted(found.names[guess.column])}",
+        f"# {guess.confidence}: {_comment(guess.reason)}",
+        f"{quantity} = {_quoted(head.names[guess.column])}",
     ]
     return [
         *lines,
         *(
-            f"# {quantity} = {_comment(_quoted(found.names[column]))}  # {_comment(why)}"
-            for column, why in guess.others
+            f"# {quantity} = {_comment(_quoted(head.names[column]))}  # {_comment(reason)}"
+            for column, reason in guess.alternatives
         ),
     ]
 
@@ -63,4 +64,4 @@ def _quoted(name: str) -> str:
 
 
 def _comment(text: str) -> str:
-    return printable(text, 2 * _LONGEST)
+    return printable(text, _MAX_COMMENT)

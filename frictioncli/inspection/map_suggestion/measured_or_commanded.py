@@ -1,58 +1,111 @@
-"""Of two columns that show the same motion: which was commanded, and which was measured."""
+"""Which of several columns with the same motion was measured, and which was commanded."""
 
+import re
 from collections.abc import Mapping
 
 import numpy as np
 
 from frictioncli.arrays import Array
-from frictioncli.inspection.map_suggestion.guess import is_command, is_derived
 
-_LONGEST_LAG = 20
+_COMMAND = re.compile(r"cmd|command|soll|target|desired|setpoint|_set\b|_ref\b|_d\b|nominal", re.I)
+_DERIVED = re.compile(r"err|diff|dev|schlepp|residual|delta", re.I)
+_MAX_LAG = 20
+"""Longest lag between two columns. [samples]"""
 _SAME = 0.995
 _HALF = 0.5
 
 
+def is_command(name: str) -> bool:
+    """Return whether a column is a commanded value by its name.
+
+    Examples
+    --------
+    >>> is_command("AxisPos_Soll_A1"), is_command("AxisPos_Ist_A1")
+    (True, False)
+    """
+    return bool(_COMMAND.search(name))
+
+
+def is_derived(name: str) -> bool:
+    """Return whether a column is a difference of other columns by its name."""
+    return bool(_DERIVED.search(name))
+
+
 def same_motion(one: Array, other: Array) -> bool:
-    """Return whether two columns show one motion in one unit, a short lag aside."""
-    reach = float(np.ptp(one))
-    return reach > 0 and float(np.sqrt(np.mean((one - other) ** 2))) < (1 - _SAME) * 10 * reach
-
-
-def lag(one: Array, other: Array) -> float:
-    """Return by how many samples ``other`` comes after ``one``; negative where it comes before.
+    """Return whether two columns show the same motion in the same unit, except for a short lag.
 
     Parameters
     ----------
     one, other : ndarray, shape (n,)
-        Columns that show the same motion.
+        The columns.
     """
-    longest = min(_LONGEST_LAG, (len(one) - 1) // 4)
+    span = float(np.ptp(one))
+    return span > 0 and float(np.sqrt(np.mean((one - other) ** 2))) < (1 - _SAME) * 10 * span
+
+
+def lag(one: Array, other: Array) -> float:
+    """Return the lag of one column behind another with the same motion.
+
+    It is the shift with the least mean square difference, interpolated by a parabola.
+
+    Parameters
+    ----------
+    one, other : ndarray, shape (n,)
+        The columns.
+
+    Returns
+    -------
+    float
+        Lag of ``other`` behind ``one``, at most 20; negative where it leads. [samples]
+
+    Examples
+    --------
+    >>> wave = np.sin(np.arange(500) / 20)
+    >>> round(lag(wave[3:], wave[:-3]), 2)
+    3.0
+    """
+    longest = min(_MAX_LAG, (len(one) - 1) // 4)
     shifts = np.arange(-longest, longest + 1)
     inner = one[longest : len(one) - longest]
-    missed = np.array(
+    difference = np.array(
         [np.mean((other[longest + s : longest + s + len(inner)] - inner) ** 2) for s in shifts]
     )
-    best = int(np.argmin(missed))
+    best = int(np.argmin(difference))
     if not 0 < best < len(shifts) - 1:
         return float(shifts[best])
-    # the vertex of the parabola through the three lowest points
-    left, middle, right = missed[best - 1 : best + 2]
-    bend = left - 2 * middle + right
-    return float(shifts[best] + (_HALF * (left - right) / bend if bend > 0 else 0.0))
+    # vertex of the parabola through the three lowest points
+    left, middle, right = difference[best - 1 : best + 2]
+    curvature = left - 2 * middle + right
+    return float(shifts[best] + (_HALF * (left - right) / curvature if curvature > 0 else 0.0))
 
 
 def roughness(values: Array) -> float:
-    """Return the size of what is unlike its neighbours: noise, or rounding."""
+    """Return the root mean square of the second difference: the size of noise or rounding.
+
+    Parameters
+    ----------
+    values : ndarray, shape (n,)
+        A column.
+    """
     return float(np.sqrt(np.mean(np.diff(values, 2) ** 2)))
 
 
 def measured_first(
     columns: list[int], values: Mapping[int, Array], names: tuple[str, ...]
 ) -> list[int]:
-    """Order columns of one motion: what was measured before what was commanded.
+    """Order columns of the same motion, measured ones before commanded ones.
 
-    A name that says so decides; else the one that comes later, as a drive follows its command; else
-    the rougher one, as commands are computed.
+    The name decides first. Then the column with the greater lag counts as measured, as a drive
+    follows its command; then the rougher one, as commands are computed.
+
+    Parameters
+    ----------
+    columns : list of int
+        Columns with the same motion.
+    values : mapping of int to ndarray, shape (n,)
+        Values by column.
+    names : tuple of str
+        All column names.
     """
     first = columns[0]
 

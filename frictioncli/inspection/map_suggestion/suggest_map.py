@@ -1,12 +1,12 @@
-"""A first mapping file for logs: for the first that is not recognised, else for the first."""
+"""Suggest a mapping file for logs whose columns are not recognised."""
 
 from collections.abc import Sequence
 from pathlib import Path
 
 from frictioncli.errors import LogError, NotEnoughData
+from frictioncli.inspection.map_suggestion.log_head import read_log_head
 from frictioncli.inspection.map_suggestion.map_text import map_text
-from frictioncli.inspection.map_suggestion.probe import probe
-from frictioncli.inspection.map_suggestion.suggestion import suggest
+from frictioncli.inspection.map_suggestion.suggestion import suggest_columns
 from frictioncli.logs.channels.channel_map import ChannelMap, read_map
 from frictioncli.logs.formats import open_log
 from frictioncli.logs.log_source import LogSource, Refusal
@@ -16,32 +16,51 @@ from frictioncli.logs.settings import IngestSettings
 
 
 def suggested_map(logs: Sequence[Path], settings: IngestSettings | None = None) -> str:
-    """Return the text of a first mapping file.
+    """Return the text of a suggested mapping file.
+
+    It is made from the first log whose columns are not recognised, else from the first log.
 
     Parameters
     ----------
     logs : sequence of Path
         Log files, or folders of them.
     settings : IngestSettings, optional
-        The joint wanted, and the form of the text by a mapping file that has ``[csv]`` only.
+        The joint wanted, and a mapping file with the form of the text.
 
     Raises
     ------
     LogError
-        If no log can be opened, or none of its columns is like a time or a position.
+        If no log can be opened, or none of its columns resembles a time or a position.
+
+    Examples
+    --------
+    >>> import tomllib
+    >>> from tempfile import TemporaryDirectory
+    >>> import numpy as np
+    >>> import pandas as pd
+    >>> seconds = np.arange(2000) / 100
+    >>> angle, rate = 30 * np.sin(seconds), 30 * np.cos(seconds)
+    >>> log = pd.DataFrame({"a": 5 * np.sign(rate) + angle / 50, "b": seconds, "c": angle})
+    >>> with TemporaryDirectory() as folder:
+    ...     log.to_csv(Path(folder, "log.csv"), index=False)
+    ...     text = suggested_map([Path(folder)])
+    >>> tomllib.loads(text)["channels"]
+    {'time': 'b', 'position': 'c', 'torque': 'a'}
     """
     settings = settings or IngestSettings()
     channel_map = read_map(settings.map_file) if settings.map_file is not None else ChannelMap()
-    source = _source(logs, settings, channel_map)
+    source = _choose_log(logs, settings, channel_map)
     joint = settings.joints[0] if settings.joints else None
-    found = probe(source)
+    head = read_log_head(source)
     try:
-        return map_text(suggest(found, joint), found, source.path.name)
-    except NotEnoughData as fault:
-        raise LogError(f"{source.path}: {fault}") from None
+        return map_text(suggest_columns(head, joint), head, source.path.name)
+    except NotEnoughData as error:
+        raise LogError(f"{source.path}: {error}") from None
 
 
-def _source(logs: Sequence[Path], settings: IngestSettings, channel_map: ChannelMap) -> LogSource:
+def _choose_log(
+    logs: Sequence[Path], settings: IngestSettings, channel_map: ChannelMap
+) -> LogSource:
     """Return the first log whose columns are not recognised, else the first that can be opened."""
     first: LogSource | None = None
     refusals = []
@@ -54,9 +73,9 @@ def _source(logs: Sequence[Path], settings: IngestSettings, channel_map: Channel
             elif log.refusal.reason.startswith("no_"):
                 return source
         if first is None and opened:
-            # alone: with a map the files of one trace are not put together
-            alone = open_log(opened[0].file.path, channel_map.hints)
-            first = None if isinstance(alone, Refusal) else alone
+            # not merged with others: with a mapping file, the files of a trace stay separate
+            unmerged = open_log(opened[0].file.path, channel_map.hints)
+            first = None if isinstance(unmerged, Refusal) else unmerged
     if first is None:
         raise LogError("no log can be opened; " + "; ".join(refusals[:4]))
     return first

@@ -1,38 +1,55 @@
-"""From the beginning of a log to guesses of its time, motion, torque, load and temperature."""
+"""Suggest the columns of time, motion, torque, load and temperature from the head of a log."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 from frictioncli.errors import NotEnoughData
-from frictioncli.inspection.map_suggestion.columns import OTHERS, columns_of
-from frictioncli.inspection.map_suggestion.derivatives import Derivative, derivatives
-from frictioncli.inspection.map_suggestion.guess import LIKELY, SURE, Guess
+from frictioncli.inspection.map_suggestion.columns import (
+    LIKELY,
+    MAX_ALTERNATIVES,
+    SURE,
+    ColumnGuess,
+    log_columns,
+)
+from frictioncli.inspection.map_suggestion.derivatives import Derivative, find_derivatives
+from frictioncli.inspection.map_suggestion.log_head import LogHead
 from frictioncli.inspection.map_suggestion.motion_columns import MotionColumns, find_motion
-from frictioncli.inspection.map_suggestion.probe import Probe
-from frictioncli.inspection.map_suggestion.temperature_columns import temperature_guess
-from frictioncli.inspection.map_suggestion.time_columns import TimeColumn, clocks, possible_units
+from frictioncli.inspection.map_suggestion.temperature_columns import guess_temperature
+from frictioncli.inspection.map_suggestion.time_columns import (
+    TimeColumn,
+    find_time_columns,
+    possible_time_units,
+)
 from frictioncli.inspection.map_suggestion.torque_columns import (
-    load_guess,
-    oppositions,
-    torque_guess,
+    direction_dependences,
+    guess_load,
+    guess_torque,
 )
 from frictioncli.logs.channels import aliases as names
 
 
 @dataclass(frozen=True, slots=True)
 class Suggestion:
-    """Canonical name to guess, and the joint's number."""
+    """Suggested columns of a joint.
 
-    guesses: Mapping[str, Guess]
+    Attributes
+    ----------
+    guesses : mapping of str to ColumnGuess
+        Column by quantity.
+    joint : int
+        Number of the joint, from 1.
+    """
+
+    guesses: Mapping[str, ColumnGuess]
     joint: int
 
 
-def suggest(found: Probe, joint: int | None) -> Suggestion:
-    """Find out which columns of a log are which.
+def suggest_columns(head: LogHead, joint: int | None) -> Suggestion:
+    """Suggest the columns of one joint.
 
     Parameters
     ----------
-    found : Probe
+    head : LogHead
         The beginning of the log.
     joint : int or None
         The joint wanted, from 1; None for the one that moves most.
@@ -40,50 +57,58 @@ def suggest(found: Probe, joint: int | None) -> Suggestion:
     Raises
     ------
     NotEnoughData
-        If no column is like a time, or none like a joint's position.
+        If no column resembles a time, or none a joint's position.
     """
-    candidates = clocks(found)
-    if not candidates:
+    times = find_time_columns(head)
+    if not times:
         raise NotEnoughData(
-            f"none of {len(found.values)} columns of numbers grows from row to row in even steps,"
+            f"none of {len(head.values)} columns of numbers grows from row to row in even steps,"
             " as a time does; a log needs a time column"
         )
-    clock, pairs = _clock_and_pairs(found, candidates)
-    columns = columns_of(found, clock.column)
-    times = frozenset(one.column for one in candidates)
-    motion = find_motion(columns, pairs, clock, times, joint)
-    number = joint or columns.numbers.get(motion.position.column) or 1
-    moving = {column for pair in pairs for column in (pair.position, pair.velocity)}
-    apart = times | moving | {motion.position.column}
-    judged = oppositions(
-        found, motion.degrees, motion.degrees_per_second, apart | columns.no_torque()
+    time, derivatives = _time_with_derivatives(head, times)
+    columns = log_columns(head, time.column)
+    time_columns = frozenset(one.column for one in times)
+    motion = find_motion(columns, derivatives, time, time_columns, joint)
+    number = joint or columns.joints.get(motion.position.column) or 1
+    moving = {column for pair in derivatives for column in (pair.position, pair.velocity)}
+    excluded = time_columns | moving | {motion.position.column}
+    dependences = direction_dependences(
+        head, motion.degrees, motion.degrees_per_second, excluded | columns.no_torque()
     )
     guesses = {
-        names.TIME: _time(clock, candidates, motion),
+        names.TIME: _guess_time(time, times, motion),
         names.POSITION: motion.position,
         names.VELOCITY: motion.velocity,
-        names.TORQUE: torque_guess(columns, judged, number),
+        names.TORQUE: guess_torque(columns, dependences, number),
     }
     torque = guesses[names.TORQUE]
     if torque is not None:
-        guesses[names.LOAD] = load_guess(columns, judged, number, torque.column)
+        guesses[names.LOAD] = guess_load(columns, dependences, number, torque.column)
     chosen = {guess.column for guess in guesses.values() if guess is not None}
-    guesses[names.MOTOR_TEMPERATURE] = temperature_guess(columns, number, apart | chosen)
+    guesses[names.MOTOR_TEMPERATURE] = guess_temperature(columns, number, excluded | chosen)
     return Suggestion({name: g for name, g in guesses.items() if g is not None}, number)
 
 
-def _clock_and_pairs(
-    found: Probe, candidates: Sequence[TimeColumn]
+def _time_with_derivatives(
+    head: LogHead, times: Sequence[TimeColumn]
 ) -> tuple[TimeColumn, list[Derivative]]:
-    """Return the first clock by which some column is another one's derivative, and those pairs."""
-    for clock in candidates:
-        pairs = derivatives(found, clock.column, possible_units(clock))
-        if pairs:
-            return clock, pairs
-    return candidates[0], []
+    """Return the first time column with which derivatives are found, and these."""
+    for time in times:
+        derivatives = find_derivatives(head, time.column, possible_time_units(time))
+        if derivatives:
+            return time, derivatives
+    return times[0], []
 
 
-def _time(clock: TimeColumn, candidates: Sequence[TimeColumn], motion: MotionColumns) -> Guess:
-    others = tuple((one.column, one.why) for one in candidates if one.column != clock.column)
-    sure = SURE if motion.velocity is not None and motion.velocity.sure == SURE else LIKELY
-    return Guess(clock.column, clock.why, sure, motion.time_unit, others[:OTHERS])
+def _guess_time(
+    time: TimeColumn, times: Sequence[TimeColumn], motion: MotionColumns
+) -> ColumnGuess:
+    alternatives = tuple((one.column, one.reason) for one in times if one.column != time.column)
+    is_sure = motion.velocity is not None and motion.velocity.confidence == SURE
+    return ColumnGuess(
+        time.column,
+        time.reason,
+        SURE if is_sure else LIKELY,
+        motion.time_unit,
+        alternatives[:MAX_ALTERNATIVES],
+    )

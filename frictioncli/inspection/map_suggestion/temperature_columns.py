@@ -1,39 +1,47 @@
-"""Which columns are temperatures: slow, in steps or smooth, and where temperatures lie."""
+"""Find temperature columns: they change slowly, in steps or smoothly, in a plausible range."""
 
 from collections.abc import Collection
 
 import numpy as np
 
-from frictioncli.inspection.map_suggestion.columns import OTHERS, LogColumns
-from frictioncli.inspection.map_suggestion.guess import LIKELY, SURE, Guess
-from frictioncli.inspection.map_suggestion.probe import Probe
+from frictioncli.inspection.map_suggestion.columns import (
+    LIKELY,
+    MAX_ALTERNATIVES,
+    SURE,
+    ColumnGuess,
+    LogColumns,
+)
+from frictioncli.inspection.map_suggestion.log_head import LogHead
 from frictioncli.logs.channels import aliases as names
 from frictioncli.logs.channels import units
 
 _RANGES = {"°C": (5.0, 110.0), "K": (278.0, 383.0)}
-_SLOW = 0.02
-"""Share of the rows at which a temperature in steps changes, at most."""
-
-_SMOOTH = 0.02
-"""Change from row to row of a temperature without steps, as a share of its span, at most."""
-
-_ONE_WAY = 0.1
-"""Least net change as a share of the way there and back, for what is not in steps."""
+_MAX_CHANGING = 0.02
+"""Largest share of rows at which a temperature in steps changes."""
+_MAX_STEP = 0.02
+"""Largest change from row to row of a smooth temperature, as a share of its range."""
+_LEAST_NET_CHANGE = 0.1
+"""Least range of a smooth temperature, as a share of its total variation."""
 
 
-def temperatures(found: Probe, apart: Collection[int]) -> list[tuple[int, str, str]]:
-    """Return columns that behave like temperatures: column, unit, and what speaks for it.
+def find_temperatures(head: LogHead, excluded: Collection[int]) -> list[tuple[int, str, str]]:
+    """Return the columns that behave like temperatures, best first.
 
     Parameters
     ----------
-    found : Probe
+    head : LogHead
         The beginning of the log.
-    apart : collection of int
-        Columns that are something else.
+    excluded : collection of int
+        Columns of other quantities.
+
+    Returns
+    -------
+    list of (int, str, str)
+        Column, unit, and the evidence for it.
     """
     ranked = []
-    for column, values in found.values.items():
-        if column in apart:
+    for column, values in head.values.items():
+        if column in excluded:
             continue
         low, high = float(values.min()), float(values.max())
         unit = next((u for u, (a, b) in _RANGES.items() if a <= low and high <= b), None)
@@ -41,38 +49,52 @@ def temperatures(found: Probe, apart: Collection[int]) -> list[tuple[int, str, s
             continue
         steps = np.abs(np.diff(values))
         changing = float(np.mean(steps > 0))
-        way = float(steps.sum())
-        if changing <= _SLOW:
+        variation = float(steps.sum())
+        if changing <= _MAX_CHANGING:
             levels = len(np.unique(values))
             ranked.append((-levels, column, unit, f"{levels} levels from {low:g} to {high:g}"))
-        elif steps.max() <= _SMOOTH * (high - low) and high - low >= _ONE_WAY * way:
+        elif (
+            steps.max() <= _MAX_STEP * (high - low) and high - low >= _LEAST_NET_CHANGE * variation
+        ):
             ranked.append((0, column, unit, f"slow and smooth from {low:.4g} to {high:.4g}"))
-    return [(column, unit, why) for _, column, unit, why in sorted(ranked)]
+    return [(column, unit, reason) for _, column, unit, reason in sorted(ranked)]
 
 
-def temperature_guess(columns: LogColumns, joint: int, apart: Collection[int]) -> Guess | None:
-    """Choose the joint's temperature by its name, else a column that behaves like one."""
-    behaving = [
-        (column, unit, why)
-        for column, unit, why in temperatures(columns.found, apart)
+def guess_temperature(
+    columns: LogColumns, joint: int, excluded: Collection[int]
+) -> ColumnGuess | None:
+    """Choose a joint's temperature by its name, else a column that behaves like one.
+
+    Parameters
+    ----------
+    columns : LogColumns
+        The columns of the log.
+    joint : int
+        The joint, from 1.
+    excluded : collection of int
+        Columns of other quantities.
+    """
+    similar = [
+        (column, unit, reason)
+        for column, unit, reason in find_temperatures(columns.head, excluded)
         if not columns.is_of_another(column, joint)
     ]
     named = [
         column
-        for column in columns.known
-        if columns.says(column, names.MOTOR_TEMPERATURE)
+        for column in columns.recognised
+        if columns.is_named(column, names.MOTOR_TEMPERATURE)
         and not columns.is_of_another(column, joint)
     ]
     for column in named:
-        values = columns.found.values.get(
-            column, np.array([columns.found.constants.get(column, 0.0)])
+        values = columns.head.values.get(
+            column, np.array([columns.head.constants.get(column, 0.0)])
         )
-        written = units.canonical(columns.known[column].unit, names.MOTOR_TEMPERATURE)
+        written = units.canonical(columns.recognised[column].unit, names.MOTOR_TEMPERATURE)
         conversion = units.infer_temperature_unit(values, written, None, names.MOTOR_TEMPERATURE)
         if conversion is not None:
-            return Guess(column, "its name says so", SURE, conversion.unit)
-    if not behaving:
+            return ColumnGuess(column, "its name says so", SURE, conversion.unit)
+    if not similar:
         return None
-    column, unit, why = behaving[0]
-    others = tuple((other, told) for other, _, told in behaving[1 : 1 + OTHERS])
-    return Guess(column, f"{why}, like a temperature", LIKELY, unit, others)
+    column, unit, reason = similar[0]
+    alternatives = tuple((other, why) for other, _, why in similar[1 : 1 + MAX_ALTERNATIVES])
+    return ColumnGuess(column, f"{reason}, like a temperature", LIKELY, unit, alternatives)

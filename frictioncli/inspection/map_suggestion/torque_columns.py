@@ -1,4 +1,4 @@
-"""Which column is a torque or a current: it changes its sign with the direction of motion."""
+"""Find the column of torque or current: it depends on the direction of motion."""
 
 from collections.abc import Collection, Sequence
 from dataclasses import dataclass
@@ -6,43 +6,44 @@ from dataclasses import dataclass
 import numpy as np
 
 from frictioncli.arrays import Array
-from frictioncli.inspection.map_suggestion.columns import OTHERS, LogColumns
-from frictioncli.inspection.map_suggestion.guess import (
+from frictioncli.inspection.map_suggestion.columns import (
     GUESS,
     LIKELY,
+    MAX_ALTERNATIVES,
     SURE,
-    Guess,
-    is_command,
-    is_derived,
+    ColumnGuess,
+    LogColumns,
 )
-from frictioncli.inspection.map_suggestion.probe import Probe
+from frictioncli.inspection.map_suggestion.log_head import LogHead
+from frictioncli.inspection.map_suggestion.measured_or_commanded import is_command, is_derived
 from frictioncli.logs.channels import aliases as names
 from frictioncli.logs.channels import units
 
-_MOVES = 0.1
-_FEWEST = 20
-_SEEN = 0.05
-"""Share of what gravity leaves that the direction must explain."""
-
-_GRAVITY = 0.5
+_LEAST_SPEED = 0.1
+"""Least speed of a moving joint, as a share of the highest speed."""
+_LEAST_SAMPLES = 20
+_LEAST_EXPLAINED = 0.05
+"""Least share of variance that the direction explains in a torque."""
+_LEAST_GRAVITY = 0.5
+"""Least share of variance that the angle explains in a load."""
 _SURE_SHARE = 0.5
 _CURRENT_WORDS = ("curr", "strom", "amp", "i_")
 
 
 @dataclass(frozen=True, slots=True)
-class Opposition:
-    """How a column follows the direction of motion.
+class DirectionDependence:
+    """Dependence of a column on the direction of motion.
 
     Attributes
     ----------
     column : int
         Index in the file.
     explained : float
-        Share of what gravity leaves that goes with the direction of motion. [-]
+        Share of the variance left by gravity that direction and velocity explain. [-]
     jump : float
-        Half the difference between the directions. [its unit]
+        Half the difference between the two directions. [raw]
     by_angle : float
-        Share of all its variance that goes with the angle alone. [-]
+        Share of the total variance that gravity explains. [-]
     """
 
     column: int
@@ -51,115 +52,152 @@ class Opposition:
     by_angle: float
 
     @property
-    def opposes(self) -> bool:
-        """Whether direction shows at all."""
-        return self.explained > _SEEN
+    def is_significant(self) -> bool:
+        """Whether the column depends on the direction."""
+        return self.explained > _LEAST_EXPLAINED
 
     @property
-    def loads(self) -> bool:
-        """Whether it is a load: it goes with the angle, not with the direction."""
-        return not self.opposes and self.by_angle > _GRAVITY
+    def is_load(self) -> bool:
+        """Whether the column depends on the angle and not on the direction, as a load does."""
+        return not self.is_significant and self.by_angle > _LEAST_GRAVITY
 
 
-def oppositions(
-    found: Probe, position: Array, velocity: Array, apart: Collection[int]
-) -> list[Opposition]:
-    """Return how far each column goes with the direction of motion, the most so first.
+def direction_dependences(
+    head: LogHead, position: Array, velocity: Array, excluded: Collection[int]
+) -> list[DirectionDependence]:
+    """Return how much each column depends on the direction of motion, in descending order.
+
+    Two linear regressions are compared: on gravity (a constant, sine and cosine of the angle), and
+    on gravity, the sign of velocity and velocity.
 
     Parameters
     ----------
-    found : Probe
+    head : LogHead
         The beginning of the log.
-    position, velocity : ndarray, shape (n,)
-        The joint's motion. [deg], [deg/s]
-    apart : collection of int
-        Columns that cannot be a torque: times, positions, velocities.
+    position : ndarray, shape (n,)
+        The joint's position. [deg]
+    velocity : ndarray, shape (n,)
+        The joint's velocity. [deg/s]
+    excluded : collection of int
+        Columns that are no torque: times, positions, velocities.
     """
     speed = np.abs(velocity)
-    moving = speed > _MOVES * float(np.max(speed, initial=0.0))
-    if np.count_nonzero(moving) < _FEWEST:
+    moving = speed > _LEAST_SPEED * float(np.max(speed, initial=0.0))
+    if np.count_nonzero(moving) < _LEAST_SAMPLES:
         return []
     angle = np.radians(position[moving])
     ones = np.ones(len(angle))
     gravity = np.stack([ones, np.sin(angle), np.cos(angle)], axis=1)
     direction = np.stack([np.sign(velocity[moving]), velocity[moving]], axis=1)
     both = np.concatenate([gravity, direction], axis=1)
-    judged = []
-    for column, values in found.values.items():
-        if column in apart:
+    found = []
+    for column, all_values in head.values.items():
+        if column in excluded:
             continue
-        own = values[moving]
-        left, rest = _left(gravity, own), _left(both, own)
-        spread = float(np.var(own))
-        if spread <= 0 or left <= 0:
+        values = all_values[moving]
+        without_direction = _mean_squared_residual(gravity, values)
+        with_direction = _mean_squared_residual(both, values)
+        variance = float(np.var(values))
+        if variance <= 0 or without_direction <= 0:
             continue
         signed = np.column_stack([gravity, direction[:, 0]])
-        jump = float(np.linalg.lstsq(signed, own, rcond=None)[0][-1])
-        judged.append(Opposition(column, 1 - rest / left, jump, max(1 - left / spread, 0.0)))
-    return sorted(judged, key=lambda one: -one.explained)
+        jump = float(np.linalg.lstsq(signed, values, rcond=None)[0][-1])
+        explained = 1 - with_direction / without_direction
+        by_angle = max(1 - without_direction / variance, 0.0)
+        found.append(DirectionDependence(column, explained, jump, by_angle))
+    return sorted(found, key=lambda one: -one.explained)
 
 
-def _left(columns: Array, values: Array) -> float:
-    """Return the mean square that a linear fit leaves."""
-    found = np.linalg.lstsq(columns, values, rcond=None)[0]
-    return float(np.mean((values - columns @ found) ** 2))
+def _mean_squared_residual(regressors: Array, values: Array) -> float:
+    """Return the mean squared residual of a linear regression."""
+    coefficients = np.linalg.lstsq(regressors, values, rcond=None)[0]
+    return float(np.mean((values - regressors @ coefficients) ** 2))
 
 
-def torque_guess(columns: LogColumns, judged: Sequence[Opposition], joint: int) -> Guess | None:
-    """Choose the column that opposes the motion, of the joint where names tell."""
-    usable = [one for one in judged if not columns.is_of_another(one.column, joint)]
-    opposing = [one for one in usable if one.opposes]
-    named = [one for one in usable if columns.says(one.column, names.TORQUE)]
+def guess_torque(
+    columns: LogColumns, dependences: Sequence[DirectionDependence], joint: int
+) -> ColumnGuess | None:
+    """Choose the column of a joint that depends most on the direction of motion.
+
+    Measured values and columns named as a torque are preferred.
+
+    Parameters
+    ----------
+    columns : LogColumns
+        The columns of the log.
+    dependences : sequence of DirectionDependence
+        Result of :func:`direction_dependences`.
+    joint : int
+        The joint, from 1.
+    """
+    usable = [one for one in dependences if not columns.is_of_another(one.column, joint)]
+    named = [one for one in usable if columns.is_named(one.column, names.TORQUE)]
     ranked = sorted(
-        opposing,
+        (one for one in usable if one.is_significant),
         key=lambda one: (
-            is_command(columns.found.names[one.column])
-            or is_derived(columns.found.names[one.column]),
-            not columns.says(one.column, names.TORQUE),
+            is_command(columns.head.names[one.column])
+            or is_derived(columns.head.names[one.column]),
+            not columns.is_named(one.column, names.TORQUE),
             -one.explained,
         ),
     )
     if not ranked and not named:
         return None
     best = ranked[0] if ranked else named[0]
-    why = (
+    reason = (
         f"differs by twice {best.jump:.3g} between the directions, which explains"
         f" {100 * best.explained:.0f} % of what the angle does not"
         if ranked
         else "its name says so, but it does not change with the direction of motion"
     )
-    sure = GUESS
+    confidence = GUESS
     if ranked:
-        sure = SURE if best.explained > _SURE_SHARE else LIKELY
+        confidence = SURE if best.explained > _SURE_SHARE else LIKELY
     others = [one for one in (ranked or named) if one.column != best.column]
-    told = tuple((o.column, f"opposes motion too, by {o.jump:.3g}") for o in others[:OTHERS])
-    return Guess(best.column, why, sure, _torque_unit(columns, best.column), told)
+    alternatives = tuple(
+        (one.column, f"opposes motion too, by {one.jump:.3g}") for one in others[:MAX_ALTERNATIVES]
+    )
+    unit = _torque_unit(columns, best.column)
+    return ColumnGuess(best.column, reason, confidence, unit, alternatives)
 
 
-def load_guess(
-    columns: LogColumns, judged: Sequence[Opposition], joint: int, torque: int
-) -> Guess | None:
-    """Choose a torque by its name that goes with the angle and not with the direction."""
-    for one in judged:
-        says = columns.says(one.column, names.TORQUE) or columns.says(one.column, names.LOAD)
-        commanded = is_command(columns.found.names[one.column])
-        if one.column == torque or not says or commanded or not one.loads:
+def guess_load(
+    columns: LogColumns, dependences: Sequence[DirectionDependence], joint: int, torque: int
+) -> ColumnGuess | None:
+    """Choose a column named as a torque that depends on the angle and not on the direction.
+
+    Parameters
+    ----------
+    columns : LogColumns
+        The columns of the log.
+    dependences : sequence of DirectionDependence
+        Result of :func:`direction_dependences`.
+    joint : int
+        The joint, from 1.
+    torque : int
+        The column chosen as torque.
+    """
+    for one in dependences:
+        is_named = any(columns.is_named(one.column, name) for name in (names.TORQUE, names.LOAD))
+        commanded = is_command(columns.head.names[one.column])
+        if one.column == torque or not is_named or commanded or not one.is_load:
             continue
         if (
             not columns.is_of_another(one.column, joint)
             and _torque_unit(columns, one.column) == "N·m"
         ):
-            why = (
+            reason = (
                 f"goes with the angle ({100 * one.by_angle:.0f} %), not with the direction: a"
                 " load freed of friction"
             )
-            return Guess(one.column, why, LIKELY, "N·m")
+            return ColumnGuess(one.column, reason, LIKELY, "N·m")
     return None
 
 
 def _torque_unit(columns: LogColumns, column: int) -> str:
-    channel = columns.known.get(column)
-    name = columns.found.names[column].lower()
+    """Return the unit of a torque column by its header, else A or N·m by its name."""
+    channel = columns.recognised.get(column)
+    name = columns.head.names[column].lower()
     written = "" if channel is None else channel.unit or channel.meaning.unit
     unit = units.canonical(written, names.TORQUE) if written else None
     if unit in units.FACTORS[names.TORQUE]:
