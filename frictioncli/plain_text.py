@@ -52,7 +52,7 @@ def printable(text: str, longest: int = _LONGEST) -> str:
     >>> print(printable("two" + chr(10) + "lines"))
     two\u000alines
     >>> printable("begin, then much more, end", 13)
-    'begin... end'
+    'begin..., end'
     """
     if len(text) > 2 * longest:
         text = text[:longest] + text[-longest:]
