@@ -1,4 +1,4 @@
-"""Brake columns: how long the brake was closed, whichever way the column says it."""
+"""Brake columns: how long the brake was closed, whatever the polarity of the signal."""
 
 import re
 from collections.abc import Sequence
@@ -13,29 +13,30 @@ from frictioncli.logs.samples.row_checks import LIMITS
 
 _NAME = re.compile(r"brake|bremse", re.I)
 _MOST_VALUES = 256
-_STILL = 0.02
-"""A value that goes with less than this share of the usual speed means closed."""
+_STANDSTILL = 0.02
+"""Mean speed with the brake closed, as a share of the highest mean speed of any value. [-]"""
 
 
 def closed_seconds(source: LogSource, plan: JointPlan, batch_bytes: int) -> float | None:
-    """Return how long the brake was closed [s], from one more pass over three columns of a log.
+    """Return how long the brake was closed [s], from another pass over three columns of a log.
 
-    Closed are the values at which the joint does not move. So 0 and 1 may mean either, and so may
-    the bits of KUKA's ``$BRAKE_SIG``.
+    The brake is closed at those values of its column at which the joint does not move. So 0 and 1
+    may mean either, as may the bits of KUKA's ``$BRAKE_SIG``.
 
     Parameters
     ----------
     source : LogSource
         The log.
     plan : JointPlan
-        How the joint is read.
+        Columns and units of the joint.
     batch_bytes : int
-        How much of the log to hold at a time. [byte]
+        Size of a batch in the file. [byte]
 
     Returns
     -------
     float or None
-        None where no column is named after a brake, it holds no signal, or the joint never moves.
+        None where no column is named after a brake, it is constant or no digital signal, or the
+        joint never moves.
     """
     brake = _brake_column(source.columns)
     if brake is None:
@@ -43,7 +44,7 @@ def closed_seconds(source: LogSource, plan: JointPlan, batch_bytes: int) -> floa
     time, position = plan.channels.time.column, plan.channels.position.column
     factor = plan.conversions[names.TIME].factor
     seconds: dict[float, float] = {}
-    ways: dict[float, float] = {}
+    distances: dict[float, float] = {}
     last: dict[int, float] = {}
     for batch in source.batches([brake, time, position], batch_bytes):
         rows = {c: np.concatenate(([last.get(c, np.nan)], batch.values[c])) for c in batch.values}
@@ -52,19 +53,19 @@ def closed_seconds(source: LogSource, plan: JointPlan, batch_bytes: int) -> floa
         last = {column: float(values[-1]) for column, values in rows.items()}
         with np.errstate(over="ignore"):  # damaged cells may be of any size
             elapsed = np.diff(rows[time]) * factor
-            way = np.abs(np.diff(rows[position]) * plan.conversions[names.POSITION].factor)
-        plausible = (elapsed < LIMITS[names.TIME]) & (way < LIMITS[names.POSITION])
+            distance = np.abs(np.diff(rows[position]) * plan.conversions[names.POSITION].factor)
+        plausible = (elapsed < LIMITS[names.TIME]) & (distance < LIMITS[names.POSITION])
         good = (elapsed > 0) & plausible & np.isfinite(rows[brake][1:])
         for value in np.unique(rows[brake][1:][good]).tolist():
             at = good & (rows[brake][1:] == value)
             seconds[value] = seconds.get(value, 0.0) + float(elapsed[at].sum())
-            ways[value] = ways.get(value, 0.0) + float(way[at].sum())
+            distances[value] = distances.get(value, 0.0) + float(distance[at].sum())
             if len(seconds) > _MOST_VALUES:
                 return None
-    usual = max((ways[value] / seconds[value] for value in seconds), default=0.0)
+    usual = max((distances[value] / seconds[value] for value in seconds), default=0.0)
     if not usual or len(seconds) < 2:
         return None
-    return sum(s for value, s in seconds.items() if ways[value] / s < _STILL * usual)
+    return sum(s for value, s in seconds.items() if distances[value] / s < _STANDSTILL * usual)
 
 
 def _brake_column(columns: Sequence[str]) -> int | None:

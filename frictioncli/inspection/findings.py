@@ -1,4 +1,4 @@
-"""What is found in a file: the records that the terminal text and the JSON document show."""
+"""Records of what a file holds, as shown in the terminal and in the JSON document."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
@@ -17,17 +17,17 @@ class ChannelInspection:
     Attributes
     ----------
     quantity, column : str
-        What it is, and its name in the file.
+        Canonical name of the quantity, and the column's name in the file.
     side : str
-        Side of the gear on which the column is; "" where it does not matter or is not known.
+        Side of the gear where it is measured; "" where irrelevant or not known.
     unit_found, unit_believed : str
-        The header's unit, "" where it gives none, and the unit in which it is read.
+        Unit in the header, "" where it has none, and the unit in which the column is read.
     evidence : str
-        Why that unit is believed.
+        Why it is read in that unit.
     lowest, highest : float
-        Range of the values, in the unit used inside (deg, deg/s, N·m or A, °C).
+        Range of the values, in the unit used inside: deg, deg/s, N·m or A, °C.
     grid : Resolution or None
-        The step between its values, same unit.
+        Step between its values, in the same unit.
     """
 
     quantity: str
@@ -48,7 +48,17 @@ class ChannelInspection:
 
 @dataclass(frozen=True, slots=True)
 class Spikes:
-    """Single samples of a channel unlike their neighbours; ``farthest`` in the channel's unit."""
+    """Spikes of a channel.
+
+    Attributes
+    ----------
+    quantity : str
+        Canonical name of the channel.
+    count, line : int
+        Number of spikes, and the first line.
+    farthest : float
+        Largest deviation from the neighbours, in the unit of the channel.
+    """
 
     quantity: str
     count: int
@@ -65,25 +75,25 @@ class JointInspection:
     joint : int
         Its number, from 1.
     torque_unit, torque_side : str
-        Unit and side of the torque as it is read.
+        Unit and side of the gear of the torque.
     gear_ratio : float or None
-        Motor turns per joint turn, where it is used.
+        Motor turns per joint turn, where it is used. [-]
     channels : tuple of ChannelInspection
         Its columns.
     velocity_agreement : float or None
-        Change of position per integrated velocity, 1 where they agree. [-]
+        Change of position per integral of velocity, 1 where they agree. [-]
     held_samples, held_line : int
-        Samples that repeat the one before while the joint moves, and the first line.
+        Samples that repeat the sample before while the joint moves, and the first line.
     limits : tuple of Limit
-        Where the torque is cut off.
+        Limits of the torque.
     spikes : tuple of Spikes
-        Per channel.
+        Spikes of each channel.
     frozen_spans, frozen_s : int, float
-        Stretches of constant torque at standstill and their sum. [s]
+        Intervals of constant torque at standstill, and their sum [s].
     brake_closed_s : float or None
-        Time with the brake closed by a column of its own. [s]
+        Time with the brake closed, by a brake column. [s]
     moves : mapping of str to int
-        Constant-speed parts ``forward`` and ``reverse``.
+        Number of constant-speed segments ``forward`` and ``reverse``.
     """
 
     joint: int
@@ -111,25 +121,25 @@ class FileInspection:
     path : Path
         The file.
     run, recording : str
-        The run it belongs to, and its name as a recording.
+        Its run, and its name as a recording.
     form : str
-        Its format; "" where it is none that is read.
+        Its format; "" where the format is not read.
     reason, refusal : str
-        Why it cannot be used, as a word and in words; "" where it can.
+        Why it cannot be used, as a word and as a sentence; "" where it can.
     columns : int
-        Columns in the file.
+        Number of columns.
     rows, rows_kept : int
         Rows read, and those that become samples.
     rejected : mapping of str to int
-        Reason -> rows that cannot be used.
+        Reason -> number of rejected rows.
     sampling : Sampling or None
-        How it was sampled; None where no row could be read.
+        Sampling; None where no row could be read.
     clocks : tuple of OtherClock
         Time columns that are not used.
     joints : tuple of JointInspection
         What it holds of each joint.
     notes : tuple of str
-        What reading believes against or beyond the header.
+        Assumptions that contradict or complete the header.
     """
 
     path: Path

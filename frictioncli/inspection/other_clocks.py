@@ -1,4 +1,4 @@
-"""Other time columns of a log, held against the one that is used."""
+"""Other time columns of a log, compared with the one that is used."""
 
 from dataclasses import dataclass
 
@@ -14,10 +14,16 @@ from frictioncli.logs.log_source import LogSource
 
 @dataclass(frozen=True, slots=True)
 class OtherClock:
-    """A time column that is not used: how fast it runs and how far it departs from the one used.
+    """A time column that is not used, compared with the clock that is used.
 
-    ``rate`` is its seconds per second of the clock used, ``departs_s`` the greatest difference,
-    both counted from the first row.
+    Attributes
+    ----------
+    column : str
+        Its name.
+    rate : float
+        Its seconds per second of the clock used. [-]
+    departs_s : float
+        Largest difference of the times since the first row. [s]
     """
 
     column: str
@@ -26,16 +32,16 @@ class OtherClock:
 
 
 def other_clocks(source: LogSource, plan: JointPlan, batch_bytes: int) -> tuple[OtherClock, ...]:
-    """Return what other time columns show, from one more pass over the time columns alone.
+    """Compare the other time columns, in another pass over the time columns alone.
 
     Parameters
     ----------
     source : LogSource
         The log.
     plan : JointPlan
-        How it is read.
+        Columns and units of a joint.
     batch_bytes : int
-        How much of the log to hold at a time. [byte]
+        Size of a batch in the file. [byte]
     """
     used = plan.channels.time.column
     others = [
@@ -48,13 +54,13 @@ def other_clocks(source: LogSource, plan: JointPlan, batch_bytes: int) -> tuple[
     comparisons = [_Comparison(channel, plan.conversions[names.TIME].factor) for channel in others]
     for batch in source.batches([used, *(channel.column for channel in others)], batch_bytes):
         for comparison in comparisons:
-            comparison.see(batch.values[used], batch.values[comparison.channel.column])
+            comparison.update(batch.values[used], batch.values[comparison.channel.column])
     return tuple(found for comparison in comparisons if (found := comparison.result()))
 
 
 @dataclass(slots=True)
 class _Comparison:
-    """One other clock while the rows go by; ``factor`` [s] is that of the clock used."""
+    """Running comparison of one clock; ``factor`` converts the clock used to seconds."""
 
     channel: LogChannel
     factor: float
@@ -65,7 +71,7 @@ class _Comparison:
     _sloped: float = 0.0
     _farthest: float = 0.0
 
-    def see(self, used: Array, other: Array) -> None:
+    def update(self, used: Array, other: Array) -> None:
         good = np.isfinite(used) & np.isfinite(other)
         used, other = used[good] * self.factor, other[good]
         if not len(used):

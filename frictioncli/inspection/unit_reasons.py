@@ -1,4 +1,4 @@
-"""Why a unit is believed, in a sentence; and the gear ratio that a plan uses."""
+"""Reasons for the unit in which a channel is read, and the gear ratio that is used."""
 
 import math
 from collections.abc import Collection
@@ -8,38 +8,39 @@ from frictioncli.logs.channels import units
 from frictioncli.logs.channels.joint_plan import JointPlan
 from frictioncli.logs.channels.recognition import LogChannel
 
-_TURN = 6.9
+_LARGEST_RADIANS = 6.9
+"""Positions in radians end at about one turn. [rad]"""
 
 
-def evidence(plan: JointPlan, quantity: str, told: Collection[str], furthest: float) -> str:
+def evidence(plan: JointPlan, quantity: str, given: Collection[str], largest: float) -> str:
     """Return why a channel is read in its unit.
 
     Parameters
     ----------
     plan : JointPlan
-        How the joint is read.
+        Columns and units of the joint.
     quantity : str
-        Which channel.
-    told : collection of str
+        Canonical name of the channel.
+    given : collection of str
         Quantities whose unit the user gives.
-    furthest : float
-        Greatest distance of its values from zero, in the unit used inside.
+    largest : float
+        Largest magnitude of its values, in the unit used inside.
     """
     channel: LogChannel = getattr(plan.channels, quantity)
-    said = remarks_on(plan, channel)
-    if quantity in told:
-        return "; ".join(("as told", *said))
-    if any("read as" in text or "taken as" in text for text in said):
-        return "; ".join(said)
+    notes = remarks_on(plan, channel)
+    if quantity in given:
+        return "; ".join(("as told", *notes))
+    if any("read as" in text or "taken as" in text for text in notes):
+        return "; ".join(notes)
     if channel.unit:
-        return "; ".join(("as the header says", *said))
-    if quantity == names.POSITION and furthest > _TURN:
-        return "; ".join((f"no unit, but values reach {furthest:.4g}, too far for rad", *said))
-    return "; ".join(("no unit in the header, taken as usual", *said))
+        return "; ".join(("as the header says", *notes))
+    if quantity == names.POSITION and largest > _LARGEST_RADIANS:
+        return "; ".join((f"no unit, but values reach {largest:.4g}, too far for rad", *notes))
+    return "; ".join(("no unit in the header, taken as usual", *notes))
 
 
 def remarks_on(plan: JointPlan, channel: LogChannel) -> tuple[str, ...]:
-    """Return what reading notes and warns of a channel, without the channel's name in front."""
+    """Return notes and warnings on a channel, without its name in front."""
     return tuple(
         text.removeprefix(channel.name).lstrip(": ")
         for text in (*plan.notes, *plan.warnings)
@@ -48,15 +49,15 @@ def remarks_on(plan: JointPlan, channel: LogChannel) -> tuple[str, ...]:
 
 
 def other_remarks(plan: JointPlan) -> tuple[str, ...]:
-    """Return what reading notes and warns beyond single channels that are read."""
+    """Return notes and warnings that concern no single channel."""
     read = tuple(getattr(plan.channels, name).name for name in plan.conversions)
     return tuple(text for text in (*plan.notes, *plan.warnings) if not text.startswith(read))
 
 
 def gear_ratio(plan: JointPlan) -> float | None:
-    """Return the motor turns per joint turn by which channels are brought to the joint.
+    """Return the magnitude of the gear ratio by which channels are referred to the joint [-].
 
-    Without its sign; None where no channel is brought there.
+    None where no channel is converted from the motor side.
     """
     for name in (names.POSITION, names.VELOCITY, names.TORQUE):
         conversion = plan.conversions.get(name)

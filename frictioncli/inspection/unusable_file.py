@@ -1,4 +1,4 @@
-"""A file that cannot be used still has a form and a clock."""
+"""Inspection of a file that cannot be used: its format, columns and sampling."""
 
 from contextlib import suppress
 from pathlib import Path
@@ -18,7 +18,7 @@ from frictioncli.logs.runs.discovery import LogRun
 from frictioncli.logs.samples.log_rows import LogRows
 from frictioncli.logs.settings import IngestSettings
 
-_TABLES = (
+_READABLE = (
     "no_time_channel",
     "no_torque_channel",
     "no_position_channel",
@@ -26,13 +26,13 @@ _TABLES = (
     "torque_in_percent",
     "mapped_column_missing",
 )
-"""Why a log is refused that has rows and columns all the same."""
+"""Reasons of refusal for logs that have rows and columns nevertheless."""
 
 
 def inspect_unusable(
     run: LogRun, path: Path, refusal: Refusal, channel_map: ChannelMap, settings: IngestSettings
 ) -> FileInspection:
-    """Return what can be told of a file that is not used.
+    """Return what a file holds that is not used.
 
     Parameters
     ----------
@@ -47,7 +47,7 @@ def inspect_unusable(
     settings : IngestSettings
         What the user says of the unit of time.
     """
-    source = open_log(path, channel_map.hints) if refusal.reason in _TABLES else refusal
+    source = open_log(path, channel_map.hints) if refusal.reason in _READABLE else refusal
     if isinstance(source, Refusal):
         return FileInspection(path=path, run=run.name, reason=refusal.reason, refusal=refusal.text)
     times = [
@@ -71,19 +71,19 @@ def inspect_unusable(
 def _sampled(
     source: LogSource, time: LogChannel, settings: IngestSettings
 ) -> tuple[int, Sampling | None]:
-    """Return how many rows a log has and how it was sampled."""
+    """Return the number of rows of a log, and its sampling."""
     windows, monitor = Windows(), SamplingMonitor()
     factor, rows = np.nan, 0
     with suppress(UnreadableLog):
         for batch in source.batches([time.column], settings.batch_bytes):
             rows += len(batch.lines) + len(batch.bad_lines)
             values = batch.values[time.column]
-            good = np.isfinite(values)
+            finite = np.isfinite(values)
             if np.isnan(factor):
-                factor = units.FACTORS[names.TIME][_unit(time, values[good], settings)]
-            for window in windows.update(LogRows(batch.lines[good], values[good] * factor, {})):
+                factor = units.FACTORS[names.TIME][_unit(time, values[finite], settings)]
+            for window in windows.update(LogRows(batch.lines[finite], values[finite] * factor, {})):
                 monitor.update(window)
-    for window in windows.rest():
+    for window in windows.flush():
         monitor.update(window)
     return rows, monitor.result()
 

@@ -1,4 +1,4 @@
-"""Torque that does not change: at its limit while moving, or frozen while standing."""
+"""Constant torque: at a limit while the joint moves, or frozen at standstill."""
 
 from dataclasses import dataclass, field
 
@@ -8,20 +8,30 @@ from frictioncli.arrays import Array, Flags, Indices
 from frictioncli.inspection.monitors.joint_rows import JointRows
 from frictioncli.logs.channels import aliases as names
 
-_ALIVE = 0.8
-"""Share of moving samples whose torque differs from the one before: then a constant one is odd."""
+_LEAST_CHANGING = 0.8
+"""Share of samples in motion whose torque must change for constant torque to be conspicuous. [-]"""
 
-_BETWEEN = 0.1
-"""Share of the moving samples between the limits that it takes to tell."""
+_LEAST_BETWEEN = 0.1
+"""Least share of the samples in motion that must lie between the limits. [-]"""
 
-_LEAST_FLAT = 5
+_LEAST_AT_LIMIT = 5
 _LEAST_FROZEN = 10
 _LEAST_SECONDS = 1.0
 
 
 @dataclass(frozen=True, slots=True)
 class Limit:
-    """A limit that the torque stays at: its value, moving samples at it, longest stay, share."""
+    """A limit at which the torque stays while the joint moves.
+
+    Attributes
+    ----------
+    torque : float
+        The limit, in the unit of the torque.
+    samples, longest : int
+        Samples in motion at the limit, and the most in a row.
+    share : float
+        Samples at the limit as a share of all samples in motion. [-]
+    """
 
     torque: float
     samples: int
@@ -30,8 +40,8 @@ class Limit:
 
 
 @dataclass(slots=True)
-class _Top:
-    """The highest torque so far and how long it held."""
+class _Maximum:
+    """The highest torque so far, and the samples in motion at it."""
 
     value: float = -np.inf
     samples: int = 0
@@ -57,7 +67,7 @@ class _Top:
 
 @dataclass(slots=True)
 class _Standstill:
-    """Stretches of rows that repeat the torque of the row before while the joint stands."""
+    """Intervals at standstill in which every row repeats the torque of the row before."""
 
     seconds: float = 0.0
     spans: int = 0
@@ -82,7 +92,7 @@ class _Standstill:
         self._last = float(time[-1])
 
     def end(self) -> None:
-        """Count the stretch that is still open."""
+        """Count the interval that is still open."""
         self._count(np.array([self._open_rows]), np.array([self._last - self._open_since]))
         self._open_rows = 0
 
@@ -94,54 +104,61 @@ class _Standstill:
 
 @dataclass(slots=True)
 class ConstantTorqueMonitor:
-    """Watches the torque of a joint for stretches in which it is exactly constant.
+    """Finds where the torque of a joint is exactly constant.
 
-    Where torque repeats itself anyway, as one that is rounded coarsely, nothing is concluded.
+    Where torque repeats anyway, as it does if rounded coarsely, nothing is concluded.
     """
 
-    _high: _Top = field(default_factory=_Top)
-    _low: _Top = field(default_factory=_Top)
+    _high: _Maximum = field(default_factory=_Maximum)
+    _low: _Maximum = field(default_factory=_Maximum)
     _standstill: _Standstill = field(default_factory=_Standstill)
     _moving: int = 0
     _changing: int = 0
 
     def update(self, rows: JointRows) -> None:
-        """Take in the next rows."""
+        """Add the next rows."""
         torque, new = rows.required(names.TORQUE), rows.new
         moving = rows.moving[new]
         self._high.update(torque[new], moving)
         self._low.update(-torque[new], moving)
-        same = rows.joined & (np.diff(torque, prepend=np.nan) == 0)
+        same = rows.contiguous & (np.diff(torque, prepend=np.nan) == 0)
         self._moving += int(moving.sum())
         self._changing += int((moving & ~same[new]).sum())
         self._standstill.update(rows.window.rows.time[new], (same & ~rows.moving)[new])
 
     @property
-    def _alive(self) -> bool:
-        """Whether torque changes from sample to sample where it is not at a limit."""
+    def _changes(self) -> bool:
+        """Whether torque changes from sample to sample between its limits."""
         between = self._moving - self._high.samples - self._low.samples
-        return between > _BETWEEN * self._moving and self._changing >= _ALIVE * between
+        return (
+            between > _LEAST_BETWEEN * self._moving and self._changing >= _LEAST_CHANGING * between
+        )
 
     def limits(self) -> tuple[Limit, ...]:
         """Return the limits at which the torque stays while the joint moves."""
-        if not self._alive:
+        if not self._changes:
             return ()
         return tuple(
-            Limit(sign * top.value, top.samples, top.longest, top.samples / self._moving)
-            for top, sign in ((self._high, 1.0), (self._low, -1.0))
-            if top.longest >= _LEAST_FLAT
+            Limit(
+                sign * extreme.value,
+                extreme.samples,
+                extreme.longest,
+                extreme.samples / self._moving,
+            )
+            for extreme, sign in ((self._high, 1.0), (self._low, -1.0))
+            if extreme.longest >= _LEAST_AT_LIMIT
         )
 
     def frozen(self) -> tuple[int, float]:
-        """Return how many stretches of constant torque at standstill there are, and their sum [s].
+        """Return the number of intervals of constant torque at standstill, and their sum [s].
 
-        Either the brake is closed and the torque a left-over, or the controller does not regulate.
+        Either the brake is closed and the torque an old value, or the controller is off.
         """
         self._standstill.end()
-        return (self._standstill.spans, self._standstill.seconds) if self._alive else (0, 0.0)
+        return (self._standstill.spans, self._standstill.seconds) if self._changes else (0, 0.0)
 
 
 def _runs(flags: Flags) -> tuple[Indices, Indices]:
-    """Return lengths and beginnings of the stretches where a flag is set."""
+    """Return lengths and beginnings of the runs of set flags."""
     edges = np.flatnonzero(np.diff(np.concatenate(([False], flags, [False])).astype(np.int8)))
     return edges[1::2] - edges[::2], edges[::2]

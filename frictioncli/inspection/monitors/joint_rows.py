@@ -1,4 +1,4 @@
-"""What of a joint's samples moves: the ground on which the other watches judge."""
+"""Rows of one joint in a window: which are contiguous, and in which the joint moves."""
 
 from dataclasses import dataclass
 
@@ -11,22 +11,30 @@ from frictioncli.logs.samples.differentiation import max_gap
 from frictioncli.pairs.settings import SteadySettings
 
 _REACH = 4
-"""Rows to either side over which a joint must move to count as moving."""
+"""Rows to either side from which the mean speed is taken."""
 
 _SLOWEST = SteadySettings().min_speed
 
 
 @dataclass(frozen=True, slots=True)
 class JointRows:
-    """The rows of a window that belong to one joint, context included.
+    """The rows of a window for one joint, context included.
 
-    ``joined`` tells of each row whether it follows the row before within five periods; ``moving``
-    whether the joint moves there. All of shape (n,).
+    Attributes
+    ----------
+    window : Window
+        The rows of all joints.
+    joint : int
+        The joint.
+    contiguous : ndarray of bool, shape (rows,)
+        Whether a row follows the row before within five periods.
+    moving : ndarray of bool, shape (rows,)
+        Whether the joint moves.
     """
 
     window: Window
     joint: int
-    joined: Flags
+    contiguous: Flags
     moving: Flags
 
     def channel(self, name: str) -> Array | None:
@@ -39,27 +47,27 @@ class JointRows:
 
     @property
     def new(self) -> slice:
-        """The rows that no other window counts."""
+        """The rows without the context, each in exactly one window."""
         return self.window.new
 
 
 def joint_rows(window: Window, joint: int, period: float) -> JointRows:
-    """Return a joint's rows with what moves.
+    """Return the rows of a joint in a window.
 
     Parameters
     ----------
     window : Window
         The rows.
     joint : int
-        Whose channels.
+        The joint.
     period : float
-        Time between samples, roughly. [s]
+        Approximate time between samples. [s]
     """
     time, position = window.rows.time, window.rows.columns[joint, names.POSITION]
     step = np.diff(time, prepend=-np.inf)
-    joined = (step > 0) & (step <= max_gap(period))
+    contiguous = (step > 0) & (step <= max_gap(period))
     low = np.maximum(np.arange(len(time)) - _REACH, 0)
     high = np.minimum(np.arange(len(time)) + _REACH, len(time) - 1)
     elapsed = np.abs(time[high] - time[low])
     moving = np.abs(position[high] - position[low]) > _SLOWEST * np.maximum(elapsed, period)
-    return JointRows(window, joint, joined, moving)
+    return JointRows(window, joint, contiguous, moving)

@@ -1,4 +1,4 @@
-"""Counts of positive values on a logarithmic scale: quantiles of streams of any length."""
+"""Histogram of positive values on a logarithmic scale: quantiles of streams of any length."""
 
 from dataclasses import dataclass, field
 
@@ -9,25 +9,26 @@ from frictioncli.arrays import Array, Indices, Numbers
 _RESOLUTION = 1e-4
 _SMALLEST, _LARGEST = 1e-12, 1e12
 _HALF = 0.5
+_MAD_TO_STD = 1.4826
 
 
 @dataclass(slots=True)
 class LogHistogram:
-    """A histogram with classes of 0.01 % of the value; values up to 0 are left out."""
+    """Histogram with bins of 0.01 % of the value; values up to 0 are ignored."""
 
     _keys: Numbers = field(default_factory=lambda: np.empty(0, np.int64))
     _counts: Array = field(default_factory=lambda: np.empty(0))
     _sums: Array = field(default_factory=lambda: np.empty(0))
 
     def add(self, values: Array, counts: Array | None = None) -> None:
-        """Take in values, each once or as often as told.
+        """Add values.
 
         Parameters
         ----------
         values : ndarray, shape (n,)
-            What to count, in any unit.
+            Values in any unit.
         counts : ndarray, shape (n,), optional
-            How often each.
+            Weight of each value, 1 by default.
         """
         times = np.ones(len(values)) if counts is None else counts
         positive = np.isfinite(values) & (values > 0)
@@ -42,29 +43,29 @@ class LogHistogram:
 
     @property
     def total(self) -> int:
-        """How many values were counted."""
+        """Number of values."""
         return int(self._counts.sum())
 
     def above(self, limit: float) -> int:
-        """Return how many values exceed a limit, to 0.01 % of it."""
+        """Return the number of values above a limit, accurate to 0.01 % of the limit."""
         return int(self._counts[self._values > limit].sum())
 
     def sum_above(self, limit: float) -> float:
-        """Return the sum of the values that exceed a limit, to 0.01 % of it."""
+        """Return the sum of the values above a limit, accurate to 0.01 % of the limit."""
         return float(self._sums[self._values > limit].sum())
 
     def quantile(self, share: float) -> float:
-        """Return the value that a share of all does not exceed; NaN where there is none."""
+        """Return the quantile at a share of 0 to 1; NaN without values."""
         return _quantile(self._values, self._counts, share)
 
     def spread(self) -> float:
-        """Return the median distance from the median, as a standard deviation."""
+        """Return the standard deviation estimated from the median absolute deviation."""
         distance = np.abs(self._values - self.quantile(_HALF))
         order = np.argsort(distance)
-        return 1.4826 * _quantile(distance[order], self._counts[order], _HALF)
+        return _MAD_TO_STD * _quantile(distance[order], self._counts[order], _HALF)
 
     def densest(self) -> float:
-        """Return the mean of the half of all values that lie closest together; NaN where none."""
+        """Return the mean of the shortest half of the values; NaN without values."""
         if not len(self._keys):
             return float("nan")
         values = self._values
@@ -77,12 +78,12 @@ class LogHistogram:
         return float(self._sums[half].sum() / self._counts[half].sum())
 
     def share_near(self, value: float, tolerance: float) -> float:
-        """Return the share of all values that differ from one by at most ``tolerance`` of it."""
+        """Return the share of values within a relative tolerance of a value."""
         near = np.abs(self._values - value) <= tolerance * value
         return float(self._counts[near].sum() / max(self._counts.sum(), 1))
 
-    def steps_left_out(self, period: float, longest: float) -> int:
-        """Return how many whole periods the steps up to ``longest`` pass over."""
+    def missing_samples(self, period: float, longest: float) -> int:
+        """Return how many samples are missing in steps of several periods, up to ``longest``."""
         values = self._values
         skipped = np.where(values < longest, np.round(values / period) - 1, 0)
         return int((np.maximum(skipped, 0) * self._counts).sum())

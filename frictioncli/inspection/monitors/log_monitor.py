@@ -1,4 +1,4 @@
-"""All rows of a log go by once; what they show is collected on the way."""
+"""Monitor of a log: statistics of all channels, collected in one pass while it is read."""
 
 from collections.abc import Collection, Iterable, Iterator
 from dataclasses import dataclass, field
@@ -19,12 +19,12 @@ from frictioncli.logs.channels.joint_plan import JointPlan
 from frictioncli.logs.channels.recognition import LogChannel
 from frictioncli.logs.samples.chunks import Chunk, PlannedLog
 
-_SPIKY = (names.POSITION, names.VELOCITY, names.TORQUE)
+_MOTION_CHANNELS = (names.POSITION, names.VELOCITY, names.TORQUE)
 
 
 @dataclass(slots=True)
 class _JointMonitor:
-    """Watches the rows of one joint."""
+    """Statistics of one joint."""
 
     channels: dict[str, ResolutionMonitor] = field(default_factory=dict)
     held: RepeatedSamplesMonitor = field(default_factory=RepeatedSamplesMonitor)
@@ -39,14 +39,14 @@ class _JointMonitor:
                 continue
             monitor = self.channels.setdefault(name, ResolutionMonitor())
             monitor.update(values[rows.new])
-            if name in _SPIKY:
-                spiky = self.spikes.setdefault(name, SpikeMonitor())
-                spiky.update(rows, values, _step(monitor))
+            if name in _MOTION_CHANNELS:
+                spikes = self.spikes.setdefault(name, SpikeMonitor())
+                spikes.update(rows, values, _step(monitor))
         self.held.update(rows, changed)
         self.torque.update(rows)
         self.agreement.update(rows)
 
-    def result(self, plan: JointPlan, told: Collection[str]) -> JointInspection:
+    def result(self, plan: JointPlan, given: Collection[str]) -> JointInspection:
         position = self.channels.get(names.POSITION)
         held, line = self.held.result(0.0 if position is None else _step(position))
         frozen_spans, frozen_s = self.torque.frozen()
@@ -56,7 +56,7 @@ class _JointMonitor:
             torque_side=plan.torque_side,
             gear_ratio=gear_ratio(plan),
             channels=tuple(
-                self._channel(plan, name, told) for name in plan.conversions if name != names.TIME
+                self._channel(plan, name, given) for name in plan.conversions if name != names.TIME
             ),
             velocity_agreement=self.agreement.result(),
             held_samples=held,
@@ -71,16 +71,16 @@ class _JointMonitor:
             frozen_s=frozen_s,
         )
 
-    def _channel(self, plan: JointPlan, name: str, told: Collection[str]) -> ChannelInspection:
+    def _channel(self, plan: JointPlan, name: str, given: Collection[str]) -> ChannelInspection:
         channel: LogChannel = getattr(plan.channels, name)
         monitor = self.channels.get(name, ResolutionMonitor())
         return ChannelInspection(
             quantity=name,
             column=channel.name,
-            side=channel.meaning.side if name in _SPIKY else "",
+            side=channel.meaning.side if name in _MOTION_CHANNELS else "",
             unit_found=channel.unit,
             unit_believed=plan.conversions[name].unit,
-            evidence=evidence(plan, name, told, max(abs(monitor.lowest), abs(monitor.highest))),
+            evidence=evidence(plan, name, given, max(abs(monitor.lowest), abs(monitor.highest))),
             lowest=monitor.lowest,
             highest=monitor.highest,
             grid=monitor.grid(),
@@ -93,12 +93,12 @@ def _step(monitor: ResolutionMonitor) -> float:
 
 
 class LogMonitor:
-    """Watches one log while it is read.
+    """Collects statistics of one log while it is read.
 
     Parameters
     ----------
     planned : PlannedLog
-        The log about to be read.
+        The log.
     """
 
     def __init__(self, planned: PlannedLog) -> None:
@@ -109,33 +109,33 @@ class LogMonitor:
         self.rows_read = 0
 
     def observe(self, chunks: Iterable[Chunk]) -> Iterator[Chunk]:
-        """Yield the chunks of the log as they come, having looked at them."""
+        """Yield the chunks of the log as they come, and collect statistics."""
         for chunk in chunks:
             self.rows_read += chunk.rows_read
             for window in self._windows.update(chunk.rows):
-                self._see(window)
+                self._update(window)
             yield chunk
-        for window in self._windows.rest():
-            self._see(window)
+        for window in self._windows.flush():
+            self._update(window)
 
-    def _see(self, window: Window) -> None:
+    def _update(self, window: Window) -> None:
         self._sampling.update(window)
         changed = changes(window)
         for joint, monitor in self._joints.items():
             monitor.update(joint_rows(window, joint, self._planned.period), changed)
 
     def sampling(self) -> Sampling | None:
-        """Return how the log was sampled; None where it has no usable row."""
+        """Return the sampling of the log; None where it has no usable row."""
         return self._sampling.result()
 
-    def joints(self, told: Collection[str]) -> tuple[JointInspection, ...]:
+    def joints(self, given: Collection[str]) -> tuple[JointInspection, ...]:
         """Return what the log holds of each joint.
 
         Parameters
         ----------
-        told : collection of str
+        given : collection of str
             Quantities whose unit the user gives.
         """
         return tuple(
-            self._joints[plan.channels.joint].result(plan, told) for plan in self._planned.plans
+            self._joints[plan.channels.joint].result(plan, given) for plan in self._planned.plans
         )

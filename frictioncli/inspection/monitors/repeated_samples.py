@@ -1,4 +1,4 @@
-"""Samples that repeat the one before in all channels while the joint moves."""
+"""Repeated samples: all channels repeat the sample before while the joint moves."""
 
 from dataclasses import dataclass, field
 
@@ -12,16 +12,16 @@ from frictioncli.logs.channels import aliases as names
 
 _CHANNELS = (names.POSITION, names.VELOCITY, names.TORQUE, names.LOAD)
 _ALIKE = 2.5
-"""Rates of position before and over a repetition differ by less than this factor."""
+"""Mean rates of position before and across a repetition differ by less than this factor. [-]"""
 
 _ABOVE_STEP = 2.5
-"""A jump of fewer steps of the position's own grid is slow motion, no repetition."""
+"""A jump of fewer steps of the position's resolution is slow motion, not a repetition."""
 
-_KEPT = 1000
+_LINES_KEPT = 1000
 
 
 def changes(window: Window) -> Flags:
-    """Return of each row of a window whether any joint's channel differs from the row before."""
+    """Return for each row of a window whether any channel differs from the row before."""
     changed = np.zeros(len(window.rows), bool)
     changed[:1] = True
     for (_, name), values in window.rows.columns.items():
@@ -34,9 +34,9 @@ def changes(window: Window) -> Flags:
 class RepeatedSamplesMonitor:
     """Counts repeated samples.
 
-    At rest everything may repeat, and so it may in slow motion between two steps of a coarse
-    position. A sample is held if position then makes up for it: it goes on from before the
-    repetition at the same mean rate, in a jump of more than two of its own steps.
+    At standstill all channels may repeat, as they may in slow motion between two steps of a coarse
+    position. A sample counts as held if position then catches up: it continues at the mean rate
+    from before the repetition, in a jump of more than two of its steps.
     """
 
     _jumps: LogHistogram = field(default_factory=LogHistogram)
@@ -47,29 +47,29 @@ class RepeatedSamplesMonitor:
     _rows: int = 0
 
     def update(self, rows: JointRows, changed: Flags) -> None:
-        """Take in the next rows.
+        """Add the next rows.
 
         Parameters
         ----------
         rows : JointRows
             The joint's rows.
         changed : ndarray of bool, shape (n,)
-            Result of :func:`changes`, of which each window's new rows count.
+            Result of :func:`changes`.
         """
         new = rows.new
-        # at rest nothing is held: what repeats there is taken for a change
+        # at standstill nothing is held: every row counts as a change
         at = np.flatnonzero(changed[new] | ~rows.moving[new])
         position = rows.required(names.POSITION)[new][at]
         self._position = np.concatenate((self._position, position))
         self._row = np.concatenate((self._row, at + self._rows))
         self._line = np.concatenate((self._line, rows.window.rows.lines[new][at]))
         self._rows += new.stop - new.start
-        self._judge()
+        self._find_held()
         # the last two may be the beginning of a repetition
         self._position = self._position[-2:]
         self._row, self._line = self._row[-2:], self._line[-2:]
 
-    def _judge(self) -> None:
+    def _find_held(self) -> None:
         if len(self._row) < 3:
             return
         lengths, jumps = np.diff(self._row), np.diff(self._position)
@@ -80,17 +80,17 @@ class RepeatedSamplesMonitor:
         held = np.flatnonzero(repeated & alike)
         sizes = np.abs(jumps[1:][held])
         self._jumps.add(sizes, (lengths[1:][held] - 1).astype(float))
-        room = max(_KEPT - len(self._first), 0)
+        room = max(_LINES_KEPT - len(self._first), 0)
         lines = self._line[1:-1][held] + 1
         self._first += list(zip(sizes[:room].tolist(), lines[:room].tolist(), strict=True))
 
     def result(self, step: float) -> tuple[int, int | None]:
-        """Return how many samples are held, and the first line of them.
+        """Return the number of held samples, and the first line of them.
 
         Parameters
         ----------
         step : float
-            The position's own grid, 0 where it has none. [deg]
+            Step of the position, 0 where it has none. [deg]
         """
         least = _ABOVE_STEP * step
         lines = [line for size, line in self._first if size > least]

@@ -1,4 +1,4 @@
-"""The steps in which a channel's values come: what was rounded, and how coarsely."""
+"""Resolution of a channel: the step between its values where they lie on a grid."""
 
 from dataclasses import dataclass, field
 
@@ -7,7 +7,7 @@ import numpy as np
 from frictioncli.arrays import Array
 
 _ENOUGH = 20_000
-"""Different values that are looked at; a step shows in far fewer."""
+"""Distinct values that are used at most; far fewer show a step."""
 
 _ROUNDING = 1e-9
 """Values this close together, as a share of the largest, are the same."""
@@ -21,16 +21,16 @@ _FEWEST = 3
 
 @dataclass(frozen=True, slots=True)
 class Resolution:
-    """The step between a channel's values.
+    """Resolution of a channel.
 
     Attributes
     ----------
     step : float
-        Least difference of values, in the channel's unit.
+        Step between its values, in the unit of the channel.
     levels : int
-        Different values seen, 20,000 at most.
+        Distinct values, 20,000 at most.
     certainty : float
-        How likely it is that this many values do not lie on such a grid by chance. [-]
+        Probability that this many values do not lie on the grid by chance. [-]
     """
 
     step: float
@@ -46,10 +46,10 @@ class ResolutionMonitor:
     highest: float = -np.inf
     _values: Array = field(default_factory=lambda: np.empty(0))
     _grid: Resolution | None = None
-    _judged: int = 0
+    _n_evaluated: int = 0
 
     def update(self, values: Array) -> None:
-        """Take in the next values; NaN are passed over."""
+        """Add the next values; NaN are ignored."""
         values = values[np.isfinite(values)]
         if not len(values):
             return
@@ -59,19 +59,19 @@ class ResolutionMonitor:
             self._values = np.unique(np.concatenate((self._values, values)))
 
     def grid(self) -> Resolution | None:
-        """Return the grid on which the values lie; None where they lie on none."""
-        if self._judged != len(self._values):
-            self._grid, self._judged = find_grid(self._values), len(self._values)
+        """Return the resolution; None where the values lie on no grid."""
+        if self._n_evaluated != len(self._values):
+            self._grid, self._n_evaluated = find_grid(self._values), len(self._values)
         return self._grid
 
 
 def find_grid(values: Array) -> Resolution | None:
-    """Find the step of which all differences of values are multiples.
+    """Return the step of which all differences of values are multiples; None without one.
 
     Parameters
     ----------
     values : ndarray, shape (n,)
-        Different values, ascending.
+        Distinct values, ascending.
     """
     if len(values) < _FEWEST:
         return None
@@ -89,7 +89,7 @@ def find_grid(values: Array) -> Resolution | None:
 
 
 def _fitted(values: Array, step: float) -> tuple[float, float]:
-    """Return the step nearest to a first guess, and the share of values that lie on its grid."""
+    """Return the step fitted from a first guess, and the share of values on its grid."""
     with np.errstate(over="ignore", invalid="ignore"):  # damaged cells may be of any size
         numbers = np.round(values / step)
         fitted = float(numbers @ values / (numbers @ numbers))

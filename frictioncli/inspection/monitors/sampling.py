@@ -1,4 +1,4 @@
-"""How a log was sampled: period, rate, jitter, gaps, repeated and backward times, clock resets."""
+"""Sampling of a log: period, rate, jitter, gaps, repeated and backward times, clock resets."""
 
 from dataclasses import dataclass, field
 
@@ -10,7 +10,7 @@ from frictioncli.inspection.monitors.windows import CONTEXT, Window
 from frictioncli.logs.samples.differentiation import max_gap
 
 _SHARP = 0.3
-"""Share of steps at one value that makes it the period, however far the others stray."""
+"""Least share of steps at one value that makes it the period, however the others scatter. [-]"""
 
 _SAME = 1e-3
 _GAPS_SHOWN = 5
@@ -19,14 +19,24 @@ _RESETS_SHOWN = 100
 """Of a window of 32,768 rows."""
 
 _STEADY = 0.2
-"""Above this jitter, as a share of the period, samples left out cannot be counted."""
+"""Above this jitter, as a share of the period, missing samples cannot be counted. [-]"""
 
 _NEGLIGIBLE = 1e-5
 
 
 @dataclass(frozen=True, slots=True)
 class Gap:
-    """A pause in a log: its length, when it began after the first sample, and its last line."""
+    """A gap between two samples.
+
+    Attributes
+    ----------
+    seconds : float
+        Its length. [s]
+    at_s : float
+        Its beginning since the first sample. [s]
+    line : int
+        Line of the first sample after it.
+    """
 
     seconds: float
     at_s: float
@@ -35,7 +45,15 @@ class Gap:
 
 @dataclass(frozen=True, slots=True)
 class Reset:
-    """A clock that was set back: the first line after it, and the times before and after it."""
+    """A reset of the clock to an earlier time.
+
+    Attributes
+    ----------
+    line : int
+        Line of the first sample after it.
+    before_s, after_s : float
+        Times before and after it. [s]
+    """
 
     line: int
     before_s: float
@@ -44,24 +62,24 @@ class Reset:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Sampling:
-    """How a log was sampled.
+    """Sampling of a log.
 
     Attributes
     ----------
     samples : int
-        Rows with a time and the values that are needed.
+        Rows with a time and all required values.
     begins_s, duration_s : float
-        Time of the first sample by the log's clock; sum of all forward steps.
+        Time of the first sample by the clock of the log; sum of all forward steps. [s]
     nominal_period_s : float
-        The step that occurs most, NaN where there is none.
+        Most frequent step; NaN where there is none. [s]
     rate_hz : float
-        Steps forward per second, gaps included.
+        Forward steps per second, gaps included. [1/s]
     jitter_s : float
-        Robust standard deviation of the steps.
+        Robust standard deviation of the steps. [s]
     missing_samples : int
-        Samples left out between others, gaps not counted; 0 where the jitter does not let it tell.
+        Samples missing between others, without gaps; 0 where the jitter is too large to count them.
     gaps, gaps_s : int, float
-        Steps of more than five periods, and their sum. [s]
+        Steps of more than five periods, and their sum [s].
     longest_gaps : tuple of Gap
         The longest ones, longest first.
     duplicated_times, backward_times : int
@@ -87,7 +105,7 @@ class Sampling:
 
 @dataclass(slots=True)
 class SamplingMonitor:
-    """Watches the times of a log go by."""
+    """Collects statistics of the times of a log."""
 
     _steps: LogHistogram = field(default_factory=LogHistogram)
     _samples: int = 0
@@ -99,7 +117,7 @@ class SamplingMonitor:
     _resets: list[Reset] = field(default_factory=list)
 
     def update(self, window: Window) -> None:
-        """Take in the next rows."""
+        """Add the next rows."""
         time, new = window.rows.time, window.new
         if not self._samples:
             self._begin = float(time[new.start])
@@ -109,11 +127,11 @@ class SamplingMonitor:
         self._steps.add(steps)
         self._duplicated += int(np.count_nonzero(steps == 0))
         self._backward += int(np.count_nonzero(steps < 0))
-        self._note_longest(window, steps, first)
+        self._update_longest(window, steps, first)
         self._duration += float(steps[steps > 0].sum())
         self._resets += _resets(window, np.flatnonzero(steps < 0) + first)
 
-    def _note_longest(self, window: Window, steps: Array, first: int) -> None:
+    def _update_longest(self, window: Window, steps: Array, first: int) -> None:
         since = self._duration + np.cumsum(np.maximum(steps, 0)) - np.maximum(steps, 0)
         top = np.argsort(steps, kind="stable")[::-1][:_GAPS_SHOWN]
         here = [
@@ -122,7 +140,7 @@ class SamplingMonitor:
         self._longest = sorted([*self._longest, *here], key=lambda gap: -gap.seconds)[:_GAPS_SHOWN]
 
     def result(self) -> Sampling | None:
-        """Return what was seen; None where there was no row."""
+        """Return the sampling; None where there was no row."""
         if not self._samples:
             return None
         period = self._steps.densest()
@@ -138,7 +156,7 @@ class SamplingMonitor:
             nominal_period_s=period,
             rate_hz=self._steps.total / self._duration if self._duration > 0 else np.nan,
             jitter_s=0.0 if jitter < _NEGLIGIBLE * period else jitter,
-            missing_samples=self._steps.steps_left_out(period, limit) if steady else 0,
+            missing_samples=self._steps.missing_samples(period, limit) if steady else 0,
             gaps=self._steps.above(limit),
             gaps_s=self._steps.sum_above(limit),
             longest_gaps=tuple(gap for gap in self._longest if gap.seconds > limit),
@@ -149,7 +167,7 @@ class SamplingMonitor:
 
 
 def _resets(window: Window, where: Indices) -> list[Reset]:
-    """Return those of the rows with a step back after which the time stays below that before."""
+    """Return the backward steps after which time stays below that before the step."""
     time = window.rows.time
     around = np.arange(1, CONTEXT + 1)
     before = time[np.maximum(where[:, None] - around, 0)].min(axis=1, initial=np.inf)
