@@ -1,4 +1,4 @@
-"""What the page says of a diagnosis: verdict, causes, gain, detectable sizes."""
+"""Text and tables on a diagnosis: verdict, causes, gain, detectable sizes."""
 
 from dataclasses import dataclass
 
@@ -23,12 +23,27 @@ _AXIS_UNITS = {"temperature": "°C", "angle": "deg"}
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class CauseText:
-    """One cause as the page states it; ``equation`` is empty where no effect explains it."""
+    """One cause as the page states it.
+
+    Attributes
+    ----------
+    effects : str
+        Effects that may be the cause, with their probabilities.
+    channel : str
+        Channel of the residuals in which it shows.
+    size : str
+        RMS of the fitted term, with its unit.
+    p_value : str
+        Probability that noise alone would give as much.
+    claim, equation, parameters, experiment : str
+        What was seen, the term and its fitted parameters, and what to measure next. The equation
+        is empty if no effect explains the structure.
+    """
 
     effects: str
     channel: str
     size: str
-    chance: str
+    p_value: str
     claim: str
     equation: str
     parameters: str
@@ -36,7 +51,7 @@ class CauseText:
 
 
 def verdict_sentence(document: DiagnosisDocument, unit: str) -> str:
-    """Return the verdict in words.
+    """Return the verdict in sentences.
 
     Parameters
     ----------
@@ -46,40 +61,39 @@ def verdict_sentence(document: DiagnosisDocument, unit: str) -> str:
         Unit of torque.
     """
     named = [cause.effects for cause in document.causes if cause.effects]
-    missed = (
+    misfit = (
         f"The simulated torque misses the measured one by"
         f" {number_text(document.simulation.rmse)} {unit} (RMS,"
         f" {list_text(document.runs)})."
     )
     if document.verdict == "no_evidence":
         return (
-            f"{missed} No cause was found in that: no effect of the catalogue and no other"
+            f"{misfit} No cause was found in that: no effect of the catalogue and no other"
             " structure. The table below says how large each effect would have to be to be found."
         )
-    found = []
-    sure = [in_words(one[0]) for one in named if len(one) == 1]
-    if sure:
-        found.append(f"The model lacks {list_text(sure)}.")
-    found += [
+    sentences = []
+    certain = [in_words(one[0]) for one in named if len(one) == 1]
+    if certain:
+        sentences.append(f"The model lacks {list_text(certain)}.")
+    sentences += [
         f"The model lacks one of {list_text([in_words(name) for name in several])}: these data"
-        " cannot"
-        " tell them apart."
+        " cannot tell them apart."
         for several in named
         if len(several) > 1
     ]
     if document.verdict == "unnamed":
         start = "Beside that, structure" if named else "Structure"
-        found.append(f"{start} is left that no effect of the catalogue explains.")
-    return " ".join([missed, *found])
+        sentences.append(f"{start} is left that no effect of the catalogue explains.")
+    return " ".join([misfit, *sentences])
 
 
 def cause_texts(document: DiagnosisDocument, unit: str) -> list[CauseText]:
-    """Return the causes that effects of the catalogue stand for, strongest first."""
+    """Return the causes that effects of the catalogue explain, strongest first."""
     return [_cause(cause, unit) for cause in document.causes if cause.effects]
 
 
 def unnamed_texts(document: DiagnosisDocument, unit: str) -> list[CauseText]:
-    """Return the structure that no effect explains."""
+    """Return the structure that no effect of the catalogue explains."""
     return [_cause(cause, unit) for cause in document.causes if not cause.effects]
 
 
@@ -94,7 +108,7 @@ def _cause(cause: CauseRecord, unit: str) -> CauseText:
         ),
         channel=cause.channel,
         size=f"{number_text(cause.size, 2)} {unit}",
-        chance=p_value_text(cause.p_value),
+        p_value=p_value_text(cause.p_value),
         claim=cause.claim,
         equation=cause.equation,
         parameters="; ".join(_parameter(name, stated) for name, stated in cause.parameters.items()),
@@ -102,11 +116,11 @@ def _cause(cause: CauseRecord, unit: str) -> CauseText:
     )
 
 
-def p_value_text(chance: float) -> str:
-    """Return the probability that noise alone gives as much."""
-    if chance < 1e-300:
+def p_value_text(p_value: float) -> str:
+    """Return a p-value as text."""
+    if p_value < 1e-300:
         return "below 1e−300"
-    return f"{chance:.0e}".replace("-", "−") if chance < 1e-3 else number_text(chance, 2)
+    return f"{p_value:.0e}".replace("-", "−") if p_value < 1e-3 else number_text(p_value, 2)
 
 
 def _parameter(name: str, stated: ParameterRecord) -> str:
@@ -117,18 +131,17 @@ def _parameter(name: str, stated: ParameterRecord) -> str:
 
 
 def visible_sentences(document: DiagnosisDocument, unit: str) -> tuple[str, ...]:
-    """Return what stands out of the noise but is too small to be worth modelling."""
+    """Return the effects that are significant but do not improve the prediction."""
     return tuple(
         f"{' or '.join(in_words(name) for name in one.effects)} stands out of the noise"
         f" ({number_text(one.size, 2)} {unit} RMS, chance {p_value_text(one.p_value)}), but"
-        " the"
-        " extended model is no better with it: it is not worth modelling."
+        " the extended model is no better with it: it is not worth modelling."
         for one in document.visible
     )
 
 
 def gain_sentence(document: DiagnosisDocument, unit: str) -> str:
-    """Return what the extended model is worth, empty where nothing was found.
+    """Return the gain by the extended model in sentences; empty if no cause was found.
 
     Parameters
     ----------
@@ -145,28 +158,28 @@ def gain_sentence(document: DiagnosisDocument, unit: str) -> str:
         where = f"On run {document.held_out}, which the diagnosis has not seen,"
     else:
         where = "On the same data that it was fitted to"
-    changed = (
+    text = (
         f"{where} the extended model misses the torque by {number_text(gain.rmse_after)}"
-        f" {unit} (RMS)"
-        f" instead of {number_text(gain.rmse_before)} {unit}: {_less(gain.reduction)}"
-        f" (95 % interval: {_less(low)} to {_less(high)}). Noise that no model can predict is"
+        f" {unit} (RMS) instead of {number_text(gain.rmse_before)} {unit}:"
+        f" {_reduction_text(gain.reduction)} (95 % interval: {_reduction_text(low)} to"
+        f" {_reduction_text(high)}). Noise that no model can predict is"
         f" {number_text(gain.noise_floor)} {unit}."
     )
     if gain.basis != "new_run":
-        changed += " A gain on data already used flatters; log a second run to know it."
+        text += " A gain on data already used flatters; log a second run to know it."
     if high < 0:
-        changed += " The extended model is worse than the base model: do not use it."
+        text += " The extended model is worse than the base model: do not use it."
     elif low <= 0:
-        changed += " The interval holds zero: it is not sure that the extended model is better."
-    return changed
+        text += " The interval holds zero: it is not sure that the extended model is better."
+    return text
 
 
-def _less(share: float) -> str:
-    return f"{100 * share:.0f} % less" if share >= 0 else f"{-100 * share:.0f} % more"
+def _reduction_text(reduction: float) -> str:
+    return f"{100 * reduction:.0f} % less" if reduction >= 0 else f"{-100 * reduction:.0f} % more"
 
 
 def detectable_table(document: DiagnosisDocument, unit: str) -> TextTable:
-    """Return how large each effect must be to be found in these data.
+    """Return the smallest size at which each effect would be found in these data.
 
     Parameters
     ----------
@@ -194,7 +207,7 @@ def detectable_table(document: DiagnosisDocument, unit: str) -> TextTable:
 
 
 def worst_table(document: DiagnosisDocument, unit: str) -> TextTable:
-    """Return where the simulated torque misses the measured one most."""
+    """Return the conditions under which the simulated torque is furthest from the measured one."""
     return TextTable(
         title="Where the simulated torque misses most",
         header=("where", "speed", "channel", f"measured − simulated, mean [{unit}]"),
@@ -213,7 +226,7 @@ def worst_table(document: DiagnosisDocument, unit: str) -> TextTable:
 
 
 def evidence_caption(results: JointResults, *, cause: CauseRecord, fitted: str) -> str:
-    """Return what to see in the picture of one cause."""
+    """Return the caption of the figure of one cause."""
     return (
         f"{cause.claim} Points: mean misfit of the {cause.channel} in bins, with twice its"
         " standard error over pairs; a point without a bar is a single pair. Left: the base model."
@@ -225,7 +238,7 @@ def evidence_caption(results: JointResults, *, cause: CauseRecord, fitted: str) 
 
 
 def simulation_caption(results: JointResults, *, held_out: str | None) -> str:
-    """Return what to see in the picture of measured and simulated torque."""
+    """Return the caption of the figure of measured and simulated torque."""
     new = f" Run {held_out} was kept out of the fit." if held_out else ""
     return (
         "Points: measured torque, forward filled, reverse hollow; lines: simulated along the same"
@@ -235,7 +248,7 @@ def simulation_caption(results: JointResults, *, held_out: str | None) -> str:
 
 
 def map_caption(results: JointResults, *, extended: bool) -> str:
-    """Return what to see in the maps."""
+    """Return the caption of the residual maps."""
     below = " The lower row of each channel shows the extended model." if extended else ""
     return (
         "Mean of measured minus simulated torque per cell, red where more was measured than"
@@ -246,7 +259,7 @@ def map_caption(results: JointResults, *, extended: bool) -> str:
 
 
 def gain_caption(results: JointResults, *, document: DiagnosisDocument) -> str:
-    """Return what to see in the distributions."""
+    """Return the caption of the distributions of residuals before and after the extension."""
     run = f"run {document.held_out}" if document.held_out else "the data fitted"
     return (
         f"What the simulated torque misses on {run}, both directions, by the base and by the"

@@ -1,4 +1,4 @@
-"""What the page says of the model's parameters: values, correlations, what the data do not tell."""
+"""Parameters of the model: estimates, correlations, and what the data cannot determine."""
 
 from dataclasses import dataclass
 from itertools import combinations
@@ -19,13 +19,25 @@ _MEANINGS = {
     "delta": "rate of its fall",
 }
 
-_TOGETHER = 0.9
-"""Parameters that are correlated more than this are told only together."""
+_STRONG_CORRELATION = 0.9
+"""Absolute correlation of two estimates above which they cannot be separated."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ParameterRow:
-    """One parameter of the model as the page states it; ``remark`` says why it is not known."""
+    """One parameter of the model as the page states it.
+
+    Attributes
+    ----------
+    symbol, meaning, unit : str
+        Symbol in equation (16), meaning and unit.
+    estimate, interval : str
+        Estimate with its 95 % interval.
+    published : str
+        Value published for joint 2 of a KUKA KR10.
+    remark : str
+        Why the data do not determine it; empty if they do.
+    """
 
     symbol: str
     meaning: str
@@ -67,24 +79,24 @@ def parameter_rows(results: JointResults) -> list[ParameterRow]:
     return rows
 
 
-def is_published_joint(results: JointResults, traces: str) -> bool:
+def is_published_joint(results: JointResults, log_files: str) -> bool:
     """Return whether the published values belong to this joint: joint 2 of a KR10, in N·m.
 
     Parameters
     ----------
     results : JointResults
         One joint's results.
-    traces : str
-        Names of the logs, in which the robot's name would stand.
+    log_files : str
+        Names of the logs, which may contain the robot's name.
     """
     if results.joint != 2 or results.unit != "N·m":
         return False
-    named = " ".join([*results.runs, traces]).lower().replace(" ", "").replace("-", "")
+    named = " ".join([*results.runs, log_files]).lower().replace(" ", "").replace("-", "")
     return results.model.torque_side == "joint" and "kr10" in named
 
 
 def correlation_table(results: JointResults) -> TextTable | None:
-    """Return how the errors of the fitted parameters go together; none where that is not known.
+    """Return the correlations of the estimates; None if they are not known.
 
     Parameters
     ----------
@@ -120,7 +132,7 @@ def correlation_text(value: float) -> str:
 
 
 def limitations(results: JointResults, diagnosis: DiagnosisDocument | None) -> list[str]:
-    """Return what the data cannot determine, a sentence each.
+    """Return what the data cannot determine, one sentence each.
 
     Parameters
     ----------
@@ -130,14 +142,14 @@ def limitations(results: JointResults, diagnosis: DiagnosisDocument | None) -> l
         The joint's part of ``diagnosis.json``, if there is one.
     """
     model = results.model
-    told = [
+    sentences = [
         f"{PARAMETER_SYMBOLS[name]} is not determined: {model.parameters[name].reason}."
         for name in PARAMETERS
         if not model.parameters[name].determined
     ]
     for name in imprecise_parameters(results):
         low, high = model.parameters[name].ci95 or (0.0, 0.0)
-        told.append(
+        sentences.append(
             f"{PARAMETER_SYMBOLS[name]} is known only roughly: {number_text(low)} to"
             f" {number_text(high)}"
             f" {model.parameters[name].unit}."
@@ -146,31 +158,32 @@ def limitations(results: JointResults, diagnosis: DiagnosisDocument | None) -> l
         [name for name in PARAMETERS if name in model.correlation], 2
     ):
         value = model.correlation[first][second]
-        if abs(value) > _TOGETHER:
+        if abs(value) > _STRONG_CORRELATION:
             both = f"{PARAMETER_SYMBOLS[first]} and {PARAMETER_SYMBOLS[second]}"
-            told.append(
+            sentences.append(
                 f"{both} are told only together (correlation {correlation_text(value)}): one may be"
                 " off if the other is off with it."
             )
-    return told + _open_causes(results, diagnosis)
+    return sentences + _undetermined_causes(results, diagnosis)
 
 
-def _open_causes(results: JointResults, diagnosis: DiagnosisDocument | None) -> list[str]:
+def _undetermined_causes(results: JointResults, diagnosis: DiagnosisDocument | None) -> list[str]:
     if diagnosis is None:
         return ["What the simulated torque misses, and why, has not been judged."]
-    told = [
+    sentences = [
         f"Which of {list_text([in_words(name) for name in cause.effects])} is at work: these"
-        " data"
-        f" cannot tell them apart. {cause.experiment}"
+        f" data cannot tell them apart. {cause.experiment}"
         for cause in diagnosis.causes
         if len(cause.effects) > 1
     ]
-    blind = [in_words(name) for name, size in diagnosis.detectable.items() if size is None]
-    if blind:
-        told.append(f"Whether there is {' or '.join(blind)}: these data cannot show it.")
+    undetectable = [in_words(name) for name, size in diagnosis.detectable.items() if size is None]
+    if undetectable:
+        sentences.append(
+            f"Whether there is {' or '.join(undetectable)}: these data cannot show it."
+        )
     if len(results.runs) == 1:
-        told.append(
+        sentences.append(
             "How the model does on another day, and whether a slow change is a drift or an offset:"
             " there is one run only."
         )
-    return told
+    return sentences

@@ -1,4 +1,4 @@
-"""The top of the page: the verdict in a paragraph, the figures that matter, what was measured."""
+"""Top of the page: the result in a paragraph, the key numbers, and what was measured."""
 
 from dataclasses import dataclass
 
@@ -22,16 +22,16 @@ from frictioncli.report.labels import (
 from frictioncli.report.results import JointResults
 from frictioncli.report.style import PHASE_WORDS, PHASES
 
-_REACHED = 2.0
+_TARGET_ERROR = 2.0
 """Error that the source paper reaches. [N·m]"""
 
-_REMAINS = 0.25
-"""Share of the uncorrected error that may remain, where torque is not in N·m."""
+_TARGET_SHARE = 0.25
+"""Target as a share of the error without correction, if torque is not in N·m."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class KeyNumber:
-    """A figure that matters: its name, value with unit, and what it is to be read with."""
+    """A key number: its name, its value with unit, and the context needed to read it."""
 
     name: str
     value: str
@@ -39,16 +39,26 @@ class KeyNumber:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class _Gained:
-    """Errors and corrections of the simulated setting in one phase, over the runs, as text."""
+class _CorrectionResult:
+    """Result of the simulated setting in one phase, as ranges over the runs.
+
+    Attributes
+    ----------
+    error : str
+        Error (21).
+    corrections : str
+        Number of corrections, with its noun.
+    uncorrected : str
+        Error (21) without correction; empty if it cannot be compared.
+    """
 
     error: str
-    tried: str
-    never: str
+    corrections: str
+    uncorrected: str
 
 
 def summary_text(results: JointResults, diagnosis: DiagnosisDocument | None = None) -> str:
-    """Return the verdict on one joint.
+    """Return the result for one joint in a paragraph.
 
     Parameters
     ----------
@@ -58,16 +68,16 @@ def summary_text(results: JointResults, diagnosis: DiagnosisDocument | None = No
         The joint's part of ``diagnosis.json``, if there is one.
     """
     sentences = [
-        _fitted(results),
-        _corrected(results),
-        _judged(results, diagnosis),
-        _undetermined(results),
+        _fit_sentence(results),
+        _correction_sentence(results),
+        _diagnosis_sentence(results, diagnosis),
+        _undetermined_sentence(results),
     ]
     return " ".join(sentence for sentence in sentences if sentence)
 
 
 def measurement_text(results: JointResults) -> str:
-    """Return what was measured.
+    """Return a sentence on what was measured.
 
     Parameters
     ----------
@@ -101,7 +111,7 @@ def measurement_text(results: JointResults) -> str:
 
 
 def key_numbers(results: JointResults, diagnosis: DiagnosisDocument | None) -> list[KeyNumber]:
-    """Return the figures that matter, those that there are.
+    """Return the key numbers that are available.
 
     Parameters
     ----------
@@ -110,20 +120,24 @@ def key_numbers(results: JointResults, diagnosis: DiagnosisDocument | None) -> l
     diagnosis : DiagnosisDocument or None
         The joint's part of ``diagnosis.json``, if there is one.
     """
-    found = []
+    numbers = []
     for phase in PHASES:
-        if gained := _gained(results, phase):
-            never = f"; without correction {gained.never} {results.unit}" if gained.never else ""
-            found.append(
+        if result := _correction_result(results, phase):
+            uncorrected = (
+                f"; without correction {result.uncorrected} {results.unit}"
+                if result.uncorrected
+                else ""
+            )
+            numbers.append(
                 KeyNumber(
                     name=f"error ε in {PHASE_WORDS[phase]}",
-                    value=f"{gained.error} {results.unit}",
-                    context=f"with {gained.tried}{never}",
+                    value=f"{result.error} {results.unit}",
+                    context=f"with {result.corrections}{uncorrected}",
                 )
             )
     if needed := corrections_needed(results):
-        found.append(needed)
-    found.append(
+        numbers.append(needed)
+    numbers.append(
         KeyNumber(
             name="misfit of the fitted function",
             value=f"{number_text(results.model.rmse)} {results.unit}",
@@ -138,7 +152,7 @@ def key_numbers(results: JointResults, diagnosis: DiagnosisDocument | None) -> l
             if gain.basis == "new_run"
             else "on the data that it was fitted to"
         )
-        found.append(
+        numbers.append(
             KeyNumber(
                 name="misfit of the extended model",
                 value=f"{number_text(gain.rmse_after)} {results.unit}",
@@ -146,14 +160,14 @@ def key_numbers(results: JointResults, diagnosis: DiagnosisDocument | None) -> l
                 f" {number_text(gain.rmse_before)} {results.unit}",
             )
         )
-    return found
+    return numbers
 
 
 def corrections_needed(results: JointResults) -> KeyNumber | None:
-    """Return the fewest corrections per phase that make the error small; none if not evaluated.
+    """Return the least number of corrections per phase that reaches the target error.
 
-    Small is 2 N·m, the error that the source paper reaches; in another unit, a quarter of the error
-    without correction.
+    The target is 2 N·m, the error that the source paper reaches; in another unit, a quarter of the
+    error without correction. Without an evaluation the result is None.
 
     Parameters
     ----------
@@ -161,35 +175,37 @@ def corrections_needed(results: JointResults) -> KeyNumber | None:
         One joint's results.
     """
     criterion = compared_criterion(results)
-    told = []
+    texts = []
     in_torque = results.unit == "N·m"
     for phase in PHASES:
         rows = results.evaluation[results.evaluation["phase"] == phase]
         counts = []
         for _, own in rows.groupby("run"):
-            never = own.loc[own["criterion"] == "none", "epsilon"]
-            limit = _REACHED if in_torque else _REMAINS * float(never.max())
+            uncorrected = own.loc[own["criterion"] == "none", "epsilon"]
+            limit = _TARGET_ERROR if in_torque else _TARGET_SHARE * float(uncorrected.max())
             enough = own[(own["criterion"] == criterion) & (own["epsilon"] <= limit)]
             counts.append(int(enough["corrections"].min()) if len(enough) else None)
         if reached := sorted(count for count in counts if count is not None):
-            missed = counts.count(None)
-            not_all = f" ({count_text(missed, 'run')} never)" if missed else ""
-            told.append(f"{range_text([str(n) for n in reached])} in {PHASE_WORDS[phase]}{not_all}")
+            failing = counts.count(None)
+            not_all = f" ({count_text(failing, 'run')} never)" if failing else ""
+            texts.append(
+                f"{range_text([str(n) for n in reached])} in {PHASE_WORDS[phase]}{not_all}"
+            )
         elif counts:
-            told.append(f"never enough in {PHASE_WORDS[phase]}")
-    if not told or not criterion:
+            texts.append(f"never enough in {PHASE_WORDS[phase]}")
+    if not texts or not criterion:
         return None
     small = "2 N·m, as in the paper" if in_torque else "a quarter of that without correction"
     return KeyNumber(
         name="corrections needed",
-        value=", ".join(told),
+        value=", ".join(texts),
         context=f"fewest of all settings tried whose ε is at most {small}; criterion"
         f" “{CRITERION_WORDS.get(criterion, criterion)}”"
         f"{', extended model' if results.evaluated_extended else ''}",
     )
 
 
-def _fitted(results: JointResults) -> str:
+def _fit_sentence(results: JointResults) -> str:
     inputs = ["load", "speed"]
     if results.model.knows_temperature:
         inputs.append(TEMPERATURE_WORDS[results.model.temperature])
@@ -199,51 +215,57 @@ def _fitted(results: JointResults) -> str:
     )
 
 
-def _corrected(results: JointResults) -> str:
-    gained = {phase: _gained(results, phase) for phase in PHASES}
-    told = [
-        f"{own.error} {results.unit} in {PHASE_WORDS[phase]} ({own.tried})"
-        for phase, own in gained.items()
-        if own
+def _correction_sentence(results: JointResults) -> str:
+    by_phase = {phase: _correction_result(results, phase) for phase in PHASES}
+    errors = [
+        f"{result.error} {results.unit} in {PHASE_WORDS[phase]} ({result.corrections})"
+        for phase, result in by_phase.items()
+        if result
     ]
-    if not told:
+    if not errors:
         return ""
-    never = [
-        f"{own.never} {results.unit} in {PHASE_WORDS[phase]}"
-        for phase, own in gained.items()
-        if own and own.never
+    uncorrected = [
+        f"{result.uncorrected} {results.unit} in {PHASE_WORDS[phase]}"
+        for phase, result in by_phase.items()
+        if result and result.uncorrected
     ]
-    without = f", against {' and '.join(never)} without correction" if never else ""
+    without = f", against {' and '.join(uncorrected)} without correction" if uncorrected else ""
     return (
         f"With the temperature parameter corrected on the way ({setting_text(results)}), the error"
-        f" ε of the predicted friction is {' and '.join(told)}{without}."
+        f" ε of the predicted friction is {' and '.join(errors)}{without}."
     )
 
 
-def _gained(results: JointResults, phase: str) -> _Gained | None:
-    through = results.schedule[results.schedule["phase"] == phase]
-    runs = [own for _, own in through.groupby("run")]
+def _correction_result(results: JointResults, phase: str) -> _CorrectionResult | None:
+    schedule = results.schedule[results.schedule["phase"] == phase]
+    runs = [rows for _, rows in schedule.groupby("run")]
     if not runs:
         return None
-    errors = [_error(own) for own in runs]
-    tried = sorted(int((own["corrected"].astype(bool) | own["failed"]).sum()) for own in runs)
+    errors = [_error(rows) for rows in runs]
+    counts = sorted(int((rows["corrected"].astype(bool) | rows["failed"]).sum()) for rows in runs)
     table = results.evaluation
-    never = table[(table["phase"] == phase) & (table["criterion"] == "none")]["epsilon"]
-    if results.simulated_extended != results.evaluated_extended or not any(tried):
-        never = never[:0]
-    return _Gained(
+    uncorrected = table[(table["phase"] == phase) & (table["criterion"] == "none")]["epsilon"]
+    if results.simulated_extended != results.evaluated_extended or not any(counts):
+        # another model's errors, or equal to those of the schedule: no comparison
+        uncorrected = uncorrected[:0]
+    return _CorrectionResult(
         error=range_text([number_text(error) for error in sorted(errors)]),
-        tried=f"{range_text([str(n) for n in tried])} correction{'' if tried[-1] == 1 else 's'}",
-        never=range_text([number_text(error) for error in sorted(never)]) if len(never) else "",
+        corrections=f"{range_text([str(n) for n in counts])}"
+        f" correction{'' if counts[-1] == 1 else 's'}",
+        uncorrected=range_text([number_text(error) for error in sorted(uncorrected)])
+        if len(uncorrected)
+        else "",
     )
 
 
-def _error(own: pd.DataFrame) -> float:
-    """Return the error (21) of rows of a schedule. [torque unit]."""
-    return float(np.sqrt(np.mean(np.square(own["friction_smoothed"] - own["friction_predicted"]))))
+def _error(schedule: pd.DataFrame) -> float:
+    """Return the error (21) over rows of a schedule. [torque unit]."""
+    return float(
+        np.sqrt(np.mean(np.square(schedule["friction_smoothed"] - schedule["friction_predicted"])))
+    )
 
 
-def _judged(results: JointResults, diagnosis: DiagnosisDocument | None) -> str:
+def _diagnosis_sentence(results: JointResults, diagnosis: DiagnosisDocument | None) -> str:
     if diagnosis is None:
         return ""
     lacking = [
@@ -251,22 +273,22 @@ def _judged(results: JointResults, diagnosis: DiagnosisDocument | None) -> str:
     ]
     if diagnosis.verdict == "no_evidence":
         return "No cause was found in what the function misses."
-    told = f"The function lacks {list_text(lacking)}" if lacking else "No known effect is named"
+    text = f"The function lacks {list_text(lacking)}" if lacking else "No known effect is named"
     if diagnosis.verdict == "unnamed":
-        told += ", and structure is left that no known effect explains"
+        text += ", and structure is left that no known effect explains"
     gain = diagnosis.gain
     if gain is None or gain.ci95[0] <= 0:
-        return f"{told}."
+        return f"{text}."
     where = f" on {diagnosis.held_out}, which it has not seen," if gain.basis == "new_run" else ""
     return (
-        f"{told}; extended by that, it misses the torque{where} by"
+        f"{text}; extended by that, it misses the torque{where} by"
         f" {number_text(gain.rmse_after)}"
         f" {results.unit} instead of {number_text(gain.rmse_before)} {results.unit}, without any"
         " correction."
     )
 
 
-def _undetermined(results: JointResults) -> str:
+def _undetermined_sentence(results: JointResults) -> str:
     names = [name for name in PARAMETERS if not results.model.parameters[name].determined]
     if not names:
         return ""

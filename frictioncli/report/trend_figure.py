@@ -1,4 +1,4 @@
-"""The picture of a comparison: friction over the runs, and its change at reference conditions."""
+"""Figure of a comparison: friction over the runs, and its change at reference conditions."""
 
 from collections.abc import Mapping, Sequence
 from datetime import datetime
@@ -31,7 +31,7 @@ _NAME = "trend"
 
 
 def trend_files(document: Mapping[str, Any]) -> tuple[str, bytes]:
-    """Return the figure of a comparison as an SVG file's text and as a PNG.
+    """Return the figure of a comparison as the contents of an SVG and of a PNG file.
 
     Parameters
     ----------
@@ -123,8 +123,8 @@ def _draw_limits(axes: Axes, document: Mapping[str, Any], start: float) -> None:
     if document["threshold"] is None:
         return
     margin = document["margin"]["value"]
-    for number_, limit in enumerate((start - margin, start + margin)):
-        label = "threshold, from the first run" if number_ == 0 else None
+    for index, limit in enumerate((start - margin, start + margin)):
+        label = "threshold, from the first run" if index == 0 else None
         axes.axhline(limit, color=_LIMIT, linestyle=(0, (5, 3)), linewidth=1.2, label=label)
 
 
@@ -135,7 +135,7 @@ def _name_runs(axes: Axes, runs: Sequence[Mapping[str, Any]]) -> None:
 
 
 def _draw_conditions(axes: Axes, rows: Sequence[Mapping[str, Any]]) -> None:
-    looks = speed_styles(pd.DataFrame({"speed": [row["speed"] for row in rows], "phase": "sweep"}))
+    styles = speed_styles(pd.DataFrame({"speed": [row["speed"] for row in rows], "phase": "sweep"}))
     for place, row in enumerate(rows):
         change = row["percent"]
         centre = change["estimate"]
@@ -143,9 +143,9 @@ def _draw_conditions(axes: Axes, rows: Sequence[Mapping[str, Any]]) -> None:
             centre,
             place,
             xerr=[[centre - change["ci95"][0]], [change["ci95"][1] - centre]],
-            marker=looks[row["speed"]].marker,
-            color=looks[row["speed"]].colour,
-            markerfacecolor="white" if row["extrapolated"] else looks[row["speed"]].colour,
+            marker=styles[row["speed"]].marker,
+            color=styles[row["speed"]].colour,
+            markerfacecolor="white" if row["extrapolated"] else styles[row["speed"]].colour,
             elinewidth=1.2,
         )
     axes.axvline(0.0, color=MODEL, linewidth=1.0)
@@ -155,8 +155,8 @@ def _draw_conditions(axes: Axes, rows: Sequence[Mapping[str, Any]]) -> None:
     )
     axes.invert_yaxis()
     axes.grid(visible=False, axis="y")
-    hollow = any(row["extrapolated"] for row in rows)
-    note = "\nhollow: not all runs have measured this temperature" if hollow else ""
+    extrapolated = any(row["extrapolated"] for row in rows)
+    note = "\nhollow: not all runs have measured this temperature" if extrapolated else ""
     axes.set_xlabel(f"change of friction at the usual load, first run to last [%]{note}")
     axes.set_title("Change at reference conditions, 95 % intervals")
 

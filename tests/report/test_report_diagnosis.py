@@ -152,7 +152,7 @@ def test_section_says_what_was_found(results, diagnosis):
         "direction asymmetry 60 % or dress pack 40 %",
     ]
     first = told.causes[0]
-    assert (first.size, first.chance) == ("1.2 N·m", "3e−09")
+    assert (first.size, first.p_value) == ("1.2 N·m", "3e−09")
     assert first.parameters == "velocity 8.00 deg/s; boundary torque 3.00 N·m (2.50 to 3.50)"
     assert [one.claim for one in told.unnamed] == ["Residuals have structure along angle."]
     assert told.visible[0].startswith(
