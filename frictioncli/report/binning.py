@@ -1,4 +1,4 @@
-"""Residuals in bins of an axis: means over pairs, their errors, and a fitted term's means."""
+"""Residuals in bins of a variable: means over pairs, their standard errors, fitted term."""
 
 from dataclasses import dataclass
 from itertools import pairwise
@@ -10,30 +10,32 @@ from frictioncli.arrays import Array, Flags, Indices
 from frictioncli.effects.base import EffectTable
 from frictioncli.report.style import COOLING, HEATING, MODEL
 
-_BINS = {"speed": 26, "position": 40, "load": 14, "clock": 24}
-_OTHER_BINS = 12
-_PLACES = (1, 2, 3, 4, 6, 8, 12, 16, 24, 32, 48, 64, 96, 128, 192, 256, 384, 512)
-_SAME_LEVEL = 0.02
-_LEAST_SHARE = 0.002
-"""A bin with a smaller share of the rows than this says nothing."""
+_BIN_COUNTS = {"speed": 26, "position": 40, "load": 14, "clock": 24}
+_DEFAULT_BIN_COUNT = 12
+_ORDER_EDGES = (1, 2, 3, 4, 6, 8, 12, 16, 24, 32, 48, 64, 96, 128, 192, 256, 384, 512)
+_EQUAL_WITHIN = 0.02
+"""Relative difference below which two speeds are counted as equal."""
 
-_WARM_AXES = ("temperature", "motor_temperature", "housing_temperature")
+_LEAST_SHARE = 0.002
+"""Least share of the rows for a bin to be used."""
+
+_TEMPERATURES = ("temperature", "motor_temperature", "housing_temperature")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class BinnedSeries:
-    """Rows that are binned apart from the others.
+    """Rows that are drawn as a series of their own.
 
     Attributes
     ----------
     name : str
-        Their name in the legend; empty where there is only one series.
+        Name in the legend; empty if there is only one series.
     colour : str
-        Their colour.
+        Colour.
     filled : bool
-        Whether their markers are filled or hollow.
+        Whether the markers are filled or hollow.
     rows : ndarray of bool, shape (rows,)
-        Which rows.
+        Rows of this series.
     """
 
     name: str
@@ -44,17 +46,17 @@ class BinnedSeries:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class BinnedMeans:
-    """Means in bins, shape (bins,) each; bins without data are left out.
+    """Means in bins; bins without data are left out.
 
     Attributes
     ----------
-    bin : ndarray of int
+    bin : ndarray of int, shape (bins,)
         Number of each bin.
-    at : ndarray
-        Mean of the axis in each bin.
-    mean, error : ndarray
-        Mean residual and its standard error over pairs; NaN for a single pair. [N·m]
-    term : ndarray
+    at : ndarray, shape (bins,)
+        Mean of the variable in each bin.
+    mean, error : ndarray, shape (bins,)
+        Mean residual and its standard error over pairs, NaN for a single pair. [N·m]
+    term : ndarray, shape (bins,)
         Mean of the fitted term over the same rows. [N·m]
     """
 
@@ -66,53 +68,62 @@ class BinnedMeans:
 
 
 def residual_series(table: EffectTable, axis: str, channel: str) -> list[BinnedSeries]:
-    """Return how the rows are split, so that an effect's evidence does not cancel in the mean.
+    """Return the rows split into series whose residuals would cancel in a common mean.
 
     Parameters
     ----------
     table : EffectTable
-        The rows.
+        Rows of the diagnosis.
     axis : str
-        Column that the residuals are drawn against.
+        Variable against which the residuals are drawn.
     channel : {"friction", "load"}
         Channel of the residuals.
     """
-    if channel == "load" and axis in (*_WARM_AXES, "clock") and np.ptp(np.sign(table.load)) > 0:
-        return _two(table.load > 0, "load above 0", "load below 0")
-    if axis in _WARM_AXES:
-        rising = is_warming(table)
-        return _two(rising, "warming up", "cooling down")
+    if channel == "load" and axis in (*_TEMPERATURES, "clock") and np.ptp(np.sign(table.load)) > 0:
+        return _split(table.load > 0, "load above 0", "load below 0")
+    if axis in _TEMPERATURES:
+        return _split(is_warming(table), "warming up", "cooling down")
     if axis == "speed":
         if np.ptp(table.temperature) == 0:
-            return _two(np.ones(len(table.speed), bool), "", "")
+            return _split(np.ones(len(table.speed), bool), "", "")
         middle = float(np.median(table.temperature))
-        return _two(table.temperature > middle, f"above {middle:.0f} °C", f"up to {middle:.0f} °C")
+        return _split(
+            table.temperature > middle, f"above {middle:.0f} °C", f"up to {middle:.0f} °C"
+        )
     if axis in ("position", "load"):
         middle = float(np.median(np.unique(merge_close_values(table.speed))))
-        return _two(table.speed > middle, f"above {middle:.3g} deg/s", f"up to {middle:.3g} deg/s")
-    return _two(np.ones(len(table.speed), bool), "", "")
+        return _split(
+            table.speed > middle, f"above {middle:.3g} deg/s", f"up to {middle:.3g} deg/s"
+        )
+    return _split(np.ones(len(table.speed), bool), "", "")
 
 
-def _two(chosen: Flags, name: str, other: str) -> list[BinnedSeries]:
-    if chosen.all() or not chosen.any():
-        return [BinnedSeries(name="", colour=MODEL, filled=True, rows=np.ones(len(chosen), bool))]
+def _split(first: Flags, name: str, other_name: str) -> list[BinnedSeries]:
+    if first.all() or not first.any():
+        return [BinnedSeries(name="", colour=MODEL, filled=True, rows=np.ones(len(first), bool))]
     return [
-        BinnedSeries(name=name, colour=HEATING, filled=True, rows=chosen),
-        BinnedSeries(name=other, colour=COOLING, filled=False, rows=~chosen),
+        BinnedSeries(name=name, colour=HEATING, filled=True, rows=first),
+        BinnedSeries(name=other_name, colour=COOLING, filled=False, rows=~first),
     ]
 
 
 def is_warming(table: EffectTable) -> Flags:
-    """Return at which rows the temperature rises, over nine pairs about each row's pair."""
+    """Return the rows at which the temperature rises, smoothed over nine pairs.
+
+    Parameters
+    ----------
+    table : EffectTable
+        Rows of the diagnosis.
+    """
     pairs = pd.DataFrame(
-        {"run": table.run, "pair": table.pair, "warm": table.temperature}
+        {"run": table.run, "pair": table.pair, "temperature": table.temperature}
     ).drop_duplicates("pair")
-    smooth = pairs.groupby("run")["warm"].transform(
-        lambda warm: warm.rolling(9, center=True, min_periods=1).mean()
+    smooth = pairs.groupby("run")["temperature"].transform(
+        lambda values: values.rolling(9, center=True, min_periods=1).mean()
     )
     trend = smooth.groupby(pairs["run"]).transform(
-        lambda warm: pd.Series(
-            np.gradient(warm.to_numpy()) if len(warm) > 1 else 0.0, index=warm.index
+        lambda values: pd.Series(
+            np.gradient(values.to_numpy()) if len(values) > 1 else 0.0, index=values.index
         )
     )
     by_pair = dict(zip(pairs["pair"], trend > 0, strict=True))
@@ -120,44 +131,77 @@ def is_warming(table: EffectTable) -> Flags:
 
 
 def merge_close_values(values: Array) -> Array:
-    """Return values with those that lie closer than two per cent made equal."""
-    ordered, place = np.unique(values, return_inverse=True)
-    new = np.diff(ordered, prepend=ordered[0]) > _SAME_LEVEL * np.maximum(np.abs(ordered), 1e-9)
+    """Return values in which neighbours that differ by less than 2 % are replaced by their mean.
+
+    Parameters
+    ----------
+    values : ndarray, shape (rows,)
+        Values, such as speeds.
+
+    Examples
+    --------
+    >>> merge_close_values(np.array([10.0, 10.1, 50.0])).tolist()
+    [10.05, 10.05, 50.0]
+    """
+    ordered, index = np.unique(values, return_inverse=True)
+    new = np.diff(ordered, prepend=ordered[0]) > _EQUAL_WITHIN * np.maximum(np.abs(ordered), 1e-9)
     group = np.cumsum(new)
-    weight = np.bincount(place)
+    weight = np.bincount(index)
     means = np.bincount(group, ordered * weight) / np.bincount(group, weight)
-    return np.asarray(means[group][place])
+    return np.asarray(means[group][index])
 
 
 def bin_numbers(axis: str, values: Array) -> Indices:
-    """Return the number of each row's bin along an axis.
+    """Return the bin number of each row along a variable.
 
-    Speeds and angles are levels of their own or, if they are many, a few neighbours together;
-    places in a series fall into bins that widen; other axes get bins of equal width.
+    Each speed and each angle has its own bin, or a few neighbours share one if there are many. Bins
+    of the order after a rest grow geometrically. Other variables have bins of equal width.
+
+    Parameters
+    ----------
+    axis : str
+        Name of the variable.
+    values : ndarray, shape (rows,)
+        Its values.
     """
     if axis == "order":
-        return np.searchsorted(_PLACES, values, side="right")
+        return np.searchsorted(_ORDER_EDGES, values, side="right")
     if axis in ("speed", "position"):
         known = np.unique(merge_close_values(values) if axis == "speed" else values)
-        return np.searchsorted(group_boundaries(known, _BINS[axis]), values, side="right")
-    edges = np.linspace(values.min(), values.max(), _BINS.get(axis, _OTHER_BINS) + 1)[1:-1]
+        return np.searchsorted(group_boundaries(known, _BIN_COUNTS[axis]), values, side="right")
+    edges = np.linspace(values.min(), values.max(), _BIN_COUNTS.get(axis, _DEFAULT_BIN_COUNT) + 1)[
+        1:-1
+    ]
     return np.searchsorted(edges, values, side="right")
 
 
 def group_boundaries(known: Array, most: int) -> Array:
-    """Return the values that part ascending levels into at most so many groups of even size."""
+    """Return the boundaries that divide ascending values into groups of equal size.
+
+    Parameters
+    ----------
+    known : ndarray, shape (values,)
+        Distinct values, ascending.
+    most : int
+        Greatest number of groups.
+
+    Examples
+    --------
+    >>> group_boundaries(np.arange(5.0), 2).tolist()
+    [2.5]
+    """
     groups = np.array_split(known, min(len(known), most))
-    return np.array([(one[-1] + other[0]) / 2 for one, other in pairwise(groups)])
+    return np.array([(lower[-1] + upper[0]) / 2 for lower, upper in pairwise(groups)])
 
 
 def bin_means(rows: pd.DataFrame) -> BinnedMeans:
-    """Return means per bin. Rows of a pair share its noise, so errors are taken over pairs.
+    """Return means per bin, with standard errors over pairs, since rows of a pair share noise.
 
     Parameters
     ----------
     rows : DataFrame
-        ``bin`` and ``pair`` of each row, ``at`` on the axis, and ``mean`` and ``term``, the
-        residual and the fitted term. [N·m]
+        Per row ``bin``, ``pair``, ``at``, the variable, and ``mean`` and ``term``, the residual and
+        the fitted term. [N·m]
     """
     sizes = rows.groupby("bin").size()
     rows = rows[rows["bin"].isin(sizes.index[sizes >= _LEAST_SHARE * len(rows)])]

@@ -1,4 +1,4 @@
-"""Figures 9 and 10: friction predicted with a corrected temperature, through each phase."""
+"""Figures 9 and 10: friction predicted with corrected temperature in heating and cooling."""
 
 import pandas as pd
 from matplotlib.axes import Axes
@@ -14,17 +14,17 @@ from frictioncli.report.labels import (
 from frictioncli.report.results import MOST_RUNS, JointResults, by_speed
 from frictioncli.report.style import FAINT, MODEL, WIDTH, label_right, legend_above, points
 
-_LABEL_SPACE = 0.028
-"""Least distance of two labels, as a part of the time shown."""
+_LABEL_DISTANCE = 0.028
+"""Least distance between two labels as a share of the time shown."""
 
 _FRICTION_HEIGHT = 3.6
 _STRIP_HEIGHT = 1.5
 
 
 def corrected_friction_figure(results: JointResults, phase: str) -> Figure:
-    """Draw Figure 9 or 10: measured, smoothed and predicted friction through one phase.
+    """Draw Figure 9 or 10: measured, smoothed and predicted friction over one phase.
 
-    Below each panel runs the measured temperature with the temperature parameter of (17).
+    A panel below shows the measured temperature and the temperature parameter of (17).
 
     Parameters
     ----------
@@ -46,9 +46,9 @@ def corrected_friction_figure(results: JointResults, phase: str) -> Figure:
     for index, run in enumerate(runs):
         friction, temperature = grid[2 * index], grid[2 * index + 1]
         own = schedule[schedule["run"] == run].sort_values("time")
-        _friction_through_phase(friction, own, results)
-        _temperature_through_phase(temperature, own, results)
-        _mark_corrections(friction, temperature, own)
+        _draw_friction(friction, own, results)
+        _draw_temperature(temperature, own, results)
+        _draw_corrections(friction, temperature, own)
         friction.set_title(figure_text(run))
         friction.tick_params(labelbottom=False)
         friction.sharex(temperature)
@@ -56,18 +56,18 @@ def corrected_friction_figure(results: JointResults, phase: str) -> Figure:
     return figure
 
 
-def _friction_through_phase(panel: Axes, own: pd.DataFrame, results: JointResults) -> None:
+def _draw_friction(panel: Axes, own: pd.DataFrame, results: JointResults) -> None:
     labels = []
     for speed, group in by_speed(own):
         style = results.style(speed)
         minutes = group["time"] / 60.0
-        told = [
+        tooltips = [
             f"{speed_text(speed)}, {row['time'] / 60.0:.0f} min: measured"
             f" {number_text(row['friction_torque'])} {results.unit}, predicted"
             f" {number_text(row['friction_predicted'])} {results.unit}"
             for row in group.to_dict("records")
         ]
-        points(panel, minutes, group["friction_torque"], style, opacity=0.5, told=told)
+        points(panel, minutes, group["friction_torque"], style, opacity=0.5, tooltips=tooltips)
         panel.plot(minutes, group["friction_smoothed"], color=style.colour, linewidth=1.0)
         panel.plot(minutes, group["friction_predicted"], "--", color=style.colour, linewidth=2.0)
         labels.append(
@@ -78,14 +78,14 @@ def _friction_through_phase(panel: Axes, own: pd.DataFrame, results: JointResult
     panel.plot([], [], "--", color=FAINT, linewidth=2.0, label="predicted")
     panel.plot([], [], "-", color=MODEL, linewidth=0.9, label="correction, new ΔT")
     low, high = panel.get_ylim()
-    # room above the data for the values of the correction
+    # room above the data for the labels of the corrections
     panel.set_ylim(low, high + 0.32 * (high - low))
     panel.set_ylabel(friction_label(results.unit))
     legend_above(panel)
     label_right(panel, labels, height=_FRICTION_HEIGHT)
 
 
-def _temperature_through_phase(panel: Axes, own: pd.DataFrame, results: JointResults) -> None:
+def _draw_temperature(panel: Axes, own: pd.DataFrame, results: JointResults) -> None:
     symbol = TEMPERATURE_SYMBOLS[results.model.temperature]
     minutes = own["time"] / 60.0
     measured = own["temperature_parameter"] - own["temperature_correction"]
@@ -95,19 +95,19 @@ def _temperature_through_phase(panel: Axes, own: pd.DataFrame, results: JointRes
     legend_above(panel)
 
 
-def _mark_corrections(friction: Axes, temperature: Axes, own: pd.DataFrame) -> None:
-    tried = own[own["corrected"].astype(bool) | own["failed"].astype(bool)]
+def _draw_corrections(friction: Axes, temperature: Axes, own: pd.DataFrame) -> None:
+    corrections = own[own["corrected"].astype(bool) | own["failed"].astype(bool)]
     span = (own["time"].iloc[-1] - own["time"].iloc[0]) / 60.0
-    labelled = float("-inf")
-    for row in tried.to_dict("records"):
+    last_label = float("-inf")
+    for row in corrections.to_dict("records"):
         at = row["time"] / 60.0
         style = ":" if row["failed"] else "-"
         for panel in (friction, temperature):
             panel.axvline(at, color=MODEL, linewidth=0.9, linestyle=style, alpha=0.6, zorder=0.5)
-        # crowded labels would cover each other: every correction keeps its line, not its label
-        if at - labelled < _LABEL_SPACE * span:
+        # labels that would overlap are left out; every correction has its line
+        if at - last_label < _LABEL_DISTANCE * span:
             continue
-        labelled = at
+        last_label = at
         friction.annotate(
             "failed" if row["failed"] else correction_text(row["temperature_correction"]),
             (at, 0.985),
@@ -123,6 +123,17 @@ def _mark_corrections(friction: Axes, temperature: Axes, own: pd.DataFrame) -> N
 
 
 def correction_text(correction: float) -> str:
-    """Return a temperature correction with its sign and unit."""
+    """Return a temperature correction with its sign and unit.
+
+    Parameters
+    ----------
+    correction : float
+        Temperature correction. [°C]
+
+    Examples
+    --------
+    >>> correction_text(2.34)
+    '+2.3 °C'
+    """
     # adding zero makes -0.0 positive
     return f"{round(correction, 1) + 0.0:+.1f} °C".replace("-", "−")

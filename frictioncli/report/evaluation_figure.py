@@ -1,4 +1,4 @@
-"""Figure 11: the error (21) against the number of corrections, and the error of one setting."""
+"""Figure 11: error (21) against the number of corrections; text on the evaluated settings."""
 
 from typing import Any
 
@@ -25,10 +25,14 @@ from frictioncli.report.style import (
 from frictioncli.report.tooltips import set_tooltips
 
 BASELINES = ("none", "equal")
-"""Criteria that others are compared with."""
+"""Criteria with which the others are compared."""
 
-_USUAL_BOUND = 2.0
+_PAPER_BOUND = 2.0
+"""Error that the source paper reaches. [N·m]"""
+
 _MOST_GROUPS = 14
+"""Greatest number of groups of bars."""
+
 _BAR_WIDTH = 0.38
 _DASHES = (0, (5, 3))
 _EQUAL: dict[str, Any] = {
@@ -41,7 +45,7 @@ _OTHER: dict[str, Any] = _EQUAL | {"marker": "^", "markersize": 6, "markeredgeco
 
 
 def error_figure(results: JointResults) -> Figure:
-    """Draw Figure 11: epsilon (21) against the number of corrections, heating beside cooling.
+    """Draw Figure 11: error (21) against the number of corrections, heating beside cooling.
 
     Parameters
     ----------
@@ -56,10 +60,10 @@ def error_figure(results: JointResults) -> Figure:
     figure, axes = panels(len(runs), height=3.4)
     for run, panel in zip(runs, axes, strict=True):
         own = evaluation[evaluation["run"] == run]
-        for side, phase in enumerate(PHASES):
+        for column, phase in enumerate(PHASES):
             rows = own[own["phase"] == phase]
             _phase_bars(
-                panel, rows, criteria, counts, phase, shift=(side - 0.5) * 0.4, unit=results.unit
+                panel, rows, criteria, counts, phase, shift=(column - 0.5) * 0.4, unit=results.unit
             )
         panel.plot([], [], label=CRITERION_WORDS["equal"], color=FAINT, **_EQUAL)
         for name in criteria[1:]:
@@ -70,7 +74,7 @@ def error_figure(results: JointResults) -> Figure:
         panel.set_title(figure_text(run))
         panel.set_ylabel(f"error ε [{results.unit}]")
         legend_above(panel)
-    # the notes of failures stand on the bars and need room; all panels share the scale
+    # labels of failures above the bars need room; all panels share the scale
     room = 1.3 if (evaluation["failed"] > 0).any() else 1.08
     axes[0].set_ylim(0.0, room * axes[0].get_ylim()[1])
     axes[-1].set_xlabel(f"number of corrections ({CRITERION_WORDS.get(criterion, criterion)})")
@@ -87,11 +91,11 @@ def _phase_bars(
     shift: float,
     unit: str,
 ) -> None:
-    """Draw one phase: the first criterion as bars, others and equal spacing as marks."""
+    """Draw one phase: the first criterion as bars, the others and equal spacing as markers."""
     colour = PHASE_COLOURS[phase]
     place = {count: index + shift for index, count in enumerate(counts)}
     known = rows[rows["corrections"].isin(counts)]
-    # no corrections at all cannot be spaced
+    # zero corrections have no spacing
     known = known[(known["criterion"] != "equal") | (known["corrections"] > 0)]
     errors = {
         name: mean_error_per_count(known[known["criterion"] == name])
@@ -106,7 +110,7 @@ def _phase_bars(
         alpha=0.85,
         label=PHASE_WORDS[phase],
     )
-    for bar, text in zip(drawn, _told(bars, phase, unit), strict=True):
+    for bar, text in zip(drawn, _tooltips(bars, phase, unit), strict=True):
         set_tooltips(bar, [text])
     for name in list(errors)[1:]:
         (marks,) = panel.plot(
@@ -115,8 +119,8 @@ def _phase_bars(
             color=colour,
             **(_EQUAL if name == "equal" else _OTHER),
         )
-        told = _told(errors[name], phase, unit)
-        set_tooltips(marks, [f"{CRITERION_WORDS[name]}, {text}" for text in told])
+        tooltips = _tooltips(errors[name], phase, unit)
+        set_tooltips(marks, [f"{CRITERION_WORDS[name]}, {text}" for text in tooltips])
     tops = pd.concat([each["epsilon"] for each in errors.values()]).groupby(level=0).max()
     for count, failed in zip(bars.index, bars["failed"], strict=True):
         if failed > 0:
@@ -136,7 +140,7 @@ def _phase_bars(
         panel.axhline(float(none.iloc[0]), color=colour, linestyle=_DASHES, linewidth=1.3)
 
 
-def _told(errors: pd.DataFrame, phase: str, unit: str) -> list[str]:
+def _tooltips(errors: pd.DataFrame, phase: str, unit: str) -> list[str]:
     return [
         f"{PHASE_WORDS[phase]}, {count_text(int(count), 'correction')}: ε = {number_text(error)}"
         f" {unit}"
@@ -145,7 +149,7 @@ def _told(errors: pd.DataFrame, phase: str, unit: str) -> list[str]:
 
 
 def _other_criterion(criterion: str, evaluation: pd.DataFrame) -> list[str]:
-    """Return uncertainty beside a criterion of the paper, and one of the paper's beside it."""
+    """Return a second criterion to draw: uncertainty, or one of the paper if that is the first."""
     evaluated = set(evaluation["criterion"])
     others = [name for name in CRITERION_WORDS if name in evaluated and name not in BASELINES]
     if criterion != "uncertainty":
@@ -154,7 +158,7 @@ def _other_criterion(criterion: str, evaluation: pd.DataFrame) -> list[str]:
 
 
 def mean_error_per_count(rows: pd.DataFrame) -> pd.DataFrame:
-    """Return the mean error and the most failures over the settings of each correction count.
+    """Return the mean error and the greatest number of failures per number of corrections.
 
     Parameters
     ----------
@@ -165,10 +169,10 @@ def mean_error_per_count(rows: pd.DataFrame) -> pd.DataFrame:
 
 
 def shown_counts(rows: pd.DataFrame) -> list[int]:
-    """Return the numbers of corrections that Figure 11 shows, at most fourteen.
+    """Return the numbers of corrections shown in Figure 11, at most fourteen.
 
-    Those that most runs, phases and criteria have come first, for the sake of comparison, then the
-    lowest.
+    Numbers shared by most runs, phases and criteria are preferred, so that these can be compared,
+    and among them the lowest.
 
     Parameters
     ----------
@@ -176,24 +180,24 @@ def shown_counts(rows: pd.DataFrame) -> list[int]:
         Rows of :data:`frictioncli.schemas.EVALUATION` of the criteria that are drawn.
     """
     phases = rows[["run", "phase", "criterion", "corrections"]].drop_duplicates()
-    shared = phases.groupby("corrections").size().sort_values(ascending=False, kind="stable")
-    return sorted(int(count) for count in shared.index[:_MOST_GROUPS])
+    frequency = phases.groupby("corrections").size().sort_values(ascending=False, kind="stable")
+    return sorted(int(count) for count in frequency.index[:_MOST_GROUPS])
 
 
 def compared_criterion(results: JointResults, *, bounded: bool = True) -> str:
-    """Return the criterion that Figure 11 draws: the simulated one where it was evaluated.
+    """Return the criterion shown in Figure 11: the simulated one if it was evaluated.
 
     Parameters
     ----------
     results : JointResults
         One joint's results.
     bounded : bool
-        Whether it may be one that a bound decides, not k and tmax.
+        Whether it may be the criterion with a bound on uncertainty instead of k and tmax.
 
     Returns
     -------
     str
-        Name of the criterion, empty where the evaluation has none but the two baselines.
+        Name of the criterion; empty if only the baselines were evaluated.
     """
     evaluated = {str(c) for c in results.evaluation["criterion"].unique()} - set(BASELINES)
     if not bounded:
@@ -206,23 +210,29 @@ def compared_criterion(results: JointResults, *, bounded: bool = True) -> str:
 
 
 def setting_text(results: JointResults) -> str:
-    """Return the simulated setting in words."""
+    """Return the simulated setting as text.
+
+    Parameters
+    ----------
+    results : JointResults
+        One joint's results, with a schedule.
+    """
     first = results.schedule.iloc[0]
     word = CRITERION_WORDS.get(str(first["criterion"]), str(first["criterion"]))
-    told = [f"criterion “{word}”"]
+    texts = [f"criterion “{word}”"]
     if pd.notna(first["k"]):
-        told.append(f"k = {first['k']:g}")
+        texts.append(f"k = {first['k']:g}")
     if pd.notna(first["tmax"]):
-        told.append(f"tmax = {first['tmax'] / 60.0:g} min")
+        texts.append(f"tmax = {first['tmax'] / 60.0:g} min")
     if pd.notna(first["bound"]):
-        told.append(f"bound = {first['bound']:g} {results.unit}")
+        texts.append(f"bound = {first['bound']:g} {results.unit}")
     if results.simulated_extended:
-        told.append("extended model")
-    return ", ".join(told)
+        texts.append("extended model")
+    return ", ".join(texts)
 
 
 def uncertainty_text(results: JointResults) -> str:
-    """Return what corrections by uncertainty reach, in a sentence; empty where not evaluated.
+    """Return a sentence on corrections by uncertainty; empty if they were not evaluated.
 
     Parameters
     ----------
@@ -233,19 +243,19 @@ def uncertainty_text(results: JointResults) -> str:
     if rows.empty:
         return ""
     bounds = rows["bound"].unique()
-    bound = float(bounds[abs(bounds - _USUAL_BOUND).argmin()])
-    told = []
+    bound = float(bounds[abs(bounds - _PAPER_BOUND).argmin()])
+    texts = []
     for phase in PHASES:
         own = rows[(rows["phase"] == phase) & (rows["bound"] == bound)]
         if len(own):
             counts = range_text([str(count) for count in sorted(own["corrections"])])
             errors = range_text([number_text(error) for error in sorted(own["epsilon"])])
-            told.append(f"{PHASE_WORDS[phase]} {counts} corrections, ε {errors} {results.unit}")
+            texts.append(f"{PHASE_WORDS[phase]} {counts} corrections, ε {errors} {results.unit}")
     return (
-        f"{_shape(results)}: corrections made where the predicted uncertainty of friction exceeds a"
-        f" bound; with {bound:g} {results.unit}, {'; '.join(told)}."
+        f"{_marker_name(results)}: corrections made where the predicted uncertainty of friction"
+        f" exceeds a bound; with {bound:g} {results.unit}, {'; '.join(texts)}."
     )
 
 
-def _shape(results: JointResults) -> str:
+def _marker_name(results: JointResults) -> str:
     return "Bars" if compared_criterion(results) == "uncertainty" else "Triangles"

@@ -1,4 +1,4 @@
-"""The evidence of one cause: residuals without it, its fitted term, what is left, its rivals."""
+"""Figure of the evidence for one cause: residuals, fitted term, probabilities of effects."""
 
 from collections.abc import Mapping, Sequence
 
@@ -33,23 +33,26 @@ _AXES = {
     "order": ("pair after the last rest", 1.0),
 }
 
-_LEVELS = ("speed", "order", "position")
-"""Axes measured at a few values, between which a line may be drawn."""
+_DISCRETE = ("speed", "order", "position")
+"""Variables with a few measured values, between which a line may be drawn."""
 
 _MOST_BARS = 6
-_CHOSEN = "#0072B2"
+_CREDIBLE = "#0072B2"
 _PANELS = ("base model", "without this cause", "extended model")
 
 
 def evidence_figure(results: JointResults, *, diagnosis: Reloaded, index: int) -> Figure:
-    """Draw one cause: the base model's residuals, the fitted term, what is left, its rivals.
+    """Draw the evidence for one cause: residuals, fitted term, and probabilities of effects.
+
+    The residuals are those of the base model, of the extended model without this cause, and of the
+    extended model.
 
     Parameters
     ----------
     results : JointResults
         One joint's results.
     diagnosis : Reloaded
-        Its diagnosis.
+        The joint's diagnosis.
     index : int
         Index of the cause, from 0.
     """
@@ -69,13 +72,13 @@ def evidence_figure(results: JointResults, *, diagnosis: Reloaded, index: int) -
             "term": seen.terms[index].of(channel),
         }
     )
-    drawn = (seen.before[channel], seen.without(index, channel), seen.after[channel])
-    for panel, title, residual in zip(panels, _PANELS, drawn, strict=True):
-        for one in residual_series(table, axis, channel):
-            found = bin_means(rows.assign(mean=residual)[one.rows])
-            _points(panel, one, found)
+    residuals = (seen.before[channel], seen.without(index, channel), seen.after[channel])
+    for panel, title, residual in zip(panels, _PANELS, residuals, strict=True):
+        for series in residual_series(table, axis, channel):
+            means = bin_means(rows.assign(mean=residual)[series.rows])
+            _draw_means(panel, series, means)
             if title == _PANELS[1]:
-                _line(panel, found, one.colour, broken=axis not in _LEVELS)
+                _draw_term(panel, means, series.colour, broken=axis not in _DISCRETE)
         panel.axhline(0.0, color=MODEL, linewidth=0.9, zorder=1)
         panel.set_title(title)
     panels[1].plot([], [], color=FAINT, label="fitted term")
@@ -87,7 +90,7 @@ def evidence_figure(results: JointResults, *, diagnosis: Reloaded, index: int) -
     panels[0].set_ylabel(f"{channel}: measured − simulated [{unit}]")
     handles, labels = panels[1].get_legend_handles_labels()
     upper.legend(handles, labels, loc="outside lower center", ncols=len(labels))
-    _bars(lower.subplots(), bars, set(cause.effects))
+    _draw_probabilities(lower.subplots(), bars, set(cause.effects))
     return figure
 
 
@@ -109,25 +112,25 @@ def shown_probabilities(
     return [*shown, ("all others", rest)] if rest >= 5e-4 else shown
 
 
-def _points(panel: Axes, one: BinnedSeries, found: BinnedMeans) -> None:
+def _draw_means(panel: Axes, series: BinnedSeries, means: BinnedMeans) -> None:
     panel.errorbar(
-        found.at,
-        found.mean,
-        yerr=2 * np.nan_to_num(found.error),
+        means.at,
+        means.mean,
+        yerr=2 * np.nan_to_num(means.error),
         fmt="o",
-        color=one.colour,
-        markerfacecolor=one.colour if one.filled else "white",
-        markersize=4.5 if one.filled else 4,
+        color=series.colour,
+        markerfacecolor=series.colour if series.filled else "white",
+        markersize=4.5 if series.filled else 4,
         elinewidth=1.0,
         capsize=2,
-        label=one.name or "residual",
+        label=series.name or "residual",
     )
 
 
-def _line(panel: Axes, found: BinnedMeans, colour: str, *, broken: bool) -> None:
-    """Draw the fitted term's means; a line across empty bins would claim what was not measured."""
-    cuts = np.flatnonzero(np.diff(found.bin) > 1)[: None if broken else 0] + 1
-    parts = zip(np.split(found.at, cuts), np.split(found.term, cuts), strict=True)
+def _draw_term(panel: Axes, means: BinnedMeans, colour: str, *, broken: bool) -> None:
+    """Draw the means of the fitted term as a line, broken at bins without data."""
+    gaps = np.flatnonzero(np.diff(means.bin) > 1)[: None if broken else 0] + 1
+    parts = zip(np.split(means.at, gaps), np.split(means.term, gaps), strict=True)
     for at, term in parts:
         panel.plot(at, term, color=colour, marker="_" if len(at) == 1 else None, markersize=12)
 
@@ -140,9 +143,9 @@ def _logarithmic(panel: Axes, values: pd.Series) -> None:
     panel.set_xticks([], minor=True)
 
 
-def _bars(panel: Axes, bars: list[tuple[str, float]], chosen: set[str]) -> None:
+def _draw_probabilities(panel: Axes, bars: list[tuple[str, float]], chosen: set[str]) -> None:
     names = [in_words(name) for name, _ in bars]
-    colours = [_CHOSEN if name in chosen else FAINT for name, _ in bars]
+    colours = [_CREDIBLE if name in chosen else FAINT for name, _ in bars]
     places = np.arange(len(bars))
     panel.barh(places, [100 * share for _, share in bars], color=colours, height=0.65)
     for place, (_, share) in zip(places, bars, strict=True):

@@ -1,4 +1,4 @@
-"""The figures of a report in their order: title, caption, what each needs, how it is drawn."""
+"""List of the report's figures in their order, with titles and captions."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -51,20 +51,20 @@ from frictioncli.report.thermal_figures import (
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class FigureSpec:
-    """One figure of the report.
+    """One figure of the report; its functions take the results of one joint.
 
     Attributes
     ----------
     name : str
         Stem of its files.
     title : str
-        Its heading.
+        Heading.
     caption : callable
-        Says what to see in it.
+        Returns the caption.
     missing : callable
-        Why it cannot be drawn and what would be needed; empty where it can.
+        Returns why it cannot be drawn and what would be needed; empty if it can be drawn.
     draw : callable
-        Draws it.
+        Draws the figure.
     """
 
     name: str
@@ -84,7 +84,7 @@ def _load_caption(results: JointResults) -> str:
 
 
 def _time_caption(results: JointResults) -> str:
-    told = []
+    texts = []
     for run in thermal_runs(results, "motor_temperature"):
         own = results.pairs[results.pairs["run"] == run].sort_values("time")
         phases = []
@@ -95,8 +95,8 @@ def _time_caption(results: JointResults) -> str:
                     f"{PHASE_WORDS[phase]} from {rows.iloc[0]:.0f} to {rows.iloc[-1]:.0f} °C in"
                     f" {duration_text(end - start)}"
                 )
-        told.append(f"{run}: {list_text(phases)}")
-    temperatures = f" Motor temperature, {'; '.join(told)}." if told else ""
+        texts.append(f"{run}: {list_text(phases)}")
+    temperatures = f" Motor temperature, {'; '.join(texts)}." if texts else ""
     return f"Temperatures at the measured pairs; the phases are shaded.{temperatures}"
 
 
@@ -116,15 +116,15 @@ def _temperature_caption(results: JointResults, kind: str) -> str:
 
 
 def _means_caption(results: JointResults) -> str:
-    fitted = (
+    curves = (
         "The curves are the fitted function, which is one function of temperature and therefore"
         " runs between the branches."
     )
     if results.model.temperature != "mean":
-        fitted += f" It was fitted, and is drawn here, over the {_model_temperature(results)}."
+        curves += f" It was fitted, and is drawn here, over the {_model_temperature(results)}."
     return (
         "Points: mean of the heating and the cooling branch at the same temperature, equation (11)."
-        f" {fitted}"
+        f" {curves}"
     )
 
 
@@ -260,7 +260,7 @@ FIGURES = (
 
 
 def runs_drawn_note(results: JointResults) -> str:
-    """Return a sentence about runs that the figures leave out, empty where they draw all.
+    """Return a sentence on runs that the figures leave out; empty if they show all runs.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""The friction function of a joint as a formula with numbers and units."""
+"""Friction function of a joint as a formula with numbers and units."""
 
 import re
 
@@ -12,19 +12,19 @@ _POWERS = {"^0.5": Markup("<sup>½</sup>"), "^2": Markup("²")}
 
 
 def unit_markup(unit: str) -> Markup:
-    """Return a unit with its powers raised.
+    """Return a unit with its powers as superscripts.
 
     Parameters
     ----------
     unit : str
-        As ``model.json`` has it, such as ``N·m/(deg/s)^0.5``.
+        Unit as written in ``model.json``, such as ``N·m/(deg/s)^0.5``.
     """
     parts = re.split(r"(\^0\.5|\^2)", unit)
     return Markup("").join(_POWERS.get(part, escape(part)) for part in parts)
 
 
 def friction_formula(results: JointResults) -> Markup:
-    """Return equation (16) of a joint; terms that are zero are left out.
+    """Return equation (16) with the joint's parameters; terms that are zero are left out.
 
     Parameters
     ----------
@@ -33,32 +33,38 @@ def friction_formula(results: JointResults) -> Markup:
     """
     values = results.model.friction
 
-    def stated(name: str) -> Markup:
-        found = results.model.parameters[name]
-        unit = found.unit.removeprefix("1") if found.unit.startswith("1/") else f" {found.unit}"
-        return Markup("<b>{}</b>{}").format(number_text(found.estimate, _DIGITS), unit_markup(unit))
+    def with_unit(name: str) -> Markup:
+        parameter = results.model.parameters[name]
+        unit = (
+            parameter.unit.removeprefix("1")
+            if parameter.unit.startswith("1/")
+            else f" {parameter.unit}"
+        )
+        return Markup("<b>{}</b>{}").format(
+            number_text(parameter.estimate, _DIGITS), unit_markup(unit)
+        )
 
     terms = []
     if values.tau_c:
-        terms.append(stated("tau_c"))
+        terms.append(with_unit("tau_c"))
     if values.alpha:
-        terms.append(stated("alpha") + Markup(" · <i>L</i>²"))
+        terms.append(with_unit("alpha") + Markup(" · <i>L</i>²"))
     viscous = []
     if values.beta:
-        viscous.append(stated("beta"))
+        viscous.append(with_unit("beta"))
     if values.gamma:
-        falls = Markup(" · e<sup>−{} · <i>T</i></sup>").format(stated("delta"))
-        viscous.append(stated("gamma") + falls)
+        exponential = Markup(" · e<sup>−{} · <i>T</i></sup>").format(with_unit("delta"))
+        viscous.append(with_unit("gamma") + exponential)
     if len(viscous) == 2:
         terms.append(Markup("({}) · √<i>v</i>").format(Markup(" + ").join(viscous)))
     elif viscous:
         terms.append(viscous[0] + Markup(" · √<i>v</i>"))
-    whole = Markup(" + ").join(Markup('<span class="term">{}</span>').format(t) for t in terms)
-    return Markup("<i>τ</i> = {}").format(whole or "0")
+    terms_sum = Markup(" + ").join(Markup('<span class="term">{}</span>').format(t) for t in terms)
+    return Markup("<i>τ</i> = {}").format(terms_sum or "0")
 
 
 def formula_symbols(results: JointResults) -> str:
-    """Return what the formula's symbols stand for, with units.
+    """Return the meaning of the formula's symbols, with units.
 
     Parameters
     ----------

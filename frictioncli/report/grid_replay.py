@@ -1,4 +1,4 @@
-"""The phases of a joint under every schedule of a grid."""
+"""Replay of all schedules of a grid of k and tmax in the phases of a joint."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -18,16 +18,16 @@ from frictioncli.model.friction import FrictionParameters
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ScheduleGrid:
-    """Schedules by criterion (20): every k with every tmax, k by k.
+    """Schedules by criterion (20) with every k and every tmax, in order of k, then of tmax.
 
     Attributes
     ----------
     criterion : {"first_degree", "latest_degree"}
-        Reading of (20).
+        Interpretation of (20).
     k : tuple of float
-        Scales, growing.
+        Scales, ascending.
     tmax : tuple of float
-        Times after which a correction is forced, growing. [s]
+        Times after which a correction is forced, ascending. [s]
     """
 
     criterion: str
@@ -37,16 +37,16 @@ class ScheduleGrid:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Events:
-    """The corrections of one schedule in one phase, shape (events,) each.
+    """Corrections of one schedule in one phase.
 
     Attributes
     ----------
-    time : ndarray
-        When. [s]
-    correction : ndarray
-        Temperature correction in force from then on. [°C]
-    failed : ndarray of bool
-        Where it could not be computed.
+    time : ndarray, shape (events,)
+        Times of the corrections. [s]
+    correction : ndarray, shape (events,)
+        Temperature correction from each of these times on. [°C]
+    failed : ndarray of bool, shape (events,)
+        Corrections that could not be computed.
     """
 
     time: Array
@@ -56,21 +56,21 @@ class Events:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ReplayedPhase:
-    """All stretches of one phase of a run, under every schedule of a grid.
+    """One phase of a run, over all thermal cycles, under every schedule of a grid.
 
     Attributes
     ----------
     run, name : str
-        The run, and ``heat-up`` or ``cool-down``.
+        Name of the run, and ``heat-up`` or ``cool-down``.
     delta : float
-        Rate of the temperature term. [1/°C]
+        Parameter delta of (16). [1/°C]
     time, speed, temperature : ndarray, shape (pairs,)
-        Of the pairs in time order. [s], [deg/s], [°C]
+        Time, speed and measured temperature of the pairs, in order of time. [s], [deg/s], [°C]
     term : ndarray, shape (pairs,)
-        The temperature term of (16) without correction. [torque unit]
+        Temperature term of (16) without correction. [torque unit]
     error : ndarray, shape (pairs,)
-        Predicted minus smoothed friction torque without correction. With a correction by ΔT it is
-        ``error + term*(exp(-delta*ΔT) - 1)``. [torque unit]
+        Predicted minus smoothed friction torque without correction. With a correction ΔT the
+        difference is ``error + term*(exp(-delta*ΔT) - 1)``. [torque unit]
     uncorrected : float
         Error (21) without correction. [torque unit]
     epsilon : ndarray, shape (schedules,)
@@ -99,49 +99,49 @@ def replayed_phases(
     grid: ScheduleGrid,
     runs: Sequence[str],
 ) -> list[ReplayedPhase]:
-    """Replay every schedule of a grid in every phase of some runs, ordered by run and time.
+    """Replay every schedule of a grid in every phase of the given runs, by run and time.
 
     Parameters
     ----------
     torques : DataFrame
-        Rows of :data:`frictioncli.schemas.TORQUES` of one joint, all its runs.
+        Rows of :data:`frictioncli.schemas.TORQUES` of all runs of one joint.
     model : FrictionModel
-        Its model.
+        The joint's model.
     settings : CorrectionSettings
         How corrections are computed.
     grid : ScheduleGrid
-        The schedules.
+        Grid of schedules.
     runs : sequence of str
-        The runs.
+        Names of the runs.
 
     Raises
     ------
     NotEnoughData
-        If the model does not know temperature, or no phase heats or cools.
+        If the model has no temperature, or there is no heating or cooling phase.
     """
-    stretches: dict[tuple[str, str], list[PhaseData]] = {}
+    segments: dict[tuple[str, str], list[PhaseData]] = {}
     for phase in correction_phases(torques, model, settings):
         if phase.run in runs:
-            stretches.setdefault((phase.run, phase.name), []).append(phase.data)
+            segments.setdefault((phase.run, phase.name), []).append(phase.data)
     return [
-        _replayed(run, name, data, model.friction, grid) for (run, name), data in stretches.items()
+        _replayed(run, name, data, model.friction, grid) for (run, name), data in segments.items()
     ]
 
 
 def _replayed(
     run: str,
     name: str,
-    stretches: list[PhaseData],
+    segments: list[PhaseData],
     parameters: FrictionParameters,
     grid: ScheduleGrid,
 ) -> ReplayedPhase:
     time, speed, temperature, smoothed = (
-        np.concatenate([getattr(one, column) for one in stretches])
+        np.concatenate([getattr(one, column) for one in segments])
         for column in ("time", "speed", "temperature", "smoothed")
     )
-    never = _joined([replay(one, parameters, ()) for one in stretches])
-    by_stretch = [_scheduled(one, parameters, grid) for one in stretches]
-    replays = [_joined(own) for own in zip(*by_stretch, strict=True)]
+    uncorrected = _joined([replay(one, parameters, ()) for one in segments])
+    by_segment = [_replays(one, parameters, grid) for one in segments]
+    replays = [_joined(own) for own in zip(*by_segment, strict=True)]
     return ReplayedPhase(
         run=run,
         name=name,
@@ -150,8 +150,8 @@ def _replayed(
         speed=speed,
         temperature=temperature,
         term=parameters.gamma * np.exp(-parameters.delta * temperature) * np.sqrt(speed),
-        error=never.predicted - smoothed,
-        uncorrected=never.epsilon(smoothed),
+        error=uncorrected.predicted - smoothed,
+        uncorrected=uncorrected.epsilon(smoothed),
         epsilon=np.array([one.epsilon(smoothed) for one in replays]),
         events=tuple(
             Events(
@@ -164,7 +164,7 @@ def _replayed(
     )
 
 
-def _scheduled(data: PhaseData, parameters: FrictionParameters, grid: ScheduleGrid) -> list[Replay]:
+def _replays(data: PhaseData, parameters: FrictionParameters, grid: ScheduleGrid) -> list[Replay]:
     settings = np.array(list(product(grid.k, grid.tmax)))
     reading = BY_READING[grid.criterion]
     instants = reading(data.time, data.reading, k=settings[:, 0], tmax=settings[:, 1])
@@ -172,7 +172,7 @@ def _scheduled(data: PhaseData, parameters: FrictionParameters, grid: ScheduleGr
 
 
 def _joined(replays: Sequence[Replay]) -> Replay:
-    """Return the replays of successive stretches as one."""
+    """Return the replays of successive segments joined to one."""
     return Replay(
         *(
             np.concatenate([getattr(one, part) for one in replays])

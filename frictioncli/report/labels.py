@@ -1,4 +1,4 @@
-"""Words and numbers as figures and tables of the report write them."""
+"""Labels, and numbers and names as text, for figures and tables of the report."""
 
 import math
 from collections.abc import Sequence
@@ -36,9 +36,10 @@ _MOST_NAMES = 5
 
 
 def figure_text(text: str) -> str:
-    """Return a name from the input as text that a figure can show as it is.
+    """Return a name as text that a figure shows unchanged, shortened to 32 characters.
 
-    Dollar signs would start a formula, and characters that the font lacks a warning.
+    Dollar signs are escaped, since they would start a formula. Control characters and characters
+    that the font lacks are replaced by question marks.
 
     Parameters
     ----------
@@ -67,15 +68,26 @@ def friction_label(unit: str) -> str:
 
 
 def speed_text(speed: float) -> str:
-    """Return a speed with its unit, to a tenth or, where it is slow, to two digits."""
+    """Return a speed with its unit, with one decimal or, below 1 deg/s, with two digits.
+
+    Parameters
+    ----------
+    speed : float
+        Joint speed. [deg/s]
+
+    Examples
+    --------
+    >>> speed_text(67.5), speed_text(0.123)
+    ('67.5 deg/s', '0.12 deg/s')
+    """
     shown = f"{speed:.1f}".removesuffix(".0") if speed >= 1.0 else f"{speed:.2g}"
     return f"{shown} deg/s"
 
 
 def number_text(value: float | None, digits: int = 3) -> str:
-    """Return a number with so many significant digits, a dash where there is none.
+    """Return a number with the given significant digits, or a dash if it is missing.
 
-    Whole digits before the point are never rounded away.
+    Digits before the decimal point are never rounded.
 
     Parameters
     ----------
@@ -83,6 +95,11 @@ def number_text(value: float | None, digits: int = 3) -> str:
         The number.
     digits : int
         Significant digits.
+
+    Examples
+    --------
+    >>> number_text(0.06182), number_text(1234.5), number_text(None)
+    ('0.0618', '1234', '–')
     """
     if value is None or not math.isfinite(value):
         return "–"
@@ -96,38 +113,66 @@ def number_text(value: float | None, digits: int = 3) -> str:
 
 
 def probability_text(share: float) -> str:
-    """Return a probability in per cent, which never reaches 100."""
+    """Return a probability in per cent; 99.5 % and more are written as "over 99 %".
+
+    Parameters
+    ----------
+    share : float
+        Probability, from 0 to 1.
+    """
     if share >= 0.995:
         return "over 99 %"
     return f"{100 * share:.0f} %" if share >= 0.015 else f"{100 * share:.1f} %"
 
 
 def in_words(name: str) -> str:
-    """Return an identifier, such as an effect's name, in words."""
+    """Return an identifier, such as an effect's name, with spaces for underscores.
+
+    Parameters
+    ----------
+    name : str
+        The identifier.
+    """
     return name.replace("_", " ")
 
 
 def count_text(count: int, singular: str, plural: str = "") -> str:
-    """Return a count with its noun, thousands set apart.
+    """Return a count with its noun.
 
     Parameters
     ----------
     count : int
-        How many.
+        The count.
     singular, plural : str
-        The noun; the plural is the singular with an s if not given.
+        The noun; the default plural is the singular with an s.
+
+    Examples
+    --------
+    >>> count_text(1, "pair"), count_text(2, "pair")
+    ('1 pair', '2 pairs')
     """
     noun = singular if count == 1 else plural or singular + "s"
     return f"{thousands_text(count)} {noun}"
 
 
 def thousands_text(count: int) -> str:
-    """Return a count with its thousands set apart by thin spaces."""
+    """Return a count with thin spaces between groups of three digits."""
     return f"{count:,}".replace(",", "\u202f")
 
 
 def duration_text(seconds: float) -> str:
-    """Return a duration in minutes, or in hours and minutes from three hours."""
+    """Return a duration in minutes, or in hours and minutes from three hours on.
+
+    Parameters
+    ----------
+    seconds : float
+        The duration. [s]
+
+    Examples
+    --------
+    >>> duration_text(5490.0), duration_text(17490.0)
+    ('92 min', '4 h 52 min')
+    """
     minutes = seconds / 60.0
     if minutes >= 180.0:
         hours, rest = divmod(round(minutes), 60)
@@ -136,12 +181,17 @@ def duration_text(seconds: float) -> str:
 
 
 def list_text(names: Sequence[str]) -> str:
-    """Return names as a list in words, cut after five.
+    """Return names as an enumeration in words, cut after five names.
 
     Parameters
     ----------
     names : sequence of str
         At least one name.
+
+    Examples
+    --------
+    >>> list_text(["a", "b", "c"])
+    'a, b and c'
     """
     shown = list(names[:_MOST_NAMES])
     if len(names) > _MOST_NAMES:
@@ -150,12 +200,17 @@ def list_text(names: Sequence[str]) -> str:
 
 
 def range_text(ascending: Sequence[str]) -> str:
-    """Return the first and the last of ascending values as text, or one where they read the same.
+    """Return the range of ascending values as text; one value if the ends read the same.
 
     Parameters
     ----------
     ascending : sequence of str
-        At least one value.
+        At least one value, as text.
+
+    Examples
+    --------
+    >>> range_text(["2", "4", "7"]), range_text(["2", "2"])
+    ('2 to 7', '2')
     """
     first, last = ascending[0], ascending[-1]
     return first if first == last else f"{first} to {last}"

@@ -1,4 +1,4 @@
-"""Figures 3 and 8: friction against load, and against speed at one temperature."""
+"""Figures 3 and 8: friction against load, and against speed at 20 °C."""
 
 import numpy as np
 import pandas as pd
@@ -19,7 +19,7 @@ from frictioncli.report.style import (
 )
 
 REFERENCE_TEMPERATURE = 20.0
-"""Temperature T0 to which Figure 8 carries friction. [°C]"""
+"""Temperature T0 of Figure 8. [°C]"""
 
 _MOST_CURVES = 8
 _MOST_HOT = 2
@@ -28,9 +28,9 @@ _SHIFTED_HEIGHT = 1.7
 
 
 def load_figure(results: JointResults) -> Figure:
-    """Draw Figure 3: the friction of single pairs against load, with alpha L² + G.
+    """Draw Figure 3: friction of single pairs against load, with alpha L² + G.
 
-    The panel below takes the shift G away, which leaves the load term alone.
+    A panel below shows the same without the shift G, which leaves the load term.
 
     Parameters
     ----------
@@ -83,39 +83,41 @@ def load_figure(results: JointResults) -> Figure:
 def representative_pairs(pairs: pd.DataFrame) -> pd.DataFrame:
     """Return at most eight pairs of a run that span its speeds and temperatures.
 
-    A speed sweep gives one pair per speed, a thermal cycle the coldest and the hottest of each;
-    with both, the sweep's pairs stand for the cold ones.
+    From a speed sweep one pair per speed is taken, from a thermal cycle the coldest and the hottest
+    pair of each speed. With both, the pairs of the sweep replace the coldest pairs.
 
     Parameters
     ----------
     pairs : DataFrame
         One row per pair of one run.
     """
-    # a pair of few angle bins shows no parabola
+    # pairs of few angle bins do not show the parabola
     pairs = pairs[pairs["bins"] >= 0.5 * pairs.groupby("speed")["bins"].transform("max")]
     sweep = pairs[pairs["phase"] == "sweep"].groupby("speed").head(1).sort_values("speed")
     cycle = pairs[pairs["phase"].isin(PHASES)]
     warm = cycle.dropna(subset=["motor_temperature"])
-    by_warmth = warm.sort_values("motor_temperature", kind="stable").groupby("speed")
-    hottest = by_warmth.tail(1).sort_values("speed")
-    coldest = by_warmth.head(1).sort_values("speed")
+    by_temperature = warm.sort_values("motor_temperature", kind="stable").groupby("speed")
+    hottest = by_temperature.tail(1).sort_values("speed")
+    coldest = by_temperature.head(1).sort_values("speed")
     if warm.empty:
-        return _spread(pairs.groupby("speed").head(1).sort_values("speed"), _MOST_CURVES)
+        return _evenly_spaced(pairs.groupby("speed").head(1).sort_values("speed"), _MOST_CURVES)
     if len(sweep) > 1:
-        hot = _spread(hottest, _MOST_HOT)
-        return pd.concat([_spread(sweep, _MOST_CURVES - len(hot)), hot])
-    chosen = pd.concat([_spread(coldest, _MOST_CURVES // 2), _spread(hottest, _MOST_CURVES // 2)])
+        hot = _evenly_spaced(hottest, _MOST_HOT)
+        return pd.concat([_evenly_spaced(sweep, _MOST_CURVES - len(hot)), hot])
+    chosen = pd.concat(
+        [_evenly_spaced(coldest, _MOST_CURVES // 2), _evenly_spaced(hottest, _MOST_CURVES // 2)]
+    )
     return chosen.drop_duplicates("pair")
 
 
-def _spread(pairs: pd.DataFrame, most: int) -> pd.DataFrame:
+def _evenly_spaced(pairs: pd.DataFrame, most: int) -> pd.DataFrame:
     if len(pairs) <= most:
         return pairs
     return pairs.iloc[np.linspace(0, len(pairs) - 1, most).round().astype(int)]
 
 
 def speed_figure(results: JointResults) -> Figure:
-    """Draw Figure 8: friction at zero load against speed, carried to 20 °C by (15), and the model.
+    """Draw Figure 8: friction at zero load against speed, at 20 °C by (15), with the model.
 
     Without a temperature the friction is drawn as measured.
 
@@ -128,7 +130,7 @@ def speed_figure(results: JointResults) -> Figure:
     figure, axes = panels(len(runs), height=3.6)
     carried = friction_at_reference_temperature(results)
     fastest = carried["speed"].max()
-    # square-root spacing resolves the low speeds, where a Stribeck rise would be
+    # square-root spacing resolves low speeds, where a Stribeck effect would show
     speeds = np.linspace(0.0, np.sqrt(fastest * 1.03), 200) ** 2
     curve = results.predict(load=0.0, speed=speeds, temperature=REFERENCE_TEMPERATURE)
     for run, panel in zip(runs, axes, strict=True):
@@ -141,7 +143,7 @@ def speed_figure(results: JointResults) -> Figure:
                 group["carried"],
                 results.style(speed),
                 opacity=0.35,
-                told=[
+                tooltips=[
                     f"{speed_text(speed)}: {number_text(one)} {results.unit}"
                     for one in group["carried"]
                 ],
@@ -169,7 +171,7 @@ def speed_figure(results: JointResults) -> Figure:
 
 
 def has_temperature_term(results: JointResults) -> bool:
-    """Return whether friction can be carried from one temperature to another.
+    """Return whether friction can be converted from one temperature to another.
 
     Parameters
     ----------
@@ -180,7 +182,7 @@ def has_temperature_term(results: JointResults) -> bool:
 
 
 def friction_at_reference_temperature(results: JointResults) -> pd.DataFrame:
-    """Return the pairs with ``carried``: their friction torque at 20 °C by equation (15).
+    """Return the pairs with a column ``carried``: friction torque converted to 20 °C by (15).
 
     Parameters
     ----------

@@ -1,6 +1,6 @@
-"""What a figure lacks: each function returns why it cannot be drawn and what would be needed.
+"""Data that a figure lacks: each function returns why it cannot be drawn and what is needed.
 
-An empty text means that nothing is missing.
+An empty string means that nothing is missing.
 """
 
 from frictioncli.report.evaluation_figure import compared_criterion
@@ -12,7 +12,7 @@ from frictioncli.report.thermal_figures import means_per_run, thermal_runs
 
 
 def nothing_missing(results: JointResults) -> str:
-    """Return that nothing is missing, for figures that can always be drawn.
+    """Return an empty string, for figures that can always be drawn.
 
     Parameters
     ----------
@@ -37,7 +37,7 @@ def _temperature_missing(results: JointResults, column: str, name: str) -> str:
 
 
 def motor_temperature_missing(results: JointResults) -> str:
-    """Return why there is no heating and cooling with a motor temperature.
+    """Return why there is no thermal cycle with motor temperature.
 
     Parameters
     ----------
@@ -48,7 +48,7 @@ def motor_temperature_missing(results: JointResults) -> str:
 
 
 def housing_temperature_missing(results: JointResults) -> str:
-    """Return why there is no heating and cooling with a housing temperature.
+    """Return why there is no thermal cycle with housing temperature.
 
     Parameters
     ----------
@@ -59,7 +59,7 @@ def housing_temperature_missing(results: JointResults) -> str:
 
 
 def any_temperature_missing(results: JointResults) -> str:
-    """Return why there is no heating and cooling with any temperature.
+    """Return why there is no thermal cycle with any temperature.
 
     Parameters
     ----------
@@ -74,7 +74,7 @@ def any_temperature_missing(results: JointResults) -> str:
 
 
 def means_missing(results: JointResults) -> str:
-    """Return why there are no means (11) of heating and cooling.
+    """Return why there are no means (11) of the heating and the cooling branch.
 
     Parameters
     ----------
@@ -127,7 +127,7 @@ def schedule_missing(results: JointResults, phase: str) -> str:
 
 
 def evaluation_missing(results: JointResults) -> str:
-    """Return why there is no comparison of corrections, empty where there is one.
+    """Return why there is no evaluation of corrections.
 
     Parameters
     ----------
@@ -147,7 +147,7 @@ def evaluation_missing(results: JointResults) -> str:
 
 
 def residuals_missing(results: JointResults) -> str:
-    """Return why the model cannot be compared with the measured friction.
+    """Return why there are no residuals.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""Tables of the page, as text: errors of the corrections, pairs."""
+"""Tables of the page: errors of the evaluated corrections, numbers of pairs."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -11,29 +11,30 @@ from frictioncli.report.results import JointResults, by_speed
 from frictioncli.report.style import PHASE_WORDS, PHASES
 
 _NEIGHBOURS = 3
+"""Settings shown on each side of the simulated one, along k."""
 
 _Row = tuple[tuple[str, ...], pd.DataFrame]
-"""A setting as its cells, and its rows of the evaluation."""
+"""Cells that name a setting, and the rows of the evaluation at that setting."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class TextTable:
-    """A table ready to be shown.
+    """A table as text.
 
     Attributes
     ----------
     title : str
-        What it holds.
+        Caption.
     header : tuple of str
         Column headings.
-    groups : tuple of (str, int)
-        Headings above them, each with the number of columns it spans.
     rows : tuple of tuple of str
         Cells.
     texts : int
         Number of leading columns that hold text; the others hold numbers.
     marked : tuple of int
-        Numbers of the rows that stand out.
+        Indices of the rows that are highlighted.
+    groups : tuple of (str, int)
+        Headings above the column headings, each with the number of columns that it spans.
     """
 
     title: str
@@ -45,15 +46,15 @@ class TextTable:
 
 
 def epsilon_tables(results: JointResults) -> list[TextTable]:
-    """Return the errors of the simulated setting and its neighbours, and those by bound, per run.
+    """Return tables of the errors (21) per run: around the simulated setting, and by bound.
 
     Parameters
     ----------
     results : JointResults
-        One joint's results; without an evaluation there is no table.
+        One joint's results; without an evaluation there are no tables.
     """
     bounded = results.evaluation["bound"].notna()
-    never = results.evaluation["criterion"] == "none"
+    uncorrected = results.evaluation["criterion"] == "none"
     criterion = compared_criterion(results, bounded=False)
     simulated, bound = _simulated_setting(results), _simulated_bound(results)
     settings = _neighbours(
@@ -70,7 +71,7 @@ def epsilon_tables(results: JointResults) -> list[TextTable]:
         ]
         marked = [setting == simulated for setting in settings]
         tables.append(_table(title, ("setting", "tmax [min]"), own, rows, marked))
-    for run, own in results.evaluation[bounded | never].groupby("run"):
+    for run, own in results.evaluation[bounded | uncorrected].groupby("run"):
         title = f"{run}: the same where the predicted uncertainty of friction decides"
         rows = [((f"{value:g}",), own[own["bound"] == value]) for value in bounds]
         marked = [value == bound for value in bounds]
@@ -86,17 +87,17 @@ def _table(
     rows: Sequence[_Row],
     marked: Sequence[bool],
 ) -> TextTable:
-    """Return the errors of some settings by phase and criterion, below those without correction."""
-    shown = [c for c in CRITERION_WORDS if c != "none" and (own["criterion"] == c).any()]
+    """Return a table of errors by phase and criterion, the first row without correction."""
+    criteria = [c for c in CRITERION_WORDS if c != "none" and (own["criterion"] == c).any()]
     without = _cells(own[own["criterion"] == "none"], ["none"])
-    blank = [""] * (len(shown) - 1)
+    blank = [""] * (len(criteria) - 1)
     first = ("no correction", *[""] * (len(settings) - 1), without[0], *blank, without[1], *blank)
     return TextTable(
         title=title,
-        groups=(("", len(settings)), *((PHASE_WORDS[phase], len(shown)) for phase in PHASES)),
-        header=(*settings, *(CRITERION_WORDS[c] for c in shown * 2)),
-        rows=(first, *((*setting, *_cells(at, shown)) for setting, at in rows)),
-        marked=tuple(number + 1 for number, mark in enumerate(marked) if mark),
+        groups=(("", len(settings)), *((PHASE_WORDS[phase], len(criteria)) for phase in PHASES)),
+        header=(*settings, *(CRITERION_WORDS[c] for c in criteria * 2)),
+        rows=(first, *((*setting, *_cells(at_setting, criteria)) for setting, at_setting in rows)),
+        marked=tuple(index + 1 for index, mark in enumerate(marked) if mark),
     )
 
 
@@ -125,7 +126,7 @@ def _simulated_bound(results: JointResults) -> float | None:
 def _neighbours(
     rows: pd.DataFrame, simulated: tuple[float, float] | None
 ) -> list[tuple[float, float]]:
-    """Return the settings next to the simulated one, in k and in tmax; else a few of them."""
+    """Return the settings next to the simulated one in k and in tmax, or else the first few."""
     known = rows[["k", "tmax"]].dropna().drop_duplicates().sort_values(["k", "tmax"])
     settings = [(float(k), float(tmax)) for k, tmax in zip(known["k"], known["tmax"], strict=True)]
     if simulated not in settings or simulated is None:
@@ -151,7 +152,7 @@ def _cell(rows: pd.DataFrame) -> str:
 
 
 def pairs_table(results: JointResults) -> TextTable:
-    """Return how many pairs there are per speed and phase.
+    """Return the number of pairs per speed and phase.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""Quality figure: what the model leaves of the measured friction."""
+"""Figure of the residuals: measured minus modelled friction torque."""
 
 from typing import Any
 
@@ -17,7 +17,7 @@ _LEGEND: dict[str, Any] = {"columnspacing": 1.0, "handlelength": 1.2}
 
 
 def residuals(results: JointResults) -> pd.DataFrame:
-    """Return each pair and angle bin with ``residual``: measured minus modelled friction torque.
+    """Return the torques with ``residual``, measured minus modelled friction torque.
 
     Parameters
     ----------
@@ -48,18 +48,18 @@ def residual_figure(results: JointResults) -> Figure:
         phase=("phase", "first"),
         residual=("residual", "mean"),
     )
-    warm = bool(pairs["temperature"].notna().any())
+    has_temperature = bool(pairs["temperature"].notna().any())
     figure = Figure(figsize=(WIDTH, 3.4), layout="constrained")
-    axes = figure.subplots(1, 3 if warm else 2, sharey=True)
-    _against(axes[0], pairs, "speed")
+    axes = figure.subplots(1, 3 if has_temperature else 2, sharey=True)
+    _draw_pairs(axes[0], pairs, "speed")
     axes[0].set_xlabel("speed |φ'| [deg/s]")
-    if warm:
-        _against(axes[1], pairs, "temperature")
+    if has_temperature:
+        _draw_pairs(axes[1], pairs, "temperature")
         axes[1].set_xlabel(TEMPERATURE_LABELS[results.model.temperature].replace(" = ", "\n= "))
-    _against_angle(axes[-1], rows, results)
+    _draw_angle_means(axes[-1], rows, results)
     axes[-1].set_xlabel("joint angle φ [deg]")
     axes[0].set_ylabel(f"measured − model [{results.unit}]")
-    # above the panels: inside there is no place that the points leave free
+    # above the panels, since points may lie anywhere inside
     left, right = axes[0].get_legend_handles_labels(), axes[-1].get_legend_handles_labels()
     figure.legend(*left, loc="outside upper left", ncols=len(left[1]), **_LEGEND)
     if len(right[1]) <= _MOST_NAMED:
@@ -69,7 +69,7 @@ def residual_figure(results: JointResults) -> Figure:
     return figure
 
 
-def _against(panel: Axes, pairs: pd.DataFrame, column: str) -> None:
+def _draw_pairs(panel: Axes, pairs: pd.DataFrame, column: str) -> None:
     for phase, colour, name in (
         ("heat-up", HEATING, "heating"),
         ("cool-down", COOLING, "cooling"),
@@ -91,7 +91,7 @@ def _against(panel: Axes, pairs: pd.DataFrame, column: str) -> None:
             )
 
 
-def _against_angle(panel: Axes, rows: pd.DataFrame, results: JointResults) -> None:
+def _draw_angle_means(panel: Axes, rows: pd.DataFrame, results: JointResults) -> None:
     edges = np.linspace(rows["position"].min(), rows["position"].max() + 1e-9, _ANGLE_BINS + 1)
     middles = (edges[:-1] + edges[1:]) / 2
     bins = pd.Series(np.digitize(rows["position"], edges) - 1, index=rows.index)

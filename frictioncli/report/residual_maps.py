@@ -1,4 +1,4 @@
-"""Maps of what the simulated torque misses, over two axes of the experiment at a time."""
+"""Maps of the residuals of the simulated torque over two variables of the experiment."""
 
 from dataclasses import dataclass
 
@@ -18,18 +18,30 @@ from frictioncli.report.style import WIDTH
 _COLOURS = "RdBu_r"
 _EMPTY = "#D9DBDF"
 _MOST_SPEEDS = 10
-_CLEAR = 98.0
-"""Percentile of the cells' misfit at which the colours end."""
+_LIMIT_PERCENTILE = 98.0
+"""Percentile of the cells' absolute residuals at which the colour scale ends."""
 
-_PALE, _MOST_CELLS = 4.0, 90.0
-"""They end no nearer to zero than so many standard errors of this percentage of the cells."""
+_LEAST_LIMIT, _ERROR_PERCENTILE = 4.0, 90.0
+"""Least limit of the colour scale, in standard errors at this percentile of the cells."""
 
-_CELLS = {"temperature": 9, "position": 18, "clock": 24}
+_CELL_COUNTS = {"temperature": 9, "position": 18, "clock": 24}
 
 
 @dataclass(frozen=True, slots=True)
 class MapAxis:
-    """One axis of a map: its label and the edges of its cells."""
+    """One axis of a map.
+
+    Attributes
+    ----------
+    label : str
+        Label with unit.
+    values : ndarray, shape (rows,)
+        Values of the variable.
+    edges : ndarray, shape (cells + 1,)
+        Edges of the cells.
+    names : tuple of str
+        Names of the cells, if these are to be drawn with equal width.
+    """
 
     label: str
     values: Array
@@ -38,47 +50,45 @@ class MapAxis:
 
     @property
     def cell(self) -> Indices:
-        """Cell of each row, shape (rows,)."""
+        """Index of the cell of each row."""
         return np.searchsorted(self.edges[1:-1], self.values, side="right")
 
 
 def residual_map_figure(results: JointResults, *, diagnosis: Reloaded) -> Figure:
-    """Draw the misfit of both channels over speed, temperature, angle and time.
+    """Draw the residuals of both channels over speed, temperature, angle and time.
 
     Parameters
     ----------
     results : JointResults
         One joint's results.
     diagnosis : Reloaded
-        Its diagnosis.
+        The joint's diagnosis.
     """
     seen = diagnosis.seen
-    sets = [("base model", seen.before)]
+    models = [("base model", seen.before)]
     if seen.terms:
-        sets.append(("extended model", seen.after))
-    scales = _scales(seen.problem.table, results.model.temperature)
+        models.append(("extended model", seen.after))
+    axes = _map_axes(seen.problem.table, results.model.temperature)
     wanted = (("temperature", "speed"), ("clock", "position"), ("position", "speed"))
-    columns = [
-        (scales[across], scales[up]) for across, up in wanted if across in scales and up in scales
-    ]
-    figure = Figure(figsize=(WIDTH, 0.6 + 4.2 * len(sets)), layout="constrained")
-    grid = figure.subplots(2 * len(sets), len(columns), squeeze=False)
-    for number, channel in enumerate(("friction", "load")):
-        panels = grid[number * len(sets) : (number + 1) * len(sets)]
+    columns = [(axes[across], axes[up]) for across, up in wanted if across in axes and up in axes]
+    figure = Figure(figsize=(WIDTH, 0.6 + 4.2 * len(models)), layout="constrained")
+    grid = figure.subplots(2 * len(models), len(columns), squeeze=False)
+    for index, channel in enumerate(("friction", "load")):
+        panels = grid[index * len(models) : (index + 1) * len(models)]
         means = [
             [
                 cell_means(across, up, misfit[channel], seen.problem.table.pair)
                 for across, up in columns
             ]
-            for _, misfit in sets
+            for _, misfit in models
         ]
         limit = colour_limit(means[0])
         meshes = [
-            _map(panel, across, up, mean, limit)
+            _draw_map(panel, across, up, mean, limit)
             for row, drawn in zip(panels, means, strict=True)
             for panel, (across, up), (mean, _) in zip(row, columns, drawn, strict=True)
         ]
-        for row, (name, _) in zip(panels, sets, strict=True):
+        for row, (name, _) in zip(panels, models, strict=True):
             row[0].set_title(f"{channel}, {name}: measured − simulated")
         unit = results.unit if channel == "friction" else results.load_unit
         bar = figure.colorbar(meshes[0], ax=list(panels.flat), extend="both", aspect=30, pad=0.01)
@@ -88,39 +98,53 @@ def residual_map_figure(results: JointResults, *, diagnosis: Reloaded) -> Figure
 
 
 def cell_means(across: MapAxis, up: MapAxis, misfit: Array, pair: Indices) -> tuple[Array, Array]:
-    """Return the mean misfit per cell and its standard error; NaN without data.
+    """Return the mean residual per cell and its standard error.
 
-    Both have shape (cells up, cells across). The errors are those of the points about their pairs.
+    The standard errors are those of the scatter within pairs.
 
     Parameters
     ----------
     across, up : MapAxis
-        The axes.
+        Horizontal and vertical axis.
     misfit : ndarray, shape (rows,)
-        Measured minus simulated. [N·m]
+        Measured minus simulated torque. [N·m]
     pair : ndarray of int, shape (rows,)
         Pair of each row.
+
+    Returns
+    -------
+    mean, error : ndarray, shape (cells up, cells across)
+        NaN in cells without data. [N·m]
     """
-    wide, high = len(across.edges) - 1, len(up.edges) - 1
-    place = up.cell * wide + across.cell
-    count = np.bincount(place, minlength=wide * high).astype(float)
+    columns, rows = len(across.edges) - 1, len(up.edges) - 1
+    cell = up.cell * columns + across.cell
+    count = np.bincount(cell, minlength=columns * rows).astype(float)
     count[count == 0] = np.nan
-    means = np.bincount(place, misfit, minlength=wide * high) / count
+    means = np.bincount(cell, misfit, minlength=columns * rows) / count
     pairs, of_pair = np.unique(pair, return_inverse=True)
-    inside = misfit - (np.bincount(of_pair, misfit) / np.bincount(of_pair))[of_pair]
-    scatter = np.sqrt(inside @ inside / max(len(misfit) - len(pairs), 1))
-    return means.reshape(high, wide), (scatter / np.sqrt(count)).reshape(high, wide)
+    within = misfit - (np.bincount(of_pair, misfit) / np.bincount(of_pair))[of_pair]
+    scatter = np.sqrt(within @ within / max(len(misfit) - len(pairs), 1))
+    return means.reshape(rows, columns), (scatter / np.sqrt(count)).reshape(rows, columns)
 
 
 def colour_limit(maps: list[tuple[Array, Array]]) -> float:
-    """Return the misfit at which the colours end: wide enough that noise stays pale. [N·m]."""
+    """Return the limit of the colour scale, large enough that noise is pale. [N·m].
+
+    Parameters
+    ----------
+    maps : list of (ndarray, ndarray)
+        Mean and standard error per cell of each map. [N·m]
+    """
     means = np.abs(np.concatenate([mean.ravel() for mean, _ in maps]))
     errors = np.concatenate([error.ravel() for _, error in maps])
-    widest = np.nanpercentile(means, _CLEAR), _PALE * np.nanpercentile(errors, _MOST_CELLS)
-    return max(*map(float, widest), 1e-9)
+    limits = (
+        np.nanpercentile(means, _LIMIT_PERCENTILE),
+        _LEAST_LIMIT * np.nanpercentile(errors, _ERROR_PERCENTILE),
+    )
+    return max(*map(float, limits), 1e-9)
 
 
-def _map(panel: Axes, across: MapAxis, up: MapAxis, mean: Array, limit: float) -> QuadMesh:
+def _draw_map(panel: Axes, across: MapAxis, up: MapAxis, mean: Array, limit: float) -> QuadMesh:
     high = np.arange(len(up.edges)) if up.names else up.edges
     mesh = panel.pcolormesh(
         across.edges, high, mean, cmap=_COLOURS, vmin=-limit, vmax=limit, rasterized=True
@@ -134,28 +158,30 @@ def _map(panel: Axes, across: MapAxis, up: MapAxis, mean: Array, limit: float) -
     return mesh
 
 
-def _scales(table: EffectTable, temperature: str) -> dict[str, MapAxis]:
+def _map_axes(table: EffectTable, temperature: str) -> dict[str, MapAxis]:
     symbol = TEMPERATURE_SYMBOLS[temperature]
     wanted = {
         "temperature": (f"temperature {symbol} [°C]", table.temperature),
         "clock": ("time [h]", table.clock / 3600.0),
     }
-    scales = {
-        name: MapAxis(label, values, np.linspace(values.min(), values.max(), _CELLS[name] + 1))
+    axes = {
+        name: MapAxis(
+            label, values, np.linspace(values.min(), values.max(), _CELL_COUNTS[name] + 1)
+        )
         for name, (label, values) in wanted.items()
         if np.ptp(values) > 0
     }
     angles = np.unique(table.position)
     half = float(np.min(np.diff(angles), initial=10.0)) / 2
     ends = angles[:1] - half, angles[-1:] + half
-    edges = np.concatenate([ends[0], group_boundaries(angles, _CELLS["position"]), ends[1]])
-    scales["position"] = MapAxis("joint angle φ [deg]", table.position, edges)
-    scales["speed"] = _speed_scale(table.speed)
-    return scales
+    edges = np.concatenate([ends[0], group_boundaries(angles, _CELL_COUNTS["position"]), ends[1]])
+    axes["position"] = MapAxis("joint angle φ [deg]", table.position, edges)
+    axes["speed"] = _speed_axis(table.speed)
+    return axes
 
 
-def _speed_scale(speed: Array) -> MapAxis:
-    """Return the speeds as rows of equal height; many of them are put together."""
+def _speed_axis(speed: Array) -> MapAxis:
+    """Return the axis of speeds, with cells of equal height; many speeds are grouped."""
     known = np.unique(merge_close_values(speed))
     groups = np.array_split(known, min(len(known), _MOST_SPEEDS))
     names = tuple(

@@ -1,4 +1,4 @@
-"""Measured against simulated torque, and how much an extension takes off what it misses."""
+"""Figures of measured and simulated torque, and of the residuals before and after extension."""
 
 from typing import Any
 
@@ -18,28 +18,35 @@ _MOST_SPEEDS = 4
 _BEFORE, _AFTER = "#D55E00", "#0072B2"
 _DIRECTIONS = (("forward", 1.0, True), ("reverse", -1.0, False))
 _LEGEND: dict[str, Any] = {"columnspacing": 1.1, "handlelength": 1.3, "handletextpad": 0.4}
-_USUAL = 0.5
-"""An angle that a smaller share of a speed's pairs reach has another mix of temperatures."""
+_LEAST_SHARE = 0.5
+"""Least share of a speed's pairs that reach an angle, for the mean at this angle to be drawn.
 
-_TAIL = 99.5
-_BANDS = 61
+Pairs of fewer angles were measured at other temperatures.
+"""
+
+_TAIL_PERCENTILE = 99.5
+_EDGES = 61
 
 
 def simulated_rows(results: JointResults, diagnosis: Reloaded) -> pd.DataFrame:
     """Return measured and simulated torque of both directions, one row per pair and angle bin.
 
-    Columns are ``time`` [h], ``run``, ``pair``, ``speed``, ``bin`` and ``position``, then per
-    direction ``forward`` and ``reverse`` what was measured, ``forward_simulated`` and
-    ``reverse_simulated``. Where the log has a load of its own, torque is the friction's part.
+    Columns are ``time`` [h], ``run``, ``pair``, ``speed``, ``bin`` and ``position``, the measured
+    torques ``forward`` and ``reverse``, and the simulated ones ``forward_simulated`` and
+    ``reverse_simulated``. If the log has a load channel, the torque is that of friction almisfits.
 
     Parameters
     ----------
     results : JointResults
         One joint's results.
     diagnosis : Reloaded
-        Its diagnosis.
+        The joint's diagnosis.
     """
-    parts = [_rows_of(results, one) for one in (diagnosis.seen, diagnosis.new) if one is not None]
+    parts = [
+        _rows(results, misfits)
+        for misfits in (diagnosis.seen, diagnosis.new)
+        if misfits is not None
+    ]
     rows = pd.concat(parts, ignore_index=True)
     return rows.assign(
         speed=merge_close_values(rows["speed"].to_numpy()),
@@ -47,12 +54,12 @@ def simulated_rows(results: JointResults, diagnosis: Reloaded) -> pd.DataFrame:
     )
 
 
-def _rows_of(results: JointResults, one: Misfits) -> pd.DataFrame:
-    problem, table = one.problem, one.problem.table
+def _rows(results: JointResults, misfits: Misfits) -> pd.DataFrame:
+    problem, table = misfits.problem, misfits.problem.table
     names = dict(zip(np.unique(table.run), problem.runs, strict=True))
-    own_load = results.load_unit != results.unit
-    load = np.zeros_like(problem.load) if own_load else problem.load
-    load_misfit = np.zeros_like(load) if own_load else one.before["load"]
+    has_load_channel = results.load_unit != results.unit
+    load = np.zeros_like(problem.load) if has_load_channel else problem.load
+    load_misfit = np.zeros_like(load) if has_load_channel else misfits.before["load"]
     columns: dict[str, object] = {
         "time": table.clock * _CLOCK,
         "run": [names[run] for run in table.run],
@@ -60,11 +67,11 @@ def _rows_of(results: JointResults, one: Misfits) -> pd.DataFrame:
         "speed": table.speed,
         "position": table.position,
     }
-    for name, way, _ in _DIRECTIONS:
-        side = way * results.model.sign
-        columns[name] = load + side * problem.friction
-        missed = load_misfit + side * one.before["friction"]
-        columns[f"{name}_simulated"] = load + side * problem.friction - missed
+    for name, sign, _ in _DIRECTIONS:
+        direction = sign * results.model.sign
+        columns[name] = load + direction * problem.friction
+        misfit = load_misfit + direction * misfits.before["friction"]
+        columns[f"{name}_simulated"] = load + direction * problem.friction - misfit
     return pd.DataFrame(columns)
 
 
@@ -76,19 +83,19 @@ def simulation_figure(results: JointResults, *, diagnosis: Reloaded) -> Figure:
     results : JointResults
         One joint's results.
     diagnosis : Reloaded
-        Its diagnosis.
+        The joint's diagnosis.
     """
     rows = simulated_rows(results, diagnosis)
     figure = Figure(figsize=(WIDTH, 6.4), layout="constrained")
     grid = figure.subplots(2, 2, sharex="col", width_ratios=(1.25, 1), height_ratios=(1.25, 1))
     pairs = rows.groupby(["run", "pair", "speed"], as_index=False).mean(numeric_only=True)
     shown = _shown_speeds(pairs)
-    _both(grid[:, 0], results, pairs, shown, "time")
-    _runs(grid[0, 0], pairs, diagnosis)
-    reached = rows.groupby(["speed", "bin"])["time"].transform("size")
-    usual = reached >= _USUAL * reached.groupby(rows["speed"]).transform("max")
-    angles = rows[usual].groupby(["speed", "bin"], as_index=False).mean(numeric_only=True)
-    _both(grid[:, 1], results, angles, [shown[0], shown[-1]], "position")
+    _draw_torque(grid[:, 0], results, pairs, shown, "time")
+    _name_runs(grid[0, 0], pairs, diagnosis)
+    pairs_at_angle = rows.groupby(["speed", "bin"])["time"].transform("size")
+    common = pairs_at_angle >= _LEAST_SHARE * pairs_at_angle.groupby(rows["speed"]).transform("max")
+    angles = rows[common].groupby(["speed", "bin"], as_index=False).mean(numeric_only=True)
+    _draw_torque(grid[:, 1], results, angles, [shown[0], shown[-1]], "position")
     shown_part = "torque u" if results.load_unit == results.unit else "friction's part of torque"
     grid[0, 0].set_ylabel(f"{shown_part} [{results.unit}]")
     grid[1, 0].set_ylabel(f"measured − simulated [{results.unit}]")
@@ -104,8 +111,8 @@ def simulation_figure(results: JointResults, *, diagnosis: Reloaded) -> Figure:
     ]
     marks += [(FAINT, "o", True, "forward"), (FAINT, "o", False, "reverse")]
     for colour, marker, filled, label in marks:
-        look = _look(SpeedStyle(colour, marker), filled=filled)
-        grid[0, 0].plot([], [], label=label, **look)
+        marker_style = _marker_style(SpeedStyle(colour, marker), filled=filled)
+        grid[0, 0].plot([], [], label=label, **marker_style)
     grid[0, 0].plot([], [], color=MODEL, linewidth=1.2, label="simulated")
     handles, labels = grid[0, 0].get_legend_handles_labels()
     figure.legend(handles, labels, loc="outside lower center", ncols=len(labels), **_LEGEND)
@@ -113,7 +120,7 @@ def simulation_figure(results: JointResults, *, diagnosis: Reloaded) -> Figure:
 
 
 def _shown_speeds(pairs: pd.DataFrame) -> list[float]:
-    """Return the speeds measured most often, at most four, slowest first."""
+    """Return at most four of the speeds measured most often, slowest first."""
     counts = pairs["speed"].value_counts()
     most = counts[counts >= 0.2 * counts.max()].index
     ordered = sorted(float(speed) for speed in most)
@@ -123,23 +130,23 @@ def _shown_speeds(pairs: pd.DataFrame) -> list[float]:
     return [ordered[i] for i in chosen]
 
 
-def _both(
+def _draw_torque(
     panels: np.ndarray, results: JointResults, rows: pd.DataFrame, speeds: list[float], along: str
 ) -> None:
     upper, lower = panels
     for speed in speeds:
         own = rows[rows["speed"] == speed].sort_values(along)
         for name, _, filled in _DIRECTIONS:
-            look = _look(results.style(speed), filled=filled)
-            upper.plot(own[along], own[name], **look)
-            lower.plot(own[along], own[name] - own[f"{name}_simulated"], **look)
+            marker_style = _marker_style(results.style(speed), filled=filled)
+            upper.plot(own[along], own[name], **marker_style)
+            lower.plot(own[along], own[name] - own[f"{name}_simulated"], **marker_style)
             for _, run in own.groupby("run") if "run" in own else [("", own)]:
                 upper.plot(
                     run[along], run[f"{name}_simulated"], color=MODEL, linewidth=1.0, zorder=3
                 )
 
 
-def _look(style: SpeedStyle, *, filled: bool) -> dict[str, Any]:
+def _marker_style(style: SpeedStyle, *, filled: bool) -> dict[str, Any]:
     return {
         "linestyle": "none",
         "marker": style.marker,
@@ -150,8 +157,8 @@ def _look(style: SpeedStyle, *, filled: bool) -> dict[str, Any]:
     }
 
 
-def _runs(panel: Axes, pairs: pd.DataFrame, diagnosis: Reloaded) -> None:
-    """Name the runs above the panel, and say which one was kept out."""
+def _name_runs(panel: Axes, pairs: pd.DataFrame, diagnosis: Reloaded) -> None:
+    """Write the names of the runs above the panel, and mark the held-out run."""
     spans = pairs.groupby("run")["time"].agg(["min", "max"]).sort_values("min")
     held_out = diagnosis.document.held_out
     for run, span in spans.iterrows():
@@ -169,27 +176,29 @@ def _runs(panel: Axes, pairs: pd.DataFrame, diagnosis: Reloaded) -> None:
 
 
 def gain_figure(results: JointResults, *, diagnosis: Reloaded, floor: float) -> Figure:
-    """Draw how the misfit of the torque is distributed before and after the extension.
+    """Draw the distribution of the torque residuals before and after the extension.
 
     Parameters
     ----------
     results : JointResults
         One joint's results.
     diagnosis : Reloaded
-        Its diagnosis.
+        The joint's diagnosis.
     floor : float
         RMS of the noise, which no model can predict. [torque unit]
     """
     judged = diagnosis.judged
-    sides = (
+    models = (
         ("base model", judged.torque(judged.before), _BEFORE, "--"),
         ("extended model", judged.torque(judged.after), _AFTER, "-"),
     )
-    reach = max(float(np.percentile(np.abs(misfit), _TAIL)) for _, misfit, _, _ in sides)
-    edges = np.linspace(-reach, reach, _BANDS)
+    reach = max(
+        float(np.percentile(np.abs(misfit), _TAIL_PERCENTILE)) for _, misfit, _, _ in models
+    )
+    edges = np.linspace(-reach, reach, _EDGES)
     figure = Figure(figsize=(WIDTH, 3.5), layout="constrained")
     left, right = figure.subplots(1, 2)
-    for name, misfit, colour, line in sides:
+    for name, misfit, colour, line in models:
         rms = float(np.sqrt(np.mean(np.square(misfit))))
         label = f"{name}, RMS {number_text(rms)} {results.unit}"
         density = np.histogram(misfit, edges)[0] / (len(misfit) * (edges[1] - edges[0]))

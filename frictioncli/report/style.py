@@ -20,16 +20,16 @@ from numpy.typing import ArrayLike
 from frictioncli.report.tooltips import set_tooltips
 
 WIDTH = 8.0
-"""Width of every figure, so that its text has one size on the page. [inch]"""
+"""Width of every figure, the same for all so that their text has one size on the page. [inch]"""
 
 RASTER_FROM = 3000
-"""More points than this are stored as a picture inside the SVG, which would else grow large."""
+"""Number of points above which they are stored as an image in the SVG, to keep it small."""
 
-_TOLD_UP_TO = 1000
-"""Points of a series that set_tooltips their values; more would make the page large."""
+_MOST_TOOLTIPS = 1000
+"""Greatest number of tooltips per series; more would make the page large."""
 
 _LINE_HEIGHT = 0.18
-"""Height of a line of the smallest text. [inch]"""
+"""Line height of the smallest text. [inch]"""
 
 HEATING = "#C44536"
 COOLING = "#2B6CB0"
@@ -84,21 +84,21 @@ class SpeedStyle:
 
 
 def style_context(salt: str = "frictioncli") -> AbstractContextManager[None]:
-    """Return a context in which figures are drawn and saved in this style.
+    """Return a context manager in which figures are drawn and saved in this style.
 
     Parameters
     ----------
     salt : str
-        Goes into the identifiers of the SVG, which are then the same at every call.
+        Seed of the identifiers in the SVG, which are then the same at every call.
     """
     settings: dict[Any, Any] = {**_STYLE, "svg.hashsalt": salt}
     return matplotlib.rc_context(settings)
 
 
 def speed_styles(pairs: pd.DataFrame) -> dict[float, SpeedStyle]:
-    """Return a style for each speed: set apart for the main speeds, graded for those between.
+    """Return a style per speed: distinct colours for the main speeds, interpolated between them.
 
-    The main speeds are those of the thermal cycle or, without one, all of them.
+    The main speeds are those of the thermal cycle or, without one, all speeds.
 
     Parameters
     ----------
@@ -116,7 +116,7 @@ def speed_styles(pairs: pd.DataFrame) -> dict[float, SpeedStyle]:
     channels = np.array([to_rgb(anchors[speed]) for speed in at])
     return {
         speed: SpeedStyle(
-            _mixed(np.log(speed), np.log(at), channels),
+            _interpolated(np.log(speed), np.log(at), channels),
             _MARKERS[(main.index(speed) if speed in main else rank) % len(_MARKERS)],
         )
         for rank, speed in enumerate(speeds)
@@ -125,22 +125,32 @@ def speed_styles(pairs: pd.DataFrame) -> dict[float, SpeedStyle]:
 
 def _spread_colours(count: int) -> list[str]:
     if count <= len(_SPEED_COLOURS):
-        # few speeds: skip the middle ones, so that neighbours differ most
+        # few speeds: skip colours in the middle, so that neighbours differ most
         chosen = {1: (0,), 2: (0, 3), 3: (0, 1, 3)}.get(count, range(count))
         return [_SPEED_COLOURS[i] for i in chosen]
     channels = np.array([to_rgb(colour) for colour in _SPEED_COLOURS])
     at = np.linspace(0, len(_SPEED_COLOURS) - 1, count)
     known = np.arange(len(_SPEED_COLOURS))
-    return [_mixed(float(x), known, channels) for x in at]
+    return [_interpolated(float(x), known, channels) for x in at]
 
 
-def _mixed(at: float, known: np.ndarray, channels: np.ndarray) -> str:
+def _interpolated(at: float, known: np.ndarray, channels: np.ndarray) -> str:
     red, green, blue = (float(np.interp(at, known, channels[:, i])) for i in range(3))
     return to_hex((red, green, blue))
 
 
 def panels(rows: int, *, height: float, share_y: bool = True) -> tuple[Figure, list[Axes]]:
-    """Return a figure with one panel under the other and a common horizontal axis."""
+    """Return a figure of panels in one column with a common horizontal axis, and its panels.
+
+    Parameters
+    ----------
+    rows : int
+        Number of panels.
+    height : float
+        Height of each panel. [inch]
+    share_y : bool
+        Whether they also share the vertical axis.
+    """
     figure = Figure(figsize=(WIDTH, height * rows + 0.5), layout="constrained")
     grid = figure.subplots(rows, 1, sharex=True, sharey=share_y, squeeze=False)
     return figure, list(grid[:, 0])
@@ -150,12 +160,12 @@ def points(
     axes: Axes,
     x: ArrayLike,
     y: ArrayLike,
-    look: SpeedStyle,
+    style: SpeedStyle,
     *,
     filled: bool = True,
     size: float = 3.5,
     opacity: float = 1.0,
-    told: Sequence[str] = (),
+    tooltips: Sequence[str] = (),
 ) -> None:
     """Draw measured points of one speed.
 
@@ -164,36 +174,36 @@ def points(
     axes : Axes
         The panel.
     x, y : array_like
-        Their places.
-    look : SpeedStyle
+        Coordinates of the points.
+    style : SpeedStyle
         Colour and marker.
     filled : bool
         Whether the markers are filled or hollow.
     size : float
-        Of the markers. [pt]
+        Size of the markers. [pt]
     opacity : float
-        1 hides what is below.
-    told : sequence of str
-        What each point tells when the pointer rests on it.
+        Opacity of the markers, from 0 to 1.
+    tooltips : sequence of str
+        Tooltip of each point; empty for none.
     """
     (drawn,) = axes.plot(
         np.asarray(x),
         np.asarray(y),
         linestyle="none",
-        marker=look.marker,
-        color=look.colour,
-        markerfacecolor=look.colour if filled else "white",
+        marker=style.marker,
+        color=style.colour,
+        markerfacecolor=style.colour if filled else "white",
         markeredgewidth=0.0 if filled else 1.0,
         markersize=size,
         alpha=opacity,
         rasterized=np.size(x) > RASTER_FROM,
     )
-    if 0 < len(told) <= _TOLD_UP_TO:
-        set_tooltips(drawn, told)
+    if 0 < len(tooltips) <= _MOST_TOOLTIPS:
+        set_tooltips(drawn, tooltips)
 
 
 def legend_above(axes: Axes) -> None:
-    """Put the legend in one row above the panel, right of its title, where no data are."""
+    """Put the legend in one row above the panel, right of its title, so that it covers no data."""
     entries = len(axes.get_legend_handles_labels()[1])
     if not entries:
         return
@@ -209,14 +219,14 @@ def legend_above(axes: Axes) -> None:
 
 
 def label_right(axes: Axes, labels: Sequence[tuple[float, str, str]], *, height: float) -> None:
-    """Write labels right of a panel, moved apart where they would touch.
+    """Write labels to the right of a panel, moved apart where they would overlap.
 
     Parameters
     ----------
     axes : Axes
-        The panel, with its final vertical limits.
+        The panel; its vertical limits must be final.
     labels : sequence of (float, str, str)
-        Height in data units, text and colour of each label.
+        Vertical position in data units, text and colour of each label.
     height : float
         Height of the panel with its margins. [inch]
     """
@@ -226,12 +236,12 @@ def label_right(axes: Axes, labels: Sequence[tuple[float, str, str]], *, height:
     low, high = axes.get_ylim()
     axes.set_ylim(low, high)
     line = (high - low) * _LINE_HEIGHT / height
-    places = _apart(np.array([y for y, _, _ in ordered]), line)
-    for place, (y, text, colour) in zip(places, ordered, strict=True):
+    positions = _moved_apart(np.array([y for y, _, _ in ordered]), line)
+    for position, (y, text, colour) in zip(positions, ordered, strict=True):
         axes.annotate(
             text,
             xy=(1.0, y),
-            xytext=(1.02, place),
+            xytext=(1.02, position),
             xycoords=("axes fraction", "data"),
             textcoords=("axes fraction", "data"),
             color=colour,
@@ -241,13 +251,13 @@ def label_right(axes: Axes, labels: Sequence[tuple[float, str, str]], *, height:
         )
 
 
-def _apart(wanted: np.ndarray, gap: float) -> np.ndarray:
-    """Return ascending places at least ``gap`` apart, near the wanted ones on the whole."""
+def _moved_apart(wanted: np.ndarray, gap: float) -> np.ndarray:
+    """Return ascending positions at least ``gap`` apart, closest to ``wanted`` in least squares."""
     offsets = np.arange(len(wanted)) * gap
-    free = wanted - offsets
-    # pooling neighbours that are out of order gives the least-squares ascending sequence
+    reduced = wanted - offsets
+    # isotonic regression by pooling adjacent violators
     blocks: list[list[float]] = []
-    for value in free:
+    for value in reduced:
         blocks.append([float(value), 1.0])
         while len(blocks) > 1 and blocks[-2][0] > blocks[-1][0]:
             mean, count = blocks.pop()

@@ -1,4 +1,4 @@
-"""Figures 4 to 7: the thermal cycle and what temperature does to friction."""
+"""Figures 4 to 7: the thermal cycle, and friction against temperature."""
 
 import numpy as np
 import pandas as pd
@@ -31,19 +31,19 @@ from frictioncli.report.style import (
 
 _PANEL_HEIGHT = 3.6
 
-_LABEL_SPACE = 0.19
-"""Least part of a run's time that a phase must last for its label to fit."""
+_LABEL_WIDTH = 0.19
+"""Least share of a run's time that a phase must last for its label to fit."""
 
 
 def thermal_runs(results: JointResults, *columns: str) -> list[str]:
-    """Return the runs that heat up or cool down with a temperature, as many as are drawn.
+    """Return the runs with heating or cooling phases and a measured temperature, at most three.
 
     Parameters
     ----------
     results : JointResults
         One joint's results.
     *columns : str
-        Columns of temperatures, of which one must have values.
+        Temperature columns, at least one of which must have values.
     """
     pairs = results.thermal_pairs
     known = pairs[pairs[list(columns)].notna().any(axis=1)]
@@ -51,7 +51,7 @@ def thermal_runs(results: JointResults, *columns: str) -> list[str]:
 
 
 def temperature_figure(results: JointResults) -> Figure:
-    """Draw Figure 4: motor and housing temperature over time, phases shaded.
+    """Draw Figure 4: motor and housing temperature over time, with phases shaded.
 
     Parameters
     ----------
@@ -74,8 +74,8 @@ def temperature_figure(results: JointResults) -> Figure:
         for start, end, phase in phase_spans(own):
             colour = PHASE_COLOURS.get(phase, OTHER_PHASE)
             panel.axvspan(start / 60.0, end / 60.0, color=colour, alpha=0.08, linewidth=0)
-            # a label wider than its phase would cover the next one's
-            if phase in PHASE_WORDS and end - start > _LABEL_SPACE * own["time"].iloc[-1]:
+            # a label wider than its phase would overlap the next one
+            if phase in PHASE_WORDS and end - start > _LABEL_WIDTH * own["time"].iloc[-1]:
                 panel.annotate(
                     f"{PHASE_WORDS[phase]}, {duration_text(end - start)}",
                     ((start + end) / 120.0, 0.97),
@@ -94,7 +94,7 @@ def temperature_figure(results: JointResults) -> Figure:
 
 
 def phase_spans(pairs: pd.DataFrame) -> list[tuple[float, float, str]]:
-    """Return ``(start, end, phase)`` in seconds for each unbroken phase of one run.
+    """Return ``(start, end, phase)`` of each contiguous phase of one run, times in s.
 
     Parameters
     ----------
@@ -116,7 +116,7 @@ def friction_temperature_figure(results: JointResults, kind: str) -> Figure:
     results : JointResults
         One joint's results.
     kind : {"motor", "housing"}
-        Which temperature: motor gives Figure 5, housing Figure 6.
+        The temperature: motor gives Figure 5, housing Figure 6.
     """
     column = f"{kind}_temperature"
     runs = thermal_runs(results, column)
@@ -137,7 +137,7 @@ def friction_temperature_figure(results: JointResults, kind: str) -> Figure:
                     style,
                     filled=filled,
                     size=4.5,
-                    told=_told(branch, column, speed, PHASE_WORDS[phase], results.unit),
+                    tooltips=_tooltips(branch, column, speed, PHASE_WORDS[phase], results.unit),
                 )
             at_hottest = group.sort_values(column, kind="stable")["friction_torque"].iloc[-1]
             labels.append((float(at_hottest), speed_text(speed), style.colour))
@@ -149,10 +149,10 @@ def friction_temperature_figure(results: JointResults, kind: str) -> Figure:
     return figure
 
 
-def _told(rows: pd.DataFrame, column: str, speed: float, what: str, unit: str) -> list[str]:
+def _tooltips(rows: pd.DataFrame, column: str, speed: float, what: str, unit: str) -> list[str]:
     return [
-        f"{speed_text(speed)}, {what}, {warm:.1f} °C: {number_text(friction)} {unit}"
-        for warm, friction in zip(rows[column], rows["friction_torque"], strict=True)
+        f"{speed_text(speed)}, {what}, {temperature:.1f} °C: {number_text(friction)} {unit}"
+        for temperature, friction in zip(rows[column], rows["friction_torque"], strict=True)
     ]
 
 
@@ -163,7 +163,7 @@ def _phase_legend(panel: Axes) -> None:
 
 
 def branch_means_figure(results: JointResults) -> Figure:
-    """Draw Figure 7: the mean of both branches (11) per speed, with the model (12), (13).
+    """Draw Figure 7: mean of the heating and cooling branches (11) per speed, with the model.
 
     Parameters
     ----------
@@ -178,8 +178,8 @@ def branch_means_figure(results: JointResults) -> Figure:
         labels = []
         for speed, group in by_speed(means[means["run"] == run]):
             style = results.style(speed)
-            told = _told(group, "temperature", speed, "mean", results.unit)
-            points(panel, group["temperature"], group["friction_torque"], style, told=told)
+            tooltips = _tooltips(group, "temperature", speed, "mean", results.unit)
+            points(panel, group["temperature"], group["friction_torque"], style, tooltips=tooltips)
             at = np.linspace(group["temperature"].min(), group["temperature"].max(), 60)
             curve = results.predict(load=0.0, speed=speed, temperature=at)
             panel.plot(at, curve, color=style.colour)
@@ -195,7 +195,7 @@ def branch_means_figure(results: JointResults) -> Figure:
 
 
 def means_per_run(results: JointResults) -> pd.DataFrame:
-    """Return the branch means (11) of each run over the model's temperature.
+    """Return the branch means (11) of each run against the model's temperature.
 
     Parameters
     ----------

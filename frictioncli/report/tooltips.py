@@ -1,4 +1,4 @@
-"""Values that show when the pointer rests on a point of a figure: SVG titles, no script."""
+"""Tooltips of points in a figure, as SVG titles without a script."""
 
 import re
 from collections.abc import Sequence
@@ -7,33 +7,33 @@ from urllib.parse import quote, unquote
 
 from matplotlib.artist import Artist
 
-_MARK = "told:"
+_MARK = "tooltips:"
 _GROUP = re.compile(rf' id="{_MARK}([^"]*)"')
 _MARKER = re.compile(r"<use ([^>]*)/>")
 
 
 def set_tooltips(artist: Artist, texts: Sequence[str]) -> None:
-    """Let a drawn artist carry what its points set_tooltips, until the figure becomes an SVG.
+    """Attach tooltips to a drawn artist; :func:`tooltips_as_titles` turns them into SVG titles.
 
     Parameters
     ----------
     artist : Artist
-        Markers of a line, in the order of the texts, or a shape, which takes one text.
+        Markers of a line, or a shape.
     texts : sequence of str
-        One per point.
+        One text per marker, in their order; a shape takes a single text.
     """
-    # matplotlib writes the identifier into the SVG: it takes the texts there, quoted so that
-    # commas part them and nothing in them means anything to XML
+    # matplotlib writes the artist's identifier into the SVG: it carries the texts, quoted so that
+    # commas separate them and no character has a meaning in XML
     artist.set_gid(_MARK + ",".join(quote(text) for text in texts))
 
 
 def tooltips_as_titles(svg: str) -> str:
-    """Return an SVG in which what its artists carry are titles of their points.
+    """Return an SVG in which the tooltips attached to artists are titles of their points.
 
     Parameters
     ----------
     svg : str
-        As matplotlib writes it.
+        SVG as written by matplotlib.
     """
     head, *groups = _GROUP.split(svg)
     parts = [head]
@@ -43,15 +43,15 @@ def tooltips_as_titles(svg: str) -> str:
 
 
 def _titled(texts: list[str], rest: str) -> str:
-    """Put the titles into the markers that follow, or into the shape."""
+    """Insert the titles into the markers that follow, or into the shape."""
     end = rest.find('<g id="')
-    own, others = (rest, "") if end < 0 else (rest[:end], rest[end:])
+    group, others = (rest, "") if end < 0 else (rest[:end], rest[end:])
     titles = [f"<title>{escape(text, quote=False)}</title>" for text in texts]
-    markers = len(_MARKER.findall(own))
+    markers = len(_MARKER.findall(group))
     if not markers and len(titles) == 1:
-        return own.replace(">", f">{titles[0]}", 1) + others
+        return group.replace(">", f">{titles[0]}", 1) + others
     if markers != len(titles):
-        # a point outside the picture is not drawn: better no value than a wrong one
-        return own + others
+        # some point is not drawn, so texts and markers cannot be matched
+        return group + others
     following = iter(titles)
-    return _MARKER.sub(lambda marker: f"<use {marker[1]}>{next(following)}</use>", own) + others
+    return _MARKER.sub(lambda marker: f"<use {marker[1]}>{next(following)}</use>", group) + others

@@ -40,7 +40,7 @@ def test_a_marker_that_is_not_drawn_takes_no_others_text():
     set_tooltips(line, ["first", "second", "third"])
     text = drawn(figure)
     assert titles(text) == []
-    assert "told" not in text
+    assert "tooltips" not in text
 
 
 def test_bars_tell_their_error(two_runs):
