@@ -97,14 +97,14 @@ def evidence_figure(results: JointResults, *, diagnosis: Reloaded, index: int) -
 def shown_probabilities(
     probabilities: Mapping[str, float], chosen: Sequence[str]
 ) -> list[tuple[str, float]]:
-    """Return the bars: the credible set, the most probable others, and what is left over.
+    """Return the probabilities shown: the credible set, the most probable others, and the rest.
 
     Parameters
     ----------
     probabilities : mapping of str to float
         Probability of each effect.
     chosen : sequence of str
-        The credible set.
+        Names of the effects in the credible set.
     """
     ordered = sorted(probabilities.items(), key=lambda entry: (entry[0] not in chosen, -entry[1]))
     shown = ordered[: max(_MOST_BARS, len(chosen))]
