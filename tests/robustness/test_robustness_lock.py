@@ -9,6 +9,7 @@ import time
 import pytest
 
 from frictioncli.errors import FrictionError
+from frictioncli.pairs.settings import PairingSettings
 from frictioncli.stages import run as pipeline
 from frictioncli.stages.fit import fit
 from frictioncli.stages.pair import pair
@@ -110,7 +111,7 @@ def test_tables_that_belong_together_need_no_warning(work):
 @pytest.mark.slow
 def test_a_table_made_from_a_replaced_one_is_told(work):
     pairs = digests(work)["pairs.parquet"]
-    pair(work, pipeline.PairingSettings(bin_width=2.0))
+    pair(work, PairingSettings(bin_width=2.0))
     assert digests(work)["pairs.parquet"] != pairs
     told = (
         "warning: torques.parquet was made from another pairs.parquet than the one here;"
