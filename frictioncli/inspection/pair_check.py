@@ -1,4 +1,4 @@
-"""Constant speed and pairs in logs, found with the code of the stage ``pair``."""
+"""Constant-speed segments and pairs of logs, found by the code of the stage ``pair``."""
 
 from collections.abc import Callable, Iterable, Mapping
 from pathlib import Path
@@ -18,7 +18,7 @@ from frictioncli.pairs.settings import PairingSettings
 
 FORWARD, REVERSE = "forward", "reverse"
 
-_HEADS = (
+_PAIR_COLUMNS = (
     "run",
     "joint",
     "pair",
@@ -32,69 +32,69 @@ _HEADS = (
 
 NO_SEGMENTS: Mapping[str, int] = MappingProxyType(dict.fromkeys((FORWARD, REVERSE), 0))
 SegmentCounts = dict[tuple[str, str, int], dict[str, int]]
-"""Run, recording and joint -> constant-speed parts forward and in reverse."""
+"""Run, recording and joint -> number of constant-speed segments by direction."""
 
 
 def segments_and_pairs(
     samples: Iterable[pa.RecordBatch],
-    said: Callable[[], pd.DataFrame],
+    conditions: Callable[[], pd.DataFrame],
     settings: PairingSettings,
     folder: Path,
 ) -> tuple[SegmentCounts, pd.DataFrame]:
-    """Return the constant-speed parts of samples, and one row per pair of them.
+    """Find the constant-speed segments of samples, and their pairs.
 
     Parameters
     ----------
     samples : iterable of RecordBatch
         Rows of :data:`frictioncli.schemas.SAMPLES`, recording by recording.
-    said : callable
-        Asked when all samples are through: ``phase`` and ``payload`` [kg] by run and recording.
+    conditions : callable
+        Called after the last sample; returns ``phase`` and ``payload`` [kg] by run and recording.
     settings : PairingSettings
-        What makes a pair.
+        Settings of the stage ``pair``.
     folder : Path
-        Where intermediate tables may lie.
+        Folder for temporary files.
 
     Returns
     -------
-    moves : SegmentCounts
-        How often a constant speed was held.
+    counts : SegmentCounts
+        Number of constant-speed segments.
     pairs : DataFrame
-        Run, joint, pair, speed [deg/s], phase, motor temperature [°C], mean half difference of the
-        torques, lowest and highest load.
+        One row per pair: run, joint, pair, speed [deg/s], phase, motor temperature [°C], mean half
+        difference of the torques, lowest and highest load [N·m or A].
     """
     with PartitionedStore[Joint](folder) as moving, PartitionedStore[Joint](folder) as paired:
         found = find_segments(samples, settings.steady, settings.bin_width, moving)
-        told = said()
+        known = conditions()
         try:
-            pairing = pair_segments(found, settings, paired, told["payload"])
+            pairing = pair_segments(found, settings, paired, known["payload"])
         except NotEnoughData:
-            return _moves(found), pd.DataFrame(columns=_HEADS)
-        parts = [_heads(rows) for rows in pair_rows(found, pairing, told["phase"])]
-        return _moves(found), pd.concat(parts, ignore_index=True)
+            return _segment_counts(found), pd.DataFrame(columns=_PAIR_COLUMNS)
+        pairs = [_pair_means(rows) for rows in pair_rows(found, pairing, known["phase"])]
+        return _segment_counts(found), pd.concat(pairs, ignore_index=True)
 
 
-def _moves(found: SegmentTables) -> SegmentCounts:
-    """Return how often each joint held a constant speed in each recording."""
-    moves: SegmentCounts = {}
+def _segment_counts(found: SegmentTables) -> SegmentCounts:
+    """Return the number of constant-speed segments of each joint in each recording."""
+    segment_counts: SegmentCounts = {}
     for run, joint in found.counts:
         for (segments,) in found.store.read((run, joint), "segments"):
-            for way, sign in ((FORWARD, 1), (REVERSE, -1)):
+            for direction, sign in ((FORWARD, 1), (REVERSE, -1)):
                 numbers, counts = np.unique(
                     segments["recording"][segments["direction"] == sign], return_counts=True
                 )
                 for number, count in zip(numbers.tolist(), counts.tolist(), strict=True):
                     key = (*found.recordings[number], joint)
-                    moves.setdefault(key, dict(NO_SEGMENTS))[way] += count
-    return moves
+                    segment_counts.setdefault(key, dict(NO_SEGMENTS))[direction] += count
+    return segment_counts
 
 
-def _heads(rows: pa.Table) -> pd.DataFrame:
+def _pair_means(rows: pa.Table) -> pd.DataFrame:
     """Return one row per pair."""
     frame = rows.to_pandas()
     half = (frame["torque_forward"] - frame["torque_reverse"]) / 2
     load = (frame["torque_forward"] + frame["torque_reverse"]) / 2
     load = frame["load"].where(frame["load"].notna(), load)
-    grouped: Any = frame.assign(half_difference=half, own_load=load).groupby("pair", sort=False)
+    grouped: Any = frame.assign(half_difference=half, load_torque=load).groupby("pair", sort=False)
     return grouped.agg(
         run=("run", "first"),
         joint=("joint", "first"),
@@ -102,6 +102,6 @@ def _heads(rows: pa.Table) -> pd.DataFrame:
         phase=("phase", "first"),
         motor_temperature=("motor_temperature", "first"),
         half_difference=("half_difference", "mean"),
-        load_low=("own_load", "min"),
-        load_high=("own_load", "max"),
+        load_low=("load_torque", "min"),
+        load_high=("load_torque", "max"),
     ).reset_index()

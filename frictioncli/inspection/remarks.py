@@ -1,4 +1,4 @@
-"""What is odd in a file, in sentences; a word for its kind lets many be told at once."""
+"""Remarks on irregularities of a file, each with its kind, by which remarks are grouped."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -8,26 +8,27 @@ from frictioncli.inspection.monitors.sampling import Sampling
 from frictioncli.inspection.other_clocks import OtherClock
 from frictioncli.quantities import TORQUE
 
-_UNEVEN = 0.1
-"""Jitter that is worth a word, as a share of the period."""
+_LEAST_JITTER = 0.1
+"""Least jitter that is mentioned, as a share of the period. [-]"""
 
-_SLOWER = 0.05
-"""Shortfall of the real rate that is worth a word."""
+_LEAST_SHORTFALL = 0.05
+"""Least shortfall of the actual rate that is mentioned. [-]"""
 
 _UPTIME = (60.0, 1e9)
-"""A clock that starts in this range counts from the controller's start. [s]"""
+"""A clock that begins in this range counts from the start of the controller. [s]"""
 
-_DISAGREES = 0.05
+_VELOCITY_TOLERANCE = 0.05
+"""Tolerated disagreement of velocity and position. [-]"""
 
-_SAME_RATE = 1e-4
-_APART = 0.01
-"""Rate and distance at which two clocks still are one. [s]"""
+_RATE_TOLERANCE = 1e-4
+_DIFFERENCE_TOLERANCE = 0.01
+"""Tolerated differences of two clocks in rate [-] and time [s]."""
 
-_STANDS = 0.5
-"""A joint that moves less stands. [deg]"""
+_STATIONARY = 0.5
+"""Range of position below which a joint is stationary. [deg]"""
 
 _FINE = 5000.0
-"""Steps in a channel's range above which they do not matter."""
+"""Number of steps in the range of a channel above which they are not mentioned."""
 
 _UNITS = {
     "position": "deg",
@@ -41,34 +42,34 @@ _UNITS = {
 
 @dataclass(frozen=True, slots=True)
 class Remark:
-    """Something odd: its kind, one word or two, and the sentence."""
+    """A remark: its kind in one word or two, and the sentence."""
 
     kind: str
     text: str
 
 
 def remarks(found: FileInspection) -> tuple[Remark, ...]:
-    """Return what is odd in a file."""
+    """Return the remarks on a file."""
     return (
         *(
             Remark(reason.replace("_", " "), f"{count} of {found.rows} rows rejected: {reason}")
             for reason, count in sorted(found.rejected.items())
         ),
-        *(() if found.sampling is None else _of_sampling(found.sampling)),
-        *(Remark("clocks", _told(clock)) for clock in found.clocks if _departs(clock)),
+        *(() if found.sampling is None else _sampling_remarks(found.sampling)),
+        *(Remark("clocks", _clock_text(clock)) for clock in found.clocks if _departs(clock)),
         *(
             Remark(remark.kind, f"joint {joint.joint}: {remark.text}")
             for joint in found.joints
-            for remark in _of_joint(joint)
+            for remark in _joint_remarks(joint)
         ),
         *(Remark("note", text) for text in found.notes),
     )
 
 
-def stands(found: JointInspection) -> bool:
-    """Return whether a joint does not move in a file."""
+def is_stationary(found: JointInspection) -> bool:
+    """Return whether a joint is stationary in a file."""
     position = next(c for c in found.channels if c.quantity == "position")
-    return position.highest - position.lowest < _STANDS
+    return position.highest - position.lowest < _STATIONARY
 
 
 def unit_of(quantity: str, torque_unit: str) -> str:
@@ -78,22 +79,25 @@ def unit_of(quantity: str, torque_unit: str) -> str:
 
 
 def _departs(clock: OtherClock) -> bool:
-    return abs(clock.rate - 1) > _SAME_RATE or clock.departs_s > _APART
+    return abs(clock.rate - 1) > _RATE_TOLERANCE or clock.departs_s > _DIFFERENCE_TOLERANCE
 
 
-def _told(clock: OtherClock) -> str:
+def _clock_text(clock: OtherClock) -> str:
     return (
         f"{clock.column} is another clock, not used: {clock.rate:.6g} times as fast, departs by up"
         f" to {clock.departs_s:.3g} s"
     )
 
 
-def _of_sampling(found: Sampling) -> Iterator[Remark]:
+def _sampling_remarks(found: Sampling) -> Iterator[Remark]:
     period = found.nominal_period_s
-    if found.jitter_s > _UNEVEN * period:
+    if found.jitter_s > _LEAST_JITTER * period:
         yield Remark("jitter", f"uneven times: jitter {found.jitter_s:.3g} s at {period:.4g} s")
     without_gaps = max(found.duration_s - found.gaps_s, period)
-    if period > 0 and found.rate_hz * found.duration_s * period < (1 - _SLOWER) * without_gaps:
+    if (
+        period > 0
+        and found.rate_hz * found.duration_s * period < (1 - _LEAST_SHORTFALL) * without_gaps
+    ):
         between = found.rate_hz * found.duration_s / without_gaps
         yield Remark(
             "rate",
@@ -125,13 +129,16 @@ def _of_sampling(found: Sampling) -> Iterator[Remark]:
         yield Remark("uptime", f"the clock starts at {found.begins_s:.3f} s, not at 0")
 
 
-def _of_joint(found: JointInspection) -> Iterator[Remark]:
-    if stands(found):
+def _joint_remarks(found: JointInspection) -> Iterator[Remark]:
+    if is_stationary(found):
         return
     for channel in found.channels:
         if channel.constant and "temperature" not in channel.quantity:
             yield Remark("constant", f"{channel.column} is constant")
-    if found.velocity_agreement is not None and abs(found.velocity_agreement - 1) > _DISAGREES:
+    if (
+        found.velocity_agreement is not None
+        and abs(found.velocity_agreement - 1) > _VELOCITY_TOLERANCE
+    ):
         yield Remark(
             "velocity",
             f"position changes {found.velocity_agreement:.3g} times as much as the velocity says",
@@ -166,8 +173,8 @@ def _of_joint(found: JointInspection) -> Iterator[Remark]:
         yield Remark("brake", f"brake closed for {found.brake_closed_s:.3g} s")
 
 
-def stepped(channel: ChannelInspection) -> bool:
-    """Return whether a channel's steps are coarse enough to be mentioned."""
+def is_coarse(channel: ChannelInspection) -> bool:
+    """Return whether the resolution of a channel is coarse enough to be mentioned."""
     if channel.grid is None:
         return False
     return channel.highest - channel.lowest < _FINE * channel.grid.step

@@ -1,4 +1,4 @@
-"""Whether logs suffice for each stage, found out with the stages' own code where that is cheap."""
+"""Whether logs suffice for each stage, determined by the code of the stages where that is cheap."""
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
@@ -17,13 +17,23 @@ from frictioncli.pairs.thermal_phases import SWEEP
 YES, IN_PART, NO = "yes", "in part", "no"
 STAGES = ("ingest", "pair", "separate", "fit", "diagnose", "simulate")
 _SPEEDS_SHOWN = 8
-_MOSTLY = 0.8
-"""Share of pairs in which friction must oppose motion to be believed."""
+_LEAST_OPPOSING = 0.8
+"""Least share of pairs in which friction opposes motion. [-]"""
 
 
 @dataclass(frozen=True, slots=True)
-class Stage:
-    """Whether the logs suffice for a stage (``yes``, ``in part``, ``no``), and why."""
+class StageVerdict:
+    """Whether the logs suffice for a stage.
+
+    Attributes
+    ----------
+    name : str
+        The stage.
+    suffices : str
+        ``yes``, ``in part`` or ``no``.
+    reason : str
+        Why.
+    """
 
     name: str
     suffices: str
@@ -32,24 +42,24 @@ class Stage:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class JointSummary:
-    """What all logs together hold of one joint, and what they suffice for.
+    """Summary of what all logs hold of one joint, and of the stages for which they suffice.
 
     Attributes
     ----------
     joint : int
         Its number, from 1.
     runs, recordings : int
-        Where it was found.
+        Number of runs and recordings with this joint.
     forward, reverse, pairs : int
-        Constant-speed parts in either direction, and pairs of them.
+        Number of constant-speed segments in either direction, and of pairs.
     speeds : tuple of float
         Speeds of the pairs. [deg/s]
     temperature : tuple of float or None
         Lowest and highest motor temperature of the pairs. [°C]
     load : tuple of float or None
         Lowest and highest load torque of the pairs. [N·m or A]
-    stages : tuple of Stage
-        In their order.
+    stages : tuple of StageVerdict
+        One per stage, in order.
     """
 
     joint: int
@@ -61,14 +71,19 @@ class JointSummary:
     speeds: tuple[float, ...]
     temperature: tuple[float, float] | None
     load: tuple[float, float] | None
-    stages: tuple[Stage, ...]
+    stages: tuple[StageVerdict, ...]
 
 
 @dataclass(frozen=True, slots=True)
 class RecordingCounts:
-    """What is known of the recordings of one joint: how many, of how many runs, and their starts.
+    """Number of recordings of one joint.
 
-    ``time_known`` is false where start times are not known.
+    Attributes
+    ----------
+    runs, count : int
+        Number of runs and recordings.
+    time_known : bool
+        False where start times are not known.
     """
 
     runs: int
@@ -77,36 +92,36 @@ class RecordingCounts:
 
 
 def joint_summary(
-    joint: int, moves: Mapping[str, int], recordings: RecordingCounts, pairs: pd.DataFrame
+    joint: int, segments: Mapping[str, int], recordings: RecordingCounts, pairs: pd.DataFrame
 ) -> JointSummary:
-    """Return what the logs hold of a joint and for which stages it suffices.
+    """Return the summary of a joint.
 
     Parameters
     ----------
     joint : int
-        Which joint.
-    moves : mapping of str to int
-        Constant-speed parts ``forward`` and ``reverse``.
+        The joint.
+    segments : mapping of str to int
+        Number of constant-speed segments ``forward`` and ``reverse``.
     recordings : RecordingCounts
-        What is known of its recordings.
+        Its recordings.
     pairs : DataFrame
-        Its rows of :func:`frictioncli.inspection.pair_check.pair_heads`.
+        Its pairs by :func:`frictioncli.inspection.pair_check.segments_and_pairs`.
     """
-    stages = [Stage("ingest", YES, _ingest_told(recordings)), _pair(moves, pairs)]
+    stages = [StageVerdict("ingest", YES, _recordings_text(recordings)), _pair(segments, pairs)]
     if len(pairs):
         stages.append(_separate(joint, pairs))
     if len(pairs) and stages[-1].suffices != NO:
         later = [_fit(pairs), _diagnose(pairs, recordings), _simulate(pairs)]
-        doubtful = stages[-1].suffices == IN_PART
-        stages += [_with_doubt(stage) if doubtful else stage for stage in later]
+        is_doubtful = stages[-1].suffices == IN_PART
+        stages += [_doubtful(stage) if is_doubtful else stage for stage in later]
     missing = STAGES[len(stages) :]
-    stages += [Stage(name, NO, f"needs what {stages[-1].name} gives") for name in missing]
+    stages += [StageVerdict(name, NO, f"needs what {stages[-1].name} gives") for name in missing]
     return JointSummary(
         joint=joint,
         runs=recordings.runs,
         recordings=recordings.count,
-        forward=moves[FORWARD],
-        reverse=moves[REVERSE],
+        forward=segments[FORWARD],
+        reverse=segments[REVERSE],
         pairs=len(pairs),
         speeds=tuple(sorted(pairs["speed"].unique().tolist())),
         temperature=_range(pairs["motor_temperature"]),
@@ -124,73 +139,73 @@ def _counted(count: int, what: str) -> str:
     return f"{count} {what}{'s' * (count != 1)}"
 
 
-def _ingest_told(recordings: RecordingCounts) -> str:
+def _recordings_text(recordings: RecordingCounts) -> str:
     return f"{_counted(recordings.count, 'recording')} in {_counted(recordings.runs, 'run')}"
 
 
-def _pair(moves: Mapping[str, int], pairs: pd.DataFrame) -> Stage:
+def _pair(segments: Mapping[str, int], pairs: pd.DataFrame) -> StageVerdict:
     if not len(pairs):
-        if not any(moves.values()):
-            return Stage("pair", NO, "this joint never holds a constant speed")
-        told = f"constant speed {moves[FORWARD]}x forward and {moves[REVERSE]}x in reverse"
-        return Stage(
+        if not any(segments.values()):
+            return StageVerdict("pair", NO, "this joint never holds a constant speed")
+        text = f"constant speed {segments[FORWARD]}x forward and {segments[REVERSE]}x in reverse"
+        return StageVerdict(
             "pair",
             NO,
-            f"{told} makes no pair: a pair needs the same angles, speed, temperature and payload"
+            f"{text} makes no pair: a pair needs the same angles, speed, temperature and payload"
             " within some minutes; see --same-speed, --same-temperature and --longest-pause of"
             " pair",
         )
     counts = pairs["speed"].round(1).value_counts().sort_index()
-    told = ", ".join(f"{count} at {speed:g}" for speed, count in counts.head(_SPEEDS_SHOWN).items())
+    text = ", ".join(f"{count} at {speed:g}" for speed, count in counts.head(_SPEEDS_SHOWN).items())
     more = f" and {len(counts) - _SPEEDS_SHOWN} other speeds" if len(counts) > _SPEEDS_SHOWN else ""
-    return Stage("pair", YES, f"{_counted(len(pairs), 'pair')}: {told}{more} deg/s")
+    return StageVerdict("pair", YES, f"{_counted(len(pairs), 'pair')}: {text}{more} deg/s")
 
 
-def _separate(joint: int, pairs: pd.DataFrame) -> Stage:
-    """Judge the half differences: friction opposes motion in nearly every pair."""
+def _separate(joint: int, pairs: pd.DataFrame) -> StageVerdict:
+    """Check the sign of the half differences: friction opposes motion in nearly every pair."""
     runs: dict[str, HalfDifferences] = {}
     for run, half in pairs.groupby("run")["half_difference"]:
         runs.setdefault(str(run), HalfDifferences()).add(half.to_numpy(float))
     try:
         friction = inferred_sign(joint, runs) * pairs["half_difference"]
-    except NotEnoughData as fault:
-        return Stage("separate", NO, str(fault))
+    except NotEnoughData as error:
+        return StageVerdict("separate", NO, str(error))
     low, high = pairs["load_low"].min(), pairs["load_high"].max()
-    told = f"half difference {friction.mean():.3g} on average, load {low:.3g} to {high:.3g}"
+    text = f"half difference {friction.mean():.3g} on average, load {low:.3g} to {high:.3g}"
     opposing = float(np.mean(friction > 0))
-    if opposing < _MOSTLY:
-        return Stage(
+    if opposing < _LEAST_OPPOSING:
+        return StageVerdict(
             "separate",
             IN_PART,
-            f"{told}, but it opposes motion in {100 * opposing:.0f} % of the pairs only: is this"
+            f"{text}, but it opposes motion in {100 * opposing:.0f} % of the pairs only: is this"
             " torque already freed of friction, or another joint's? Try the other torque or current"
             " columns",
         )
-    return Stage("separate", YES, told)
+    return StageVerdict("separate", YES, text)
 
 
-def _with_doubt(stage: Stage) -> Stage:
-    """Return what a stage can do with torques in which friction is in doubt."""
+def _doubtful(stage: StageVerdict) -> StageVerdict:
+    """Return the verdict on a stage whose friction torque is doubtful."""
     if stage.suffices == NO:
         return stage
-    return Stage(stage.name, IN_PART, f"{stage.reason}; friction is in doubt, see separate")
+    return StageVerdict(stage.name, IN_PART, f"{stage.reason}; friction is in doubt, see separate")
 
 
-def _fit(heads: pd.DataFrame) -> Stage:
-    if len(heads) < LEAST_TO_FIT:
-        return Stage(
-            "fit", NO, f"{_counted(len(heads), 'pair')}, at least {LEAST_TO_FIT} are needed"
+def _fit(pairs: pd.DataFrame) -> StageVerdict:
+    if len(pairs) < LEAST_TO_FIT:
+        return StageVerdict(
+            "fit", NO, f"{_counted(len(pairs), 'pair')}, at least {LEAST_TO_FIT} are needed"
         )
-    lacking = [*_temperature_lacking(heads), *_speed_lacking(heads)]
-    told = _counted(len(heads), "pair")
-    if lacking:
-        return Stage("fit", IN_PART, f"{told}, but {'; '.join(lacking)}")
-    temperature = _range(heads["motor_temperature"]) or (0.0, 0.0)
-    return Stage("fit", YES, f"{told} at {temperature[0]:.0f} to {temperature[1]:.0f} °C")
+    limitations = [*_temperature_limitations(pairs), *_speed_limitations(pairs)]
+    text = _counted(len(pairs), "pair")
+    if limitations:
+        return StageVerdict("fit", IN_PART, f"{text}, but {'; '.join(limitations)}")
+    temperature = _range(pairs["motor_temperature"]) or (0.0, 0.0)
+    return StageVerdict("fit", YES, f"{text} at {temperature[0]:.0f} to {temperature[1]:.0f} °C")
 
 
-def _temperature_lacking(heads: pd.DataFrame) -> Iterable[str]:
-    temperature = _range(heads["motor_temperature"])
+def _temperature_limitations(pairs: pd.DataFrame) -> Iterable[str]:
+    temperature = _range(pairs["motor_temperature"])
     if temperature is None:
         yield "no motor temperature: terms of temperature are left out"
     elif temperature[1] - temperature[0] < MIN_TEMPERATURE_SPAN:
@@ -200,8 +215,8 @@ def _temperature_lacking(heads: pd.DataFrame) -> Iterable[str]:
         )
 
 
-def _speed_lacking(heads: pd.DataFrame) -> Iterable[str]:
-    slowest, fastest = heads["speed"].min(), heads["speed"].max()
+def _speed_limitations(pairs: pd.DataFrame) -> Iterable[str]:
+    slowest, fastest = pairs["speed"].min(), pairs["speed"].max()
     if fastest < MIN_SPEED_RATIO * slowest:
         yield (
             f"speeds span {slowest:.3g} to {fastest:.3g} deg/s: viscous and Coulomb friction need"
@@ -209,32 +224,32 @@ def _speed_lacking(heads: pd.DataFrame) -> Iterable[str]:
         )
 
 
-def _diagnose(heads: pd.DataFrame, recordings: RecordingCounts) -> Stage:
-    runs = sorted(heads["run"].unique())
-    learned = heads if len(runs) == 1 else heads[heads["run"] != runs[-1]]
-    if len(learned) < LEAST_TO_DIAGNOSE:
+def _diagnose(pairs: pd.DataFrame, recordings: RecordingCounts) -> StageVerdict:
+    runs = sorted(pairs["run"].unique())
+    training = pairs if len(runs) == 1 else pairs[pairs["run"] != runs[-1]]
+    if len(training) < LEAST_TO_DIAGNOSE:
         kept = " before the last run, which is kept for testing" if len(runs) > 1 else ""
-        told = f"{_counted(len(learned), 'pair')}{kept}; at least {LEAST_TO_DIAGNOSE} are needed"
-        return Stage("diagnose", NO, told)
-    lacking = []
+        text = f"{_counted(len(training), 'pair')}{kept}; at least {LEAST_TO_DIAGNOSE} are needed"
+        return StageVerdict("diagnose", NO, text)
+    limitations = []
     if len(runs) == 1:
-        lacking.append("one run only: no day that it has not seen, gains flatter")
+        limitations.append("one run only: no day that it has not seen, gains flatter")
     if not recordings.time_known:
-        lacking.append(
+        limitations.append(
             "start times are not known: effects of time and temperature history cannot be judged"
         )
-    told = f"{_counted(len(learned), 'pair')} to learn from"
-    if lacking:
-        return Stage("diagnose", IN_PART, f"{told}, but {'; '.join(lacking)}")
-    return Stage("diagnose", YES, told)
+    text = f"{_counted(len(training), 'pair')} to learn from"
+    if limitations:
+        return StageVerdict("diagnose", IN_PART, f"{text}, but {'; '.join(limitations)}")
+    return StageVerdict("diagnose", YES, text)
 
 
-def _simulate(heads: pd.DataFrame) -> Stage:
-    lacking = list(_temperature_lacking(heads))
-    if lacking:
-        return Stage("simulate", NO, lacking[0])
-    phases: Mapping[str, int] = heads.loc[heads["phase"] != SWEEP, "phase"].value_counts().to_dict()
+def _simulate(pairs: pd.DataFrame) -> StageVerdict:
+    limitations = list(_temperature_limitations(pairs))
+    if limitations:
+        return StageVerdict("simulate", NO, limitations[0])
+    phases: Mapping[str, int] = pairs.loc[pairs["phase"] != SWEEP, "phase"].value_counts().to_dict()
     if not phases:
-        return Stage("simulate", NO, "no heat-up or cool-down by 5 °C or more in one run")
-    told = ", ".join(f"{count} pairs of {phase}" for phase, count in sorted(phases.items()))
-    return Stage("simulate", YES, told)
+        return StageVerdict("simulate", NO, "no heat-up or cool-down by 5 °C or more in one run")
+    text = ", ".join(f"{count} pairs of {phase}" for phase, count in sorted(phases.items()))
+    return StageVerdict("simulate", YES, text)

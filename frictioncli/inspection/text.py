@@ -1,4 +1,4 @@
-"""The terminal text: a block per file, or per group of files alike; then what they suffice for."""
+"""Text of an inspection for the terminal: a block per file or group of files, then the joints."""
 
 import textwrap
 from collections.abc import Iterable, Iterator, Sequence
@@ -7,7 +7,7 @@ from pathlib import Path
 
 from frictioncli.inspection.findings import ChannelInspection, FileInspection, JointInspection
 from frictioncli.inspection.inspect import Inspection
-from frictioncli.inspection.remarks import Remark, remarks, stands, stepped, unit_of
+from frictioncli.inspection.remarks import Remark, is_coarse, is_stationary, remarks, unit_of
 from frictioncli.inspection.sufficiency import JointSummary
 from frictioncli.plain_text import printable
 
@@ -18,21 +18,21 @@ _LONG_PREFIX = 12
 
 
 def text(found: Inspection) -> str:
-    """Return what was found as lines of at most 100 characters, where names allow."""
+    """Return the text of an inspection in lines of at most 100 characters, where names allow."""
     usable = [file for file in found.files if not file.refusal]
     refused = [file for file in found.files if file.refusal]
     blocks = [
-        *(_block(group) for group in _alike(usable)),
-        *(_refused(group) for group in _alike_refused(refused)),
+        *(_block(group) for group in _groups(usable)),
+        *(_refused(group) for group in _refused_groups(refused)),
         *(_wrapped(printable(remark, 8 * WIDTH), "  ", first="") for remark in found.remarks),
-        *(_data(joint) for joint in found.joints if joint.forward or joint.reverse),
+        *(_joint_summary(joint) for joint in found.joints if joint.forward or joint.reverse),
         *_motionless(found.joints),
     ]
     return "\n\n".join("\n".join(block) for block in blocks)
 
 
-def _alike(files: Iterable[FileInspection]) -> list[list[FileInspection]]:
-    """Group files of one form whose channels are read alike."""
+def _groups(files: Iterable[FileInspection]) -> list[list[FileInspection]]:
+    """Group files of one format whose channels are read in the same way."""
     groups: dict[object, list[FileInspection]] = {}
     for file in files:
         channels = tuple(
@@ -44,8 +44,8 @@ def _alike(files: Iterable[FileInspection]) -> list[list[FileInspection]]:
     return list(groups.values())
 
 
-def _alike_refused(files: Iterable[FileInspection]) -> list[list[FileInspection]]:
-    """Group files of one form that are refused for one reason."""
+def _refused_groups(files: Iterable[FileInspection]) -> list[list[FileInspection]]:
+    """Group files of one format that are refused for one reason."""
     groups: dict[object, list[FileInspection]] = {}
     for file in files:
         groups.setdefault((file.run, file.reason, file.form), []).append(file)
@@ -56,14 +56,14 @@ def _block(files: list[FileInspection]) -> list[str]:
     first = files[0]
     form = f"{printable(first.form)}; {first.columns} columns"
     if len(files) == 1:
-        head = [printable(str(first.path), WIDTH), f"  {form}", f"  {_sampled(first)}"]
+        head = [printable(str(first.path), WIDTH), f"  {form}", f"  {_sampling_text(first)}"]
     else:
         head = [
             f"{printable(str(first.path.parent), WIDTH)}: {len(files)} files alike",
             f"  {form}",
         ]
     joints = [_joint([file.joints[i] for file in files]) for i in range(len(first.joints))]
-    joints.append(_standing(files))
+    joints.append(_stationary(files))
     table = _table(files) if len(files) > 1 else []
     return [*head, *(line for lines in joints for line in lines), *table, *_remarks(files)]
 
@@ -74,7 +74,7 @@ def _refused(files: list[FileInspection]) -> list[str]:
         lines = [printable(str(first.path), WIDTH)]
         if first.form:
             lines.append(f"  {printable(first.form)}; {first.columns} columns")
-        lines += [f"  {_sampled(first)}"] if first.sampling else []
+        lines += [f"  {_sampling_text(first)}"] if first.sampling else []
         lines += _wrapped(f"not usable: {printable(first.refusal, 6 * WIDTH)}", "    ", first="  ")
         return [*lines, *_remarks(files)]
     lines = [f"{printable(str(first.path.parent), WIDTH)}: {len(files)} files not read"]
@@ -84,12 +84,12 @@ def _refused(files: list[FileInspection]) -> list[str]:
     for refusal, names in list(texts.items())[:_EXAMPLES]:
         shown = ", ".join(_short(names)[:_EXAMPLES])
         more = f" and {len(names) - _EXAMPLES} more" if len(names) > _EXAMPLES else ""
-        lines += _marked(f"{shown}{more}: {printable(refusal, 3 * WIDTH)}")
+        lines += _bullet(f"{shown}{more}: {printable(refusal, 3 * WIDTH)}")
     rest = sum(len(names) for names in list(texts.values())[_EXAMPLES:])
-    return [*lines, *(_marked(f"{rest} more files: {first.reason}") if rest else [])]
+    return [*lines, *(_bullet(f"{rest} more files: {first.reason}") if rest else [])]
 
 
-def _sampled(file: FileInspection) -> str:
+def _sampling_text(file: FileInspection) -> str:
     found = file.sampling
     kept = "" if file.refusal else f", {file.rows_kept:,} usable"
     if found is None:
@@ -102,29 +102,34 @@ def _sampled(file: FileInspection) -> str:
 
 
 def _joint(joints: Sequence[JointInspection]) -> list[str]:
-    """Return the lines of one joint in files alike; none where it stands in all of them."""
-    if all(stands(joint) for joint in joints):
+    """Return the lines of a joint in a group of files; none where it is stationary in all."""
+    if all(is_stationary(joint) for joint in joints):
         return []
     first = joints[0]
     ratio = "" if first.gear_ratio is None else f", gear ratio {first.gear_ratio:.4g}"
-    moves = "no constant speed"
-    ways = {way: sum(joint.moves.get(way, 0) for joint in joints) for way in first.moves}
-    if any(ways.values()):
-        moves = "constant speed: " + ", ".join(f"{count} {way}" for way, count in ways.items())
+    segments = "no constant speed"
+    counts = {
+        direction: sum(joint.moves.get(direction, 0) for joint in joints)
+        for direction in first.moves
+    }
+    if any(counts.values()):
+        segments = "constant speed: " + ", ".join(
+            f"{count} {direction}" for direction, count in counts.items()
+        )
     lines = [
         f"  joint {first.joint}: torque in {first.torque_unit} at the {first.torque_side}{ratio};"
-        f" {moves}"
+        f" {segments}"
     ]
     for i in range(len(first.channels)):
         lines += _channel([joint.channels[i] for joint in joints], joints)
     return lines
 
 
-def _standing(files: Sequence[FileInspection]) -> list[str]:
+def _stationary(files: Sequence[FileInspection]) -> list[str]:
     numbers = [
         joint.joint
         for i, joint in enumerate(files[0].joints)
-        if all(stands(file.joints[i]) for file in files)
+        if all(is_stationary(file.joints[i]) for file in files)
     ]
     return _wrapped(f"{_joints(numbers)} standing still", "    ", first="  ") if numbers else []
 
@@ -140,13 +145,13 @@ def _channel(channels: Sequence[ChannelInspection], joints: Sequence[JointInspec
     reach = f"{low:.4g} to {high:.4g} {unit}" if high > low else f"constant {low:.4g} {unit}"
     if high < low:
         reach = "no values"
-    told = [reach]
-    if any(stepped(c) for c in channels):
-        told.append(_steps(channels, unit))
+    values = [reach]
+    if any(is_coarse(c) for c in channels):
+        values.append(_steps(channels, unit))
     side = f" ({first.side} side)" if first.side == "motor" else ""
     what = first.quantity.replace("_", " ")
     name = printable(first.column, 40)
-    line = f"{what:19} {name}{side}: {'; '.join(told)}"
+    line = f"{what:19} {name}{side}: {'; '.join(values)}"
     why = printable(first.evidence, 3 * WIDTH) + _agreement(first, joints)
     if f"as {first.unit_believed}" not in why:
         why = f"read as {first.unit_believed}: {why}"
@@ -161,13 +166,13 @@ def _steps(channels: Sequence[ChannelInspection], unit: str) -> str:
 
 
 def _agreement(channel: ChannelInspection, joints: Sequence[JointInspection]) -> str:
-    """Return how the velocity agrees with the change of position."""
+    """Return the agreement of velocity with the change of position."""
     found = [j.velocity_agreement for j in joints if j.velocity_agreement is not None]
     if channel.quantity != "velocity" or not found:
         return ""
     low, high = min(found), max(found)
-    told = f"{low:.3f}" if high - low < 0.001 else f"{low:.3f} to {high:.3f}"
-    return f"; change of position / integral of velocity = {told}"
+    ratio = f"{low:.3f}" if high - low < 0.001 else f"{low:.3f} to {high:.3f}"
+    return f"; change of position / integral of velocity = {ratio}"
 
 
 _COLUMNS = ("rows", "usable", "s", "period s", "Hz", "jitter s", "gaps", "held", "spikes", "moves")
@@ -186,7 +191,7 @@ def _table(files: Sequence[FileInspection]) -> list[str]:
 
 
 def _short(names: Sequence[str]) -> list[str]:
-    """Return names without a long beginning that all of them share."""
+    """Return names without a long common prefix."""
     first, last = min(names), max(names)
     common = next(
         (i for i, pair in enumerate(zip(first, last, strict=False)) if pair[0] != pair[1]), 0
@@ -208,8 +213,9 @@ def _cells(file: FileInspection) -> tuple[str, ...]:
             f"{found.jitter_s:.1g}",
         )
     )
-    moves = [
-        sum(joint.moves.get(way, 0) for joint in file.joints) for way in ("forward", "reverse")
+    segments = [
+        sum(joint.moves.get(direction, 0) for joint in file.joints)
+        for direction in ("forward", "reverse")
     ]
     return (
         str(file.rows),
@@ -218,44 +224,44 @@ def _cells(file: FileInspection) -> tuple[str, ...]:
         str(0 if found is None else found.gaps),
         str(sum(joint.held_samples for joint in file.joints)),
         str(sum(spikes.count for joint in file.joints for spikes in joint.spikes)),
-        "+".join(map(str, moves)),
+        "+".join(map(str, segments)),
     )
 
 
 def _remarks(files: Sequence[FileInspection]) -> list[str]:
-    """Return what is odd: what holds in all files once, the rest with where it was seen."""
+    """Return the remarks: those on all files once, the others with their file."""
     seen: dict[Remark, list[Path]] = {}
     for file in files:
         for remark in remarks(file):
             seen.setdefault(remark, []).append(file.path)
     common = [remark.text for remark, where in seen.items() if len(where) == len(files)]
-    lines = [line for told in common for line in _marked(told)]
+    lines = [line for remark_text in common for line in _bullet(remark_text)]
     kinds: dict[str, list[tuple[str, Path]]] = {}
     for remark, where in seen.items():
         if len(where) < len(files):
             kinds.setdefault(remark.kind, []).extend((remark.text, path) for path in where)
-    for kind, told in kinds.items():
-        lines += _scattered(kind, told, len(files))
+    for kind, found in kinds.items():
+        lines += _differing(kind, found, len(files))
     return lines
 
 
-def _scattered(kind: str, told: Sequence[tuple[str, Path]], total: int) -> Iterator[str]:
-    """Yield remarks of one kind that do not hold in all files alike."""
-    for remark, path in told[:_EXAMPLES]:
-        yield from _marked(f"{path.name}: {remark}")
-    if len(told) > _EXAMPLES:
-        files = len({path for _, path in told})
-        yield from _marked(
-            f"{kind}: {len(told) - _EXAMPLES} more of these, in {files} of {total} files all told"
+def _differing(kind: str, found: Sequence[tuple[str, Path]], total: int) -> Iterator[str]:
+    """Yield the lines of remarks of one kind that differ between files."""
+    for remark, path in found[:_EXAMPLES]:
+        yield from _bullet(f"{path.name}: {remark}")
+    if len(found) > _EXAMPLES:
+        files = len({path for _, path in found})
+        yield from _bullet(
+            f"{kind}: {len(found) - _EXAMPLES} more of these, in {files} of {total} files all told"
         )
 
 
-def _marked(remark: str) -> list[str]:
+def _bullet(remark: str) -> list[str]:
     return _wrapped(printable(remark, 8 * WIDTH), "    ", first="  - ")
 
 
-def _data(joint: JointSummary) -> list[str]:
-    """Return what all logs suffice for."""
+def _joint_summary(joint: JointSummary) -> list[str]:
+    """Return the lines of a joint in all logs."""
     lines = [
         f"joint {joint.joint} in all logs: moves at constant speed: {joint.forward} forward,"
         f" {joint.reverse} in reverse"
@@ -268,15 +274,15 @@ def _data(joint: JointSummary) -> list[str]:
 
 
 def _motionless(joints: Iterable[JointSummary]) -> list[list[str]]:
-    """Return the joints of which nothing can be paired, all in one line."""
+    """Return the joints without motion at constant speed, all in one line."""
     numbers = [joint.joint for joint in joints if not joint.forward and not joint.reverse]
-    told = f"{_joints(numbers)} in all logs: no motion at constant speed, so nothing to pair"
-    return [_wrapped(told, "  ", first="")] if numbers else []
+    line = f"{_joints(numbers)} in all logs: no motion at constant speed, so nothing to pair"
+    return [_wrapped(line, "  ", first="")] if numbers else []
 
 
-def _wrapped(told: str, indent: str, *, first: str) -> list[str]:
+def _wrapped(sentence: str, indent: str, *, first: str) -> list[str]:
     return textwrap.wrap(
-        told,
+        sentence,
         WIDTH,
         initial_indent=first,
         subsequent_indent=indent,
