@@ -1,4 +1,4 @@
-"""A mapping file suggested from physics alone: names say nothing, order and units are drawn."""
+"""Suggested mapping files, also for columns without meaningful names, in random order and units."""
 
 import tomllib
 
@@ -25,7 +25,7 @@ NAMES = ("time", "position", "velocity", "torque", "motor_temperature")
 
 
 def wide_log(seed, time_unit, position_unit, velocity_unit, kelvin, with_commands, still_joint):
-    """Return columns by what they are: a clean log, and much else that a logger writes."""
+    """Return columns by quantity: those of a faultless log, and others that loggers write."""
     log = clean_log(seed, period=0.01)
     rng = np.random.default_rng([seed, 7])
     angle = {"deg": 1.0, "rad": np.pi / 180}
@@ -69,7 +69,7 @@ def wide_log(seed, time_unit, position_unit, velocity_unit, kelvin, with_command
     still_joint=st.booleans(),
 )
 def test_columns_without_names(tmp_path_factory, order, **drawn):
-    """Order, units and company of the columns are drawn; the map reads the log as it was."""
+    """Order, units and other columns are drawn; with the map the log gives the original samples."""
     folder = tmp_path_factory.mktemp("log")
     log, columns = wide_log(**drawn)
     labels = list(columns)
@@ -79,13 +79,13 @@ def test_columns_without_names(tmp_path_factory, order, **drawn):
     path = write(table, folder / "table.csv", digits=9)
 
     text = suggested_map([path], IngestSettings(joints=(4,)))
-    chart = tomllib.loads(text)
-    assert chart["channels"] == {name: blind[name] for name in NAMES}
-    assert chart["units"]["time"] == drawn["time_unit"]
-    assert chart["units"]["position"] == drawn["position_unit"]
-    assert chart["units"]["velocity"] == drawn["velocity_unit"]
-    assert chart["units"]["motor_temperature"] == ("K" if drawn["kelvin"] else "°C")
-    assert chart["joint"] == {"number": 4}
+    mapping = tomllib.loads(text)
+    assert mapping["channels"] == {name: blind[name] for name in NAMES}
+    assert mapping["units"]["time"] == drawn["time_unit"]
+    assert mapping["units"]["position"] == drawn["position_unit"]
+    assert mapping["units"]["velocity"] == drawn["velocity_unit"]
+    assert mapping["units"]["motor_temperature"] == ("K" if drawn["kelvin"] else "°C")
+    assert mapping["joint"] == {"number": 4}
 
     map_file = folder / "channels.toml"
     map_file.write_text(text, encoding="utf-8")
@@ -99,15 +99,15 @@ def test_columns_without_names(tmp_path_factory, order, **drawn):
 
 
 def test_a_log_without_velocity(tmp_path):
-    """The position is then the smoothest column; the torque still opposes its derivative."""
+    """The position is the smoothest column; the torque depends on the sign of its derivative."""
     log = clean_log()
     table = pd.DataFrame({"a": log[TORQUE], "b": log[TIME], "c": log[POSITION]})
-    chart = tomllib.loads(suggested_map([write(table, tmp_path / "log.csv")]))
-    assert chart["channels"] == {"time": "b", "position": "c", "torque": "a"}
+    mapping = tomllib.loads(suggested_map([write(table, tmp_path / "log.csv")]))
+    assert mapping["channels"] == {"time": "b", "position": "c", "torque": "a"}
 
 
 def test_names_of_joints_choose_among_them(tmp_path):
-    """Three joints move by turns; each is found by its number, current as torque in A."""
+    """Three joints move in turn; each is found by its number, with current as torque in A."""
     logs = [clean_log(seed, speeds=(20 + 10 * seed, 40)) for seed in range(3)]
     n = sum(map(len, logs))
     table = {"uhr": np.arange(n) * 0.01}
@@ -122,13 +122,13 @@ def test_names_of_joints_choose_among_them(tmp_path):
             table[f"{name}_g{number}_ist"] = values
     path = write(pd.DataFrame(table), tmp_path / "log.csv")
     for joint in (1, 2, 3):
-        chart = tomllib.loads(suggested_map([path], IngestSettings(joints=(joint,))))
+        mapping = tomllib.loads(suggested_map([path], IngestSettings(joints=(joint,))))
         tail = f"_g{joint - 1}_ist"
-        assert chart["channels"]["position"] == f"winkel{tail}"
-        assert chart["channels"]["velocity"] == f"tempo{tail}"
-        assert chart["channels"]["torque"] == f"strom{tail}"
-        assert chart["units"]["torque"] == "A"
-        assert chart["joint"]["number"] == joint
+        assert mapping["channels"]["position"] == f"winkel{tail}"
+        assert mapping["channels"]["velocity"] == f"tempo{tail}"
+        assert mapping["channels"]["torque"] == f"strom{tail}"
+        assert mapping["units"]["torque"] == "A"
+        assert mapping["joint"]["number"] == joint
 
 
 @pytest.mark.parametrize(
@@ -136,7 +136,7 @@ def test_names_of_joints_choose_among_them(tmp_path):
     ['q"\\u0041', "a = 1 # b", "\x1b[31mred", "‮detrever", "'); DROP", "ünï côdé", "[x] 'y'"],
 )
 def test_hostile_names_stay_inside_their_strings(tmp_path, hostile):
-    """Whatever a column is called, the map is valid, names it, and shows nothing that acts."""
+    """Whatever a column is called, the map is valid, names it, and has no control characters."""
     log = clean_log()
     table = pd.DataFrame({"z": log[TIME], "p": log[POSITION], "v": log[VELOCITY]})
     table[hostile] = log[TORQUE]
@@ -187,10 +187,10 @@ def test_lag_between_two_columns(shift, seed):
 
 @pytest.mark.skipif(not REAL.is_dir(), reason=f"no real logs beside the project: {REAL}")
 def test_xarm_joint_2_of_seven(tmp_path):
-    """Torque_1 is freed of friction already and serves as load; friction is in the current."""
+    """Torque_1 is without friction and serves as load; the current contains the friction."""
     text = suggested_map([REAL / "xarm6-j2"], IngestSettings(joints=(2,)))
-    chart = tomllib.loads(text)
-    assert chart["channels"] == {
+    mapping = tomllib.loads(text)
+    assert mapping["channels"] == {
         "time": "Time (s)",
         "position": "Pos_1",
         "velocity": "Velocity_1",
@@ -198,7 +198,7 @@ def test_xarm_joint_2_of_seven(tmp_path):
         "load": "Torque_1",
         "motor_temperature": "Temp_1",
     }
-    assert chart["units"]["torque"] == "A"
+    assert mapping["units"]["torque"] == "A"
     map_file = tmp_path / "channels.toml"
     map_file.write_text(text, encoding="utf-8")
     whole = inspect([REAL / "xarm6-j2"], IngestSettings(map_file=map_file))

@@ -16,7 +16,7 @@ COLUMNS = {
     "torque_2 [Nm]": TORQUE,
     "motor_temperature_2 [°C]": TEMPERATURE,
 }
-"""Names as a CSV has them; every container holds these five under names of its own."""
+"""Column names in CSV; every container has these five under other names."""
 
 _NUMBERS = ["time", "position", "velocity", "torque", "motor_temperature"]
 
@@ -30,7 +30,7 @@ def samples(log, work):
 
 
 def assert_same_as_csv(log, folder, columns=COLUMNS):
-    """Require that a log gives the samples that the CSV of the same values gives."""
+    """Assert that a log gives the same samples as a CSV of the same values."""
     found = samples(log, folder / "work")
     expected = samples(
         write(folder / "csv" / "log.csv", columns, digits=13), folder / "csv" / "work"
@@ -45,5 +45,5 @@ def assert_same_as_csv(log, folder, columns=COLUMNS):
 
 
 def without(columns, *names):
-    """Return columns without some, named by how they begin."""
+    """Return columns without those whose names begin with one of some texts."""
     return {key: values for key, values in columns.items() if not key.startswith(names)}

@@ -1,4 +1,4 @@
-"""DIAdem recordings for the tests, written number by number from the format's description."""
+"""DIAdem recordings for the tests, written from the description of the format."""
 
 import struct
 from pathlib import Path

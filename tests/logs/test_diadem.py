@@ -1,4 +1,4 @@
-"""DIAdem recordings: read as they are described, refused where they contradict themselves."""
+"""DIAdem recordings are read as their header says, or refused where it contradicts itself."""
 
 import numpy as np
 import pytest
@@ -108,20 +108,20 @@ def test_all_types_storages_and_byte_orders(tmp_path, storage, order):
         {"named": "someone_renamed_the_pair.r64"},
     ],
 )
-def test_headers_in_the_wild(tmp_path, form):
+def test_forms_of_headers(tmp_path, form):
     header = write_diadem(tmp_path / "log.dat", stored(), **form)
     found = values(opened(header))
     np.testing.assert_allclose(found["AxisPos_Act2[°]"], POSITION, rtol=1e-12)
 
 
-def test_leading_blanks_and_any_ending(tmp_path):
+def test_leading_blanks_and_any_suffix(tmp_path):
     header = write_diadem(tmp_path / "log.dat", stored())
     odd = tmp_path / "log.txt"
     odd.write_bytes(b" \r\n  " + header.read_bytes())
     np.testing.assert_allclose(values(opened(odd))["GearTorq_Act2[Nm]"], TORQUE)
 
 
-def test_krl_data_with_the_same_ending_is_no_recording(tmp_path):
+def test_krl_data_with_the_same_suffix_is_no_recording(tmp_path):
     path = tmp_path / "points.dat"
     path.write_text("&ACCESS RVP\nDEFDAT points\nDECL E6POS XP1={X 1,Y 2}\nENDDAT\n")
     found = open_log(path, CsvHints())
@@ -222,7 +222,7 @@ def test_damage_is_refused_with_a_reason(tmp_path, damage, message):
 
 
 def test_samples_elsewhere_are_never_read(tmp_path):
-    """The name leads to a file that is there, but outside the header's folder."""
+    """The header names an existing file outside its folder."""
     write_diadem(tmp_path / "run" / "log.dat", stored(), named=str(tmp_path / "secret.r64"))
     (tmp_path / "run" / "log.r64").rename(tmp_path / "secret.r64")
     found = open_log(tmp_path / "run" / "log.dat", CsvHints())
@@ -254,7 +254,7 @@ def test_samples_without_a_header_are_refused_by_name(tmp_path):
     count=st.integers(0, 6),
 )
 def test_any_damaged_header_is_read_or_refused(tmp_path_factory, at, new, count):
-    """Whatever bytes change, values come out or a reason does."""
+    """Whatever bytes change, the result is values or a refusal."""
     header = write_diadem(tmp_path_factory.mktemp("any") / "log.dat", stored())
     content = header.read_bytes()
     header.write_bytes(content[:at] + new + content[at + count :])

@@ -1,4 +1,4 @@
-"""The parser of plain numbers agrees with Python's own to the last bit, or keeps its hands off."""
+"""The parser of plain numbers agrees with Python bit for bit, or leaves the text to pyarrow."""
 
 import re
 
@@ -30,7 +30,7 @@ def bits(values):
 
 
 @pytest.mark.skipif(not has_compiler(), reason="no C compiler")
-def test_parser_is_there_where_a_compiler_is():
+def test_the_parser_is_built_where_there_is_a_compiler():
     assert plain_numbers._plain_numbers is not None
 
 
@@ -57,7 +57,7 @@ def test_every_number_of_a_log_is_the_nearest_double(numbers, delimiter, decimal
 
 @built
 @given(st.floats(allow_nan=False, allow_infinity=False), st.sampled_from(["r", ".6g", ".12e"]))
-def test_any_float_is_the_nearest_double_or_left_to_others(value, form):
+def test_any_float_is_the_nearest_double_or_left_to_pyarrow(value, form):
     text = repr(value) if form == "r" else f"{value:{form}}"
     found = parsed([f"{text};{text}"])
     assert found is None or bits(found) == bits([[float(text)], [float(text)]])
@@ -65,7 +65,7 @@ def test_any_float_is_the_nearest_double_or_left_to_others(value, form):
 
 @built
 @given(st.text("0123456789-+.,;eE \"'xn\r\n\0\xb0", max_size=40), st.sampled_from([".", ","]))
-def test_any_text_is_understood_as_python_does_or_left_to_others(text, decimal):
+def test_any_text_is_understood_as_python_does_or_left_to_pyarrow(text, decimal):
     lines = text.removesuffix("\n").split("\n")
     found = plain_columns(text.encode("latin-1"), ";", decimal, 2, [0, 1], len(lines))
     if found is None:
@@ -106,25 +106,25 @@ def test_limits_of_what_is_plain(first, value):
         *("+1", ".5", "-", "--1", "1e", "1e+", "1.2.3", "1 ", " 1", "nan", "inf", "0x1", '"1"'),
     ],
 )
-def test_what_is_not_plain_is_left_to_others(first):
+def test_what_is_not_plain_is_left_to_pyarrow(first):
     assert parsed([f"{first};1", "2;3"]) is None
     assert parsed(["2;3", f"{first};1"]) is None
 
 
 @built
 @pytest.mark.parametrize("damage", ["1", "1;2;3", "", "1;2\r3;4", "1;2\0", "1,5;2"])
-def test_a_damaged_row_is_left_to_others(damage):
+def test_a_damaged_row_is_left_to_pyarrow(damage):
     assert parsed(["1;2", damage, "3;4"]) is None
 
 
 @built
-def test_columns_that_nobody_wants_may_hold_words_but_no_quotes():
+def test_skipped_columns_may_hold_words_but_no_quotes():
     assert parsed(["1;now", "2;"], wanted=[0]).tolist() == [[1.0, 2.0]]
     assert parsed(['1;"now;3"', "2;"], wanted=[0]) is None
 
 
 @built
-def test_rows_must_be_as_many_as_said():
+def test_the_number_of_rows_must_be_right():
     assert plain_columns(b"1;2\n3;4", ";", ".", 2, [0], 2).tolist() == [[1.0, 3.0]]
     assert plain_columns(b"1;2\n3;4\n", ";", ".", 2, [0], 1) is None
     assert plain_columns(b"1;2\n3;4\n", ";", ".", 2, [0], 3) is None
@@ -173,7 +173,7 @@ def test_line_feeds_are_counted(content, more):
 
 @built
 @pytest.mark.parametrize("text", ["9.9e34", "1e19", "-9007199254740992e19", "1e-23"])
-def test_sizes_beyond_any_measurement_are_left_to_others(text):
+def test_numbers_larger_than_any_measurement_are_left_to_pyarrow(text):
     assert parsed([f"{text};1"]) is None
 
 

@@ -67,7 +67,7 @@ def test_a_measurement_gives_the_samples_of_the_csv(tmp_path, version, compressi
     assert_same_as_csv(path, tmp_path)
 
 
-def test_a_slower_group_is_merged_by_its_last_values(tmp_path):
+def test_a_slower_group_is_merged_by_zero_order_hold(tmp_path):
     slow = slice(None, None, 50)
     temperature = signal("motor_temperature_2", "°C", TEMPERATURE[slow], TIME[slow])
     path = saved(tmp_path / "log.mf4", [temperature], motion())
@@ -94,7 +94,7 @@ def test_before_and_after_its_samples_a_group_has_no_values(tmp_path):
     slow=st.lists(st.floats(0, 7), min_size=2, max_size=60, unique=True).map(sorted),
     rows=st.integers(1, 600),
 )
-def test_last_values_by_hand(tmp_path_factory, slow, rows):
+def test_zero_order_hold(tmp_path_factory, slow, rows):
     """Each row has the value of the latest slow sample that is not later than it."""
     times = np.array(slow)
     path = saved(
@@ -150,8 +150,8 @@ def test_damaged_files_are_refused(tmp_path):
     assert not (tmp_path / "work" / "samples.parquet").exists()
 
 
-def test_damage_far_into_the_file_is_no_end_of_it(tmp_path):
-    """Of blocks packed one by one a late one is damaged: nothing is kept of the ones before."""
+def test_damage_late_in_the_file_is_not_taken_as_its_end(tmp_path):
+    """A late one of separately compressed blocks is damaged: the file is refused as a whole."""
     times = np.arange(400_000) * 1e-3
     with asammdf.MDF() as file:
         file.configure(write_fragment_size=1 << 19)

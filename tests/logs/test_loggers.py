@@ -1,4 +1,4 @@
-"""Loggers of other brands and of KUKA variables, written by hand from their descriptions."""
+"""Logs of KUKA variables and of Universal Robots, written from their descriptions."""
 
 import struct
 from datetime import UTC, datetime, timedelta
@@ -107,7 +107,7 @@ def test_damaged_rows_are_counted(tmp_path):
 
 
 def test_rows_with_lost_bytes_are_rejected(tmp_path):
-    """NUL stands for bytes that are lost: in a number, in a structure, or in place of a row."""
+    """NUL bytes replace lost characters in a number, in a structure, or in a whole row."""
     lines = variable_log(CELLS["full"]).split("\n")
     lines[2] = lines[2].replace("{E6AXIS", "{E6\0AXIS")
     lines[4] = lines[4].replace("A1 ", "A1\0 ")
@@ -124,7 +124,7 @@ def test_rows_with_lost_bytes_are_rejected(tmp_path):
     np.testing.assert_allclose(samples["position"], np.delete(POSITION, [1, 3, 4, 5, 6]), atol=1e-6)
 
 
-def test_structures_are_found_behind_a_damaged_first_row(tmp_path):
+def test_structures_are_found_after_a_damaged_first_row(tmp_path):
     lines = variable_log(CELLS["full"]).split("\n")
     lines[1] = lines[1].replace("A1 ", "\0A1 ")
     (tmp_path / "log.csv").write_text("\n".join(lines), encoding="utf-8")
@@ -133,7 +133,7 @@ def test_structures_are_found_behind_a_damaged_first_row(tmp_path):
 
 
 def test_damage_at_an_axis_at_rest_does_not_change_the_unit(tmp_path):
-    """An axis that stays at zero has no scale of its own by which damage would stand out."""
+    """Values of an axis that stays at zero give no scale by which damage could be detected."""
     lines = variable_log(lambda a, b: f"A1 0.0 A2 {b:.9f}").split("\n")
     for line, damage in enumerate(("292277026596", "-1e308", "9223372036854775807", "9e12"), 9):
         lines[line] = lines[line].replace("A1 0.0", f"A1 {damage}")
@@ -189,7 +189,7 @@ RTDE = {
 
 
 def rtde_bytes():
-    """Return what ``record.py --binary`` writes: names, types, then rows packed big-endian."""
+    """Return what ``record.py --binary`` writes: names, types, then big-endian rows."""
     form = ">" + "".join(code for _, _, code in RTDE.values())
     rows = zip(*(v.tolist() for v, _, _ in RTDE.values()), strict=True)
     codes = [code for _, _, code in RTDE.values()]
@@ -213,7 +213,7 @@ def test_universal_robots_binary_recording(tmp_path):
 
 
 @pytest.mark.parametrize("size", [1, 100, 5000, 1 << 20])
-def test_a_binary_recording_that_was_broken_off_costs_one_row(tmp_path, size):
+def test_an_interrupted_binary_recording_loses_one_row(tmp_path, size):
     (tmp_path / "robot_data.csv").write_bytes(rtde_bytes()[:-7])
     source = open_log(tmp_path / "robot_data.csv", CsvHints())
     parts = list(source.batches([0, 6], size))
@@ -232,7 +232,7 @@ def test_a_binary_recording_whose_lines_disagree_is_refused(tmp_path):
 
 
 def test_universal_robots_text_recording_on_windows(tmp_path):
-    """csv.writer's line ends, written once more as text: a blank line after each row."""
+    """The line ends of csv.writer are converted again in text mode: a blank line after each row."""
     names = [name for name, (_, kind, _) in RTDE.items() if kind == "DOUBLE"]
     text = text_of({name: RTDE[name][0] for name in names}, delimiter=" ", digits=13)
     (tmp_path / "robot_data.csv").write_bytes(text.replace("\n", "\r\r\n").encode())
@@ -265,13 +265,13 @@ def test_time_in_seconds_and_nanoseconds(tmp_path, seconds, nanoseconds):
     assert_same_as_csv(log, tmp_path, without(COLUMNS, "velocity", "motor_temperature"))
 
 
-def test_seconds_alone_are_as_they_stand(tmp_path):
+def test_seconds_alone_are_unchanged(tmp_path):
     log = write(tmp_path / "log.csv", {"sec": TIME, "position": POSITION, "torque": TORQUE})
     assert open_log(log, CsvHints()).columns == ("sec", "position", "torque")
 
 
-def test_rows_of_other_topics_are_counted_and_do_not_condemn_a_log(tmp_path):
-    """A CSV of PlotJuggler: topics joined by time, two rows of another one for each of ours."""
+def test_rows_of_other_topics_are_counted_and_do_not_refuse_a_log(tmp_path):
+    """A CSV of PlotJuggler with topics joined by time: two rows of another topic for each row."""
     time, position, velocity, torque = back_and_forth()
     header = "__time,/imu/temperature,/joint_states/joint_2/position,/joint_states/joint_2/effort"
     lines = [header]

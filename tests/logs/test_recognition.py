@@ -1,11 +1,10 @@
-"""Columns are recognised by name; the map says what names do not."""
+"""Columns are recognised by name, and chosen for each joint."""
 
 import numpy as np
 import pytest
 
 from frictioncli import schemas, tables
-from frictioncli.errors import LogError, MappingError
-from frictioncli.logs.channels.channel_map import read_map
+from frictioncli.errors import LogError
 from frictioncli.logs.channels.recognition import assign_channels, joint_in_name, recognise_channels
 from frictioncli.logs.ingest import IngestSettings, ingest
 from frictioncli.logs.log_source import Refusal
@@ -81,7 +80,7 @@ def test_every_joint_with_a_torque_channel():
         (["q_2", "torque_2"], "no_time_channel"),
     ],
 )
-def test_what_is_missing_is_named(columns, reason):
+def test_missing_channels_are_named(columns, reason):
     refusal = assign_channels(recognise_channels(columns), columns, joints=None, file_joint=1)
     assert isinstance(refusal, Refusal)
     assert refusal.reason == reason
@@ -97,7 +96,7 @@ def test_joint_in_a_file_name(stem, joint):
     assert joint_in_name(stem) == joint
 
 
-def test_columns_without_number_take_the_one_joint_asked_for(tmp_path):
+def test_columns_without_joint_number_are_of_the_joint_chosen(tmp_path):
     time, position, _, torque = back_and_forth()
     log = write(tmp_path / "log.csv", {"t": time, "position": position, "torque": torque})
     ingest([log], tmp_path / "a", IngestSettings(joints=(5,)))
@@ -124,77 +123,3 @@ def test_an_all_zero_torque_is_no_torque(tmp_path):
     columns["GearTorq_Act2[Nm]"] *= 0
     with pytest.raises(LogError, match="holds only zeros"):
         ingest([write(tmp_path / "log.csv", columns)], tmp_path / "work")
-
-
-MAP = """
-[channels]
-time = "Uhr"
-position = "Winkel-Wert"
-torque = "M"
-[units]
-time = "ms"
-position = "rad"
-torque = "mNm"
-[joint]
-number = 4
-"""
-
-
-def write_map(tmp_path, text):
-    path = tmp_path / "channels.toml"
-    path.write_text(text, encoding="utf-8")
-    return path
-
-
-def test_a_map_names_columns_units_and_joint(tmp_path):
-    time, position, _, torque = back_and_forth()
-    columns = {
-        "Uhr": time * 1000,
-        "Winkel-Wert [bogus]": np.radians(position),
-        "M": torque * 1000,
-        "torque_1": torque * 0,
-    }
-    log = write(tmp_path / "log.csv", columns, digits=12)
-    ingest([log], tmp_path / "work", IngestSettings(map_file=write_map(tmp_path, MAP)))
-    table = tables.read(tmp_path / "work" / "samples.parquet", schemas.SAMPLES)
-    assert set(table["joint"]) == {4}
-    np.testing.assert_allclose(table["time"], time, atol=1e-9)
-    np.testing.assert_allclose(table["position"], position, atol=1e-9)
-    np.testing.assert_allclose(table["torque"], torque, atol=1e-9)
-    assert "channels.toml" in tables.metadata(tmp_path / "work" / "samples.parquet")["inputs"]
-
-
-def test_a_mapped_column_that_is_missing(tmp_path):
-    log = write(tmp_path / "log.csv", kuka_columns())
-    channel_map = write_map(tmp_path, '[channels]\ntorque = "GearTorque_Act2"\nposition = "X"\n')
-    with pytest.raises(MappingError, match=r"no column 'GearTorque_Act2'.*close: GearTorq_Act2"):
-        ingest([log], tmp_path / "work", IngestSettings(map_file=channel_map))
-    assert not (tmp_path / "work").exists()
-
-
-@pytest.mark.parametrize(
-    ("text", "message"),
-    [
-        ("[channels\n", "cannot be read as a mapping file"),
-        ("[chanels]\n", "unknown section: chanels.*did you mean channels"),
-        ('[channels]\npositon = "a"\n', "unknown name in .channels.: positon.*position"),
-        ("[channels]\nposition = 3\n", "expected a column name"),
-        ('[units]\nposition = "furlong"\n', "'furlong'; expected one of deg, rad, udeg"),
-        ('[units]\ntorque = "%"\n', "expected one of N·m"),
-        ('[csv]\ndelimiter = "x"\n', "delimiter = 'x'"),
-        ('[csv]\ndecimal = "."\nencodng = "utf-8"\n', "encodng.*did you mean encoding"),
-        ('[csv]\nencoding = "klingon"\n', "'klingon'"),
-        ("[joint]\nnumber = 0\n", "number = 0"),
-        ("[joint]\ngear_ratio = 0\n", "gear_ratio = 0"),
-        ("channels = 3\n", "expected a section"),
-    ],
-)
-def test_a_bad_map_says_where_and_what(tmp_path, text, message):
-    with pytest.raises(MappingError, match=message) as caught:
-        read_map(write_map(tmp_path, text))
-    assert "channels.toml" in str(caught.value)
-
-
-def test_a_missing_map(tmp_path):
-    with pytest.raises(MappingError, match=r"nothing\.toml"):
-        read_map(tmp_path / "nothing.toml")

@@ -105,7 +105,7 @@ def refused(path):
 
 
 @kinds
-def test_joints_are_told_by_name_and_times_by_the_stamp(tmp_path, kind):
+def test_joints_are_identified_by_name_and_times_by_the_stamp(tmp_path, kind):
     table = joint_2(recorded(tmp_path, kind, {"/joint_states": states()}), tmp_path / "work")
     np.testing.assert_allclose(table["time"], TIME, atol=1e-9)
     np.testing.assert_allclose(table["position"], POSITION, atol=1e-9)
@@ -115,7 +115,7 @@ def test_joints_are_told_by_name_and_times_by_the_stamp(tmp_path, kind):
 
 @kinds
 def test_a_recording_gives_the_samples_of_the_csv(tmp_path, kind):
-    """One joint without velocities, which are then differentiated in both."""
+    """One joint without velocities, which are differentiated in both."""
     messages = states({"joint_2": STATES["joint_2"]}, velocity=False)
     log = recorded(tmp_path, kind, {"/joint_states": messages})
     assert "velocity of joint_2 is empty in all messages" in open_log(log, CsvHints()).form
@@ -123,14 +123,14 @@ def test_a_recording_gives_the_samples_of_the_csv(tmp_path, kind):
 
 
 def test_a_folder_of_a_bag_is_a_run(tmp_path):
-    """metadata.yaml beside the recording is part of it, no rejected file."""
+    """metadata.yaml is part of the recording, not a rejected file."""
     recorded(tmp_path, "db3", {"/joint_states": states()})
     summary = ingest([tmp_path / "bag"], tmp_path / "work")
     assert summary.files_rejected == ()
     assert summary.rows_kept == len(TIME)
 
 
-def test_messages_packed_one_by_one(tmp_path):
+def test_messages_compressed_one_by_one(tmp_path):
     log = recorded(tmp_path, "db3", {"/joint_states": states()}, packed=True)
     table = joint_2(log, tmp_path / "work")
     np.testing.assert_allclose(table["torque"], TORQUE, atol=1e-9)
@@ -163,7 +163,7 @@ def test_joints_without_effort_are_named(tmp_path):
     assert "effort_3" not in source.columns
 
 
-def test_messages_that_lack_an_effort_cost_their_rows(tmp_path):
+def test_messages_without_an_effort_lose_their_rows(tmp_path):
     messages = states()
     for number in (4, 9):
         names, q, dq, _ = messages[number]

@@ -1,4 +1,4 @@
-"""Units are believed only when the numbers agree."""
+"""Units in headers are checked against the values; gear ratios and torque units."""
 
 import numpy as np
 import pytest
@@ -40,7 +40,7 @@ def test_spellings(text, quantity, unit):
     assert units.canonical(text, quantity) == unit
 
 
-def test_factors_by_hand():
+def test_conversion_factors():
     assert units.FACTORS["position"]["rad"] * np.pi == pytest.approx(180)
     assert units.FACTORS["velocity"]["rpm"] == 6
     fahrenheit = units.conversion_from("°F", "motor_temperature")
@@ -59,7 +59,7 @@ def test_motion_ratio(position_factor, velocity_factor, ratio):
     assert unit_evidence.motion_ratio([motion]) == pytest.approx(ratio, rel=0.01)
 
 
-def test_motion_ratio_says_nothing_of_rest_or_noise():
+def test_rest_and_noise_have_no_motion_ratio():
     time = np.arange(0, 5, 0.01)
     rng = np.random.default_rng(1)
     rest = unit_evidence.RawMotion(time, np.zeros_like(time), np.zeros_like(time))
@@ -68,7 +68,7 @@ def test_motion_ratio_says_nothing_of_rest_or_noise():
     assert unit_evidence.motion_ratio([noise]) is None
 
 
-def test_lever_of_an_arm_half_a_metre_long():
+def test_lever_arm_of_half_a_metre():
     angle = np.linspace(-1, 1, 400)  # [rad]
     tool = 500 * np.stack([np.cos(angle), np.sin(angle), 0 * angle], axis=1)
     assert unit_evidence.tool_path_per_angle(tool, angle[:, None]) == pytest.approx(500, rel=1e-4)
@@ -134,7 +134,7 @@ def test_velocity_that_fits_no_unit_is_not_used(tmp_path):
     assert any("is not used" in text for text in summary.warnings)
 
 
-def test_velocity_of_opposite_sign_is_turned(tmp_path):
+def test_velocity_of_opposite_sign_is_reversed(tmp_path):
     columns = kuka_columns()
     truth = columns["AxisVel_Act2[°/s]"].copy()
     columns["AxisVel_Act2[°/s]"] = -truth
@@ -152,7 +152,7 @@ def test_kelvin_is_found(tmp_path, header):
 
 
 @pytest.mark.parametrize("value", [0.0, -60.0, 170.0])
-def test_what_cannot_be_a_temperature_is_left_out(tmp_path, value):
+def test_implausible_temperatures_are_left_out(tmp_path, value):
     columns = kuka_columns()
     columns["Motortemperatur2[°C]"] = np.full(len(columns["Zeit[sec]"]), value)
     summary = ingest([write(tmp_path / "log.csv", columns)], tmp_path / "work")
@@ -226,7 +226,7 @@ def test_gear_ratio_found_from_both_positions(tmp_path):
         {"gear_ratio": float("nan")},
     ],
 )
-def test_options_that_make_no_sense(option):
+def test_invalid_options_are_refused(option):
     with pytest.raises(OptionError, match="expected"):
         IngestSettings(**option)
 
@@ -254,7 +254,7 @@ def test_logs_that_differ_in_side(tmp_path):
 
 @pytest.mark.parametrize("damage", [292277026596.0, -1e30, 1e308])
 def test_a_damaged_velocity_does_not_change_the_ratio(damage):
-    """It would else be the only place that moves."""
+    """Otherwise it would raise the threshold of motion above all other samples."""
     time, position, velocity, _ = back_and_forth()
     broken = velocity.copy()
     broken[len(broken) // 3] = damage

@@ -1,4 +1,4 @@
-"""Layouts of loggers in the wild, each written by hand from its description."""
+"""Layouts of common loggers, each written from its description."""
 
 import numpy as np
 import pytest
@@ -104,7 +104,7 @@ def test_quoted_decimal_commas_between_commas(tmp_path):
     check(samples(tmp_path / "work"))
 
 
-def test_preamble_lines_are_passed_over(tmp_path):
+def test_preamble_lines_are_skipped(tmp_path):
     text = "Robot: KR 10\nOperator;X\n\n" + text_of(kuka_columns())
     (tmp_path / "log.csv").write_text(text, encoding="utf-8")
     ingest([tmp_path / "log.csv"], tmp_path / "work")
@@ -146,7 +146,7 @@ def test_two_layouts_in_one_run(tmp_path):
 
 
 def test_a_long_rest_before_the_motion(tmp_path):
-    """The survey passes over 30000 resting rows to find that positions are in rad."""
+    """The survey skips 30000 rows at rest to find that positions are in rad."""
     rest = np.zeros(30_000)
     time = np.arange(30_000 + len(TIME)) * 0.012
     columns = {

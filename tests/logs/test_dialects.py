@@ -1,4 +1,4 @@
-"""The same table in any dialect gives the same samples."""
+"""The same table gives the same samples in every dialect."""
 
 import gzip
 import tempfile
@@ -162,7 +162,7 @@ def test_iso_times_with_decimal_comma(tmp_path):
 
 
 def test_a_date_of_the_year_1_is_a_time_like_others(tmp_path):
-    """A damaged cell, or a clock that was never set: nanoseconds would run over."""
+    """A damaged cell, or a clock that was never set: nanoseconds would overflow."""
     rows = ["Timestamp;position [deg];torque [Nm]", "0001-01-01T00:00:00Z;0.0;0.0"]
     rows += [f"2022-10-26T08:17:{20 + n / 10:04.1f}Z;{n / 10:.1f};{n % 7}.5" for n in range(300)]
     (tmp_path / "log.csv").write_text("\n".join(rows))
@@ -171,8 +171,8 @@ def test_a_date_of_the_year_1_is_a_time_like_others(tmp_path):
     assert summary.rows_kept + sum(summary.rows_rejected.values()) == 301
 
 
-def test_short_logs_that_share_a_task_come_out_as_alone(tmp_path):
-    """Logs of a folder, one with a broken row, one cut off, one packed: each keeps its rows."""
+def test_short_logs_that_share_a_task_give_the_same_samples(tmp_path):
+    """One log has a damaged row, one is truncated, one compressed: each keeps its rows."""
     text = text_of(kuka_columns(seconds=1.5))
     lines = text.splitlines()
     lines[20] = "torn"

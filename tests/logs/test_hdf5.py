@@ -69,7 +69,7 @@ def test_joints_in_groups_of_their_own(tmp_path):
     assert_same_as_csv(tmp_path / "log.h5", tmp_path)
 
 
-def test_matlab_files_run_along_the_second_axis(tmp_path):
+def test_rows_of_matlab_files_run_along_the_second_axis(tmp_path):
     with h5py.File(tmp_path / "log.mat", "w", userblock_size=512) as file:
         file["t"] = TIME[None, :]
         joint_2 = {"q": POSITION, "dq": VELOCITY, "tau": TORQUE, "temperature": TEMPERATURE}
@@ -108,7 +108,7 @@ def test_several_recordings_in_one_file_are_refused(tmp_path):
 
 
 def test_nothing_is_read_from_other_files(tmp_path):
-    """Links into other files, datasets whose numbers lie elsewhere and objects are passed over."""
+    """Links to other files, external and virtual datasets, and objects are skipped."""
     with h5py.File(tmp_path / "other.h5", "w") as file:
         file["torque_2"] = TORQUE
     (tmp_path / "raw.bin").write_bytes(TORQUE.tobytes())
@@ -131,7 +131,7 @@ def test_nothing_is_read_from_other_files(tmp_path):
 
 
 def test_huge_chunks_are_refused(tmp_path):
-    """A file of some kilobytes must not unpack to gigabytes at once."""
+    """A file of a few kilobytes must not be decompressed to gigabytes at once."""
     with h5py.File(tmp_path / "log.h5", "w") as file:
         file.create_dataset("x", (1 << 22,), "f8", chunks=(1 << 22,), compression="gzip")
     assert "more than 16 MiB; store it in smaller chunks" in refused(tmp_path / "log.h5").text

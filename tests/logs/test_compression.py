@@ -1,4 +1,4 @@
-"""Packed logs: any packing gives the content of the plain file, damage gives a refusal."""
+"""Compressed logs give the content of the plain file; damaged ones are refused."""
 
 import bz2
 import gzip
@@ -35,7 +35,7 @@ packed = pytest.mark.parametrize("ending", PACKERS)
     parts=st.lists(st.binary(min_size=1, max_size=3000), min_size=1, max_size=3),
     size=st.integers(1, 4000),
 )
-def test_streams_one_after_the_other_are_one_file(tmp_path_factory, ending, parts, size):
+def test_concatenated_streams_are_one_file(tmp_path_factory, ending, parts, size):
     path = tmp_path_factory.mktemp("packed") / f"log{ending}"
     path.write_bytes(b"".join(PACKERS[ending](part) for part in parts))
     found = bytearray()
@@ -47,7 +47,7 @@ def test_streams_one_after_the_other_are_one_file(tmp_path_factory, ending, part
 
 
 @packed
-def test_a_packed_log_gives_the_samples_of_the_plain_one(tmp_path, ending):
+def test_a_compressed_log_gives_the_samples_of_the_plain_one(tmp_path, ending):
     text = text_of(kuka_columns()).encode()
     plain = write(tmp_path / "plain" / "log.csv", kuka_columns())
     (tmp_path / "packed").mkdir()
@@ -62,13 +62,13 @@ def test_a_packed_log_gives_the_samples_of_the_plain_one(tmp_path, ending):
 
 
 @packed
-def test_the_ending_does_not_matter(tmp_path, ending):
+def test_the_suffix_does_not_matter(tmp_path, ending):
     log = tmp_path / "log.csv"
     log.write_bytes(PACKERS[ending](b"a;b\n1;2\n"))
     assert read_head(log).content == b"a;b\n1;2\n"
 
 
-def test_text_that_begins_like_a_packed_file_is_text(tmp_path):
+def test_text_that_begins_like_a_compressed_file_is_text(tmp_path):
     log = tmp_path / "log.csv"
     log.write_bytes(b"BZhub;Winkel\n1;2\n")
     assert read_head(log).content == b"BZhub;Winkel\n1;2\n"
@@ -97,8 +97,8 @@ def test_a_damaged_stream_is_refused_by_ingest(tmp_path, ending):
 
 
 @packed
-def test_memory_stays_bounded_whatever_a_file_unpacks_to(tmp_path, ending):
-    """32 MiB of equal lines pack into some kilobytes."""
+def test_memory_is_bounded_whatever_the_decompressed_size(tmp_path, ending):
+    """32 MiB of equal lines are compressed to a few kilobytes."""
     lines = b"0;0;0;0;0;0;00;\n" * (1 << 21)
     log = tmp_path / f"log.csv{ending}"
     log.write_bytes(PACKERS[ending](lines))
@@ -114,8 +114,8 @@ def test_memory_stays_bounded_whatever_a_file_unpacks_to(tmp_path, ending):
     assert peak < 16 << 20
 
 
-def test_an_xz_header_cannot_ask_for_gigabytes(tmp_path):
-    """The dictionary's size in the block header (after 12 bytes of stream header) is raised."""
+def test_an_xz_header_cannot_request_gigabytes(tmp_path):
+    """The dictionary size in the block header, after 12 bytes of stream header, is raised."""
     packed = bytearray(lzma.compress(b"a;b\n1;2\n"))
     length = (packed[12] + 1) * 4
     at = packed.index(b"\x21\x01", 12, 12 + length) + 2

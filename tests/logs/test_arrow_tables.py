@@ -100,7 +100,7 @@ def test_time_stamps_lists_structures_and_decimals(tmp_path, ending):
     ending=st.sampled_from(["parquet", "feather"]),
 )
 def test_numbers_nulls_and_batches(tmp_path_factory, values, rows, size, kind, ending):
-    """Whatever the parts of file and batch: all rows, in order, empty cells as NaN."""
+    """All rows are read in order, with NaN for nulls, whatever the size of parts and batches."""
     path = tmp_path_factory.mktemp("arrow") / f"log.{ending}"
     table = pa.table({"x": pa.array(values, pa.int64()).cast(kind)})
     if ending == "parquet":
@@ -129,7 +129,7 @@ def test_rows_are_rejected_with_their_number_and_values(tmp_path):
     assert f"time [s] {TIME[7]:.9g}; position_2 [deg] {POSITION[7]:.9g}" in rejected["text"][1]
 
 
-def test_lists_of_another_length_cost_their_rows(tmp_path):
+def test_lists_of_another_length_lose_their_rows(tmp_path):
     position = [[0.0, q] for q in POSITION]
     position[-1] = [POSITION[-1]]
     table = pa.table({"time": TIME, "position": position, "effort": [[0.0, t] for t in TORQUE]})
@@ -144,7 +144,7 @@ def test_numbers_as_text_are_refused_by_name(tmp_path):
     )
 
 
-def test_of_two_columns_of_one_name_the_first_is_read(tmp_path):
+def test_the_first_of_two_columns_with_the_same_name_is_read(tmp_path):
     table = pa.table([TIME, POSITION, POSITION * 0, TORQUE], ["time", "q", "q", "torque"])
     summary = ingest([written(table, tmp_path, "feather")], tmp_path / "work")
     assert summary.rows_kept == len(TIME)
@@ -176,13 +176,13 @@ def test_a_table_without_rows_is_refused(tmp_path, ending):
     assert refused(written(empty, tmp_path, ending)).reason == "too_few_rows"
 
 
-def test_a_packed_table_must_be_unpacked(tmp_path):
+def test_a_compressed_table_must_be_decompressed(tmp_path):
     path = written(pa.table(COLUMNS), tmp_path, "parquet")
     packed = tmp_path / "log.parquet.zst"
     packed.write_bytes(pa.Codec("zstd").compress(path.read_bytes(), asbytes=True))
     assert "a Parquet table packed with zstd" in refused(packed).text
 
 
-def test_the_ending_does_not_matter(tmp_path):
+def test_the_suffix_does_not_matter(tmp_path):
     path = written(pa.table(COLUMNS), tmp_path, "parquet")
     assert_same_as_csv(path.rename(tmp_path / "log.csv"), tmp_path)
