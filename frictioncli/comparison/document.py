@@ -1,165 +1,317 @@
-"""A comparison as plain values: ``comparison.json``."""
+"""The records of ``comparison.json``."""
 
-from typing import Any
+from collections.abc import Mapping
 
-import numpy as np
-
-from frictioncli.comparison.causes import CauseOfChange
-from frictioncli.comparison.compare import Comparison
-from frictioncli.comparison.day_to_day import LevelEstimate
-from frictioncli.effects import BY_NAME
-
-_HOURS = 1000.0
+import msgspec
 
 
-def comparison_document(comparison: Comparison) -> dict[str, Any]:
-    """Return a comparison as plain values.
+class MeanFrictionRecord(msgspec.Struct, frozen=True, kw_only=True):
+    """Mean friction torque over all runs, which percentages refer to.
 
-    Parameters
+    Attributes
     ----------
-    comparison : Comparison
-        The comparison.
+    estimate : float
+        The mean. [unit]
+    unit : str
+        Unit of torque.
     """
-    history = comparison.history
-    model = history.models[-1]
-    unit = model.torque_unit
-    threshold = comparison.settings.fail_above
-    return {
-        "verdict": comparison.verdict,
-        "weak": comparison.weak,
-        "joint": model.joint,
-        "torque_unit": unit,
-        "load_unit": load_unit(comparison),
-        "temperature": model.temperature,
-        "folders": list(history.folders),
-        "mean_friction": {"estimate": comparison.mean_friction, "unit": unit},
-        "trend": _trend(comparison),
-        "last_run": None
-        if comparison.last_run is None
-        else _change(comparison, comparison.last_run),
-        "load": _percent(comparison.load) if comparison.load else None,
-        "causes": [_cause(comparison, cause) for cause in comparison.causes],
-        "friction": [
-            {
-                "temperature": one.temperature,
-                "speed": one.speed,
-                "load": one.load,
-                "friction": one.friction,
-                "change": one.change.value * one.friction / 100,
-                "ci95": [one.change.low * one.friction / 100, one.change.high * one.friction / 100],
-                "unit": unit,
-                "percent": _percent(one.change),
-                "extrapolated": one.extrapolated,
-            }
-            for one in comparison.conditions
-        ],
-        "parameters": {
-            one.name: {
-                "first": one.first,
-                "last": one.last,
-                "change": one.change,
-                "ci95": None if one.ci95 is None else list(one.ci95),
-                "unit": one.unit,
-            }
-            for one in comparison.parameters
-        },
-        "runs": _runs(comparison),
-        "scatter": {
-            "day_to_day": comparison.day_to_day,
-            "assumed": comparison.settings.day_to_day,
-            "unit": "%",
-            "surroundings_from": history.ambient_source,
-        },
-        "margin": {"value": comparison.margin, "unit": "%"},
-        "threshold": None
-        if threshold is None
-        else {
-            "value": threshold.value,
-            "unit": threshold.unit if threshold.unit == "%" else unit,
-            "exceeded": comparison.exceeded,
-        },
-    }
+
+    estimate: float
+    unit: str
 
 
-def load_unit(comparison: Comparison) -> str:
-    """Return the unit of the load torque: alpha is 1 over it, or torque over its square."""
-    return comparison.history.models[-1].parameters["alpha"].unit.split("(")[1].split(")")[0]
+class EstimateRecord(msgspec.Struct, frozen=True, kw_only=True):
+    """An estimate with its interval.
+
+    Attributes
+    ----------
+    estimate : float
+        The estimate. [unit]
+    ci95 : (float, float)
+        95 % confidence interval. [unit]
+    unit : str
+        Its unit.
+    """
+
+    estimate: float
+    ci95: tuple[float, float]
+    unit: str
 
 
-def _percent(estimate: LevelEstimate) -> dict[str, Any]:
-    return {
-        "estimate": estimate.value,
-        "ci95": [estimate.low, estimate.high],
-        "unit": "%",
-        "p_value": estimate.p_value,
-    }
+class PercentRecord(EstimateRecord, frozen=True, kw_only=True):
+    """A change in percent.
+
+    Attributes
+    ----------
+    p_value : float
+        Probability of a change as far from zero by chance. [1]
+    """
+
+    p_value: float
 
 
-def _change(comparison: Comparison, estimate: LevelEstimate) -> dict[str, Any]:
-    factor = comparison.mean_friction / 100
-    return {
-        "change": estimate.value * factor,
-        "ci95": [estimate.low * factor, estimate.high * factor],
-        "unit": comparison.history.models[-1].torque_unit,
-        "percent": _percent(estimate),
-    }
+class ChangeRecord(msgspec.Struct, frozen=True, kw_only=True):
+    """A change of friction in both units.
+
+    Attributes
+    ----------
+    change : float
+        The change. [unit]
+    ci95 : (float, float)
+        95 % confidence interval. [unit]
+    unit : str
+        Unit of torque.
+    percent : PercentRecord
+        The same in percent of the mean friction.
+    """
+
+    change: float
+    ci95: tuple[float, float]
+    unit: str
+    percent: PercentRecord
 
 
-def _trend(comparison: Comparison) -> dict[str, Any]:
-    trend, history = comparison.trend, comparison.history
-    steps = len(comparison.levels) - 1
-    found = _change(comparison, trend) | {
-        "per_run": {
-            "estimate": trend.value / steps,
-            "ci95": [trend.low / steps, trend.high / steps],
-            "unit": "%/run",
-        },
-        "per_1000_h": None,
-    }
-    if history.dated:
-        factor = _HOURS / (24 * float(history.time[-1]))
-        found["per_1000_h"] = {
-            "estimate": trend.value * factor,
-            "ci95": [trend.low * factor, trend.high * factor],
-            "unit": "%/1000 h",
-        }
-    return found
+class TrendRecord(ChangeRecord, frozen=True, kw_only=True):
+    """The change from the first run to the last, by a straight line through all runs.
+
+    Attributes
+    ----------
+    per_run : EstimateRecord
+        Change per run.
+    per_1000_h : EstimateRecord or None
+        Change per 1000 h; none where the dates of the runs are not known.
+    """
+
+    per_run: EstimateRecord
+    per_1000_h: EstimateRecord | None
 
 
-def _cause(comparison: Comparison, cause: CauseOfChange) -> dict[str, Any]:
-    return {
-        "effects": list(cause.effects),
-        "probabilities": cause.probabilities,
-        "channel": cause.channel,
-        "claim": cause.claim,
-        "change": _percent(cause.change),
-        "since": None
-        if cause.change_point is None
-        else comparison.history.runs[cause.change_point].label,
-        "experiment": BY_NAME[cause.effects[0]].experiment,
-    }
+class CauseOfChangeRecord(msgspec.Struct, frozen=True, kw_only=True):
+    """A cause of the change.
+
+    Attributes
+    ----------
+    effects : tuple of str
+        The credible set: effects that these data cannot tell apart.
+    probabilities : mapping of str to float
+        Probability of each effect. [1]
+    channel : str
+        The part of the torque in which it shows.
+    claim : str
+        The cause in words.
+    change : PercentRecord
+        Its size.
+    since : str or None
+        The run at which it begins; none where it has no beginning.
+    experiment : str
+        What to measure next.
+    """
+
+    effects: tuple[str, ...]
+    probabilities: Mapping[str, float]
+    channel: str
+    claim: str
+    change: PercentRecord
+    since: str | None
+    experiment: str
 
 
-def _runs(comparison: Comparison) -> list[dict[str, Any]]:
-    rows = zip(
-        comparison.history.runs,
-        comparison.history.time.tolist(),
-        comparison.levels.tolist(),
-        comparison.adjusted.tolist(),
-        comparison.half_widths.tolist(),
-        strict=True,
-    )
-    return [
-        {
-            "folder": run.folder,
-            "run": run.run,
-            "started_at": None if run.started_at is None else run.started_at.isoformat(),
-            "days": time if comparison.history.dated else None,
-            "surroundings": run.ambient if np.isfinite(run.ambient) else None,
-            "measured": measured,
-            "level": level,
-            "ci95": [level - half_width, level + half_width],
-            "unit": "%",
-        }
-        for run, time, measured, level, half_width in rows
-    ]
+class ConditionRecord(msgspec.Struct, frozen=True, kw_only=True):
+    """The change of friction at a reference condition, first run to last.
+
+    Attributes
+    ----------
+    temperature : float
+        Temperature. [°C]
+    speed : float
+        Absolute joint velocity. [deg/s]
+    load : float
+        Load torque. [load unit]
+    friction : float
+        Friction torque of the model. [unit]
+    change : float
+        Its change. [unit]
+    ci95 : (float, float)
+        95 % confidence interval of the change. [unit]
+    unit : str
+        Unit of torque.
+    percent : PercentRecord
+        The same in percent of the friction there.
+    extrapolated : bool
+        Whether a run has not measured this temperature.
+    """
+
+    temperature: float
+    speed: float
+    load: float
+    friction: float
+    change: float
+    ci95: tuple[float, float]
+    unit: str
+    percent: PercentRecord
+    extrapolated: bool
+
+
+class ParameterChangeRecord(msgspec.Struct, frozen=True, kw_only=True):
+    """A parameter of the first and of the last work folder's model.
+
+    Attributes
+    ----------
+    first, last : float
+        Its values. [unit]
+    change : float or None
+        Their difference; none where a model does not determine the parameter. [unit]
+    ci95 : (float, float) or None
+        95 % confidence interval of the difference. [unit]
+    unit : str
+        Its unit.
+    """
+
+    first: float
+    last: float
+    change: float | None
+    ci95: tuple[float, float] | None
+    unit: str
+
+
+class RunRecord(msgspec.Struct, frozen=True, kw_only=True):
+    """Friction of one run.
+
+    Attributes
+    ----------
+    folder, run : str
+        Its work folder and its name.
+    started_at : str or None
+        Begin of the run, ISO 8601; none where not known.
+    days : float or None
+        Time since the first run; none where the dates of the runs are not known. [d]
+    surroundings : float or None
+        Temperature of the surroundings; none where not known. [°C]
+    measured : float
+        Friction against the mean of all runs, as measured. [%]
+    level : float
+        The same without what the surroundings explain. [%]
+    ci95 : (float, float)
+        95 % confidence interval of the level. [%]
+    unit : str
+        ``%``.
+    """
+
+    folder: str
+    run: str
+    started_at: str | None
+    days: float | None
+    surroundings: float | None
+    measured: float
+    level: float
+    ci95: tuple[float, float]
+    unit: str
+
+
+class ScatterRecord(msgspec.Struct, frozen=True, kw_only=True):
+    """How much friction differs from day to day.
+
+    Attributes
+    ----------
+    day_to_day : float
+        Standard deviation that the intervals are computed with. [%]
+    assumed : float
+        Standard deviation that is assumed before any run is seen. [%]
+    unit : str
+        ``%``.
+    surroundings_from : str
+        Where the temperature of the surroundings is taken from.
+    """
+
+    day_to_day: float
+    assumed: float
+    unit: str
+    surroundings_from: str
+
+
+class MarginRecord(msgspec.Struct, frozen=True, kw_only=True):
+    """The change that is asked for.
+
+    Attributes
+    ----------
+    value : float
+        The change. [unit]
+    unit : str
+        Its unit.
+    """
+
+    value: float
+    unit: str
+
+
+class ThresholdRecord(MarginRecord, frozen=True, kw_only=True):
+    """The threshold of ``--fail-above``, in % or in the unit of torque.
+
+    Attributes
+    ----------
+    exceeded : bool or None
+        Whether a change above it was found.
+    """
+
+    exceeded: bool | None
+
+
+class ComparisonDocument(msgspec.Struct, frozen=True, kw_only=True):
+    """``comparison.json``: what changed between the runs of one joint.
+
+    Attributes
+    ----------
+    verdict : {"no_evidence", "changed", "undetermined"}
+        Whether friction has changed.
+    weak : bool
+        Whether the intervals rest on an assumed scatter from day to day.
+    joint : int
+        Joint number, from 1.
+    torque_unit, load_unit : str
+        Units of friction torque and of load torque.
+    temperature : {"motor", "housing", "mean"}
+        Temperature that the friction function is given.
+    folders : tuple of str
+        Names of the work folders, in order of time.
+    mean_friction : MeanFrictionRecord
+        Mean friction torque.
+    trend : TrendRecord
+        Change from the first run to the last.
+    last_run : ChangeRecord or None
+        Last run against the mean of the earlier ones; none with two runs.
+    load : PercentRecord or None
+        Change of the load torque, first run to last; none where the joint carries next to nothing.
+    causes : tuple of CauseOfChangeRecord
+        Causes of the change.
+    friction : tuple of ConditionRecord
+        Change at reference conditions.
+    parameters : mapping of str to ParameterChangeRecord
+        Models of the first and the last work folder; empty if there is one work folder.
+    runs : tuple of RunRecord
+        The runs, in order of time.
+    scatter : ScatterRecord
+        Scatter from day to day.
+    margin : MarginRecord
+        The change that is asked for.
+    threshold : ThresholdRecord or None
+        The threshold, if there is one.
+    """
+
+    verdict: str
+    weak: bool
+    joint: int
+    torque_unit: str
+    load_unit: str
+    temperature: str
+    folders: tuple[str, ...]
+    mean_friction: MeanFrictionRecord
+    trend: TrendRecord
+    last_run: ChangeRecord | None
+    load: PercentRecord | None
+    causes: tuple[CauseOfChangeRecord, ...]
+    friction: tuple[ConditionRecord, ...]
+    parameters: Mapping[str, ParameterChangeRecord]
+    runs: tuple[RunRecord, ...]
+    scatter: ScatterRecord
+    margin: MarginRecord
+    threshold: ThresholdRecord | None

@@ -3,7 +3,7 @@
 from frictioncli.comparison.causes import CauseOfChange
 from frictioncli.comparison.compare import Comparison
 from frictioncli.comparison.day_to_day import LevelEstimate
-from frictioncli.comparison.document import load_unit
+from frictioncli.comparison.from_comparison import load_unit
 
 _WEAK = (
     "how much a joint differs from day to day cannot be seen from two runs: the interval rests on"

@@ -1,6 +1,6 @@
 """Figure of a comparison: friction over the runs, and its change at reference conditions."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from datetime import datetime
 from html import escape
 from typing import Any
@@ -11,6 +11,7 @@ from matplotlib.axes import Axes
 from matplotlib.dates import AutoDateLocator, ConciseDateFormatter
 from matplotlib.figure import Figure
 
+from frictioncli.comparison.document import ComparisonDocument, ConditionRecord, RunRecord
 from frictioncli.report.figure_files import png, svg, svg_file
 from frictioncli.report.labels import figure_text, number_text, speed_text
 from frictioncli.report.style import (
@@ -30,29 +31,29 @@ _ROW = 0.24
 _NAME = "trend"
 
 
-def trend_files(document: Mapping[str, Any]) -> tuple[str, bytes]:
+def trend_files(document: ComparisonDocument) -> tuple[str, bytes]:
     """Return the figure of a comparison as the contents of an SVG and of a PNG file.
 
     Parameters
     ----------
-    document : mapping
+    document : ComparisonDocument
         ``comparison.json``.
     """
-    title = f"Friction of joint {document['joint']} over {len(document['runs'])} runs"
+    title = f"Friction of joint {document.joint} over {len(document.runs)} runs"
     with style_context(_NAME):
         figure = trend_figure(document)
         return svg_file(svg(figure, _NAME, escape(title))), png(figure)
 
 
-def trend_figure(document: Mapping[str, Any]) -> Figure:
+def trend_figure(document: ComparisonDocument) -> Figure:
     """Draw friction over the runs, and its change at reference conditions.
 
     Parameters
     ----------
-    document : mapping
+    document : ComparisonDocument
         ``comparison.json``.
     """
-    rows = document["friction"]
+    rows = document.friction
     if not rows:
         figure = Figure(figsize=(WIDTH, 3.6), layout="constrained")
         _draw_runs(figure.subplots(), document)
@@ -65,26 +66,26 @@ def trend_figure(document: Mapping[str, Any]) -> Figure:
     return figure
 
 
-def _draw_runs(axes: Axes, document: Mapping[str, Any]) -> None:
-    runs, trend = document["runs"], document["trend"]["percent"]
-    dated = document["trend"]["per_1000_h"] is not None
+def _draw_runs(axes: Axes, document: ComparisonDocument) -> None:
+    runs, trend = document.runs, document.trend.percent
+    dated = document.trend.per_1000_h is not None
     place: Any = np.arange(1, len(runs) + 1)
     if dated:
-        place = [datetime.fromisoformat(run["started_at"]) for run in runs]
-    share = np.array([run["days"] for run in runs] if dated else np.arange(len(runs)), dtype=float)
+        place = [datetime.fromisoformat(run.started_at) for run in runs if run.started_at]
+    share = np.array([run.days for run in runs] if dated else np.arange(len(runs)), dtype=float)
     share = share / share[-1]
-    level = np.array([run["level"] for run in runs])
-    reach = np.array([run["ci95"][1] for run in runs]) - level
+    level = np.array([run.level for run in runs])
+    reach = np.array([run.ci95[1] for run in runs]) - level
     middle = float(np.mean(level))
     around = share - share.mean()
-    axes.plot(place, middle + trend["estimate"] * around, color=MODEL, label="trend")
-    ends = [middle + slope * around for slope in trend["ci95"]]
+    axes.plot(place, middle + trend.estimate * around, color=MODEL, label="trend")
+    ends = [middle + slope * around for slope in trend.ci95]
     axes.fill_between(
         place, np.minimum(*ends), np.maximum(*ends), color=_BAND, alpha=0.5, linewidth=0
     )
     axes.plot(
         place,
-        [run["measured"] for run in runs],
+        [run.measured for run in runs],
         linestyle="none",
         marker="o",
         color=FAINT,
@@ -101,12 +102,12 @@ def _draw_runs(axes: Axes, document: Mapping[str, Any]) -> None:
         elinewidth=1.2,
         label="at equal surroundings",
     )
-    _draw_limits(axes, document, middle + trend["estimate"] * float(around[0]))
+    _draw_limits(axes, document, middle + trend.estimate * float(around[0]))
     axes.set_ylabel("friction against the mean [%]")
     axes.set_title(
-        f"Friction of joint {document['joint']}, first run to last:"
-        f" {_signed(trend['estimate'])} % ({_signed(trend['ci95'][0])} to"
-        f" {_signed(trend['ci95'][1])})",
+        f"Friction of joint {document.joint}, first run to last:"
+        f" {_signed(trend.estimate)} % ({_signed(trend.ci95[0])} to"
+        f" {_signed(trend.ci95[1])})",
         pad=22,
     )
     if dated:
@@ -119,43 +120,43 @@ def _draw_runs(axes: Axes, document: Mapping[str, Any]) -> None:
     legend_above(axes)
 
 
-def _draw_limits(axes: Axes, document: Mapping[str, Any], start: float) -> None:
-    if document["threshold"] is None:
+def _draw_limits(axes: Axes, document: ComparisonDocument, start: float) -> None:
+    if document.threshold is None:
         return
-    margin = document["margin"]["value"]
+    margin = document.margin.value
     for index, limit in enumerate((start - margin, start + margin)):
         label = "threshold, from the first run" if index == 0 else None
         axes.axhline(limit, color=_LIMIT, linestyle=(0, (5, 3)), linewidth=1.2, label=label)
 
 
-def _name_runs(axes: Axes, runs: Sequence[Mapping[str, Any]]) -> None:
+def _name_runs(axes: Axes, runs: Sequence[RunRecord]) -> None:
     axes.set_xlabel("run, in the order given")
     if len(runs) <= _MOST_NAMES:
         axes.set_xticks(range(1, len(runs) + 1))
 
 
-def _draw_conditions(axes: Axes, rows: Sequence[Mapping[str, Any]]) -> None:
-    styles = speed_styles(pd.DataFrame({"speed": [row["speed"] for row in rows], "phase": "sweep"}))
+def _draw_conditions(axes: Axes, rows: Sequence[ConditionRecord]) -> None:
+    styles = speed_styles(pd.DataFrame({"speed": [row.speed for row in rows], "phase": "sweep"}))
     for place, row in enumerate(rows):
-        change = row["percent"]
-        centre = change["estimate"]
+        change = row.percent
+        centre = change.estimate
         axes.errorbar(
             centre,
             place,
-            xerr=[[centre - change["ci95"][0]], [change["ci95"][1] - centre]],
-            marker=styles[row["speed"]].marker,
-            color=styles[row["speed"]].colour,
-            markerfacecolor="white" if row["extrapolated"] else styles[row["speed"]].colour,
+            xerr=[[centre - change.ci95[0]], [change.ci95[1] - centre]],
+            marker=styles[row.speed].marker,
+            color=styles[row.speed].colour,
+            markerfacecolor="white" if row.extrapolated else styles[row.speed].colour,
             elinewidth=1.2,
         )
     axes.axvline(0.0, color=MODEL, linewidth=1.0)
     axes.set_yticks(
         range(len(rows)),
-        [figure_text(f"{row['temperature']:.0f} °C, {speed_text(row['speed'])}") for row in rows],
+        [figure_text(f"{row.temperature:.0f} °C, {speed_text(row.speed)}") for row in rows],
     )
     axes.invert_yaxis()
     axes.grid(visible=False, axis="y")
-    extrapolated = any(row["extrapolated"] for row in rows)
+    extrapolated = any(row.extrapolated for row in rows)
     note = "\nhollow: not all runs have measured this temperature" if extrapolated else ""
     axes.set_xlabel(f"change of friction at the usual load, first run to last [%]{note}")
     axes.set_title("Change at reference conditions, 95 % intervals")

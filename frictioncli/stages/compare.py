@@ -1,6 +1,5 @@
 """Comparison of the same joint on different days: ``compare``."""
 
-import json
 from collections.abc import Sequence
 from dataclasses import asdict
 from datetime import datetime
@@ -8,13 +7,13 @@ from pathlib import Path
 
 import pandas as pd
 
-from frictioncli import schemas, tables
+from frictioncli import documents, schemas, tables
 from frictioncli.comparison.compare import compare_runs
-from frictioncli.comparison.document import comparison_document
+from frictioncli.comparison.document import ComparisonDocument
+from frictioncli.comparison.from_comparison import comparison_document
 from frictioncli.comparison.run_history import ComparedFolder, distinct_names, run_history_of
 from frictioncli.comparison.settings import ComparisonSettings
 from frictioncli.comparison.text import comparison_text
-from frictioncli.documents import to_json
 from frictioncli.errors import OptionError
 from frictioncli.files import atomic_write, write_text
 from frictioncli.model.document import FrictionModel, read_models
@@ -67,12 +66,12 @@ def compare(
         for file in (TORQUES, MODEL)
     }
     provenance = Provenance("compare", asdict(settings), inputs)
-    document = comparison_document(comparison) | {"provenance": provenance.as_dict()}
+    document = comparison_document(comparison)
     svg, png = trend_files(document)
     write_text(work / f"{TREND}.svg", svg)
     with atomic_write(work / f"{TREND}.png") as draft:
         draft.write_bytes(png)
-    write_text(work / COMPARISON, to_json(document))
+    documents.write(work / COMPARISON, document, provenance)
     warnings = [
         f"warning: {name}: {text}"
         for name, path in sources.items()
@@ -89,9 +88,8 @@ def above_threshold(work: Path) -> bool:
     work : Path
         Folder with ``comparison.json``.
     """
-    document = json.loads((work / COMPARISON).read_text(encoding="utf-8"))
-    threshold = document["threshold"]
-    return threshold is not None and bool(threshold["exceeded"])
+    threshold = documents.read(work / COMPARISON, ComparisonDocument, "compare").threshold
+    return threshold is not None and bool(threshold.exceeded)
 
 
 def _joint(chosen: int | None, models: dict[str, dict[int, FrictionModel]]) -> int:

@@ -1,10 +1,11 @@
 """Whole comparisons of joints whose change is known."""
 
+import msgspec
 import numpy as np
 import pytest
 
 from frictioncli.comparison.compare import compare_runs
-from frictioncli.comparison.document import comparison_document
+from frictioncli.comparison.from_comparison import comparison_document
 from frictioncli.comparison.run_history import ComparedFolder, run_history_of
 from frictioncli.comparison.settings import ComparisonSettings, Threshold, threshold_of
 from frictioncli.comparison.text import comparison_text
@@ -50,7 +51,7 @@ def test_wear_shows_at_every_condition_as_its_share_of_the_friction_there(worn):
 
 
 def test_the_document_says_the_same_in_both_units(worn):
-    document = comparison_document(worn)
+    document = msgspec.to_builtins(comparison_document(worn))
     trend = document["trend"]
     assert trend["change"] == pytest.approx(
         trend["percent"]["estimate"] * document["mean_friction"]["estimate"] / 100

@@ -5,38 +5,84 @@ from datetime import datetime, timedelta
 import numpy as np
 import pytest
 
+from frictioncli.comparison.document import (
+    ComparisonDocument,
+    ConditionRecord,
+    EstimateRecord,
+    MarginRecord,
+    MeanFrictionRecord,
+    PercentRecord,
+    RunRecord,
+    ScatterRecord,
+    ThresholdRecord,
+    TrendRecord,
+)
 from frictioncli.report.style import style_context
 from frictioncli.report.trend_figure import trend_figure, trend_files
 
 
 def percent(value, half):
-    return {"estimate": value, "ci95": [value - half, value + half], "unit": "%", "p_value": 0.01}
+    return PercentRecord(estimate=value, ci95=(value - half, value + half), unit="%", p_value=0.01)
 
 
 def document(*, dated=True, conditions=True, threshold=True):
     start = datetime(2026, 1, 5)
     runs = [
-        {
-            "started_at": (start + timedelta(days=7 * number)).isoformat() if dated else None,
-            "days": 7.0 * number if dated else None,
-            "measured": number - 1.0,
-            "level": 0.5 * number - 1.0,
-            "ci95": [0.5 * number - 1.4, 0.5 * number - 0.6],
-        }
+        RunRecord(
+            folder="work",
+            run=f"day-{number}",
+            started_at=(start + timedelta(days=7 * number)).isoformat() if dated else None,
+            days=7.0 * number if dated else None,
+            surroundings=None,
+            measured=number - 1.0,
+            level=0.5 * number - 1.0,
+            ci95=(0.5 * number - 1.4, 0.5 * number - 0.6),
+            unit="%",
+        )
         for number in range(5)
     ]
     rows = [
-        {"temperature": 40.0, "speed": speed, "percent": percent(4.0, 1.0), "extrapolated": hollow}
+        ConditionRecord(
+            temperature=40.0,
+            speed=speed,
+            load=0.0,
+            friction=20.0,
+            change=0.8,
+            ci95=(0.6, 1.0),
+            unit="N·m",
+            percent=percent(4.0, 1.0),
+            extrapolated=hollow,
+        )
         for speed, hollow in ((19.1, False), (101.2, True))
     ]
-    return {
-        "joint": 2,
-        "runs": runs,
-        "trend": {"percent": percent(2.0, 1.5), "per_1000_h": {} if dated else None},
-        "friction": rows if conditions else [],
-        "threshold": {"value": 3.0} if threshold else None,
-        "margin": {"value": 3.0, "unit": "%"},
-    }
+    rate = EstimateRecord(estimate=0.5, ci95=(0.1, 0.9), unit="%/run")
+    return ComparisonDocument(
+        verdict="changed",
+        weak=False,
+        joint=2,
+        torque_unit="N·m",
+        load_unit="N·m",
+        temperature="motor",
+        folders=("work",),
+        mean_friction=MeanFrictionRecord(estimate=20.0, unit="N·m"),
+        trend=TrendRecord(
+            change=0.4,
+            ci95=(0.1, 0.7),
+            unit="N·m",
+            percent=percent(2.0, 1.5),
+            per_run=rate,
+            per_1000_h=rate if dated else None,
+        ),
+        last_run=None,
+        load=None,
+        causes=(),
+        friction=tuple(rows) if conditions else (),
+        parameters={},
+        runs=tuple(runs),
+        scatter=ScatterRecord(day_to_day=1.0, assumed=1.0, unit="%", surroundings_from="the log"),
+        margin=MarginRecord(value=3.0, unit="%"),
+        threshold=ThresholdRecord(value=3.0, unit="%", exceeded=False) if threshold else None,
+    )
 
 
 def drawn(**how):
