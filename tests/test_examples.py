@@ -144,7 +144,7 @@ def test_on_the_sample_logs_the_online_gear_is_the_extended_model(work):
         corrector.update(
             pair.time, pair.motor_temperature, housing_temperature=housing, power=power
         )
-        found.append(corrector.beyond(np.sqrt(pair.squared), pair.speed))
+        found.append(corrector.added_friction(np.sqrt(pair.squared), pair.speed))
     (cause,) = json.loads((work / "diagnosis.json").read_text(encoding="utf-8"))["causes"]
     interval = cause["parameters"]["time_constant"]["ci95"]
     assert list(joint.extension.gear.time_constant_ci95) == interval

@@ -1,1 +1,1 @@
-"""A fitted joint outside this program: online in Python, in C, in simulators, as a table."""
+"""Deployment of a fitted joint: in Python, in C, in robot simulators, and as a table."""

@@ -1,4 +1,4 @@
-"""The C99 header: friction, its inverse and Algorithm 3 for a controller."""
+"""C99 header with friction, its inverse and Algorithm 3."""
 
 from collections.abc import Callable, Mapping, Sequence
 from string import Template
@@ -11,12 +11,12 @@ from frictioncli.deployment.gear_temperature import GearLag
 from frictioncli.diagnosis.documents.extended_model import FittedEffect
 from frictioncli.model.document import PARAMETERS
 
-_GIVEN = {
+_BASE_TEMPERATURE = {
     "motor": "joint->motor_temperature",
     "housing": "joint->housing_temperature",
     "mean": "0.5 * (joint->motor_temperature + joint->housing_temperature)",
 }
-"""The temperature that the base is given, in C."""
+"""Uncorrected temperature of the base model, in C."""
 
 
 def c_header(joint: DeployedModel, remarks: Sequence[str]) -> str:
@@ -25,9 +25,14 @@ def c_header(joint: DeployedModel, remarks: Sequence[str]) -> str:
     Parameters
     ----------
     joint : DeployedModel
-        The joint; without a temperature it gets no inverse and no corrector.
+        The joint; without a dependence on temperature it has no inverse and no corrector.
     remarks : sequence of str
-        Lines of the head comment.
+        Lines of the comment at the top.
+
+    Returns
+    -------
+    str
+        Text of the header, in ASCII.
     """
     prefix = prefix_of(joint)
     extension = joint.extension if joint.can_correct else None
@@ -38,26 +43,26 @@ def c_header(joint: DeployedModel, remarks: Sequence[str]) -> str:
         parts += [c.GEAR, c.BEYOND]
     if joint.can_correct:
         parts.append(c.CORRECT)
-    words = _words(joint, extension)
-    own = {"prefix": prefix, "PREFIX": prefix.upper(), **_units(joint)}
-    # what is filled in may hold the joint's own names
-    words = {name: Template(text).substitute(own) for name, text in words.items()} | own
-    words["remarks"] = "\n".join(
+    values = _placeholder_values(joint, extension)
+    names = {"prefix": prefix, "PREFIX": prefix.upper(), **_units(joint)}
+    # the values may themselves contain names of the joint
+    values = {name: Template(text).substitute(names) for name, text in values.items()} | names
+    values["remarks"] = "\n".join(
         fill(line, width=98, initial_indent=" * ", subsequent_indent=" *   ") for line in remarks
     ).replace("*/", "* /")
-    whole = "".join(Template(part).substitute(words) for part in (*parts, c.TAIL))
-    return ascii_text(whole)
+    header = "".join(Template(part).substitute(values) for part in (*parts, c.TAIL))
+    return ascii_text(header)
 
 
 def prefix_of(joint: DeployedModel) -> str:
-    """Return what all names of a joint's header begin with."""
+    """Return the prefix of all names in the header of a joint."""
     return f"friction_joint{joint.model.joint}"
 
 
 def ascii_text(text: str) -> str:
-    """Return text for compilers that know only ASCII."""
-    signs = {"·": ".", "°": "deg", "²": "^2", "–": "-", "−": "-"}
-    for sign, plain in signs.items():
+    """Return text in ASCII, for any compiler."""
+    replacements = {"·": ".", "°": "deg", "²": "^2", "–": "-", "−": "-"}
+    for sign, plain in replacements.items():
         text = text.replace(sign, plain)
     return text.encode("ascii", "replace").decode("ascii")
 
@@ -72,26 +77,31 @@ def _units(joint: DeployedModel) -> dict[str, str]:
     }
 
 
-def _words(joint: DeployedModel, extension: DeployedExtension | None) -> dict[str, str]:
+def _placeholder_values(
+    joint: DeployedModel, extension: DeployedExtension | None
+) -> dict[str, str]:
+    """Return the values of the placeholders in the template."""
     gear = extension is not None
     return {
         "constants": "\n".join(_constants(joint, extension)),
         "in_range": _in_range(joint),
         "fields": (c.CORRECTION_FIELDS if joint.can_correct else "")
         + (c.GEAR_FIELDS if gear else ""),
-        "start": (c.CORRECTION_START if joint.can_correct else "") + (c.GEAR_START if gear else ""),
+        "initial_values": (c.CORRECTION_INITIAL_VALUES if joint.can_correct else "")
+        + (c.GEAR_INITIAL_VALUES if gear else ""),
         "arguments": c.GEAR_ARGUMENTS if gear else "",
-        "more": c.GEAR_MORE if gear else "",
+        "more": c.GEAR_COMMENT if gear else "",
         "gear_step": c.GEAR_STEP if gear else "",
-        "given": _GIVEN[joint.model.temperature],
+        "base_temperature": _BASE_TEMPERATURE[joint.model.temperature],
         "excess": "${prefix}_gear_excess(joint)",
         "terms": "".join(_term(term) for term in extension.terms) if extension else "",
-        "less": " - ${prefix}_beyond(joint, load, speed)" if gear else "",
-        "plus": "\n           + ${prefix}_beyond(joint, load, speed)" if gear else "",
+        "minus_extension": " - ${prefix}_beyond(joint, load, speed)" if gear else "",
+        "plus_extension": "\n           + ${prefix}_beyond(joint, load, speed)" if gear else "",
     }
 
 
 def _constants(joint: DeployedModel, extension: DeployedExtension | None) -> list[str]:
+    """Return the definitions of all constants."""
     lines = []
 
     def define(name: str, value: float | str, remark: str) -> None:
@@ -100,10 +110,10 @@ def _constants(joint: DeployedModel, extension: DeployedExtension | None) -> lis
     for name in PARAMETERS:
         entry = joint.model.parameters[name]
         interval = entry.ci95 and f"95 %: {entry.ci95[0]:.4g} to {entry.ci95[1]:.4g}"
-        told = interval or f"not determined: {entry.reason}"
+        remark = interval or f"not determined: {entry.reason}"
         if extension:
-            told = "base of the extended model"
-        define(name.upper(), repr(getattr(joint.base, name)), f"[{entry.unit}] {told}")
+            remark = "base of the extended model"
+        define(name.upper(), repr(getattr(joint.base, name)), f"[{entry.unit}] {remark}")
     for name, unit in (("speed", "deg/s"), ("load", joint.load_unit), ("temperature", "°C")):
         limits = getattr(joint.model.range, name)
         if limits is not None:
@@ -163,7 +173,7 @@ _NO_LAG = GearLag(
     reference_power=1.0,
     start_sd=0.0,
 )
-"""A gear that is as warm as the motor."""
+"""Gear that is as warm as the motor."""
 
 
 def _term(term: FittedEffect) -> str:
@@ -193,4 +203,4 @@ _TERMS: dict[str, Callable[[Mapping[str, float]], str]] = {
     "load_velocity": lambda shape: "(load / 10.0) * (load / 10.0) * sqrt(speed / 100.0)",
     "load_temperature": _load_temperature,
 }
-"""The bases of memoryless effects in C; a test compares each with the catalogue."""
+"""Effects without memory in C; a test compares each with the catalogue."""

@@ -1,4 +1,4 @@
-"""The text of the C header, part by part; ``$`` marks what belongs to a joint."""
+"""Template of the C header in parts; ``$`` marks placeholders."""
 
 HEAD = """\
 /*
@@ -31,7 +31,7 @@ static inline void ${prefix}_init(struct $prefix *joint)
     joint->beta = ${PREFIX}_BETA;
     joint->gamma = ${PREFIX}_GAMMA;
     joint->delta = ${PREFIX}_DELTA;
-$start}
+$initial_values}
 
 /* 1 where the model was measured, 0 where it extrapolates. */
 static inline int ${prefix}_in_range(
@@ -68,7 +68,7 @@ CORRECTION_FIELDS = """\
     int degree_known;         /* whether degree_time is known */
 """
 
-CORRECTION_START = """\
+CORRECTION_INITIAL_VALUES = """\
     joint->k = ${PREFIX}_K;
     joint->tmax = ${PREFIX}_TMAX;
     joint->latest_degree = ${PREFIX}_LATEST_DEGREE;
@@ -93,7 +93,7 @@ GEAR_FIELDS = """\
     double housing_temperature; /* the latest; NAN if unknown [degC] */
 """
 
-GEAR_START = """\
+GEAR_INITIAL_VALUES = """\
     {
         int i;
         for (i = 0; i < 3; i++) {
@@ -158,7 +158,7 @@ static inline int ${prefix}_is_due(const struct $prefix *joint)
 
 GEAR_ARGUMENTS = ",\n    double housing_temperature, double power"
 
-GEAR_MORE = """
+GEAR_COMMENT = """
  * housing_temperature [degC], NAN if unknown; power: mean of friction torque times speed since the
  * sample before [$unit.deg/s], what warms the gear."""
 
@@ -209,7 +209,7 @@ BEYOND = """\
 static inline double ${prefix}_beyond(
     const struct $prefix *joint, double load, double speed)
 {
-    double temperature = $given;
+    double temperature = $base_temperature;
     double excess = $excess;
     double viscous = ${PREFIX}_BETA_CHANGE
                      + exp(-${PREFIX}_DELTA * temperature)
@@ -232,7 +232,7 @@ static inline int ${prefix}_correct(
     struct $prefix *joint, double friction, double load, double speed,
     double motor_temperature)
 {
-    double base = friction$less;
+    double base = friction$minus_extension;
     double found = ${prefix}_temperature(joint, base, load, speed);
     joint->corrected_at = joint->time;
     joint->from_time = joint->time;
@@ -250,7 +250,7 @@ static inline double ${prefix}_predicted(
     const struct $prefix *joint, double load, double speed)
 {
     double temperature = joint->motor_temperature + joint->correction;
-    return ${prefix}_friction(joint, load, speed, temperature)$plus;
+    return ${prefix}_friction(joint, load, speed, temperature)$plus_extension;
 }
 """
 

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from frictioncli.correction.settings import ScheduleSettings
-from frictioncli.deployment.deployed_model import DeployedModel, middle_speed
+from frictioncli.deployment.deployed_model import DeployedModel, default_correction_speed
 from frictioncli.deployment.extension import LAG, DeployedExtension
 from frictioncli.deployment.gear_temperature import GearLag
 from frictioncli.diagnosis.documents.extended_model import FittedEffect
@@ -77,7 +77,7 @@ def _deployed(whole: Mapping[str, Any], model: FrictionModel) -> DeployedModel:
     return DeployedModel(
         model=model,
         schedule=schedule,
-        correction_speed=float(rule["speed"]) if rule else middle_speed(model),
+        correction_speed=float(rule["speed"]) if rule else default_correction_speed(model),
         extension=None if extension is None else _extension(extension),
         origin=dict(whole["made_from"]),
         version=str(whole["made_by"]["version"]),

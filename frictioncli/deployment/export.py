@@ -1,16 +1,16 @@
-"""One joint written in the form that a target wants, with what that form loses."""
+"""Export of one joint to a file format, with notes on what the format cannot hold."""
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
 from frictioncli.deployment.c_header import c_header
-from frictioncli.deployment.deployed_model import DeployedModel, why_no_correction
+from frictioncli.deployment.deployed_model import DeployedModel, no_correction_reason
 from frictioncli.deployment.document import deployed_document
-from frictioncli.deployment.lookup_table import csv_text, lookup
-from frictioncli.deployment.operating_conditions import conditions
+from frictioncli.deployment.lookup_table import csv_text, lookup_table
+from frictioncli.deployment.operating_conditions import operating_conditions
 from frictioncli.deployment.settings import ExportSettings
-from frictioncli.deployment.simplified_friction import SimpleForm, simple_form
-from frictioncli.deployment.xml_forms import mjcf, urdf
+from frictioncli.deployment.simplified_friction import SimplifiedFriction, simplified_friction
+from frictioncli.deployment.xml_forms import mjcf_text, urdf_text
 from frictioncli.documents import to_json
 from frictioncli.model.friction import FORM
 
@@ -19,76 +19,85 @@ _ENDINGS = {"c": "h", "urdf": "urdf", "mjcf": "xml", "json": "json", "csv": "csv
 
 @dataclass(frozen=True, slots=True)
 class Exported:
-    """A file to write, and what to say of it.
+    """Content of an exported file.
 
     Attributes
     ----------
     name : str
         File name.
     text : str
-        Contents.
-    said : tuple of str
-        What was lost, a sentence each.
+        Content.
+    notes : tuple of str
+        One sentence for each thing that the format cannot hold.
     """
 
     name: str
     text: str
-    said: tuple[str, ...]
+    notes: tuple[str, ...]
 
 
 def export(joint: DeployedModel, settings: ExportSettings) -> Exported:
-    """Return a joint in the form that the settings ask for.
+    """Return a joint in the format of the settings.
 
     Parameters
     ----------
     joint : DeployedModel
         The joint.
     settings : ExportSettings
-        Target and its options.
+        Format and its options.
+
+    Returns
+    -------
+    Exported
+        File name, content and notes.
 
     Raises
     ------
     OptionError
-        If the target cannot hold this joint's torque, or an option makes no sense for it.
+        If the format cannot hold this joint's torque, or an option does not apply to it.
     """
     name = f"friction-joint{joint.model.joint}.{_ENDINGS[settings.to]}"
-    text, said = _WRITERS[settings.to](joint, settings)
-    return Exported(name, text, said)
+    text, notes = _WRITERS[settings.to](joint, settings)
+    return Exported(name, text, notes)
 
 
 def _as_c(joint: DeployedModel, settings: ExportSettings) -> tuple[str, tuple[str, ...]]:
-    said = _without_state(joint)
-    text = c_header(joint, [*_origin(joint), FORM, *said, *_uncertain(joint)])
-    return text, said or ("nothing is lost: friction, its inverse and the correction of (17)-(20)",)
+    notes = _left_out(joint)
+    text = c_header(joint, [*_origin(joint), FORM, *notes, *_accuracy(joint)])
+    return text, notes or (
+        "nothing is lost: friction, its inverse and the correction of (17)-(20)",
+    )
 
 
 def _as_json(joint: DeployedModel, settings: ExportSettings) -> tuple[str, tuple[str, ...]]:
-    said = _without_state(joint)
-    return to_json(deployed_document(joint)), said or ("nothing is lost",)
+    notes = _left_out(joint)
+    return to_json(deployed_document(joint)), notes or ("nothing is lost",)
 
 
 def _as_urdf(joint: DeployedModel, settings: ExportSettings) -> tuple[str, tuple[str, ...]]:
-    form, said = _simple(joint, settings)
-    return urdf(form, f"joint{joint.model.joint}", (*_origin(joint), *said)), said
+    friction, notes = _simplified(joint, settings)
+    remarks = (*_origin(joint), *notes)
+    return urdf_text(friction, f"joint{joint.model.joint}", remarks), notes
 
 
 def _as_mjcf(joint: DeployedModel, settings: ExportSettings) -> tuple[str, tuple[str, ...]]:
-    form, said = _simple(joint, settings)
-    said += ("no armature: logs of constant speed do not tell the rotor's inertia",)
-    return mjcf(form, f"friction_joint{joint.model.joint}", (*_origin(joint), *said)), said
+    friction, notes = _simplified(joint, settings)
+    notes += ("no armature: logs of constant speed do not tell the rotor's inertia",)
+    remarks = (*_origin(joint), *notes)
+    return mjcf_text(friction, f"friction_joint{joint.model.joint}", remarks), notes
 
 
 def _as_csv(joint: DeployedModel, settings: ExportSettings) -> tuple[str, tuple[str, ...]]:
-    where = conditions(joint, settings)
-    table = lookup(joint, where, settings.tolerance)
+    conditions = operating_conditions(joint, settings)
+    table = lookup_table(joint, conditions, settings.tolerance)
     unit = joint.model.torque_unit
     shape = " x ".join(str(len(axis)) for axis in table.axes)
-    said = (
+    notes = (
         f"{shape} knots of speed, temperature and load's amount: linear interpolation misses"
         f" equation (16) by at most {table.error:.3g} {unit} ({table.tolerance:.3g} allowed)",
         "lost: everything outside these speeds, temperatures and loads",
         "lost: the correction of the temperature",
-        *where.remarks,
+        *conditions.remarks,
     )
     columns = (
         "speed [deg/s]",
@@ -96,7 +105,7 @@ def _as_csv(joint: DeployedModel, settings: ExportSettings) -> tuple[str, tuple[
         f"load [{joint.load_unit}]",
         f"friction [{unit}]",
     )
-    return csv_text(table, columns, (*_origin(joint), *said)), said
+    return csv_text(table, columns, (*_origin(joint), *notes)), notes
 
 
 _Writer = Callable[[DeployedModel, ExportSettings], tuple[str, tuple[str, ...]]]
@@ -109,14 +118,18 @@ _WRITERS: Mapping[str, _Writer] = {
 }
 
 
-def _simple(joint: DeployedModel, settings: ExportSettings) -> tuple[SimpleForm, tuple[str, ...]]:
-    where = conditions(joint, settings)
-    form = simple_form(joint, where, settings.torque_constant)
-    return form, (*form.told(where.told(joint.load_unit)), *where.remarks)
+def _simplified(
+    joint: DeployedModel, settings: ExportSettings
+) -> tuple[SimplifiedFriction, tuple[str, ...]]:
+    """Return the friction that simulators know, with notes on what it cannot hold."""
+    conditions = operating_conditions(joint, settings)
+    friction = simplified_friction(joint, conditions, settings.torque_constant)
+    notes = friction.describe(conditions.describe(joint.load_unit))
+    return friction, (*notes, *conditions.remarks)
 
 
 def _origin(joint: DeployedModel) -> list[str]:
-    """Return where a file comes from, a line each."""
+    """Return lines on the origin of a file."""
     number, version = joint.model.joint, joint.version
     return [
         f"Friction of joint {number}, made by frictioncli {version} from",
@@ -124,21 +137,21 @@ def _origin(joint: DeployedModel) -> list[str]:
     ]
 
 
-def _without_state(joint: DeployedModel) -> tuple[str, ...]:
-    """Return what of the model does not go along with a target that can hold a state."""
-    said = []
+def _left_out(joint: DeployedModel) -> tuple[str, ...]:
+    """Return notes on the parts of the model that a format with a state leaves out."""
+    notes = []
     if not joint.can_correct:
-        said.append(f"left out: temperature's correction, as {why_no_correction(joint.model)}")
+        notes.append(f"left out: temperature's correction, as {no_correction_reason(joint.model)}")
     if joint.extension:
-        said += [
-            f"left out: effect {name}, which {why}"
-            for name, why in joint.extension.left_out.items()
+        notes += [
+            f"left out: effect {name}, which {reason}"
+            for name, reason in joint.extension.left_out.items()
         ]
-    return tuple(said)
+    return tuple(notes)
 
 
-def _uncertain(joint: DeployedModel) -> list[str]:
-    """Return the notes that the model carries, and the base model's error."""
+def _accuracy(joint: DeployedModel) -> list[str]:
+    """Return the error of the base model and the notes of the model."""
     model, notes = joint.model, [f"note: {note}" for note in joint.model.notes]
     if joint.extension:
         return notes

@@ -1,4 +1,4 @@
-"""The corrector of a joint with an extended model: the gear's temperature goes along as a state."""
+"""Temperature corrector with an extended model; the gear temperature is an additional state."""
 
 import math
 from dataclasses import dataclass, field
@@ -10,22 +10,22 @@ from frictioncli.deployment.gear_temperature import GearTemperature
 
 @dataclass(slots=True)
 class ExtendedCorrector:
-    """As :class:`TemperatureCorrector`, with the friction that the extension adds.
+    """Temperature corrector as :class:`TemperatureCorrector`, with the friction of the extension.
 
-    What is corrected is the base model's temperature: a measured pair is freed of the extension's
-    friction first, and the prediction gets it back.
+    The temperature of the base model is corrected: the friction of the extension is subtracted from
+    a measured pair, and added to the prediction.
 
     Parameters
     ----------
-    inner : TemperatureCorrector
-        A new one, on the parameters about which the extension is linear.
+    base : TemperatureCorrector
+        New corrector with the parameters about which the extension is linear.
     extension : DeployedExtension
-        What the extended model adds.
+        Deployable part of the extended model.
     temperature : {"motor", "housing", "mean"}
-        Temperature that the base is given in the extension.
+        Temperature of the base model in the extension.
     """
 
-    inner: TemperatureCorrector
+    base: TemperatureCorrector
     extension: DeployedExtension
     temperature: str = "motor"
     gear: GearTemperature | None = field(init=False)
@@ -44,37 +44,37 @@ class ExtendedCorrector:
         housing_temperature: float = math.nan,
         power: float = 0.0,
     ) -> None:
-        """Take in a sample.
+        """Process a sample.
 
         Parameters
         ----------
         time, motor_temperature, registered
-            As :meth:`TemperatureCorrector.update`.
+            As for :meth:`TemperatureCorrector.update`.
         housing_temperature : float
-            Temperature of the housing; NaN where it is not known. [°C]
+            Temperature of the housing; NaN where it is not known [°C].
         power : float
-            Mean of friction torque times speed since the sample before: what warms the gear.
-            [torque unit·deg/s]
+            Mean friction power, torque times speed, since the previous sample
+            [torque unit·deg/s].
         """
-        self.inner.update(time, motor_temperature, registered)
+        self.base.update(time, motor_temperature, registered)
         self._housing = housing_temperature
         if self.gear is not None:
             self.gear.update(time, motor_temperature, housing_temperature, power)
 
     @property
     def is_due(self) -> bool:
-        """Whether criterion (20) asks for a correction."""
-        return self.inner.is_due
+        """Whether a correction is due by criterion (20)."""
+        return self.base.is_due
 
     @property
     def correction(self) -> float:
-        """Temperature correction in force. [°C]."""
-        return self.inner.correction
+        """Temperature correction in force [°C]."""
+        return self.base.correction
 
     @property
     def motor_temperature(self) -> float:
-        """The latest one. [°C]."""
-        return self.inner.motor_temperature
+        """Latest motor temperature [°C]."""
+        return self.base.motor_temperature
 
     def correct(
         self,
@@ -83,23 +83,23 @@ class ExtendedCorrector:
         speed: float,
         motor_temperature: float | None = None,
     ) -> bool:
-        """Correct the temperature by a measured pair; as :meth:`TemperatureCorrector.correct`."""
-        bare = friction - self.beyond(load, speed)
-        return self.inner.correct(bare, load, speed, motor_temperature)
+        """Correct the temperature by a measured pair, as :meth:`TemperatureCorrector.correct`."""
+        of_base = friction - self.added_friction(load, speed)
+        return self.base.correct(of_base, load, speed, motor_temperature)
 
     def friction(self, load: float, speed: float) -> float:
-        """Return the friction torque at a load [N·m] and a speed [deg/s]. [torque unit]."""
-        return self.inner.friction(load, speed) + self.beyond(load, speed)
+        """Return the friction torque [torque unit] at a load [N·m] and a speed [deg/s]."""
+        return self.base.friction(load, speed) + self.added_friction(load, speed)
 
-    def beyond(self, load: float, speed: float) -> float:
-        """Return what the extension adds at a load [N·m] and a speed [deg/s]. [torque unit]."""
+    def added_friction(self, load: float, speed: float) -> float:
+        """Return the torque of the extension [torque unit] at a load [N·m] and speed [deg/s]."""
         excess = self.gear.excess if self.gear is not None else 0.0
-        added = self.extension.beyond(
-            load=load, speed=speed, temperature=self._given(), excess=excess
+        added = self.extension.added_friction(
+            load=load, speed=speed, temperature=self._base_temperature(), excess=excess
         )
         return float(added)
 
-    def _given(self) -> float:
-        """Return the temperature that the base is given. [°C]."""
+    def _base_temperature(self) -> float:
+        """Return the uncorrected temperature of the base model [°C]."""
         motor, housing = self.motor_temperature, self._housing
         return {"motor": motor, "housing": housing, "mean": (motor + housing) / 2}[self.temperature]

@@ -1,15 +1,15 @@
-r"""What of an extended model can be carried by a controller, and what it then adds to friction.
+r"""Deployable part of an extended model, and the friction that it adds.
 
 The extended model is linear about its base
-(:mod:`frictioncli.diagnosis.documents.extended_model`). With changes of the parameters and a
-temperature of friction that is E above the one measured, it adds to (16)
+(:mod:`frictioncli.diagnosis.documents.extended_model`). With changes of the parameters and a gear
+that is warmer by E than the measured temperature, it adds to (16)
 
 .. math::
 
     \Delta\tau_c + \Delta\alpha L^2 + \left(\Delta\beta
     + e^{-\delta T} (\Delta\gamma - \gamma\,\Delta\delta\,T - \delta \gamma E) \right) \sqrt{v}
 
-and the terms of effects that need nothing but load, speed and temperature.
+and the terms of effects that depend only on load, speed and temperature.
 """
 
 from collections.abc import Mapping
@@ -29,6 +29,7 @@ from frictioncli.effects.pair_series import pair_heads
 from frictioncli.model.friction import FrictionParameters, friction_torque
 
 LAG = "thermal_lag"
+"""Name of the effect that a gear temperature describes."""
 
 MEMORYLESS = (
     "stribeck",
@@ -39,9 +40,9 @@ MEMORYLESS = (
     "load_velocity",
     "load_temperature",
 )
-"""Effects that need nothing but load, speed and temperature at the moment."""
+"""Effects that depend only on present load, speed and temperature."""
 
-_WHY_NOT = {
+_REASONS = {
     "velocity_exponent": "refers to the mean speed of the log",
     "drift": "goes with the time since the first log",
     "run_in": "goes with the hours since the first log",
@@ -51,23 +52,23 @@ _WHY_NOT = {
     "position_ripple": "goes with the angle",
     "inertia": "goes with acceleration, and is no friction",
 }
-_NO_FRICTION = "shows in the load, not in friction"
+_LOAD_REASON = "shows in the load, not in friction"
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class DeployedExtension:
-    """The part of an extended model that goes along.
+    """Deployable part of an extended model.
 
     Attributes
     ----------
     about, parameters : FrictionParameters
-        Parameters of the base about which the model is linear, and as refitted.
+        Parameters of the base model about which the extension is linear, and refitted ones.
     gear : GearLag or None
-        The gear's own temperature, where it was found.
+        Thermal lag of the gear, if it is part of the model.
     terms : tuple of FittedEffect
         Effects without memory.
     left_out : mapping of str to str
-        Effects that cannot be carried, and why.
+        Reason for each effect that cannot be deployed.
     """
 
     about: FrictionParameters
@@ -76,25 +77,33 @@ class DeployedExtension:
     terms: tuple[FittedEffect, ...]
     left_out: Mapping[str, str]
 
-    def beyond(
+    def added_friction(
         self, *, load: ArrayLike, speed: ArrayLike, temperature: ArrayLike, excess: ArrayLike
     ) -> Array:
-        """Return the friction torque beyond the base. [torque unit].
+        """Return the friction torque that the extension adds to the base model.
 
         Parameters
         ----------
-        load, speed, temperature : array_like, shape (rows,) or ()
-            Load torque, absolute velocity, and the temperature that the base is given, without
-            correction. [N·m], [deg/s], [°C]
+        load : array_like, shape (rows,) or ()
+            Load torque [N·m].
+        speed : array_like, shape (rows,) or ()
+            Absolute velocity [deg/s].
+        temperature : array_like, shape (rows,) or ()
+            Uncorrected temperature of the base model [°C].
         excess : array_like, shape (rows,) or ()
-            How much warmer than that the place of friction is, by the gear's state. [°C]
+            Temperature of the gear above it [°C].
+
+        Returns
+        -------
+        ndarray, shape (rows,) or ()
+            Added friction torque [torque unit].
         """
-        wanted = (load, speed, temperature, excess)
-        load, speed, temperature, excess = np.broadcast_arrays(*wanted, subok=False)
+        inputs = (load, speed, temperature, excess)
+        load, speed, temperature, excess = np.broadcast_arrays(*inputs, subok=False)
         p, q = self.about, self.parameters
-        fall = (q.gamma - p.gamma) - p.gamma * (q.delta - p.delta) * temperature
+        change = (q.gamma - p.gamma) - p.gamma * (q.delta - p.delta) * temperature
         viscous = (q.beta - p.beta) + np.exp(-p.delta * temperature) * (
-            fall - p.delta * p.gamma * excess
+            change - p.delta * p.gamma * excess
         )
         added = (q.tau_c - p.tau_c) + (q.alpha - p.alpha) * np.square(load)
         added = added + viscous * np.sqrt(speed)
@@ -108,52 +117,58 @@ class DeployedExtension:
         return np.asarray(added + np.reshape(terms, added.shape))
 
 
-def carried(
+def deployable_extension(
     torques: pd.DataFrame,
     model: ExtendedModel,
     time_constant_ci95: tuple[float, float] | None,
 ) -> DeployedExtension | None:
-    """Return what of an extended model can be carried; none if it has no effects.
+    """Return the deployable part of an extended model; None if it has no effects.
 
     Parameters
     ----------
     torques : DataFrame
-        Rows of :data:`frictioncli.schemas.TORQUES` of the joint: what the gear's state refers to.
+        Rows of :data:`frictioncli.schemas.TORQUES` of the joint, to which the model was fitted.
     model : ExtendedModel
         The extended model.
     time_constant_ci95 : (float, float) or None
-        95 % interval of the gear's time constant, as the diagnosis says. [s]
+        95 % interval of the gear's time constant, from the diagnosis [s].
+
+    Returns
+    -------
+    DeployedExtension or None
+        Gear temperature, effects without memory, and what is left out.
     """
     if not model.effects:
         return None
-    own = {fitted.effect.name: fitted for fitted in model.effects}
-    lag = own.get(LAG)
+    effects = {fitted.effect.name: fitted for fitted in model.effects}
+    lag = effects.get(LAG)
     return DeployedExtension(
         about=model.about,
         parameters=model.parameters,
-        gear=_gear(torques, model, lag, time_constant_ci95) if lag else None,
-        terms=tuple(fitted for name, fitted in own.items() if name in MEMORYLESS),
+        gear=_gear_lag(torques, model, lag, time_constant_ci95) if lag else None,
+        terms=tuple(fitted for name, fitted in effects.items() if name in MEMORYLESS),
         left_out={
-            name: _WHY_NOT.get(name, _NO_FRICTION)
-            for name in own
+            name: _REASONS.get(name, _LOAD_REASON)
+            for name in effects
             if name != LAG and name not in MEMORYLESS
         },
     )
 
 
-def _gear(
+def _gear_lag(
     torques: pd.DataFrame,
     model: ExtendedModel,
     fitted: FittedEffect,
     time_constant_ci95: tuple[float, float] | None,
 ) -> GearLag:
+    """Return the thermal lag of the gear with its usual size in the log."""
     gravity = stated_gravity(model.gravity_about)
     _, problem = simulated(torques, model.temperature, model.about, gravity)
     table = problem.table
     first = pair_heads(table).first
     columns = fitted.effect.evaluate(table, fitted.shape).friction[first, :2]
     slope = np.where(table.temperature_slope[first] < 0, table.temperature_slope[first], -np.inf)
-    usual = columns @ fitted.coefficients[:2] / slope
+    excess = columns @ fitted.coefficients[:2] / slope
     lag_share, friction_heating, housing_share = (float(value) for value in fitted.coefficients)
     return GearLag(
         time_constant=float(fitted.shape["time_constant"]),
@@ -162,12 +177,12 @@ def _gear(
         friction_heating=friction_heating,
         housing_share=housing_share,
         reference_power=100.0 * float(np.mean(np.abs(table.friction))),
-        start_sd=float(np.sqrt(np.mean(np.square(usual)))),
+        start_sd=float(np.sqrt(np.mean(np.square(excess)))),
     )
 
 
 def _table(about: FrictionParameters, load: Array, speed: Array, temperature: Array) -> EffectTable:
-    """Return moments that have no past as a table of effects."""
+    """Return instants without history as an effect table."""
     rows = np.arange(len(load))
     decay = np.exp(-about.delta * temperature)
     unknown = np.full(len(load), np.nan)

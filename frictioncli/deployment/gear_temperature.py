@@ -1,13 +1,13 @@
-r"""The gear's own temperature as a state that follows what a controller measures.
+r"""Gear temperature as a state that a controller updates from its measurements.
 
-The same equation as the effect ``thermal_lag`` (:mod:`frictioncli.effects.thermal_lag`): friction
-arises at a temperature
+As in the effect ``thermal_lag`` (:mod:`frictioncli.effects.thermal_lag`), the temperature of the
+gear lies
 
 .. math:: E = a (F(T_m) - T_m) + b F(P/P_0) + h (T_c - T_m)
 
-above the motor's, F being a first-order filter of time constant :math:`\theta`. Between samples the
-motor's temperature is linear and the friction power P constant, for which the step is exact
-however unevenly samples come.
+above that of the motor; F is a first-order low-pass filter with time constant :math:`\theta`.
+Between samples the motor temperature is taken as linear and the friction power P as constant; for
+these the update is exact at any sampling interval.
 """
 
 import math
@@ -16,30 +16,29 @@ from dataclasses import asdict, dataclass, field
 from typing import Any, Self
 
 _SIGMAS = 1.959963984540054
-"""Half the width of a 95 % interval, in standard deviations."""
+"""Half-width of a 95 % interval in standard deviations."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class GearLag:
-    """How the temperature of friction departs from the motor's.
+    """Parameters of the gear temperature.
 
     Attributes
     ----------
     time_constant : float
-        Time in which the gear closes 63 % of its lag. [s]
+        Time constant [s].
     time_constant_ci95 : (float, float) or None
-        Its 95 % interval. [s]
+        95 % interval of the time constant [s].
     lag_share : float
-        Share of the motor's course that the gear follows with delay. [1]
+        Coefficient a: share of the motor temperature that the gear follows with lag [1].
     friction_heating : float
-        Gear above motor after long motion at the reference power. [°C]
+        Coefficient b: gear above motor in equilibrium at the reference power [°C].
     housing_share : float
-        How far the temperature of friction lies from motor towards housing. [1]
+        Coefficient h: share of the way from motor to housing temperature [1].
     reference_power : float
-        Friction power that counts as 1. [torque unit·deg/s]
+        Reference power :math:`P_0` [torque unit·deg/s].
     start_sd : float
-        Standard deviation of the state at the start, when the past is not known: its root mean
-        square in the log. [°C]
+        Standard deviation of the initial state, which is unknown: the RMS of E in the log [°C].
     """
 
     time_constant: float
@@ -51,17 +50,17 @@ class GearLag:
     start_sd: float
 
     def as_dict(self) -> dict[str, Any]:
-        """Return plain values, ready for JSON."""
+        """Return plain values for JSON."""
         return asdict(self)
 
     @classmethod
     def of(cls, values: Mapping[str, Any]) -> Self:
-        """Return the lag that plain values tell.
+        """Return the parameters from plain values.
 
         Raises
         ------
         KeyError, TypeError, ValueError
-            If one is missing or no number.
+            If a value is missing or is not a number.
         """
         interval = values["time_constant_ci95"]
         numbers = {
@@ -72,15 +71,15 @@ class GearLag:
 
 
 @dataclass(slots=True)
-class _FirstOrderLag:
-    """One filter of the motor's temperature and of the friction power."""
+class _FirstOrderFilter:
+    """State of the filters of motor temperature [°C] and of relative friction power [1]."""
 
     time_constant: float
     lag: float = 0.0
     heat: float = 0.0
 
     def step(self, duration: float, warming: float, power: float) -> None:
-        """Go on by a time [s], in which the motor warms [°C] and friction gives off power [1]."""
+        """Advance by a duration [s] with a rise of motor temperature [°C] and a power [1]."""
         ratio = max(duration, 0.0) / self.time_constant
         decay, closed = math.exp(-ratio), -math.expm1(-ratio)
         self.lag = decay * self.lag - warming * (closed / ratio if ratio > 0 else 1.0)
@@ -89,28 +88,46 @@ class _FirstOrderLag:
 
 @dataclass(slots=True)
 class GearTemperature:
-    """The state: told the motor's temperature sample by sample, it knows the gear's.
+    """Gear temperature above the motor temperature, updated sample by sample.
 
-    It starts as warm as the motor: what the gear has been through before is not known, and
-    :attr:`uncertainty` says what that may amount to.
+    The initial value is zero, because the history before is not known; :attr:`uncertainty` includes
+    the resulting error.
 
     Parameters
     ----------
     parameters : GearLag
-        The gear's.
+        Parameters of the gear temperature.
+
+    Examples
+    --------
+    >>> gear = GearTemperature(
+    ...     GearLag(
+    ...         time_constant=1500.0,
+    ...         time_constant_ci95=None,
+    ...         lag_share=0.8,
+    ...         friction_heating=6.0,
+    ...         housing_share=0.0,
+    ...         reference_power=5000.0,
+    ...         start_sd=3.0,
+    ...     )
+    ... )
+    >>> gear.update(time=0.0, motor_temperature=30.0)
+    >>> gear.update(time=1500.0, motor_temperature=30.0, power=5000.0)
+    >>> round(gear.excess, 3)
+    3.793
     """
 
     parameters: GearLag
-    _followers: list[_FirstOrderLag] = field(init=False)
-    _started: float = field(default=math.nan, init=False)
+    _filters: list[_FirstOrderFilter] = field(init=False)
+    _start_time: float = field(default=math.nan, init=False)
     _time: float = field(default=math.nan, init=False)
     _motor: float = field(default=math.nan, init=False)
-    _towards_housing: float = field(default=0.0, init=False)
+    _housing_difference: float = field(default=0.0, init=False)
 
     def __post_init__(self) -> None:
-        middle = self.parameters.time_constant
-        ends = self.parameters.time_constant_ci95 or (middle, middle)
-        self._followers = [_FirstOrderLag(value) for value in (middle, *ends)]
+        estimate = self.parameters.time_constant
+        ends = self.parameters.time_constant_ci95 or (estimate, estimate)
+        self._filters = [_FirstOrderFilter(value) for value in (estimate, *ends)]
 
     def update(
         self,
@@ -119,48 +136,52 @@ class GearTemperature:
         housing_temperature: float = math.nan,
         power: float = 0.0,
     ) -> None:
-        """Take in a sample.
+        """Process a sample.
 
         Parameters
         ----------
         time : float
-            Time of the sample, not before the one told last. [s]
-        motor_temperature, housing_temperature : float
-            Temperatures; the housing is taken to be as warm as the motor where it is NaN. [°C]
+            Time of the sample, not before that of the latest one [s].
+        motor_temperature : float
+            Motor temperature [°C].
+        housing_temperature : float
+            Housing temperature; where it is NaN, that of the motor is taken [°C].
         power : float
-            Mean of friction torque times speed since the sample before. [torque unit·deg/s]
+            Mean friction power, torque times speed, since the previous sample
+            [torque unit·deg/s].
         """
         if math.isnan(self._time):
-            self._started = time
+            self._start_time = time
         else:
             warming = motor_temperature - self._motor
-            share = power / self.parameters.reference_power
-            for follower in self._followers:
-                follower.step(time - self._time, warming, share)
+            relative_power = power / self.parameters.reference_power
+            for one in self._filters:
+                one.step(time - self._time, warming, relative_power)
         self._time, self._motor = time, motor_temperature
-        distance = housing_temperature - motor_temperature
-        self._towards_housing = 0.0 if math.isnan(distance) else distance
+        difference = housing_temperature - motor_temperature
+        self._housing_difference = 0.0 if math.isnan(difference) else difference
 
     @property
     def excess(self) -> float:
-        """How much warmer than the motor the place of friction is. [°C]."""
+        """Gear temperature above the motor temperature, E [°C]."""
         return (
-            self._carried(self._followers[0])
-            + self.parameters.housing_share * self._towards_housing
+            self._filtered_excess(self._filters[0])
+            + self.parameters.housing_share * self._housing_difference
         )
 
     @property
     def uncertainty(self) -> float:
-        """Standard deviation of :attr:`excess`. [°C].
+        """Standard deviation of :attr:`excess` [°C].
 
-        It holds the time constant's interval, as the difference that its ends make, and the unknown
-        start, which fades with the time constant; not that the three shares are uncertain.
+        It includes the interval of the time constant, from the difference that its ends make, and
+        the unknown initial state, which decays with the time constant; not the uncertainty of the
+        three coefficients.
         """
-        _, low, high = (self._carried(follower) for follower in self._followers)
-        age = 0.0 if math.isnan(self._time) else self._time - self._started
+        _, low, high = (self._filtered_excess(one) for one in self._filters)
+        age = 0.0 if math.isnan(self._time) else self._time - self._start_time
         start = self.parameters.start_sd * math.exp(-age / self.parameters.time_constant)
         return math.hypot((high - low) / (2 * _SIGMAS), start)
 
-    def _carried(self, follower: _FirstOrderLag) -> float:
+    def _filtered_excess(self, state: _FirstOrderFilter) -> float:
         p = self.parameters
-        return p.lag_share * follower.lag + p.friction_heating * follower.heat
+        return p.lag_share * state.lag + p.friction_heating * state.heat

@@ -1,6 +1,6 @@
-"""Where a simpler form has to fit: speeds, a load and a temperature, and what the data know."""
+"""Operating conditions at which a simplified form is fitted, and the ranges of the data."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -8,34 +8,38 @@ from frictioncli.deployment.deployed_model import DeployedModel
 from frictioncli.deployment.settings import ExportSettings
 from frictioncli.errors import OptionError
 
-Limits = tuple[float, float]
+Range = tuple[float, float]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Conditions:
-    """Where to fit, and where the data have been.
+class OperatingConditions:
+    """Conditions of the fit, and the ranges of the data.
 
     Attributes
     ----------
     speeds : (float, float)
-        Speeds between which to fit. [deg/s]
-    load, temperature : float
-        Load and temperature at which to fit. [N·m], [°C]
-    loads, temperatures : (float, float)
-        Ranges of the data. [N·m], [°C]
+        Range of speeds of the fit [deg/s].
+    load : float
+        Load torque of the fit [N·m].
+    temperature : float
+        Temperature of the fit [°C].
+    loads : (float, float)
+        Range of loads in the data [N·m].
+    temperatures : (float, float)
+        Range of temperatures in the data [°C].
     remarks : tuple of str
-        What of it the data do not cover.
+        Conditions that the data do not cover.
     """
 
-    speeds: Limits
+    speeds: Range
     load: float
     temperature: float
-    loads: Limits
-    temperatures: Limits
+    loads: Range
+    temperatures: Range
     remarks: tuple[str, ...]
 
-    def told(self, load_unit: str) -> str:
-        """Return the point of the fit in words; the load has the given unit."""
+    def describe(self, load_unit: str) -> str:
+        """Return the conditions of the fit as text, with the unit of the load."""
         low, high = self.speeds
         return (
             f"{low:.4g} to {high:.4g} deg/s, {self.temperature:.4g} °C, load {self.load:.4g}"
@@ -43,21 +47,33 @@ class Conditions:
         )
 
 
-def conditions(joint: DeployedModel, settings: ExportSettings) -> Conditions:
-    """Return where to fit: what the settings say, else what the data's ranges suggest.
+def operating_conditions(joint: DeployedModel, settings: ExportSettings) -> OperatingConditions:
+    """Return the conditions of the fit by the settings, or else by the ranges of the data.
 
-    The load is the root mean square over the range of the data's loads, as friction goes with its
-    square; the temperature is in the middle.
+    The default load is the root mean square over the range of the data, because friction depends on
+    its square; the default temperature is the middle of the range.
+
+    Parameters
+    ----------
+    joint : DeployedModel
+        The joint.
+    settings : ExportSettings
+        Settings of the export.
+
+    Returns
+    -------
+    OperatingConditions
+        The conditions.
 
     Raises
     ------
     OptionError
         If the range of speeds is empty.
     """
-    known = joint.model.range
-    speeds = known.speed or (0.0, 0.0)
-    loads, temperatures = known.load or (0.0, 0.0), known.temperature or (0.0, 0.0)
-    given = Conditions(
+    measured = joint.model.range
+    speeds = measured.speed or (0.0, 0.0)
+    loads, temperatures = measured.load or (0.0, 0.0), measured.temperature or (0.0, 0.0)
+    conditions = OperatingConditions(
         speeds=(
             speeds[0] if settings.lowest is None else settings.lowest,
             speeds[1] if settings.highest is None else settings.highest,
@@ -70,31 +86,25 @@ def conditions(joint: DeployedModel, settings: ExportSettings) -> Conditions:
         temperatures=temperatures,
         remarks=(),
     )
-    if not given.speeds[0] < given.speeds[1]:
+    low, high = conditions.speeds
+    if not low < high:
         raise OptionError(
-            f"--lowest, --highest: {given.speeds[0]:.4g} to {given.speeds[1]:.4g} deg/s is no range"
+            f"--lowest, --highest: {low:.4g} to {high:.4g} deg/s is no range"
             f" of speeds; the data have {speeds[0]:.4g} to {speeds[1]:.4g}"
         )
     outside = [
         f"{name} {value:.4g} {unit} lies outside the data's {low:.4g} to {high:.4g}"
         for name, value, unit, (low, high) in (
-            ("speed", given.speeds[0], "deg/s", speeds),
-            ("speed", given.speeds[1], "deg/s", speeds),
-            ("temperature", given.temperature, "°C", temperatures),
-            ("load", abs(given.load), joint.load_unit, (0.0, max(map(abs, loads)))),
+            ("speed", conditions.speeds[0], "deg/s", speeds),
+            ("speed", conditions.speeds[1], "deg/s", speeds),
+            ("temperature", conditions.temperature, "°C", temperatures),
+            ("load", abs(conditions.load), joint.load_unit, (0.0, max(map(abs, loads)))),
         )
         if not low <= value <= high
     ]
-    return Conditions(
-        speeds=given.speeds,
-        load=given.load,
-        temperature=given.temperature,
-        loads=loads,
-        temperatures=temperatures,
-        remarks=tuple(outside),
-    )
+    return replace(conditions, remarks=tuple(outside))
 
 
 def _root_mean_square(low: float, high: float) -> float:
-    """Return the root mean square of a quantity spread evenly over a range."""
+    """Return the root mean square of a uniform distribution over a range."""
     return float(np.sqrt((low**2 + low * high + high**2) / 3))

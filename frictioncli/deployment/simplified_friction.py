@@ -1,4 +1,4 @@
-"""The friction that robot simulators know: a dry part and one that grows with speed."""
+"""Simplified friction of robot simulators: Coulomb friction and viscous damping."""
 
 from dataclasses import dataclass
 
@@ -7,28 +7,29 @@ from scipy.optimize import nnls
 
 from frictioncli.arrays import Array
 from frictioncli.deployment.deployed_model import DeployedModel
-from frictioncli.deployment.operating_conditions import Conditions
+from frictioncli.deployment.operating_conditions import OperatingConditions
 from frictioncli.errors import OptionError
 
 _POINTS = 400
+"""Number of equally spaced speeds of the fit."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class SimpleForm:
-    """Best fit of ``dry + damping * speed`` to (16), and what it misses.
+class SimplifiedFriction:
+    """Least-squares fit of ``dry + damping * speed`` to (16), and its error.
 
     Attributes
     ----------
     dry : float
-        Friction that does not depend on speed. [N·m]
+        Coulomb friction [N·m].
     damping : float
-        Friction per speed. [N·m·s/rad]
+        Viscous damping [N·m·s/rad].
     rms, worst : float
-        Root mean square and greatest miss where it was fitted. [N·m]
+        RMS and greatest error at the conditions of the fit [N·m].
     worst_speed : float
-        Where the greatest is. [deg/s]
-    worst_anywhere : float
-        Greatest miss over all loads and temperatures of the data. [N·m]
+        Speed of the greatest error [deg/s].
+    worst_in_range : float
+        Greatest error over all loads and temperatures of the data [N·m].
     """
 
     dry: float
@@ -36,73 +37,99 @@ class SimpleForm:
     rms: float
     worst: float
     worst_speed: float
-    worst_anywhere: float
+    worst_in_range: float
 
     def torque(self, speed: Array) -> Array:
-        """Return the friction torque at speeds in deg/s. [N·m]."""
+        """Return the friction torque.
+
+        Parameters
+        ----------
+        speed : ndarray
+            Absolute velocity [deg/s].
+
+        Returns
+        -------
+        ndarray
+            Friction torque [N·m].
+        """
         return self.dry + self.damping * np.radians(speed)
 
-    def told(self, at: str) -> list[str]:
-        """Return the fit and its loss, a line each; ``at`` says where it was fitted."""
+    def describe(self, conditions: str) -> list[str]:
+        """Return the fit and its errors as lines of text.
+
+        Parameters
+        ----------
+        conditions : str
+            Text of the conditions of the fit.
+        """
         return [
             f"dry friction {self.dry:.6g} N·m, damping {self.damping:.6g} N·m·s/rad: least squares"
-            f" to the measured friction law, {at}",
+            f" to the measured friction law, {conditions}",
             f"lost there: {self.rms:.3g} N·m RMS, at most {self.worst:.3g} N·m at"
             f" {self.worst_speed:.3g} deg/s",
-            f"lost at other loads and temperatures of the data: up to {self.worst_anywhere:.3g}"
+            f"lost at other loads and temperatures of the data: up to {self.worst_in_range:.3g}"
             " N·m, as this form knows neither",
         ]
 
 
-def simple_form(
-    joint: DeployedModel, where: Conditions, torque_constant: float | None
-) -> SimpleForm:
-    """Return the best fit of the form that simulators know, with neither part negative.
+def simplified_friction(
+    joint: DeployedModel, conditions: OperatingConditions, torque_constant: float | None
+) -> SimplifiedFriction:
+    """Return the least-squares fit of simplified friction with non-negative parts.
 
     Parameters
     ----------
     joint : DeployedModel
         The joint.
-    where : Conditions
-        Where to fit.
+    conditions : OperatingConditions
+        Conditions of the fit.
     torque_constant : float or None
-        Torque at the joint per unit of the log's torque. [N·m/A]
+        Torque at the joint per unit of the log's torque [N·m/A].
+
+    Returns
+    -------
+    SimplifiedFriction
+        The fit with its errors.
 
     Raises
     ------
     OptionError
-        If the log's torque is no torque at the joint and there is no constant.
+        If the log's torque is not in N·m at the joint and no constant is given.
     """
     factor = _to_newton_metres(joint, torque_constant)
-    speed = np.linspace(*where.speeds, _POINTS)
+    speed = np.linspace(*conditions.speeds, _POINTS)
 
-    def wanted(load: float, temperature: float) -> Array:
+    def model_torque(load: float, temperature: float) -> Array:
         return factor * joint.friction(load=load, speed=speed, temperature=temperature)
 
     columns = np.column_stack([np.ones_like(speed), np.radians(speed)])
-    (dry, damping), _ = nnls(columns, wanted(where.load, where.temperature))
+    (dry, damping), _ = nnls(columns, model_torque(conditions.load, conditions.temperature))
     fitted = columns @ [dry, damping]
-    missed = np.abs(fitted - wanted(where.load, where.temperature))
-    # (16) is monotonous in temperature and in the load's amount: the ends are the extremes
-    loads = (0.0 if where.loads[0] < 0 < where.loads[1] else min(map(abs, where.loads)),)
+    error = np.abs(fitted - model_torque(conditions.load, conditions.temperature))
+    # (16) is monotonic in temperature and in the absolute load: the extremes are at the ends
+    loads = (
+        0.0 if conditions.loads[0] < 0 < conditions.loads[1] else min(map(abs, conditions.loads)),
+    )
     corners = [
         (load, temperature)
-        for load in (*loads, max(map(abs, where.loads)))
-        for temperature in where.temperatures
+        for load in (*loads, max(map(abs, conditions.loads)))
+        for temperature in conditions.temperatures
     ]
-    return SimpleForm(
+    return SimplifiedFriction(
         dry=float(dry),
         damping=float(damping),
-        rms=float(np.sqrt(np.mean(np.square(missed)))),
-        worst=float(np.max(missed)),
-        worst_speed=float(speed[np.argmax(missed)]),
-        worst_anywhere=max(
-            float(np.max(missed)), *(float(np.max(np.abs(fitted - wanted(*at)))) for at in corners)
+        rms=float(np.sqrt(np.mean(np.square(error)))),
+        worst=float(np.max(error)),
+        worst_speed=float(speed[np.argmax(error)]),
+        worst_in_range=max(
+            float(np.max(error)),
+            *(float(np.max(np.abs(fitted - model_torque(*corner)))) for corner in corners),
         ),
     )
 
 
 def _to_newton_metres(joint: DeployedModel, torque_constant: float | None) -> float:
+    """Return the torque at the joint [N·m] per unit of the log's torque."""
     model = joint.model
     found = f"{model.torque_unit} at the {model.torque_side}"
     if found == "N·m at the joint":

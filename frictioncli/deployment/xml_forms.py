@@ -1,10 +1,10 @@
-"""URDF and MuJoCo's MJCF: the simple form of friction, with what it loses in a comment."""
+"""URDF and MJCF files with simplified friction; comments state what it cannot hold."""
 
 from collections.abc import Sequence
 from textwrap import fill
 from xml.sax.saxutils import quoteattr
 
-from frictioncli.deployment.simplified_friction import SimpleForm
+from frictioncli.deployment.simplified_friction import SimplifiedFriction
 
 _URDF = """\
 <?xml version="1.0" encoding="UTF-8"?>
@@ -46,22 +46,22 @@ _MJCF = """\
 """
 
 
-def urdf(form: SimpleForm, name: str, remarks: Sequence[str]) -> str:
-    """Return a URDF whose only joint has the friction; the remarks stand in its head."""
-    return _filled(_URDF, form, name, remarks)
+def urdf_text(friction: SimplifiedFriction, name: str, remarks: Sequence[str]) -> str:
+    """Return a URDF with one joint that has the friction, and remarks as a comment."""
+    return _fill(_URDF, friction, name, remarks)
 
 
-def mjcf(form: SimpleForm, name: str, remarks: Sequence[str]) -> str:
-    """Return an MJCF file to include: a default class for the joint."""
-    return _filled(_MJCF, form, name, remarks)
+def mjcf_text(friction: SimplifiedFriction, name: str, remarks: Sequence[str]) -> str:
+    """Return an MJCF file to include, with a default class for the joint."""
+    return _fill(_MJCF, friction, name, remarks)
 
 
-def _filled(template: str, form: SimpleForm, name: str, remarks: Sequence[str]) -> str:
-    # two hyphens would end a comment of XML
+def _fill(template: str, friction: SimplifiedFriction, name: str, remarks: Sequence[str]) -> str:
+    # two hyphens are not allowed in an XML comment
     comment = "\n".join(
         fill(line, width=98, initial_indent="  ", subsequent_indent="    ", drop_whitespace=True)
         for line in remarks
     ).replace("--", "- -")
     return template.format(
-        comment=comment, name=quoteattr(name), damping=form.damping, dry=form.dry
+        comment=comment, name=quoteattr(name), damping=friction.damping, dry=friction.dry
     )

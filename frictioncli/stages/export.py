@@ -4,9 +4,9 @@ from pathlib import Path
 
 from frictioncli import __version__, schemas, tables
 from frictioncli.correction.settings import ScheduleSettings
-from frictioncli.deployment.deployed_model import DeployedModel, middle_speed
+from frictioncli.deployment.deployed_model import DeployedModel, default_correction_speed
 from frictioncli.deployment.export import export as export_model
-from frictioncli.deployment.extension import LAG, DeployedExtension, carried
+from frictioncli.deployment.extension import LAG, DeployedExtension, deployable_extension
 from frictioncli.deployment.settings import ExportSettings
 from frictioncli.diagnosis.documents.reload import read_documents
 from frictioncli.errors import OptionError, TableError
@@ -41,7 +41,7 @@ def export(work: Path, settings: ExportSettings) -> StageResult:
     exported = export_model(deployed(work, settings), settings)
     target = work / EXPORTS / exported.name
     write_text(target, exported.text)
-    return StageResult(target, "\n".join([str(target), *exported.said]))
+    return StageResult(target, "\n".join([str(target), *exported.notes]))
 
 
 def deployed(work: Path, settings: ExportSettings | None = None) -> DeployedModel:
@@ -71,7 +71,7 @@ def deployed(work: Path, settings: ExportSettings | None = None) -> DeployedMode
     return DeployedModel(
         model=model,
         schedule=ScheduleSettings(criterion=settings.criterion, k=settings.k, tmax=settings.tmax),
-        correction_speed=middle_speed(model),
+        correction_speed=default_correction_speed(model),
         extension=extension,
         origin=input_hashes(inputs),
         version=__version__,
@@ -106,4 +106,4 @@ def _extension(work: Path, model: FrictionModel) -> DeployedExtension | None:
             stated = cause.parameters.get("time_constant")
             interval = stated.ci95 if stated else None
     torques = tables.read(work / TORQUES, schemas.TORQUES)
-    return carried(torques[torques["joint"] == model.joint], extended, interval)
+    return deployable_extension(torques[torques["joint"] == model.joint], extended, interval)

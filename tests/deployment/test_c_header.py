@@ -230,7 +230,7 @@ def test_without_a_temperature_there_is_friction_and_no_corrector(compiled):
     assert found[0][0] == pytest.approx(10.57 + 0.14 + 3.48 * np.sqrt(50.0))
     header = export(deployed, ExportSettings(to="c"))
     assert "_correct(" not in header.text
-    assert "temperature spans 1 °C" in header.said[0]
+    assert "temperature spans 1 °C" in header.notes[0]
 
 
 def test_the_head_says_what_it_is_made_from_and_units():

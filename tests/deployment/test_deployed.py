@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 
 from frictioncli.correction.corrector import TemperatureCorrector
 from frictioncli.correction.settings import ScheduleSettings
-from frictioncli.deployment.deployed_model import middle_speed
+from frictioncli.deployment.deployed_model import default_correction_speed
 from frictioncli.deployment.document import load_deployed
 from frictioncli.deployment.export import export
 from frictioncli.deployment.extended_corrector import ExtendedCorrector
@@ -62,7 +62,7 @@ def test_the_corrector_knows_what_it_was_given():
     assert isinstance(inner, TemperatureCorrector)
     assert (inner.k, inner.tmax, inner.reading) == (2.0, 900.0, "latest_degree")
     assert isinstance(joint(extension=extended()).corrector(), ExtendedCorrector)
-    assert middle_speed(joint().model) == pytest.approx(101.2 * 2 / 3)
+    assert default_correction_speed(joint().model) == pytest.approx(101.2 * 2 / 3)
 
 
 def test_without_a_temperature_there_is_no_corrector_and_the_document_says_so(tmp_path):

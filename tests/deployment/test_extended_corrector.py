@@ -15,7 +15,7 @@ from frictioncli.correction.corrector import TemperatureCorrector
 from frictioncli.correction.evaluation import simulate
 from frictioncli.correction.settings import CorrectionSettings, ScheduleSettings
 from frictioncli.deployment.extended_corrector import ExtendedCorrector
-from frictioncli.deployment.extension import MEMORYLESS, carried
+from frictioncli.deployment.extension import MEMORYLESS, deployable_extension
 from frictioncli.deployment.gear_temperature import GearTemperature
 from frictioncli.diagnosis.data.gravity import GravityCoefficients
 from frictioncli.diagnosis.documents.apply_extension import (
@@ -60,7 +60,7 @@ def two_days(speeds=(67.5,)):
 
 
 def replayed(rows, model, schedule):
-    extension = carried(rows, model, None)
+    extension = deployable_extension(rows, model, None)
     base = published_model()
     added, _ = friction_beyond(rows, base, model)
     pairs = pairs_of(rows, added)
@@ -70,7 +70,7 @@ def replayed(rows, model, schedule):
         if before is None or pair.run != before.run:
             corrector = ExtendedCorrector(TemperatureCorrector(PUBLISHED), extension)
         if before is None or (pair.run, pair.phase) != (before.run, before.phase):
-            corrector.inner = TemperatureCorrector(PUBLISHED, k=schedule.k, tmax=schedule.tmax)
+            corrector.base = TemperatureCorrector(PUBLISHED, k=schedule.k, tmax=schedule.tmax)
         corrector.update(
             pair.time,
             pair.motor_temperature,
@@ -79,7 +79,7 @@ def replayed(rows, model, schedule):
             power=power,
         )
         load = math.sqrt(pair.squared)
-        beyond = corrector.beyond(load, pair.speed)
+        beyond = corrector.added_friction(load, pair.speed)
         due = corrector.is_due
         if due:
             corrector.correct(pair.friction, load, pair.speed)
@@ -115,14 +115,16 @@ def test_effects_that_need_the_past_are_named_and_left_out():
         FittedEffect(effect=BY_NAME[name], shape={}, coefficients=np.zeros(1))
         for name in ("drift", "position_ripple", "dress_pack")
     ]
-    extension = carried(two_days(), model_with(LAGGING, effect("load_linear", 0.1), *others), None)
+    extension = deployable_extension(
+        two_days(), model_with(LAGGING, effect("load_linear", 0.1), *others), None
+    )
     assert [term.effect.name for term in extension.terms] == ["load_linear"]
     assert extension.left_out == {
         "drift": "goes with the time since the first log",
         "position_ripple": "goes with the angle",
         "dress_pack": "shows in the load, not in friction",
     }
-    assert carried(two_days(), model_with(), None) is None
+    assert deployable_extension(two_days(), model_with(), None) is None
 
 
 def test_every_effect_is_carried_or_has_a_reason():
@@ -131,14 +133,14 @@ def test_every_effect_is_carried_or_has_a_reason():
             assert entry.channel == "friction"
             continue
         one = FittedEffect(effect=entry, shape={}, coefficients=np.zeros(len(entry.coefficients)))
-        why = carried(two_days(), model_with(one), None).left_out[name]
+        why = deployable_extension(two_days(), model_with(one), None).left_out[name]
         assert ("load" in why) == (entry.channel == "load" and name != "inertia")
 
 
 def test_the_state_refers_to_what_the_log_had():
     """Reference power and the start's spread, by another route."""
     rows = two_days()
-    gear = carried(rows, model_with(LAGGING), (900.0, 2600.0)).gear
+    gear = deployable_extension(rows, model_with(LAGGING), (900.0, 2600.0)).gear
     friction = (
         10.57
         + 0.0014 * rows["load_torque"] ** 2

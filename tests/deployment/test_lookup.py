@@ -39,7 +39,7 @@ def test_scipy_s_interpolation_of_the_file_keeps_the_tolerance(tolerance):
     speed, warm, load = points.T
     wanted = friction_torque(deployed.base, load=load, speed=speed, temperature=warm)
     found = float(np.max(np.abs(at(points) - wanted)))
-    told = float(done.said[0].split("at most ")[1].split()[0])
+    told = float(done.notes[0].split("at most ")[1].split()[0])
     assert 0.5 * told < found <= told * 1.02 <= tolerance * 1.02
 
 
@@ -54,7 +54,7 @@ def test_it_covers_the_data_and_is_no_finer_than_needed():
 
 def test_by_default_a_thousandth_of_the_greatest_friction():
     greatest = friction_torque(joint().base, load=95.0, speed=101.2, temperature=20.0)
-    assert f"({greatest / 1000:.3g} allowed)" in table(joint()).said[0]
+    assert f"({greatest / 1000:.3g} allowed)" in table(joint()).notes[0]
 
 
 def test_without_a_temperature_two_knots_do():

@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 from frictioncli.deployment.export import export
-from frictioncli.deployment.operating_conditions import conditions
+from frictioncli.deployment.operating_conditions import operating_conditions
 from frictioncli.deployment.settings import ExportSettings
-from frictioncli.deployment.simplified_friction import simple_form
+from frictioncli.deployment.simplified_friction import simplified_friction
 from frictioncli.errors import OptionError
 from frictioncli.model.friction import PUBLISHED, friction_torque
 from tests.deployment.joints import joint
@@ -81,8 +81,8 @@ def test_pinocchio_reads_the_friction_promised(tmp_path):
 def test_the_loss_that_is_told_is_the_loss():
     """RMS and greatest miss, here on a grid of its own; elsewhere the corners of the data."""
     deployed, settings = joint(), ExportSettings(to="urdf", **AT)
-    where = conditions(deployed, settings)
-    form = simple_form(deployed, where, None)
+    where = operating_conditions(deployed, settings)
+    form = simplified_friction(deployed, where, None)
     grid = np.linspace(2.3, 101.2, 5001)
     miss = promised(grid) - friction_torque(PUBLISHED, speed=grid, **AT)
     assert form.rms == pytest.approx(np.sqrt(np.mean(miss**2)), rel=0.01)
@@ -93,15 +93,15 @@ def test_the_loss_that_is_told_is_the_loss():
         PUBLISHED, load=load, speed=grid[::50, None, None], temperature=warm
     )
     worst = np.max(np.abs(everywhere - promised(grid[::50])[:, None, None]))
-    assert form.worst_anywhere == pytest.approx(worst, rel=1e-3)
+    assert form.worst_in_range == pytest.approx(worst, rel=1e-3)
     text = export(deployed, settings)
-    for shown in (f"{form.rms:.3g} N·m RMS", f"up to {form.worst_anywhere:.3g} N·m"):
+    for shown in (f"{form.rms:.3g} N·m RMS", f"up to {form.worst_in_range:.3g} N·m"):
         assert shown in " ".join(text.text.split())
-        assert any(shown in line for line in text.said)
+        assert any(shown in line for line in text.notes)
 
 
 def test_where_it_fits_by_default_is_the_middle_of_the_data():
-    where = conditions(joint(), ExportSettings(to="urdf"))
+    where = operating_conditions(joint(), ExportSettings(to="urdf"))
     assert where.speeds == (2.3, 101.2)
     assert where.temperature == pytest.approx(42.5)
     # evenly spread from -95 to 90: the mean square is (90³ + 95³)/3/185
@@ -111,16 +111,18 @@ def test_where_it_fits_by_default_is_the_middle_of_the_data():
 
 def test_leaving_the_data_is_said():
     settings = ExportSettings(to="urdf", temperature=90.0, highest=200.0)
-    said = export(joint(), settings).said
+    said = export(joint(), settings).notes
     assert "speed 200 deg/s lies outside the data's 2.3 to 101.2" in said
     assert "temperature 90 °C lies outside the data's 20 to 65" in said
 
 
 def test_neither_part_is_negative():
     """Friction that hardly grows: a line would slope upwards from below zero elsewhere."""
-    form = simple_form(
+    form = simplified_friction(
         joint(tau_c=0.0, beta=30.0, gamma=0.0, delta=0.0),
-        conditions(joint(), ExportSettings(to="urdf", lowest=0.001, highest=0.01, load=0.0)),
+        operating_conditions(
+            joint(), ExportSettings(to="urdf", lowest=0.001, highest=0.01, load=0.0)
+        ),
         None,
     )
     assert form.dry >= 0
@@ -130,9 +132,11 @@ def test_neither_part_is_negative():
 def test_a_current_needs_a_torque_constant():
     with pytest.raises(OptionError, match=r"in A at the joint.*--torque-constant"):
         export(joint(unit="A"), ExportSettings(to="mjcf"))
-    plain = simple_form(joint(), conditions(joint(), ExportSettings(to="urdf", **AT)), None)
-    scaled = simple_form(
-        joint(unit="A"), conditions(joint(unit="A"), ExportSettings(to="urdf", **AT)), 0.5
+    plain = simplified_friction(
+        joint(), operating_conditions(joint(), ExportSettings(to="urdf", **AT)), None
+    )
+    scaled = simplified_friction(
+        joint(unit="A"), operating_conditions(joint(unit="A"), ExportSettings(to="urdf", **AT)), 0.5
     )
     assert scaled.dry == pytest.approx(0.5 * plain.dry)
     assert scaled.damping == pytest.approx(0.5 * plain.damping)
