@@ -14,7 +14,7 @@ import numpy as np
 
 from frictioncli.arrays import Array
 from frictioncli.comparison.day_to_day import LevelEstimate, LevelModel
-from frictioncli.diagnosis.noise.significance import credible_set, probabilities
+from frictioncli.diagnosis.noise.significance import credible_set, posterior_probabilities
 
 _RUN_IN_RATES = (1.0, 2.0, 4.0)
 """Rates of running in, as multiples of one over the whole time."""
@@ -149,7 +149,7 @@ def cause_of(levels: Array, model: LevelModel, time: Array, channel: str) -> Cau
         name: float(np.logaddexp.reduce([one for one, _, _ in own]) - np.log(len(own)))
         for name, own in fits.items()
     }
-    share = probabilities(evidence)
+    share = posterior_probabilities(evidence)
     credible = credible_set(share)
     _, course, change = max(fits[credible[0]], key=lambda entry: entry[0])
     is_step = credible == (course.effect,) or channel == "load"

@@ -18,7 +18,7 @@ from frictioncli.comparison.noise_averaged_fit import RANK, is_estimable, noise_
 from frictioncli.diagnosis.data.gravity import without_offset
 from frictioncli.diagnosis.data.problem import Problem
 from frictioncli.effects import thermal_lag
-from frictioncli.effects.availability import missing_columns
+from frictioncli.effects.base import missing_columns
 from frictioncli.linear_algebra import least_squares_residual
 from frictioncli.model.noise import Noise, plausible_noise
 
@@ -218,11 +218,8 @@ def _residual_square(design: Array, misfit: Array) -> float:
 
 def _point_noise(problem: Problem) -> float:
     """Return the standard deviation of single angle bins within their pairs [N·m]."""
-    layout, misfit = problem.layout, problem.friction_misfit
-    inside = misfit - layout.means(misfit[:, np.newaxis])[layout.row_pair, 0]
-    degrees = max(len(inside) - len(layout.bins), 1)
     floor = 1e-6 * max(float(np.mean(np.abs(problem.friction))), 1e-12)
-    return max(float(np.sqrt(inside @ inside / degrees)), floor)
+    return max(problem.layout.point_deviation(problem.friction_misfit), floor)
 
 
 def _differences(length: Array, count: int, components: int) -> Array:

@@ -115,5 +115,5 @@ def _log_odds_gain(
 
 def _relative_size_errors(question: Question) -> Array:
     """Return the relative standard error of each rival's size, shape (rivals,)."""
-    statistic = np.array([max(rival.score.statistic, 1.0) for rival in question.rivals])
+    statistic = np.array([max(rival.fit.statistic, 1.0) for rival in question.rivals])
     return np.asarray(1 / np.sqrt(statistic))

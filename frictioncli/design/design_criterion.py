@@ -23,7 +23,7 @@ from frictioncli.design.predicted_rows import PlannedJoint, append_run, predict_
 from frictioncli.design.rivals import OpenQuestions
 from frictioncli.design.steps import Step
 from frictioncli.diagnosis.data.problem import Problem, simulated
-from frictioncli.diagnosis.fit.columns import left_of_base, main_channel
+from frictioncli.diagnosis.fit.columns import main_channel, residual_of_base
 from frictioncli.model.document import PARAMETERS
 
 PLANNED = "~"
@@ -93,7 +93,7 @@ class DesignCriterion:
     ) -> "DesignCriterion":
         """Return the criterion for one joint, given its observed rows."""
         problem = _problem(joint, joint.torques)
-        observed = Information(problem, open_questions.noise, problem.whole)
+        observed = Information(problem, open_questions.noise, problem.all_runs)
         covariance = _precision(joint, open_questions, observed)
         values = _estimates(joint, open_questions)
         wide = tuple(
@@ -125,11 +125,11 @@ class DesignCriterion:
         ]
         new = pd.concat([run for run in runs if len(run)] or runs[:1], ignore_index=True)
         problem = _problem(self.joint, append_run(self.joint.torques, new))
-        travel = problem.whole.travel.copy()
+        travel = problem.all_runs.travel.copy()
         if len(new):
             travel[-len(new) :] = new["travel"]
         observed_share = len(self.observed.problem.layout.bins) / len(problem.layout.bins)
-        true_inputs = replace(problem.whole, travel=travel)
+        true_inputs = replace(problem.all_runs, travel=travel)
         return Information(problem, self.open_questions.noise, true_inputs, observed_share)
 
     def rule_out_probabilities(self, information: Information) -> tuple[Array, ...]:
@@ -197,17 +197,17 @@ class DesignCriterion:
         """
         problem = self.information_after(steps).problem
         new = slice(len(self.observed.problem.friction), None)
-        weighted = [(1.0, score) for score in self.open_questions.settled]
+        weighted = [(1.0, fit) for fit in self.open_questions.settled]
         for question in self.open_questions.questions:
             share = question.probabilities
-            weighted += [(share[rival.name], rival.score) for rival in question.rivals]
+            weighted += [(share[rival.name], rival.fit) for rival in question.rivals]
         if not weighted:
             return float(len(problem.layout.bins))
         total = 0.0
-        for weight, score in weighted:
-            basis = problem.basis(score.effect, score.shape)
-            torque = main_channel(basis, score.effect) @ score.coefficients
-            residual = left_of_base(problem, torque, score.effect.channel)[new]
+        for weight, fit in weighted:
+            basis = problem.basis(fit.effect, fit.shape)
+            torque = main_channel(basis, fit.effect) @ fit.coefficients
+            residual = residual_of_base(problem, torque, fit.effect.channel)[new]
             total += weight * float(np.sqrt(np.mean(np.square(residual))))
         return total
 
@@ -220,7 +220,7 @@ def _discriminations(
     for question in open_questions.questions:
         other_causes = [
             *open_questions.settled,
-            *(other.leading.score for other in open_questions.questions if other is not question),
+            *(other.leading.fit for other in open_questions.questions if other is not question),
         ]
         found.append(discrimination_of(information, question, other_causes))
     return tuple(found)

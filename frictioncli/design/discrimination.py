@@ -26,7 +26,7 @@ from frictioncli.design.expected_evidence import CandidateNoises, candidate_nois
 from frictioncli.design.information import Information
 from frictioncli.design.rivals import Question
 from frictioncli.diagnosis.fit.columns import base_columns, basis_columns, joined, reduced
-from frictioncli.diagnosis.fit.judgement import Score
+from frictioncli.diagnosis.fit.hypotheses import EffectFit
 from frictioncli.linear_algebra import schur_complement
 
 _NEGLIGIBLE = 1e-9
@@ -77,7 +77,7 @@ class Discrimination:
 
 
 def discrimination_of(
-    information: Information, question: Question, other_causes: Sequence[Score]
+    information: Information, question: Question, other_causes: Sequence[EffectFit]
 ) -> Discrimination:
     """Return the noncentralities of the rivals of a question in some rows.
 
@@ -91,7 +91,7 @@ def discrimination_of(
         Rows and noise.
     question : Question
         The rivals.
-    other_causes : sequence of Score
+    other_causes : sequence of EffectFit
         Causes that are fitted beside the rivals.
 
     Returns
@@ -110,16 +110,16 @@ def discrimination_of(
     first = 0
     for rival in (*question.rivals, *question.confounders):
         own = []
-        for shape in tried_shapes(rival.score, information):
-            columns = basis_columns(problem, problem.basis(rival.score.effect, shape))
+        for shape in tried_shapes(rival.fit, information):
+            columns = basis_columns(problem, problem.basis(rival.fit.effect, shape))
             own.append(np.arange(first, first + columns.count))
             parts.append(columns)
             first += columns.count
         places.append(np.array(own))
     for rival in question.rivals:
-        shape = _rescaled_shape(rival.score, information.observed_share)
-        basis = rival.score.effect.evaluate(information.true_inputs, shape)
-        coefficients = _shrunken_coefficients(rival.score)
+        shape = _rescaled_shape(rival.fit, information.observed_share)
+        basis = rival.fit.effect.evaluate(information.true_inputs, shape)
+        coefficients = _shrunken_coefficients(rival.fit)
         torque = [(part @ coefficients)[:, np.newaxis] for part in basis]
         parts.append(reduced(problem.layout, *torque))
     columns = joined(parts)
@@ -133,15 +133,15 @@ def discrimination_of(
     return Discrimination(_noncentralities(np.array(matrices), places), noises)
 
 
-def tried_shapes(score: Score, information: Information) -> list[dict[str, float]]:
+def tried_shapes(fit: EffectFit, information: Information) -> list[dict[str, float]]:
     """Return the shapes of a rival that are tried on planned rows, the fitted one first."""
-    grid = score.effect.shapes(information.problem.whole)
+    grid = fit.effect.shapes(information.problem.all_runs)
     if len(grid) > _MOST_SHAPES:
         chosen = np.unique(np.linspace(0, len(grid) - 1, _MOST_SHAPES).round().astype(int))
         grid = [grid[place] for place in chosen]
-    if score.effect.moments is not None and information.observed_share < 1:
+    if fit.effect.moments is not None and information.observed_share < 1:
         grid.append({"moment": information.observed_share})
-    return [_rescaled_shape(score, information.observed_share), *grid]
+    return [_rescaled_shape(fit, information.observed_share), *grid]
 
 
 def _noncentralities(matrices: Array, places: Sequence[Indices]) -> Array:
@@ -203,19 +203,19 @@ def _residual_squares(matrices: Array, columns: Indices, targets: Indices) -> Ar
     return np.asarray(np.maximum(alone - np.sum(across * taken, axis=-2), 0.0))
 
 
-def _shrunken_coefficients(score: Score) -> Array:
+def _shrunken_coefficients(fit: EffectFit) -> Array:
     """Return coefficients without the mean contribution of noise.
 
     A statistic is expected to be its noncentrality plus the number of coefficients: an effect that
     was selected because it stands out is smaller than its estimate.
     """
-    count = len(score.coefficients)
-    share = max(score.statistic - count, 0.0) / max(score.statistic, 1e-9)
-    return np.asarray(score.coefficients * np.sqrt(max(share, _LEAST_SHRINKAGE)))
+    count = len(fit.coefficients)
+    share = max(fit.statistic - count, 0.0) / max(fit.statistic, 1e-9)
+    return np.asarray(fit.coefficients * np.sqrt(max(share, _LEAST_SHRINKAGE)))
 
 
-def _rescaled_shape(score: Score, observed_share: float) -> dict[str, float]:
+def _rescaled_shape(fit: EffectFit, observed_share: float) -> dict[str, float]:
     """Return a fitted shape in terms of all rows: moments are shares of a greater number now."""
-    if score.effect.moments is None:
-        return score.shape
-    return {name: value * observed_share for name, value in score.shape.items()}
+    if fit.effect.moments is None:
+        return fit.shape
+    return {name: value * observed_share for name, value in fit.shape.items()}

@@ -55,7 +55,7 @@ class Information:
         """
         shared = _pair_information(columns.load.means, self._covariance(self.noise[1], 0.0))
         for part, noise in zip(columns.channels, self.noise, strict=True):
-            shared += part.inside.T @ part.inside / noise.point**2
+            shared += part.within.T @ part.within / noise.point**2
         for noise in noises:
             covariance = self._covariance(noise, self.problem.temperature_variance)
             yield shared + _pair_information(columns.friction.means, covariance)

@@ -9,13 +9,12 @@ import numpy as np
 from frictioncli.diagnosis.data.problem import Problem
 from frictioncli.diagnosis.documents.document import DiagnosisDocument
 from frictioncli.diagnosis.documents.extended_model import ExtendedModel
-from frictioncli.diagnosis.fit.columns import hypothesis_of
-from frictioncli.diagnosis.fit.judgement import Score
-from frictioncli.diagnosis.noise.significance import probabilities
+from frictioncli.diagnosis.fit.hypotheses import EffectFit, hypothesis_of
+from frictioncli.diagnosis.noise.significance import posterior_probabilities
 from frictioncli.diagnosis.search.precomputed import Catalogue, Precomputed
 from frictioncli.diagnosis.search.step import Step
 from frictioncli.effects import BY_NAME
-from frictioncli.effects.availability import missing_columns
+from frictioncli.effects.base import missing_columns
 from frictioncli.model.noise import Noise
 
 _MOST_RIVALS = 5
@@ -40,19 +39,19 @@ class Rival:
 
     Attributes
     ----------
-    score : Score
+    fit : EffectFit
         The effect with its shape and coefficients.
     evidence : float
         Log Bayes factor against the base model.
     """
 
-    score: Score
+    fit: EffectFit
     evidence: float
 
     @property
     def name(self) -> str:
         """Name of the effect."""
-        return self.score.effect.name
+        return self.fit.effect.name
 
 
 @dataclass(frozen=True, slots=True)
@@ -74,7 +73,7 @@ class Question:
     @property
     def probabilities(self) -> dict[str, float]:
         """Posterior probability of each rival by name."""
-        return probabilities({rival.name: rival.evidence for rival in self.rivals})
+        return posterior_probabilities({rival.name: rival.evidence for rival in self.rivals})
 
     @property
     def leading(self) -> Rival:
@@ -88,7 +87,7 @@ class OpenQuestions:
 
     Attributes
     ----------
-    settled : tuple of Score
+    settled : tuple of EffectFit
         Causes with a single name.
     questions : tuple of Question
         Causes with several possible names.
@@ -96,14 +95,14 @@ class OpenQuestions:
         Noise of friction and of load beside the likeliest causes [N·m].
     """
 
-    settled: tuple[Score, ...]
+    settled: tuple[EffectFit, ...]
     questions: tuple[Question, ...]
     noise: tuple[Noise, Noise]
 
     @property
-    def causes(self) -> tuple[Score, ...]:
+    def causes(self) -> tuple[EffectFit, ...]:
         """Settled causes and the likeliest rival of each question."""
-        return (*self.settled, *(question.leading.score for question in self.questions))
+        return (*self.settled, *(question.leading.fit for question in self.questions))
 
 
 def open_questions_of(
@@ -129,24 +128,24 @@ def open_questions_of(
     """
     precomputed = Precomputed.of(problem)
     named = document.named_causes
-    scores = [
-        Score(one.effect, dict(one.shape), one.coefficients, np.zeros((0, 0)), 0.0)
+    fits = [
+        EffectFit(one.effect, dict(one.shape), one.coefficients, np.zeros((0, 0)), 0.0)
         for one in extended.effects
     ]
-    settled = [score for cause, score in zip(named, scores, strict=True) if len(cause.effects) == 1]
+    settled = [fit for cause, fit in zip(named, fits, strict=True) if len(cause.effects) == 1]
     questions = []
     for number, cause in enumerate(named):
         if len(cause.effects) == 1:
             continue
-        others = [score for place, score in enumerate(scores) if place != number]
+        others = [fit for place, fit in enumerate(fits) if place != number]
         likely = [n for n, share in cause.probabilities.items() if share >= _LEAST_PROBABILITY]
         names = list(dict.fromkeys([*cause.effects, *likely]))
         question = _fit_rivals(Step.of(precomputed, others), names[:_MOST_RIVALS])
         if len(question.rivals) > 1:
             questions.append(question)
         else:
-            settled += [rival.score for rival in question.rivals]
-    causes = [*settled, *(question.leading.score for question in questions)]
+            settled += [rival.fit for rival in question.rivals]
+    causes = [*settled, *(question.leading.fit for question in questions)]
     friction, load = Step.of(precomputed, causes).noise()
     return OpenQuestions(
         settled=tuple(settled),
@@ -172,13 +171,12 @@ def _fit_rivals(step: Step, names: Sequence[str]) -> Question:
     effects = [BY_NAME[name] for name in [*names, *confounders[:_MOST_CONFOUNDERS]]]
     available = [effect for effect in effects if not missing_columns(effect, problem.table)]
     hypotheses = [hypothesis_of(effect, problem) for effect in available]
-    judged = step.judged(Catalogue.of(step.bench, hypotheses), seed=0, draws=0)
+    tests = step.tested(Catalogue.of(step.precomputed, hypotheses), seed=0, draws=0)
     rivals = []
     for effect in available:
-        one = judged[effect.name]
-        score = step.refined(one.score(effect))
-        refinement = max(score.statistic - one.statistic, 0.0) / 2
-        rivals.append(Rival(score, one.evidence + refinement))
+        test = tests[effect.name]
+        fit = step.refined(test.effect_fit(effect))
+        rivals.append(Rival(fit, test.refined_log_bayes_factor(fit)))
     return Question(
         tuple(rival for rival in rivals if rival.name in names),
         tuple(rival for rival in rivals if rival.name not in names),

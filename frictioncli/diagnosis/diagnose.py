@@ -1,4 +1,10 @@
-"""Stage ``diagnose``: what the simulation of one joint's torque gets wrong, and why."""
+"""Diagnosis of one joint: causes of the misfit of its simulated torque, and the extended model.
+
+The misfit of the base model (16) plus gravity is searched for effects of the catalogue
+(:mod:`frictioncli.diagnosis.search`). Causes that improve the prediction extend the model; a test
+of the lack of fit tells what no effect explains; the gain is measured on a run that was held out,
+where there is one.
+"""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -9,9 +15,8 @@ import pandas as pd
 from frictioncli.diagnosis.data.problem import Problem, build_problems
 from frictioncli.diagnosis.fit.extension import Extension, Gain, extend, measured_gain
 from frictioncli.diagnosis.ramps.evidence import RampEvidence, RampLog, ramp_evidence
-from frictioncli.diagnosis.search.cause_search import Cause, Found, find_causes
-from frictioncli.diagnosis.search.detectable import detectable
-from frictioncli.diagnosis.search.holdout import SLIGHT, worthwhile
+from frictioncli.diagnosis.search.cause_search import Cause, SearchResult, find_causes
+from frictioncli.diagnosis.search.cause_selection import LEAST_VISIBLE, select_causes
 from frictioncli.diagnosis.search.lack_of_fit import Structure, structures
 from frictioncli.diagnosis.settings import DiagnosisSettings
 from frictioncli.effects import EFFECTS
@@ -19,26 +24,41 @@ from frictioncli.effects.base import Effect
 from frictioncli.errors import NotEnoughData
 
 LEAST_PAIRS = 12
-"""With fewer pairs noise cannot be told from structure."""
+"""With fewer pairs noise cannot be distinguished from structure."""
 
 _WORST = 5
+"""Number of places with the greatest misfit that are listed."""
 
-_UNEXPLAINED = 1e-3
-"""Structure without a name must be this unlikely by chance: fifteen places are looked at."""
+_UNNAMED_P_VALUE = 1e-3
+"""Greatest p-value of structure that no effect explains."""
 
-_WORTH_SAYING = 0.003
-"""And, alone, as large as this share of the mean friction."""
+_UNNAMED_SIZE = 0.003
+"""Least size of such structure where no cause was found, as a share of the mean friction."""
 
-_SIZE_LEFT = 0.3
-"""Beside causes it must have this share of the torque that the largest one shows,"""
+_UNNAMED_RELATIVE_SIZE = 0.3
+"""Least size beside causes, as a share of the visible size of the largest one."""
 
-_SHARE_LEFT = 0.1
-"""and explain this share of what they do: no equation is true to the last digit."""
+_UNNAMED_RELATIVE_STATISTIC = 0.1
+"""Least statistic beside causes, as a share of the sum of theirs: no equation is exact."""
 
 
 @dataclass(frozen=True, slots=True)
 class Misfit:
-    """Where the simulated torque misses the measured one: mean misfit there. [N·m]."""
+    """Mean misfit of the simulated torque in one range of an axis at one speed.
+
+    Attributes
+    ----------
+    channel : {"friction", "load"}
+        The channel.
+    axis : {"temperature", "angle"}
+        The axis.
+    low, high : float
+        The range. [°C] or [deg]
+    speed : float
+        Speed of the pairs. [deg/s]
+    misfit : float
+        Mean of measured minus simulated torque there. [N·m]
+    """
 
     channel: str
     axis: str
@@ -50,7 +70,7 @@ class Misfit:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Diagnosis:
-    """What the simulated torque of a joint gets wrong.
+    """Result of the diagnosis of a joint.
 
     Attributes
     ----------
@@ -59,29 +79,29 @@ class Diagnosis:
     torque_unit : str
         Unit of everything torque-like.
     verdict : {"no_evidence", "named", "ambiguous", "unnamed"}
-        What can be said.
+        Whether causes were found, and whether each has a single name.
     causes : tuple of Cause
         Causes found, strongest first.
     visible : tuple of Cause
-        Causes that stand out of the noise but are not worth modelling.
+        Causes that are significant but do not improve the prediction enough to be modelled.
     structure : Structure or None
         Structure that no effect of the catalogue explains.
     gain : Gain or None
-        What the extension is worth; none where nothing was found.
+        Reduction of the misfit by the extension; none where no cause was found.
     extension : Extension or None
         The base with the causes, refitted.
     base : Problem
-        The data seen, with the base model about which the extension is linear.
+        The rows without the hold-out run, with the base model about which the extension is linear.
     detectable : dict of str to (float or None)
-        Smallest size found four times in five, per effect. [N·m]
+        Smallest RMS size that would be found four times in five, by effect. [N·m]
     rmse : float
-        RMS misfit of the simulated torque before any extension. [N·m]
+        RMS misfit of the base model. [N·m]
     worst : tuple of Misfit
-        Where it misses most.
+        The greatest mean misfits.
     runs, held_out : tuple of str, str or None
-        Runs that the diagnosis has seen, and the one kept for the gain.
+        Runs of the diagnosis, and the hold-out run on which the gain is measured.
     ramps : RampEvidence or None
-        What the ramps of the moves say, where the log has them.
+        Evidence of the ramps of the moves, where the log has them.
     """
 
     joint: int
@@ -115,22 +135,22 @@ def diagnose_joint(
     ----------
     torques : DataFrame
         Rows of :data:`frictioncli.schemas.TORQUES` of a single joint. With two runs or more the
-        last one is kept out of everything but the gain.
+        last one is held out of everything but the selection of causes and the gain.
     temperature : {"motor", "housing", "mean"}
         Temperature that the friction function is given.
     torque_unit : str
         Unit of everything torque-like.
     settings : DiagnosisSettings
-        How sure a finding must be.
+        Significance level, seed and greatest number of causes.
     effects : sequence of Effect, optional
         The catalogue.
     ramps : RampLog, optional
-        What was measured outside the constant-velocity parts.
+        Measurements outside the constant-velocity segments.
 
     Raises
     ------
     NotEnoughData
-        If there are too few pairs to tell noise from structure.
+        If there are too few pairs to distinguish noise from structure.
     """
     joint = int(torques["joint"].iloc[0])
     runs = sorted(torques["run"].unique())
@@ -143,17 +163,17 @@ def diagnose_joint(
             " noise from structure; log more moves there and back"
         )
     problem, new = build_problems(torques, temperature, held_out)
-    said = ramp_evidence(ramps, problem, temperature) if ramps else None
-    found = find_causes(problem, effects, settings, said)
-    weighing = found.step.weighing()
-    worthy, visible = worthwhile(found, weighing, new or problem, settings.seed)
-    left = _left(found, worthy, settings)
-    # what explains less than is left may be a part of what has no name
-    causes = tuple(cause for cause in worthy if left is None or _exceeds(cause, left))
-    visible += tuple(cause for cause in worthy if cause not in causes)
+    evidence = ramp_evidence(ramps, problem, temperature) if ramps else None
+    found = find_causes(problem, effects, settings, evidence)
+    weighted_fit = found.step.weighted_fit()
+    selected, visible = select_causes(found, weighted_fit, new or problem, settings.seed)
+    unnamed = _unnamed_structure(found, selected, settings)
+    # a cause that explains less than the unnamed structure may be a part of it
+    causes = tuple(cause for cause in selected if unnamed is None or _exceeds(cause, unnamed))
+    visible += tuple(cause for cause in selected if cause not in causes)
     extension = gain = None
     if causes:
-        extension = extend(problem, weighing, [cause.score for cause in causes])
+        extension = extend(problem, weighted_fit, [cause.fit for cause in causes])
         gain = measured_gain(
             new or problem,
             extension,
@@ -161,63 +181,71 @@ def diagnose_joint(
             floor=_floor(found),
             seed=settings.seed,
         )
-    whole = problem.squared(problem.friction_misfit, problem.load_misfit)
+    squared = problem.squared(problem.friction_misfit, problem.load_misfit)
     return Diagnosis(
         joint=joint,
         torque_unit=torque_unit,
-        verdict=_verdict(causes, left),
+        verdict=_verdict(causes, unnamed),
         causes=causes,
         visible=visible,
-        structure=left,
+        structure=unnamed,
         gain=gain,
         extension=extension,
         base=problem,
-        detectable=detectable(found, effects, settings.alpha),
-        rmse=float(np.sqrt(np.mean(whole))),
+        detectable=found.detectable_sizes(effects, settings.alpha),
+        rmse=float(np.sqrt(np.mean(squared))),
         worst=worst_misfits(problem),
         runs=problem.runs,
         held_out=held_out,
-        ramps=said,
+        ramps=evidence,
     )
 
 
-def _left(found: Found, causes: Sequence[Cause], settings: DiagnosisSettings) -> Structure | None:
-    """Return structure that the causes leave, if it is more than noise and rough edges."""
+def _unnamed_structure(
+    found: SearchResult, causes: Sequence[Cause], settings: DiagnosisSettings
+) -> Structure | None:
+    """Return the structure beside the causes if it is more than noise or errors of their form."""
     step = found.step
-    shown = max((cause.visible for cause in causes), default=0.0)
+    largest = max((cause.visible for cause in causes), default=0.0)
     friction = float(np.mean(np.abs(step.problem.friction)))
-    least = max(SLIGHT * friction, _SIZE_LEFT * shown) if causes else _WORTH_SAYING * friction
-    told = sum(cause.judged.statistic for cause in found.causes) if causes else 0.0
+    least = (
+        max(LEAST_VISIBLE * friction, _UNNAMED_RELATIVE_SIZE * largest)
+        if causes
+        else _UNNAMED_SIZE * friction
+    )
+    named = sum(cause.test.statistic for cause in found.causes) if causes else 0.0
     for one in structures(step, settings.seed):
-        unlikely = one.p_value < min(_UNEXPLAINED, settings.alpha)
-        if unlikely and one.size >= least and one.statistic - one.freedom > _SHARE_LEFT * told:
+        significant = one.p_value < min(_UNNAMED_P_VALUE, settings.alpha)
+        excess = one.statistic - one.freedom
+        if significant and one.size >= least and excess > _UNNAMED_RELATIVE_STATISTIC * named:
             return one
     return None
 
 
-def _exceeds(cause: Cause, left: Structure) -> bool:
-    return cause.judged.statistic > left.statistic - left.freedom
+def _exceeds(cause: Cause, unnamed: Structure) -> bool:
+    """Return whether a cause explains more than structure without a name."""
+    return cause.test.statistic > unnamed.statistic - unnamed.freedom
 
 
-def _verdict(causes: Sequence[Cause], left: Structure | None) -> str:
-    if left is not None:
+def _verdict(causes: Sequence[Cause], unnamed: Structure | None) -> str:
+    if unnamed is not None:
         return "unnamed"
     if not causes:
         return "no_evidence"
     return "named" if all(len(cause.effects) == 1 for cause in causes) else "ambiguous"
 
 
-def _floor(found: Found) -> float:
+def _floor(found: SearchResult) -> float:
     """Return the RMS of point and pair noise of the channels that are simulated."""
-    channels = found.step.noise()[: 1 if found.step.problem.own_load else 2]
+    channels = found.step.noise()[: 1 if found.step.problem.has_load_channel else 2]
     return float(np.sqrt(sum(noise.point**2 + noise.pair**2 for noise in channels)))
 
 
 def worst_misfits(problem: Problem) -> tuple[Misfit, ...]:
-    """Return where the simulated torque misses the measured one most, in the mean."""
+    """Return the greatest mean misfits over temperature or angle, at each speed."""
     table = problem.table
     axes = {"temperature": table.temperature, "angle": table.position}
-    places = []
+    cells = []
     for channel, values in (("friction", problem.friction_misfit), ("load", problem.load_misfit)):
         for axis, along in axes.items():
             edges = np.unique(np.quantile(along, np.linspace(0, 1, 7)))
@@ -228,5 +256,5 @@ def worst_misfits(problem: Problem) -> tuple[Misfit, ...]:
             means = frame.groupby(["cell", "speed"])["misfit"].agg(["mean", "size"])
             for (number, speed), row in means[means["size"] >= 10].iterrows():
                 low, high = float(edges[number]), float(edges[number + 1])
-                places.append(Misfit(channel, axis, low, high, float(speed), float(row["mean"])))
-    return tuple(sorted(places, key=lambda place: -abs(place.misfit))[:_WORST])
+                cells.append(Misfit(channel, axis, low, high, float(speed), float(row["mean"])))
+    return tuple(sorted(cells, key=lambda cell: -abs(cell.misfit))[:_WORST])

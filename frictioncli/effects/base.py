@@ -1,6 +1,6 @@
 """What the catalogue says of one effect, and the table that an effect is evaluated on."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 from itertools import product
 from typing import Literal, NamedTuple
@@ -233,3 +233,39 @@ def load_only(*columns: Array) -> Basis:
     """Return a basis that leaves the friction channel alone."""
     stacked = np.column_stack(columns)
     return Basis(np.zeros_like(stacked), stacked)
+
+
+def missing_columns(effect: Effect, table: EffectTable) -> tuple[str, ...]:
+    """Return the columns that an effect needs and a table lacks.
+
+    Parameters
+    ----------
+    effect : Effect
+        Entry of the catalogue.
+    table : EffectTable
+        Pairs and angle bins.
+
+    Returns
+    -------
+    tuple of str
+        Needed columns that are constant or not known in every row; empty where none is.
+    """
+    return tuple(name for name in effect.needs if not _varies(getattr(table, name)))
+
+
+def applicable(effects: Iterable[Effect], table: EffectTable) -> tuple[Effect, ...]:
+    """Return the effects whose needed columns a table has, in the same order.
+
+    Parameters
+    ----------
+    effects : iterable of Effect
+        The catalogue.
+    table : EffectTable
+        Pairs and angle bins.
+    """
+    return tuple(effect for effect in effects if not missing_columns(effect, table))
+
+
+def _varies(column: np.ndarray) -> bool:
+    """Return whether a column is known in every row and not constant."""
+    return bool(len(column) and np.all(np.isfinite(column)) and np.ptp(column) > 0)

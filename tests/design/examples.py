@@ -7,7 +7,7 @@ import numpy as np
 from frictioncli.design.discrimination import Discrimination
 from frictioncli.design.expected_evidence import CandidateNoises
 from frictioncli.diagnosis.data.problem import build_problems
-from frictioncli.diagnosis.fit.judgement import Score
+from frictioncli.diagnosis.fit.hypotheses import EffectFit
 from frictioncli.effects import BY_NAME
 from frictioncli.model.noise import Noise
 from frictioncli.simulator.settings import SynthesisSettings
@@ -48,9 +48,9 @@ def heating_runs():
     return simulate_programmes(settings, [first, other], 1)
 
 
-def score(name, shape, *coefficients):
+def fit(name, shape, *coefficients):
     """An effect so clear that noise adds nothing to its size."""
-    return Score(BY_NAME[name], shape, np.array(coefficients), np.zeros((0, 0)), 1e12)
+    return EffectFit(BY_NAME[name], shape, np.array(coefficients), np.zeros((0, 0)), 1e12)
 
 
 def discrimination_in_rows(left, pairs=10**9):

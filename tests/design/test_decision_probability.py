@@ -12,7 +12,7 @@ from frictioncli.design.decision_probability import (
     rule_out_probabilities,
 )
 from frictioncli.design.rivals import Question, Rival
-from tests.design.examples import discrimination_in_rows, score
+from tests.design.examples import discrimination_in_rows, fit
 
 
 def test_probabilities_are_those_of_drawn_likelihood_ratios():
@@ -24,8 +24,8 @@ def test_probabilities_are_those_of_drawn_likelihood_ratios():
     # A against nothing: log ratio of signal + noise
     ratio = noise @ signal + signal @ signal / 2
     drawn = float(np.mean(start + ratio > DECISIVE_LOG_ODDS))
-    rival = Rival(score("drift", {"time_constant": 200.0}, 1.0), start)
-    other = Rival(score("coulomb_temperature", {}, 1.0), 0.0)
+    rival = Rival(fit("drift", {"time_constant": 200.0}, 1.0), start)
+    other = Rival(fit("coulomb_temperature", {}, 1.0), 0.0)
     question = Question((rival, other))
     after = np.array([[0.0, signal @ signal, 0.0], [0.0, 0.0, 0.0]])
     found = rule_out_probabilities(
@@ -39,8 +39,8 @@ def test_a_noise_of_unknown_size_weakens_the_evidence():
     """The log ratio of residual squares of two fits, many times."""
     question = Question(
         (
-            Rival(score("drift", {"time_constant": 200.0}, 1.0), 0.0),
-            Rival(score("coulomb_temperature", {}, 1.0), 0.0),
+            Rival(fit("drift", {"time_constant": 200.0}, 1.0), 0.0),
+            Rival(fit("coulomb_temperature", {}, 1.0), 0.0),
         )
     )
     generator = np.random.default_rng(9)
@@ -66,8 +66,8 @@ def test_an_uncertain_size_makes_decisions_less_certain():
     size = np.maximum(1 + generator.standard_normal(200000) / np.sqrt(statistic), 0.0)
     shift = size**2 * added
     odds = shift / 2 + np.sqrt(shift) * generator.standard_normal(len(size))
-    one = replace(score("drift", {"time_constant": 200.0}, 1.0), statistic=statistic)
-    question = Question((Rival(one, 0.0), Rival(score("coulomb_temperature", {}, 1.0), 0.0)))
+    one = replace(fit("drift", {"time_constant": 200.0}, 1.0), statistic=statistic)
+    question = Question((Rival(one, 0.0), Rival(fit("coulomb_temperature", {}, 1.0), 0.0)))
     after = np.array([[0.0, added, 1e9], [added, 0.0, 1e9]])
     found = rule_out_probabilities(
         question, discrimination_in_rows(np.zeros((2, 3))), discrimination_in_rows(after)
@@ -80,8 +80,8 @@ def test_a_cause_whose_shape_is_found_late_gains_less():
     """A rival that new rows force to one of eight shapes loses the others: log 8 of its odds."""
     question = Question(
         (
-            Rival(score("drift", {"time_constant": 200.0}, 1.0), 0.0),
-            Rival(score("coulomb_temperature", {}, 1.0), 0.0),
+            Rival(fit("drift", {"time_constant": 200.0}, 1.0), 0.0),
+            Rival(fit("coulomb_temperature", {}, 1.0), 0.0),
         )
     )
     own = 2 * np.log(8)
@@ -97,8 +97,8 @@ def test_a_cause_whose_shape_is_found_late_gains_less():
 def test_without_new_rows_nothing_is_decided():
     question = Question(
         (
-            Rival(score("drift", {"time_constant": 200.0}, 1.0), 1.0),
-            Rival(score("coulomb_temperature", {}, 1.0), 0.0),
+            Rival(fit("drift", {"time_constant": 200.0}, 1.0), 1.0),
+            Rival(fit("coulomb_temperature", {}, 1.0), 0.0),
         )
     )
     same = discrimination_in_rows(np.full((2, 3), 12.0), 50)

@@ -11,7 +11,7 @@ from frictioncli.design.discrimination import discrimination_of, tried_shapes
 from frictioncli.design.information import Information
 from frictioncli.design.rivals import Question, Rival
 from frictioncli.diagnosis.fit.columns import base_rows
-from tests.design.examples import NOISE, discrimination_in_rows, few_pairs, score
+from tests.design.examples import NOISE, discrimination_in_rows, few_pairs, fit
 
 
 @pytest.fixture(scope="module")
@@ -29,11 +29,11 @@ def dense(problem, noise):
 
 
 def test_noncentrality_is_what_generalised_least_squares_leaves(problem):
-    drift = score("drift", {"time_constant": 200.0}, 1.5)
-    warm = score("coulomb_temperature", {}, -0.1)
+    drift = fit("drift", {"time_constant": 200.0}, 1.5)
+    warm = fit("coulomb_temperature", {}, -0.1)
     question = Question((Rival(drift, 0.0), Rival(warm, 0.0)))
     found = discrimination_of(
-        Information(problem, NOISE, problem.whole), question, ()
+        Information(problem, NOISE, problem.all_runs), question, ()
     ).noncentrality[0]
     base = base_rows(problem)
 
@@ -55,10 +55,10 @@ def test_noncentrality_is_what_generalised_least_squares_leaves(problem):
         return -2 * np.log(np.mean(np.exp(-np.array(found) / 2)))
 
     for i, j in ((0, 0), (0, 1), (1, 0)):
-        own, other = question.rivals[i].score, question.rivals[j].score
+        own, other = question.rivals[i].fit, question.rivals[j].fit
         basis = problem.basis(own.effect, own.shape)
         signal = [part @ own.coefficients for part in basis]
-        shapes = [other.shape, *other.effect.shapes(problem.whole)]
+        shapes = [other.shape, *other.effect.shapes(problem.all_runs)]
         # pooling neighbours loses a little of what differs inside pairs
         assert found[i, j] == pytest.approx(left(signal, other.effect, shapes), rel=0.03)
     assert found[1, 1] == pytest.approx(0.0, abs=1e-6)  # it has one shape, and is at work
@@ -68,9 +68,9 @@ def test_noncentrality_is_what_generalised_least_squares_leaves(problem):
 
 def test_confounders_must_be_ruled_out_too(problem):
     """Two identical effects can never be told apart, whether both are open or one is not yet."""
-    drift = Rival(score("drift", {"time_constant": 200.0}, 1.5), 0.0)
-    warm = Rival(score("coulomb_temperature", {}, -0.1), 0.0)
-    information = Information(problem, NOISE, problem.whole)
+    drift = Rival(fit("drift", {"time_constant": 200.0}, 1.5), 0.0)
+    warm = Rival(fit("coulomb_temperature", {}, -0.1), 0.0)
+    information = Information(problem, NOISE, problem.all_runs)
     whole = discrimination_of(information, Question((drift, warm), (drift,)), ()).noncentrality[0]
     assert whole.shape == (2, 4)
     assert whole[:, 2] == pytest.approx(whole[:, 0])
@@ -84,8 +84,8 @@ def test_confounders_must_be_ruled_out_too(problem):
 
 def test_moments_stay_where_they_were_when_rows_are_added(problem):
     """A change half-way through the rows at hand is one at a quarter of twice as many."""
-    step = score("step_change", {"moment": 0.5}, 1.0)
-    information = Information(problem, NOISE, problem.whole, observed_share=0.5)
+    step = fit("step_change", {"moment": 0.5}, 1.0)
+    information = Information(problem, NOISE, problem.all_runs, observed_share=0.5)
     shapes = [shape["moment"] for shape in tried_shapes(step, information)]
     assert shapes[0] == 0.25
     assert 0.5 in shapes  # between the rows at hand and those to come

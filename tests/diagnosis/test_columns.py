@@ -9,22 +9,16 @@ from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
 from frictioncli.diagnosis.data.gravity import carried_load
-from frictioncli.diagnosis.fit.columns import (
-    Hypothesis,
-    base_rows,
-    hypothesis_of,
-    joined,
-    misfit_column,
-    reduced,
-)
+from frictioncli.diagnosis.fit.columns import base_rows, joined, misfit_column, reduced
+from frictioncli.diagnosis.fit.hypotheses import Hypothesis, hypothesis_of
 from frictioncli.diagnosis.search.precomputed import Catalogue, Precomputed, point_noise
 from frictioncli.effects import BY_NAME, EFFECTS
 from frictioncli.effects.base import Basis
 from frictioncli.model.friction import FrictionParameters, friction_torque
-from tests.diagnosis import noises
-from tests.diagnosis.noises import problem
+from tests.diagnosis import dense_noise
+from tests.diagnosis.dense_noise import problem
 
-PAIRS = noises.layout(11, 6, bins=4)
+PAIRS = dense_noise.layout(11, 6, bins=4)
 ROWS = 17 * 4
 VALUES = st.floats(-100, 100)
 
@@ -32,7 +26,7 @@ VALUES = st.floats(-100, 100)
 def squares(columns, part="friction"):
     """Inner products of reduced columns; a pair's mean counts once per bin."""
     channel = getattr(columns, part)
-    return channel.inside.T @ channel.inside + 4 * channel.means.T @ channel.means
+    return channel.within.T @ channel.within + 4 * channel.means.T @ channel.means
 
 
 @given(arrays(float, (4, 2), elements=VALUES), arrays(float, (17, 2), elements=VALUES))
@@ -42,7 +36,7 @@ def test_what_is_alike_in_neighbouring_pairs_loses_nothing(over_angle, over_pair
     rows = np.tile(over_angle, (17, 1)) + np.repeat(over_pairs, 4, axis=0)
     found = reduced(PAIRS, rows, np.zeros_like(rows))
     np.testing.assert_allclose(squares(found), rows.T @ rows, rtol=1e-9, atol=1e-6)
-    assert not found.load.inside.any()
+    assert not found.load.within.any()
     assert not found.load.means.any()
 
 
@@ -63,13 +57,13 @@ def test_splitting_is_linear_and_means_and_deviations_stay_apart(rows, factor):
     found = reduced(PAIRS, rows, load)
     mixed = reduced(PAIRS, rows[:, :1] + factor * rows[:, 1:], load[:, :1] + factor * load[:, 1:])
     for own, whole in zip(found.channels, mixed.channels, strict=True):
-        for name in ("inside", "means"):
+        for name in ("within", "means"):
             expected = getattr(own, name)[:, :1] + factor * getattr(own, name)[:, 1:]
             np.testing.assert_allclose(getattr(whole, name), expected, atol=1e-9)
     means = rows.reshape(17, 4, 2).mean(axis=1)
     np.testing.assert_allclose(found.friction.means, means, atol=1e-12)
     alone = reduced(PAIRS, np.repeat(means, 4, axis=0), load)
-    np.testing.assert_allclose(alone.friction.inside, 0.0, atol=1e-9)
+    np.testing.assert_allclose(alone.friction.within, 0.0, atol=1e-9)
 
 
 def test_columns_are_joined_and_taken_side_by_side():
@@ -81,9 +75,9 @@ def test_columns_are_joined_and_taken_side_by_side():
     assert (whole.count, again.count) == (5, 5)
     chosen = whole.take([3, 0])
     for one, other, few in zip(whole.channels, again.channels, chosen.channels, strict=True):
-        np.testing.assert_array_equal(one.inside, other.inside)
+        np.testing.assert_array_equal(one.within, other.within)
         np.testing.assert_array_equal(one.means, other.means)
-        np.testing.assert_array_equal(few.inside, one.inside[:, [3, 0]])
+        np.testing.assert_array_equal(few.within, one.within[:, [3, 0]])
         np.testing.assert_array_equal(few.means, one.means[:, [3, 0]])
 
 
@@ -95,7 +89,7 @@ def bounded(lower, upper):
         shapes=({},),
         width=count,
         columns=empty,
-        raw=np.ones((1, count)),
+        rms=np.ones((1, count)),
         lower=np.array(lower),
         upper=np.array(upper),
     )
@@ -135,7 +129,7 @@ def joint():
 
 def test_a_hypothesis_holds_an_effect_s_columns_shape_after_shape(joint):
     effect = BY_NAME["inertia"]
-    shapes = effect.shapes(joint.whole)[:3]
+    shapes = effect.shapes(joint.all_runs)[:3]
     found = hypothesis_of(effect, joint, shapes)
     assert (found.name, found.width, found.columns.count) == ("inertia", 2, 6)
     for i, shape in enumerate(shapes):
@@ -143,8 +137,8 @@ def test_a_hypothesis_holds_an_effect_s_columns_shape_after_shape(joint):
         expected = reduced(joint.layout, basis.friction, basis.load)
         own = found.columns.take(slice(2 * i, 2 * i + 2))
         np.testing.assert_array_equal(own.load.means, expected.load.means)
-        np.testing.assert_array_equal(own.friction.inside, expected.friction.inside)
-        np.testing.assert_allclose(found.raw[i], np.sqrt(np.mean(basis.load**2, axis=0)))
+        np.testing.assert_array_equal(own.friction.within, expected.friction.within)
+        np.testing.assert_allclose(found.rms[i], np.sqrt(np.mean(basis.load**2, axis=0)))
     # bounds in units of torque grow with a joint of more than 20 N·m of friction
     reach = np.mean(np.abs(joint.friction)) / 20.0
     wanted = [p.lower * reach for p in effect.coefficients]
@@ -192,7 +186,7 @@ def test_an_offset_of_the_torque_loads_no_friction(joint):
 
 
 def test_a_load_channel_of_its_own_keeps_gravity_out_of_friction(joint):
-    friction, _ = base_rows(replace(joint, own_load=True))
+    friction, _ = base_rows(replace(joint, has_load_channel=True))
     assert not friction[:, len(joint.names) :].any()
 
 
@@ -220,27 +214,27 @@ def test_point_noise_is_that_of_a_row_about_its_pair(joint, channel):
 
 
 def test_a_catalogue_keeps_order_and_can_do_without(joint):
-    bench = Precomputed.of(joint)
+    precomputed = Precomputed.of(joint)
     effects = [BY_NAME[name] for name in ("linear_viscous", "inertia", "load_linear")]
-    whole = Catalogue.of(bench, [hypothesis_of(effect, joint) for effect in effects])
-    shapes = len(BY_NAME["inertia"].shapes(joint.whole))
+    whole = Catalogue.of(precomputed, [hypothesis_of(effect, joint) for effect in effects])
+    shapes = len(BY_NAME["inertia"].shapes(joint.all_runs))
     assert whole.groups.width.tolist() == [1, *[2] * shapes, 1]
     assert whole.columns.count == 2 + 2 * shapes
     fewer = whole.without({"inertia", "stribeck"})
     assert [one.name for one in fewer.hypotheses] == ["linear_viscous", "load_linear"]
     assert fewer.groups.width.tolist() == [1, 1]
-    made = Catalogue.of(bench, fewer.hypotheses)
+    made = Catalogue.of(precomputed, fewer.hypotheses)
     for part, expected in zip(fewer.columns.channels, made.columns.channels, strict=True):
         np.testing.assert_array_equal(part.means, expected.means)
-        np.testing.assert_array_equal(part.inside, expected.inside)
+        np.testing.assert_array_equal(part.within, expected.within)
     for modes, expected in zip(fewer.modes, made.modes, strict=True):
         np.testing.assert_allclose(np.array(modes), np.array(expected), rtol=1e-12, atol=1e-12)
     assert whole.without(set()) is whole
 
 
 def test_a_catalogue_can_be_empty(joint):
-    bench = Precomputed.of(joint)
-    empty = Catalogue.of(bench, [hypothesis_of(BY_NAME["drift"], joint)]).without({"drift"})
+    precomputed = Precomputed.of(joint)
+    empty = Catalogue.of(precomputed, [hypothesis_of(BY_NAME["drift"], joint)]).without({"drift"})
     assert empty.columns.count == 0
     assert empty.hypotheses == ()
 
@@ -256,7 +250,7 @@ def test_moments_that_leave_all_rows_on_one_side_are_not_tried():
     """Two days of 40 pairs in ten series each; only the first day is asked."""
     both = problem(2)
     first = np.flatnonzero(both.table.run == 0)
-    day = replace(both, rows=first, layout=noises.layout(40, bins=34))
+    day = replace(both, rows=first, layout=dense_noise.layout(40, bins=34))
     for name in ("step_change", "payload_change"):
         effect = BY_NAME[name]
         moments = [shape["moment"] for shape in hypothesis_of(effect, day).shapes]

@@ -58,7 +58,7 @@ def test_a_ripple_is_named_with_its_order():
     assert diagnosis.verdict == "named"
     (cause,) = diagnosis.causes
     assert cause.effects == ("position_ripple",)
-    assert cause.score.shape["order"] == pytest.approx(9.3, abs=0.15)
+    assert cause.fit.shape["order"] == pytest.approx(9.3, abs=0.15)
     assert cause.size == pytest.approx(0.8 / np.sqrt(2), rel=0.1)
 
 
@@ -67,7 +67,7 @@ def test_a_spring_shows_in_the_load_and_is_named():
     spring = 1.5 * np.radians(rows["position"] - 70)
     diagnosis = diagnosed(rows.assign(load_torque=rows["load_torque"] + spring))
     assert [cause.effects for cause in diagnosis.causes] == [("dress_pack",)]
-    (stiffness,) = diagnosis.causes[0].score.coefficients
+    (stiffness,) = diagnosis.causes[0].fit.coefficients
     assert stiffness == pytest.approx(1.5, rel=0.15)
 
 

@@ -62,7 +62,7 @@ def test_the_load_that_effects_see_goes_with_the_payload():
     seen, _ = build_problems(rows, "motor", "day2")
     ordered = rows[rows["run"] == "day1"].sort_values(["time", "pair", "position"])
     np.testing.assert_allclose(seen.table.load, ordered["load_torque"] - C, atol=1e-6)
-    np.testing.assert_allclose(seen.whole.load[seen.rows], seen.table.load)
+    np.testing.assert_allclose(seen.all_runs.load[seen.rows], seen.table.load)
 
 
 @pytest.mark.parametrize(

@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
 from frictioncli.diagnosis.noise.spectra import STRENGTHS, spectra_of
-from tests.diagnosis.noises import alike, layout
+from tests.diagnosis.dense_noise import alike, layout
 
 PAIRS = layout(7, 5, bins=[2, 3, 4] * 4)
 EXTRA = np.linspace(0.0, 0.2, 12)
@@ -39,7 +39,7 @@ def test_modes_can_be_undone_and_keep_lengths(means, number):
     scaled = SPECTRA.scaled(means)
     np.testing.assert_allclose(scaled * np.sqrt(SPECTRA.profile)[:, None], means, atol=1e-9)
     modes = SPECTRA.modes(spectrum, scaled)
-    np.testing.assert_allclose(SPECTRA.unmoded(spectrum, modes), scaled, atol=1e-9)
+    np.testing.assert_allclose(SPECTRA.from_modes(spectrum, modes), scaled, atol=1e-9)
     np.testing.assert_allclose(modes.T @ modes, scaled.T @ scaled, rtol=1e-9, atol=1e-6)
 
 

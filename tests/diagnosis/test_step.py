@@ -1,21 +1,20 @@
-"""One step: what noise gives in it, and what it says of each hypothesis."""
+"""One step of the search: null distributions, and the test of each hypothesis."""
 
 from dataclasses import replace
 
 import numpy as np
 import pytest
 
-from frictioncli.diagnosis.fit.columns import hypothesis_of
-from frictioncli.diagnosis.fit.judgement import Score
+from frictioncli.diagnosis.fit.hypotheses import EffectFit, hypothesis_of
 from frictioncli.diagnosis.search.lack_of_fit import structures
 from frictioncli.diagnosis.search.precomputed import Catalogue, Precomputed
 from frictioncli.diagnosis.search.step import Step
 from frictioncli.effects import BY_NAME
-from tests.diagnosis.noises import problem
-from tests.diagnosis.waves import A, B, C, effect, wave
+from tests.diagnosis.dense_noise import problem
+from tests.diagnosis.wave_effects import A, B, C, effect, wave
 
 DRIFTS = ({"drift": 0.2}, {"drift": 0.6, "drift_time": 120.0}, {"drift": 1.0, "drift_time": 9000.0})
-ASKED = (
+TESTED = (
     "linear_viscous",
     "coulomb_temperature",
     "load_linear",
@@ -25,20 +24,20 @@ ASKED = (
 )
 
 
-def judged(data, names, draws=0, seed=0):
-    bench = Precomputed.of(data)
-    step = Step.of(bench, [])
-    catalogue = Catalogue.of(bench, [hypothesis_of(BY_NAME[name], data) for name in names])
-    return step, step.judged(catalogue, seed, draws)
+def run_tests(data, names, draws=0, seed=0):
+    precomputed = Precomputed.of(data)
+    step = Step.of(precomputed, [])
+    catalogue = Catalogue.of(precomputed, [hypothesis_of(BY_NAME[name], data) for name in names])
+    return step, step.tested(catalogue, seed, draws)
 
 
 def test_noise_passes_no_more_often_than_its_p_values_say():
     """30 problems with three kinds of drift, six effects each."""
     least, single = [], []
     for seed in range(30):
-        _, found = judged(problem(seed, **DRIFTS[seed % 3]), ASKED, draws=200, seed=seed)
+        _, found = run_tests(problem(seed, **DRIFTS[seed % 3]), TESTED, draws=200, seed=seed)
         least.append(min(one.p_value for one in found.values()))
-        single += [one.chance.beyond(one.statistic) for one in found.values()]
+        single += [one.null.p_value(one.statistic) for one in found.values()]
     # of 30 at 5 % and 20 %: more than 5 and 12 have chances of 0.3 and 0.3 %
     assert np.sum(np.array(least) < 0.05) <= 5
     assert np.sum(np.array(least) < 0.2) <= 12
@@ -52,7 +51,7 @@ BOTH_WAYS = ("linear_viscous", "load_linear", "direction_asymmetry", "dress_pack
 
 @pytest.mark.slow
 def test_draws_give_what_fresh_noise_gives():
-    """Mean of 100 statistics beside that of the draws; more than a quarter above is no chance.
+    """Mean of 100 statistics beside that of the draws; more than a quarter above is an error.
 
     Friction goes with the square of the load, so what a spring does to gravity shows in friction
     too, and shapes that are alike in the load channel alone are several tries.
@@ -70,10 +69,10 @@ def test_draws_give_what_fresh_noise_gives():
             load=gravity + 0.1 * means[1][pair] + rows[1],
         )
 
-    _, told = judged(noisy(), BOTH_WAYS, draws=1000)
-    fresh = [judged(noisy(), BOTH_WAYS)[1] for _ in range(100)]
-    for name, one in told.items():
-        drawn = one.chance.shape * one.chance.scale
+    _, tests = run_tests(noisy(), BOTH_WAYS, draws=1000)
+    fresh = [run_tests(noisy(), BOTH_WAYS)[1] for _ in range(100)]
+    for name, one in tests.items():
+        drawn = one.null.shape * one.null.scale
         assert np.mean([found[name].statistic for found in fresh]) < 1.25 * drawn, name
 
 
@@ -89,26 +88,28 @@ def test_noise_has_no_structure_beyond_chance():
     assert np.sum(np.array(least) < 0.05) <= 1
 
 
-def test_without_draws_nothing_is_called_unlikely():
-    _, found = judged(problem(0, friction=lambda rows: 3.0 * A(rows)), ["position_ripple"])
+def test_without_draws_all_p_values_are_one():
+    _, found = run_tests(problem(0, friction=lambda rows: 3.0 * A(rows)), ["position_ripple"])
     assert found["position_ripple"].p_value == 1.0
     assert found["position_ripple"].statistic > 1000
 
 
-def test_an_effect_s_score_does_not_depend_on_who_else_is_asked():
+def test_an_effect_s_test_does_not_depend_on_the_other_hypotheses():
     data = problem(2, friction=lambda rows: 0.05 * A(rows))
-    _, alone = judged(data, ["load_linear"], draws=50)
-    _, many = judged(data, ["inertia", "load_linear", "drift"], draws=50)
+    _, alone = run_tests(data, ["load_linear"], draws=50)
+    _, many = run_tests(data, ["inertia", "load_linear", "drift"], draws=50)
     assert many["load_linear"].statistic == pytest.approx(alone["load_linear"].statistic, abs=1e-9)
-    assert many["load_linear"].evidence == pytest.approx(alone["load_linear"].evidence, abs=1e-9)
+    assert many["load_linear"].log_bayes_factor == pytest.approx(
+        alone["load_linear"].log_bayes_factor, abs=1e-9
+    )
     one = many["load_linear"]
-    assert one.p_value == min(1.0, 3 * one.chance.beyond(one.statistic))
+    assert one.p_value == min(1.0, 3 * one.null.p_value(one.statistic))
 
 
-def test_the_same_seed_gives_the_same_chance():
+def test_the_same_seed_gives_the_same_null_distribution():
     data = problem(3)
     first, again, other = (
-        judged(data, ["drift", "inertia"], draws=40, seed=seed)[1]["inertia"].chance
+        run_tests(data, ["drift", "inertia"], draws=40, seed=seed)[1]["inertia"].null
         for seed in (5, 5, 6)
     )
     assert first == again != other
@@ -120,17 +121,17 @@ def test_a_size_is_the_torque_of_its_white_length(name, channel):
     effect = BY_NAME[name]
     statistics = []
     for seed in range(12):
-        step, found = judged(problem(seed), [name])
+        step, found = run_tests(problem(seed), [name])
         one = found[name]
         shape = {axis.name: axis.at(0.5) for axis in effect.shape}
-        alone = Catalogue.of(step.bench, [hypothesis_of(effect, step.problem, [shape])])
-        scale = step.judged(alone, 0, 0)[name].size_scale
+        alone = Catalogue.of(step.precomputed, [hypothesis_of(effect, step.problem, [shape])])
+        scale = step.tested(alone, 0, 0)[name].size_scale
         column = getattr(step.problem.basis(effect, shape), channel)[:, 0]
         planted = 10 * scale * column / np.sqrt(np.mean(np.square(column)))
         data = replace(step.problem, **{channel: getattr(step.problem, channel) + planted})
-        bench = Precomputed.of(data)
-        alone = Catalogue.of(bench, [hypothesis_of(effect, data, [shape])])
-        statistics.append(Step.of(bench, []).judged(alone, 0, 0)[name].statistic)
+        precomputed = Precomputed.of(data)
+        alone = Catalogue.of(precomputed, [hypothesis_of(effect, data, [shape])])
+        statistics.append(Step.of(precomputed, []).tested(alone, 0, 0)[name].statistic)
         assert one.size_scale > 0
     # one has a standard deviation of 20, their mean of 6
     assert np.mean(statistics) == pytest.approx(101, abs=24)
@@ -145,9 +146,9 @@ def test_what_physics_forbids_explains_nothing(name):
     column = clean.basis(effect, shape).friction[:, 0]
     size = 1.5 / np.std(column)
     forbidden, allowed = (
-        judged(replace(clean, friction=clean.friction + sign * size * column), [name], draws=50)[1][
-            name
-        ]
+        run_tests(replace(clean, friction=clean.friction + sign * size * column), [name], draws=50)[
+            1
+        ][name]
         for sign in (-1.0, 1.0)
     )
     assert allowed.statistic > 25
@@ -156,7 +157,7 @@ def test_what_physics_forbids_explains_nothing(name):
     assert forbidden.statistic < 0.2 * allowed.statistic
     if not effect.shape:
         assert (forbidden.statistic, forbidden.p_value) == (0.0, 1.0)
-        assert forbidden.evidence < 0
+        assert forbidden.log_bayes_factor < 0
 
 
 def test_the_noise_of_a_step_is_that_of_the_data():
@@ -172,11 +173,11 @@ def test_the_noise_of_a_step_is_that_of_the_data():
 def test_a_shape_is_refined_off_its_grid():
     """An order of 9.3 lies between 9 and 9.5 of the grid; amplitude 1 with a phase of 0.4."""
     data = problem(5, friction=wave(9.3, 0.4))
-    step, found = judged(data, ["position_ripple"])
+    step, found = run_tests(data, ["position_ripple"])
     effect = BY_NAME["position_ripple"]
     coarse = found["position_ripple"]
     assert coarse.shape["order"] in (9.0, 9.5)
-    fine = step.refined(coarse.score(effect))
+    fine = step.refined(coarse.effect_fit(effect))
     assert fine.shape["order"] == pytest.approx(9.3, abs=0.03)
     assert fine.statistic > coarse.statistic
     sine, cosine, *second = fine.coefficients
@@ -190,21 +191,21 @@ def test_a_size_is_visible_as_far_as_the_base_cannot_take_it():
     only = effect("any", [(1.0, C), (3.0, lambda rows: np.ones_like(rows.position))])
     data = problem(6, friction=lambda rows: 2.0 * C(rows))
     step = Step.of(Precomputed.of(data), [])
-    score = Score(only, {}, np.array([2.0]), np.eye(1), 1.0)
-    assert step.size(score) == pytest.approx(np.sqrt(2.0 + 36.0), rel=0.02)
-    assert step.visible(score) == pytest.approx(np.sqrt(2.0), rel=0.1)
+    fit = EffectFit(only, {}, np.array([2.0]), np.eye(1), 1.0)
+    assert step.size(fit) == pytest.approx(np.sqrt(2.0 + 36.0), rel=0.02)
+    assert step.visible(fit) == pytest.approx(np.sqrt(2.0), rel=0.1)
 
 
 def test_accepted_effects_are_part_of_the_base():
     data = problem(7, friction=lambda rows: 1.0 * A(rows) + 1.0 * B(rows))
     first, second = effect("a", [(1.0, A)]), effect("b", [(1.0, B)])
-    bench = Precomputed.of(data)
-    accepted = Score(first, {}, np.array([1.0]), np.eye(1), 1.0)
-    step = Step.of(bench, [accepted])
-    assert step.base_count == Step.of(bench, []).base_count + 1
-    both = Catalogue.of(bench, [hypothesis_of(one, data) for one in (first, second)])
-    found = step.judged(both, 0, 0)
+    precomputed = Precomputed.of(data)
+    accepted = EffectFit(first, {}, np.array([1.0]), np.eye(1), 1.0)
+    step = Step.of(precomputed, [accepted])
+    assert step.base_count == Step.of(precomputed, []).base_count + 1
+    both = Catalogue.of(precomputed, [hypothesis_of(one, data) for one in (first, second)])
+    found = step.tested(both, 0, 0)
     assert found["a"].freedom == 0
     assert found["a"].statistic == 0.0
     assert found["b"].coefficients[0] == pytest.approx(1.0, rel=0.05)
-    assert step.sides[0].point < Step.of(bench, []).sides[0].point
+    assert step.channels[0].point < Step.of(precomputed, []).channels[0].point

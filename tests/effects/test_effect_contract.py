@@ -7,8 +7,7 @@ import numpy as np
 import pytest
 
 from frictioncli.effects import BY_NAME, EFFECTS, NEEDS
-from frictioncli.effects.availability import judgeable, missing_columns
-from frictioncli.effects.base import Parameter
+from frictioncli.effects.base import Parameter, applicable, missing_columns
 from tests.effects.tables import COLUMNS, selected, small, two_days
 
 CONTRACT = [
@@ -262,11 +261,11 @@ def test_effect_without_a_needed_column_is_left_out(effect, table):
         for values in (np.full(rows, np.nan), np.full(rows, 20.0)):
             poorer = replace(table, **{name: values})
             assert missing_columns(effect, poorer) == (name,)
-            assert effect not in judgeable(EFFECTS, poorer)
+            assert effect not in applicable(EFFECTS, poorer)
 
 
 def test_all_effects_can_be_judged_on_two_full_days(table):
-    assert judgeable(EFFECTS, table) == EFFECTS
+    assert applicable(EFFECTS, table) == EFFECTS
 
 
 def test_effects_cannot_be_changed():

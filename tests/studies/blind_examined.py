@@ -84,7 +84,7 @@ def _said(diagnosis: Diagnosis, world: World) -> dict[str, object]:
     return {
         "verdict": diagnosis.verdict,
         "sets": ";".join("|".join(cause.effects) for cause in causes),
-        "p_values": ";".join(f"{cause.judged.p_value:.3g}" for cause in causes),
+        "p_values": ";".join(f"{cause.test.p_value:.3g}" for cause in causes),
         "truth_probability": ";".join(f"{value:.4g}" for value in probability),
         "visible_sets": ";".join("|".join(cause.effects) for cause in diagnosis.visible),
         "structure": "" if left is None else f"{left.channel} {left.axis} {left.p_value:.3g}",

@@ -15,8 +15,7 @@ from numpy.typing import NDArray
 from frictioncli.arrays import Array
 from frictioncli.diagnosis.data.problem import Problem, build_problems
 from frictioncli.effects import EFFECTS
-from frictioncli.effects.availability import judgeable
-from frictioncli.effects.base import Effect
+from frictioncli.effects.base import Effect, applicable
 
 Mask = NDArray[np.bool_]
 
@@ -128,7 +127,7 @@ def off_base(problem: Problem, columns: Array) -> Array:
 def library(problem: Problem) -> list[Entry]:
     """Return the catalogue's effects that the data can be asked about, each at its best shape."""
     misfit = off_base(problem, misfit_of(problem)[:, np.newaxis])[:, 0]
-    return [_entry(effect, problem, misfit) for effect in judgeable(EFFECTS, problem.table)]
+    return [_entry(effect, problem, misfit) for effect in applicable(EFFECTS, problem.table)]
 
 
 def _entry(effect: Effect, problem: Problem, misfit: Array) -> Entry:

@@ -15,7 +15,7 @@ from frictioncli.diagnosis.diagnose import Diagnosis, diagnose_joint
 from frictioncli.diagnosis.documents.extended_model import extended_model
 from frictioncli.diagnosis.documents.from_diagnosis import diagnosis_document, extended_document
 from frictioncli.diagnosis.search.cause_search import find_causes
-from frictioncli.diagnosis.search.holdout import SLIGHT
+from frictioncli.diagnosis.search.cause_selection import LEAST_VISIBLE
 from frictioncli.diagnosis.settings import DiagnosisSettings
 from frictioncli.effects import EFFECTS
 from frictioncli.errors import OptionError
@@ -104,7 +104,7 @@ def _named(torques: pd.DataFrame) -> str:
     """
     problem, _ = build_problems(torques, TEMPERATURE)
     found = find_causes(problem, EFFECTS, DiagnosisSettings())
-    least = SLIGHT * float(np.mean(np.abs(problem.friction)))
+    least = LEAST_VISIBLE * float(np.mean(np.abs(problem.friction)))
     causes = [cause for cause in found.causes if cause.visible >= least]
     return ";".join("|".join(cause.effects) for cause in causes)
 

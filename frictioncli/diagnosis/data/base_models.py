@@ -1,4 +1,4 @@
-"""Base models about which a diagnosis may be linear."""
+"""Base models (16) about which the extended model is linear."""
 
 from dataclasses import dataclass
 
@@ -13,19 +13,19 @@ from frictioncli.model.observations import observations
 from frictioncli.model.zero_load import PAIR_KEY
 
 _COMMON = 0.05
-"""Speeds of a smaller share of the pairs are rare."""
+"""Least share of the pairs at a speed level that is not rare."""
 
 
 @dataclass(frozen=True, slots=True)
 class Base:
-    """A base model to be linear about.
+    """A base model about which the extended model is linear.
 
     Attributes
     ----------
     parameters : FrictionParameters
         Its parameters.
     names : tuple of str
-        Those that may change.
+        Names of the parameters that the extension refits.
     """
 
     parameters: FrictionParameters
@@ -33,28 +33,28 @@ class Base:
 
 
 def candidate_bases(rows: pd.DataFrame, temperature: str) -> list[Base]:
-    """Return base models: of all pairs, and of the speeds that hold most of them.
+    """Return base models fitted to all pairs, and to those at common speeds only.
 
-    A few pairs at rare speeds that obey another law would bend the parameters so far that a model
-    linear about them explains nothing any more. Beta may change wherever gamma may, even where the
-    fit could not tell them apart: what is hidden in the torques may be why.
+    A few pairs at rare speeds that follow another law would bend the parameters so far that a model
+    linear about them explains nothing. Beta is refitted wherever gamma is, even where the fit could
+    not distinguish them: the effect that is searched for may be the reason.
 
     Parameters
     ----------
     rows : DataFrame
-        Rows of :data:`frictioncli.schemas.TORQUES` of a single joint, with its smooth load.
+        Rows of :data:`frictioncli.schemas.TORQUES` of a single joint, with the load torque of the
+        base model.
     temperature : {"motor", "housing", "mean"}
         Temperature that the friction function is given.
     """
-    heads = rows.drop_duplicates(PAIR_KEY)
-    level = speed_level(heads["speed"].to_numpy(float))
+    pairs = rows.drop_duplicates(PAIR_KEY)
+    level = speed_level(pairs["speed"].to_numpy(float))
     _, place, count = np.unique(level, return_inverse=True, return_counts=True)
-    common = count >= _COMMON * len(heads)
-    chosen = [rows]
+    common = count >= _COMMON * len(pairs)
+    samples = [rows]
     if not common.all() and common.sum() >= 3:
-        kept = heads.loc[common[place], PAIR_KEY]
-        chosen.append(rows.merge(kept, on=PAIR_KEY))
-    return [_base(part, temperature) for part in chosen]
+        samples.append(rows.merge(pairs.loc[common[place], PAIR_KEY], on=PAIR_KEY))
+    return [_base(sample, temperature) for sample in samples]
 
 
 def _base(rows: pd.DataFrame, temperature: str) -> Base:

@@ -1,14 +1,15 @@
 r"""Gravity torque of a rotating arm, with one payload or with several that are known.
 
-With one payload it is :math:`P \cos q + Q \sin q + c`. A payload of mass *m* adds
-:math:`m (p \cos q + r \sin q)`, the same *p* and *r* whatever the mass, as long as it sits at the
-same place: five coefficients however many payloads. A free sine for each payload would fit as well,
-and would hide what is to be found: a mass that the manifest gets wrong, or a tool that sits
-elsewhere, fits every such sine. Against five coefficients it is misfit, and can be diagnosed.
+.. math:: L_g(q, m) = P \cos q + Q \sin q + c + m (p \cos q + r \sin q)
 
-Where no two payloads are known, *p* and *r* cannot be told from *P* and *Q* and are left out. Where
-some rows have a payload and others none, those are taken as moved without payload, 0 kg: that is
-what is left empty beside filled cells. If it is wrong, it shows as misfit too.
+with the joint angle *q* and the mass *m* of the payload. A payload always sits at the same place,
+so that *p* and *r* do not depend on its mass: five coefficients for any number of payloads. Free
+coefficients for each payload would absorb a wrong mass in the manifest, or a tool mounted
+elsewhere; with five coefficients these show as misfit and can be diagnosed.
+
+Where no two payloads are known, *p* and *r* cannot be distinguished from *P* and *Q* and are left
+out. Where only some rows have a payload, the others count as moved without one, 0 kg. If that is
+wrong, it shows as misfit too.
 """
 
 import msgspec
@@ -20,21 +21,33 @@ from frictioncli.errors import TableError
 
 NAMES = ("cosine", "sine", "offset")
 PER_MASS = ("cosine_per_kg", "sine_per_kg")
-"""Names of the coefficients in files; the latter only where two payloads are known."""
+"""Names of the coefficients in documents; the latter only where two payloads are known."""
 
 _APART = 0.001
 """Masses that differ by less are one payload. [kg]"""
 
 
 def known_payload(torques: pd.DataFrame) -> Array:
-    """Return the payload of each row, NaN where unknown, shape (rows,). [kg]."""
+    """Return the payload of each row, NaN where unknown, shape (rows,). [kg].
+
+    Parameters
+    ----------
+    torques : DataFrame
+        Rows of :data:`frictioncli.schemas.TORQUES`.
+    """
     if "payload" not in torques:
         return np.full(len(torques), np.nan)
     return torques["payload"].to_numpy(float)
 
 
 def differs(payload: Array) -> bool:
-    """Return whether at least two payloads are known."""
+    """Return whether at least two payloads are known.
+
+    Parameters
+    ----------
+    payload : ndarray, shape (rows,)
+        Payloads, NaN where unknown. [kg]
+    """
     known = payload[np.isfinite(payload)]
     return known.size > 0 and bool(np.ptp(known) > _APART)
 
@@ -48,6 +61,13 @@ def gravity_columns(position: Array, payload: Array | None = None) -> Array:
         Joint angle. [deg]
     payload : ndarray, shape (rows,), optional
         Payload, NaN where unknown: then 0. Without it gravity has one payload. [kg]
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> print(gravity_columns(np.array([0.0, 90.0]), np.array([2.0, 2.0])).round(12))
+    [[1. 0. 1. 2. 0.]
+     [0. 1. 1. 0. 2.]]
     """
     angle = np.radians(position)
     columns = [np.cos(angle), np.sin(angle), np.ones_like(angle)]
@@ -65,24 +85,37 @@ def columns_of(torques: pd.DataFrame, *, payloads: bool) -> Array:
     torques : DataFrame
         Rows of :data:`frictioncli.schemas.TORQUES`.
     payloads : bool
-        Whether gravity goes with the payload: five columns instead of three.
+        Whether gravity depends on the payload: five columns instead of three.
     """
     position = torques["position"].to_numpy(float)
     return gravity_columns(position, known_payload(torques) if payloads else None)
 
 
 def without_offset(columns: Array) -> Array:
-    """Return the columns of gravity with zeros in place of the offset's."""
-    weightless = columns.copy()
-    weightless[:, NAMES.index("offset")] = 0.0
-    return weightless
+    """Return the columns of gravity with zeros in place of the offset's, of the same shape."""
+    without = columns.copy()
+    without[:, NAMES.index("offset")] = 0.0
+    return without
 
 
 def carried_load(columns: Array, gravity: Array) -> Array:
     """Return the load torque that the gear carries, shape (rows,). [N·m].
 
-    No gravity is the same at all angles: the offset is the torque sensor's, or an asymmetry of
-    friction, and loads nothing.
+    Gravity without its offset: a torque that is the same at all angles is an offset of the sensor,
+    or an asymmetry of friction, and does not load the gear.
+
+    Parameters
+    ----------
+    columns : ndarray, shape (rows, 3) or (rows, 5)
+        As of :func:`gravity_columns`.
+    gravity : ndarray, shape (3,) or (5,)
+        Coefficients. [N·m], [N·m/kg]
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> float(carried_load(gravity_columns(np.array([0.0])), np.array([95.0, 0.0, 4.0]))[0])
+    95.0
     """
     return np.asarray(without_offset(columns) @ gravity)
 
@@ -113,7 +146,7 @@ class GravityCoefficients(msgspec.Struct, frozen=True, kw_only=True, omit_defaul
 
 
 def gravity_document(gravity: Array) -> GravityCoefficients:
-    """Return three or five coefficients by name."""
+    """Return three or five coefficients of gravity by name, as documents state them."""
     names = (*NAMES, *PER_MASS)[: len(gravity)]
     return GravityCoefficients(**dict(zip(names, map(float, gravity), strict=True)))
 
@@ -126,13 +159,13 @@ def stated_gravity(stated: GravityCoefficients, count: int | None = None) -> Arr
     stated : GravityCoefficients
         The coefficients.
     count : int, optional
-        How many are wanted; a document without payloads then changes nothing per mass. Else as many
-        as are stated.
+        Number of coefficients to return; those per mass are zero if the document has none. By
+        default as many as the document states.
 
     Raises
     ------
     TableError
-        If the document states coefficients of payloads and the rows have none.
+        If the document states coefficients per mass and only three are wanted.
     """
     coefficients = [stated.cosine, stated.sine, stated.offset]
     if stated.cosine_per_kg is not None and stated.sine_per_kg is not None:

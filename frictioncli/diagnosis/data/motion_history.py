@@ -1,4 +1,4 @@
-"""What a joint has been through before each pair: rests, hours, way travelled."""
+"""Motion of a joint before each pair: rest, time and distance travelled."""
 
 import numpy as np
 import pandas as pd
@@ -8,33 +8,33 @@ from frictioncli.diagnosis.data.pair_layout import PairLayout
 from frictioncli.model.zero_load import PAIR_KEY
 
 _SERIES_GAP = 120.0
-"""A pause longer than this begins a new measuring series. [s]"""
+"""A pause longer than this starts a new measuring series. [s]"""
 
 _WARMED = 0.2
-"""A motor warmer by more than this after a pause has been moved in it. [°C]"""
+"""A motor that is warmer by more than this after a pause has moved during it. [°C]"""
 
-_LEAST_PACE = 0.4
-"""It was moved all the time if it warmed at least so fast, relative to the median of such pauses; a
-longer pause with some motion in it tells neither heating nor cooling."""
+_LEAST_RATE = 0.4
+"""Least rate of warming of a pause with motion throughout, relative to the median of the pauses
+that warmed the motor; a slower one had motion in a part of it only."""
 
 
 def series(layout: PairLayout, temperature: Array) -> tuple[Array, Array]:
-    """Return the rest before each pair's measuring series, and the pair's place in it.
+    """Return the rest before each pair's measuring series, and the pair's number in it.
 
-    A joint whose motor is warmer after a pause than before it has moved in between, unrecorded:
-    such a pause is no rest. Before a run's first series the joint has rested for long.
+    A joint whose motor is warmer after a pause than before it has moved without being recorded:
+    such a pause is no rest. The rest before the first series of a run is infinite.
 
     Parameters
     ----------
     layout : PairLayout
         The pairs.
     temperature : ndarray, shape (pairs,)
-        Motor temperature of each pair; NaN where unknown: then every pause is a rest. [°C]
+        Motor temperature of each pair; NaN where unknown: every pause is then a rest. [°C]
 
     Returns
     -------
     rest, order : ndarray, shape (pairs,)
-        Rest, and place from 0. [s], [-]
+        Rest, and number from 0. [s], [-]
     """
     rest, order = np.full(len(layout.time), np.inf), np.zeros(len(layout.time))
     for i in range(1, len(layout.time)):
@@ -49,7 +49,7 @@ def series(layout: PairLayout, temperature: Array) -> tuple[Array, Array]:
 
 
 def clock_of(layout: PairLayout) -> Array:
-    """Return times on which runs follow each other."""
+    """Return times in which runs follow each other without a pause, shape (pairs,). [s]."""
     clock = layout.time.copy()
     for run in np.unique(layout.run)[1:]:
         clock[layout.run == run] += clock[layout.run == run - 1][-1]
@@ -57,11 +57,11 @@ def clock_of(layout: PairLayout) -> Array:
 
 
 def travel_of(rows: pd.DataFrame, layout: PairLayout, temperature: Array) -> Array:
-    """Return the way that a joint has travelled before each pair, from its run's start [deg].
+    """Return the distance that a joint has travelled before each pair since its run's start. [deg].
 
-    The log has the way of its pairs. A motor that warms in a pause tells of more: the joint is then
-    taken to have moved at the highest speed recorded, as one does to heat it. That way may be many
-    times the recorded one, and runs-in a joint as well.
+    The log has the strokes of its pairs. Where the motor warmed during a pause, the joint is
+    assumed to have moved at the highest recorded speed, as in a heating programme. That distance
+    may be many times the recorded one, and runs a joint in as well.
 
     Parameters
     ----------
@@ -70,7 +70,7 @@ def travel_of(rows: pd.DataFrame, layout: PairLayout, temperature: Array) -> Arr
     layout : PairLayout
         Their pairs.
     temperature : ndarray, shape (pairs,)
-        Motor temperature of each pair; NaN where unknown: then pauses are rests. [°C]
+        Motor temperature of each pair; NaN where unknown: pauses are then rests. [°C]
     """
     grouped = rows.groupby(PAIR_KEY, sort=False, observed=True)
     ends = grouped["position"].agg(["min", "max"]).to_numpy(float)
@@ -79,13 +79,13 @@ def travel_of(rows: pd.DataFrame, layout: PairLayout, temperature: Array) -> Arr
     rise = np.diff(temperature)
     warmed = (pause > _SERIES_GAP) & (rise > _WARMED) & (np.diff(layout.run) == 0)
     moved = moved_throughout(rise, pause, warmed)
-    way = stroke[:-1] + np.where(moved, pause * speed.max(), 0.0)
-    travel = np.append(0.0, np.cumsum(way))
+    distance = stroke[:-1] + np.where(moved, pause * speed.max(), 0.0)
+    travel = np.append(0.0, np.cumsum(distance))
     return travel - travel[np.searchsorted(layout.run, layout.run)]
 
 
 def moved_throughout(rise: Array, seconds: Array, warmed: Flags) -> Flags:
-    """Return in which of the pauses that warmed the motor the joint moved all the time.
+    """Return whether the joint moved throughout each pause that warmed the motor.
 
     Parameters
     ----------
@@ -93,8 +93,20 @@ def moved_throughout(rise: Array, seconds: Array, warmed: Flags) -> Flags:
         Rise of the motor's temperature, and duration. [°C], [s]
     warmed : ndarray of bool, shape (pauses,)
         Pauses that warmed it.
+
+    Returns
+    -------
+    ndarray of bool, shape (pauses,)
+        Pauses that warmed it at 0.4 times the median rate at least.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> pauses = np.array([True, True, True])
+    >>> moved_throughout(np.array([6.0, 5.0, 1.0]), np.array([600.0, 500.0, 900.0]), pauses)
+    array([ True,  True, False])
     """
     if not warmed.any():
         return warmed
-    pace = np.divide(rise, seconds, out=np.zeros_like(rise), where=warmed)
-    return warmed & (pace >= _LEAST_PACE * float(np.median(pace[warmed])))
+    rate = np.divide(rise, seconds, out=np.zeros_like(rise), where=warmed)
+    return warmed & (rate >= _LEAST_RATE * float(np.median(rate[warmed])))

@@ -1,4 +1,9 @@
-"""Which rows make up which pair, and what of them is told apart: inside pairs and between."""
+"""Division of rows into pairs: means of pairs and deviations within them.
+
+Rows are angle bins. Noise within a pair is white; noise of the pair means is correlated in time.
+Deviations within neighbouring pairs at one speed are pooled by angle, which keeps their inner
+products with every effect that is the same in these pairs.
+"""
 
 from dataclasses import dataclass
 
@@ -12,17 +17,30 @@ _POOLED = 5
 """Neighbouring pairs at one speed whose deviations are pooled."""
 
 _SAME_SPEED = 0.02
-"""Speeds closer than this share are one level."""
+"""Relative width of a speed level."""
 
 
 def speed_level(speed: Array) -> Indices:
-    """Return the level of each speed [deg/s]; speeds of one level differ by 2 % at the most."""
+    """Return the level of each speed; speeds of one level differ by 2 % at the most.
+
+    Parameters
+    ----------
+    speed : ndarray, shape (pairs,)
+        Speeds. [deg/s]
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> level = speed_level(np.array([20.0, 20.1, 40.0]))
+    >>> bool(level[0] == level[1]), bool(level[1] == level[2])
+    (True, False)
+    """
     return np.round(np.log(np.maximum(speed, 1e-9)) / _SAME_SPEED).astype(np.intp)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class PairLayout:
-    """Which rows make up which pair, and when.
+    """Rows of each pair, with its run, time and speed.
 
     Attributes
     ----------
@@ -35,10 +53,10 @@ class PairLayout:
     time : ndarray, shape (pairs,)
         Middle of each pair. [s]
     level : ndarray of int, shape (pairs,)
-        Speed of each pair as a level; pairs of one speed have the same.
+        Speed level of each pair.
     pooling : sparse matrix, shape (groups, rows)
-        Adds up the rows of a group of neighbouring pairs at one speed and angle; its rows are
-        orthonormal, so white deviations stay white.
+        Sums over a group of neighbouring pairs at one speed and angle, over the root of their
+        number; its rows are orthonormal, so that white deviations stay white.
     """
 
     row_pair: Indices
@@ -88,10 +106,20 @@ class PairLayout:
         )
 
     def contrasts(self, rows: Array) -> Array:
-        """Return deviations from the pair means, each mean of neighbours times its weight.
+        """Return deviations from the pair means, pooled over neighbouring pairs.
 
-        Neighbouring pairs at one speed see the same angles at nearly the same temperature, so the
-        mean of a few loses nothing that an effect could show, and costs a fraction.
+        Neighbouring pairs at one speed pass the same angles at nearly the same temperature, so that
+        pooling loses nothing of an effect and reduces the number of rows.
+
+        Parameters
+        ----------
+        rows : ndarray, shape (rows, columns)
+            Values of each angle bin.
+
+        Returns
+        -------
+        ndarray, shape (groups, columns)
+            Sums of the deviations of each group over the root of their number.
         """
         deviations = rows - self.means(rows)[self.row_pair]
         return np.asarray(self.pooling @ deviations)
@@ -101,3 +129,15 @@ class PairLayout:
         starts = np.concatenate([[0], np.cumsum(self.bins[:-1])]).astype(np.intp)
         total = np.add.reduceat(rows, starts, axis=0)
         return np.asarray((total.T / self.bins).T)
+
+    def point_deviation(self, residual: Array) -> float:
+        """Return the standard deviation of an angle bin about the mean of its pair. [N·m].
+
+        Parameters
+        ----------
+        residual : ndarray, shape (rows,)
+            Residual torque. [N·m]
+        """
+        within = residual - self.means(residual[:, np.newaxis])[:, 0][self.row_pair]
+        freedom = max(len(within) - len(self.bins), 1)
+        return float(np.sqrt(within @ within / freedom))

@@ -1,10 +1,13 @@
-r"""The two channels of one joint with the simulation of its torque: what diagnosis works on.
+r"""Friction and load channel of one joint with the simulation of its torque.
 
 The simulated torque along the measured motion is the fitted friction (16) plus the fitted gravity
-:math:`l_g = P \cos q + Q \sin q + c + m (p \cos q + r \sin q)`, the latter where payloads *m* are
-known (:mod:`frictioncli.diagnosis.data.gravity`). Its misfit has an even part, the friction
-channel, and an odd part, the load channel. Friction is refitted with the smooth gravity as its
-load, so that an odd effect cannot leak into :math:`\alpha L^2`.
+(:mod:`frictioncli.diagnosis.data.gravity`),
+
+.. math:: u = \sigma \tau(L_g, \dot q, T) + L_g(q, m)
+
+with the direction :math:`\sigma` of the motion. Its misfit has an even part in the direction, the
+friction channel, and an odd part, the load channel. The base model takes the fitted gravity as its
+load, so that a disturbance of the load channel cannot enter :math:`\alpha L^2`.
 """
 
 from collections.abc import Mapping
@@ -30,10 +33,11 @@ from frictioncli.model.document import PARAMETERS
 from frictioncli.model.friction import FrictionParameters, friction_torque
 from frictioncli.model.zero_load import PAIR_KEY, temperature_of
 
-_REBUILT = 0.05
+_RECONSTRUCTED = 0.05
+"""Standard error of a motor temperature reconstructed between the steps of its register. [°C]"""
+
 _REGISTERED = 0.29
-"""Error of the motor temperature where it was rebuilt between its steps, and where it was not:
-a step of 1 °C has a standard deviation of 1/sqrt(12). [°C]"""
+"""Standard error of a motor temperature as registered in steps of 1 °C: 1/sqrt(12). [°C]"""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -44,33 +48,34 @@ class Problem:
     ----------
     table : EffectTable
         The rows, with the base model.
-    whole : EffectTable
-        The rows of all runs: an effect that remembers is evaluated on them.
+    all_runs : EffectTable
+        The rows of all runs; an effect with memory is evaluated on them.
     rows : ndarray of int, shape (rows,)
-        Which of those the problem has.
+        Which of those rows the problem has.
     layout : PairLayout
-        Which rows make up which pair.
+        Division of the rows into pairs.
     friction, load : ndarray, shape (rows,)
         Measured friction and load torque. [N·m]
     friction_base, load_base : ndarray, shape (rows, parameters)
-        Derivatives of the simulated torque by the base parameters.
+        Derivatives of the simulated friction by its parameters, and of the simulated load by the
+        coefficients of gravity.
     names : tuple of str
         Friction parameters that the columns of ``friction_base`` belong to.
     parameters : FrictionParameters
-        Friction refitted to these data.
+        Parameters of friction, fitted to these data.
     gravity : ndarray, shape (3,) or (5,)
         Coefficients of cos q, sin q and 1, and of the first two per mass of the payload where two
         payloads are known: those of the columns of ``load_base``. [N·m], [N·m/kg]
-    own_load : bool
-        Whether the log has a load channel of its own; the base's load is then that.
+    has_load_channel : bool
+        Whether the log has a load channel; the base model takes the load from it.
     temperature_error : float
-        Error of the motor temperature. [°C]
+        Standard error of the motor temperature. [°C]
     runs : tuple of str
         Names of the runs, in order.
     """
 
     table: EffectTable
-    whole: EffectTable
+    all_runs: EffectTable
     rows: Indices
     layout: PairLayout
     friction: Array
@@ -80,29 +85,29 @@ class Problem:
     names: tuple[str, ...]
     parameters: FrictionParameters
     gravity: Array
-    own_load: bool
+    has_load_channel: bool
     temperature_error: float
     runs: tuple[str, ...]
 
     def basis(self, effect: Effect, shape: Mapping[str, float]) -> Basis:
-        """Return an effect's columns at these rows, with all runs as its history."""
-        friction, load = effect.evaluate(self.whole, shape)
+        """Return an effect's columns at these rows, evaluated on all runs."""
+        friction, load = effect.evaluate(self.all_runs, shape)
         return Basis(friction[self.rows], load[self.rows])
 
     @property
     def temperature_variance(self) -> Array:
-        """Variance that an uncertain temperature gives to pair means, shape (pairs,)."""
+        """Variance of pair means from the error of the temperature, shape (pairs,). [(N·m)²]."""
         slope = self.layout.means(self.table.temperature_slope[:, np.newaxis])[:, 0]
         return np.square(self.temperature_error * slope)
 
     @property
     def friction_by_gravity(self) -> Array:
-        """Derivatives of the friction torque by the gravity's coefficients, as of load_base.
+        """Derivatives of the friction torque by the coefficients of gravity, as of ``load_base``.
 
-        Friction goes with the square of the load: a cause that bends the fitted gravity would
-        else show a second time, in friction.
+        Friction depends on the square of the load: without these columns a cause that changes the
+        fitted gravity would show a second time, in friction.
         """
-        if self.own_load:
+        if self.has_load_channel:
             return np.zeros_like(self.load_base)
         slope = 2 * self.parameters.alpha * self.table.load
         return slope[:, np.newaxis] * without_offset(self.load_base)
@@ -110,11 +115,16 @@ class Problem:
     def squared(self, friction: Array, load: Array) -> Array:
         """Return the squared misfit of the simulated torque, shape (rows,). [(N·m)²].
 
-        Forward, torque misses by load plus friction, in reverse by load less friction: the mean
-        square is the sum of both. Where the log has a load of its own, perhaps in another unit
-        than a motor current, the load is not simulated and only friction counts.
+        The misfit is load plus friction forward and load minus friction in reverse; the mean square
+        of both is the sum of the squares. Where the log has a load channel, which may have another
+        unit, the load is not simulated and only friction counts.
+
+        Parameters
+        ----------
+        friction, load : ndarray, shape (rows,)
+            Misfit in both channels. [N·m]
         """
-        return np.square(friction) + (0.0 if self.own_load else np.square(load))
+        return np.square(friction) + (0.0 if self.has_load_channel else np.square(load))
 
     @property
     def friction_misfit(self) -> Array:
@@ -130,10 +140,10 @@ class Problem:
 def build_problems(
     torques: pd.DataFrame, temperature: str, held_out: str | None = None
 ) -> tuple[Problem, Problem | None]:
-    """Return the problem of one joint, and that of a run that is kept out of it.
+    """Return the problem of one joint, and that of its hold-out run.
 
-    The base model is fitted to the first one's rows only; the second is simulated with it. Gravity
-    goes with the payload if the first one's rows have two that are known.
+    The base model is fitted to the rows of the first only; the second is simulated with it. Gravity
+    depends on the payload if two payloads are known in the rows of the first.
 
     Parameters
     ----------
@@ -142,7 +152,12 @@ def build_problems(
     temperature : {"motor", "housing", "mean"}
         Temperature that the friction function is given.
     held_out : str, optional
-        Name of the run that is kept out.
+        Name of the hold-out run.
+
+    Returns
+    -------
+    Problem, Problem or None
+        Of all other runs, and of the hold-out run where there is one.
     """
     rows = torques.sort_values(["run", "time", "pair", "position"], ignore_index=True)
     new = (rows["run"] == held_out).to_numpy()
@@ -150,26 +165,26 @@ def build_problems(
     load = rows["load_torque"].to_numpy(float)
     gravity = np.linalg.lstsq(columns[~new], load[~new], rcond=None)[0]
     smooth = carried_load(columns, gravity) if rows["load"].isna().all() else load
-    whole = min(
+    problem = min(
         (
             _assembled(rows, temperature, smooth, columns, gravity, base.parameters, base.names)
             for base in candidate_bases(rows.assign(load_torque=smooth)[~new], temperature)
         ),
         key=lambda problem: _typical_misfit(problem, ~new),
     )
-    return _part(whole, ~new), _part(whole, new) if new.any() else None
+    return _part(problem, ~new), _part(problem, new) if new.any() else None
 
 
-def _typical_misfit(problem: "Problem", seen: Flags) -> float:
-    """Return the median misfit of the pairs' mean friction. [N·m]."""
+def _typical_misfit(problem: Problem, chosen: Flags) -> float:
+    """Return the median absolute misfit of the mean friction of the chosen pairs. [N·m]."""
     misfit = problem.layout.means(problem.friction_misfit[:, np.newaxis])[:, 0]
-    return float(np.median(np.abs(misfit[np.unique(problem.layout.row_pair[seen])])))
+    return float(np.median(np.abs(misfit[np.unique(problem.layout.row_pair[chosen])])))
 
 
 def simulated(
     torques: pd.DataFrame, temperature: str, parameters: FrictionParameters, gravity: Array
 ) -> tuple[pd.Index, Problem]:
-    """Return the problem of given rows under a given base, and the rows' labels in its order.
+    """Return the problem of rows simulated with a given base model, and its order of the rows.
 
     Parameters
     ----------
@@ -178,10 +193,15 @@ def simulated(
     temperature : {"motor", "housing", "mean"}
         Temperature that the friction function is given.
     parameters : FrictionParameters
-        Its parameters.
+        Parameters of friction.
     gravity : ndarray, shape (3,) or (5,)
         Coefficients of cos q, sin q and 1, and of the first two per mass of the payload. [N·m],
         [N·m/kg]
+
+    Returns
+    -------
+    Index, Problem
+        Labels of the rows of ``torques`` in the order of the problem, and the problem.
     """
     rows = torques.sort_values(["run", "time", "pair", "position"])
     columns = columns_of(rows, payloads=len(gravity) > len(NAMES))
@@ -202,10 +222,11 @@ def _assembled(
     parameters: FrictionParameters,
     names: tuple[str, ...],
 ) -> Problem:
+    """Return the problem of all rows, with friction simulated by the base model."""
     pair = rows.groupby(PAIR_KEY, sort=False, observed=True).ngroup().to_numpy()
     run, run_names = pd.factorize(rows["run"])
     speed = rows["speed"].to_numpy(float)
-    warm = np.nan_to_num(temperature_of(rows, temperature).to_numpy(float), nan=0.0)
+    known_temperature = np.nan_to_num(temperature_of(rows, temperature).to_numpy(float), nan=0.0)
     heads = np.flatnonzero(np.diff(pair, prepend=-1))
     position = rows["position"].to_numpy(float)
     layout = PairLayout.of(
@@ -225,7 +246,7 @@ def _assembled(
         speed=speed,
         position=position,
         load=load,
-        temperature=warm,
+        temperature=known_temperature,
         motor_temperature=motor,
         housing_temperature=rows["housing_temperature"].to_numpy(float),
         friction=np.zeros_like(speed),
@@ -237,10 +258,10 @@ def _assembled(
         order=order[pair],
     )
     reading = rows["motor_temperature_reading"].to_numpy(float)
-    rebuilt = np.nanmax(np.abs(reading - warm), initial=0.0) > 1e-6
-    empty = Problem(
+    reconstructed = np.nanmax(np.abs(reading - known_temperature), initial=0.0) > 1e-6
+    without_friction = Problem(
         table=table,
-        whole=table,
+        all_runs=table,
         rows=np.arange(len(run)),
         layout=layout,
         friction=rows["friction_torque"].to_numpy(float),
@@ -250,11 +271,11 @@ def _assembled(
         names=names,
         parameters=parameters,
         gravity=gravity,
-        own_load=bool(rows["load"].notna().any()),
-        temperature_error=_REBUILT if rebuilt else _REGISTERED,
+        has_load_channel=bool(rows["load"].notna().any()),
+        temperature_error=_RECONSTRUCTED if reconstructed else _REGISTERED,
         runs=tuple(str(name) for name in run_names),
     )
-    return _with_friction(empty)
+    return _with_friction(without_friction)
 
 
 def _with_friction(problem: Problem) -> Problem:
@@ -272,13 +293,13 @@ def _with_friction(problem: Problem) -> Problem:
     return replace(
         problem,
         table=table,
-        whole=table,
+        all_runs=table,
         friction_base=np.column_stack([derivative[name] for name in problem.names]),
     )
 
 
 def _modelled(table: EffectTable, parameters: FrictionParameters) -> EffectTable:
-    """Return a table with the columns that depend on the base's friction."""
+    """Return a table with the columns that depend on the friction of the base model."""
     decay = np.exp(-parameters.delta * table.temperature)
     return replace(
         table,
@@ -291,28 +312,28 @@ def _modelled(table: EffectTable, parameters: FrictionParameters) -> EffectTable
     )
 
 
-def _part(whole: Problem, chosen: Flags) -> Problem:
-    """Return the problem of some runs; rows of whole pairs are chosen."""
+def _part(problem: Problem, chosen: Flags) -> Problem:
+    """Return the problem of some runs."""
     table = EffectTable(
-        **{field.name: getattr(whole.table, field.name)[chosen] for field in fields(EffectTable)}
+        **{field.name: getattr(problem.table, field.name)[chosen] for field in fields(EffectTable)}
     )
-    pairs = np.unique(whole.layout.row_pair[chosen])
-    row_pair = np.searchsorted(pairs, whole.layout.row_pair[chosen])
+    pairs = np.unique(problem.layout.row_pair[chosen])
+    row_pair = np.searchsorted(pairs, problem.layout.row_pair[chosen])
     layout = PairLayout.of(
         row_pair=row_pair,
-        run=whole.layout.run[pairs],
-        time=whole.layout.time[pairs],
+        run=problem.layout.run[pairs],
+        time=problem.layout.time[pairs],
         speed=table.speed[np.flatnonzero(np.diff(row_pair, prepend=-1))],
         position=table.position,
     )
     return replace(
-        whole,
+        problem,
         table=table,
         rows=np.flatnonzero(chosen),
         layout=layout,
-        friction=whole.friction[chosen],
-        load=whole.load[chosen],
-        friction_base=whole.friction_base[chosen],
-        load_base=whole.load_base[chosen],
-        runs=tuple(whole.runs[number] for number in np.unique(layout.run)),
+        friction=problem.friction[chosen],
+        load=problem.load[chosen],
+        friction_base=problem.friction_base[chosen],
+        load_base=problem.load_base[chosen],
+        runs=tuple(problem.runs[number] for number in np.unique(layout.run)),
     )

@@ -52,7 +52,7 @@ def diagnosis_document(diagnosis: Diagnosis, settings: DiagnosisSettings) -> Dia
         verdict=diagnosis.verdict,
         causes=tuple(causes),
         visible=tuple(
-            VisibleRecord(effects=cause.effects, size=cause.size, p_value=cause.judged.p_value)
+            VisibleRecord(effects=cause.effects, size=cause.size, p_value=cause.test.p_value)
             for cause in diagnosis.visible
         ),
         gain=None
@@ -139,7 +139,7 @@ def _ramps_record(diagnosis: Diagnosis) -> RampsRecord | None:
 
 
 def _cause_record(diagnosis: Diagnosis, cause: Cause, number: int) -> CauseRecord:
-    effect = cause.score.effect
+    effect = cause.fit.effect
     extension = diagnosis.extension
     assert extension is not None  # there is one wherever there is a cause
     return CauseRecord(
@@ -151,7 +151,7 @@ def _cause_record(diagnosis: Diagnosis, cause: Cause, number: int) -> CauseRecor
         parameters=_shapes(extension, number - 1)
         | _coefficients(extension, number - 1, diagnosis.torque_unit),
         size=cause.size,
-        p_value=cause.judged.p_value,
+        p_value=cause.test.p_value,
         seen_in=effect.signature.axis,
         figure=f"diagnosis-{number}.svg",
         experiment=effect.experiment,

@@ -11,13 +11,13 @@ def verdict_text(diagnosis: Diagnosis) -> str:
         f" one by {diagnosis.rmse:.3g} {unit} (RMS)"
     ]
     for cause in diagnosis.causes:
-        effect = cause.score.effect
+        effect = cause.fit.effect
         shares = ", ".join(
             f"{name} {cause.probabilities.get(name, 0.0):.0%}" for name in cause.effects
         )
         lines.append(
             f"  {' or '.join(cause.effects)} ({shares}): {effect.summary} {cause.size:.2g} {unit}"
-            f" RMS in the {effect.channel}, chance {cause.judged.p_value:.1g}"
+            f" RMS in the {effect.channel}, chance {cause.test.p_value:.1g}"
         )
         lines.append(f"    seen: {effect.signature.claim}")
         lines.append(f"    next: {effect.experiment}")
@@ -30,7 +30,7 @@ def verdict_text(diagnosis: Diagnosis) -> str:
     for cause in diagnosis.visible:
         lines.append(
             f"  {' or '.join(cause.effects)}: stands out of the noise ({cause.size:.2g} {unit} RMS,"
-            f" chance {cause.judged.p_value:.1g}), but is not worth modelling"
+            f" chance {cause.test.p_value:.1g}), but is not worth modelling"
         )
     if not diagnosis.causes and diagnosis.structure is None:
         lines.append(f"  no cause found; {_silence(diagnosis)}")

@@ -1,4 +1,4 @@
-"""One channel of a step: base and accepted effects there, under the noise that suits them."""
+"""Likelihood of one channel: base and accepted effects, and candidates tested beside them."""
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
@@ -10,10 +10,10 @@ from frictioncli.arrays import Array, Indices
 from frictioncli.diagnosis.fit.columns import ChannelColumns
 from frictioncli.diagnosis.fit.two_channel_fit import NormalEquations, noise_of
 from frictioncli.diagnosis.noise.likelihood_scan import (
-    Null,
+    NoiseIndex,
+    NullFit,
     Scan,
-    Setting,
-    null_of,
+    fit_null,
     scan,
     weighted_gram,
 )
@@ -24,22 +24,22 @@ from frictioncli.model.noise import Noise
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ChannelLikelihood:
-    """Friction or load in a step.
+    """The null hypothesis of one step of the search in the friction or the load channel.
 
     Attributes
     ----------
     spectra : Spectra
-        The channel's noises.
+        The channel's noise models.
     point : float
-        Noise of a row about its pair. [N·m]
+        Standard deviation of an angle bin about the mean of its pair. [N·m]
     base : ChannelColumns
         Columns of the base and of the accepted effects.
     misfit : ChannelColumns
         The misfit of the simulated torque, one column.
     known : Modes
-        Modes of the base's columns and the misfit, at each correlation time.
-    null : Null
-        The base with the accepted effects alone.
+        Modes of the base's columns and of the misfit, at each correlation time.
+    null : NullFit
+        Base and accepted effects alone.
     """
 
     spectra: Spectra
@@ -47,73 +47,76 @@ class ChannelLikelihood:
     base: ChannelColumns
     misfit: ChannelColumns
     known: Modes
-    null: Null
+    null: NullFit
 
     @classmethod
     def of(
         cls, spectra: Spectra, point: float, base: ChannelColumns, misfit: ChannelColumns
     ) -> "ChannelLikelihood":
-        """Return the side with the noise that suits the base."""
+        """Return the likelihood of a channel with the noise model that suits the base best."""
         return cls(
             spectra=spectra,
             point=point,
             base=base,
             misfit=misfit,
             known=spectra.all_modes(np.hstack([base.means, misfit.means])),
-            null=null_of(spectra, base.means, misfit.means),
+            null=fit_null(spectra, base.means, misfit.means),
         )
 
     def noise(self, scale: float) -> Noise:
-        """Return the noise that suits base and accepted effects, from its scale. [(N·m)²]."""
+        """Return the noise under the null hypothesis from its scale [(N·m)²]."""
         return noise_of(self.spectra, self.null.best, scale, self.point)
 
     def scan(
-        self, rivals: Modes, groups: Groups, draws: int, generator: np.random.Generator
+        self, candidates: Modes, groups: Groups, draws: int, generator: np.random.Generator
     ) -> Scan:
-        """Set groups of columns against the base under every noise, as :func:`scan`."""
-        return scan(self.spectra, self.null, rivals, groups, draws, generator)
+        """Compare groups of columns with the base under every noise model, as :func:`scan`."""
+        return scan(self.spectra, self.null, candidates, groups, draws, generator)
 
-    def equations(self, rival: ChannelColumns, modes: Array, setting: Setting) -> NormalEquations:
-        """Return the inner products of base, rival and misfit under one noise.
-
-        Parameters
-        ----------
-        rival : ChannelColumns
-            The rival's columns.
-        modes : ndarray, shape (pairs, columns)
-            Their modes at the noise's correlation time.
-        setting : (int, int)
-            Place of the noise.
-        """
-        alone = self.equations_each(rival, modes, np.arange(rival.count)[np.newaxis], setting)
-        return replace(alone, inside=alone.inside[0], between=alone.between[0])
-
-    def equations_each(
-        self, rivals: ChannelColumns, modes: Array, columns: Indices, setting: Setting
+    def normal_equations(
+        self, candidate: ChannelColumns, modes: Array, noise: NoiseIndex
     ) -> NormalEquations:
-        """Return the inner products of base, each of many rivals, and misfit under one noise.
+        """Return the inner products of base, candidate and misfit under one noise model.
 
         Parameters
         ----------
-        rivals : ChannelColumns
-            Columns of the rivals.
+        candidate : ChannelColumns
+            The candidate's columns.
         modes : ndarray, shape (pairs, columns)
-            Their modes at the noise's correlation time.
-        columns : ndarray of int, shape (rivals, width)
-            Which columns are whose.
-        setting : (int, int)
-            Place of the noise.
+            Their modes at the correlation time of the noise.
+        noise : (int, int)
+            Index of the noise model.
         """
-        known = np.hstack([self.base.inside, self.misfit.inside])
+        columns = np.arange(candidate.count)[np.newaxis]
+        alone = self.normal_equations_each(candidate, modes, columns, noise)
+        return replace(alone, within=alone.within[0], between=alone.between[0])
+
+    def normal_equations_each(
+        self, candidates: ChannelColumns, modes: Array, columns: Indices, noise: NoiseIndex
+    ) -> NormalEquations:
+        """Return the inner products of base, each of many candidates, and misfit.
+
+        Parameters
+        ----------
+        candidates : ChannelColumns
+            Columns of the candidates.
+        modes : ndarray, shape (pairs, columns)
+            Their modes at the correlation time of the noise.
+        columns : ndarray of int, shape (candidates, width)
+            Which columns belong to which candidate.
+        noise : (int, int)
+            Index of the noise model.
+        """
+        known = np.hstack([self.base.within, self.misfit.within])
         return NormalEquations(
-            inside=_bordered(_inner, known, rivals.inside, columns) / self.point**2,
+            within=_bordered(_inner, known, candidates.within, columns) / self.point**2,
             between=_bordered(
-                partial(weighted_gram, self.spectra, setting),
-                self.known[setting[0]],
+                partial(weighted_gram, self.spectra, noise),
+                self.known[noise[0]],
                 modes,
                 columns,
             ),
-            determinant=float(self.null.determinant[setting]),
+            determinant=float(self.null.determinant[noise]),
             freedom=self.null.freedom,
         )
 
@@ -125,35 +128,35 @@ def _inner(first: Array, second: Array) -> Array:
 def _bordered(
     product: Callable[[Array, Array], Array],
     known: Array,
-    rivals: Array,
+    candidates: Array,
     columns: Indices,
 ) -> Array:
-    """Return inner products of the base's columns, each rival's, and the misfit.
+    """Return inner products of the base's columns, each candidate's, and the misfit.
 
     Parameters
     ----------
     product : callable
         Inner products of the columns of one array with those of another.
     known : ndarray, shape (rows, base + 1)
-        The base's columns, then the misfit; their products are the same beside all rivals.
-    rivals : ndarray, shape (rows, columns)
-        Columns of the rivals.
-    columns : ndarray of int, shape (rivals, width)
-        Which columns are whose.
+        The base's columns, then the misfit; their products are the same for all candidates.
+    candidates : ndarray, shape (rows, columns)
+        Columns of the candidates.
+    columns : ndarray of int, shape (candidates, width)
+        Which columns belong to which candidate.
 
     Returns
     -------
-    ndarray, shape (rivals, base + width + 1, base + width + 1)
+    ndarray, shape (candidates, base + width + 1, base + width + 1)
         The base's columns first, the misfit last.
     """
-    own = np.moveaxis(rivals[:, columns], 1, 0)
-    across = product(own, known)
+    grouped = np.moveaxis(candidates[:, columns], 1, 0)
+    across = product(grouped, known)
     base, width = known.shape[1] - 1, columns.shape[1]
     found = np.empty((len(columns), base + width + 1, base + width + 1))
     middle = slice(base, base + width)
     place = np.delete(np.arange(base + width + 1), middle)
     found[:, place[:, np.newaxis], place] = product(known, known)
-    found[:, middle, middle] = product(own, own)
+    found[:, middle, middle] = product(grouped, grouped)
     found[:, middle, place] = across
     found[:, place, middle] = across.swapaxes(-1, -2)
     return found

@@ -1,7 +1,8 @@
-"""Columns of a model, reduced to what noise tells apart: inside pairs and between them.
+r"""Columns of a linear model, split into deviations within pairs and means of pairs.
 
-A channel's rows split exactly into deviations from their pair's mean, whose noise is white, and
-the pair means, whose noise is correlated. Inference needs nothing else of an effect's columns.
+The rows of a channel split exactly into deviations from the mean of their pair, whose noise is
+white, and the pair means, whose noise is correlated. The likelihood depends on the columns of a
+model only through these two parts.
 """
 
 from collections.abc import Sequence
@@ -13,34 +14,25 @@ from frictioncli.arrays import Array, Indices
 from frictioncli.diagnosis.data.pair_layout import PairLayout
 from frictioncli.diagnosis.data.problem import Problem
 from frictioncli.effects.base import Basis, Effect
-from frictioncli.effects.pair_series import measured_share
 from frictioncli.linear_algebra import least_squares_residual
-from frictioncli.quantities import TORQUE
 
 RANK = 1e-9
 """Singular values of unit columns below this share of the greatest count as zero."""
 
-_USUAL_FRICTION = 20.0
-"""Mean friction torque up to which the catalogue's bounds in units of torque hold; those of a
-stronger joint grow with it. [N·m]"""
-
-_TOLERANCE = 2.0
-"""A coefficient may miss its physical bound by as many standard errors."""
-
 
 @dataclass(frozen=True, slots=True)
 class ChannelColumns:
-    """Columns in one channel.
+    """Columns of a model in one channel.
 
     Attributes
     ----------
-    inside : ndarray, shape (contrasts, columns)
-        Pooled deviations from the pair means. [N·m]
+    within : ndarray, shape (contrasts, columns)
+        Deviations from the pair means, pooled as :meth:`PairLayout.contrasts` does. [N·m]
     means : ndarray, shape (pairs, columns)
         Pair means. [N·m]
     """
 
-    inside: Array
+    within: Array
     means: Array
 
     @property
@@ -51,7 +43,13 @@ class ChannelColumns:
 
 @dataclass(frozen=True, slots=True)
 class ModelColumns:
-    """The same columns in both channels."""
+    """Columns of a model in both channels.
+
+    Attributes
+    ----------
+    friction, load : ChannelColumns
+        The same columns in the friction and in the load channel.
+    """
 
     friction: ChannelColumns
     load: ChannelColumns
@@ -70,25 +68,33 @@ class ModelColumns:
         """Return some of the columns."""
         return ModelColumns(
             *(
-                ChannelColumns(part.inside[:, chosen], part.means[:, chosen])
+                ChannelColumns(part.within[:, chosen], part.means[:, chosen])
                 for part in self.channels
             )
         )
 
 
 def reduced(layout: PairLayout, friction: Array, load: Array) -> ModelColumns:
-    """Return the columns of rows of both channels, shape (rows, columns) each."""
+    """Return columns given row by row, split into deviations within pairs and pair means.
+
+    Parameters
+    ----------
+    layout : PairLayout
+        The pairs.
+    friction, load : ndarray, shape (rows, columns)
+        The columns in both channels. [N·m]
+    """
     return ModelColumns(
         *(ChannelColumns(layout.contrasts(rows), layout.means(rows)) for rows in (friction, load))
     )
 
 
 def joined(parts: Sequence[ModelColumns]) -> ModelColumns:
-    """Return the columns of several, side by side."""
+    """Return several sets of columns side by side."""
     return ModelColumns(
         *(
             ChannelColumns(
-                np.hstack([getattr(part, name).inside for part in parts]),
+                np.hstack([getattr(part, name).within for part in parts]),
                 np.hstack([getattr(part, name).means for part in parts]),
             )
             for name in ("friction", "load")
@@ -104,10 +110,10 @@ def base_columns(problem: Problem) -> ModelColumns:
 
 def base_rows(problem: Problem) -> tuple[Array, Array]:
     """Return the base's columns in friction and load, shape (rows, parameters) each."""
-    nothing = np.zeros_like(problem.friction_base)
+    zeros = np.zeros_like(problem.friction_base)
     return (
         np.hstack([problem.friction_base, problem.friction_by_gravity]),
-        np.hstack([nothing, problem.load_base]),
+        np.hstack([zeros, problem.load_base]),
     )
 
 
@@ -123,85 +129,15 @@ def basis_columns(problem: Problem, basis: Basis) -> ModelColumns:
     return reduced(problem.layout, basis.friction, basis.load)
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Hypothesis:
-    """Something that may explain the misfit: columns, perhaps over a grid of shapes.
-
-    Attributes
-    ----------
-    name : str
-        Its name.
-    shapes : tuple of dict
-        Shape parameters of each group of columns.
-    width : int
-        Columns of each group.
-    columns : ModelColumns
-        The groups side by side, ``len(shapes) * width`` columns.
-    raw : ndarray, shape (shapes, width)
-        RMS of each column in the channel where the hypothesis shows most. [N·m]
-    lower, upper : ndarray, shape (width,)
-        Physical bounds of the coefficients.
-    """
-
-    name: str
-    shapes: tuple[dict[str, float], ...]
-    width: int
-    columns: ModelColumns
-    raw: Array
-    lower: Array
-    upper: Array
-
-    def allows(self, coefficients: Array, covariance: Array) -> bool:
-        """Return whether coefficients lie within their physical bounds, but for their error."""
-        margin = _TOLERANCE * np.sqrt(np.maximum(np.diag(covariance), 0.0))
-        above = coefficients >= self.lower - margin
-        return bool(np.all(above & (coefficients <= self.upper + margin)))
-
-
-def hypothesis_of(
-    effect: Effect, problem: Problem, shapes: Sequence[dict[str, float]] | None = None
-) -> Hypothesis:
-    """Return an effect as a hypothesis over its grid of shapes, or over given ones."""
-    tried = _telling(effect, problem) if shapes is None else list(shapes)
-    bases = [problem.basis(effect, shape) for shape in tried]
-    raw = [np.sqrt(np.mean(np.square(main_channel(basis, effect)), axis=0)) for basis in bases]
-    columns = reduced(
-        problem.layout,
-        np.hstack([basis.friction for basis in bases]),
-        np.hstack([basis.load for basis in bases]),
-    )
-    width = len(effect.coefficients)
-    strength = max(float(np.mean(np.abs(problem.friction))) / _USUAL_FRICTION, 1.0)
-    reach = np.array([strength if TORQUE in one.unit else 1.0 for one in effect.coefficients])
-    return Hypothesis(
-        name=effect.name,
-        shapes=tuple(tried),
-        width=width,
-        columns=columns,
-        raw=np.array(raw),
-        lower=np.array([parameter.lower for parameter in effect.coefficients]) * reach,
-        upper=np.array([parameter.upper for parameter in effect.coefficients]) * reach,
-    )
-
-
-def _telling(effect: Effect, problem: Problem) -> list[dict[str, float]]:
-    """Return the shapes to try first; moments that leave all rows on one side say nothing."""
-    tried = effect.shapes(problem.whole)
-    if effect.moments is None:
-        return tried
-    share = measured_share(problem.whole)[problem.rows]
-    return [one for one in tried if share.min() < one["moment"] <= share.max()] or tried[:1]
-
-
 def main_channel(basis: Basis, effect: Effect) -> Array:
     """Return an effect's columns in the channel where it shows most."""
     return basis.friction if effect.channel == "friction" else basis.load
 
 
-def left_of_base(
+def residual_of_base(
     problem: Problem, torque: Array, channel: str, accepted: Sequence[Basis] = ()
 ) -> Array:
-    """Return what the base, and effects beside it, cannot take of a torque. [N·m].
+    """Return what the base, and effects beside it, leave of a torque by least squares.
 
     Parameters
     ----------
@@ -210,11 +146,16 @@ def left_of_base(
     torque : ndarray, shape (rows,)
         A torque in one channel. [N·m]
     channel : {"friction", "load"}
-        Which channel.
+        The channel.
     accepted : sequence of Basis
         Columns of effects beside the base.
+
+    Returns
+    -------
+    ndarray, shape (rows,)
+        The residual. [N·m]
     """
     number = ("friction", "load").index(channel)
     base = [base_rows(problem)[number], *(basis[number] for basis in accepted)]
-    # column after column in memory, as least squares works
+    # LAPACK works on columns that are contiguous in memory
     return least_squares_residual(np.asfortranarray(np.hstack(base)), torque, tolerance=RANK)

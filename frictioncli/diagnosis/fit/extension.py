@@ -1,4 +1,14 @@
-"""The base model with the causes found: refitted together, judged on data that it has not seen."""
+r"""The base model extended by the causes found, refitted together, and its hold-out gain.
+
+The extended friction and load are linear about the base model: the simulated torque, plus its
+derivatives by the base's parameters times their changes, plus the columns of each effect times its
+coefficients,
+
+.. math:: u = u_0 + \frac{\partial u}{\partial p}\, \Delta p + \sum_k X_k(\theta_k)\, c_k .
+
+The gain is the relative reduction of the RMS misfit on rows of a new run, where there is one, with
+a block-bootstrap interval.
+"""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -8,16 +18,17 @@ import numpy as np
 from frictioncli.arrays import Array
 from frictioncli.diagnosis.data.problem import Problem
 from frictioncli.diagnosis.fit.columns import base_rows
-from frictioncli.diagnosis.fit.judgement import Score
+from frictioncli.diagnosis.fit.hypotheses import EffectFit
 from frictioncli.diagnosis.fit.weighted_fit import WeightedFit
 from frictioncli.effects.base import Basis, Parameter
 
 _BLOCK = 12
-"""Pairs drawn together when the gain's interval is made: neighbours are not independent."""
+"""Pairs per block of the bootstrap: the misfits of neighbouring pairs are not independent."""
 
 _DRAWS = 1000
+"""Bootstrap samples."""
 
-_NUDGE = 0.01
+_STEP = 0.01
 """Share of a shape parameter's range over which its derivative is taken."""
 
 
@@ -25,38 +36,35 @@ _NUDGE = 0.01
 class Refit:
     """Changes of the base model, and effects, fitted together.
 
-    The extended friction is the base's, plus its derivatives by the parameters times their changes,
-    plus the effects: linear about the base, as the effects themselves are.
-
     Attributes
     ----------
     names : tuple of str
         Friction parameters that were fitted.
     changes : ndarray, shape (names,)
-        Their changes from the base.
+        Their changes from the base, in their units.
     gravity : ndarray, shape (3,) or (5,)
-        Coefficients of the gravity torque, as of the problem. [N·m], [N·m/kg]
-    effects : tuple of Score
+        Coefficients of the gravity torque, as in the problem. [N·m], [N·m/kg]
+    effects : tuple of EffectFit
         Effects with their shapes and coefficients.
     """
 
     names: tuple[str, ...]
     changes: Array
     gravity: Array
-    effects: tuple[Score, ...]
+    effects: tuple[EffectFit, ...]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Extension(Refit):
-    """A refit with its errors.
+    """A refit with standard errors.
 
     Attributes
     ----------
-    errors : ndarray
+    errors : ndarray, shape (parameters,)
         Standard errors of the changes, the gravity and the effects' coefficients, in this order.
-    shape_errors : ndarray
+    shape_errors : ndarray, shape (shape parameters,)
         Standard errors of the effects' shape parameters, effect after effect; 0 where the data
-        cannot tell it.
+        do not determine it.
     """
 
     errors: Array
@@ -65,7 +73,7 @@ class Extension(Refit):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Gain:
-    """What an extension is worth.
+    """Reduction of the misfit by an extension.
 
     Attributes
     ----------
@@ -74,11 +82,11 @@ class Gain:
     before, after : float
         RMS misfit of the simulated torque without and with it. [N·m]
     reduction : float
-        Share of the misfit that it takes away.
+        Relative reduction of the RMS misfit.
     interval : (float, float)
-        95 % interval of that share.
+        95 % interval of the reduction.
     floor : float
-        RMS of what no model can predict: point and pair noise. [N·m]
+        RMS of point and pair noise, which no model can predict. [N·m]
     """
 
     basis: str
@@ -89,47 +97,50 @@ class Gain:
     floor: float
 
 
-def refit(problem: Problem, weighing: WeightedFit, effects: Sequence[Score]) -> Refit:
-    """Fit the base and effects together by weighted least squares; shapes stay as they were found.
+def refit(problem: Problem, weighted_fit: WeightedFit, effects: Sequence[EffectFit]) -> Refit:
+    """Fit the base and effects together by weighted least squares, at fixed shapes.
 
     Parameters
     ----------
     problem : Problem
         Data with the base model.
-    weighing : WeightedFit
+    weighted_fit : WeightedFit
         Weights of both channels.
-    effects : sequence of Score
+    effects : sequence of EffectFit
         Effects with the shapes found.
     """
     friction, load = _columns(problem, effects)
-    step = weighing.coefficients(friction, load, (problem.friction_misfit, problem.load_misfit))
+    step = weighted_fit.coefficients(friction, load, (problem.friction_misfit, problem.load_misfit))
     widths = [len(one.effect.coefficients) for one in effects]
     ends = np.cumsum([len(problem.names), len(problem.gravity), *widths])
-    changes, gravity, *own, _ = np.split(step, ends)
+    changes, gravity, *coefficients, _ = np.split(step, ends)
     return Refit(
         names=problem.names,
         changes=changes,
         gravity=problem.gravity + gravity,
         effects=tuple(
-            replace(one, coefficients=values) for one, values in zip(effects, own, strict=True)
+            replace(one, coefficients=values)
+            for one, values in zip(effects, coefficients, strict=True)
         ),
     )
 
 
-def extend(problem: Problem, weighing: WeightedFit, effects: Sequence[Score]) -> Extension:
-    """Fit the base and effects together, with errors; parameters as :func:`refit`.
+def extend(problem: Problem, weighted_fit: WeightedFit, effects: Sequence[EffectFit]) -> Extension:
+    """Fit the base and effects together, with standard errors; parameters as :func:`refit`.
 
-    That shapes are uncertain too widens the errors of everything that depends on them, by the
-    derivatives of the effects by their shapes.
+    The uncertainty of the shape parameters is included: derivatives of the effects by their shapes
+    are further columns of the error covariance.
     """
-    fitted = refit(problem, weighing, effects)
+    fitted = refit(problem, weighted_fit, effects)
     columns = _columns(problem, fitted.effects)
-    slopes = [_slope(problem, one, axis) for one in fitted.effects for axis in one.effect.shape]
+    derivatives = [
+        _shape_derivative(problem, one, axis) for one in fitted.effects for axis in one.effect.shape
+    ]
     friction, load = (
-        np.column_stack([columns[channel], *(slope[channel] for slope in slopes)])
+        np.column_stack([columns[channel], *(one[channel] for one in derivatives)])
         for channel in (0, 1)
     )
-    errors = np.sqrt(np.maximum(np.diag(weighing.error_covariance(friction, load)), 0.0))
+    errors = np.sqrt(np.maximum(np.diag(weighted_fit.error_covariance(friction, load)), 0.0))
     count = columns[0].shape[1]
     return Extension(
         names=fitted.names,
@@ -141,17 +152,17 @@ def extend(problem: Problem, weighing: WeightedFit, effects: Sequence[Score]) ->
     )
 
 
-def _columns(problem: Problem, effects: Sequence[Score]) -> tuple[Array, Array]:
+def _columns(problem: Problem, effects: Sequence[EffectFit]) -> tuple[Array, Array]:
     """Return the columns of base and effects in friction and load, shape (rows, columns) each."""
     bases = [base_rows(problem), *(problem.basis(one.effect, one.shape) for one in effects)]
     friction, load = (np.hstack([basis[channel] for basis in bases]) for channel in (0, 1))
     return friction, load
 
 
-def _slope(problem: Problem, one: Score, axis: Parameter) -> Basis:
-    """Return what an effect changes by per unit of a shape parameter, shape (rows,) each."""
+def _shape_derivative(problem: Problem, one: EffectFit, axis: Parameter) -> Basis:
+    """Return the derivative of an effect by a shape parameter, shape (rows,) per channel."""
     place = axis.share(one.shape[axis.name])
-    ends = [axis.at(min(max(place + step, 0.0), 1.0)) for step in (-_NUDGE, _NUDGE)]
+    ends = [axis.at(min(max(place + step, 0.0), 1.0)) for step in (-_STEP, _STEP)]
     low, high = (problem.basis(one.effect, one.shape | {axis.name: value}) for value in ends)
     width = ends[1] - ends[0]
     return Basis(
@@ -161,7 +172,15 @@ def _slope(problem: Problem, one: Score, axis: Parameter) -> Basis:
 
 
 def misfits(problem: Problem, fitted: Refit) -> tuple[Array, Array]:
-    """Return what base and effects leave of both channels, shape (rows,) each. [N·m]."""
+    """Return measured minus extended torque in both channels, shape (rows,) each. [N·m].
+
+    Parameters
+    ----------
+    problem : Problem
+        Rows with the base model that the extension started from.
+    fitted : Refit
+        Changes of the base, and effects.
+    """
     changes = np.concatenate([fitted.changes, fitted.gravity - problem.gravity])
     base_friction, base_load = base_rows(problem)
     friction = problem.friction_misfit - base_friction @ changes
@@ -176,12 +195,12 @@ def misfits(problem: Problem, fitted: Refit) -> tuple[Array, Array]:
 def measured_gain(
     problem: Problem, extension: Extension, *, basis: str, floor: float, seed: int
 ) -> Gain:
-    """Return what an extension takes away of the misfit of the simulated torque.
+    """Return by how much an extension reduces the misfit of the simulated torque.
 
     Parameters
     ----------
     problem : Problem
-        Rows to be judged on, with the base model of the extension's own problem.
+        Rows to be predicted, with the base model of the extension's own problem.
     extension : Extension
         The extension.
     basis : {"new_run", "within_run"}
@@ -189,17 +208,17 @@ def measured_gain(
     floor : float
         RMS of point and pair noise. [N·m]
     seed : int
-        Seed of the drawn blocks.
+        Seed of the block bootstrap.
     """
     before = problem.squared(problem.friction_misfit, problem.load_misfit)
     after = problem.squared(*misfits(problem, extension))
     low, high = reduction_interval(problem, before, after, seed)
-    old, new = float(np.sqrt(np.mean(before))), float(np.sqrt(np.mean(after)))
+    rms_before, rms_after = float(np.sqrt(np.mean(before))), float(np.sqrt(np.mean(after)))
     return Gain(
         basis=basis,
-        before=old,
-        after=new,
-        reduction=1 - new / max(old, 1e-300),
+        before=rms_before,
+        after=rms_after,
+        reduction=1 - rms_after / max(rms_before, 1e-300),
         interval=(low, high),
         floor=floor,
     )
@@ -208,18 +227,18 @@ def measured_gain(
 def reduction_interval(
     problem: Problem, before: Array, after: Array, seed: int
 ) -> tuple[float, float]:
-    """Return the 95 % interval of the share of RMS misfit that is taken away.
+    """Return the 95 % interval of the relative reduction of RMS misfit, by block bootstrap.
 
-    Blocks of neighbouring pairs are drawn together, before and after alike.
+    Blocks of neighbouring pairs are drawn together, the same ones before and after.
 
     Parameters
     ----------
     problem : Problem
         The rows.
     before, after : ndarray, shape (rows,)
-        Squared misfit without and with what is judged. [(N·m)²]
+        Squared misfit without and with the extension. [(N·m)²]
     seed : int
-        Seed of the drawn blocks.
+        Seed of the block bootstrap.
     """
     pair = problem.layout.row_pair
     sums = np.column_stack([np.bincount(pair, weights=values) for values in (before, after)])

@@ -1,11 +1,13 @@
-r"""Weights by which an extended model is fitted, and what its estimates are worth.
+r"""Weighted least squares by which an extended model is fitted, with the covariance of its errors.
 
-Estimates that must predict are made by weighted least squares that does not look at drift: where a
-slow error is forgiven as drift, a model may miss by as much. Their covariance does look at it,
+Estimates that must predict are made by weighted least squares that does not model drift: under
+generalised least squares a slow error of the model is attributed to drift, and the model may miss
+by as much. The covariance of the estimates does account for drift,
 
-.. math:: (X'X)^{-1} X' C X (X'X)^{-1}
+.. math:: (X^\mathsf{T} X)^{-1} X^\mathsf{T} C X (X^\mathsf{T} X)^{-1}
 
-with the weighted columns *X* and the correlation *C* of the weighted noise.
+with the weighted columns *X* and the correlation matrix *C* of the weighted noise (a sandwich
+covariance).
 """
 
 from dataclasses import dataclass
@@ -23,18 +25,18 @@ _TOLERANCE = 1e-10
 
 @dataclass(frozen=True, slots=True)
 class Weights:
-    """One channel's weights.
+    """Weights of the rows of one channel.
 
     Attributes
     ----------
     layout : PairLayout
         The pairs.
     point : float
-        Standard deviation of a row about its pair. [N·m]
+        Standard deviation of an angle bin about the mean of its pair. [N·m]
     deviation : ndarray, shape (pairs,)
         Standard deviation of each pair's mean. [N·m]
     covariance : PairCovariance
-        Covariance of the pair means' noise.
+        Covariance of the noise of the pair means.
     """
 
     layout: PairLayout
@@ -61,7 +63,7 @@ class Weights:
         deviation = np.sqrt(covariance.white + noise.drift**2)
         return cls(layout, noise.point, deviation, covariance)
 
-    def rows(self, columns: Array) -> Array:
+    def weighted(self, columns: Array) -> Array:
         """Return weighted deviations from the pair means and, below them, weighted pair means.
 
         Parameters
@@ -69,19 +71,25 @@ class Weights:
         columns : ndarray, shape (rows, columns)
             Columns in the channel. [N·m]
         """
-        inside = self.layout.contrasts(columns) / self.point
-        return np.vstack([inside, (self.layout.means(columns).T / self.deviation).T])
+        within = self.layout.contrasts(columns) / self.point
+        return np.vstack([within, (self.layout.means(columns).T / self.deviation).T])
 
     def correlated(self, weighted: Array) -> Array:
-        """Return the correlation of the weighted rows' noise times such rows."""
-        inside, between = np.split(weighted, [-len(self.deviation)])
+        """Return C X: the correlation matrix of the weighted noise times weighted columns."""
+        within, between = np.split(weighted, [-len(self.deviation)])
         size = self.deviation[:, np.newaxis]
-        return np.vstack([inside, self.covariance.times(between / size) / size])
+        return np.vstack([within, self.covariance.times(between / size) / size])
 
 
 @dataclass(frozen=True, slots=True)
 class WeightedFit:
-    """Both channels' weights."""
+    """Weighted least squares in both channels together.
+
+    Attributes
+    ----------
+    friction, load : Weights
+        Weights of both channels.
+    """
 
     friction: Weights
     load: Weights
@@ -94,18 +102,27 @@ class WeightedFit:
         friction, load : ndarray, shape (rows, columns)
             Columns in both channels. [N·m]
         targets : (ndarray, ndarray), shape (rows,)
-            What they are to explain. [N·m]
+            What they are fitted to in both channels. [N·m]
         """
-        own, other = self.friction.rows(friction), self.load.rows(load)
-        right = own.T @ self.friction.rows(targets[0][:, np.newaxis])
-        right += other.T @ self.load.rows(targets[1][:, np.newaxis])
-        return (scaled_gram_inverse(own.T @ own + other.T @ other, tolerance=_TOLERANCE) @ right)[
-            :, 0
-        ]
+        first, second = self.friction.weighted(friction), self.load.weighted(load)
+        right = first.T @ self.friction.weighted(targets[0][:, np.newaxis])
+        right += second.T @ self.load.weighted(targets[1][:, np.newaxis])
+        return (_inverse(first, second) @ right)[:, 0]
 
     def error_covariance(self, friction: Array, load: Array) -> Array:
-        """Return the covariance of such coefficients, shape (columns, columns)."""
-        own, other = self.friction.rows(friction), self.load.rows(load)
-        bread = scaled_gram_inverse(own.T @ own + other.T @ other, tolerance=_TOLERANCE)
-        meat = own.T @ self.friction.correlated(own) + other.T @ self.load.correlated(other)
+        """Return the covariance of such coefficients, shape (columns, columns).
+
+        Parameters
+        ----------
+        friction, load : ndarray, shape (rows, columns)
+            Columns in both channels. [N·m]
+        """
+        first, second = self.friction.weighted(friction), self.load.weighted(load)
+        bread = _inverse(first, second)
+        meat = first.T @ self.friction.correlated(first) + second.T @ self.load.correlated(second)
         return np.asarray(bread @ meat @ bread)
+
+
+def _inverse(friction: Array, load: Array) -> Array:
+    """Return the inverse of the inner products of weighted columns of both channels."""
+    return scaled_gram_inverse(friction.T @ friction + load.T @ load, tolerance=_TOLERANCE)

@@ -1,1 +1,1 @@
-"""Noise of pair means: spectra, likelihoods under each, and significance."""
+"""Noise of pair means: covariance spectra, restricted likelihoods, and significance."""

@@ -1,4 +1,4 @@
-"""Columns in groups, one for each rival, made orthonormal from their inner products alone."""
+"""Columns in groups, one for each candidate, made orthonormal from their inner products alone."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -8,16 +8,16 @@ import numpy as np
 from frictioncli.arrays import Array, Flags, Indices
 
 _VISIBLE = 1e-3
-"""A column of which the base leaves less than this share says nothing of its own."""
+"""A column of which the base leaves less than this share of its length explains nothing."""
 
-_OWN = 1e-4
-"""Nor does one of which the others of its group leave less than this share."""
+_INDEPENDENT = 1e-4
+"""Nor does one of which the other columns of its group leave less than this share."""
 
 
-def unmixing(inner: Array, before: Array) -> Array:
-    r"""Return what makes columns orthonormal, from their inner products alone.
+def gram_schmidt(inner: Array, squared_length: Array) -> Array:
+    r"""Return the transformation that makes columns orthonormal, from their inner products alone.
 
-    Gram and Schmidt's way. For columns :math:`x_j` of unit length with inner products :math:`G`,
+    For columns :math:`x_j` of unit length with inner products :math:`G`,
 
     .. math:: M_j = \Big(e_j - \sum_{k<j} (M_k\,G\,e_j)\, M_k\Big) \Big/
         \sqrt{1 - \sum_{k<j} (M_k\,G\,e_j)^2}
@@ -28,17 +28,26 @@ def unmixing(inner: Array, before: Array) -> Array:
     ----------
     inner : ndarray, shape (..., width, width)
         Inner products of what the base leaves of the columns.
-    before : ndarray, shape (..., width)
-        Squared lengths of the whole columns.
+    squared_length : ndarray, shape (..., width)
+        Squared lengths of the columns before the base is taken out.
 
     Returns
     -------
     ndarray, shape (..., width, width)
-        Rows of coefficients of the columns.
+        M; each row holds coefficients of the columns.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> inner = np.array([[4.0, 2.0], [2.0, 2.0]])
+    >>> transformation = gram_schmidt(inner, np.array([4.0, 2.0]))
+    >>> print(transformation @ inner @ transformation.T)
+    [[1. 0.]
+     [0. 1.]]
     """
     square = np.diagonal(inner, axis1=-2, axis2=-1)
-    seen = (square > _VISIBLE**2 * before) & (square > 1e-24)
-    size = np.sqrt(np.where(seen, square, np.inf))
+    visible = (square > _VISIBLE**2 * squared_length) & (square > 1e-24)
+    size = np.sqrt(np.where(visible, square, np.inf))
     unit = inner / (size[..., :, np.newaxis] * size[..., np.newaxis, :])
     found = np.zeros_like(unit)
     for j in range(unit.shape[-1]):
@@ -47,20 +56,28 @@ def unmixing(inner: Array, before: Array) -> Array:
         row = -np.einsum("...k,...ki->...i", share, earlier)
         row[..., j] += 1.0
         rest = (unit[..., j, j] - np.sum(np.square(share), axis=-1))[..., np.newaxis]
-        found[..., j, :] = np.where(rest > _OWN**2, row / np.sqrt(np.maximum(rest, _OWN**2)), 0.0)
+        found[..., j, :] = np.where(
+            rest > _INDEPENDENT**2, row / np.sqrt(np.maximum(rest, _INDEPENDENT**2)), 0.0
+        )
     return found / size[..., np.newaxis, :]
 
 
 @dataclass(frozen=True, slots=True)
 class Groups:
-    """How columns are grouped: group *i* has ``width[i]`` columns from ``start[i]``."""
+    """Division of columns into consecutive groups.
+
+    Attributes
+    ----------
+    start, width : ndarray of int, shape (groups,)
+        Group *i* has ``width[i]`` columns from ``start[i]``.
+    """
 
     start: Indices
     width: Indices
 
     @classmethod
     def of(cls, widths: Sequence[int]) -> "Groups":
-        """Return groups that follow each other."""
+        """Return groups of these widths that follow each other."""
         width = np.array(widths, dtype=np.intp)
         return cls((np.cumsum(width) - width).astype(np.intp), width)
 
@@ -68,47 +85,47 @@ class Groups:
         """Return the columns of a group."""
         return slice(int(self.start[group]), int(self.start[group] + self.width[group]))
 
-    def chosen(self, wanted: Flags) -> tuple["Groups", Indices]:
+    def select(self, wanted: Flags) -> tuple["Groups", Indices]:
         """Return some of the groups, and the places of their columns among all."""
         return Groups.of(self.width[wanted].tolist()), np.flatnonzero(np.repeat(wanted, self.width))
 
-    def alike(self) -> list[tuple[Indices, Indices]]:
+    def by_width(self) -> list[tuple[Indices, Indices]]:
         """Return the groups of each width with their columns, shapes (groups,), (groups, width)."""
         found = []
-        for wide in sorted(set(self.width.tolist())):
-            which = np.flatnonzero(self.width == wide)
-            found.append((which, self.start[which, np.newaxis] + np.arange(wide)))
+        for width in sorted(set(self.width.tolist())):
+            which = np.flatnonzero(self.width == width)
+            found.append((which, self.start[which, np.newaxis] + np.arange(width)))
         return found
 
-    def orthonormal(self, whole: Array, left: Array) -> Array:
-        """Return the columns orthonormal within each group; what is not visible becomes zero.
+    def orthonormal(self, columns: Array, residuals: Array) -> Array:
+        """Return the residuals of columns orthonormal within each group; zero if not visible.
 
         Parameters
         ----------
-        whole, left : ndarray, shape (rows, columns)
-            Columns before and after the base has taken its share.
+        columns, residuals : ndarray, shape (rows, columns)
+            Columns before and after the base is taken out.
         """
-        before = np.einsum("ij,ij->j", whole, whole)
-        unit = np.empty_like(left)
-        for _, columns in self.alike():
-            own = left.T[columns]
-            mixing = unmixing(own @ own.swapaxes(-1, -2), before[columns])
-            unit.T[columns] = mixing @ own
+        squared_length = np.einsum("ij,ij->j", columns, columns)
+        unit = np.empty_like(residuals)
+        for _, places in self.by_width():
+            own = residuals.T[places]
+            transformation = gram_schmidt(own @ own.swapaxes(-1, -2), squared_length[places])
+            unit.T[places] = transformation @ own
         return unit
 
-    def taken(self, mixings: Sequence[Array], products: Array) -> Array:
-        """Return what each group takes of the square sums of data, shape (groups, ...).
+    def explained(self, transformations: Sequence[Array], products: Array) -> Array:
+        """Return the sum of squares of data that each group explains, shape (groups, ...).
 
         Parameters
         ----------
-        mixings : sequence of ndarray, shape (groups, width, width)
-            What makes the columns of each width orthonormal, in the order of :meth:`alike`.
+        transformations : sequence of ndarray, shape (groups, width, width)
+            As of :func:`gram_schmidt` for each width, in the order of :meth:`by_width`.
         products : ndarray, shape (columns, ...)
             Inner products of the columns with the data.
         """
         found = np.empty((len(self.start), products.shape[1]))
-        for (which, columns), mixing in zip(self.alike(), mixings, strict=True):
-            found[which] = np.sum(np.square(mixing @ products[columns]), axis=1)
+        for (which, columns), one in zip(self.by_width(), transformations, strict=True):
+            found[which] = np.sum(np.square(one @ products[columns]), axis=1)
         return found
 
     def sums(self, values: Array) -> Array:

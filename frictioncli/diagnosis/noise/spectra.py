@@ -1,14 +1,18 @@
-r"""Noise of pair means as a set of spectra: white noise plus a drift of any strength and pace.
+r"""Covariance spectrum of pair means: white noise plus drift, over a grid of noise models.
 
 The covariance of a channel's pair means is
 
 .. math:: V = a\,(H + \rho\,R_\theta)
 
-with a known profile :math:`H` of the white part, the drift's correlation
-:math:`R_\theta = e^{-|t_i - t_j| / \theta}` within each run, its strength :math:`\rho` relative to
-the white part and the scale :math:`a`. One eigendecomposition of
-:math:`H^{-1/2} R_\theta H^{-1/2}` for each :math:`\theta` makes every :math:`V` diagonal, so that
-many noises can be asked what they say to many explanations.
+with a known diagonal :math:`H` of the white part, the drift's correlation
+:math:`R_\theta = e^{-|t_i - t_j| / \theta}` within each run (an Ornstein-Uhlenbeck process), its
+variance :math:`\rho` relative to the white part and the scale :math:`a`. One eigendecomposition
+
+.. math:: H^{-1/2} R_\theta H^{-1/2} = U \Lambda U^\mathsf{T}
+
+for each :math:`\theta` makes every :math:`V` diagonal,
+:math:`U^\mathsf{T} H^{-1/2} V H^{-1/2} U = a (I + \rho \Lambda)`, so that many noise models can be
+tried on many candidate explanations at little cost.
 """
 
 from dataclasses import dataclass
@@ -22,7 +26,7 @@ Modes = tuple[Array, ...]
 """Pair means in the eigenvectors of each correlation time."""
 
 _TIMES = 6
-"""Number of correlation times, from the pairs' distance to the run's length."""
+"""Number of correlation times, from the distance of the pairs to the length of the run."""
 
 STRENGTHS = np.array([0.0, 0.1, 0.4, 1.6, 6.0, 25.0, 100.0, 1000.0])
 """Variances of the drift relative to the white part."""
@@ -30,7 +34,7 @@ STRENGTHS = np.array([0.0, 0.1, 0.4, 1.6, 6.0, 25.0, 100.0, 1000.0])
 
 @dataclass(frozen=True, slots=True)
 class Spectrum:
-    """The drift at one correlation time.
+    """Eigendecomposition of the drift's correlation at one correlation time.
 
     Attributes
     ----------
@@ -39,7 +43,7 @@ class Spectrum:
     values : ndarray, shape (pairs,)
         Eigenvalues, run after run.
     vectors : tuple of ndarray
-        Eigenvectors of each run.
+        Eigenvectors of each run, shape (pairs of the run, pairs of the run).
     """
 
     time: float
@@ -49,12 +53,12 @@ class Spectrum:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Spectra:
-    """One channel's noise of pair means at all correlation times.
+    """Noise models of the pair means of one channel, at all correlation times.
 
     Attributes
     ----------
     profile : ndarray, shape (pairs,)
-        White variance of each pair relative to the mean one.
+        Diagonal of H: white variance of each pair relative to the mean one.
     known : float
         Mean of the variance that is known beforehand. [(N·m)²]
     runs : tuple of slice
@@ -69,7 +73,7 @@ class Spectra:
     spectra: tuple[Spectrum, ...]
 
     def scaled(self, means: Array) -> Array:
-        """Return pair means divided by the profile of their white noise."""
+        """Return pair means divided by the profile's root, shape (pairs, ...)."""
         return (means.T / np.sqrt(self.profile)).T
 
     def modes(self, spectrum: Spectrum, scaled: Array) -> Array:
@@ -89,8 +93,8 @@ class Spectra:
         """Return pair means in the eigenvectors of each correlation time."""
         return tuple(self.modes_at(time, means) for time in range(len(self.spectra)))
 
-    def unmoded(self, spectrum: Spectrum, modes: Array) -> Array:
-        """Return scaled pair means from their modes."""
+    def from_modes(self, spectrum: Spectrum, modes: Array) -> Array:
+        """Return scaled pair means from their modes, the inverse of :meth:`modes`."""
         return np.concatenate(
             [
                 vectors @ modes[part]
@@ -100,23 +104,23 @@ class Spectra:
 
 
 def spectra_of(layout: PairLayout, point: float, extra: Array, residual: Array) -> Spectra:
-    """Return a channel's spectra.
+    """Return the covariance spectra of the pair means of a channel.
 
     Parameters
     ----------
     layout : PairLayout
         The pairs.
     point : float
-        Standard deviation of a row about its pair. [N·m]
+        Standard deviation of an angle bin about the mean of its pair. [N·m]
     extra : ndarray, shape (pairs,)
-        Variance that is known beforehand, as of an uncertain temperature. [(N·m)²]
+        Further variance that is known beforehand, as of an uncertain temperature. [(N·m)²]
     residual : ndarray, shape (pairs,)
-        Pair means of the misfit off the base. [N·m]
+        Pair means of the residual of the base model. [N·m]
 
     Notes
     -----
-    The white part's size beyond what is known only shapes the profile. It is taken from
-    differences of neighbouring pairs at one speed, in which slow causes cancel.
+    The scale is fitted later; the white variance beyond what is known only shapes the profile. It
+    is estimated from differences of neighbouring pairs at one speed, in which slow causes cancel.
     """
     known = point**2 / layout.bins + extra
     pair = max(_difference_variance(layout, residual) - float(np.mean(known)), 0.0)
@@ -137,24 +141,31 @@ def spectra_of(layout: PairLayout, point: float, extra: Array, residual: Array) 
     )
 
 
-def _spectrum(time: Array, pace: float, profile: Array, runs: tuple[slice, ...]) -> Spectrum:
+def _spectrum(
+    time: Array, correlation_time: float, profile: Array, runs: tuple[slice, ...]
+) -> Spectrum:
     values, vectors = [], []
     for part in runs:
-        apart = np.abs(time[part, np.newaxis] - time[np.newaxis, part])
+        lag = np.abs(time[part, np.newaxis] - time[np.newaxis, part])
         root = np.sqrt(profile[part])
-        # numbers next to zero would slow the decomposition down a hundredfold
-        alike = np.where(apart < 30 * pace, np.exp(-np.minimum(apart / pace, 30.0)), 0.0)
-        strength, directions = np.linalg.eigh(alike / np.outer(root, root))
-        values.append(np.maximum(strength, 0.0))
-        vectors.append(directions)
-    return Spectrum(pace, np.concatenate(values), tuple(vectors))
+        # denormal numbers would slow the decomposition down a hundredfold
+        correlation = np.where(
+            lag < 30 * correlation_time, np.exp(-np.minimum(lag / correlation_time, 30.0)), 0.0
+        )
+        eigenvalues, eigenvectors = np.linalg.eigh(correlation / np.outer(root, root))
+        values.append(np.maximum(eigenvalues, 0.0))
+        vectors.append(eigenvectors)
+    return Spectrum(correlation_time, np.concatenate(values), tuple(vectors))
 
 
 def _difference_variance(layout: PairLayout, residual: Array) -> float:
-    """Return the variance of pair means from neighbours at one speed, robustly."""
+    """Return the variance of pair means from the differences of neighbours at one speed. [(N·m)²].
+
+    Half the squared median absolute difference, scaled to that of a normal distribution.
+    """
     order = np.lexsort((layout.time, layout.level, layout.run))
     same = (np.diff(layout.level[order]) == 0) & (np.diff(layout.run[order]) == 0)
-    steps = np.diff(residual[order])[same]
-    if not steps.size:
+    differences = np.diff(residual[order])[same]
+    if not differences.size:
         return float(np.var(residual))
-    return float((1.4826 * np.median(np.abs(steps))) ** 2 / 2)
+    return float((1.4826 * np.median(np.abs(differences))) ** 2 / 2)

@@ -1,1 +1,1 @@
-"""Ramps of moves: what they tell of inertia and of friction after a reversal."""
+"""Ramps of moves: evidence on inertia and on friction after a reversal."""

@@ -1,63 +1,71 @@
-r"""What the ramps of moves say about inertia and about friction after a reversal.
+r"""Evidence of the ramps of moves on inertia and on friction after a reversal.
 
-Paired data at constant velocity confuse the two. In the ramps they are different things: inertia
-follows the acceleration, and what is left of it later grows with speed and fades in time; a lack of
-friction after a reversal is the same at all speeds and fades over an angle. Counted as friction,
-the misfit of a bin is taken as
+Pairs at constant velocity cannot distinguish the two. In the ramps they differ: inertia follows the
+acceleration, and what is left of it later grows with speed and decays in time; a friction deficit
+after a reversal is the same at all speeds and decays over an angle. Counted as friction, the misfit
+of an angle bin is
 
 .. math:: \sigma d (u - \hat u) = \sigma d\, J \ddot q - b\, e^{-s/s_0} + \sigma d\, m\, a_\tau(t)
-    + \text{what both could be confused with},
+    + \text{nuisance columns},
 
 with sign convention :math:`\sigma`, direction *d*, angle *s* and time *t* since the reversal, and
-:math:`a_\tau` the move's ramp as a first-order lag :math:`\tau` would follow it. The
-rest is taken out with free coefficients: a constant and a square root of speed for each move
-(temperature, drift), what all speeds have in common, acceleration, gravity, and acceleration two
-samples earlier and later, which stands for any lag between the channels and for smoothing.
+:math:`a_\tau` the acceleration of the move after a first-order lag :math:`\tau`. The nuisance
+columns have free coefficients: a constant and a square root of speed for each move (temperature,
+drift), a misfit common to all speeds, acceleration, gravity, and acceleration two samples earlier
+and later, which stands for any lag between the channels and for smoothing.
 
-Errors are robust against correlation within a move and, added to that, within all moves of one
-direction, part and speed: a servo repeats its misfit exactly.
+Standard errors are robust to correlation within a move and within all moves of one direction, part
+and speed: a servo repeats its misfit exactly.
 """
 
 import math
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 import pandas as pd
 from scipy import stats
-from scipy.optimize import minimize_scalar
 
 from frictioncli import schemas, tables
-from frictioncli.arrays import Array
 from frictioncli.diagnosis.data.problem import Problem
-from frictioncli.diagnosis.noise.significance import log_evidence
+from frictioncli.diagnosis.noise.significance import log_bayes_factor
 from frictioncli.diagnosis.ramps.misfit import RampMisfit, resolved
-from frictioncli.diagnosis.ramps.robust_fit import Fit, Projection, fitted
+from frictioncli.diagnosis.ramps.robust_fit import Residual, RobustFit
 from frictioncli.pairs.ramps import LAGS
 
 DISTANCES = np.geomspace(0.3, 20.0, 15)
-"""Angles over which a lack of friction may fade. [deg]"""
+"""Angles over which a friction deficit may decay. [deg]"""
 
-SETTLINGS = np.geomspace(0.05, 1.0, 11)
-"""Lags with which acceleration that is not seen in the velocity may act. [s]"""
+DELAYS = np.geomspace(0.05, 1.0, 11)
+"""Time constants with which inertia may act late. [s]"""
 
 LEAST_MOVES = 6
-"""With fewer moves that begin at a reversal the ramps say nothing."""
+"""Least number of moves that start at a reversal."""
 
-MOST_SAID = 12.0
-"""The ramps' word counts at most as much: the logarithm of 160,000 to 1."""
+MAX_LOG_ODDS = 12.0
+"""Greatest log odds that the ramps may contribute, 160,000 to 1: their model is not exact."""
 
 _STEP = 1.01
-_STANDS_OUT = 3.0
-"""What has less log evidence than this leaves the estimates of the others alone."""
+"""Relative step of the distance for its derivative."""
+
+_CONVINCING = 3.0
+"""Log Bayes factor from which an explanation is fitted before the others are estimated."""
 
 _PAIR = ("inertia", "reversal_transient")
 
 
 @dataclass(frozen=True, slots=True)
 class RampLog:
-    """Rows of :data:`frictioncli.schemas.RAMPS` of one joint, and the log's sign convention."""
+    """Ramps of one joint.
+
+    Attributes
+    ----------
+    rows : DataFrame
+        Rows of :data:`frictioncli.schemas.RAMPS`.
+    sign : int
+        Sign convention of the log: +1 where forward torque is load plus friction, else -1.
+    """
 
     rows: pd.DataFrame
     sign: int
@@ -65,7 +73,13 @@ class RampLog:
 
 @dataclass(frozen=True, slots=True)
 class RampEstimate:
-    """A number with its 95 % interval."""
+    """An estimate with its 95 % interval.
+
+    Attributes
+    ----------
+    value, low, high : float
+        Estimate and ends of the interval, in the unit of the quantity.
+    """
 
     value: float
     low: float
@@ -74,40 +88,41 @@ class RampEstimate:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class RampEvidence:
-    """What the ramps say.
+    """Estimates from the ramps, and Bayes factors of the two explanations.
 
     Attributes
     ----------
     inertia : RampEstimate
-        Inertia J about the joint axis as seen in the torque; always there, never a finding.
+        Inertia J about the joint axis; every joint has it, so that it is no finding.
         [N·m/(deg/s²)]
     lag : float
-        By how much torque is logged later than acceleration. [samples]
-    lack : RampEstimate
-        Friction lacking right after a reversal, b. [N·m]
+        Delay of the logged torque after the acceleration. [samples]
+    deficit : RampEstimate
+        Friction deficit right after a reversal, b. [N·m]
     distance : RampEstimate
-        Angle over which it fades, s. [deg]
-    settling : RampEstimate
-        Inertia that acts late, when speed looks constant already, m. [N·m/(deg/s²)]
-    settling_time : float
-        Lag with which it acts. [s]
+        Angle over which it decays, s₀. [deg]
+    delayed_inertia : RampEstimate
+        Inertia that acts late, when the speed is constant already, m. [N·m/(deg/s²)]
+    delay : float
+        Time constant of its lag, τ. [s]
     rms_before, rms_after : float
-        RMS misfit of the ramps, by the base alone and with all of it. [N·m]
+        RMS misfit of the ramps, by the base model alone and with inertia and what else is
+        convincing. [N·m]
     transient : float
-        Logarithm of the Bayes factor of a lack of friction, against inertia that follows the
-        acceleration and nothing else.
+        Log Bayes factor of a friction deficit, against inertia that follows the acceleration and
+        nothing else.
     inertial : float
-        The same of inertia that also settles unseen, or does not.
+        The same of inertia that also acts late, or does not, with even odds.
     moves : int
-        Moves that begin at a reversal.
+        Number of moves that start at a reversal.
     """
 
     inertia: RampEstimate
     lag: float
-    lack: RampEstimate
+    deficit: RampEstimate
     distance: RampEstimate
-    settling: RampEstimate
-    settling_time: float
+    delayed_inertia: RampEstimate
+    delay: float
     rms_before: float
     rms_after: float
     transient: float
@@ -116,8 +131,8 @@ class RampEvidence:
 
     @property
     def log_odds(self) -> float:
-        """Logarithm of the odds of a lack of friction over inertia, bounded to what ramps bear."""
-        return float(np.clip(self.transient - self.inertial, -MOST_SAID, MOST_SAID))
+        """Log odds of a friction deficit against inertia, at most 12 either way."""
+        return float(np.clip(self.transient - self.inertial, -MAX_LOG_ODDS, MAX_LOG_ODDS))
 
 
 def ramp_logs(path: Path, signs: Mapping[str, int]) -> dict[int, RampLog]:
@@ -126,45 +141,49 @@ def ramp_logs(path: Path, signs: Mapping[str, int]) -> dict[int, RampLog]:
     Parameters
     ----------
     path : Path
-        The table ``ramps``; work folders of older versions have none.
+        The table ``ramps``; work folders of older versions do not have it.
     signs : mapping of str to int
-        Sign convention by joint, as stage ``separate`` notes it.
+        Sign convention by joint, as stage ``separate`` writes it.
     """
     if not path.exists():
         return {}
     return {
-        int(joint): RampLog(own, signs[str(joint)])
-        for joint, own in tables.read(path, schemas.RAMPS).groupby("joint")
+        int(joint): RampLog(rows, signs[str(joint)])
+        for joint, rows in tables.read(path, schemas.RAMPS).groupby("joint")
         if str(joint) in signs
     }
 
 
-def arbitrated(evidence: Mapping[str, float], ramps: RampEvidence | None) -> dict[str, float]:
-    """Return log evidence in which the ramps have shifted weight between the two they can tell.
+def with_ramp_evidence(
+    log_bayes_factors: Mapping[str, float], ramps: RampEvidence | None
+) -> dict[str, float]:
+    """Return log Bayes factors updated with the ramps' odds of inertia against a transient.
 
-    ``inertia`` and ``reversal_transient`` keep their weight together; nothing else is changed, and
-    nothing at all where one of them is missing or the ramps say nothing.
+    The sum of the Bayes factors of ``inertia`` and ``reversal_transient`` stays. Nothing changes
+    where one of them is missing or there are no ramps.
 
     Parameters
     ----------
-    evidence : mapping of str to float
-        Logarithm of each effect's Bayes factor by the paired data.
+    log_bayes_factors : mapping of str to float
+        Logarithm of each effect's Bayes factor from the pairs.
     ramps : RampEvidence or None
-        What the ramps say.
+        Evidence of the ramps.
     """
-    changed = dict(evidence)
-    if ramps is None or not all(np.isfinite(evidence.get(name, -np.inf)) for name in _PAIR):
-        return changed
-    inertia, transient = (evidence[name] for name in _PAIR)
+    updated = dict(log_bayes_factors)
+    if ramps is None or not all(
+        np.isfinite(log_bayes_factors.get(name, -np.inf)) for name in _PAIR
+    ):
+        return updated
+    inertia, transient = (log_bayes_factors[name] for name in _PAIR)
     odds = transient + ramps.log_odds - inertia
     together = float(np.logaddexp(inertia, transient))
-    changed["inertia"] = together - float(np.logaddexp(0.0, odds))
-    changed["reversal_transient"] = together - float(np.logaddexp(0.0, -odds))
-    return changed
+    updated["inertia"] = together - float(np.logaddexp(0.0, odds))
+    updated["reversal_transient"] = together - float(np.logaddexp(0.0, -odds))
+    return updated
 
 
 def ramp_evidence(log: RampLog, problem: Problem, temperature: str) -> RampEvidence | None:
-    """Return what the ramps of a problem's runs say; None where there are too few.
+    """Return the evidence of the ramps of a problem's runs; None where there are too few.
 
     Parameters
     ----------
@@ -177,104 +196,66 @@ def ramp_evidence(log: RampLog, problem: Problem, temperature: str) -> RampEvide
     """
     rows = log.rows
     rows = resolved(rows[rows["run"].isin(problem.runs)])
-    fresh = (rows["part"] == "accelerating") & rows["reversal"]
-    moves = int(rows.loc[fresh & rows["accelerates"], "move"].nunique())
+    after_reversal = (rows["part"] == "accelerating") & rows["reversal"]
+    moves = int(rows.loc[after_reversal & rows["accelerates"], "move"].nunique())
     if moves < LEAST_MOVES:
         return None
-    return _told(RampMisfit.of(rows, log.sign, problem, temperature), moves)
+    return _evidence(RampMisfit.of(rows, log.sign, problem, temperature), moves)
 
 
-def _told(seen: RampMisfit, moves: int) -> RampEvidence:
-    """Return what the misfit says; what stands out takes its share before the rest is sized."""
-    view = _View.of(seen, seen.projection.with_free(seen.inertial))
-    transient = log_evidence(view.scores(seen.lack, DISTANCES, lacking=True), 1)
-    settled = log_evidence(view.scores(seen.settling, SETTLINGS), 1)
-    lacks = transient > max(settled, _STANDS_OUT)
-    settles = not lacks and settled > _STANDS_OUT
-    if lacks:
-        distance = view.best(seen.lack, DISTANCES, lacking=True)
-        time = view.without(seen.lack(distance)).best(seen.settling, SETTLINGS)
+def _evidence(ramps: RampMisfit, moves: int) -> RampEvidence:
+    """Return the evidence; a convincing explanation is fitted before the other is estimated."""
+    off_inertia = Residual.of(
+        ramps.projection.with_common(ramps.inertial), ramps.misfit, ramps.clusters
+    )
+    transient = log_bayes_factor(off_inertia.scores(ramps.deficit, DISTANCES, negative=False), 1)
+    delayed = log_bayes_factor(off_inertia.scores(ramps.delayed_acceleration, DELAYS), 1)
+    has_deficit = transient > max(delayed, _CONVINCING)
+    has_delay = not has_deficit and delayed > _CONVINCING
+    if has_deficit:
+        distance = off_inertia.best(ramps.deficit, DISTANCES, negative=False)
+        off_deficit = off_inertia.without(ramps.deficit(distance))
+        time = off_deficit.best(ramps.delayed_acceleration, DELAYS)
     else:
-        time = view.best(seen.settling, SETTLINGS)
-        rest = view.without(seen.settling(time)) if settles else view
-        distance = rest.best(seen.lack, DISTANCES, lacking=True)
-    slope = (seen.lack(distance * _STEP) - seen.lack(distance / _STEP)) / (2 * np.log(_STEP))
-    lack = np.column_stack([seen.lack(distance), slope])
-    settling = seen.settling(time)[:, np.newaxis]
-    whole = _View.of(seen, seen.projection)
-    with_lack = whole.fitted(seen.inertial, *([settling] if settles else []), lack)
-    with_settling = whole.fitted(seen.inertial, *([lack] if lacks else []), settling)
-    last = with_lack if lacks else with_settling if settles else whole.fitted(seen.inertial)
+        time = off_inertia.best(ramps.delayed_acceleration, DELAYS)
+        rest = off_inertia.without(ramps.delayed_acceleration(time)) if has_delay else off_inertia
+        distance = rest.best(ramps.deficit, DISTANCES, negative=False)
+    slope = (ramps.deficit(distance * _STEP) - ramps.deficit(distance / _STEP)) / (
+        2 * np.log(_STEP)
+    )
+    deficit = np.column_stack([ramps.deficit(distance), slope])
+    delay = ramps.delayed_acceleration(time)[:, np.newaxis]
+    residual = Residual.of(ramps.projection, ramps.misfit, ramps.clusters)
+    with_deficit = residual.fitted(ramps.inertial, *([delay] if has_delay else []), deficit)
+    with_delay = residual.fitted(ramps.inertial, *([deficit] if has_deficit else []), delay)
+    if has_deficit:
+        final = with_deficit
+    elif has_delay:
+        final = with_delay
+    else:
+        final = residual.fitted(ramps.inertial)
     lags = np.array(list(LAGS.values()), float)
-    inertia = _estimate(last, range(len(lags)))
-    missing = _estimate(with_lack, [-2])
-    moment = float(lags @ last.coefficients[: len(lags)])
-    none = np.log(0.5)
+    inertia = _estimate(final, range(len(lags)))
+    size = _estimate(with_deficit, [-2])
+    moment = float(lags @ final.coefficients[: len(lags)])
+    half = np.log(0.5)
     return RampEvidence(
         inertia=inertia,
         lag=-moment / inertia.value if inertia.value else 0.0,
-        lack=missing,
-        distance=_spread(distance, _estimate(with_lack, [-1]), missing.value),
-        settling=_estimate(with_settling, [-1]),
-        settling_time=time,
-        rms_before=float(np.sqrt(np.mean(np.square(seen.misfit * whole.projection.weight)))),
-        rms_after=float(np.sqrt(np.mean(np.square(last.residual)))),
+        deficit=size,
+        distance=_distance_estimate(distance, _estimate(with_deficit, [-1]), size.value),
+        delayed_inertia=_estimate(with_delay, [-1]),
+        delay=time,
+        rms_before=float(np.sqrt(np.mean(np.square(ramps.misfit * residual.projection.weight)))),
+        rms_after=float(np.sqrt(np.mean(np.square(final.residual)))),
         transient=transient,
-        inertial=float(np.logaddexp(none, none + settled)),
+        inertial=float(np.logaddexp(half, half + delayed)),
         moves=moves,
     )
 
 
-@dataclass(frozen=True, slots=True)
-class _View:
-    """The misfit off a projection, ready for columns to be fitted to it."""
-
-    seen: RampMisfit
-    projection: Projection
-    misfit: Array
-
-    @classmethod
-    def of(cls, seen: RampMisfit, projection: Projection) -> "_View":
-        return cls(seen, projection, projection.off(seen.misfit[:, np.newaxis])[:, 0])
-
-    def without(self, column: Array) -> "_View":
-        """Return the view with a further column taken out."""
-        return _View.of(self.seen, self.projection.with_free(column[:, np.newaxis]))
-
-    def fitted(self, *columns: Array) -> Fit:
-        """Return the fit of columns, shapes (rows,) or (rows, columns)."""
-        together = np.column_stack(columns)
-        return fitted(self.projection.off(together), self.misfit, self.seen.clusters)
-
-    def scores(
-        self, column: Callable[[float], Array], grid: Array, *, lacking: bool = False
-    ) -> Array:
-        """Return the score over a grid of shapes; of a lack, none where it has the wrong sign."""
-        fits = [self.fitted(column(shape)) for shape in grid]
-        return np.array(
-            [fit.score(0) if fit.coefficients[0] > 0 or not lacking else 0.0 for fit in fits]
-        )
-
-    def best(
-        self, column: Callable[[float], Array], grid: Array, *, lacking: bool = False
-    ) -> float:
-        """Return the shape that leaves least, off the grid."""
-        nothing = float(np.sum(np.square(self.misfit)))
-
-        def left(log: float) -> float:
-            fit = self.fitted(column(float(np.exp(log))))
-            wrong = lacking and fit.coefficients[0] <= 0
-            return nothing if wrong else float(np.sum(np.square(fit.residual)))
-
-        values = np.array([left(log) for log in np.log(grid)])
-        top = int(np.argmin(values))
-        about = np.log(grid[[max(top - 1, 0), min(top + 1, len(grid) - 1)]])
-        found = minimize_scalar(left, bounds=about, method="bounded", options={"xatol": 1e-3})
-        return float(np.exp(found.x)) if found.fun < values[top] else float(grid[top])
-
-
-def _estimate(fit: Fit, places: Sequence[int]) -> RampEstimate:
-    """Return the sum of some coefficients with its interval."""
+def _estimate(fit: RobustFit, places: Sequence[int]) -> RampEstimate:
+    """Return the sum of some coefficients with its 95 % interval."""
     combination = np.zeros(len(fit.coefficients))
     combination[list(places)] = 1.0
     value = float(combination @ fit.coefficients)
@@ -283,11 +264,21 @@ def _estimate(fit: Fit, places: Sequence[int]) -> RampEstimate:
     return RampEstimate(value, value - reach, value + reach)
 
 
-def _spread(distance: float, slope: RampEstimate, lack: float) -> RampEstimate:
-    """Return the distance with the interval that its slope's error gives, within its range."""
+def _distance_estimate(distance: float, slope: RampEstimate, deficit: float) -> RampEstimate:
+    """Return the distance with its 95 % interval, from the coefficient of its derivative.
+
+    Parameters
+    ----------
+    distance : float
+        Angle over which the deficit decays. [deg]
+    slope : RampEstimate
+        Coefficient of the derivative of the deficit by the logarithm of the distance. [N·m]
+    deficit : float
+        Size of the deficit. [N·m]
+    """
     low, high = float(DISTANCES[0]), float(DISTANCES[-1])
-    reach = (slope.high - slope.low) / 2
-    if reach < abs(lack) * float(np.log(DISTANCES[-1] / DISTANCES[0])):
-        factor = math.exp(reach / abs(lack))
+    half_width = (slope.high - slope.low) / 2
+    if half_width < abs(deficit) * float(np.log(DISTANCES[-1] / DISTANCES[0])):
+        factor = math.exp(half_width / abs(deficit))
         low, high = max(low, distance / factor), min(high, distance * factor)
     return RampEstimate(distance, min(low, distance), max(high, distance))

@@ -1,1 +1,1 @@
-"""The search for causes, from precomputed columns to hold-out and lack of fit."""
+"""The search for causes: hypothesis tests step by step, selection by hold-out, lack of fit."""

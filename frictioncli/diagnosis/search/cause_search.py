@@ -1,66 +1,64 @@
-"""The search for causes: test every effect, accept the best, refit, test again.
+"""Forward search for causes: test every effect, accept the best, refit, test again.
 
-At each step every other effect is set against the base and the effects accepted so far, with the
-noise that suits either best. The search ends when none stands out of what noise gives. At the end
-each accepted effect is set against all others once more, with its companions in place: what could
-take its part joins its credible set.
+At each step every other effect is tested against the null hypothesis, the base with the effects
+accepted so far, with the noise model that suits either best. The search ends when no effect is
+significant. At the end each accepted effect is tested against all others once more beside the other
+accepted ones: every effect that explains its part nearly as well joins its credible set.
 """
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 from frictioncli.diagnosis.data.problem import Problem
-from frictioncli.diagnosis.fit.columns import hypothesis_of
-from frictioncli.diagnosis.fit.judgement import Judged, Score
-from frictioncli.diagnosis.noise.significance import credible_set, probabilities
-from frictioncli.diagnosis.ramps.evidence import RampEvidence, arbitrated
+from frictioncli.diagnosis.fit.hypotheses import EffectFit, HypothesisTest, hypothesis_of
+from frictioncli.diagnosis.noise.significance import credible_set, posterior_probabilities
+from frictioncli.diagnosis.ramps.evidence import RampEvidence, with_ramp_evidence
 from frictioncli.diagnosis.search.precomputed import Catalogue, Precomputed
 from frictioncli.diagnosis.search.step import DRAWS, Step
 from frictioncli.diagnosis.settings import DiagnosisSettings
 from frictioncli.effects import BY_NAME
-from frictioncli.effects.availability import judgeable
-from frictioncli.effects.base import Effect
+from frictioncli.effects.base import Effect, applicable
 
 _CONVINCING = 3.0
-"""Logarithm of the Bayes factor that an effect needs: twenty effects, any may be at work or none.
-What stands out less is also not to be told from most others."""
+"""Log Bayes factor that an effect needs: with twenty effects, any of which may be at work, e³ is
+about their number. An effect below it could not be told from most others anyway."""
 
 _FORM = 0.02
-"""What has less than this share of the statistic of an effect found before may only mend that
-one's form: no equation of the catalogue is true to the last digit."""
+"""An effect with less than this share of the statistic of one accepted before may only correct the
+form of that one: no equation of the catalogue is exact."""
 
 _FORM_ALIKE = 0.05
 """The same share where both show along the stroke, or both from pair to pair."""
 
-_CONTENDERS = 4
-"""Effects whose shapes are searched off the grid before the best is taken."""
+_REFINED = 4
+"""Number of effects whose shapes are refined off the grid before the best is accepted."""
 
 _CLEARLY = 3.0
-"""Logarithm of the Bayes factor by which another name must fit better to replace an earlier."""
+"""Log Bayes factor by which another effect must fit better to replace an accepted one."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Cause:
-    """A cause found: the effect accepted, and what else could take its part.
+    """A cause found: the effect accepted, and the effects that could replace it.
 
     Attributes
     ----------
-    score : Score
-        The effect accepted, fitted beside its companions.
-    judged : Judged
-        How it stands beside its companions, over all its shapes.
+    fit : EffectFit
+        The effect accepted, fitted beside the other causes.
+    test : HypothesisTest
+        Its test beside the other causes, over all its shapes.
     effects : tuple of str
         Its credible set.
     probabilities : dict of str to float
-        Probability of each effect that could take its part.
+        Probability of each effect that could replace it.
     size : float
         RMS in its channel. [N·m]
     visible : float
-        RMS of what the base model cannot take of it. [N·m]
+        RMS of its residual after a fit of the base model. [N·m]
     """
 
-    score: Score
-    judged: Judged
+    fit: EffectFit
+    test: HypothesisTest
     effects: tuple[str, ...]
     probabilities: dict[str, float]
     size: float
@@ -68,22 +66,46 @@ class Cause:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Found:
-    """What a search found.
+class SearchResult:
+    """Result of a search.
 
     Attributes
     ----------
     causes : tuple of Cause
-        Strongest first.
-    last : dict of str to Judged
-        All effects at the last step: what silence means.
+        Causes found, strongest first.
+    rejected : dict of str to HypothesisTest
+        Tests of all other effects at the last step.
     step : Step
         The last step: base, causes and their noise.
     """
 
     causes: tuple[Cause, ...]
-    last: dict[str, Judged]
+    rejected: dict[str, HypothesisTest]
     step: Step
+
+    def detectable_sizes(self, effects: Sequence[Effect], alpha: float) -> dict[str, float | None]:
+        """Return the smallest RMS size of each effect that would be found four times in five.
+
+        Parameters
+        ----------
+        effects : sequence of Effect
+            The catalogue.
+        alpha : float
+            Significance level of the whole search.
+
+        Returns
+        -------
+        dict of str to (float or None)
+            Sizes [N·m]; None where the data lack what the effect needs.
+        """
+        count = max(len(self.rejected) + len(self.causes), 1)
+        tests = self.rejected | {cause.fit.effect.name: cause.test for cause in self.causes}
+        return {
+            effect.name: tests[effect.name].detectable_size(alpha / count)
+            if effect.name in tests
+            else None
+            for effect in effects
+        }
 
 
 def find_causes(
@@ -91,7 +113,7 @@ def find_causes(
     effects: Sequence[Effect],
     settings: DiagnosisSettings,
     ramps: RampEvidence | None = None,
-) -> Found:
+) -> SearchResult:
     """Search the catalogue for the causes of a problem's misfit.
 
     Parameters
@@ -101,43 +123,42 @@ def find_causes(
     effects : sequence of Effect
         The catalogue.
     settings : DiagnosisSettings
-        How sure a finding must be.
+        Significance level, seed and greatest number of causes.
     ramps : RampEvidence, optional
-        What the ramps say of inertia and of friction after a reversal.
+        Evidence of the ramps on inertia and on friction after a reversal.
     """
-    able = judgeable(effects, problem.table)
-    bench = Precomputed.of(problem)
-    catalogue = Catalogue.of(bench, [hypothesis_of(effect, problem) for effect in able])
-    hunt = _Search(bench, catalogue, settings, ramps)
-    accepted: list[Score] = []
+    precomputed = Precomputed.of(problem)
+    hypotheses = [hypothesis_of(effect, problem) for effect in applicable(effects, problem.table)]
+    search = _Search(precomputed, Catalogue.of(precomputed, hypotheses), settings, ramps)
+    accepted: list[EffectFit] = []
     dropped: set[str] = set()
     while True:
-        step, found = hunt.judged(accepted, DRAWS)
-        possible = [
+        step, tests = search.tested(accepted, DRAWS)
+        significant = [
             one
-            for one in found.values()
+            for one in tests.values()
             if one.p_value < settings.alpha
-            and one.evidence > _CONVINCING
+            and one.log_bayes_factor > _CONVINCING
             and one.statistic > _form_error(accepted, one.name)
             and one.name not in dropped
         ]
-        if not possible or len(accepted) >= settings.most:
+        if not significant or len(accepted) >= settings.most:
             break
-        tried = [*accepted, _best(step, possible)]
-        settled = hunt.settled(tried)
-        # an effect that another one has made needless must not come back again and again
-        dropped |= _names(tried) - _names(settled)
-        accepted = settled
-    causes = [_cause(hunt, accepted, i) for i in range(len(accepted))]
+        candidates = [*accepted, _best(step, significant)]
+        retested = search.retested(candidates)
+        # an effect that another one has made superfluous must not come back again and again
+        dropped |= _names(candidates) - _names(retested)
+        accepted = retested
+    causes = [_cause(search, accepted, i) for i in range(len(accepted))]
     strongest_first = tuple(sorted(causes, key=lambda cause: -cause.size))
-    return Found(causes=strongest_first, last=found, step=step)
+    return SearchResult(causes=strongest_first, rejected=tests, step=step)
 
 
-def _form_error(accepted: Sequence[Score], name: str) -> float:
-    """Return what an effect must explain so as not to be a mere error of another one's form."""
-    own = _within_stroke(BY_NAME[name])
+def _form_error(accepted: Sequence[EffectFit], name: str) -> float:
+    """Return the statistic that errors in the form of the accepted effects may have."""
+    within_stroke = _within_stroke(BY_NAME[name])
     shares = [
-        one.statistic * (_FORM_ALIKE if _within_stroke(one.effect) == own else _FORM)
+        one.statistic * (_FORM_ALIKE if _within_stroke(one.effect) == within_stroke else _FORM)
         for one in accepted
     ]
     return max(shares, default=0.0)
@@ -148,87 +169,91 @@ def _within_stroke(effect: Effect) -> bool:
     return effect.channel == "load" or bool({"position", "load"} & set(effect.needs))
 
 
-def _names(scores: Sequence[Score]) -> set[str]:
-    return {one.effect.name for one in scores}
+def _names(fits: Sequence[EffectFit]) -> set[str]:
+    return {one.effect.name for one in fits}
 
 
-def _best(step: Step, possible: Sequence[Judged]) -> Score:
-    """Return the effect that stands best once its shape is searched off the grid.
+def _best(step: Step, tests: Sequence[HypothesisTest]) -> EffectFit:
+    """Return the effect with the greatest Bayes factor once its shape is refined off the grid.
 
     Where an effect is large, a shape between two of the grid may explain many times as much.
     """
-    first = sorted(possible, key=lambda one: -one.evidence)[:_CONTENDERS]
-    refined = [step.refined(one.score(BY_NAME[one.name])) for one in first]
-    stand = [
-        one.evidence + max(score.statistic - one.statistic, 0.0) / 2
-        for one, score in zip(first, refined, strict=True)
-    ]
-    return refined[stand.index(max(stand))]
+    first = sorted(tests, key=lambda one: -one.log_bayes_factor)[:_REFINED]
+    refined = [step.refined(one.effect_fit(BY_NAME[one.name])) for one in first]
+    factors = [one.refined_log_bayes_factor(fit) for one, fit in zip(first, refined, strict=True)]
+    return refined[factors.index(max(factors))]
 
 
 @dataclass(frozen=True, slots=True)
 class _Search:
-    """The search's tools: data, catalogue and settings."""
+    """Data, hypotheses and settings of a search."""
 
-    bench: Precomputed
+    precomputed: Precomputed
     catalogue: Catalogue
     settings: DiagnosisSettings
     ramps: RampEvidence | None
 
-    def judged(self, accepted: Sequence[Score], draws: int = 0) -> tuple[Step, dict[str, Judged]]:
-        """Return the step with these effects, and how all others stand there."""
-        step = Step.of(self.bench, accepted)
-        rivals = self.catalogue.without(_names(accepted))
-        found = step.judged(rivals, self.settings.seed, draws)
-        evidence = arbitrated({name: one.evidence for name, one in found.items()}, self.ramps)
-        return step, {name: replace(one, evidence=evidence[name]) for name, one in found.items()}
+    def tested(
+        self, accepted: Sequence[EffectFit], draws: int = 0
+    ) -> tuple[Step, dict[str, HypothesisTest]]:
+        """Return the step with these effects accepted, and the tests of all others there."""
+        step = Step.of(self.precomputed, accepted)
+        candidates = self.catalogue.without(_names(accepted))
+        tests = step.tested(candidates, self.settings.seed, draws)
+        factors = with_ramp_evidence(
+            {name: one.log_bayes_factor for name, one in tests.items()}, self.ramps
+        )
+        return step, {
+            name: replace(one, log_bayes_factor=factors[name]) for name, one in tests.items()
+        }
 
-    def settled(self, accepted: list[Score]) -> list[Score]:
-        """Return the effects judged once more, each with the others in place.
+    def retested(self, accepted: list[EffectFit]) -> list[EffectFit]:
+        """Return the accepted effects, each tested once more beside the others.
 
-        What was accepted early was judged with too little beside it. It is kept, changes its name
-        to one that fits clearly better, or goes if the others have made it needless.
+        An effect accepted early was tested without the later ones. It is kept, replaced by an
+        effect that fits clearly better, or dropped if the others have made it superfluous.
         """
         current = list(accepted)
         if len(current) == 1:
             return current
         for one in accepted:
             others = [other for other in current if other is not one]
-            again = self._again(one, others)
+            again = self._retested(one, others)
             if again is None:
                 current = others
             else:
                 current[current.index(one)] = again
         return current
 
-    def _again(self, one: Score, others: Sequence[Score]) -> Score | None:
-        """Return an effect fitted beside others, or what replaces it there; none if needless."""
-        step, found = self.judged(others)
-        best, own = max(found.values(), key=lambda judged: judged.evidence), found[one.effect.name]
-        if best.evidence <= _CONVINCING:
+    def _retested(self, one: EffectFit, others: Sequence[EffectFit]) -> EffectFit | None:
+        """Return an effect refitted beside others, or its replacement; None if superfluous."""
+        step, tests = self.tested(others)
+        best = max(tests.values(), key=lambda test: test.log_bayes_factor)
+        own = tests[one.effect.name]
+        if best.log_bayes_factor <= _CONVINCING:
             return None
         again = step.refined(one)
-        stands = own.evidence + max(again.statistic - own.statistic, 0.0) / 2
-        if best.name != own.name and best.evidence - stands > _CLEARLY:
+        factor = own.refined_log_bayes_factor(again)
+        if best.name != own.name and best.log_bayes_factor - factor > _CLEARLY:
             return _best(step, [best])
         return again
 
 
-def _cause(hunt: _Search, accepted: Sequence[Score], number: int) -> Cause:
-    """Return an accepted effect with all that could take its part, its companions in place."""
+def _cause(search: _Search, accepted: Sequence[EffectFit], number: int) -> Cause:
+    """Return an accepted effect with its credible set, beside the other accepted effects."""
     one = accepted[number]
     others = [other for other in accepted if other is not one]
-    step, rivals = hunt.judged(others, DRAWS)
-    score = step.refined(one)
-    own = rivals[one.effect.name]
-    evidence = {name: rival.evidence for name, rival in rivals.items()}
-    evidence[own.name] += max(score.statistic - own.statistic, 0.0) / 2
-    share = probabilities(evidence)
+    step, tests = search.tested(others, DRAWS)
+    fit = step.refined(one)
+    own = tests[one.effect.name]
+    factors = {name: test.log_bayes_factor for name, test in tests.items()}
+    factors[own.name] = own.refined_log_bayes_factor(fit)
+    share = posterior_probabilities(factors)
     return Cause(
-        score=score,
-        judged=own,
+        fit=fit,
+        test=own,
         effects=credible_set(share),
         probabilities={name: value for name, value in share.items() if value >= 1e-3},
-        size=step.size(score),
-        visible=step.visible(score),
+        size=step.size(fit),
+        visible=step.visible(fit),
     )

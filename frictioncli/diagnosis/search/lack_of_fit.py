@@ -1,7 +1,8 @@
-"""Tells whether any structure is left, whatever its cause.
+"""Lack-of-fit tests along every axis of the experiment, whatever the cause.
 
-General-purpose columns over every axis of the experiment are tested against the white misfit. They
-name nothing; they tell that something is wrong where no effect of the catalogue explains it.
+General-purpose columns, harmonics of the angle, levels of speed and temperature, slow functions of
+time and products of these, are tested against base and accepted effects. They name no cause; they
+show that the model is wrong where no effect of the catalogue explains how.
 """
 
 from dataclasses import dataclass
@@ -10,36 +11,46 @@ import numpy as np
 
 from frictioncli.arrays import Array, Indices
 from frictioncli.diagnosis.data.problem import Problem
-from frictioncli.diagnosis.fit.columns import Hypothesis, left_of_base, reduced
+from frictioncli.diagnosis.fit.columns import reduced, residual_of_base
+from frictioncli.diagnosis.fit.hypotheses import Hypothesis
 from frictioncli.diagnosis.search.precomputed import Catalogue
 from frictioncli.diagnosis.search.step import DRAWS, Step
 from frictioncli.linear_algebra import orthonormal_basis
 
 _HARMONICS = 12
+"""Harmonics of the joint angle."""
+
 _WAVES = 6
+"""Cosines over the time of the experiment."""
+
 _LEVELS = 8
+"""Quantile bins of a continuous quantity."""
+
 _SLOW_HARMONICS = 4
+"""Harmonics of the angle in products with another quantity."""
+
 _MOST_LEVELS = 16
+"""Speed levels with a column of their own."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Structure:
-    """Structure along one axis of the experiment.
+    """Lack of fit along one axis of the experiment.
 
     Attributes
     ----------
     axis : str
-        Where it shows.
-    channel : str
-        ``friction`` or ``load``.
+        The axis, or the two axes, along which it shows.
+    channel : {"friction", "load"}
+        The channel.
     p_value : float
-        Chance that noise gives as much, corrected for the number of axes.
+        Probability that noise explains as much, corrected for the number of axes (Bonferroni).
     statistic : float
-        Twice the log likelihood ratio to the base and the effects accepted.
+        Twice the log likelihood ratio to base and accepted effects.
     freedom : int
-        Columns that the data can tell.
+        Number of coefficients that the data determine.
     size : float
-        RMS of what base and effects leave of the structure, without what noise gives. [N·m]
+        RMS of what base and effects leave of the structure, less what noise contributes. [N·m]
     """
 
     axis: str
@@ -51,25 +62,27 @@ class Structure:
 
 
 def structures(step: Step, seed: int) -> list[Structure]:
-    """Return the structure along every axis, the least likely by chance first.
+    """Return the lack of fit along every axis, ordered by p-value.
 
     Parameters
     ----------
     step : Step
-        Base and the effects accepted.
+        Base and accepted effects.
     seed : int
-        Seed of the noise that tells what chance gives.
+        Seed of the draws of noise.
     """
     problem = step.problem
-    accepted = [problem.basis(score.effect, score.shape) for score in step.accepted]
-    axes = {place: _even(raw) for place, raw in _axes(problem).items()}
-    hypotheses = [_hypothesis(problem, axis, channel, raw) for (axis, channel), raw in axes.items()]
-    judged = step.judged(Catalogue.of(step.bench, hypotheses), seed, DRAWS)
+    accepted = [problem.basis(one.effect, one.shape) for one in step.accepted]
+    axes = {place: _orthogonal(columns) for place, columns in _axes(problem).items()}
+    hypotheses = [
+        _hypothesis(problem, axis, channel, columns) for (axis, channel), columns in axes.items()
+    ]
+    tests = step.tested(Catalogue.of(step.precomputed, hypotheses), seed, DRAWS)
     found = []
-    for (axis, channel), raw in axes.items():
-        one = judged[f"{axis}, {channel}"]
+    for (axis, channel), columns in axes.items():
+        one = tests[f"{axis}, {channel}"]
         excess = max(one.statistic - one.freedom, 0.0) / max(one.statistic, 1e-300)
-        shown = left_of_base(problem, raw @ one.coefficients, channel, accepted)
+        residual = residual_of_base(problem, columns @ one.coefficients, channel, accepted)
         found.append(
             Structure(
                 axis=axis,
@@ -77,67 +90,71 @@ def structures(step: Step, seed: int) -> list[Structure]:
                 p_value=one.p_value,
                 statistic=one.statistic,
                 freedom=one.freedom,
-                size=float(np.sqrt(excess * np.mean(np.square(shown)))),
+                size=float(np.sqrt(excess * np.mean(np.square(residual)))),
             )
         )
     return sorted(found, key=lambda structure: structure.p_value)
 
 
-def _even(raw: Array) -> Array:
-    """Return orthonormal columns of the same span: waves over part of a turn are much alike."""
-    return orthonormal_basis(raw, tolerance=1e-7) * np.sqrt(len(raw))
+def _orthogonal(columns: Array) -> Array:
+    """Return orthogonal columns of RMS 1 and the same span; harmonics overlap on part of a turn."""
+    return orthonormal_basis(columns, tolerance=1e-7) * np.sqrt(len(columns))
 
 
-def _hypothesis(problem: Problem, axis: str, channel: str, raw: Array) -> Hypothesis:
-    nothing = np.zeros_like(raw)
-    friction, load = (raw, nothing) if channel == "friction" else (nothing, raw)
+def _hypothesis(problem: Problem, axis: str, channel: str, columns: Array) -> Hypothesis:
+    """Return the hypothesis of free coefficients of columns in one channel."""
+    zeros = np.zeros_like(columns)
+    friction, load = (columns, zeros) if channel == "friction" else (zeros, columns)
     return Hypothesis(
         name=f"{axis}, {channel}",
         shapes=({},),
-        width=raw.shape[1],
+        width=columns.shape[1],
         columns=reduced(problem.layout, friction, load),
-        raw=np.sqrt(np.mean(np.square(raw), axis=0))[np.newaxis],
-        lower=np.full(raw.shape[1], -np.inf),
-        upper=np.full(raw.shape[1], np.inf),
+        rms=np.sqrt(np.mean(np.square(columns), axis=0))[np.newaxis],
+        lower=np.full(columns.shape[1], -np.inf),
+        upper=np.full(columns.shape[1], np.inf),
     )
 
 
 def _axes(problem: Problem) -> dict[tuple[str, str], Array]:
+    """Return columns by axis and channel, shape (rows, columns) each."""
     table = problem.table
     angle = np.radians(table.position)
     harmonics = np.column_stack(
         [wave(n * angle) for n in range(1, _HARMONICS + 1) for wave in (np.sin, np.cos)]
     )
     speed = _indicators(problem.layout.level)[problem.layout.row_pair]
-    warm = _levels(table.temperature)
+    temperature = _levels(table.temperature)
     unit = (table.clock - table.clock.min()) / max(float(np.ptp(table.clock)), 1e-9)
     time = np.column_stack([np.cos(np.pi * n * unit) for n in range(1, _WAVES + 1)])
     rising = _rising(problem)[:, np.newaxis]
     squared = np.square(table.load)[:, np.newaxis] / max(float(np.max(np.square(table.load))), 1e-9)
     waves = harmonics[:, : 2 * _SLOW_HARMONICS]
-    warmth = ((table.temperature - table.temperature.mean()) / 10.0)[:, np.newaxis]
-    fast = (table.speed / table.speed.mean())[:, np.newaxis]
+    relative_temperature = ((table.temperature - table.temperature.mean()) / 10.0)[:, np.newaxis]
+    relative_speed = (table.speed / table.speed.mean())[:, np.newaxis]
     return {
         ("speed", "friction"): speed,
-        ("temperature", "friction"): np.hstack([warm * rising, warm * (1 - rising)]),
+        ("temperature", "friction"): np.hstack([temperature * rising, temperature * (1 - rising)]),
         ("angle", "friction"): harmonics,
         ("angle", "load"): harmonics,
         ("time", "friction"): time,
         ("time", "load"): np.hstack([time, time * np.cos(angle)[:, np.newaxis]]),
         ("load and speed", "friction"): squared * speed,
-        ("load and temperature", "friction"): squared * warm,
-        ("speed and temperature", "friction"): _products(_levels(table.speed), warm),
-        ("angle and temperature", "friction"): waves * warmth,
-        ("angle and speed", "friction"): waves * fast,
+        ("load and temperature", "friction"): squared * temperature,
+        ("speed and temperature", "friction"): _products(_levels(table.speed), temperature),
+        ("angle and temperature", "friction"): waves * relative_temperature,
+        ("angle and speed", "friction"): waves * relative_speed,
         ("angle and time", "friction"): _products(waves, time[:, :2]),
-        ("angle and speed", "load"): waves * fast,
+        ("angle and speed", "load"): waves * relative_speed,
         ("speed", "load"): speed,
-        ("temperature", "load"): np.hstack([warm, warm * np.cos(angle)[:, np.newaxis]]),
+        ("temperature", "load"): np.hstack(
+            [temperature, temperature * np.cos(angle)[:, np.newaxis]]
+        ),
     }
 
 
 def _levels(values: Array) -> Array:
-    """Return an indicator column per level of a quantity, at most eight of even weight."""
+    """Return an indicator column per level of a quantity, at most eight, equally filled."""
     edges = np.unique(np.quantile(values, np.linspace(0, 1, _LEVELS + 1)[1:-1]))
     return np.eye(len(edges) + 1)[np.searchsorted(edges, values, side="left")]
 
@@ -152,12 +169,15 @@ def _indicators(level: Indices) -> Array:
 
 
 def _products(first: Array, second: Array) -> Array:
+    """Return the product of each column of one array with each of another, shape (rows, -1)."""
     return np.einsum("ij,ik->ijk", first, second).reshape(len(first), -1)
 
 
 def _rising(problem: Problem) -> Array:
-    """Return 1 where the temperature rises over the pairs about a row, else 0."""
+    """Return 1 where the temperature rises over nine neighbouring pairs, else 0, shape (rows,)."""
     layout = problem.layout
-    warm = layout.means(problem.table.temperature[:, np.newaxis])[:, 0]
-    trend = np.gradient(np.convolve(np.pad(warm, 4, mode="edge"), np.full(9, 1 / 9), "valid"))
-    return (trend > 0).astype(float)[layout.row_pair] if len(warm) > 1 else np.zeros(len(warm))
+    temperature = layout.means(problem.table.temperature[:, np.newaxis])[:, 0]
+    trend = np.gradient(
+        np.convolve(np.pad(temperature, 4, mode="edge"), np.full(9, 1 / 9), "valid")
+    )
+    return (trend > 0).astype(float)[layout.row_pair]

@@ -1,42 +1,43 @@
-"""What is worked out once for all steps of a search: columns, and the noises of both channels."""
+"""What is computed once for all steps of a search: columns and covariance spectra."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
-from frictioncli.arrays import Array
-from frictioncli.diagnosis.data.pair_layout import PairLayout
 from frictioncli.diagnosis.data.problem import Problem
 from frictioncli.diagnosis.fit.columns import (
     RANK,
-    Hypothesis,
     ModelColumns,
     base_columns,
     joined,
-    left_of_base,
     misfit_column,
+    residual_of_base,
 )
+from frictioncli.diagnosis.fit.hypotheses import Hypothesis
 from frictioncli.diagnosis.noise.orthonormal_groups import Groups
 from frictioncli.diagnosis.noise.spectra import Modes, Spectra, spectra_of
 from frictioncli.effects.base import Basis
 from frictioncli.linear_algebra import least_squares_residual
 
+_LEAST_NOISE = 1e-9
+"""Least standard deviation, so that torques without noise can be weighted. [N·m]"""
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Precomputed:
-    """One joint's data and noises.
+    """Data of one joint with the base's columns and the noise models of both channels.
 
     Attributes
     ----------
     problem : Problem
-        The data.
+        The rows with the base model.
     base : ModelColumns
         Columns of the base model.
     misfit : ModelColumns
         The misfit of the simulated torque, one column.
     spectra : (Spectra, Spectra)
-        Noises of friction and load.
+        Noise models of friction and load.
     """
 
     problem: Problem
@@ -46,7 +47,7 @@ class Precomputed:
 
     @classmethod
     def of(cls, problem: Problem) -> "Precomputed":
-        """Return the bench of a problem."""
+        """Return the columns and spectra of a problem."""
         layout = problem.layout
         base, misfit = base_columns(problem), misfit_column(problem)
         extra = (problem.temperature_variance, np.zeros_like(layout.time))
@@ -55,9 +56,9 @@ class Precomputed:
                 layout,
                 point,
                 known,
-                least_squares_residual(part.means, own.means[:, 0], tolerance=RANK),
+                least_squares_residual(columns.means, one.means[:, 0], tolerance=RANK),
             )
-            for point, known, part, own in zip(
+            for point, known, columns, one in zip(
                 point_noise(problem), extra, base.channels, misfit.channels, strict=True
             )
         )
@@ -66,16 +67,16 @@ class Precomputed:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Catalogue:
-    """Hypotheses with their columns ready for every step.
+    """Hypotheses with their columns in the eigenvectors of the noise.
 
     Attributes
     ----------
     hypotheses : tuple of Hypothesis
-        In order.
+        The hypotheses.
     columns : ModelColumns
-        Theirs, side by side.
+        Their columns, side by side.
     groups : Groups
-        Which columns belong to one shape of one hypothesis.
+        Division of the columns: one group for each shape of each hypothesis.
     modes : (Modes, Modes)
         Of friction and load: the columns in the eigenvectors of each correlation time.
     """
@@ -86,13 +87,13 @@ class Catalogue:
     modes: tuple[Modes, Modes]
 
     @classmethod
-    def of(cls, bench: Precomputed, hypotheses: Sequence[Hypothesis]) -> "Catalogue":
+    def of(cls, precomputed: Precomputed, hypotheses: Sequence[Hypothesis]) -> "Catalogue":
         """Return the catalogue of these hypotheses."""
-        nothing = bench.base.take(slice(0, 0))
-        columns = joined([nothing, *(one.columns for one in hypotheses)])
+        empty = precomputed.base.take(slice(0, 0))
+        columns = joined([empty, *(one.columns for one in hypotheses)])
         friction, load = (
             spectra.all_modes(part.means)
-            for spectra, part in zip(bench.spectra, columns.channels, strict=True)
+            for spectra, part in zip(precomputed.spectra, columns.channels, strict=True)
         )
         return cls(
             hypotheses=tuple(hypotheses),
@@ -103,18 +104,18 @@ class Catalogue:
 
     def without(self, names: set[str]) -> "Catalogue":
         """Return the catalogue without some of its hypotheses."""
-        stays = [one.name not in names for one in self.hypotheses]
-        if all(stays):
+        kept = [one.name not in names for one in self.hypotheses]
+        if all(kept):
             return self
-        chosen = np.flatnonzero(np.repeat(stays, [one.columns.count for one in self.hypotheses]))
-        kept = [one for one, wanted in zip(self.hypotheses, stays, strict=True) if wanted]
+        chosen = np.flatnonzero(np.repeat(kept, [one.columns.count for one in self.hypotheses]))
+        remaining = [one for one, wanted in zip(self.hypotheses, kept, strict=True) if wanted]
         friction, load = (
             tuple(np.take(part, chosen, axis=1) for part in channel) for channel in self.modes
         )
         return Catalogue(
-            hypotheses=tuple(kept),
+            hypotheses=tuple(remaining),
             columns=self.columns.take(chosen),
-            groups=_groups(kept),
+            groups=_groups(remaining),
             modes=(friction, load),
         )
 
@@ -124,22 +125,18 @@ def _groups(hypotheses: Sequence[Hypothesis]) -> Groups:
 
 
 def point_noise(problem: Problem, accepted: Sequence[Basis] = ()) -> tuple[float, float]:
-    """Return the noise of a row about its pair in friction and load. [N·m].
+    """Return the standard deviation of an angle bin about its pair in friction and load. [N·m].
 
     Parameters
     ----------
     problem : Problem
-        The data; their base is taken out.
+        The rows; of their misfit the residual of the base is taken.
     accepted : sequence of Basis
-        Columns of accepted effects, taken out too.
+        Columns of accepted effects, fitted beside the base.
     """
-    friction = left_of_base(problem, problem.friction_misfit, "friction", accepted)
-    load = left_of_base(problem, problem.load_misfit, "load", accepted)
-    return _about_pair(problem.layout, friction), _about_pair(problem.layout, load)
-
-
-def _about_pair(layout: PairLayout, residual: Array) -> float:
-    """Return the standard deviation of rows about their pair's mean. [N·m]."""
-    inside = residual - layout.means(residual[:, np.newaxis])[:, 0][layout.row_pair]
-    freedom = max(len(inside) - len(layout.bins), 1)
-    return max(float(np.sqrt(inside @ inside / freedom)), 1e-9)
+    friction = residual_of_base(problem, problem.friction_misfit, "friction", accepted)
+    load = residual_of_base(problem, problem.load_misfit, "load", accepted)
+    return (
+        max(problem.layout.point_deviation(friction), _LEAST_NOISE),
+        max(problem.layout.point_deviation(load), _LEAST_NOISE),
+    )

@@ -1,4 +1,4 @@
-"""One step of the search: base and accepted effects against every rival, in both channels."""
+"""One step of the search: every hypothesis tested against base and accepted effects."""
 
 from collections import defaultdict
 from collections.abc import Sequence
@@ -12,84 +12,91 @@ from frictioncli.diagnosis.data.problem import Problem
 from frictioncli.diagnosis.fit.channel_likelihood import ChannelLikelihood
 from frictioncli.diagnosis.fit.columns import (
     ChannelColumns,
-    Hypothesis,
     ModelColumns,
     basis_columns,
-    hypothesis_of,
     joined,
-    left_of_base,
     main_channel,
+    residual_of_base,
 )
-from frictioncli.diagnosis.fit.judgement import Judged, Score
-from frictioncli.diagnosis.fit.two_channel_fit import TwoChannelFit, solved, solved_each
+from frictioncli.diagnosis.fit.hypotheses import (
+    EffectFit,
+    Hypothesis,
+    HypothesisTest,
+    hypothesis_of,
+)
+from frictioncli.diagnosis.fit.two_channel_fit import TwoChannelFit, fit_candidates, fit_channels
 from frictioncli.diagnosis.fit.weighted_fit import WeightedFit, Weights
-from frictioncli.diagnosis.noise.likelihood_scan import Setting, drawn_inside
-from frictioncli.diagnosis.noise.significance import Chance, chance_of, log_evidence
+from frictioncli.diagnosis.noise.likelihood_scan import NoiseIndex, drawn_within
+from frictioncli.diagnosis.noise.significance import (
+    NullDistribution,
+    fit_null_distribution,
+    log_bayes_factor,
+)
 from frictioncli.diagnosis.search.precomputed import Catalogue, Precomputed, point_noise
 from frictioncli.effects.base import Effect
 from frictioncli.model.noise import Noise
 
-Settings = tuple[Setting, Setting]
-"""Places of the noises of friction and load."""
+NoiseIndices = tuple[NoiseIndex, NoiseIndex]
+"""Indices of the noise models of friction and load."""
 
 DRAWS = 200
-"""Draws of noise from which it is learned what chance gives."""
+"""Draws of noise from which the null distribution of each statistic is estimated."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Step:
-    """Base and accepted effects under the noise that suits them.
+    """The null hypothesis of one step: base and accepted effects under the noise that suits them.
 
     Attributes
     ----------
-    bench : Precomputed
-        The data and their noises.
-    accepted : tuple of Score
+    precomputed : Precomputed
+        The data and the noise models.
+    accepted : tuple of EffectFit
         Effects accepted so far.
-    sides : (ChannelLikelihood, Side)
+    channels : (ChannelLikelihood, ChannelLikelihood)
         Base and those effects in friction and load.
     fit : TwoChannelFit
         The same in both channels together.
     """
 
-    bench: Precomputed
-    accepted: tuple[Score, ...]
-    sides: tuple[ChannelLikelihood, ChannelLikelihood]
+    precomputed: Precomputed
+    accepted: tuple[EffectFit, ...]
+    channels: tuple[ChannelLikelihood, ChannelLikelihood]
     fit: TwoChannelFit
 
     @classmethod
-    def of(cls, bench: Precomputed, accepted: Sequence[Score]) -> "Step":
+    def of(cls, precomputed: Precomputed, accepted: Sequence[EffectFit]) -> "Step":
         """Return the step with these effects accepted."""
-        problem = bench.problem
-        bases = [problem.basis(score.effect, score.shape) for score in accepted]
-        base = joined([bench.base, *(basis_columns(problem, basis) for basis in bases)])
+        problem = precomputed.problem
+        bases = [problem.basis(one.effect, one.shape) for one in accepted]
+        base = joined([precomputed.base, *(basis_columns(problem, basis) for basis in bases)])
         friction, load = (
             ChannelLikelihood.of(spectra, point, part, misfit)
             for spectra, point, part, misfit in zip(
-                bench.spectra,
+                precomputed.spectra,
                 point_noise(problem, bases),
                 base.channels,
-                bench.misfit.channels,
+                precomputed.misfit.channels,
                 strict=True,
             )
         )
-        sides, best = (friction, load), (friction.null.best, load.null.best)
-        nothing = base.take(slice(0, 0))
-        fit = _fitted(sides, nothing, _modes(sides, nothing, best), best)
-        return cls(bench=bench, accepted=tuple(accepted), sides=sides, fit=fit)
+        channels, best = (friction, load), (friction.null.best, load.null.best)
+        empty = base.take(slice(0, 0))
+        fit = _fitted(channels, empty, _modes(channels, empty, best), best)
+        return cls(precomputed=precomputed, accepted=tuple(accepted), channels=channels, fit=fit)
 
     @property
     def problem(self) -> Problem:
         """The data."""
-        return self.bench.problem
+        return self.precomputed.problem
 
     @property
     def base_count(self) -> int:
         """Number of columns of the base and the accepted effects."""
-        return self.sides[0].base.count
+        return self.channels[0].base.count
 
-    def judged(self, catalogue: Catalogue, seed: int, draws: int) -> dict[str, Judged]:
-        """Return every hypothesis as it stands beside the base, by name.
+    def tested(self, catalogue: Catalogue, seed: int, draws: int) -> dict[str, HypothesisTest]:
+        """Return the test of every hypothesis against the null hypothesis, by name.
 
         Parameters
         ----------
@@ -100,88 +107,103 @@ class Step:
         draws : int
             Number of draws of noise; without any all p-values are 1.
         """
-        suited, drawn = self._scanned(catalogue, seed, draws)
-        fits = self._fits(catalogue, suited)
+        noises, drawn = self._scanned(catalogue, seed, draws)
+        fits = self._fits(catalogue, noises)
         found, first = {}, 0
         for hypothesis in catalogue.hypotheses:
-            own = slice(first, first + len(hypothesis.shapes))
-            chance = chance_of(drawn[own].max(axis=0, initial=0.0))
-            found[hypothesis.name] = self._judged(
-                hypothesis, fits[own], chance, len(catalogue.hypotheses)
+            groups = slice(first, first + len(hypothesis.shapes))
+            null = fit_null_distribution(drawn[groups].max(axis=0, initial=0.0))
+            found[hypothesis.name] = self._test(
+                hypothesis, fits[groups], null, len(catalogue.hypotheses)
             )
-            first = own.stop
+            first = groups.stop
         return found
 
-    def _scanned(self, catalogue: Catalogue, seed: int, draws: int) -> tuple[list[Settings], Array]:
-        """Return the noises that suit each group best, and what chance gives the groups.
+    def _scanned(
+        self, catalogue: Catalogue, seed: int, draws: int
+    ) -> tuple[list[NoiseIndices], Array]:
+        """Return the noise models that suit each group best, and its statistics in noise alone.
 
-        The latter has shape (groups, draws).
+        The latter have shape (groups, draws).
         """
         generator = np.random.default_rng(seed)
         friction, load = (
-            side.scan(modes, catalogue.groups, draws, generator)
-            for side, modes in zip(self.sides, catalogue.modes, strict=True)
+            channel.scan(modes, catalogue.groups, draws, generator)
+            for channel, modes in zip(self.channels, catalogue.modes, strict=True)
         )
         drawn = friction.drawn + load.drawn
         if draws:
-            base = self._white_inside([side.base for side in self.sides])
-            rivals = self._white_inside(catalogue.columns.channels)
-            drawn = drawn + drawn_inside(base, rivals, catalogue.groups, draws, generator)
-        return list(zip(friction.settings, load.settings, strict=True)), drawn
+            base = self._white_deviations([channel.base for channel in self.channels])
+            candidates = self._white_deviations(catalogue.columns.channels)
+            drawn = drawn + drawn_within(base, candidates, catalogue.groups, draws, generator)
+        return list(zip(friction.noises, load.noises, strict=True)), drawn
 
-    def _white_inside(self, channels: Sequence[ChannelColumns]) -> Array:
-        """Return deviations inside pairs in units of their noise, load's below friction's."""
+    def _white_deviations(self, columns: Sequence[ChannelColumns]) -> Array:
+        """Return deviations within pairs in units of their noise, load's below friction's."""
         return np.vstack(
-            [part.inside / side.point for part, side in zip(channels, self.sides, strict=True)]
+            [
+                part.within / channel.point
+                for part, channel in zip(columns, self.channels, strict=True)
+            ]
         )
 
-    def _fits(self, catalogue: Catalogue, suited: Sequence[Settings]) -> list[TwoChannelFit]:
-        """Return the fit of base and each group of a catalogue's columns under its noises.
+    def _fits(self, catalogue: Catalogue, noises: Sequence[NoiseIndices]) -> list[TwoChannelFit]:
+        """Return the fit of base and each group of a catalogue's columns under its noise models.
 
-        Groups as wide under the same noises are fitted at once.
+        Groups of one width under the same noise models are fitted at once.
         """
         alike = defaultdict(list)
-        for group, settings in enumerate(suited):
-            alike[settings, catalogue.groups.width[group]].append(group)
+        for group, indices in enumerate(noises):
+            alike[indices, catalogue.groups.width[group]].append(group)
         found: dict[int, TwoChannelFit] = {}
-        for (settings, width), groups in alike.items():
+        for (indices, width), groups in alike.items():
             columns = catalogue.groups.start[groups][:, np.newaxis] + np.arange(width)
             friction, load = (
-                side.equations_each(part, modes[setting[0]], columns, setting)
-                for side, part, modes, setting in zip(
-                    self.sides,
+                channel.normal_equations_each(part, modes[index[0]], columns, index)
+                for channel, part, modes, index in zip(
+                    self.channels,
                     catalogue.columns.channels,
                     catalogue.modes,
-                    settings,
+                    indices,
                     strict=True,
                 )
             )
-            fits = solved_each((friction, load), self.base_count)
+            fits = fit_candidates((friction, load), self.base_count)
             found |= dict(zip(groups, fits, strict=True))
-        return [found[group] for group in range(len(suited))]
+        return [found[group] for group in range(len(noises))]
 
     def noise(self) -> tuple[Noise, Noise]:
-        """Return the noise of friction and load that suits base and accepted effects."""
+        """Return the noise of friction and load that suits base and accepted effects best."""
         friction, load = (
-            side.noise(scale) for side, scale in zip(self.sides, self.fit.scales, strict=True)
+            channel.noise(scale)
+            for channel, scale in zip(self.channels, self.fit.scales, strict=True)
         )
         return friction, load
 
-    def weighing(self) -> WeightedFit:
-        """Return the weights of estimates that must predict."""
+    def weighted_fit(self) -> WeightedFit:
+        """Return the weighted least squares by which predictions are made under this noise."""
         layout, extra = self.problem.layout, self.problem.temperature_variance
         friction, load = self.noise()
         return WeightedFit(
             Weights.of(layout, friction, extra), Weights.of(layout, load, np.zeros_like(extra))
         )
 
-    def refined(self, found: Score) -> Score:
-        """Return a score with its shape searched off the grid, under the noise that suits it."""
+    def refined(self, found: EffectFit) -> EffectFit:
+        """Return an effect with its shape optimised off the grid.
+
+        The noise model stays that of the shape given during the search, and is chosen anew at the
+        end.
+
+        Parameters
+        ----------
+        found : EffectFit
+            The effect at a shape of the grid, or near it.
+        """
         effect, axes = found.effect, found.effect.shape
-        settings = self._suited(effect, found.shape)
+        noises = self._best_noises(effect, found.shape)
         if not axes or effect.moments is not None:
-            # every moment worth trying has been tried
-            return self._scored(effect, found.shape, settings)
+            # the grid already has every moment worth trying
+            return self._effect_fit(effect, found.shape, noises)
         start = np.array([axis.share(found.shape[axis.name]) for axis in axes])
         step = np.array([0.5 / axis.points for axis in axes])
 
@@ -189,7 +211,7 @@ class Step:
             return {axis.name: axis.at(float(u)) for axis, u in zip(axes, unit, strict=True)}
 
         search = minimize(
-            lambda unit: -self._scored(effect, shape_at(unit), settings).statistic,
+            lambda unit: -self._effect_fit(effect, shape_at(unit), noises).statistic,
             start,
             method="Nelder-Mead",
             bounds=[(0.0, 1.0)] * len(axes),
@@ -203,93 +225,104 @@ class Step:
             },
         )
         shape = shape_at(search.x)
-        return self._scored(effect, shape, self._suited(effect, shape))
+        return self._effect_fit(effect, shape, self._best_noises(effect, shape))
 
-    def _suited(self, effect: Effect, shape: dict[str, float]) -> Settings:
-        """Return the noise that suits an effect at one shape."""
-        alone = Catalogue.of(self.bench, [hypothesis_of(effect, self.problem, [shape])])
+    def _best_noises(self, effect: Effect, shape: dict[str, float]) -> NoiseIndices:
+        """Return the noise models that suit an effect at one shape best."""
+        alone = Catalogue.of(self.precomputed, [hypothesis_of(effect, self.problem, [shape])])
         return self._scanned(alone, 0, 0)[0][0]
 
-    def _scored(self, effect: Effect, shape: dict[str, float], settings: Settings) -> Score:
-        """Return an effect's score at one shape; its statistic is 0 if it is not physical."""
+    def _effect_fit(
+        self, effect: Effect, shape: dict[str, float], noises: NoiseIndices
+    ) -> EffectFit:
+        """Return an effect fitted at one shape; its statistic is 0 if it is not physical."""
         hypothesis = hypothesis_of(effect, self.problem, [shape])
         columns, base = hypothesis.columns, self.base_count
-        fit = _fitted(self.sides, columns, _modes(self.sides, columns, settings), settings)
+        fit = _fitted(self.channels, columns, _modes(self.channels, columns, noises), noises)
         coefficients, covariance = fit.coefficients[base:], fit.covariance[base:, base:]
         allowed = hypothesis.allows(coefficients, covariance)
         statistic = 2 * (fit.likelihood - self.fit.likelihood) if allowed else 0.0
-        return Score(effect, shape, coefficients, covariance, statistic)
+        return EffectFit(effect, shape, coefficients, covariance, statistic)
 
-    def _judged(
-        self, hypothesis: Hypothesis, fits: Sequence[TwoChannelFit], chance: Chance, rivals: int
-    ) -> Judged:
+    def _test(
+        self,
+        hypothesis: Hypothesis,
+        fits: Sequence[TwoChannelFit],
+        null: NullDistribution,
+        hypotheses: int,
+    ) -> HypothesisTest:
+        """Return the test of a hypothesis from its fits at each shape, of so many hypotheses."""
         base = self.base_count
         grid = np.array([2 * (fit.likelihood - self.fit.likelihood) for fit in fits])
-        able = [
+        physical = [
             fit.freedom > 0
             and hypothesis.allows(fit.coefficients[base:], fit.covariance[base:, base:])
             for fit in fits
         ]
-        grid = np.where(able, np.maximum(grid, 0.0), 0.0)
+        grid = np.where(physical, np.maximum(grid, 0.0), 0.0)
         best = int(np.argmax(grid))
         fit = fits[best]
-        return Judged(
+        return HypothesisTest(
             name=hypothesis.name,
             shape=hypothesis.shapes[best],
             coefficients=fit.coefficients[base:],
             covariance=fit.covariance[base:, base:],
             statistic=float(grid[best]),
-            p_value=min(1.0, rivals * chance.beyond(float(grid[best]))),
-            evidence=log_evidence(grid, fit.freedom),
+            p_value=min(1.0, hypotheses * null.p_value(float(grid[best]))),
+            log_bayes_factor=log_bayes_factor(grid, fit.freedom),
             freedom=fit.freedom,
-            chance=chance,
+            null=null,
             size_scale=float(
-                np.linalg.norm(hypothesis.raw[best])
+                np.linalg.norm(hypothesis.rms[best])
                 / max(float(np.linalg.norm(fit.visible)), 1e-300)
             ),
         )
 
-    def size(self, score: Score) -> float:
+    def size(self, fit: EffectFit) -> float:
         """Return the RMS torque of an effect in the channel where it shows most. [N·m].
 
         Several columns of an effect may cancel each other and leave the rest to the base; so only
-        the part that the base cannot take has a size, unless it is the effect's only column.
+        the residual of the base counts, unless the effect has a single column.
         """
-        if len(score.coefficients) > 1:
-            return self.visible(score)
-        return float(np.sqrt(np.mean(np.square(self._torque(score)))))
+        if len(fit.coefficients) > 1:
+            return self.visible(fit)
+        return float(np.sqrt(np.mean(np.square(self._torque(fit)))))
 
-    def visible(self, score: Score) -> float:
-        """Return the RMS torque of an effect that the base model cannot take. [N·m]."""
-        left = left_of_base(self.problem, self._torque(score), score.effect.channel)
-        return float(np.sqrt(np.mean(np.square(left))))
+    def visible(self, fit: EffectFit) -> float:
+        """Return the RMS of an effect's torque after a fit of the base model to it. [N·m]."""
+        residual = residual_of_base(self.problem, self._torque(fit), fit.effect.channel)
+        return float(np.sqrt(np.mean(np.square(residual))))
 
-    def _torque(self, score: Score) -> Array:
+    def _torque(self, fit: EffectFit) -> Array:
         """Return the torque of an effect in the channel where it shows most, shape (rows,)."""
-        basis = self.problem.basis(score.effect, score.shape)
-        return np.asarray(main_channel(basis, score.effect) @ score.coefficients)
+        basis = self.problem.basis(fit.effect, fit.shape)
+        return np.asarray(main_channel(basis, fit.effect) @ fit.coefficients)
 
 
 def _modes(
-    sides: tuple[ChannelLikelihood, ChannelLikelihood], columns: ModelColumns, settings: Settings
+    channels: tuple[ChannelLikelihood, ChannelLikelihood],
+    columns: ModelColumns,
+    noises: NoiseIndices,
 ) -> tuple[Array, Array]:
     """Return the modes of columns in friction and load, each at its noise's correlation time."""
     friction, load = (
-        side.spectra.modes_at(time, part.means)
-        for side, part, (time, _) in zip(sides, columns.channels, settings, strict=True)
+        channel.spectra.modes_at(time, part.means)
+        for channel, part, (time, _) in zip(channels, columns.channels, noises, strict=True)
     )
     return friction, load
 
 
 def _fitted(
-    sides: tuple[ChannelLikelihood, ChannelLikelihood],
-    rival: ModelColumns,
+    channels: tuple[ChannelLikelihood, ChannelLikelihood],
+    candidate: ModelColumns,
     modes: tuple[Array, Array],
-    settings: Settings,
+    noises: NoiseIndices,
 ) -> TwoChannelFit:
-    """Return the fit of base and rival under given noises of friction and load."""
+    """Return the fit of base and candidate under given noise models of friction and load."""
     friction, load = (
-        side.equations(part, own, setting)
-        for side, part, own, setting in zip(sides, rival.channels, modes, settings, strict=True)
+        channel.normal_equations(part, part_modes, index)
+        for channel, part, part_modes, index in zip(
+            channels, candidate.channels, modes, noises, strict=True
+        )
     )
-    return solved((friction, load), sides[0].base.count)
+    return fit_channels((friction, load), channels[0].base.count)

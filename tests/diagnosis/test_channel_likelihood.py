@@ -6,9 +6,9 @@ import pytest
 from frictioncli.diagnosis.fit.channel_likelihood import ChannelLikelihood
 from frictioncli.diagnosis.fit.columns import ChannelColumns
 from frictioncli.diagnosis.noise.spectra import spectra_of
-from tests.diagnosis import noises
+from tests.diagnosis import dense_noise
 
-PAIRS = noises.layout(14, 11, bins=[2, 3, 2, 3, 2] * 5)
+PAIRS = dense_noise.layout(14, 11, bins=[2, 3, 2, 3, 2] * 5)
 COUNT = 25
 POINT = 0.2
 GENERATOR = np.random.default_rng(9)
@@ -27,9 +27,9 @@ SIDE = ChannelLikelihood.of(SPECTRA, POINT, BASE, MISFIT)
 
 def products(chosen, setting):
     """White products of the deviations, and those of the means under the dense covariance."""
-    inside = np.hstack([BASE.inside, RIVALS.inside[:, chosen], MISFIT.inside]) / POINT
+    inside = np.hstack([BASE.within, RIVALS.within[:, chosen], MISFIT.within]) / POINT
     means = np.hstack([BASE.means, RIVALS.means[:, chosen], MISFIT.means])
-    noise = noises.covariance(PAIRS, SPECTRA, setting)
+    noise = dense_noise.covariance(PAIRS, SPECTRA, setting)
     return inside.T @ inside, means.T @ np.linalg.solve(noise, means)
 
 
@@ -37,18 +37,18 @@ def products(chosen, setting):
 @pytest.mark.parametrize("columns", [[[2]], [[0, 1], [3, 4]], [[4, 0, 1], [1, 2, 3]]])
 def test_equations_of_many_rivals_are_those_of_their_rows(columns, setting):
     modes = SPECTRA.modes_at(setting[0], RIVALS.means)
-    found = SIDE.equations_each(RIVALS, modes, np.array(columns), setting)
+    found = SIDE.normal_equations_each(RIVALS, modes, np.array(columns), setting)
     assert found.determinant == SIDE.null.determinant[setting]
     assert found.freedom == COUNT - 3
     for number, chosen in enumerate(columns):
         inside, between = products(chosen, setting)
-        np.testing.assert_allclose(found.inside[number], inside, rtol=1e-9, atol=1e-9)
+        np.testing.assert_allclose(found.within[number], inside, rtol=1e-9, atol=1e-9)
         np.testing.assert_allclose(found.between[number], between, rtol=1e-7, atol=1e-8)
 
 
 def test_equations_of_the_base_alone_hold_base_and_misfit():
-    nothing = ChannelColumns(RIVALS.inside[:, :0], RIVALS.means[:, :0])
-    found = SIDE.equations(nothing, nothing.means, (2, 4))
+    nothing = ChannelColumns(RIVALS.within[:, :0], RIVALS.means[:, :0])
+    found = SIDE.normal_equations(nothing, nothing.means, (2, 4))
     inside, between = products([], (2, 4))
-    np.testing.assert_allclose(found.inside, inside, rtol=1e-9, atol=1e-9)
+    np.testing.assert_allclose(found.within, inside, rtol=1e-9, atol=1e-9)
     np.testing.assert_allclose(found.between, between, rtol=1e-7, atol=1e-8)

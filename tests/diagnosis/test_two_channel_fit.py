@@ -7,12 +7,17 @@ import pytest
 from scipy import stats
 from scipy.linalg import block_diag, null_space
 
-from frictioncli.diagnosis.fit.two_channel_fit import NormalEquations, noise_of, solved, solved_each
-from frictioncli.diagnosis.noise.likelihood_scan import null_of, weighted_gram
+from frictioncli.diagnosis.fit.two_channel_fit import (
+    NormalEquations,
+    fit_candidates,
+    fit_channels,
+    noise_of,
+)
+from frictioncli.diagnosis.noise.likelihood_scan import fit_null, weighted_gram
 from frictioncli.diagnosis.noise.spectra import STRENGTHS, spectra_of
-from tests.diagnosis import noises
+from tests.diagnosis import dense_noise
 
-PAIRS = noises.layout(40, 30, bins=2)
+PAIRS = dense_noise.layout(40, 30, bins=2)
 COUNT = 70
 NOTHING = np.zeros((1, 1))
 
@@ -34,7 +39,7 @@ def both(seed=0, contrasts=50):
     inside, means, channels = [], [], []
     for number, setting in enumerate([(2, 4), (1, 2)]):
         spectrum = spectra(seed=number)
-        noise = 0.04 * noises.covariance(PAIRS, spectrum, setting)
+        noise = 0.04 * dense_noise.covariance(PAIRS, spectrum, setting)
         columns = generator.normal(size=(COUNT, 4)) * [1.0, 0.1, 3.0, 1.0]
         white = generator.normal(size=(contrasts, 4))
         drift = np.linalg.cholesky(noise) @ generator.normal(size=COUNT)
@@ -47,14 +52,14 @@ def both(seed=0, contrasts=50):
 def fitted(channels, inside, means, base=2):
     friction, load = (
         NormalEquations(
-            inside=rows.T @ rows,
+            within=rows.T @ rows,
             between=inner(spectrum, setting, columns),
             determinant=0.0,
             freedom=COUNT - base,
         )
         for (spectrum, setting), rows, columns in zip(channels, inside, means, strict=True)
     )
-    return solved((friction, load), base)
+    return fit_channels((friction, load), base)
 
 
 def dense(channels, inside, means, scales):
@@ -63,7 +68,7 @@ def dense(channels, inside, means, scales):
     noise = block_diag(
         *(np.eye(len(part)) for part in inside),
         *(
-            scale * noises.covariance(PAIRS, *channel)
+            scale * dense_noise.covariance(PAIRS, *channel)
             for scale, channel in zip(scales, channels, strict=True)
         ),
     )
@@ -81,7 +86,7 @@ def settled_scales(channels, inside, means, base=2):
         scales = []
         for channel, columns in zip(channels, means, strict=True):
             left = columns[:, -1] - columns[:, :-1] @ coefficients
-            noise = noises.covariance(PAIRS, *channel)
+            noise = dense_noise.covariance(PAIRS, *channel)
             scales.append(float(left @ np.linalg.solve(noise, left)) / (COUNT - base))
     return scales, coefficients, covariance
 
@@ -127,7 +132,7 @@ def test_likelihood_is_that_of_the_contrasts():
     offset = np.ones((COUNT, 1))
     friction = (0.5 * rival + 0.3 * generator.normal(size=(COUNT, 1))) + base @ [[1.0], [2.0]]
     load = generator.normal(size=(COUNT, 1))
-    null = null_of(own, base, friction), null_of(other, offset, load)
+    null = fit_null(own, base, friction), fit_null(other, offset, load)
 
     def likelihood(setting, *rivals):
         known = 3
@@ -137,18 +142,18 @@ def test_likelihood_is_that_of_the_contrasts():
         places = [(null[0], own, setting, first), (null[1], other, (2, 3), second)]
         channels = (
             NormalEquations(
-                inside=np.zeros((columns.shape[1],) * 2),
+                within=np.zeros((columns.shape[1],) * 2),
                 between=inner(noises_of, place, columns),
                 determinant=float(alone.determinant[place]),
                 freedom=alone.freedom,
             )
             for alone, noises_of, place, columns in places
         )
-        return solved(tuple(channels), known).likelihood
+        return fit_channels(tuple(channels), known).likelihood
 
     def direct(setting, *rivals):
         contrasts = null_space(base.T)
-        noise = contrasts.T @ noises.covariance(PAIRS, own, setting) @ contrasts
+        noise = contrasts.T @ dense_noise.covariance(PAIRS, own, setting) @ contrasts
         seen = (contrasts.T @ friction)[:, 0]
         if rivals:
             column = contrasts.T @ rivals[0]
@@ -170,7 +175,9 @@ def test_what_the_base_leaves_of_the_rival_is_its_white_length():
     whitened = [
         *inside,
         *(
-            np.linalg.solve(np.linalg.cholesky(scale * noises.covariance(PAIRS, *channel)), columns)
+            np.linalg.solve(
+                np.linalg.cholesky(scale * dense_noise.covariance(PAIRS, *channel)), columns
+            )
             for scale, channel, columns in zip(fit.scales, channels, means, strict=True)
         ),
     ]
@@ -234,12 +241,12 @@ def test_a_rival_never_lowers_the_likelihood():
 @pytest.mark.parametrize("setting", [(0, 0), (2, 5)])
 def test_noise_in_torque_units_is_the_covariance_of_its_place(setting):
     """pair^2 + point^2/bins on the diagonal and drift^2 R are a (H + rho R) for even bins."""
-    pairs = noises.layout(12, 10, bins=4)
+    pairs = dense_noise.layout(12, 10, bins=4)
     even = spectra_of(pairs, 0.4, np.full(22, 0.01), np.random.default_rng(0).normal(size=22))
     noise = noise_of(even, setting, 0.5, 0.4)
-    drift = noise.drift**2 * noises.alike(pairs, noise.drift_time)
+    drift = noise.drift**2 * dense_noise.alike(pairs, noise.drift_time)
     found = np.diag(np.full(22, noise.pair**2 + 0.4**2 / 4 + 0.01)) + drift
-    np.testing.assert_allclose(found, 0.5 * noises.covariance(pairs, even, setting))
+    np.testing.assert_allclose(found, 0.5 * dense_noise.covariance(pairs, even, setting))
     assert noise.point == 0.4
     assert noise.drift**2 == pytest.approx(0.5 * STRENGTHS[setting[1]])
 
@@ -273,14 +280,14 @@ def test_many_rivals_at_once_are_fitted_as_each_alone():
         cases.append(parts)
     stacked = tuple(
         NormalEquations(
-            inside=np.stack([case[0][number].T @ case[0][number] for case in cases]),
+            within=np.stack([case[0][number].T @ case[0][number] for case in cases]),
             between=np.stack([inner(*channels[number], case[1][number]) for case in cases]),
             determinant=0.0,
             freedom=COUNT - 2,
         )
         for number in range(2)
     )
-    found = solved_each(stacked, 2)
+    found = fit_candidates(stacked, 2)
     assert [fit.freedom for fit in found] == [2, 1, 1]
     for fit, case in zip(found, cases, strict=True):
         alone = fitted(channels, *case)

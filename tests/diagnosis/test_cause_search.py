@@ -1,19 +1,18 @@
-"""The search: what is accepted, swapped or dropped, and that it ends."""
+"""The search for causes: which effects are accepted, replaced or dropped, and that it ends."""
 
 from dataclasses import replace
 
 import numpy as np
 import pytest
 
-from frictioncli.diagnosis.fit.columns import hypothesis_of
-from frictioncli.diagnosis.fit.judgement import Score
+from frictioncli.diagnosis.fit.hypotheses import EffectFit, hypothesis_of
 from frictioncli.diagnosis.search import cause_search
 from frictioncli.diagnosis.search.cause_search import find_causes
 from frictioncli.diagnosis.search.precomputed import Catalogue, Precomputed
 from frictioncli.diagnosis.search.step import Step
 from frictioncli.diagnosis.settings import DiagnosisSettings
-from tests.diagnosis.noises import problem
-from tests.diagnosis.waves import THREE, A, B, C, effect, wave
+from tests.diagnosis.dense_noise import problem
+from tests.diagnosis.wave_effects import THREE, A, B, C, effect, wave
 
 SETTINGS = DiagnosisSettings()
 
@@ -30,28 +29,28 @@ def catalogue(monkeypatch):
 
 
 def names(found):
-    return sorted(cause.score.effect.name for cause in found.causes)
+    return sorted(cause.fit.effect.name for cause in found.causes)
 
 
 def test_causes_are_found_one_after_another_and_the_strongest_comes_first(catalogue):
     effects = catalogue(*THREE)
     data = problem(8, friction=lambda rows: 0.5 * A(rows) + 1.0 * C(rows))
     found = find_causes(data, effects, SETTINGS)
-    assert [cause.score.effect.name for cause in found.causes] == ["c", "a"]
+    assert [cause.fit.effect.name for cause in found.causes] == ["c", "a"]
     for cause, size in zip(found.causes, (1.0, 0.5), strict=True):
-        assert cause.score.coefficients[0] == pytest.approx(size, rel=0.06)
+        assert cause.fit.coefficients[0] == pytest.approx(size, rel=0.06)
         assert cause.size == pytest.approx(size / np.sqrt(2), rel=0.06)
-        assert cause.effects == (cause.score.effect.name,)
-        assert cause.judged.p_value < 1e-6
-    assert set(found.last) == {"b"}
-    assert [score.effect.name for score in found.step.accepted] == ["c", "a"]
+        assert cause.effects == (cause.fit.effect.name,)
+        assert cause.test.p_value < 1e-6
+    assert set(found.rejected) == {"b"}
+    assert [fit.effect.name for fit in found.step.accepted] == ["c", "a"]
 
 
 def test_nothing_is_found_in_noise(catalogue):
     effects = catalogue(*THREE)
     found = find_causes(problem(9), effects, SETTINGS)
     assert found.causes == ()
-    assert set(found.last) == {"a", "b", "c"}
+    assert set(found.rejected) == {"a", "b", "c"}
 
 
 def test_no_more_causes_than_wanted(catalogue):
@@ -68,35 +67,35 @@ def test_a_first_wrong_name_is_replaced(catalogue):
     mixture = effect("mixture", [(1.0, A), (1.0, B), (0.3, C)])
     effects = catalogue(mixture, effect("a", [(1.0, A)]), effect("b", [(1.0, B)]))
     data = problem(10, friction=lambda rows: A(rows) + 0.6 * B(rows))
-    bench = Precomputed.of(data)
-    first = Step.of(bench, []).judged(
-        Catalogue.of(bench, [hypothesis_of(one, data) for one in effects]), 0, 0
+    precomputed = Precomputed.of(data)
+    first = Step.of(precomputed, []).tested(
+        Catalogue.of(precomputed, [hypothesis_of(one, data) for one in effects]), 0, 0
     )
-    assert max(first, key=lambda name: first[name].evidence) == "mixture"
+    assert max(first, key=lambda name: first[name].log_bayes_factor) == "mixture"
     found = find_causes(data, effects, SETTINGS)
-    assert [cause.score.effect.name for cause in found.causes] == ["a", "b"]
+    assert [cause.fit.effect.name for cause in found.causes] == ["a", "b"]
     for cause, size in zip(found.causes, (1.0, 0.6), strict=True):
-        assert cause.score.coefficients[0] == pytest.approx(size, rel=0.05)
+        assert cause.fit.coefficients[0] == pytest.approx(size, rel=0.05)
 
 
-def hunting(data, effects):
-    bench = Precomputed.of(data)
-    hypotheses = Catalogue.of(bench, [hypothesis_of(one, data) for one in effects])
-    return cause_search._Search(bench, hypotheses, SETTINGS, None)
+def search_of(data, effects):
+    precomputed = Precomputed.of(data)
+    hypotheses = Catalogue.of(precomputed, [hypothesis_of(one, data) for one in effects])
+    return cause_search._Search(precomputed, hypotheses, SETTINGS, None)
 
 
-def guessed(one, *coefficients):
-    return Score(one, {}, np.array(coefficients), np.eye(len(coefficients)), 50.0)
+def effect_fit(one, *coefficients):
+    return EffectFit(one, {}, np.array(coefficients), np.eye(len(coefficients)), 50.0)
 
 
-def test_an_effect_that_others_made_needless_goes(catalogue):
+def test_an_effect_that_others_made_superfluous_is_dropped(catalogue):
     mixture = effect("mixture", [(1.0, A), (1.0, B), (0.4, C)])
     pair = effect("pair", [(1.0, A)], [(1.0, B)])
     catalogue(mixture, pair)
     data = problem(11, friction=lambda rows: A(rows) + B(rows))
-    hunt = hunting(data, (mixture, pair))
-    left = hunt.settled([guessed(mixture, 1.0), guessed(pair, 0.0, 0.0)])
-    assert [score.effect.name for score in left] == ["pair"]
+    search = search_of(data, (mixture, pair))
+    remaining = search.retested([effect_fit(mixture, 1.0), effect_fit(pair, 0.0, 0.0)])
+    assert [fit.effect.name for fit in remaining] == ["pair"]
 
 
 def test_a_name_changes_where_another_fits_clearly_better_beside_the_others(catalogue):
@@ -105,22 +104,24 @@ def test_a_name_changes_where_another_fits_clearly_better_beside_the_others(cata
     first, second, _ = THREE
     catalogue(mixture, *THREE)
     data = problem(10, friction=lambda rows: A(rows) + 0.6 * B(rows))
-    left = hunting(data, (mixture, *THREE)).settled([guessed(mixture, 0.8), guessed(first, 0.3)])
-    assert [score.effect for score in left] == [second, first]
-    assert [score.coefficients[0] for score in left] == pytest.approx([0.6, 1.0], rel=0.05)
+    remaining = search_of(data, (mixture, *THREE)).retested(
+        [effect_fit(mixture, 0.8), effect_fit(first, 0.3)]
+    )
+    assert [fit.effect for fit in remaining] == [second, first]
+    assert [fit.coefficients[0] for fit in remaining] == pytest.approx([0.6, 1.0], rel=0.05)
 
 
 def test_what_was_dropped_does_not_come_back(catalogue, monkeypatch):
-    """Even if the newest is always found needless, each is tried once, the strongest first."""
+    """Even if the newest is always found superfluous, each is tried once, the strongest first."""
     effects = catalogue(*THREE)
     tried = []
 
-    def fickle(hunt, accepted):
+    def fickle(search, accepted):
         tried.append(accepted[-1].effect.name)
         assert len(tried) < 10
         return accepted[:-1]
 
-    monkeypatch.setattr(cause_search._Search, "settled", fickle)
+    monkeypatch.setattr(cause_search._Search, "retested", fickle)
     data = problem(18, friction=lambda rows: A(rows) + 0.5 * B(rows) + 2.0 * C(rows))
     assert find_causes(data, effects, SETTINGS).causes == ()
     assert tried == ["c", "a", "b"]
@@ -132,21 +133,21 @@ def test_an_effect_accepted_stays_and_is_fitted_beside_its_companions(catalogue)
     second, other = effect("second", [(1.0, B)]), effect("other", [(1.0, C)])
     effects = catalogue(first, second, other)
     data = problem(12, friction=lambda rows: 0.8 * A(rows) + 1.4 * B(rows))
-    hunt = hunting(data, effects)
-    settled = hunt.settled([guessed(first, 1.0), guessed(second, 0.3)])
-    assert [score.effect.name for score in settled] == ["first", "second"]
-    assert [score.coefficients[0] for score in settled] == pytest.approx([0.8, 1.0], rel=0.08)
+    search = search_of(data, effects)
+    settled = search.retested([effect_fit(first, 1.0), effect_fit(second, 0.3)])
+    assert [fit.effect.name for fit in settled] == ["first", "second"]
+    assert [fit.coefficients[0] for fit in settled] == pytest.approx([0.8, 1.0], rel=0.08)
 
 
-def test_a_lonely_effect_is_not_judged_again(catalogue):
+def test_a_single_effect_is_not_tested_again(catalogue):
     only = effect("a", [(1.0, A)])
     other = effect("b", [(1.0, B)])
-    hunt = hunting(problem(13), catalogue(only, other))
-    scores = [guessed(only, 7.0)]
-    assert hunt.settled(scores) == scores
+    search = search_of(problem(13), catalogue(only, other))
+    fits = [effect_fit(only, 7.0)]
+    assert search.retested(fits) == fits
 
 
-def test_what_could_take_a_part_joins_its_credible_set(catalogue):
+def test_effects_that_explain_the_same_share_a_credible_set(catalogue):
     """Two effects that differ by a hundredth are one to the data; a third is another."""
     effects = catalogue(
         effect("a", [(1.0, A)]), effect("twin", [(1.0, A), (0.01, C)]), effect("b", [(1.0, B)])
@@ -158,7 +159,7 @@ def test_what_could_take_a_part_joins_its_credible_set(catalogue):
     assert "b" not in cause.effects
 
 
-def test_rough_edges_of_a_great_effect_are_no_cause_of_their_own(catalogue):
+def test_form_errors_of_a_large_effect_are_no_cause_of_their_own(catalogue):
     """0.05 beside 10 is nothing, and stands far out of the noise when alone."""
     effects = catalogue(*THREE)
     alone = find_causes(problem(15, friction=lambda rows: 0.05 * B(rows)), effects, SETTINGS)
@@ -187,20 +188,20 @@ def test_the_search_ends_whatever_the_catalogue(catalogue, monkeypatch, seed):
     )
     mixed = list(zip(generator.normal(size=5), waves, strict=True))
     tried = []
-    settled = cause_search._Search.settled
+    settled = cause_search._Search.retested
 
-    def counted(hunt, accepted):
+    def counted(search, accepted):
         tried.append([one.effect.name for one in accepted])
         # each round drops a name for good or keeps one more of at most four
         assert len(tried) <= 9 * 5
-        return settled(hunt, accepted)
+        return settled(search, accepted)
 
-    monkeypatch.setattr(cause_search._Search, "settled", counted)
+    monkeypatch.setattr(cause_search._Search, "retested", counted)
     data = problem(seed, friction=lambda rows: sum(a * one(rows) for a, one in mixed))
     found = find_causes(data, effects, SETTINGS)
     assert 1 <= len(found.causes) <= SETTINGS.most
     assert len(set(names(found))) == len(found.causes)
-    assert set(found.last).isdisjoint(names(found))
+    assert set(found.rejected).isdisjoint(names(found))
 
 
 def test_a_catalogue_of_one_effect_can_be_searched(catalogue):

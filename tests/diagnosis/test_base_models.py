@@ -49,5 +49,5 @@ def test_growth_hides_beta_from_the_fit_and_not_from_the_diagnosis():
 def test_no_second_cause_is_named_for_what_the_first_one_hid(seed):
     (cause,) = find_causes(grown_while_warmed(seed), EFFECTS, DiagnosisSettings()).causes
     assert cause.effects == ("drift",)
-    rate, hours = cause.score.coefficients[0], cause.score.shape["time_constant"]
+    rate, hours = cause.fit.coefficients[0], cause.fit.shape["time_constant"]
     assert rate * hours * -np.expm1(-1.2 / hours) == pytest.approx(RATE * 1.2, rel=0.25)

@@ -10,11 +10,11 @@ from hypothesis import strategies as st
 from frictioncli.diagnosis.data.pair_layout import PairLayout
 from frictioncli.diagnosis.fit.weighted_fit import WeightedFit, Weights
 from frictioncli.model.noise import Noise
-from tests.diagnosis import noises
+from tests.diagnosis import dense_noise
 
 NOISE = Noise(point=0.3, pair=0.2, drift=0.5, drift_time=100.0)
 QUIET = Noise(point=0.2, pair=0.1, drift=0.1, drift_time=40.0)
-PAIRS = noises.layout(9, 7, bins=4)
+PAIRS = dense_noise.layout(9, 7, bins=4)
 EXTRA = np.linspace(0.0, 0.1, 16)
 ROWS = 64
 
@@ -22,7 +22,7 @@ ROWS = 64
 def dense(pairs, noise, extra):
     """Covariance of the pair means, from its definition."""
     white = noise.pair**2 + noise.point**2 / 4 + extra
-    return noise.drift**2 * noises.alike(pairs, noise.drift_time) + np.diag(white)
+    return noise.drift**2 * dense_noise.alike(pairs, noise.drift_time) + np.diag(white)
 
 
 def test_pooled_contrasts_are_orthonormal_sums():
@@ -67,7 +67,7 @@ def test_weights_hold_deviation_and_correlation_of_the_pair_means(noise):
 
 def correlation(weights):
     """Correlation of the pair means' noise; that of deviations inside pairs must be none."""
-    count = len(weights.rows(np.zeros((ROWS, 1))))
+    count = len(weights.weighted(np.zeros((ROWS, 1))))
     whole = weights.correlated(np.eye(count))
     inside, between = count - 16, slice(count - 16, count)
     np.testing.assert_array_equal(whole[:inside], np.eye(count)[:inside])
@@ -75,7 +75,7 @@ def correlation(weights):
     return whole[between, between]
 
 
-def weighing():
+def weighted_fit():
     return WeightedFit(Weights.of(PAIRS, NOISE, EXTRA), Weights.of(PAIRS, QUIET, 0 * EXTRA))
 
 
@@ -95,14 +95,14 @@ def test_coefficients_are_those_of_weighted_rows(seed):
     targets = generator.normal(size=ROWS), generator.normal(size=ROWS)
     rows, data = [], []
     for part, target, weights in zip(
-        (friction, load), targets, (weighing().friction, weighing().load), strict=True
+        (friction, load), targets, (weighted_fit().friction, weighted_fit().load), strict=True
     ):
         for values, into in ((part, rows), (target[:, None], data)):
             means = values.reshape(16, 4, -1).mean(axis=1)
             into.append((values - np.repeat(means, 4, axis=0)) / weights.point)
             into.append(means / weights.deviation[:, None])
     expected = np.linalg.lstsq(np.vstack(rows), np.vstack(data)[:, 0], rcond=None)[0]
-    found = weighing().coefficients(friction, load, targets)
+    found = weighted_fit().coefficients(friction, load, targets)
     np.testing.assert_allclose(found, expected, rtol=1e-7, atol=1e-9)
 
 
@@ -111,7 +111,7 @@ def test_covariance_is_what_repeated_noise_makes_of_the_estimates():
     draws = 4000
     generator = np.random.default_rng(2)
     friction, load = columns(5), columns(6)
-    tool = weighing()
+    tool = weighted_fit()
     drawn = []
     for noise, extra in ((NOISE, EXTRA), (QUIET, 0 * EXTRA)):
         common = dense(PAIRS, noise, extra) - noise.point**2 / 4 * np.eye(16)
@@ -132,8 +132,8 @@ def test_covariance_is_what_repeated_noise_makes_of_the_estimates():
 def test_a_column_of_zeros_has_a_coefficient_of_zero():
     friction, load = columns(7), columns(8)
     friction[:, 1] = load[:, 1] = 0.0
-    found = weighing().coefficients(friction, load, (friction @ [1.0, 5.0, 2.0], load[:, 0]))
-    covariance = weighing().error_covariance(friction, load)
+    found = weighted_fit().coefficients(friction, load, (friction @ [1.0, 5.0, 2.0], load[:, 0]))
+    covariance = weighted_fit().error_covariance(friction, load)
     assert found[1] == pytest.approx(0.0, abs=1e-12)
     assert covariance[1, 1] == pytest.approx(0.0, abs=1e-12)
     assert np.isfinite(found).all()

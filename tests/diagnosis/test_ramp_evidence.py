@@ -7,11 +7,11 @@ import pytest
 
 from frictioncli import schemas, tables
 from frictioncli.diagnosis.ramps.evidence import (
-    MOST_SAID,
+    MAX_LOG_ODDS,
     RampLog,
-    arbitrated,
     ramp_evidence,
     ramp_logs,
+    with_ramp_evidence,
 )
 from frictioncli.model.friction import PUBLISHED, friction_torque
 from frictioncli.provenance import Provenance
@@ -65,14 +65,16 @@ def log(*, lack=0.0, distance=6.0, settling=0.0, sign=1, late=0, noise=0.3, seed
     return RampLog(found.ramps(frame), sign)
 
 
-def said(ramps, **base):
-    problem = SimpleNamespace(gravity=GRAVITY, own_load=False, parameters=PUBLISHED, runs=("day1",))
+def evidence_of(ramps, **base):
+    problem = SimpleNamespace(
+        gravity=GRAVITY, has_load_channel=False, parameters=PUBLISHED, runs=("day1",)
+    )
     return ramp_evidence(ramps, SimpleNamespace(**(vars(problem) | base)), "motor")
 
 
 @pytest.mark.parametrize("sign", [1, -1])
 def test_inertia_alone_is_measured_and_no_finding(sign):
-    found = said(log(sign=sign))
+    found = evidence_of(log(sign=sign))
     assert found.inertia.value == pytest.approx(INERTIA, rel=0.01)
     assert found.inertia.low < INERTIA < found.inertia.high
     assert found.transient < 3
@@ -83,25 +85,25 @@ def test_inertia_alone_is_measured_and_no_finding(sign):
 @pytest.mark.parametrize(("lack", "distance"), [(3.0, 4.0), (2.0, 8.0)])
 @pytest.mark.parametrize("sign", [1, -1])
 def test_a_lack_of_friction_is_measured(lack, distance, sign):
-    found = said(log(lack=lack, distance=distance, sign=sign, noise=0.1))
+    found = evidence_of(log(lack=lack, distance=distance, sign=sign, noise=0.1))
     assert found.inertia.value == pytest.approx(INERTIA, rel=0.01)
-    assert found.lack.value == pytest.approx(lack, rel=0.05)
+    assert found.deficit.value == pytest.approx(lack, rel=0.05)
     assert found.distance.value == pytest.approx(distance, rel=0.08)
-    assert found.lack.low < lack < found.lack.high
+    assert found.deficit.low < lack < found.deficit.high
     assert found.distance.low < distance < found.distance.high
-    assert found.log_odds == MOST_SAID
+    assert found.log_odds == MAX_LOG_ODDS
 
 
 @pytest.mark.parametrize("settling", [0.03, -0.03])
 def test_inertia_that_settles_unseen_is_no_lack_of_friction(settling):
-    found = said(log(settling=settling))
+    found = evidence_of(log(settling=settling))
     assert found.log_odds < -5
-    assert found.settling.value * settling > 0
+    assert found.delayed_inertia.value * settling > 0
 
 
 @pytest.mark.parametrize("late", [-2, 1, 2])
 def test_a_servo_that_lags_is_seen_through(late):
-    found = said(log(late=late, period=0.008))
+    found = evidence_of(log(late=late, period=0.008))
     assert found.inertia.value == pytest.approx(INERTIA, rel=0.02)
     assert found.lag == pytest.approx(late, abs=0.25)
     assert found.log_odds < 3
@@ -110,11 +112,11 @@ def test_a_servo_that_lags_is_seen_through(late):
 def test_a_wrong_base_is_no_lack_of_friction():
     """Friction 15 % too high and gravity 5 % too low: as wrong after a reversal as before one."""
     off = type(PUBLISHED)(tau_c=12.0, alpha=0.0016, beta=4.0, gamma=18.0, delta=0.056)
-    found = said(log(), parameters=off, gravity=0.95 * GRAVITY)
+    found = evidence_of(log(), parameters=off, gravity=0.95 * GRAVITY)
     assert found.inertia.value == pytest.approx(INERTIA, rel=0.02)
     assert found.log_odds < 3
-    lacking = said(log(lack=3.0), parameters=off, gravity=0.95 * GRAVITY)
-    assert lacking.lack.value == pytest.approx(3.0, rel=0.1)
+    lacking = evidence_of(log(lack=3.0), parameters=off, gravity=0.95 * GRAVITY)
+    assert lacking.deficit.value == pytest.approx(3.0, rel=0.1)
     assert lacking.log_odds > 5
 
 
@@ -124,11 +126,11 @@ def test_payload_and_a_load_channel_of_its_own():
     more = 3.0 * 8.0 * np.cos(np.radians(heavy["position"])) * (heavy["payload"] > 0)
     heavy["torque"] += more
     gravity = np.append(GRAVITY, [8.0, 0.0])
-    found = said(RampLog(heavy, 1), gravity=gravity)
+    found = evidence_of(RampLog(heavy, 1), gravity=gravity)
     assert found.inertia.value == pytest.approx(INERTIA, rel=0.02)
     own = rows.assign(load=10.0 * np.cos(np.radians(rows["position"])))
-    found = said(RampLog(own, 1), own_load=True)
-    assert found.lack.value == pytest.approx(3.0, rel=0.1)
+    found = evidence_of(RampLog(own, 1), has_load_channel=True)
+    assert found.deficit.value == pytest.approx(3.0, rel=0.1)
 
 
 def test_ramps_are_read_by_joint_where_there_are_any(tmp_path):
@@ -139,30 +141,30 @@ def test_ramps_are_read_by_joint_where_there_are_any(tmp_path):
     (joint,) = (logs := ramp_logs(path, {"2": -1}))
     assert (joint, logs[2].sign, len(logs[2].rows)) == (2, -1, len(rows))
     assert ramp_logs(path, {"3": 1}) == {}
-    assert said(RampLog(logs[2].rows, 1)) == said(RampLog(rows, 1))
+    assert evidence_of(RampLog(logs[2].rows, 1)) == evidence_of(RampLog(rows, 1))
 
 
 def test_too_few_moves_and_too_slow_a_log_say_nothing():
     whole = log()
     few = whole.rows[whole.rows["move"] < 4]
-    assert said(RampLog(few, 1)) is None
-    assert said(log(period=0.06)) is None
-    assert said(whole, runs=("another day",)) is None
+    assert evidence_of(RampLog(few, 1)) is None
+    assert evidence_of(log(period=0.06)) is None
+    assert evidence_of(whole, runs=("another day",)) is None
 
 
 EVIDENCE = {"inertia": 20.0, "reversal_transient": 19.0, "dress_pack": 15.0, "drift": -3.0}
 
 
 def test_arbitration_moves_only_the_two():
-    found = said(log(lack=3.0))
+    found = evidence_of(log(lack=3.0))
     assert found.log_odds > 5
-    after = arbitrated(EVIDENCE, found)
+    after = with_ramp_evidence(EVIDENCE, found)
     assert {name: after[name] for name in ("dress_pack", "drift")} == {
         "dress_pack": 15.0,
         "drift": -3.0,
     }
     assert after["reversal_transient"] - after["inertia"] == pytest.approx(
-        min(found.transient - found.inertial, MOST_SAID) - 1
+        min(found.transient - found.inertial, MAX_LOG_ODDS) - 1
     )
     together = np.logaddexp(after["inertia"], after["reversal_transient"])
     assert together == pytest.approx(np.logaddexp(20.0, 19.0))
@@ -172,5 +174,5 @@ def test_arbitration_moves_only_the_two():
     "evidence", [{"drift": 4.0}, {"inertia": 4.0}, {"inertia": 4.0, "reversal_transient": -np.inf}]
 )
 def test_arbitration_creates_nothing(evidence):
-    assert arbitrated(evidence, said(log(lack=3.0))) == evidence
-    assert arbitrated(EVIDENCE, None) == EVIDENCE
+    assert with_ramp_evidence(evidence, evidence_of(log(lack=3.0))) == evidence
+    assert with_ramp_evidence(EVIDENCE, None) == EVIDENCE

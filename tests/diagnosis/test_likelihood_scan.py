@@ -10,12 +10,12 @@ from scipy import stats
 from scipy.linalg import null_space
 
 from frictioncli.diagnosis.noise import likelihood_scan as scanning
-from frictioncli.diagnosis.noise.likelihood_scan import null_of, scan, weighted_gram
+from frictioncli.diagnosis.noise.likelihood_scan import fit_null, scan, weighted_gram
 from frictioncli.diagnosis.noise.orthonormal_groups import Groups
 from frictioncli.diagnosis.noise.spectra import STRENGTHS, spectra_of
-from tests.diagnosis import noises
+from tests.diagnosis import dense_noise
 
-PAIRS = noises.layout(13, 9, bins=[2, 3] * 11)
+PAIRS = dense_noise.layout(13, 9, bins=[2, 3] * 11)
 COUNT = 22
 GENERATOR = np.random.default_rng(4)
 DATA = GENERATOR.normal(size=(COUNT, 1))
@@ -23,8 +23,8 @@ BASE = np.column_stack([np.ones(COUNT), GENERATOR.normal(size=(COUNT, 2))])
 SPECTRA = spectra_of(PAIRS, 0.3, np.linspace(0, 0.3, COUNT), DATA[:, 0])
 RIVALS = np.column_stack([GENERATOR.normal(size=(COUNT, 3)), PAIRS.time / 100.0])
 GROUPS = Groups.of([1, 2, 1])
-NULL = null_of(SPECTRA, BASE, DATA)
-EVERY = noises.settings(SPECTRA)
+NULL = fit_null(SPECTRA, BASE, DATA)
+EVERY = dense_noise.settings(SPECTRA)
 
 
 def modes(columns, spectra=SPECTRA):
@@ -46,7 +46,7 @@ def test_likelihood_of_the_base_is_that_of_its_contrasts():
     seen = (contrasts.T @ DATA)[:, 0]
     direct = []
     for setting in EVERY:
-        inner = contrasts.T @ noises.covariance(PAIRS, SPECTRA, setting) @ contrasts
+        inner = contrasts.T @ dense_noise.covariance(PAIRS, SPECTRA, setting) @ contrasts
         scale = seen @ np.linalg.solve(inner, seen) / len(seen)
         assert NULL.scale[setting] == pytest.approx(scale, rel=1e-7)
         direct.append(stats.multivariate_normal.logpdf(seen, cov=scale * inner))
@@ -59,7 +59,7 @@ def test_likelihood_of_the_base_is_that_of_its_contrasts():
 
 def test_determinant_is_the_restricted_one_but_for_a_constant():
     direct = [
-        noises.restricted(DATA, BASE, noises.covariance(PAIRS, SPECTRA, setting))[1]
+        dense_noise.restricted(DATA, BASE, dense_noise.covariance(PAIRS, SPECTRA, setting))[1]
         for setting in EVERY
     ]
     found = np.array([NULL.determinant[setting] for setting in EVERY])
@@ -71,31 +71,31 @@ def test_under_one_noise_the_statistic_is_that_of_generalised_least_squares(monk
     """(n - p) log of the square sums without and with the rival, by a dense inverse."""
     monkeypatch.setattr(scanning, "STRENGTHS", np.array([strength]))
     spectra = replace(SPECTRA, spectra=SPECTRA.spectra[2:3])
-    noise = np.diag(spectra.profile) + strength * noises.alike(PAIRS, spectra.spectra[0].time)
-    null = null_of(spectra, BASE, DATA)
-    drawn = scanning._drawn(spectra, null, 25, np.random.default_rng(8))
+    noise = np.diag(spectra.profile) + strength * dense_noise.alike(PAIRS, spectra.spectra[0].time)
+    null = fit_null(spectra, BASE, DATA)
+    drawn = scanning._drawn_noise(spectra, null, 25, np.random.default_rng(8))
     drawn = drawn * np.sqrt(spectra.profile)[:, None]
     found = scan(spectra, null, modes(RIVALS, spectra), GROUPS, 25, np.random.default_rng(8)).drawn
-    alone = noises.left_square(drawn, BASE, noise)
+    alone = dense_noise.left_square(drawn, BASE, noise)
     for group in range(3):
         both = np.hstack([BASE, RIVALS[:, GROUPS.columns(group)]])
-        ratio = np.log(alone / noises.left_square(drawn, both, noise))
+        ratio = np.log(alone / dense_noise.left_square(drawn, both, noise))
         np.testing.assert_allclose(found[group], (COUNT - 3) * ratio, rtol=1e-6, atol=1e-9)
 
 
 def test_over_all_noises_the_best_is_taken_with_and_without_the_rival():
-    drawn = scanning._drawn(SPECTRA, NULL, 15, np.random.default_rng(3))
+    drawn = scanning._drawn_noise(SPECTRA, NULL, 15, np.random.default_rng(3))
     data = np.hstack([DATA, drawn * np.sqrt(SPECTRA.profile)[:, None]])
     found = scanned(15, seed=3)
     alone, rivals = [], []
     for setting in EVERY:
-        noise = noises.covariance(PAIRS, SPECTRA, setting)
-        square, determinant, count = noises.restricted(data, BASE, noise)
+        noise = dense_noise.covariance(PAIRS, SPECTRA, setting)
+        square, determinant, count = dense_noise.restricted(data, BASE, noise)
         alone.append(profiled(square, determinant, count))
         rivals.append(
             [
                 profiled(
-                    noises.left_square(
+                    dense_noise.left_square(
                         data, np.hstack([BASE, RIVALS[:, GROUPS.columns(group)]]), noise
                     ),
                     determinant,
@@ -108,7 +108,7 @@ def test_over_all_noises_the_best_is_taken_with_and_without_the_rival():
     ratio = 2 * (best - np.max(alone, axis=0))
     np.testing.assert_allclose(found.drawn, ratio[:, 1:], rtol=1e-6, atol=1e-6)
     which = np.argmax(np.array(rivals)[:, :, 0], axis=0)
-    assert [tuple(map(int, place)) for place in found.of_group] == [EVERY[i] for i in which]
+    assert [tuple(map(int, place)) for place in found.best] == [EVERY[i] for i in which]
 
 
 def test_a_rival_never_explains_less_than_nothing():
@@ -129,7 +129,7 @@ def test_a_rival_that_the_base_leaves_nothing_of_says_nothing(kind):
 def test_without_draws_only_the_noise_of_each_group_is_found():
     found = scanned(0)
     assert found.drawn.shape == (3, 0)
-    np.testing.assert_array_equal(found.of_group, scanned(10).of_group)
+    np.testing.assert_array_equal(found.best, scanned(10).best)
 
 
 def only(*places):
@@ -144,9 +144,9 @@ def only(*places):
 def test_draws_of_noise_have_the_covariance_that_they_claim(setting):
     draws = 20_000
     null = only((setting, 1.0))
-    drawn = scanning._drawn(SPECTRA, null, draws, np.random.default_rng(6))
+    drawn = scanning._drawn_noise(SPECTRA, null, draws, np.random.default_rng(6))
     root = np.sqrt(SPECTRA.profile)
-    expected = NULL.scale[setting] * noises.covariance(PAIRS, SPECTRA, setting)
+    expected = NULL.scale[setting] * dense_noise.covariance(PAIRS, SPECTRA, setting)
     expected = expected / np.outer(root, root)
     found = drawn @ drawn.T / draws
     size = np.sqrt(np.diag(expected))
@@ -160,10 +160,10 @@ def test_draws_of_noise_have_the_covariance_that_they_claim(setting):
 def test_draws_mix_noises_by_their_likelihood():
     draws = 20_000
     null = only(((0, 0), 0.3), ((3, 4), 0.7))
-    drawn = scanning._drawn(SPECTRA, null, draws, np.random.default_rng(7))
+    drawn = scanning._drawn_noise(SPECTRA, null, draws, np.random.default_rng(7))
     root = np.sqrt(SPECTRA.profile)
     expected = sum(
-        share * NULL.scale[setting] * noises.covariance(PAIRS, SPECTRA, setting)
+        share * NULL.scale[setting] * dense_noise.covariance(PAIRS, SPECTRA, setting)
         for setting, share in (((0, 0), 0.3), ((3, 4), 0.7))
     ) / np.outer(root, root)
     np.testing.assert_allclose(np.diag(drawn @ drawn.T) / draws, np.diag(expected), rtol=0.06)
@@ -172,7 +172,7 @@ def test_draws_mix_noises_by_their_likelihood():
 @pytest.mark.parametrize(("place", "strength"), [(1, 1.6), (3, 6.0), (4, 25.0)])
 def test_the_best_noise_lies_near_the_one_that_was_simulated(place, strength):
     """Drift stepped forward in time, 20 times: half of the answers within a factor of 4."""
-    pairs = noises.layout(110, 90)
+    pairs = dense_noise.layout(110, 90)
     generator = np.random.default_rng(12)
     spectra = spectra_of(pairs, 1.0, np.zeros(200), generator.normal(0, 0.6, 200))
     base = np.column_stack([np.ones(200), np.resize([1.0, 2.0, 3.0, 4.0], 200)])
@@ -186,7 +186,7 @@ def test_the_best_noise_lies_near_the_one_that_was_simulated(place, strength):
             state = keep * state + np.sqrt(strength * (1 - keep**2)) * generator.normal()
             drift.append(state)
         white = np.sqrt(spectra.profile) * generator.normal(size=200)
-        best = null_of(spectra, base, 0.2 * (np.array(drift) + white)[:, None]).best
+        best = fit_null(spectra, base, 0.2 * (np.array(drift) + white)[:, None]).best
         times.append(spectra.spectra[best[0]].time)
         strengths.append(STRENGTHS[best[1]])
     assert 1 / 4 <= np.median(times) / truth <= 4
@@ -195,11 +195,11 @@ def test_the_best_noise_lies_near_the_one_that_was_simulated(place, strength):
 
 
 def test_without_drift_none_is_found():
-    pairs = noises.layout(60, 60)
+    pairs = dense_noise.layout(60, 60)
     generator = np.random.default_rng(13)
     spectra = spectra_of(pairs, 1.0, np.zeros(120), generator.normal(0, 0.6, 120))
     found = [
-        null_of(spectra, np.ones((120, 1)), 0.5 * generator.normal(size=(120, 1))).best
+        fit_null(spectra, np.ones((120, 1)), 0.5 * generator.normal(size=(120, 1))).best
         for _ in range(20)
     ]
     assert np.median([STRENGTHS[best[1]] for best in found]) <= 0.1
@@ -251,7 +251,7 @@ def test_sums_are_by_group():
 
 @pytest.mark.parametrize("setting", [(0, 0), (2, 4), (5, 7)])
 def test_inner_products_of_modes_are_those_under_the_dense_noise(setting):
-    inverse = np.linalg.inv(noises.covariance(PAIRS, SPECTRA, setting))
+    inverse = np.linalg.inv(dense_noise.covariance(PAIRS, SPECTRA, setting))
     spectrum = SPECTRA.spectra[setting[0]]
     found = weighted_gram(SPECTRA, setting, SPECTRA.modes(spectrum, SPECTRA.scaled(RIVALS)))
     np.testing.assert_allclose(found, RIVALS.T @ inverse @ RIVALS, rtol=1e-7, atol=1e-9)
@@ -259,7 +259,7 @@ def test_inner_products_of_modes_are_those_under_the_dense_noise(setting):
 
 @pytest.mark.parametrize("setting", [(0, 0), (2, 4)])
 def test_inner_products_with_others_are_those_of_each_group(setting):
-    inverse = np.linalg.inv(noises.covariance(PAIRS, SPECTRA, setting))
+    inverse = np.linalg.inv(dense_noise.covariance(PAIRS, SPECTRA, setting))
     own = SPECTRA.modes_at(setting[0], RIVALS)
     stacked = np.stack([own[:, :2], own[:, 2:]])
     found = weighted_gram(SPECTRA, setting, stacked, SPECTRA.modes_at(setting[0], BASE))
@@ -276,7 +276,7 @@ def test_groups_that_do_not_show_leave_the_others_as_they_are():
     plain = scanned(20)
     shows = [1, 2, 4]
     np.testing.assert_allclose(found.drawn[shows], plain.drawn, rtol=1e-12)
-    np.testing.assert_array_equal(found.of_group[shows], plain.of_group)
+    np.testing.assert_array_equal(found.best[shows], plain.best)
     hidden = [0, 3, 5]
     np.testing.assert_array_equal(found.drawn[hidden], 0.0)
-    assert [found.settings[group] for group in hidden] == [NULL.best] * 3
+    assert [found.noises[group] for group in hidden] == [NULL.best] * 3

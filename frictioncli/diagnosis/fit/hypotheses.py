@@ -1,0 +1,221 @@
+"""Candidate explanations of the misfit, the result of testing one, and an effect that is fitted."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from scipy import stats
+from scipy.optimize import brentq
+
+from frictioncli.arrays import Array
+from frictioncli.diagnosis.data.problem import Problem
+from frictioncli.diagnosis.fit.columns import ModelColumns, main_channel, reduced
+from frictioncli.diagnosis.noise.significance import NullDistribution
+from frictioncli.effects.base import Effect
+from frictioncli.effects.pair_series import measured_share
+from frictioncli.quantities import TORQUE
+
+_USUAL_FRICTION = 20.0
+"""Mean friction torque up to which the catalogue's bounds in units of torque hold; the bounds of a
+joint with more friction grow in proportion. [N·m]"""
+
+_TOLERANCE = 2.0
+"""A coefficient may miss its physical bound by as many standard errors."""
+
+_POWER = 0.8
+"""Probability with which an effect of the smallest detectable size is found."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Hypothesis:
+    """A candidate explanation of the misfit: columns, perhaps over a grid of shape parameters.
+
+    Attributes
+    ----------
+    name : str
+        Its name.
+    shapes : tuple of dict
+        Shape parameters of each group of columns.
+    width : int
+        Columns of each group.
+    columns : ModelColumns
+        The groups side by side, ``len(shapes) * width`` columns.
+    rms : ndarray, shape (shapes, width)
+        RMS of each column in the channel where the hypothesis shows most. [N·m]
+    lower, upper : ndarray, shape (width,)
+        Physical bounds of the coefficients.
+    """
+
+    name: str
+    shapes: tuple[dict[str, float], ...]
+    width: int
+    columns: ModelColumns
+    rms: Array
+    lower: Array
+    upper: Array
+
+    def allows(self, coefficients: Array, covariance: Array) -> bool:
+        """Return whether coefficients lie within two standard errors of their physical bounds.
+
+        Parameters
+        ----------
+        coefficients : ndarray, shape (width,)
+            The coefficients.
+        covariance : ndarray, shape (width, width)
+            Their covariance.
+        """
+        margin = _TOLERANCE * np.sqrt(np.maximum(np.diag(covariance), 0.0))
+        above = coefficients >= self.lower - margin
+        return bool(np.all(above & (coefficients <= self.upper + margin)))
+
+
+def hypothesis_of(
+    effect: Effect, problem: Problem, shapes: Sequence[dict[str, float]] | None = None
+) -> Hypothesis:
+    """Return an effect as a hypothesis over its grid of shapes, or over given ones.
+
+    Parameters
+    ----------
+    effect : Effect
+        Entry of the catalogue.
+    problem : Problem
+        The rows on which its columns are evaluated.
+    shapes : sequence of dict, optional
+        Shape parameters to try instead of the grid.
+    """
+    tried = _informative_shapes(effect, problem) if shapes is None else list(shapes)
+    bases = [problem.basis(effect, shape) for shape in tried]
+    rms = [np.sqrt(np.mean(np.square(main_channel(basis, effect)), axis=0)) for basis in bases]
+    columns = reduced(
+        problem.layout,
+        np.hstack([basis.friction for basis in bases]),
+        np.hstack([basis.load for basis in bases]),
+    )
+    width = len(effect.coefficients)
+    factor = max(float(np.mean(np.abs(problem.friction))) / _USUAL_FRICTION, 1.0)
+    factors = np.array([factor if TORQUE in one.unit else 1.0 for one in effect.coefficients])
+    return Hypothesis(
+        name=effect.name,
+        shapes=tuple(tried),
+        width=width,
+        columns=columns,
+        rms=np.array(rms),
+        lower=np.array([parameter.lower for parameter in effect.coefficients]) * factors,
+        upper=np.array([parameter.upper for parameter in effect.coefficients]) * factors,
+    )
+
+
+def _informative_shapes(effect: Effect, problem: Problem) -> list[dict[str, float]]:
+    """Return the shapes to try first, without moments that have all rows on one side."""
+    tried = effect.shapes(problem.all_runs)
+    if effect.moments is None:
+        return tried
+    share = measured_share(problem.all_runs)[problem.rows]
+    return [one for one in tried if share.min() < one["moment"] <= share.max()] or tried[:1]
+
+
+@dataclass(frozen=True, slots=True)
+class EffectFit:
+    """An effect fitted beside the base.
+
+    Attributes
+    ----------
+    effect : Effect
+        The effect.
+    shape : dict of str to float
+        Shape parameters.
+    coefficients : ndarray, shape (coefficients,)
+        Its coefficients, the base refitted.
+    covariance : ndarray, shape (coefficients, coefficients)
+        Their covariance for this shape.
+    statistic : float
+        Twice the log likelihood ratio to the base alone.
+    """
+
+    effect: Effect
+    shape: dict[str, float]
+    coefficients: Array
+    covariance: Array
+    statistic: float
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class HypothesisTest:
+    """Result of testing one hypothesis against the null hypothesis, base and accepted effects.
+
+    Attributes
+    ----------
+    name : str
+        Name of the hypothesis.
+    shape : dict of str to float
+        Shape at which it explains most.
+    coefficients, covariance : ndarray, shape (width,) and (width, width)
+        Its coefficients there.
+    statistic : float
+        Twice the log likelihood ratio to the null hypothesis there; 0 if no shape is physical.
+    p_value : float
+        Probability that noise explains as much, corrected for shapes and for the number of
+        hypotheses (Bonferroni).
+    log_bayes_factor : float
+        Logarithm of its Bayes factor, averaged over shapes.
+    freedom : int
+        Number of coefficients that the data determine.
+    null : NullDistribution
+        Distribution of the statistic under the null hypothesis, searched over all shapes.
+    size_scale : float
+        RMS in its channel per unit of whitened length. [N·m]
+    """
+
+    name: str
+    shape: dict[str, float]
+    coefficients: Array
+    covariance: Array
+    statistic: float
+    p_value: float
+    log_bayes_factor: float
+    freedom: int
+    null: NullDistribution
+    size_scale: float
+
+    def effect_fit(self, effect: Effect) -> EffectFit:
+        """Return the fit of an effect that the hypothesis stands for."""
+        return EffectFit(effect, self.shape, self.coefficients, self.covariance, self.statistic)
+
+    def refined_log_bayes_factor(self, fit: EffectFit) -> float:
+        """Return the log Bayes factor after the shape has been refined off the grid.
+
+        Parameters
+        ----------
+        fit : EffectFit
+            The effect at its refined shape.
+        """
+        return self.log_bayes_factor + max(fit.statistic - self.statistic, 0.0) / 2
+
+    def detectable_size(self, level: float) -> float | None:
+        r"""Return the RMS size that would be found four times in five. [N·m].
+
+        Under the alternative hypothesis the statistic is noncentral chi-squared. The noncentrality
+        with which it exceeds the critical value with a probability of 80 % is the squared whitened
+        length of the torque.
+
+        Parameters
+        ----------
+        level : float
+            Significance level of this one test.
+
+        Returns
+        -------
+        float or None
+            None where the data determine none of the coefficients.
+        """
+        if self.freedom == 0:
+            return None
+        threshold = self.null.critical_value(level)
+        if not np.isfinite(threshold):
+            return None
+        needed = brentq(
+            lambda noncentrality: stats.ncx2.sf(threshold, self.freedom, noncentrality) - _POWER,
+            1e-6,
+            1e4,
+        )
+        return float(np.sqrt(needed) * self.size_scale)
