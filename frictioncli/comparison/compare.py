@@ -24,7 +24,7 @@ from frictioncli.comparison.run_levels import (
     run_levels,
 )
 from frictioncli.comparison.settings import USUAL_MARGIN, ComparisonSettings
-from frictioncli.diagnosis.data.problem import build_problems
+from frictioncli.diagnosis.data.build_problem import build_problems
 from frictioncli.errors import NotEnoughData
 from frictioncli.model.zero_load import temperature_of
 

@@ -21,8 +21,8 @@ from numpy.typing import ArrayLike
 
 from frictioncli.arrays import Array
 from frictioncli.deployment.gear_temperature import GearLag
+from frictioncli.diagnosis.data.build_problem import simulated
 from frictioncli.diagnosis.data.gravity import stated_gravity
-from frictioncli.diagnosis.data.problem import simulated
 from frictioncli.diagnosis.documents.extended_model import ExtendedModel, FittedEffect
 from frictioncli.effects.base import EffectTable
 from frictioncli.effects.pair_series import pair_heads

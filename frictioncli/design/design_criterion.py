@@ -22,7 +22,8 @@ from frictioncli.design.precision import (
 from frictioncli.design.predicted_rows import PlannedJoint, append_run, predict_rows
 from frictioncli.design.rivals import OpenQuestions
 from frictioncli.design.steps import Step
-from frictioncli.diagnosis.data.problem import Problem, simulated
+from frictioncli.diagnosis.data.build_problem import simulated
+from frictioncli.diagnosis.data.problem import Problem
 from frictioncli.diagnosis.fit.columns import main_channel, residual_of_base
 from frictioncli.model.document import PARAMETERS
 

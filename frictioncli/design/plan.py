@@ -16,8 +16,9 @@ from frictioncli.design.selection import choose_blocks, seconds_of, steps_of
 from frictioncli.design.settings import PlanSettings
 from frictioncli.design.steps import Step
 from frictioncli.design.thermal_model import thermal_model_of
+from frictioncli.diagnosis.data.build_problem import build_problems
 from frictioncli.diagnosis.data.gravity import NAMES
-from frictioncli.diagnosis.data.problem import Problem, build_problems
+from frictioncli.diagnosis.data.problem import Problem
 from frictioncli.diagnosis.documents.document import DiagnosisDocument
 from frictioncli.diagnosis.documents.extended_model import ExtendedModel
 from frictioncli.errors import NotEnoughData

@@ -12,7 +12,8 @@ from dataclasses import dataclass
 import numpy as np
 import pandas as pd
 
-from frictioncli.diagnosis.data.problem import Problem, build_problems
+from frictioncli.diagnosis.data.build_problem import build_problems
+from frictioncli.diagnosis.data.problem import Problem
 from frictioncli.diagnosis.fit.extension import Extension, Gain, extend, measured_gain
 from frictioncli.diagnosis.ramps.evidence import RampEvidence, RampLog, ramp_evidence
 from frictioncli.diagnosis.search.cause_search import Cause, SearchResult, find_causes

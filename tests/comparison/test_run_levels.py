@@ -10,7 +10,7 @@ from frictioncli.comparison.run_levels import (
     plausible_noises,
     run_levels,
 )
-from frictioncli.diagnosis.data.problem import build_problems
+from frictioncli.diagnosis.data.build_problem import build_problems
 from tests.equation_16 import daily_torques
 
 

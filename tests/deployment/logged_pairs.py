@@ -2,8 +2,8 @@
 
 import numpy as np
 
+from frictioncli.diagnosis.data.build_problem import simulated
 from frictioncli.diagnosis.data.gravity import stated_gravity
-from frictioncli.diagnosis.data.problem import simulated
 from frictioncli.effects.pair_series import friction_power, pair_heads
 
 

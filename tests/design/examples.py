@@ -6,7 +6,7 @@ import numpy as np
 
 from frictioncli.design.discrimination import Discrimination
 from frictioncli.design.expected_evidence import CandidateNoises
-from frictioncli.diagnosis.data.problem import build_problems
+from frictioncli.diagnosis.data.build_problem import build_problems
 from frictioncli.diagnosis.fit.hypotheses import EffectFit
 from frictioncli.effects import BY_NAME
 from frictioncli.model.noise import Noise

@@ -13,7 +13,7 @@ from frictioncli.design.predicted_rows import (
 )
 from frictioncli.design.steps import HeatStep, RestStep, SeriesStep
 from frictioncli.design.thermal_model import thermal_model_of
-from frictioncli.diagnosis.data.problem import build_problems
+from frictioncli.diagnosis.data.build_problem import build_problems
 from tests.design.examples import FASTEST, SPEEDS, heating_runs
 
 

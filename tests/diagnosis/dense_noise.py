@@ -4,8 +4,8 @@ import numpy as np
 import pandas as pd
 from scipy.linalg import null_space
 
+from frictioncli.diagnosis.data.build_problem import simulated
 from frictioncli.diagnosis.data.pair_layout import PairLayout
-from frictioncli.diagnosis.data.problem import simulated
 from frictioncli.diagnosis.noise.spectra import STRENGTHS
 from frictioncli.model.friction import FrictionParameters
 from tests.equation_16 import TRUTH, cycle_temperatures, torques

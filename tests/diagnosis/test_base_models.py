@@ -4,7 +4,7 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from frictioncli.diagnosis.data.problem import build_problems
+from frictioncli.diagnosis.data.build_problem import build_problems
 from frictioncli.diagnosis.search.cause_search import find_causes
 from frictioncli.diagnosis.settings import DiagnosisSettings
 from frictioncli.effects import EFFECTS

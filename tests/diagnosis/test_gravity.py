@@ -8,8 +8,8 @@ import pandas as pd
 import pytest
 
 from frictioncli import schemas, tables
+from frictioncli.diagnosis.data.build_problem import build_problems, simulated
 from frictioncli.diagnosis.data.gravity import gravity_columns, gravity_document, stated_gravity
-from frictioncli.diagnosis.data.problem import build_problems, simulated
 from frictioncli.diagnosis.diagnose import diagnose_joint
 from frictioncli.diagnosis.documents.apply_extension import without_effects
 from frictioncli.diagnosis.documents.extended_model import read_extended

@@ -10,9 +10,9 @@ from scipy import stats
 from scipy.linalg import null_space
 
 from frictioncli.diagnosis.noise import likelihood_scan as scanning
-from frictioncli.diagnosis.noise.likelihood_scan import fit_null, scan, weighted_gram
+from frictioncli.diagnosis.noise.likelihood_scan import fit_null, scan
 from frictioncli.diagnosis.noise.orthonormal_groups import Groups
-from frictioncli.diagnosis.noise.spectra import STRENGTHS, spectra_of
+from frictioncli.diagnosis.noise.spectra import STRENGTHS, spectra_of, weighted_gram
 from tests.diagnosis import dense_noise
 
 PAIRS = dense_noise.layout(13, 9, bins=[2, 3] * 11)

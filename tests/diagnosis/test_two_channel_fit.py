@@ -13,8 +13,8 @@ from frictioncli.diagnosis.fit.two_channel_fit import (
     fit_channels,
     noise_of,
 )
-from frictioncli.diagnosis.noise.likelihood_scan import fit_null, weighted_gram
-from frictioncli.diagnosis.noise.spectra import STRENGTHS, spectra_of
+from frictioncli.diagnosis.noise.likelihood_scan import fit_null
+from frictioncli.diagnosis.noise.spectra import STRENGTHS, spectra_of, weighted_gram
 from tests.diagnosis import dense_noise
 
 PAIRS = dense_noise.layout(40, 30, bins=2)

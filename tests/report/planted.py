@@ -3,7 +3,7 @@
 import json
 from dataclasses import asdict
 
-from frictioncli.diagnosis.data.problem import build_problems
+from frictioncli.diagnosis.data.build_problem import build_problems
 from frictioncli.diagnosis.documents.document import (
     CauseRecord,
     DiagnosisDocument,

@@ -8,7 +8,8 @@ import numpy as np
 import pandas as pd
 
 from frictioncli.arrays import Array
-from frictioncli.diagnosis.data.problem import Problem, build_problems
+from frictioncli.diagnosis.data.build_problem import build_problems
+from frictioncli.diagnosis.data.problem import Problem
 from frictioncli.diagnosis.fit.columns import base_rows
 from tests.simulation.torque_table import simulate_world
 from tests.studies.blind_worlds import World

@@ -13,7 +13,8 @@ import pandas as pd
 from numpy.typing import NDArray
 
 from frictioncli.arrays import Array
-from frictioncli.diagnosis.data.problem import Problem, build_problems
+from frictioncli.diagnosis.data.build_problem import build_problems
+from frictioncli.diagnosis.data.problem import Problem
 from frictioncli.effects import EFFECTS
 from frictioncli.effects.base import Effect, applicable
 

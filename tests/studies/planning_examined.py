@@ -10,7 +10,7 @@ from frictioncli.design.blocks import all_blocks
 from frictioncli.design.plan import CHECK, plan_joint
 from frictioncli.design.selection import steps_of
 from frictioncli.design.settings import PlanSettings
-from frictioncli.diagnosis.data.problem import build_problems
+from frictioncli.diagnosis.data.build_problem import build_problems
 from frictioncli.diagnosis.diagnose import Diagnosis, diagnose_joint
 from frictioncli.diagnosis.documents.extended_model import extended_model
 from frictioncli.diagnosis.documents.from_diagnosis import diagnosis_document, extended_document

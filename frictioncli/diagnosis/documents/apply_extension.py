@@ -4,8 +4,8 @@ from dataclasses import asdict, replace
 
 import pandas as pd
 
+from frictioncli.diagnosis.data.build_problem import simulated
 from frictioncli.diagnosis.data.gravity import stated_gravity
-from frictioncli.diagnosis.data.problem import simulated
 from frictioncli.diagnosis.documents.extended_model import ExtendedModel
 from frictioncli.model.document import FrictionModel
 

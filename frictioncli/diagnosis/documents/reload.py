@@ -8,7 +8,8 @@ import numpy as np
 import pandas as pd
 
 from frictioncli.arrays import Array
-from frictioncli.diagnosis.data.problem import Problem, build_problems
+from frictioncli.diagnosis.data.build_problem import build_problems
+from frictioncli.diagnosis.data.problem import Problem
 from frictioncli.diagnosis.documents.document import (
     CauseRecord,
     DiagnosisDocument,

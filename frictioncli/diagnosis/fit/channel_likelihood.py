@@ -9,16 +9,9 @@ import numpy as np
 from frictioncli.arrays import Array, Indices
 from frictioncli.diagnosis.fit.columns import ChannelColumns
 from frictioncli.diagnosis.fit.two_channel_fit import NormalEquations, noise_of
-from frictioncli.diagnosis.noise.likelihood_scan import (
-    NoiseIndex,
-    NullFit,
-    Scan,
-    fit_null,
-    scan,
-    weighted_gram,
-)
+from frictioncli.diagnosis.noise.likelihood_scan import NullFit, Scan, fit_null, scan
 from frictioncli.diagnosis.noise.orthonormal_groups import Groups
-from frictioncli.diagnosis.noise.spectra import Modes, Spectra
+from frictioncli.diagnosis.noise.spectra import Modes, NoiseIndex, Spectra, weighted_gram
 from frictioncli.model.noise import Noise
 
 

@@ -22,8 +22,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from frictioncli.arrays import Array, Indices
-from frictioncli.diagnosis.noise.likelihood_scan import NoiseIndex
-from frictioncli.diagnosis.noise.spectra import STRENGTHS, Spectra
+from frictioncli.diagnosis.noise.spectra import STRENGTHS, NoiseIndex, Spectra
 from frictioncli.linear_algebra import scaled_gram_inverse, schur_complement
 from frictioncli.model.noise import Noise
 

@@ -28,11 +28,8 @@ import numpy as np
 
 from frictioncli.arrays import Array, Indices
 from frictioncli.diagnosis.noise.orthonormal_groups import Groups, gram_schmidt
-from frictioncli.diagnosis.noise.spectra import STRENGTHS, Spectra
+from frictioncli.diagnosis.noise.spectra import STRENGTHS, NoiseIndex, Spectra
 from frictioncli.linear_algebra import orthonormal_basis
-
-NoiseIndex = tuple[int, int]
-"""Index of a noise model in the grid: of its correlation time and of its drift's strength."""
 
 _RANK = 1e-7
 """Singular values of unit columns below this share of the greatest count as zero."""
@@ -285,25 +282,6 @@ class _WeightedBasis:
         """Return weighted columns less their projection on the basis, of the same shape."""
         weighted = self.weighted(columns)
         return weighted - self.basis @ (self.basis.T @ weighted)
-
-
-def weighted_gram(
-    spectra: Spectra, noise: NoiseIndex, modes: Array, others: Array | None = None
-) -> Array:
-    """Return inner products of modes under a noise of scale 1, with each other or with others.
-
-    Parameters
-    ----------
-    spectra : Spectra
-        The channel's noise models.
-    noise : (int, int)
-        Index of the noise model.
-    modes, others : ndarray, shape (..., pairs, columns)
-        Modes of columns.
-    """
-    variance = 1 + STRENGTHS[noise[1]] * spectra.spectra[noise[0]].values
-    second = modes if others is None else others
-    return np.asarray(modes.swapaxes(-1, -2) @ (second / variance[:, np.newaxis]))
 
 
 def drawn_within(

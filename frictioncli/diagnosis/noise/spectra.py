@@ -25,6 +25,9 @@ from frictioncli.diagnosis.data.pair_layout import PairLayout
 Modes = tuple[Array, ...]
 """Pair means in the eigenvectors of each correlation time."""
 
+NoiseIndex = tuple[int, int]
+"""Index of a noise model in the grid: of its correlation time and of its drift's strength."""
+
 _TIMES = 6
 """Number of correlation times, from the distance of the pairs to the length of the run."""
 
@@ -139,6 +142,25 @@ def spectra_of(layout: PairLayout, point: float, extra: Array, residual: Array) 
         runs=runs,
         spectra=tuple(_spectrum(layout.time, float(time), profile, runs) for time in times),
     )
+
+
+def weighted_gram(
+    spectra: Spectra, noise: NoiseIndex, modes: Array, others: Array | None = None
+) -> Array:
+    """Return inner products of modes under a noise of scale 1, with each other or with others.
+
+    Parameters
+    ----------
+    spectra : Spectra
+        The channel's noise models.
+    noise : (int, int)
+        Index of the noise model.
+    modes, others : ndarray, shape (..., pairs, columns)
+        Modes of columns.
+    """
+    variance = 1 + STRENGTHS[noise[1]] * spectra.spectra[noise[0]].values
+    second = modes if others is None else others
+    return np.asarray(modes.swapaxes(-1, -2) @ (second / variance[:, np.newaxis]))
 
 
 def _spectrum(

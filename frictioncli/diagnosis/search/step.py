@@ -26,12 +26,13 @@ from frictioncli.diagnosis.fit.hypotheses import (
 )
 from frictioncli.diagnosis.fit.two_channel_fit import TwoChannelFit, fit_candidates, fit_channels
 from frictioncli.diagnosis.fit.weighted_fit import WeightedFit, Weights
-from frictioncli.diagnosis.noise.likelihood_scan import NoiseIndex, drawn_within
+from frictioncli.diagnosis.noise.likelihood_scan import drawn_within
 from frictioncli.diagnosis.noise.significance import (
     NullDistribution,
     fit_null_distribution,
     log_bayes_factor,
 )
+from frictioncli.diagnosis.noise.spectra import NoiseIndex
 from frictioncli.diagnosis.search.precomputed import Catalogue, Precomputed, point_noise
 from frictioncli.effects.base import Effect
 from frictioncli.model.noise import Noise
@@ -82,7 +83,7 @@ class Step:
         )
         channels, best = (friction, load), (friction.null.best, load.null.best)
         empty = base.take(slice(0, 0))
-        fit = _fitted(channels, empty, _modes(channels, empty, best), best)
+        fit = _fitted(channels, empty, best)
         return cls(precomputed=precomputed, accepted=tuple(accepted), channels=channels, fit=fit)
 
     @property
@@ -238,7 +239,7 @@ class Step:
         """Return an effect fitted at one shape; its statistic is 0 if it is not physical."""
         hypothesis = hypothesis_of(effect, self.problem, [shape])
         columns, base = hypothesis.columns, self.base_count
-        fit = _fitted(self.channels, columns, _modes(self.channels, columns, noises), noises)
+        fit = _fitted(self.channels, columns, noises)
         coefficients, covariance = fit.coefficients[base:], fit.covariance[base:, base:]
         allowed = hypothesis.allows(coefficients, covariance)
         statistic = 2 * (fit.likelihood - self.fit.likelihood) if allowed else 0.0
@@ -299,30 +300,14 @@ class Step:
         return np.asarray(main_channel(basis, fit.effect) @ fit.coefficients)
 
 
-def _modes(
-    channels: tuple[ChannelLikelihood, ChannelLikelihood],
-    columns: ModelColumns,
-    noises: NoiseIndices,
-) -> tuple[Array, Array]:
-    """Return the modes of columns in friction and load, each at its noise's correlation time."""
-    friction, load = (
-        channel.spectra.modes_at(time, part.means)
-        for channel, part, (time, _) in zip(channels, columns.channels, noises, strict=True)
-    )
-    return friction, load
-
-
 def _fitted(
     channels: tuple[ChannelLikelihood, ChannelLikelihood],
     candidate: ModelColumns,
-    modes: tuple[Array, Array],
     noises: NoiseIndices,
 ) -> TwoChannelFit:
     """Return the fit of base and candidate under given noise models of friction and load."""
     friction, load = (
-        channel.normal_equations(part, part_modes, index)
-        for channel, part, part_modes, index in zip(
-            channels, candidate.channels, modes, noises, strict=True
-        )
+        channel.normal_equations(part, channel.spectra.modes_at(index[0], part.means), index)
+        for channel, part, index in zip(channels, candidate.channels, noises, strict=True)
     )
     return fit_channels((friction, load), channels[0].base.count)

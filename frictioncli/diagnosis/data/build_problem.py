@@ -1,0 +1,204 @@
+"""Problems of one joint from its torques, with the base model fitted to them or given."""
+
+from dataclasses import replace
+
+import numpy as np
+import pandas as pd
+
+from frictioncli.arrays import Array, Flags
+from frictioncli.diagnosis.data.base_models import candidate_bases
+from frictioncli.diagnosis.data.gravity import (
+    NAMES,
+    carried_load,
+    columns_of,
+    differs,
+    known_payload,
+)
+from frictioncli.diagnosis.data.motion_history import clock_of, series, travel_of
+from frictioncli.diagnosis.data.pair_layout import PairLayout
+from frictioncli.diagnosis.data.problem import Problem
+from frictioncli.effects.base import EffectTable
+from frictioncli.model.document import PARAMETERS
+from frictioncli.model.friction import FrictionParameters, friction_torque
+from frictioncli.model.zero_load import PAIR_KEY, temperature_of
+
+_RECONSTRUCTED = 0.05
+"""Standard error of a motor temperature reconstructed between the steps of its register. [°C]"""
+
+_REGISTERED = 0.29
+"""Standard error of a motor temperature as registered in steps of 1 °C: 1/sqrt(12). [°C]"""
+
+
+def build_problems(
+    torques: pd.DataFrame, temperature: str, held_out: str | None = None
+) -> tuple[Problem, Problem | None]:
+    """Return the problem of one joint, and that of its hold-out run.
+
+    The base model is fitted to the rows of the first only; the second is simulated with it. Gravity
+    depends on the payload if two payloads are known in the rows of the first.
+
+    Parameters
+    ----------
+    torques : DataFrame
+        Rows of :data:`frictioncli.schemas.TORQUES` of a single joint.
+    temperature : {"motor", "housing", "mean"}
+        Temperature that the friction function is given.
+    held_out : str, optional
+        Name of the hold-out run.
+
+    Returns
+    -------
+    Problem, Problem or None
+        Of all other runs, and of the hold-out run where there is one.
+    """
+    rows = torques.sort_values(["run", "time", "pair", "position"], ignore_index=True)
+    new = (rows["run"] == held_out).to_numpy()
+    columns = columns_of(rows, payloads=differs(known_payload(rows)[~new]))
+    load = rows["load_torque"].to_numpy(float)
+    gravity = np.linalg.lstsq(columns[~new], load[~new], rcond=None)[0]
+    smooth = carried_load(columns, gravity) if rows["load"].isna().all() else load
+    problem = min(
+        (
+            _assembled(rows, temperature, smooth, columns, gravity, base.parameters, base.names)
+            for base in candidate_bases(rows.assign(load_torque=smooth)[~new], temperature)
+        ),
+        key=lambda problem: _typical_misfit(problem, ~new),
+    )
+    return problem.part(~new), problem.part(new) if new.any() else None
+
+
+def _typical_misfit(problem: Problem, chosen: Flags) -> float:
+    """Return the median absolute misfit of the mean friction of the chosen pairs. [N·m]."""
+    misfit = problem.layout.means(problem.friction_misfit[:, np.newaxis])[:, 0]
+    return float(np.median(np.abs(misfit[np.unique(problem.layout.row_pair[chosen])])))
+
+
+def simulated(
+    torques: pd.DataFrame, temperature: str, parameters: FrictionParameters, gravity: Array
+) -> tuple[pd.Index, Problem]:
+    """Return the problem of rows simulated with a given base model, and its order of the rows.
+
+    Parameters
+    ----------
+    torques : DataFrame
+        Rows of :data:`frictioncli.schemas.TORQUES` of a single joint.
+    temperature : {"motor", "housing", "mean"}
+        Temperature that the friction function is given.
+    parameters : FrictionParameters
+        Parameters of friction.
+    gravity : ndarray, shape (3,) or (5,)
+        Coefficients of cos q, sin q and 1, and of the first two per mass of the payload. [N·m],
+        [N·m/kg]
+
+    Returns
+    -------
+    Index, Problem
+        Labels of the rows of ``torques`` in the order of the problem, and the problem.
+    """
+    rows = torques.sort_values(["run", "time", "pair", "position"])
+    columns = columns_of(rows, payloads=len(gravity) > len(NAMES))
+    smooth = rows["load"].isna().all()
+    load = carried_load(columns, gravity) if smooth else rows["load_torque"].to_numpy(float)
+    problem = _assembled(
+        rows.reset_index(drop=True), temperature, load, columns, gravity, parameters, PARAMETERS
+    )
+    return rows.index, problem
+
+
+def _assembled(
+    rows: pd.DataFrame,
+    temperature: str,
+    load: Array,
+    columns: Array,
+    gravity: Array,
+    parameters: FrictionParameters,
+    names: tuple[str, ...],
+) -> Problem:
+    """Return the problem of all rows, with friction simulated by the base model."""
+    pair = rows.groupby(PAIR_KEY, sort=False, observed=True).ngroup().to_numpy()
+    run, run_names = pd.factorize(rows["run"])
+    speed = rows["speed"].to_numpy(float)
+    known_temperature = np.nan_to_num(temperature_of(rows, temperature).to_numpy(float), nan=0.0)
+    heads = np.flatnonzero(np.diff(pair, prepend=-1))
+    position = rows["position"].to_numpy(float)
+    layout = PairLayout.of(
+        row_pair=pair,
+        run=run[heads],
+        time=rows["time"].to_numpy(float)[heads],
+        speed=speed[heads],
+        position=position,
+    )
+    motor = rows["motor_temperature"].to_numpy(float)
+    rest, order = series(layout, motor[heads])
+    table = EffectTable(
+        run=run,
+        pair=pair,
+        time=rows["time"].to_numpy(float),
+        clock=clock_of(layout)[pair],
+        speed=speed,
+        position=position,
+        load=load,
+        temperature=known_temperature,
+        motor_temperature=motor,
+        housing_temperature=rows["housing_temperature"].to_numpy(float),
+        friction=np.zeros_like(speed),
+        viscous=np.zeros_like(speed),
+        temperature_slope=np.zeros_like(speed),
+        load_slope=np.zeros_like(speed),
+        travel=travel_of(rows, layout, motor[heads])[pair],
+        rest=rest[pair],
+        order=order[pair],
+    )
+    reading = rows["motor_temperature_reading"].to_numpy(float)
+    reconstructed = np.nanmax(np.abs(reading - known_temperature), initial=0.0) > 1e-6
+    without_friction = Problem(
+        table=table,
+        all_runs=table,
+        rows=np.arange(len(run)),
+        layout=layout,
+        friction=rows["friction_torque"].to_numpy(float),
+        load=rows["load_torque"].to_numpy(float),
+        friction_base=np.empty((len(run), 0)),
+        load_base=columns,
+        names=names,
+        parameters=parameters,
+        gravity=gravity,
+        has_load_channel=bool(rows["load"].notna().any()),
+        temperature_error=_RECONSTRUCTED if reconstructed else _REGISTERED,
+        runs=tuple(str(name) for name in run_names),
+    )
+    return _with_friction(without_friction)
+
+
+def _with_friction(problem: Problem) -> Problem:
+    """Return the problem of all runs with its friction simulated by its parameters."""
+    parameters, table = problem.parameters, _modelled(problem.table, problem.parameters)
+    root_speed = np.sqrt(table.speed)
+    decay = np.exp(-parameters.delta * table.temperature)
+    derivative = {
+        "tau_c": np.ones_like(root_speed),
+        "alpha": np.square(table.load),
+        "beta": root_speed,
+        "gamma": root_speed * decay,
+        "delta": -parameters.gamma * table.temperature * decay * root_speed,
+    }
+    return replace(
+        problem,
+        table=table,
+        all_runs=table,
+        friction_base=np.column_stack([derivative[name] for name in problem.names]),
+    )
+
+
+def _modelled(table: EffectTable, parameters: FrictionParameters) -> EffectTable:
+    """Return a table with the columns that depend on the friction of the base model."""
+    decay = np.exp(-parameters.delta * table.temperature)
+    return replace(
+        table,
+        friction=friction_torque(
+            parameters, load=table.load, speed=table.speed, temperature=table.temperature
+        ),
+        viscous=parameters.beta + parameters.gamma * decay,
+        temperature_slope=-parameters.delta * parameters.gamma * decay * np.sqrt(table.speed),
+        load_slope=2 * parameters.alpha * table.load,
+    )
