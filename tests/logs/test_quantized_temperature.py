@@ -1,4 +1,4 @@
-"""Whole-degree temperature registers are rebuilt between known changes."""
+"""Quantized motor temperatures are interpolated between the changes of their register."""
 
 from datetime import UTC, datetime, timedelta
 
@@ -14,17 +14,17 @@ from frictioncli.logs.samples import quantized_temperature
 from .logs import kuka_columns, write
 
 
-def rebuilt(time, reading, longest=2.0):
+def interpolated(time, reading, longest=2.0):
     changes = quantized_temperature.find_changes(time, reading, longest=longest)
     step = quantized_temperature.find_step(np.unique(reading))
-    points = quantized_temperature.interpolation_knots(changes, step=step, span=(time[0], time[-1]))
-    return quantized_temperature.interpolate_temperature(points, time, reading)
+    knots = quantized_temperature.interpolation_knots(changes, step=step, span=(time[0], time[-1]))
+    return quantized_temperature.interpolate_temperature(knots, time, reading)
 
 
 def test_a_ramp_is_rebuilt_exactly():
     time = np.arange(0, 1000, 0.5)
     truth = 20.2 + 0.01 * time
-    error = rebuilt(time, np.round(truth)) - truth
+    error = interpolated(time, np.round(truth)) - truth
     assert np.max(np.abs(error)) < 0.01
     assert np.max(np.abs(np.round(truth) - truth)) > 0.49
 
@@ -33,7 +33,7 @@ def test_warming_and_cooling():
     time = np.arange(0, 20000, 1.0)
     truth = 25 + 20 * (1 - np.exp(-time / 3000))
     truth = np.where(time < 10000, truth, truth[10000] * np.exp(-(time - 10000) / 8000))
-    found = rebuilt(time, np.round(truth))
+    found = interpolated(time, np.round(truth))
     raw_error = np.sqrt(np.mean((np.round(truth) - truth) ** 2))
     assert np.sqrt(np.mean((found - truth) ** 2)) < 0.4 * raw_error
 
@@ -42,7 +42,7 @@ def test_flicker_makes_no_spikes():
     time = np.arange(0, 2000, 1.0)
     rng = np.random.default_rng(3)
     truth = 30.0 + 0.002 * time
-    found = rebuilt(time, np.round(truth + rng.normal(0, 0.02, len(time))))
+    found = interpolated(time, np.round(truth + rng.normal(0, 0.02, len(time))))
     assert np.max(np.abs(np.diff(found))) < 0.1
     assert np.max(np.abs(found - truth)) < 0.1
 
@@ -82,7 +82,7 @@ def test_rebuilt_stays_in_the_band_of_the_reading(slope, start, sign, pause):
     time = np.concatenate((np.arange(0, 1500, 1.0), 1500 + pause + np.arange(0, 1500, 1.0)))
     truth = start + sign * slope * time
     reading = np.round(truth)
-    found = rebuilt(time, reading)
+    found = interpolated(time, reading)
     assert np.max(np.abs(found - reading)) <= 0.5 + 1e-9
     raw = np.sqrt(np.mean((reading - truth) ** 2))
     assert np.sqrt(np.mean((found - truth) ** 2)) < 0.25 * raw
@@ -120,6 +120,6 @@ def test_a_long_rest_before_the_first_change_stays_at_the_reading():
     """An hour at 18.1 °C, then warming: the slope of warming says nothing of the rest."""
     time = np.arange(0, 5000, 1.0)
     truth = 18.1 + 0.01 * np.maximum(time - 3600, 0)
-    found = rebuilt(time, np.round(truth))
+    found = interpolated(time, np.round(truth))
     assert np.max(np.abs(found - truth)[time < 3500]) < 0.11
     assert np.max(np.abs(found - truth)[time > 3700]) < 0.11

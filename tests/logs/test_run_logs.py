@@ -1,4 +1,4 @@
-"""Which files make which run, in which order, from when."""
+"""Runs: discovery of their files, manifest, order, start times, and refused files."""
 
 import gzip
 import json

@@ -1,4 +1,4 @@
-"""Velocity by local fits."""
+"""Velocity from positions by local least-squares lines."""
 
 import numpy as np
 import pytest

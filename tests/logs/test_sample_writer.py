@@ -1,6 +1,5 @@
-"""Work ahead in threads, and samples on their way to the table."""
+"""The table of samples: order, discarded recordings, interpolated temperatures."""
 
-import threading
 from pathlib import Path
 
 import numpy as np
@@ -12,55 +11,11 @@ from hypothesis import strategies as st
 from frictioncli import schemas, tables
 from frictioncli.logs.samples.log_rows import LogRows
 from frictioncli.logs.samples.quantized_temperature import Knots
-from frictioncli.logs.samples.read_ahead import in_order
 from frictioncli.logs.samples.sample_writer import SampleWriter
 from frictioncli.provenance import Provenance
 
 
-@given(st.lists(st.integers(), max_size=40))
-def test_results_come_in_the_order_of_the_tasks(numbers):
-    assert list(in_order([lambda n=n: 3 * n for n in numbers])) == [3 * n for n in numbers]
-
-
-def test_a_slow_first_task_does_not_let_others_overtake():
-    gate = threading.Event()
-
-    def slow():
-        assert gate.wait(10)
-        return "slow"
-
-    def fast():
-        gate.set()
-        return "fast"
-
-    assert list(in_order([slow, fast])) == ["slow", "fast"]
-
-
-def test_only_a_few_tasks_are_taken_ahead():
-    taken = []
-
-    def tasks():
-        for number in range(100):
-            taken.append(number)
-            yield lambda: None
-
-    results = in_order(tasks())
-    next(results)
-    assert len(taken) <= 8
-    results.close()
-
-
-def test_an_error_comes_where_its_result_would():
-    def wrong():
-        raise ValueError("wrong")
-
-    results = in_order([lambda: 1, wrong, lambda: 3])
-    assert next(results) == 1
-    with pytest.raises(ValueError, match="wrong"):
-        next(results)
-
-
-def block(first, n, joints):
+def log_rows(first, n, joints):
     """Return n rows; every value tells its joint and row."""
     row = np.arange(first, first + n, dtype=float)
     columns = {
@@ -83,7 +38,7 @@ def finished(writer, folder, temperatures):
 @settings(max_examples=20)
 @given(st.lists(st.integers(1, 5), min_size=1, max_size=4))
 def test_samples_are_ordered_by_run_joint_and_time(tmp_path_factory, sizes):
-    """Two runs of two recordings each, all with joints 2 and 1, handed over in small pieces."""
+    """Two runs of two recordings each, all with joints 2 and 1, added in small chunks."""
     folder = Path(tmp_path_factory.mktemp("writer"))
     with SampleWriter(folder) as writer:
         for run in ("a", "b"):
@@ -91,8 +46,8 @@ def test_samples_are_ordered_by_run_joint_and_time(tmp_path_factory, sizes):
                 writer.begin_recording(run, recording, [2, 1], start)
                 first = 0
                 for n in sizes:
-                    piece = block(first, n, [2, 1])
-                    writer.add(piece, piece.time)
+                    chunk = log_rows(first, n, [2, 1])
+                    writer.add(chunk, chunk.time)
                     first += n
         none = {(run, joint): (None, None) for run in ("a", "b") for joint in (1, 2)}
         table = finished(writer, folder, none)
@@ -112,13 +67,13 @@ def test_samples_are_ordered_by_run_joint_and_time(tmp_path_factory, sizes):
     )
 
 
-def test_a_void_recording_leaves_no_sample_and_temperatures_are_rebuilt(tmp_path):
+def test_a_discarded_recording_leaves_no_sample_and_temperatures_are_rebuilt(tmp_path):
     with SampleWriter(tmp_path) as writer:
-        for name in ("good", "void", "last"):
+        for name in ("good", "discarded", "last"):
             writer.begin_recording("run", name, [3], 0.0)
-            piece = block(0, 5, [3])
-            writer.add(piece, piece.time)
-            if name == "void":
+            chunk = log_rows(0, 5, [3])
+            writer.add(chunk, chunk.time)
+            if name == "discarded":
                 writer.discard_recording([3])
         rising = Knots(np.array([-1.0, 9.0]), np.array([19.7, 20.7]), 1.0, 2)
         table = finished(writer, tmp_path, {("run", 3): (rising, None)})
@@ -132,12 +87,12 @@ def test_a_void_recording_leaves_no_sample_and_temperatures_are_rebuilt(tmp_path
 def test_short_recordings_of_different_channels_share_a_table(tmp_path):
     with SampleWriter(tmp_path) as writer:
         for name, n, channels in (("warm", 4, 3), ("bare", 2, 2), ("again", 3, 3)):
-            piece = block(0, n, [1])
+            chunk = log_rows(0, n, [1])
             if channels == 2:
-                columns = {key: piece.columns[key] for key in piece.columns if "temp" not in key[1]}
-                piece = LogRows(piece.lines, piece.time, columns)
+                columns = {key: chunk.columns[key] for key in chunk.columns if "temp" not in key[1]}
+                chunk = LogRows(chunk.lines, chunk.time, columns)
             writer.begin_recording("run", name, [1], 0.0)
-            writer.add(piece, piece.time)
+            writer.add(chunk, chunk.time)
         table = finished(writer, tmp_path, {("run", 1): (None, None, None)})
     assert list(table["recording"]) == ["warm"] * 4 + ["bare"] * 2 + ["again"] * 3
     assert list(table["motor_temperature"].isna()) == [False] * 4 + [True] * 2 + [False] * 3
