@@ -1,6 +1,7 @@
 """Imports go only downwards, never in circles; the simulator shares no code with the analysis."""
 
 import ast
+import re
 from graphlib import CycleError, TopologicalSorter
 from pathlib import Path
 
@@ -142,3 +143,16 @@ def test_an_upward_import_would_be_seen(tmp_path):
 @pytest.mark.parametrize("module", MODULES, ids=lambda path: str(path.relative_to(PACKAGE)))
 def test_modules_stay_small(module):
     assert len(module.read_text(encoding="utf-8").splitlines()) <= 320
+
+
+@pytest.mark.parametrize(
+    ("folder", "allowed"),
+    [
+        ("channels", {"channels", "log_source"}),
+        ("formats", {"formats", "channels", "log_source"}),
+    ],
+)
+def test_formats_import_channels_and_channels_import_neither_formats_nor_runs(folder, allowed):
+    for module in (PACKAGE / "logs" / folder).glob("*.py"):
+        imported = re.findall(r"frictioncli\.logs\.(\w+)", module.read_text(encoding="utf-8"))
+        assert set(imported) <= allowed, module
