@@ -1,1 +1,1 @@
-"""A forward simulation of the experiment; shares no code with the model that is fitted."""
+"""Forward simulation of the experiment; shares no code with the model that is fitted."""

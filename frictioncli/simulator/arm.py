@@ -1,4 +1,4 @@
-"""The arm that the joint carries: bodies, their gravity torque and inertia about the joint axis."""
+"""Arm that the joint moves: bodies, gravity torque and inertia about the joint axis."""
 
 from dataclasses import dataclass
 
@@ -18,15 +18,15 @@ class Body:
     Attributes
     ----------
     name : str
-        What it is.
+        Name of the body.
     mass : float
         Mass. [kg]
     along : float
-        Distance of its centre from the axis, along the link. [m]
+        Distance of its centre of mass from the axis, along the link. [m]
     across : float
-        Offset of its centre square to the link. [m]
+        Offset of its centre of mass perpendicular to the link. [m]
     own_inertia : float
-        Inertia about its own centre, parallel to the joint axis. [kg·m²]
+        Inertia about its centre of mass, parallel to the joint axis. [kg·m²]
     """
 
     name: str
@@ -38,16 +38,16 @@ class Body:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Arm:
-    """The bodies that turn with the joint; at 0 deg the link is horizontal.
+    """Bodies that turn with the joint; at 0 deg the link is horizontal.
 
     Attributes
     ----------
     bodies : tuple of Body
         Links and wrist.
     payload : Body
-        What the flange holds.
+        Body at the flange.
     rotor_inertia : float
-        Inertia of rotor and gear input, seen at the joint (times the gear ratio squared). [kg·m²]
+        Inertia of rotor and gear input, times the square of the gear ratio. [kg·m²]
     """
 
     bodies: tuple[Body, ...]
@@ -62,7 +62,24 @@ class Arm:
         return cosine, sine
 
     def gravity_torque(self, position: ArrayLike) -> Array:
-        """Return the torque that holds the arm at an angle in deg [N·m]."""
+        """Return the torque that holds the arm at an angle.
+
+        Parameters
+        ----------
+        position : array_like
+            Joint angle. [deg]
+
+        Returns
+        -------
+        ndarray
+            Gravity torque. [N·m]
+
+        Examples
+        --------
+        >>> payload = Body(name="payload", mass=2.0, along=1.0, across=0.0)
+        >>> Arm(bodies=(), payload=payload, rotor_inertia=0.0).gravity_torque([0.0, 90.0]).round(6)
+        array([19.62,  0.  ])
+        """
         cosine, sine = self.gravity_coefficients()
         angle = np.radians(np.asarray(position, dtype=float))
         return np.asarray(cosine * np.cos(angle) + sine * np.sin(angle))

@@ -1,7 +1,7 @@
-"""The simulated joint's default constants: joint 2 of a small industrial arm, as in the paper.
+"""Default constants of the simulated joint: joint 2 of a small industrial arm, as in the paper.
 
-The arm is drawn up by hand. Zones and thermal network were tuned so that the paper's findings come
-out of the simulation: heating from 25 to 65 °C in about 100 min and natural cooling in about
+The arm is assumed. Zones and thermal network were tuned so that the simulation reproduces the
+findings of the paper: heating from 25 to 65 °C in about 100 min and natural cooling in about
 300 min, equation (16) fitted to the means of both branches near the published parameters, an error
 of 1 to 2 N·m at about eight corrections, and cold friction that follows the square root of the
 speed down to the slowest sweep. The zones' speed exponents are near 1/2 for that; friction depends
@@ -31,10 +31,10 @@ BODIES = (
     Body(name="forearm with its drives", mass=8.0, along=0.47, across=-0.05, own_inertia=0.10),
     Body(name="wrist", mass=3.0, along=0.75, across=-0.04, own_inertia=0.02),
 )
-"""Bodies that turn with joint 2, the elbow held straight."""
+"""Bodies that turn with joint 2, with a straight elbow."""
 
 ROTOR_INERTIA = 1.2
-"""Inertia of rotor and gear input, seen at the joint [kg·m²]."""
+"""Inertia of rotor and gear input, referred to the joint [kg·m²]."""
 
 ZONES = (
     LubricatedZone(
@@ -66,7 +66,7 @@ ZONES = (
         speed_exponent=0.58,
     ),
 )
-"""Where friction arises."""
+"""Friction zones."""
 
 NETWORK = ThermalNetwork(
     nodes=(
@@ -82,20 +82,20 @@ NETWORK = ThermalNetwork(
         ThermalLink(first="motor", second=HOUSING, conductance=0.29),
     ),
 )
-"""Heat flow in the joint; the sensor's capacity over its conductance is its lag."""
+"""Thermal network; the lag of the sensor is its capacity over its conductance."""
 
 SERVO = Servo(acceleration=400.0, frequency=6.0, damping=0.45)
-"""How the joint follows the commanded speed."""
+"""Servo of the joint."""
 
-_ASKED = SynthesisSettings()
+_DEFAULTS = SynthesisSettings()
 
 PROGRAM = PaperProgram(
     sweep_speeds=(2.3, 4.2, 7.6, 12.4, 19.1, 28.0, 39.4, 52.0, 67.5, 84.0, 101.2),
     cycle_speeds=(19.1, 39.4, 67.5, 101.2),
     heating_speed=180.0,
     angles=(0.0, 180.0),
-    lowest=_ASKED.lowest,
-    highest=_ASKED.highest,
+    lowest=_DEFAULTS.lowest,
+    highest=_DEFAULTS.highest,
     dwell=0.4,
     pre_trigger=0.6,
     lead=1.0,

@@ -1,7 +1,7 @@
-"""Friction zones: where in the joint torque is lost, each with its own temperature and law.
+"""Friction zones: parts of the joint where torque is lost, each with its temperature and law.
 
 The joint's friction is the sum over its zones. A zone may be any frozen object with a ``node`` and
-a ``torque`` method, so a further loss is one more zone.
+a ``torque`` method, so that a further loss is another zone.
 """
 
 from collections.abc import Iterable, Mapping
@@ -18,11 +18,11 @@ LAW_TEMPERATURE = 40.0
 
 
 class Zone(Protocol):
-    """What the sum over zones needs."""
+    """Interface of a friction zone."""
 
     @property
     def name(self) -> str:
-        """What it is."""
+        """Name of the zone."""
 
     @property
     def node(self) -> str:
@@ -34,24 +34,24 @@ class Zone(Protocol):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class LubricatedZone:
-    r"""A lubricated contact: dry part, load part, and a viscous part that thins when warm.
+    r"""A lubricated contact: Coulomb, load-dependent and viscous friction that falls when warm.
 
     Attributes
     ----------
     name : str
-        What the zone is.
+        Name of the zone.
     node : str
-        Thermal node whose temperature acts here.
+        Thermal node that has the zone's temperature.
     coulomb : float
-        Torque without load and speed. [N·m]
+        Torque at zero load and speed. [N·m]
     load_square : float
         Torque per square of the load torque. [1/(N·m)]
     viscous_floor : float
-        Viscous coefficient that stays when hot. [N·m/(deg/s)^p]
+        Viscous coefficient at high temperature. [N·m/(deg/s)^p]
     viscous : float
-        Viscous coefficient that falls with temperature, at 40 °C. [N·m/(deg/s)^p]
+        Viscous coefficient that decreases with temperature, at 40 °C. [N·m/(deg/s)^p]
     thinning : float
-        Rate of that fall. [1/K]
+        Rate of this decrease. [1/K]
     speed_exponent : float
         Exponent p of the speed. [-]
 
@@ -59,9 +59,9 @@ class LubricatedZone:
     -----
     .. math:: \tau_i = c + a L^2 + \left(b + g e^{-d (T_i - 40)}\right) |\dot\varphi|^p
 
-    The exponent is 1 for a full film in a plain gap and falls towards 0 for greased rolling
-    contacts that starve; the sum over zones is near the square root that was measured, down to
-    the slowest speeds [1]_.
+    The exponent is 1 for a full film in a plain gap and approaches 0 for starved greased rolling
+    contacts. The sum over zones is close to the measured square root down to the slowest
+    speeds [1]_.
 
     References
     ----------

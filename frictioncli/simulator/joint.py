@@ -1,4 +1,4 @@
-"""The simulated joint: arm, servo, friction zones, thermal network and where its heat arises."""
+"""Simulated joint: arm, servo, friction zones, thermal network and dissipated power."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -15,11 +15,10 @@ from frictioncli.simulator.thermal_network import ThermalNetwork
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class HeatEntry:
-    """Where the dissipated power enters the network.
+    """Nodes at which the dissipated power enters the thermal network.
 
-    How the heat is split decides the sign of the loop between heating and cooling: a joint heated
-    at the motor has colder grease than its motor shows while heating, one heated at the gear has
-    warmer grease.
+    The shares determine the sign of the hysteresis between heating and cooling. While heating, the
+    grease is colder than the motor if the heat enters there, and warmer if it enters at the gear.
 
     Attributes
     ----------
@@ -35,7 +34,7 @@ class HeatEntry:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class SimulatedJoint:
-    """All that is true about the simulated joint."""
+    """True parameters of the simulated joint."""
 
     arm: Arm
     servo: Servo
@@ -56,12 +55,12 @@ class SimulatedJoint:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class RoundTripMotion:
-    """Continued moves there and back at one speed, as the thermal network sees them.
+    """Continued moves there and back at one speed.
 
     Attributes
     ----------
     speed : float
-        Speed of the constant part. [deg/s]
+        Speed of the constant-speed segment. [deg/s]
     angles : tuple of float
         Angles between which the joint turns. [deg]
     dwell : float
@@ -74,7 +73,7 @@ class RoundTripMotion:
 
 
 HEAT_INTERVAL = 0.005
-"""Step at which a round trip is followed for its mean power [s]."""
+"""Time step of a round trip for its mean power [s]."""
 
 
 class MeanPower:
@@ -83,7 +82,7 @@ class MeanPower:
     Attributes
     ----------
     turning : float
-        Absolute velocity, averaged with the standing times. [rad/s]
+        Mean absolute velocity, standing times included. [rad/s]
     """
 
     def __init__(self, joint: SimulatedJoint, trips: RoundTripMotion) -> None:
@@ -117,6 +116,6 @@ class MeanPower:
         friction = friction_torque(
             self._zones, load=self._load, speed=self._speed, temperatures=temperatures
         )
-        # Friction turns its sign on the way back, so it is uncorrelated with the other torques.
+        # Friction changes sign on the way back, so it is uncorrelated with the other torques.
         square = self._frictionless_square + self._moving * friction**2
         return self._copper * square + friction * self.turning

@@ -1,4 +1,4 @@
-"""A joint's move from one angle to another: trapezoidal speed as the servo really follows it."""
+"""Moves of a joint: trapezoidal speed profiles as the servo follows them."""
 
 from dataclasses import dataclass
 from itertools import pairwise
@@ -11,7 +11,7 @@ from frictioncli.arrays import Array, Numbers
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Servo:
-    """How the joint follows a commanded speed.
+    """Servo of a joint that follows a commanded speed.
 
     Attributes
     ----------
@@ -38,8 +38,29 @@ class MotionProfile:
 
 
 def move_duration(servo: Servo, *, distance: float, speed: float) -> float:
-    """Return how long a commanded move takes, from distance in deg and speed in deg/s [s]."""
-    ramp, cruise = _phases(servo, distance=distance, speed=speed)
+    """Return the duration of a commanded move.
+
+    Parameters
+    ----------
+    servo : Servo
+        Servo of the joint.
+    distance : float
+        Angle of the move, > 0. [deg]
+    speed : float
+        Commanded speed. [deg/s]
+
+    Returns
+    -------
+    float
+        Duration. [s]
+
+    Examples
+    --------
+    >>> servo = Servo(acceleration=400.0, frequency=6.0, damping=0.45)
+    >>> move_duration(servo, distance=100.0, speed=50.0)
+    2.125
+    """
+    ramp, cruise = _ramp_and_cruise(servo, distance=distance, speed=speed)
     return 2.0 * ramp + cruise
 
 
@@ -51,7 +72,7 @@ def follow(
     Parameters
     ----------
     servo : Servo
-        The joint's servo.
+        Servo of the joint.
     time : array_like
         Sample times. [s]
     start : float
@@ -59,21 +80,26 @@ def follow(
     distance : float
         Signed angle of the move. [deg]
     speed : float
-        Speed of its constant part, > 0. [deg/s]
+        Commanded speed, > 0. [deg/s]
+
+    Returns
+    -------
+    MotionProfile
+        Position, velocity and acceleration at the times.
 
     Notes
     -----
-    The command is four ramps of speed. Each passes the servo
-    :math:`H(s) = \omega^2/(s^2 + 2\zeta\omega s + \omega^2)`, whose answers to step, ramp and
-    parabola are known in closed form, so velocity is exactly the derivative of position.
+    The command is a sum of four ramps of speed. The servo has the transfer function
+    :math:`H(s) = \omega^2/(s^2 + 2\zeta\omega s + \omega^2)`, whose responses to step, ramp and
+    parabola are known in closed form, so that velocity is the exact derivative of position.
     """
-    ramp, cruise = _phases(servo, distance=abs(distance), speed=speed)
+    ramp, cruise = _ramp_and_cruise(servo, distance=abs(distance), speed=speed)
     switches = ((0.0, 1.0), (ramp, -1.0), (ramp + cruise, -1.0), (2.0 * ramp + cruise, 1.0))
     times = np.asarray(time, dtype=float)
     scale = np.sign(distance) * servo.acceleration
     total = np.zeros((3, *times.shape))
     for switch, weight in switches:
-        total += scale * weight * _answers(servo, times - switch)
+        total += scale * weight * _responses(servo, times - switch)
     return MotionProfile(position=start + total[0], velocity=total[1], acceleration=total[2])
 
 
@@ -91,7 +117,7 @@ def round_trips(
     Parameters
     ----------
     servo : Servo
-        The joint's servo.
+        Servo of the joint.
     speeds : tuple of float
         Speed of each round trip. [deg/s]
     angles : tuple of float
@@ -117,46 +143,46 @@ def round_trips(
     moves: list[tuple[float, float, float, float]] = []
     clock = lead
     for speed in speeds:
-        for start, way in ((first, distance), (second, -distance)):
-            moves.append((clock, start, way, speed))
-            clock += move_duration(servo, distance=abs(way), speed=speed) + dwell
+        for start, signed in ((first, distance), (second, -distance)):
+            moves.append((clock, start, signed, speed))
+            clock += move_duration(servo, distance=abs(signed), speed=speed) + dwell
     times = np.arange(int(np.ceil(clock / interval)), dtype=np.float64) * interval
-    # A move owns the samples until the next one begins; the first also owns the lead.
+    # A move has the samples until the next one begins; the first also has the lead.
     edges = [0.0, *(begin for begin, *_ in moves[1:]), np.inf]
-    columns: list[MotionProfile] = []
+    profiles: list[MotionProfile] = []
     trips = np.zeros(times.shape, dtype=np.int64)
-    for number, ((low, high), (begin, start, way, speed)) in enumerate(
+    for number, ((low, high), (begin, start, signed, speed)) in enumerate(
         zip(pairwise(edges), moves, strict=True)
     ):
-        own = (times >= low) & (times < high)
-        trips[own] = number // 2
-        columns.append(
-            follow(servo, time=times[own] - begin, start=start, distance=way, speed=speed)
+        inside = (times >= low) & (times < high)
+        trips[inside] = number // 2
+        profiles.append(
+            follow(servo, time=times[inside] - begin, start=start, distance=signed, speed=speed)
         )
     motion = MotionProfile(
-        position=np.concatenate([part.position for part in columns]),
-        velocity=np.concatenate([part.velocity for part in columns]),
-        acceleration=np.concatenate([part.acceleration for part in columns]),
+        position=np.concatenate([move.position for move in profiles]),
+        velocity=np.concatenate([move.velocity for move in profiles]),
+        acceleration=np.concatenate([move.acceleration for move in profiles]),
     )
     return motion, times, trips
 
 
-def _phases(servo: Servo, *, distance: float, speed: float) -> tuple[float, float]:
-    """Return the duration of a ramp and of the constant part [s]."""
+def _ramp_and_cruise(servo: Servo, *, distance: float, speed: float) -> tuple[float, float]:
+    """Return the durations of a ramp and of the constant speed [s]."""
     ramp = speed / servo.acceleration
     if ramp * speed >= distance:  # too short to reach the speed: a triangle
         return float(np.sqrt(distance / servo.acceleration)), 0.0
     return ramp, distance / speed - ramp
 
 
-def _answers(servo: Servo, time: Array) -> Array:
-    """Return the servo's answers to a unit parabola, ramp and step that begin at time 0."""
+def _responses(servo: Servo, time: Array) -> Array:
+    """Return the responses of the servo to a unit parabola, ramp and step that begin at time 0."""
     omega, zeta = 2.0 * np.pi * servo.frequency, servo.damping
     pole = omega * complex(-zeta, np.sqrt(1.0 - zeta**2))
     t = np.maximum(time, 0.0)
-    ring = np.exp(pole * t) * omega**2 / (2j * pole.imag)
+    oscillation = np.exp(pole * t) * omega**2 / (2j * pole.imag)
     parabola = t**2 / 2.0 - 2.0 * zeta / omega * t + (4.0 * zeta**2 - 1.0) / omega**2
     ramp = t - 2.0 * zeta / omega
     step = np.ones_like(t)
-    rings = 2.0 * np.real([ring / pole**3, ring / pole**2, ring / pole])
-    return np.where(time > 0.0, np.array([parabola, ramp, step]) + rings, 0.0)
+    transients = 2.0 * np.real([oscillation / pole**3, oscillation / pole**2, oscillation / pole])
+    return np.where(time > 0.0, np.array([parabola, ramp, step]) + transients, 0.0)

@@ -16,17 +16,17 @@ class SimulatedNoise:
     Attributes
     ----------
     white : float
-        Torque noise, independent from sample to sample. [N·m]
+        Standard deviation of white torque noise. [N·m]
     correlated : float
-        Torque noise with memory, from ripple and control. [N·m]
+        Standard deviation of correlated torque noise, from ripple and control. [N·m]
     correlation_time : float
         Its correlation time. [s]
     slow : float
-        Slow variation of friction over the run, from grease that redistributes. [N·m]
+        Standard deviation of the slow variation of friction, as of grease redistribution. [N·m]
     slow_time : float
         Its correlation time. [s]
     per_pair : float
-        Variation of friction from one round trip to the next. [N·m]
+        Standard deviation of friction from one round trip to the next. [N·m]
     """
 
     white: float
@@ -37,7 +37,7 @@ class SimulatedNoise:
     per_pair: float
 
     def scaled(self, factor: float) -> Self:
-        """Return the noise with all deviations multiplied by ``factor``."""
+        """Return the noise with all standard deviations multiplied by ``factor``."""
         return replace(
             self,
             white=self.white * factor,
@@ -51,12 +51,12 @@ class SimulatedNoise:
         memory = float(np.exp(-interval / self.correlation_time))
         drive = generator.standard_normal(count) * np.sqrt(1.0 - memory**2)
         if count:
-            drive[0] /= np.sqrt(1.0 - memory**2)  # starts in its stationary state
+            drive[0] /= np.sqrt(1.0 - memory**2)  # start in the stationary state
         correlated = lfilter([1.0], [1.0, -memory], drive)
         white = generator.standard_normal(count)
         return np.asarray(self.correlated * correlated + self.white * white)
 
-    def on(
+    def at(
         self,
         generator: np.random.Generator,
         *,
@@ -64,7 +64,7 @@ class SimulatedNoise:
         velocity: Array,
         interval: float,
     ) -> Array:
-        """Return the noise of samples with these torques [N·m] and velocities [deg/s] [N·m]."""
+        """Return the noise of samples from their torques [N·m] and velocities [deg/s] [N·m]."""
         return self.torque(generator, count=len(torque), interval=interval)
 
     def pair_offsets(self, generator: np.random.Generator, times: Array) -> Array:

@@ -1,4 +1,4 @@
-"""Kinds of noise on which a false alarm would be easy."""
+"""Kinds of noise that may cause false detections."""
 
 from dataclasses import dataclass, replace
 
@@ -9,17 +9,17 @@ from frictioncli.arrays import Array
 from frictioncli.simulator.noise import SimulatedNoise
 
 PAIR_SPACING = 75.0
-"""Mean time between the pairs of the thermal cycle, over which drift coefficients hold [s]."""
+"""Mean time between the pairs of the thermal cycle, to which drift correlations refer [s]."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class UnevenNoise(SimulatedNoise):
-    """Torque noise that is not the same for all samples.
+    """Torque noise with outliers, or of a standard deviation that depends on torque and speed.
 
     Attributes
     ----------
     outliers : float
-        Share of the samples that have ten times the noise. [-]
+        Share of samples with ten times the noise. [-]
     by_torque : float
         Growth of the noise with the absolute torque. [1/(N·m)]
     by_speed : float
@@ -32,11 +32,11 @@ class UnevenNoise(SimulatedNoise):
 
     def spread(self, torque: ArrayLike, velocity: ArrayLike) -> Array:
         """Return the factor on the noise at torques in N·m and velocities in deg/s [-]."""
-        grown = self.by_torque * np.abs(torque) + self.by_speed * np.abs(velocity)
-        even = 1.0 if self.by_torque == self.by_speed == 0.0 else 0.4
-        return np.asarray(even + grown)
+        growth = self.by_torque * np.abs(torque) + self.by_speed * np.abs(velocity)
+        constant = 1.0 if self.by_torque == self.by_speed == 0.0 else 0.4
+        return np.asarray(constant + growth)
 
-    def on(
+    def at(
         self,
         generator: np.random.Generator,
         *,
@@ -45,9 +45,9 @@ class UnevenNoise(SimulatedNoise):
         interval: float,
     ) -> Array:
         """Return the torque noise of samples ``interval`` seconds apart [N·m]."""
-        even = self.torque(generator, count=len(torque), interval=interval)
-        hit = generator.random(len(torque)) < self.outliers
-        return even * self.spread(torque, velocity) * np.where(hit, OUTLIER, 1.0)
+        noise = self.torque(generator, count=len(torque), interval=interval)
+        is_outlier = generator.random(len(torque)) < self.outliers
+        return noise * self.spread(torque, velocity) * np.where(is_outlier, OUTLIER, 1.0)
 
 
 OUTLIER = 10.0
@@ -70,7 +70,7 @@ def noise_of_kind(kind: str, default: SimulatedNoise) -> SimulatedNoise:
     """
     if kind == "default":
         return default
-    alone = UnevenNoise(
+    white = UnevenNoise(
         white=default.white,
         correlated=0.0,
         correlation_time=default.correlation_time,
@@ -80,10 +80,10 @@ def noise_of_kind(kind: str, default: SimulatedNoise) -> SimulatedNoise:
     )
     if kind.startswith("drift"):
         memory = float(kind.removeprefix("drift")) / 100.0
-        return replace(alone, slow=0.25, slow_time=float(-PAIR_SPACING / np.log(memory)))
+        return replace(white, slow=0.25, slow_time=float(-PAIR_SPACING / np.log(memory)))
     return {
-        "white": replace(alone, per_pair=0.0),
-        "pair": replace(alone, per_pair=0.25),
-        "outliers": replace(alone, outliers=0.01),
-        "heteroscedastic": replace(alone, by_torque=0.012, by_speed=0.008),
+        "white": replace(white, per_pair=0.0),
+        "pair": replace(white, per_pair=0.25),
+        "outliers": replace(white, outliers=0.01),
+        "heteroscedastic": replace(white, by_torque=0.012, by_speed=0.008),
     }[kind]

@@ -1,4 +1,4 @@
-"""A joint of which equation (16) is exactly true, so that a planted effect is all it lacks."""
+"""A joint that follows equation (16) exactly, so that planted effects are its only deviation."""
 
 from dataclasses import dataclass
 
@@ -24,7 +24,7 @@ NETWORK = ThermalNetwork(
         ThermalLink(first=MOTOR, second=HOUSING, conductance=0.4),
     ),
 )
-"""Heat flow; the motor's node carries its sensor, which therefore has no lag."""
+"""Thermal network; the motor's node has the sensor, which therefore has no lag."""
 
 COPPER_LOSS = 0.0026
 """Copper loss per square of the control torque [W/(N·m)²]."""
@@ -34,8 +34,8 @@ HOUSING_HEAT_SHARE = 0.2
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class WholeFriction:
-    r"""The whole friction of the joint by equation (16), at the motor's temperature.
+class JointFriction:
+    r"""Friction of the joint by equation (16), at the motor temperature.
 
     Attributes
     ----------
@@ -44,13 +44,15 @@ class WholeFriction:
     alpha : float
         Torque per square of the load. [1/(N·m)]
     beta : float
-        Viscous coefficient that stays when hot. [N·m/(deg/s)^0.5]
+        Viscous coefficient at high temperature. [N·m/(deg/s)^0.5]
     gamma : float
-        Viscous coefficient that falls with temperature, at 0 °C. [N·m/(deg/s)^0.5]
+        Viscous coefficient that decreases with temperature, at 0 °C. [N·m/(deg/s)^0.5]
     delta : float
-        Rate of that fall. [1/K]
-    name, node : str
-        What the zone is, and the thermal node whose temperature acts here.
+        Rate of this decrease. [1/K]
+    name : str
+        Name of the zone.
+    node : str
+        Thermal node that has its temperature.
 
     Notes
     -----
@@ -66,7 +68,27 @@ class WholeFriction:
     node: str = MOTOR
 
     def torque(self, *, load: ArrayLike, speed: ArrayLike, temperature: ArrayLike) -> Array:
-        """Return the friction torque from N·m, deg/s and °C [N·m]."""
+        """Return the friction torque.
+
+        Parameters
+        ----------
+        load : array_like
+            Load torque. [N·m]
+        speed : array_like
+            Absolute joint velocity. [deg/s]
+        temperature : array_like
+            Motor temperature. [°C]
+
+        Returns
+        -------
+        ndarray
+            Friction torque. [N·m]
+
+        Examples
+        --------
+        >>> JointFriction().torque(load=[0.0], speed=25.0, temperature=40.0).round(2)
+        array([36.31])
+        """
         viscous = self.beta + self.gamma * np.exp(-self.delta * np.asarray(temperature))
         square = np.square(np.asarray(load, dtype=float))
         return np.asarray(self.tau_c + self.alpha * square + viscous * np.sqrt(speed))
@@ -78,9 +100,9 @@ def plain_joint(*, arm: Arm, servo: Servo, motor_heat_share: float) -> Simulated
     Parameters
     ----------
     arm : Arm
-        What it carries.
+        Arm that it moves.
     servo : Servo
-        How it follows commands.
+        Servo of the joint.
     motor_heat_share : float
         Share of the dissipated heat that enters at the motor. [-]
     """
@@ -88,7 +110,7 @@ def plain_joint(*, arm: Arm, servo: Servo, motor_heat_share: float) -> Simulated
     return SimulatedJoint(
         arm=arm,
         servo=servo,
-        zones=(WholeFriction(),),
+        zones=(JointFriction(),),
         network=NETWORK,
         heat=HeatEntry(
             copper_loss=COPPER_LOSS,

@@ -175,7 +175,7 @@ def record(
         )
         added = planted.torque(state)
         torque = torque + added.load + logger.sign * state.direction * added.friction
-    torque = torque + noise.on(
+    torque = torque + noise.at(
         generator, torque=torque, velocity=motion.velocity, interval=logger.interval
     )
     return Recording(

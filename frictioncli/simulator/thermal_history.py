@@ -1,4 +1,4 @@
-"""The temperatures of a run, integrated block by block of equal motion."""
+"""Temperatures of a run, integrated over intervals of one motion."""
 
 from abc import ABC, abstractmethod
 from collections.abc import Callable
@@ -14,22 +14,22 @@ from frictioncli.simulator.thermal_network import Ambient
 
 MOTOR = "motor sensor"
 HOUSING = "housing"
-"""Nodes that carry the joint's two sensors."""
+"""Thermal nodes with the two temperature sensors."""
 
-LONGEST_RUN = 24 * 3600.0
-"""A temperature that is not reached within this time is out of reach [s]."""
+LONGEST_WAIT = 24 * 3600.0
+"""Longest time to wait for a temperature [s]."""
 
 
 @dataclass(frozen=True, slots=True)
 class MotionInterval:
-    """A time of one motion.
+    """An interval of one motion.
 
     Attributes
     ----------
     start, end : float
-        When it was. [s]
+        Start and end. [s]
     power : MeanPower or None
-        What the motion dissipates; none while standing.
+        Dissipated power; none at rest.
     """
 
     start: float
@@ -45,7 +45,7 @@ class MotionInterval:
 
 
 class History(ABC):
-    """Temperatures from a start at ``ambient`` on; each call continues where the last one ended."""
+    """Temperatures of a joint, from ambient temperature on; each call continues the history."""
 
     def __init__(self, joint: SimulatedJoint, ambient: Ambient) -> None:
         self.ambient = ambient
@@ -59,21 +59,21 @@ class History(ABC):
         self.use(joint, {})
 
     def use(self, joint: SimulatedJoint, powers: dict[RoundTripMotion, MeanPower]) -> None:
-        """Continue with ``joint``: another load or entry of heat; ``powers`` may be shared."""
+        """Continue with another payload or entry of heat; ``powers`` caches dissipated powers."""
         self._joint = joint
         self._shares = joint.heat_shares()
         self._powers = powers
 
     def continue_for(self, duration: float, motion: RoundTripMotion | None = None) -> None:
-        """Continue for ``duration`` [s], standing or with round trips."""
+        """Continue for a duration [s], at rest or with round trips."""
         self._continue(self.time + duration, motion, None)
 
     def continue_until(self, temperature: float, motion: RoundTripMotion | None = None) -> bool:
         """Continue until the motor reaches ``temperature`` [°C]; False if it never does."""
-        return self._continue(max(self.time, LONGEST_RUN), motion, temperature)
+        return self._continue(max(self.time, LONGEST_WAIT), motion, temperature)
 
     def intervals(self) -> tuple[MotionInterval, ...]:
-        """Return what the joint did, in order of time."""
+        """Return the intervals of motion and rest, in order of time."""
         return tuple(self._intervals)
 
     @abstractmethod
@@ -86,12 +86,14 @@ class History(ABC):
         owner = np.maximum(np.searchsorted(starts, times, side="right") - 1, 0)
         temperatures = self.at(times)
         powers = {id(interval.power): interval.power for interval in self._intervals}
-        owned = np.array([id(interval.power) for interval in self._intervals])[owner]
+        power_ids = np.array([id(interval.power) for interval in self._intervals])[owner]
         found = np.zeros(times.shape)
         for key, power in powers.items():
             if power is not None:
-                own = owned == key
-                found[own] = power.at({name: value[own] for name, value in temperatures.items()})
+                inside = power_ids == key
+                found[inside] = power.at(
+                    {name: value[inside] for name, value in temperatures.items()}
+                )
         return found
 
     @abstractmethod
@@ -115,35 +117,35 @@ class History(ABC):
 
 
 @dataclass(frozen=True, slots=True)
-class _Block:
+class _Solution:
     start: float
     solution: OdeSolution
 
 
 class ThermalHistory(History):
-    """The history integrated to a tolerance, known at any time."""
+    """History integrated with error control and dense output."""
 
     def __init__(self, joint: SimulatedJoint, ambient: Ambient) -> None:
         super().__init__(joint, ambient)
-        self._blocks: list[_Block] = []
+        self._solutions: list[_Solution] = []
 
     def at(self, time: ArrayLike) -> dict[str, Array]:
         """Return the temperatures at times [s] within the history, by node name [°C]."""
         times = np.asarray(time, dtype=float)
         found = np.empty((len(self.state), *times.shape))
-        starts = np.array([block.start for block in self._blocks])
+        starts = np.array([solution.start for solution in self._solutions])
         owner = np.searchsorted(starts, times, side="right") - 1
         for number in np.unique(owner):
-            own = owner == number
-            found[:, own] = self._blocks[number].solution(times[own])
+            inside = owner == number
+            found[:, inside] = self._solutions[number].solution(times[inside])
         return dict(zip(self._joint.network.names, found, strict=True))
 
     def _integrate(self, end: float, power: MeanPower | None, temperature: float | None) -> bool:
         solved = solve_ivp(
-            self._slope(power),
+            self._derivative(power),
             (self.time, end),
             self.state,
-            events=None if temperature is None else self._passing(temperature),
+            events=None if temperature is None else self._crossing(temperature),
             dense_output=True,
             rtol=1e-7,
             atol=1e-7,
@@ -152,23 +154,23 @@ class ThermalHistory(History):
         reached = solved.status == 1
         if temperature is not None and not reached:
             return False
-        self._blocks.append(_Block(self.time, solved.sol))
+        self._solutions.append(_Solution(self.time, solved.sol))
         self.time = float(solved.t[-1])
         self.state = np.asarray(solved.y[:, -1])
         return True
 
-    def _slope(self, power: MeanPower | None) -> Callable[[float, Array], Array]:
+    def _derivative(self, power: MeanPower | None) -> Callable[[float, Array], Array]:
         names = self._joint.network.names
 
-        def slope(time: float, state: Array) -> Array:
+        def derivative(time: float, state: Array) -> Array:
             heat = self._to_ambient * self.ambient.at(time) - self._conductance @ state
             if power is not None:
                 heat += self._shares * power(dict(zip(names, state.tolist(), strict=True)))
             return np.asarray(heat / self._capacities)
 
-        return slope
+        return derivative
 
-    def _passing(self, temperature: float) -> Callable[[float, Array], float]:
+    def _crossing(self, temperature: float) -> Callable[[float, Array], float]:
         def distance(_: float, state: Array) -> float:
             return float(state[self._motor] - temperature)
 

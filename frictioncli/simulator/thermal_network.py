@@ -1,4 +1,4 @@
-"""The joint's thermal network: heat capacities, conductances, ambient."""
+"""Thermal network of the joint: heat capacities, conductances and ambient temperature."""
 
 from dataclasses import dataclass
 
@@ -15,7 +15,7 @@ class ThermalNode:
     Attributes
     ----------
     name : str
-        What it is.
+        Name of the node.
     capacity : float
         Heat capacity. [J/K]
     to_ambient : float
@@ -38,7 +38,7 @@ class ThermalLink:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ThermalNetwork:
-    r"""Nodes and the links between them.
+    r"""Thermal nodes and the links between them.
 
     Notes
     -----
@@ -50,7 +50,7 @@ class ThermalNetwork:
 
     @property
     def names(self) -> tuple[str, ...]:
-        """Names of the nodes, in the order of every vector here."""
+        """Names of the nodes, in the order of all vectors."""
         return tuple(node.name for node in self.nodes)
 
     def capacities(self) -> Array:
@@ -74,7 +74,7 @@ class ThermalNetwork:
         return matrix
 
     def steady_state(self, *, power: ArrayLike, ambient: float) -> Array:
-        """Return the temperatures at which constant heat input and loss balance [°C].
+        """Return the steady-state temperatures for constant heat input.
 
         Parameters
         ----------
@@ -82,6 +82,17 @@ class ThermalNetwork:
             Heat input per node. [W]
         ambient : float
             Ambient temperature. [°C]
+
+        Returns
+        -------
+        ndarray, shape (nodes,)
+            Temperatures. [°C]
+
+        Examples
+        --------
+        >>> motor = ThermalNode(name="motor", capacity=100.0, to_ambient=2.0)
+        >>> ThermalNetwork(nodes=(motor,), links=()).steady_state(power=[40.0], ambient=20.0)
+        array([40.])
         """
         inflow = np.asarray(power, dtype=float) + self.to_ambient() * ambient
         return np.asarray(np.linalg.solve(self.conductance_matrix(), inflow))
@@ -89,14 +100,14 @@ class ThermalNetwork:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Ambient:
-    """Ambient temperature through the day.
+    """Ambient temperature over a run.
 
     Attributes
     ----------
     start : float
-        At the run's first sample. [°C]
+        Temperature at the first sample of the run. [°C]
     drift : float
-        Change per hour. [K/h]
+        Rate of change. [K/h]
     """
 
     start: float

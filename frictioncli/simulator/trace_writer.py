@@ -1,4 +1,4 @@
-"""KUKA-style trace files: one text table per recording, and the folder's manifest."""
+"""Trace files as of a KUKA controller, one text table per recording, and the manifest."""
 
 from collections.abc import Iterable
 from dataclasses import dataclass
@@ -13,7 +13,7 @@ ENCODING = "cp1252"
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ManifestRow:
-    """One recording in the manifest.
+    """A row of the manifest: one recording.
 
     Attributes
     ----------
@@ -37,7 +37,7 @@ class ManifestRow:
 
 
 def trace_text(recording: Recording, *, joint: int) -> str:
-    """Return a recording as a trace of axis ``joint``: `;`, decimal point, true units."""
+    """Return a recording as text of a trace of axis ``joint``, separated by ``;``."""
     header = ";".join(
         (
             "Zeit[sec]",
@@ -64,7 +64,7 @@ def write_trace(path: Path, recording: Recording, *, joint: int) -> None:
 
 
 def manifest_text(rows: Iterable[ManifestRow]) -> str:
-    """Return ``manifest.csv`` of a run's folder."""
+    """Return the text of ``manifest.csv``."""
     lines = ["file;started_at;phase;payload;ambient"]
     lines += [
         f"{row.file};{row.started_at.isoformat(timespec='milliseconds')};{row.phase};"
@@ -75,5 +75,5 @@ def manifest_text(rows: Iterable[ManifestRow]) -> str:
 
 
 def moment(day: datetime, seconds: float) -> datetime:
-    """Return the time ``seconds`` after the beginning of a run, to the millisecond."""
+    """Return the time ``seconds`` after the start of a run, to the millisecond."""
     return day + timedelta(milliseconds=round(seconds * 1000.0))

@@ -1,4 +1,4 @@
-"""The state of the joint at each sample, as a planted effect sees it."""
+"""State of the joint at each sample, on which the laws of planted effects depend."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -12,19 +12,19 @@ from frictioncli.simulator.planted.operating_history import OperatingHistory
 from frictioncli.simulator.thermal_history import HOUSING, MOTOR
 
 STANDING_SPEED = 0.2
-"""Below this velocity friction goes linearly through zero: at rest, torque is load [deg/s]."""
+"""Velocity below which friction falls linearly to zero, so that torque is load at rest [deg/s]."""
 
 
 @dataclass(frozen=True, slots=True)
 class AddedTorque:
-    """Torque that an effect adds, all in N·m.
+    """Torque that an effect adds.
 
     Attributes
     ----------
     friction : ndarray or float
-        Torque that opposes the motion where positive.
+        Torque that opposes the motion where positive. [N·m]
     load : ndarray or float
-        Torque that the drive holds in either direction.
+        Torque that is the same in both directions. [N·m]
     """
 
     friction: Array | float = 0.0
@@ -46,7 +46,7 @@ class State:
     position, velocity, acceleration : ndarray
         Motion. [deg], [deg/s], [deg/s²]
     since_reversal : ndarray
-        Time since the stroke began. [s]
+        Time since the start of the stroke. [s]
     temperatures : mapping of str to ndarray
         Node temperatures. [°C]
     load, friction, inertial : ndarray
@@ -72,7 +72,7 @@ class State:
 
     @property
     def direction(self) -> Array:
-        """+1 forward, -1 backward, between them at rest [-]."""
+        """+1 forward, -1 in reverse, in between near rest [-]."""
         return np.clip(self.velocity / STANDING_SPEED, -1.0, 1.0)
 
     @property
@@ -97,17 +97,17 @@ class State:
 
     @property
     def operated(self) -> Array:
-        """Time that the runs lasted until now, nights left out [s]."""
+        """Duration of the runs so far, without the nights [s]."""
         return self.operation.earlier.operated + self.time
 
     @property
     def progress(self) -> Array:
-        """Share of all runs' time that has passed [-]."""
+        """Share of the duration of all runs that has passed [-]."""
         return self.operated / self.operation.earlier.total
 
     @property
     def since_turn(self) -> Array:
-        """Angle since the joint last turned round [deg]."""
+        """Angle since the last reversal [deg]."""
         low, high = self.operation.angles
         forward = self.velocity > 0.0
         return np.maximum(np.where(forward, self.position - low, high - self.position), 0.0)
@@ -122,7 +122,7 @@ def state_of(
     since_reversal: Array,
     temperatures: Mapping[str, Array],
 ) -> State:
-    """Return the state of a joint in motion; the parameters are the state's attributes."""
+    """Return the state of a joint in motion; parameters as the attributes of :class:`State`."""
     load = joint.arm.gravity_torque(motion.position)
     return State(
         joint=joint,
