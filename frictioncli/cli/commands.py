@@ -29,7 +29,7 @@ from frictioncli.simulator.settings import SynthesisSettings
 from frictioncli.stages.settings import RunSettings
 
 if TYPE_CHECKING:
-    from frictioncli.fleet.joint import Outcome
+    from frictioncli.fleet.joint import JointOutcome
 
 __all__ = ["app"]
 
@@ -284,8 +284,8 @@ def fleet(
 
 
 def _progress_bar(
-    outcomes: "Iterator[Outcome]", joints: int
-) -> "AbstractContextManager[Iterable[Outcome]]":
+    outcomes: "Iterator[JointOutcome]", joints: int
+) -> "AbstractContextManager[Iterable[JointOutcome]]":
     """Return the outcomes with a progress bar around them, on a terminal only."""
     if not sys.stdout.isatty():
         return nullcontext(outcomes)

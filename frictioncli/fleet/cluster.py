@@ -1,4 +1,4 @@
-"""Joints on a Dask cluster that is there already; each worker reads and writes its own files."""
+"""Processing of joints on a running Dask cluster; the workers read and write the files."""
 
 import logging
 from collections.abc import Generator, Iterator, Sequence
@@ -8,35 +8,36 @@ from typing import Any
 
 from frictioncli import __version__
 from frictioncli.errors import FrictionError, OptionError
-from frictioncli.fleet.joint import JointTask, Outcome, run_joint
-from frictioncli.fleet.local_pool import given_up
+from frictioncli.fleet.joint import JointOutcome, JointTask, run_joint
+from frictioncli.fleet.local_processes import record_worker_death
 
 _PATIENCE = 60
-"""How long a scheduler and its first worker are waited for. [s]"""
+"""Timeout for the scheduler and its first worker. [s]"""
 
 _LARGEST_BATCH = 16
 _BATCHES_PER_WORKER = 20
 
 
-def run_on_cluster(tasks: Sequence[JointTask], address: str) -> Generator[Outcome, None, None]:
-    """Yield the outcome of each joint as it comes.
+def run_on_cluster(tasks: Sequence[JointTask], address: str) -> Generator[JointOutcome, None, None]:
+    """Yield the outcome of each joint as soon as it is done.
 
-    As many tasks are in flight as the cluster has workers, a few joints each where there are many.
-    When a worker dies the scheduler gives its task to another one; joints that were done stay
-    done. A task that takes down as many workers as the scheduler allows comes back: its joints are
-    then tried alone, and the one that does it again has failed.
+    The joints are sent in batches, one batch per worker at a time. If a worker dies, the scheduler
+    gives its batch to another one; joints that were done stay done. If a batch has killed as many
+    workers as the scheduler allows, its joints are tried one by one, and the joint that kills
+    workers again has failed.
 
     Parameters
     ----------
     tasks : sequence of JointTask
-        The joints, with absolute paths that all workers share.
+        The joints, with absolute paths that are the same on all workers.
     address : str
         Address of the scheduler, such as ``tcp://host:8786``.
 
     Raises
     ------
     OptionError
-        If Dask is not installed, nothing answers at the address, or a worker does not suit.
+        If Dask is not installed, no scheduler answers, or a worker has several threads or another
+        version of the program.
     FrictionError
         If the scheduler is lost.
     """
@@ -48,21 +49,21 @@ def run_on_cluster(tasks: Sequence[JointTask], address: str) -> Generator[Outcom
         running: dict[str, list[JointTask]] = {}
         queue = as_completed(loop=client.loop)
 
-        def fill() -> None:
+        def submit() -> None:
             while waiting and len(running) < max(1, len(client.nthreads())):
                 batch = waiting.pop()
                 future = client.submit(_run_batch, batch, pure=False)
                 running[future.key] = batch
                 queue.add(future)
 
-        fill()
+        submit()
         for future in queue:
             batch = running.pop(future.key)
             try:
                 yield from future.result()
             except KilledWorker:
                 if len(batch) == 1:
-                    yield given_up(batch[0])
+                    yield record_worker_death(batch[0])
                 else:
                     waiting += [[task] for task in batch]
             except CancelledError as error:
@@ -70,7 +71,7 @@ def run_on_cluster(tasks: Sequence[JointTask], address: str) -> Generator[Outcom
                     f"--scheduler {address}: the scheduler is gone; joints that were done stay"
                     " done: start it and call again"
                 ) from error
-            fill()
+            submit()
 
 
 @contextmanager
@@ -88,7 +89,7 @@ def _client(address: str) -> Iterator[Any]:
             f"--scheduler {address}: no Dask scheduler answers ({error}); expected an address such"
             " as tcp://host:8786"
         ) from error
-    with _silent("distributed.client"), client:
+    with _no_logging("distributed.client"), client:
         try:
             client.wait_for_workers(1, timeout=_PATIENCE)
         except TimeoutError as error:
@@ -100,8 +101,8 @@ def _client(address: str) -> Iterator[Any]:
 
 
 @contextmanager
-def _silent(name: str) -> Iterator[None]:
-    """Keep a library from telling, with a traceback, what one message here tells."""
+def _no_logging(name: str) -> Iterator[None]:
+    """Suppress the log messages of a library; its faults are reported here by one message."""
     log = logging.getLogger(name)
     level = log.level
     log.setLevel(logging.CRITICAL)
@@ -112,12 +113,12 @@ def _silent(name: str) -> Iterator[None]:
 
 
 def _batch_size(joints: int, workers: int) -> int:
-    """Return how many joints make a task: enough batches remain to keep all workers busy."""
+    """Return the number of joints in a batch, small enough to keep all workers busy."""
     return max(1, min(_LARGEST_BATCH, joints // (_BATCHES_PER_WORKER * max(workers, 1))))
 
 
-def _run_batch(tasks: Sequence[JointTask]) -> list[Outcome]:
-    """Work on a few joints, on a worker of the cluster."""
+def _run_batch(tasks: Sequence[JointTask]) -> list[JointOutcome]:
+    """Process a batch of joints, on a worker of the cluster."""
     from distributed import get_worker
 
     worker = get_worker()

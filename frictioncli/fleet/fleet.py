@@ -1,4 +1,4 @@
-"""A fleet: every joint on its own, then one table of all."""
+"""Processing of all joints of a fleet, and the table of their results."""
 
 import os
 import textwrap
@@ -17,13 +17,13 @@ from frictioncli.fleet.joint import (
     DONE,
     FAILED,
     UNCHANGED,
+    JointOutcome,
     JointTask,
-    Outcome,
     settings_document,
 )
-from frictioncli.fleet.joint_record import check_own, read_row
-from frictioncli.fleet.layout import joints_of
-from frictioncli.fleet.local_pool import run_local
+from frictioncli.fleet.joint_logs import find_joints
+from frictioncli.fleet.joint_record import check_folder, read_row
+from frictioncli.fleet.local_processes import run_locally
 from frictioncli.fleet.settings import FleetSettings
 from frictioncli.provenance import Provenance, sha256
 from frictioncli.stages.settings import RunSettings
@@ -32,30 +32,30 @@ from frictioncli.workfolder import locked
 
 FLEET = "fleet.parquet"
 
-Watch = Callable[[Iterator[Outcome], int], AbstractContextManager[Iterable[Outcome]]]
-"""Stands between the outcomes and who counts them, as a progress bar does."""
+Progress = Callable[[Iterator[JointOutcome], int], AbstractContextManager[Iterable[JointOutcome]]]
+"""Wraps the outcomes and their number, as a progress bar does."""
 
-_ROWS = 1000
-_SHOWN = 20
-_WIDTH = 300
+_ROWS_PER_BATCH = 1000
+_MOST_FAILURES = 20
+_MOST_CHARACTERS = 300
 
 
 @dataclass(slots=True)
 class FleetSummary:
-    """What has been done; it prints as the command's output.
+    """Counts of the outcomes; the command prints it.
 
     Attributes
     ----------
     path : Path
-        The fleet's table.
+        Table of the fleet.
     joints : int
-        How many there are.
+        Number of joints.
     status, verdicts : Counter
-        How many joints have each.
+        Number of joints by status, and by verdict of the diagnosis.
     failures : list of str
-        The first few that failed, and why in short; the table has the whole reason.
+        First failed joints with a shortened reason; the table has the full one.
     seconds : float
-        Time that joints took, all together. [s]
+        Processing time of all joints together. [s]
     """
 
     path: Path
@@ -65,28 +65,28 @@ class FleetSummary:
     failures: list[str] = field(default_factory=list)
     seconds: float = 0.0
 
-    def add(self, outcome: Outcome) -> None:
+    def add(self, outcome: JointOutcome) -> None:
         """Count an outcome."""
         self.status[outcome.status] += 1
         self.seconds += outcome.seconds
         if outcome.verdict is not None:
             self.verdicts[outcome.verdict] += 1
-        if outcome.status == FAILED and len(self.failures) < _SHOWN:
-            reason = textwrap.shorten(outcome.message, _WIDTH, placeholder=" ...")
+        if outcome.status == FAILED and len(self.failures) < _MOST_FAILURES:
+            reason = textwrap.shorten(outcome.message, _MOST_CHARACTERS, placeholder=" ...")
             self.failures.append(f"robot {outcome.robot}, joint {outcome.joint}: {reason}")
 
     def __str__(self) -> str:
-        kept = self.status[UNCHANGED]
+        unchanged = self.status[UNCHANGED]
         lines = [
-            f"joints    {self.joints}: {self.status[DONE] + kept} done"
-            + (f" ({kept} of them before, unchanged)" if kept else "")
+            f"joints    {self.joints}: {self.status[DONE] + unchanged} done"
+            + (f" ({unchanged} of them before, unchanged)" if unchanged else "")
             + f", {self.status[FAILED]} failed; {self.seconds:,.0f} s of work"
         ]
         if self.verdicts:
-            told = ", ".join(
+            counts = ", ".join(
                 f"{count} {verdict}" for verdict, count in sorted(self.verdicts.items())
             )
-            lines.append(f"verdicts  {told}")
+            lines.append(f"verdicts  {counts}")
         lines += [f"failed    {text}" for text in sorted(self.failures)]
         if self.status[FAILED] > len(self.failures):
             more = self.status[FAILED] - len(self.failures)
@@ -99,70 +99,81 @@ def run_fleet(
     out: Path,
     settings: RunSettings | None = None,
     options: FleetSettings | None = None,
-    watch: Watch = lambda outcomes, joints: nullcontext(outcomes),
+    progress: Progress = lambda outcomes, joints: nullcontext(outcomes),
 ) -> FleetSummary:
     """Run the chain for each joint of a fleet, and write ``fleet.parquet``.
 
     Parameters
     ----------
     fleet : Path
-        Folder or table of contents, see :func:`frictioncli.fleet.layout.joints_of`.
+        Folder or table of contents, see :func:`frictioncli.fleet.joint_logs.find_joints`.
     out : Path
-        Gets the table, and a work folder ``robot=R/joint=J`` per joint.
+        Folder for the table and for one work folder ``robot=R/joint=J`` per joint.
     settings : RunSettings, optional
-        Of the stages, for all joints; without any for the diagnosis there is none.
+        Settings of the stages for all joints.
     options : FleetSettings, optional
-        Where joints are worked on.
-    watch : callable, optional
-        Given the outcomes as they come and the number of joints, hands them on.
+        Where the joints are processed.
+    progress : callable, optional
+        Wraps the outcomes, given them and the number of joints.
+
+    Returns
+    -------
+    FleetSummary
+        Counts of the outcomes.
 
     Raises
     ------
     FrictionError
-        If the layout cannot be followed, or ``out`` cannot be used. What is wrong with a joint is
-        no error: it is in its row.
+        If the folders or the table of contents are wrong, or ``out`` cannot be used. A fault of a
+        joint is no error: it is in the row of the joint.
     """
     settings = settings or RunSettings()
     options = options or FleetSettings()
-    # workers may stand in another folder
+    # workers may have another current folder
     fleet, out = fleet.absolute(), out.absolute()
     if settings.ingest.map_file is not None:
-        chart = settings.ingest.map_file.absolute()
-        settings = replace(settings, ingest=replace(settings.ingest, map_file=chart))
+        map_file = settings.ingest.map_file.absolute()
+        settings = replace(settings, ingest=replace(settings.ingest, map_file=map_file))
     tasks = [
         JointTask(
             logs=logs,
-            work=out / logs.place,
+            work=out / logs.subfolder,
             settings=settings,
             report=options.report,
             redo=options.redo,
         )
-        for logs in joints_of(fleet)
+        for logs in find_joints(fleet)
     ]
     for task in tasks:
-        check_own(task.work)
+        check_folder(task.work)
     summary = FleetSummary(path=out / FLEET, joints=len(tasks))
     with locked(out):
-        with closing(_outcomes(tasks, options)) as found, watch(found, len(tasks)) as outcomes:
+        with (
+            closing(_outcomes(tasks, options)) as done,
+            progress(done, len(tasks)) as outcomes,
+        ):
             for outcome in outcomes:
                 summary.add(outcome)
         inputs = {fleet.name: sha256(fleet)} if fleet.is_file() else {}
         document = settings_document(settings, report=options.report)
         provenance = Provenance("fleet", document, inputs)
-        _write(summary.path, tasks, provenance)
+        _write_table(summary.path, tasks, provenance)
     return summary
 
 
-def _outcomes(tasks: list[JointTask], options: FleetSettings) -> Generator[Outcome, None, None]:
+def _outcomes(
+    tasks: list[JointTask], options: FleetSettings
+) -> Generator[JointOutcome, None, None]:
+    """Return the outcomes, from the cluster or from processes of this machine."""
     if options.scheduler is not None:
         return run_on_cluster(tasks, options.scheduler)
-    return run_local(tasks, min(options.workers or os.cpu_count() or 1, len(tasks)))
+    return run_locally(tasks, min(options.workers or os.cpu_count() or 1, len(tasks)))
 
 
-def _write(path: Path, tasks: list[JointTask], provenance: Provenance) -> None:
-    """Gather the rows of all joints, in their order, a bounded number at a time."""
+def _write_table(path: Path, tasks: list[JointTask], provenance: Provenance) -> None:
+    """Write the rows of all joints in their order, in batches."""
     schema = pa.schema([(column.name, column.type) for column in schemas.FLEET.columns])
     works = (task.work for task in tasks)
     with TableWriter(path, schemas.FLEET, provenance) as writer:
-        while rows := [read_row(work) for work in islice(works, _ROWS)]:
+        while rows := [read_row(work) for work in islice(works, _ROWS_PER_BATCH)]:
             writer.write(pa.Table.from_pylist(rows, schema=schema))

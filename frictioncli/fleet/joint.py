@@ -1,4 +1,4 @@
-"""One joint of a fleet: the whole chain into its own work folder, whatever happens."""
+"""Processing of one joint of a fleet: the whole chain in a work folder of its own."""
 
 import hashlib
 import json
@@ -14,9 +14,15 @@ from threadpoolctl import threadpool_limits
 from frictioncli import __version__
 from frictioncli.errors import FrictionError, LogError
 from frictioncli.files import write_text
-from frictioncli.fleet.joint_record import FAILURE, Note, emptied, read_note, write_note
-from frictioncli.fleet.layout import JointLogs
-from frictioncli.fleet.table_row import row_of, unused_runs
+from frictioncli.fleet.joint_logs import JointLogs
+from frictioncli.fleet.joint_record import (
+    FAILURE,
+    JointRecord,
+    read_record,
+    reset_folder,
+    write_record,
+)
+from frictioncli.fleet.table_row import table_row, unused_runs
 from frictioncli.provenance import sha256
 from frictioncli.stages import run as pipeline
 from frictioncli.stages.settings import RunSettings
@@ -28,22 +34,22 @@ DONE, UNCHANGED, FAILED = "done", "unchanged", "failed"
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class JointTask:
-    """A joint to work on; it travels to the process that does it.
+    """A joint to process; it is sent to the worker.
 
     Attributes
     ----------
     logs : JointLogs
-        The joint.
+        The joint and its logs.
     work : Path
-        Its work folder.
+        Work folder of the joint.
     settings : RunSettings
-        Of the stages; those of reading without what ``logs`` says.
+        Settings of the stages for all joints; ``logs`` adds those of the joint.
     report : bool
-        Whether it gets a report.
+        Whether the report is written.
     redo : bool
-        Whether it is done again if it is done already.
+        Whether an unchanged joint is processed again.
     version : str
-        Version of the program that asks.
+        Version of the program that has sent the task.
     """
 
     logs: JointLogs
@@ -55,21 +61,21 @@ class JointTask:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Outcome:
-    """How it went with a joint.
+class JointOutcome:
+    """Outcome of a joint.
 
     Attributes
     ----------
     robot, joint : str, int
-        Which one.
+        The joint.
     status : {"done", "unchanged", "failed"}
-        ``unchanged`` was done by an earlier call.
+        ``unchanged``: done by an earlier call.
     message : str
-        Why it failed, or what was left out.
+        Reason of the failure, or what was left out.
     verdict : str or None
-        The diagnosis.
+        Verdict of the diagnosis.
     seconds : float
-        How long it took. [s]
+        Processing time. [s]
     """
 
     robot: str
@@ -80,68 +86,73 @@ class Outcome:
     seconds: float = 0.0
 
 
-def run_joint(task: JointTask) -> Outcome:
-    """Work on a joint; every fault ends in its row and its folder, none outside.
+def run_joint(task: JointTask) -> JointOutcome:
+    """Process a joint; a fault goes to its row and its folder and is not raised.
 
-    Linear algebra keeps to one thread: many joints share the processors, and more threads would
-    change the last digits.
+    Linear algebra uses one thread: many joints share the processors, and more threads would change
+    the last digits.
+
+    Parameters
+    ----------
+    task : JointTask
+        The joint.
     """
-    begun = time.perf_counter()
+    start = time.perf_counter()
     with threadpool_limits(1):
         outcome = _run_joint(task)
-    return replace(outcome, seconds=time.perf_counter() - begun)
+    return replace(outcome, seconds=time.perf_counter() - start)
 
 
-def _run_joint(task: JointTask) -> Outcome:
+def _run_joint(task: JointTask) -> JointOutcome:
     try:
         runs = task.logs.runs()
-        settings = _own_settings(task)
-        inputs = _input_hashes(runs, settings)
+        settings = _joint_settings(task)
+        inputs = _log_hashes(runs, settings)
         key = _key(inputs, settings_document(settings, report=task.report))
         with locked(task.work):
-            kept = read_note(task.work)
-            if not task.redo and kept is not None and kept.key == key:
-                return _outcome(task, UNCHANGED, kept.row)
-            emptied(task.work, _head(task, FAILED, "not finished"))
-            left_out = _worked(task, runs, settings)
-            row = _head(task, DONE, left_out) | {"runs": len(runs)} | row_of(task.work)
+            record = read_record(task.work)
+            if not task.redo and record is not None and record.key == key:
+                return _outcome(task, UNCHANGED, record.row)
+            reset_folder(task.work, _status_columns(task, FAILED, "not finished"))
+            left_out = _run_stages(task, runs, settings)
+            row = _status_columns(task, DONE, left_out) | {"runs": len(runs)} | table_row(task.work)
             row["inputs_sha256"] = _digest(inputs)
-            write_note(task.work, Note(key=key, row=row))
+            write_record(task.work, JointRecord(key=key, row=row))
         return _outcome(task, DONE, row)
     except (FrictionError, OSError) as fault:
-        return failed(task, str(fault), str(fault))
+        return record_failure(task, str(fault), str(fault))
     except Exception as bug:
         text = f"a bug: {type(bug).__name__}: {bug}"
-        return failed(task, text, "".join(traceback.format_exception(bug)))
+        return record_failure(task, text, "".join(traceback.format_exception(bug)))
 
 
-def failed(task: JointTask, message: str, details: str) -> Outcome:
-    """Note that a joint has failed; its folder then holds the note and the details only.
+def record_failure(task: JointTask, message: str, details: str) -> JointOutcome:
+    """Record that a joint has failed; its folder then holds only the record and the details.
 
     Parameters
     ----------
     task : JointTask
         The joint.
     message : str
-        What its row says.
+        Message in the row.
     details : str
-        What the file ``failure.txt`` says.
+        Text of the file ``failure.txt``.
     """
-    row = _head(task, FAILED, message)
-    emptied(task.work, row)
+    row = _status_columns(task, FAILED, message)
+    reset_folder(task.work, row)
     write_text(task.work / FAILURE, f"{details.rstrip()}\n")
     return _outcome(task, FAILED, row)
 
 
 def settings_document(settings: RunSettings, *, report: bool) -> dict[str, Any]:
-    """Return settings as plain values: what beside its logs makes a joint's results.
+    """Return the settings as plain values, for the provenance and for the key of a joint.
 
     Parameters
     ----------
     settings : RunSettings
-        Of the stages.
+        Settings of the stages.
     report : bool
-        Whether there is a report.
+        Whether the report is written.
     """
     stages = {
         name: None if part is None else asdict(part)
@@ -162,50 +173,51 @@ def settings_document(settings: RunSettings, *, report: bool) -> dict[str, Any]:
     }
 
 
-def _worked(task: JointTask, runs: Mapping[str, Path], settings: RunSettings) -> str:
-    """Run the chain; return what was left out."""
+def _run_stages(task: JointTask, runs: Mapping[str, Path], settings: RunSettings) -> str:
+    """Run the chain; return which stages and runs were left out."""
     left_out = []
 
-    def note(stage: str, done: StageResult) -> None:
-        if not done.path.exists():
-            left_out.append(f"{stage} {done}")
+    def collect(stage: str, result: StageResult) -> None:
+        if not result.path.exists():
+            left_out.append(f"{stage} {result}")
 
     if task.report:
-        pipeline.run(runs, task.work, settings, note)
+        pipeline.run(runs, task.work, settings, collect)
     else:
-        pipeline.analyse(runs, task.work, settings, note)
+        pipeline.analyse(runs, task.work, settings, collect)
     unused = unused_runs(task.work, runs)
     if unused:
         left_out.append(f"no pairs from run {', '.join(unused)}")
     return "; ".join(left_out)
 
 
-def _own_settings(task: JointTask) -> RunSettings:
+def _joint_settings(task: JointTask) -> RunSettings:
+    """Return the settings with the joint, mapping file and gear ratio of its logs."""
     logs, shared = task.logs, task.settings.ingest
-    own = replace(
+    ingest = replace(
         shared,
         joints=(logs.joint,),
         map_file=logs.map_file or shared.map_file,
         gear_ratio=shared.gear_ratio if logs.gear_ratio is None else logs.gear_ratio,
     )
-    return replace(task.settings, ingest=own)
+    return replace(task.settings, ingest=ingest)
 
 
-def _input_hashes(runs: Mapping[str, Path], settings: RunSettings) -> dict[str, str]:
-    """Return the SHA-256 of all files of all runs, and of the mapping file."""
-    found: dict[str, str] = {}
+def _log_hashes(runs: Mapping[str, Path], settings: RunSettings) -> dict[str, str]:
+    """Return the SHA-256 of all files of all runs and of the mapping file, by name."""
+    hashes: dict[str, str] = {}
     for name, path in runs.items():
         if not path.exists():
             raise LogError(f"{path}: no such file or folder; expected the logs of run {name}")
         files = sorted(p for p in path.rglob("*") if p.is_file()) if path.is_dir() else [path]
         base = path if path.is_dir() else path.parent
-        found |= {f"{name}/{file.relative_to(base).as_posix()}": sha256(file) for file in files}
-    chart = settings.ingest.map_file
-    if chart is not None:
-        if not chart.is_file():
-            raise LogError(f"{chart}: no such file; expected a mapping file")
-        found[chart.name] = sha256(chart)
-    return found
+        hashes |= {f"{name}/{file.relative_to(base).as_posix()}": sha256(file) for file in files}
+    map_file = settings.ingest.map_file
+    if map_file is not None:
+        if not map_file.is_file():
+            raise LogError(f"{map_file}: no such file; expected a mapping file")
+        hashes[map_file.name] = sha256(map_file)
+    return hashes
 
 
 def _key(inputs: Mapping[str, str], settings: Mapping[str, Any]) -> str:
@@ -216,7 +228,7 @@ def _digest(document: Mapping[str, Any]) -> str:
     return hashlib.sha256(json.dumps(document, sort_keys=True).encode()).hexdigest()
 
 
-def _head(task: JointTask, status: str, message: str) -> dict[str, Any]:
+def _status_columns(task: JointTask, status: str, message: str) -> dict[str, Any]:
     return {
         "robot": task.logs.robot,
         "joint": task.logs.joint,
@@ -225,8 +237,8 @@ def _head(task: JointTask, status: str, message: str) -> dict[str, Any]:
     }
 
 
-def _outcome(task: JointTask, status: str, row: Mapping[str, Any]) -> Outcome:
-    return Outcome(
+def _outcome(task: JointTask, status: str, row: Mapping[str, Any]) -> JointOutcome:
+    return JointOutcome(
         robot=task.logs.robot,
         joint=task.logs.joint,
         status=status,

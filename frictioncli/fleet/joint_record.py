@@ -1,4 +1,4 @@
-"""What a joint's work folder says of itself: its row of the fleet's table, and what it is of."""
+"""Record in the work folder of a joint: its row of the fleet's table, and the state of the work."""
 
 import json
 import shutil
@@ -11,68 +11,68 @@ from frictioncli.documents import to_json
 from frictioncli.errors import FrictionError, TableError
 from frictioncli.files import write_text
 
-NOTE = "fleet.json"
-"""Stands in each joint's work folder, from the beginning of the work on it."""
+RECORD = "fleet.json"
+"""Name of the record; it exists from the beginning of the work on a joint."""
 
 FAILURE = "failure.txt"
-"""Stands beside it where the joint has failed, with all that is known about it."""
+"""Name of the file with the details of a failure."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Note:
-    """The state of a joint.
+class JointRecord:
+    """State of a joint.
 
     Attributes
     ----------
     key : str or None
-        Digest of inputs, settings and program version; none while the joint is not done.
+        Digest of inputs, settings and program version; None while the joint is not done.
     row : mapping
-        Its row of the table :data:`frictioncli.schemas.FLEET`.
+        Row of the table :data:`frictioncli.schemas.FLEET`.
     """
 
     key: str | None
     row: Mapping[str, Any]
 
 
-def read_note(work: Path) -> Note | None:
-    """Return the note of a work folder; none where there is none, or a damaged one."""
+def read_record(work: Path) -> JointRecord | None:
+    """Return the record of a work folder; None if it is missing or damaged."""
     try:
-        document = json.loads((work / NOTE).read_text(encoding="utf-8"))
-        return Note(key=document["key"], row=document["row"])
+        document = json.loads((work / RECORD).read_text(encoding="utf-8"))
+        return JointRecord(key=document["key"], row=document["row"])
     except (OSError, ValueError, KeyError, TypeError):
         return None
 
 
-def write_note(work: Path, note: Note) -> None:
-    """Write a joint's note."""
-    write_text(work / NOTE, to_json({"key": note.key, "row": dict(note.row)}))
+def write_record(work: Path, record: JointRecord) -> None:
+    """Write the record of a joint into its work folder."""
+    write_text(work / RECORD, to_json({"key": record.key, "row": dict(record.row)}))
 
 
 def read_row(work: Path) -> Mapping[str, Any]:
-    """Return a joint's row.
+    """Return the row of a joint.
 
     Raises
     ------
     TableError
-        If the joint has none.
+        If the work folder has no record.
     """
-    note = read_note(work)
-    if note is None:
-        raise TableError(f"{work / NOTE} is missing or damaged; run 'frictioncli fleet' again")
-    return note.row
+    record = read_record(work)
+    if record is None:
+        raise TableError(f"{work / RECORD} is missing or damaged; run 'frictioncli fleet' again")
+    return record.row
 
 
-def check_own(work: Path) -> None:
-    """Refuse a work folder that something else has filled: it would be emptied.
+def check_folder(work: Path) -> None:
+    """Check that a work folder is empty or was made by a fleet, because it will be emptied.
 
     Raises
     ------
     FrictionError
-        If it holds anything, but no note.
+        If it holds files but no record.
     """
     if work.exists() and not work.is_dir():
         raise FrictionError(f"{work} is a file; choose another folder with -w")
-    if not work.is_dir() or (work / NOTE).exists():
+    if not work.is_dir() or (work / RECORD).exists():
         return
     if any(not path.name.startswith(".") for path in work.iterdir()):
         raise FrictionError(
@@ -81,11 +81,19 @@ def check_own(work: Path) -> None:
         )
 
 
-def emptied(work: Path, row: Mapping[str, Any]) -> None:
-    """Take a work folder for a joint: note that it is not done, and remove what is there."""
-    write_note(work, Note(key=None, row=row))
+def reset_folder(work: Path, row: Mapping[str, Any]) -> None:
+    """Write the record of a joint that is not done, and remove all other files.
+
+    Parameters
+    ----------
+    work : Path
+        Work folder of the joint.
+    row : mapping
+        Row of the joint.
+    """
+    write_record(work, JointRecord(key=None, row=row))
     for path in work.iterdir():
-        if path.name == NOTE or path.name.startswith("."):
+        if path.name == RECORD or path.name.startswith("."):
             continue
         if path.is_dir() and not path.is_symlink():
             shutil.rmtree(path)

@@ -1,4 +1,4 @@
-"""One joint's row of the fleet's table, from the files of its work folder."""
+"""Row of a joint in the fleet's table, from the files of its work folder."""
 
 import math
 from collections.abc import Iterable, Sequence
@@ -6,7 +6,6 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-import pandas as pd
 
 from frictioncli import documents, schemas, tables
 from frictioncli.comparison.change import change_of_last_run
@@ -19,16 +18,16 @@ from frictioncli.workfiles import DIAGNOSIS, MODEL, SCHEDULE, TORQUES
 _PHASES = {"heat-up": "heating", "cool-down": "cooling"}
 
 
-def row_of(work: Path) -> dict[str, Any]:
-    """Return what the work folder of one joint says; columns that it cannot fill are absent.
+def table_row(work: Path) -> dict[str, Any]:
+    """Return the row of a joint; columns without a value are absent.
 
     Parameters
     ----------
     work : Path
-        A work folder on which the chain has run.
+        Work folder after the chain has run.
     """
     torques = tables.read(work / TORQUES, schemas.TORQUES)
-    # logs of one joint were read, so there is one model
+    # only the logs of one joint were read, so there is one model
     model = read_models(work / MODEL)[0]
     row = _model_columns(model) | _reference_columns(model) | _schedule_columns(work)
     row |= _diagnosis_columns(work)
@@ -39,20 +38,21 @@ def row_of(work: Path) -> dict[str, Any]:
 
 
 def unused_runs(work: Path, runs: Iterable[str]) -> list[str]:
-    """Return those of the runs that gave no pairs.
+    """Return the runs without pairs.
 
     Parameters
     ----------
     work : Path
-        A work folder on which the chain has run.
+        Work folder after the chain has run.
     runs : iterable of str
-        Names of the runs that it was given.
+        Names of all runs.
     """
     used = set(tables.read(work / TORQUES, schemas.TORQUES)["run"].unique())
     return [run for run in runs if run not in used]
 
 
 def _model_columns(model: FrictionModel) -> dict[str, Any]:
+    """Return the parameters with their intervals, and the misfit."""
     row: dict[str, Any] = {
         "torque_unit": model.torque_unit,
         "temperature": model.temperature,
@@ -66,14 +66,14 @@ def _model_columns(model: FrictionModel) -> dict[str, Any]:
 
 
 def _reference_columns(model: FrictionModel) -> dict[str, Any]:
-    """Return friction without load at the middle speed, where the data reach the temperature."""
-    speeds, reach = model.range.speed, model.range.temperature
+    """Return friction without load at the middle speed, at temperatures within the data."""
+    speeds, temperatures = model.range.speed, model.range.temperature
     if speeds is None:
         return {}
     speed = sum(speeds) / 2
     row: dict[str, Any] = {"reference_speed": speed}
     for temperature in schemas.REFERENCE_TEMPERATURES:
-        if reach is not None and reach[0] <= temperature <= reach[1]:
+        if temperatures is not None and temperatures[0] <= temperature <= temperatures[1]:
             row[f"friction_{temperature}"] = float(
                 friction_torque(model.friction, load=0.0, speed=speed, temperature=temperature)
             )
@@ -81,22 +81,20 @@ def _reference_columns(model: FrictionModel) -> dict[str, Any]:
 
 
 def _schedule_columns(work: Path) -> dict[str, Any]:
+    """Return the error of the corrected friction and the corrections per run, by phase."""
     if not (work / SCHEDULE).exists():
         return {}
     schedule = tables.read(work / SCHEDULE, schemas.SCHEDULE)
     row: dict[str, Any] = {}
-    for phase, own in schedule.groupby("phase"):
+    for phase, rows in schedule.groupby("phase"):
         kind = _PHASES[str(phase)]
-        row[f"epsilon_{kind}"] = epsilon(own, "friction_smoothed")
-        row[f"corrections_{kind}"] = _per_run(own)
+        row[f"epsilon_{kind}"] = epsilon(rows, "friction_smoothed")
+        row[f"corrections_{kind}"] = float(rows["corrected"].sum() / rows["run"].nunique())
     return row
 
 
-def _per_run(schedule: pd.DataFrame) -> float:
-    return float(schedule["corrected"].sum() / schedule["run"].nunique())
-
-
 def _diagnosis_columns(work: Path) -> dict[str, Any]:
+    """Return the verdict, the causes and the gain."""
     if not (work / DIAGNOSIS).exists():
         return {}
     document = documents.read(work / DIAGNOSIS, DiagnosisDocument, "diagnose")
@@ -126,7 +124,7 @@ def _with_interval(name: str, value: Any, interval: Any) -> dict[str, Any]:
 
 
 def _plain(value: Any) -> Any:
-    """Return a value that JSON knows; what is not finite is missing."""
+    """Return a value as JSON has it; None for what is not finite."""
     if isinstance(value, np.generic):
         value = value.item()
     return None if isinstance(value, float) and not math.isfinite(value) else value

@@ -8,8 +8,8 @@ import time
 from dataclasses import dataclass
 from pathlib import Path
 
-from frictioncli.fleet.joint_record import read_note
-from frictioncli.fleet.layout import JointLogs
+from frictioncli.fleet.joint_logs import JointLogs
+from frictioncli.fleet.joint_record import read_record
 from tests.fleet.joints import Joint, write_joint
 
 ROOT = Path(__file__).parents[2]
@@ -71,16 +71,19 @@ def children(pid):
     return found
 
 
+def all_records(out):
+    """Return work folder -> record."""
+    return {path.parent: read_record(path.parent) for path in out.glob("*/*/fleet.json")}
+
+
 def begun(out):
     """Return the work folders that a joint was begun in and is not done."""
-    notes = {path.parent: read_note(path.parent) for path in out.glob("robot=*/joint=*/fleet.json")}
-    return [work for work, note in notes.items() if note and note.key is None]
+    return [work for work, record in all_records(out).items() if record and record.key is None]
 
 
 def done(out):
     """Return the work folders of joints that are done."""
-    notes = {path.parent: read_note(path.parent) for path in out.glob("robot=*/joint=*/fleet.json")}
-    return [work for work, note in notes.items() if note and note.key is not None]
+    return [work for work, record in all_records(out).items() if record and record.key is not None]
 
 
 def until(condition, seconds=300):

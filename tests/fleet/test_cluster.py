@@ -9,7 +9,7 @@ import pytest
 from frictioncli.errors import FrictionError, OptionError
 from frictioncli.fleet.cluster import run_on_cluster
 from frictioncli.fleet.joint import JointTask
-from frictioncli.fleet.layout import joints_of
+from frictioncli.fleet.joint_logs import find_joints
 from frictioncli.stages.settings import RunSettings
 from tests.fleet.clusters import free_port, scheduler, worker
 from tests.fleet.fleets import Deadly, begun, contents, done, fleet, started, until
@@ -43,8 +43,8 @@ def test_a_joint_that_takes_down_workers_fails_alone(tmp_path):
         folder = tmp_path / "logs" / "robot=A" / f"joint={number}"
         write_joint(folder, Joint(seed=number, runs=1, cycle=4), axis=number)
     good, bad = (
-        JointTask(logs=logs, work=tmp_path / "out" / logs.place, settings=QUICK, report=False)
-        for logs in joints_of(tmp_path / "logs")
+        JointTask(logs=logs, work=tmp_path / "out" / logs.subfolder, settings=QUICK, report=False)
+        for logs in find_joints(tmp_path / "logs")
     )
     deadly = Deadly(
         robot="A", joint=2, folder=bad.logs.folder, counter=tmp_path / "counter", deaths=99
@@ -69,7 +69,7 @@ def test_workers_with_several_threads_are_refused(logs, tmp_path):
 
 
 def test_workers_of_another_version_are_refused(logs, tmp_path):
-    (joint, *_) = joints_of(logs)
+    (joint, *_) = find_joints(logs)
     task = JointTask(logs=joint, work=tmp_path / "out", settings=QUICK, version="0.0.1")
     with (
         scheduler() as (address, _),

@@ -10,8 +10,8 @@ import pytest
 from frictioncli.errors import FrictionError
 from frictioncli.fleet import joint as joints
 from frictioncli.fleet.joint import JointTask, run_joint
-from frictioncli.fleet.joint_record import check_own, read_note
-from frictioncli.fleet.layout import JointLogs
+from frictioncli.fleet.joint_logs import JointLogs
+from frictioncli.fleet.joint_record import check_folder, read_record
 from frictioncli.fleet.table_row import causes_text
 from frictioncli.model.settings import FitSettings
 from frictioncli.stages.settings import RunSettings
@@ -46,7 +46,7 @@ def task(logs, tmp_path):
 
 def test_a_row_tells_the_joint_that_made_the_logs(finished):
     task, outcome = finished
-    row = read_note(task.work).row
+    row = read_record(task.work).row
     assert (outcome.status, row["status"], row["runs"]) == ("done", "done", 5)
     assert row["n_pairs"] == 5 * 6 * 3
     assert row["torque_unit"] == row["tau_c_unit"] == "N·m"
@@ -59,14 +59,14 @@ def test_a_row_tells_the_joint_that_made_the_logs(finished):
 
 
 def test_wear_shows_as_a_change(finished):
-    row = read_note(finished[0].work).row
+    row = read_record(finished[0].work).row
     assert row["change_low"] < WORN.wear < row["change_high"]
     assert row["change_high"] - row["change_low"] < 0.6
 
 
 def test_a_row_repeats_what_the_files_say(finished):
     task, outcome = finished
-    row = read_note(task.work).row
+    row = read_record(task.work).row
     model = json.loads((task.work / "model.json").read_text(encoding="utf-8"))
     for name, entry in model["parameters"].items():
         assert row[name] == entry["estimate"]
@@ -118,7 +118,7 @@ def test_another_log_or_another_name_of_a_run_is_a_reason(task, tmp_path):
 
 def test_a_failed_joint_leaves_its_reason_and_nothing_else(task, tmp_path):
     run_joint(task)
-    lost = replace(task, logs=JointLogs(robot="A", joint=2, listed=(("d", tmp_path / "none"),)))
+    lost = replace(task, logs=JointLogs(robot="A", joint=2, run_paths=(("d", tmp_path / "none"),)))
     outcome = run_joint(lost)
     assert outcome.status == "failed"
     assert "none: no such file or folder; expected the logs of run d" in outcome.message
@@ -141,7 +141,7 @@ def test_a_run_without_usable_logs_does_not_stop_the_others(task, tmp_path):
     empty = tmp_path / "empty"
     empty.mkdir()
     listed = (*task.logs.runs().items(), ("2025-01-01", empty))
-    outcome = run_joint(replace(task, logs=JointLogs(robot="A", joint=2, listed=listed)))
+    outcome = run_joint(replace(task, logs=JointLogs(robot="A", joint=2, run_paths=listed)))
     assert outcome.status == "done"
     assert "no pairs from run 2025-01-01" in outcome.message
 
@@ -149,8 +149,8 @@ def test_a_run_without_usable_logs_does_not_stop_the_others(task, tmp_path):
 def test_a_folder_that_something_else_has_filled_is_left_alone(tmp_path):
     (tmp_path / "mine.txt").write_text("precious", encoding="utf-8")
     with pytest.raises(FrictionError, match="holds files that no fleet has made"):
-        check_own(tmp_path)
-    check_own(tmp_path / "not there yet")
+        check_folder(tmp_path)
+    check_folder(tmp_path / "not there yet")
 
 
 def test_causes_in_words():

@@ -1,4 +1,4 @@
-"""Where a fleet's logs lie: folders ``robot=R/joint=J/run=D``, or a table of contents."""
+"""Logs of the joints of a fleet: folders ``robot=R/joint=J/run=D``, or a table of contents."""
 
 import csv
 import io
@@ -12,18 +12,18 @@ from typing import Any
 from frictioncli.errors import LogError, MappingError
 from frictioncli.logs.runs.discovery import natural_key
 
-REQUIRED = ("robot", "joint", "run", "path")
+REQUIRED_COLUMNS = ("robot", "joint", "run", "path")
 """Columns that a table of contents must have."""
 
-OPTIONAL = ("map", "gear_ratio")
-"""Columns that it may have."""
+OPTIONAL_COLUMNS = ("map", "gear_ratio")
+"""Columns that a table of contents may have."""
 
 _PARQUET = b"PAR1"
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class JointLogs:
-    """One joint of a fleet, and where its logs are.
+    """A joint of a fleet and the paths of its logs.
 
     Attributes
     ----------
@@ -32,73 +32,73 @@ class JointLogs:
     joint : int
         Number of the joint, from 1.
     folder : Path or None
-        The joint's folder, which holds one folder per run.
-    listed : tuple of (str, Path)
-        Else the runs by name.
+        Folder of the joint with one folder per run.
+    run_paths : tuple of (str, Path)
+        Name and path of each run, if there is no folder.
     map_file : Path or None
-        Mapping file of its logs.
+        Mapping file of the logs.
     gear_ratio : float or None
-        Motor turns per joint turn.
+        Motor turns per joint turn. [-]
     """
 
     robot: str
     joint: int
     folder: Path | None = None
-    listed: tuple[tuple[str, Path], ...] = ()
+    run_paths: tuple[tuple[str, Path], ...] = ()
     map_file: Path | None = None
     gear_ratio: float | None = None
 
     @property
-    def place(self) -> Path:
-        """Its folder relative to the fleet's."""
+    def subfolder(self) -> Path:
+        """Path of the joint below the folder of a fleet."""
         return Path(f"robot={self.robot}", f"joint={self.joint}")
 
     def runs(self) -> dict[str, Path]:
-        """Return run name -> folder or file, in natural order of the names.
+        """Return the folder or file of each run, by name in natural order.
 
-        The folders are looked through only here, by whoever works on the joint.
+        Folders are searched only here, by the worker that processes the joint.
 
         Raises
         ------
         LogError
             If there is no run.
         """
-        found = dict(self.listed) if self.folder is None else _labelled(self.folder, "run")
-        if not found:
+        paths = dict(self.run_paths) if self.folder is None else _subfolders(self.folder, "run")
+        if not paths:
             raise LogError(f"{self.folder}: no folders of runs; expected run=D, with logs inside")
-        return dict(sorted(found.items(), key=lambda item: natural_key(item[0])))
+        return dict(sorted(paths.items(), key=lambda item: natural_key(item[0])))
 
 
-def joints_of(fleet: Path) -> list[JointLogs]:
+def find_joints(fleet: Path) -> list[JointLogs]:
     """Return the joints of a fleet, in natural order of robot and joint.
 
     Parameters
     ----------
     fleet : Path
         A folder of ``robot=R/joint=J/run=D`` folders, or a table of contents, CSV or Parquet, with
-        the columns of :data:`REQUIRED`.
+        the columns of :data:`REQUIRED_COLUMNS`.
 
     Raises
     ------
     LogError
-        If it does not exist or holds no joints.
+        If the path does not exist or has no joints.
     MappingError
-        If a folder's name or a row cannot be followed.
+        If the name of a folder or a row of the table is wrong.
     """
     if fleet.is_dir():
-        joints = _folders(fleet)
+        joints = _joints_of_folders(fleet)
     elif fleet.is_file():
-        joints = _contents(fleet)
+        joints = _joints_of_table(fleet)
     else:
         raise LogError(
             f"{fleet}: no such file or folder; expected a folder with robot=R/joint=J/run=D, or a"
-            f" table of contents with the columns {', '.join(REQUIRED)}"
+            f" table of contents with the columns {', '.join(REQUIRED_COLUMNS)}"
         )
     if not joints:
         raise LogError(f"{fleet}: no joints found; expected robot=R/joint=J/run=D, or rows")
     ordered = sorted(joints, key=lambda joint: (natural_key(joint.robot), joint.robot, joint.joint))
     for one, other in pairwise(ordered):
-        if one.place == other.place:
+        if one.subfolder == other.subfolder:
             raise MappingError(
                 f"{fleet}: robot {one.robot}, joint {one.joint} is there twice: {one.folder},"
                 f" {other.folder}; expected one folder per joint"
@@ -106,8 +106,8 @@ def joints_of(fleet: Path) -> list[JointLogs]:
     return ordered
 
 
-def _labelled(folder: Path, key: str) -> dict[str, Path]:
-    """Return value -> path of the sub-folders ``key=value``."""
+def _subfolders(folder: Path, key: str) -> dict[str, Path]:
+    """Return the paths of the subfolders ``key=value`` by their value."""
     if not folder.is_dir():
         raise LogError(f"{folder}: no such folder")
     start = f"{key}="
@@ -118,48 +118,56 @@ def _labelled(folder: Path, key: str) -> dict[str, Path]:
     }
 
 
-def _folders(fleet: Path) -> list[JointLogs]:
+def _joints_of_folders(fleet: Path) -> list[JointLogs]:
+    """Return the joints of folders ``robot=R/joint=J``."""
     return [
-        JointLogs(robot=_robot(robot, f"{path}"), joint=_joint(joint, f"{folder}"), folder=folder)
-        for robot, path in _labelled(fleet, "robot").items()
-        for joint, folder in _labelled(path, "joint").items()
+        JointLogs(
+            robot=_robot_name(robot, f"{path}"),
+            joint=_joint_number(joint, f"{folder}"),
+            folder=folder,
+        )
+        for robot, path in _subfolders(fleet, "robot").items()
+        for joint, folder in _subfolders(path, "joint").items()
     ]
 
 
-def _contents(path: Path) -> list[JointLogs]:
+def _joints_of_table(path: Path) -> list[JointLogs]:
+    """Return the joints of a table of contents."""
     rows = _rows(path)
-    found: dict[tuple[str, int], _Listing] = {}
+    entries: dict[tuple[str, int], _TableEntry] = {}
     for where, row in rows:
-        key = (_robot(row["robot"], where), _joint(row["joint"], where))
-        listing = found.setdefault(key, _Listing({}, row.get("map", ""), row.get("gear_ratio", "")))
-        if (row.get("map", ""), row.get("gear_ratio", "")) != (listing.map, listing.gear_ratio):
+        key = (_robot_name(row["robot"], where), _joint_number(row["joint"], where))
+        entry = entries.setdefault(
+            key, _TableEntry({}, row.get("map", ""), row.get("gear_ratio", ""))
+        )
+        if (row.get("map", ""), row.get("gear_ratio", "")) != (entry.map, entry.gear_ratio):
             raise MappingError(
                 f"{where}: map or gear_ratio differs from an earlier row of robot {key[0]}, joint"
                 f" {key[1]}; expected the same in all rows of a joint"
             )
-        place = _place(path.parent, row["path"], where)
-        for what, known in ((row["run"], listing.runs), (place, listing.runs.values())):
+        run_path = _absolute_path(path.parent, row["path"], where)
+        for what, known in ((row["run"], entry.runs), (run_path, entry.runs.values())):
             if what in known:
                 raise MappingError(
                     f"{where}: robot {key[0]}, joint {key[1]} has {what} in an earlier row already;"
                     " expected each run and each path of a joint once"
                 )
-        listing.runs[row["run"]] = place
+        entry.runs[row["run"]] = run_path
     return [
         JointLogs(
             robot=robot,
             joint=joint,
-            listed=tuple(listing.runs.items()),
-            map_file=_place(path.parent, listing.map, f"{path}") if listing.map else None,
-            gear_ratio=_ratio(listing.gear_ratio, f"{path}: robot {robot}, joint {joint}"),
+            run_paths=tuple(entry.runs.items()),
+            map_file=_absolute_path(path.parent, entry.map, f"{path}") if entry.map else None,
+            gear_ratio=_gear_ratio(entry.gear_ratio, f"{path}: robot {robot}, joint {joint}"),
         )
-        for (robot, joint), listing in found.items()
+        for (robot, joint), entry in entries.items()
     ]
 
 
 @dataclass(slots=True)
-class _Listing:
-    """What a table of contents says of a joint, as text."""
+class _TableEntry:
+    """Rows of one joint in a table of contents, as text."""
 
     runs: dict[str, Path]
     map: str
@@ -167,20 +175,21 @@ class _Listing:
 
 
 def _rows(path: Path) -> Iterable[tuple[str, dict[str, str]]]:
-    """Yield where each row stands, and its texts."""
+    """Yield the place of each row in the file and its cells as text."""
     with path.open("rb") as stream:
         parquet = stream.read(len(_PARQUET)) == _PARQUET
     names, rows = _parquet_rows(path) if parquet else _csv_rows(path)
-    missing = [name for name in REQUIRED if name not in names]
+    missing = [name for name in REQUIRED_COLUMNS if name not in names]
     if missing:
         raise MappingError(
             f"{path}: columns {', '.join(missing)} are missing; found {', '.join(names)}; expected"
-            f" {', '.join(REQUIRED)} and, if wanted, {', '.join(OPTIONAL)}"
+            f" {', '.join(REQUIRED_COLUMNS)} and, if wanted, {', '.join(OPTIONAL_COLUMNS)}"
         )
     for number, row in rows:
         where = f"{path} row {number}"
-        texts = {name: _text(row[name]) for name in (*REQUIRED, *OPTIONAL) if name in row}
-        empty = [name for name in REQUIRED if not texts.get(name)]
+        known = (name for name in (*REQUIRED_COLUMNS, *OPTIONAL_COLUMNS) if name in row)
+        texts = {name: _cell_text(row[name]) for name in known}
+        empty = [name for name in REQUIRED_COLUMNS if not texts.get(name)]
         if empty:
             raise MappingError(f"{where}: {', '.join(empty)} is empty; expected a value")
         yield where, texts
@@ -217,7 +226,7 @@ def _csv_rows(path: Path) -> tuple[list[str], Iterable[tuple[int, Mapping[str, A
     return names, [(number, dict(zip(names, cells, strict=True))) for number, cells in lines[1:]]
 
 
-def _text(value: Any) -> str:
+def _cell_text(value: Any) -> str:
     if value is None or value != value:  # an empty cell of a Parquet file may be NaN
         return ""
     if isinstance(value, float) and value.is_integer():
@@ -225,7 +234,7 @@ def _text(value: Any) -> str:
     return str(value).strip()
 
 
-def _robot(name: str, where: str) -> str:
+def _robot_name(name: str, where: str) -> str:
     if not name or len(name.encode()) > 200 or any(c in "/\\" or not c.isprintable() for c in name):
         raise MappingError(
             f"{where}: robot {name!r} cannot be part of a folder's name; expected printable"
@@ -234,13 +243,13 @@ def _robot(name: str, where: str) -> str:
     return name
 
 
-def _joint(text: str, where: str) -> int:
+def _joint_number(text: str, where: str) -> int:
     if not text.isascii() or not text.isdecimal() or not 1 <= int(text) <= 32767:
         raise MappingError(f"{where}: joint {text!r}; expected a joint number from 1")
     return int(text)
 
 
-def _ratio(text: str, where: str) -> float | None:
+def _gear_ratio(text: str, where: str) -> float | None:
     if not text:
         return None
     try:
@@ -251,8 +260,8 @@ def _ratio(text: str, where: str) -> float | None:
         ) from None
 
 
-def _place(base: Path, text: str, where: str) -> Path:
-    """Return a path of a table of contents; a relative one may not lead out of its folder."""
+def _absolute_path(base: Path, text: str, where: str) -> Path:
+    """Return the absolute path for a path in a table; a relative one must stay in its folder."""
     if "\0" in text:
         raise MappingError(f"{where}: path {text!r} holds a NUL character")
     if not os.path.isabs(text) and os.path.normpath(text).split(os.sep)[0] == os.pardir:

@@ -10,9 +10,9 @@ import pytest
 from frictioncli import schemas, tables
 from frictioncli.fleet.fleet import run_fleet
 from frictioncli.fleet.joint import JointTask
-from frictioncli.fleet.joint_record import read_note
-from frictioncli.fleet.layout import joints_of
-from frictioncli.fleet.local_pool import run_local
+from frictioncli.fleet.joint_logs import find_joints
+from frictioncli.fleet.joint_record import read_record
+from frictioncli.fleet.local_processes import run_locally
 from frictioncli.fleet.settings import FleetSettings
 from frictioncli.stages.settings import RunSettings
 from tests.fleet.fleets import Deadly, begun, children, contents, done, fleet, started, until
@@ -65,7 +65,7 @@ def test_a_worker_killed_in_mid_run_loses_nothing(alone, logs, tmp_path):
         os.kill(pid, signal.SIGKILL)
     output, errors = process.communicate(timeout=300)
     assert (process.returncode, errors) == (0, "")
-    # one that was killed between its note and its answer counts as done before
+    # one that was killed between its record and its answer counts as done before
     assert re.search(r"4 done( \(. of them before, unchanged\))?, 2 failed", output)
     assert contents(tmp_path / "out") == contents(alone[0])
 
@@ -96,8 +96,8 @@ def test_a_joint_that_takes_down_its_process_has_three_tries(tmp_path, deaths, s
         folder = tmp_path / "logs" / "robot=A" / f"joint={number}"
         write_joint(folder, Joint(seed=number, runs=1, cycle=4), axis=number)
     tasks = [
-        JointTask(logs=logs, work=tmp_path / "out" / logs.place, settings=QUICK, report=False)
-        for logs in joints_of(tmp_path / "logs")
+        JointTask(logs=logs, work=tmp_path / "out" / logs.subfolder, settings=QUICK, report=False)
+        for logs in find_joints(tmp_path / "logs")
     ]
     deadly = Deadly(
         robot="A",
@@ -107,7 +107,7 @@ def test_a_joint_that_takes_down_its_process_has_three_tries(tmp_path, deaths, s
         deaths=deaths,
     )
     tasks[1] = JointTask(logs=deadly, work=tasks[1].work, settings=QUICK, report=False)
-    outcomes = {outcome.joint: outcome for outcome in run_local(tasks, 2)}
+    outcomes = {outcome.joint: outcome for outcome in run_locally(tasks, 2)}
     assert {joint: outcome.status for joint, outcome in outcomes.items()} == {
         1: "done",
         2: status,
@@ -152,4 +152,4 @@ def test_a_table_of_contents_does_the_same_as_folders(alone, logs, tmp_path):
     )
     assert (summary.joints, summary.status["done"]) == (1, 1)
     place = Path("robot=A", "joint=3")
-    assert read_note(tmp_path / "out" / place) == read_note(alone[0] / place)
+    assert read_record(tmp_path / "out" / place) == read_record(alone[0] / place)

@@ -6,7 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from frictioncli.errors import LogError, MappingError
-from frictioncli.fleet.layout import joints_of
+from frictioncli.fleet.joint_logs import find_joints
 
 
 def folders(root, *places):
@@ -21,7 +21,7 @@ def contents(path, text):
 
 
 def told(fleet):
-    return [(joint.robot, joint.joint) for joint in joints_of(fleet)]
+    return [(joint.robot, joint.joint) for joint in find_joints(fleet)]
 
 
 def test_folders_come_in_natural_order(tmp_path):
@@ -30,13 +30,13 @@ def test_folders_come_in_natural_order(tmp_path):
 
 
 def test_runs_of_a_folder_are_named_by_it_in_natural_order(tmp_path):
-    (joint,) = joints_of(folders(tmp_path, *(f"robot=A/joint=1/run={n}" for n in (10, 9, 1))))
+    (joint,) = find_joints(folders(tmp_path, *(f"robot=A/joint=1/run={n}" for n in (10, 9, 1))))
     assert list(joint.runs()) == ["1", "9", "10"]
     assert joint.runs()["9"] == tmp_path / "robot=A" / "joint=1" / "run=9"
 
 
 def test_a_joint_without_runs_is_only_found_out_by_who_works_on_it(tmp_path):
-    (joint,) = joints_of(folders(tmp_path, "robot=A/joint=1/2024"))
+    (joint,) = find_joints(folders(tmp_path, "robot=A/joint=1/2024"))
     with pytest.raises(LogError, match=r"joint=1: no folders of runs; expected run=D"):
         joint.runs()
 
@@ -44,19 +44,19 @@ def test_a_joint_without_runs_is_only_found_out_by_who_works_on_it(tmp_path):
 @pytest.mark.parametrize("name", ["joint=x", "joint=0", "joint=-1", "joint=", "joint=99999"])
 def test_a_joint_needs_a_number(tmp_path, name):
     with pytest.raises(MappingError, match="expected a joint number from 1"):
-        joints_of(folders(tmp_path, f"robot=A/{name}"))
+        find_joints(folders(tmp_path, f"robot=A/{name}"))
 
 
 def test_one_number_twice_is_refused(tmp_path):
     with pytest.raises(MappingError, match="robot A, joint 2 is there twice"):
-        joints_of(folders(tmp_path, "robot=A/joint=2", "robot=A/joint=02"))
+        find_joints(folders(tmp_path, "robot=A/joint=2", "robot=A/joint=02"))
 
 
 def test_nothing_there(tmp_path):
     with pytest.raises(LogError, match="no joints found"):
-        joints_of(tmp_path)
+        find_joints(tmp_path)
     with pytest.raises(LogError, match="no such file or folder"):
-        joints_of(tmp_path / "none")
+        find_joints(tmp_path / "none")
 
 
 @pytest.mark.parametrize("separator", [",", ";"])
@@ -69,7 +69,7 @@ def test_a_table_of_contents_gives_joints_and_runs(tmp_path, separator, bom):
         ("B", "1", "d9", "/elsewhere/b9", "", "-100.5"),
     ]
     text = bom + "\n".join(separator.join(row) for row in rows) + "\n\n"
-    first, second = joints_of(contents(tmp_path / "fleet.csv", text))
+    first, second = find_joints(contents(tmp_path / "fleet.csv", text))
     assert (first.robot, first.joint, first.map_file) == ("A", 2, tmp_path / "xarm.toml")
     assert first.runs() == {"d1": tmp_path / "logs" / "a"}
     assert (second.robot, second.joint, second.gear_ratio) == ("B", 1, -100.5)
@@ -84,7 +84,7 @@ def test_parquet_says_the_same_as_csv(tmp_path):
     )
     frame.to_parquet(tmp_path / "fleet.parquet")
     frame.to_csv(tmp_path / "fleet.csv", index=False)
-    assert joints_of(tmp_path / "fleet.parquet") == joints_of(tmp_path / "fleet.csv")
+    assert find_joints(tmp_path / "fleet.parquet") == find_joints(tmp_path / "fleet.csv")
 
 
 HEADER = "robot,joint,run,path\n"
@@ -110,7 +110,7 @@ HEADER = "robot,joint,run,path\n"
 )
 def test_a_table_that_cannot_be_followed_says_where_and_why(tmp_path, text, words):
     with pytest.raises((MappingError, LogError), match=words):
-        joints_of(contents(tmp_path / "fleet.csv", text))
+        find_joints(contents(tmp_path / "fleet.csv", text))
 
 
 def test_what_is_no_table(tmp_path):
@@ -118,7 +118,7 @@ def test_what_is_no_table(tmp_path):
     (tmp_path / "b").write_bytes(b"\xff\xfe\x00robot")
     for name, words in (("a", "as Parquet"), ("b", "as UTF-8 text")):
         with pytest.raises(MappingError, match=words):
-            joints_of(tmp_path / name)
+            find_joints(tmp_path / name)
 
 
 NAMES = st.text(st.characters(codec="utf-8", exclude_characters='/\\"'), min_size=1, max_size=30)
@@ -131,11 +131,11 @@ def test_no_work_folder_and_no_relative_path_leaves_its_place(tmp_path_factory, 
         base / "fleet.parquet"
     )
     try:
-        (joint,) = joints_of(base / "fleet.parquet")
+        (joint,) = find_joints(base / "fleet.parquet")
     except MappingError:
         return
-    assert len(joint.place.parts) == 2
-    assert ".." not in joint.place.parts
+    assert len(joint.subfolder.parts) == 2
+    assert ".." not in joint.subfolder.parts
     if not path.startswith("/"):
         (place,) = joint.runs().values()
         assert place.resolve().is_relative_to(base.resolve())
