@@ -5,7 +5,8 @@ import pytest
 
 from frictioncli import schemas, tables
 from frictioncli.errors import LogError
-from frictioncli.logs.channels.recognition import assign_channels, joint_in_name, recognise_channels
+from frictioncli.logs.channels.joint_channels import assign_channels
+from frictioncli.logs.channels.recognition import joint_in_name, recognise_channels
 from frictioncli.logs.ingest import IngestSettings, ingest
 from frictioncli.logs.log_source import Refusal
 

@@ -7,8 +7,9 @@ import numpy as np
 
 from frictioncli.logs.channels import aliases as names
 from frictioncli.logs.channels import unit_evidence, units
+from frictioncli.logs.channels.joint_channels import JointChannels
 from frictioncli.logs.channels.motion_units import JointMotion, Remarks, joint_motion
-from frictioncli.logs.channels.recognition import JointChannels, LogChannel
+from frictioncli.logs.channels.recognition import LogChannel
 from frictioncli.logs.channels.survey import Survey
 from frictioncli.logs.channels.transmission import Transmission, find_transmission
 from frictioncli.logs.channels.units import UnitConversion

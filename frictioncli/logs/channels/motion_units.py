@@ -7,7 +7,8 @@ import numpy as np
 
 from frictioncli.logs.channels import aliases as names
 from frictioncli.logs.channels import unit_evidence, units
-from frictioncli.logs.channels.recognition import JointChannels, LogChannel
+from frictioncli.logs.channels.joint_channels import JointChannels
+from frictioncli.logs.channels.recognition import LogChannel
 from frictioncli.logs.channels.survey import Survey
 from frictioncli.logs.channels.unit_evidence import MotionUnits, RawMotion
 

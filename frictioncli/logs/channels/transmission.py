@@ -8,8 +8,8 @@ import numpy as np
 from frictioncli.arrays import Array
 from frictioncli.logs.channels import aliases as names
 from frictioncli.logs.channels import units
+from frictioncli.logs.channels.joint_channels import JointChannels
 from frictioncli.logs.channels.motion_units import JointMotion, Remarks
-from frictioncli.logs.channels.recognition import JointChannels
 from frictioncli.logs.channels.survey import Survey
 
 _GEAR_RATIO_SPREAD = 0.02

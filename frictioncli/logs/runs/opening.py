@@ -6,13 +6,8 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 from frictioncli.logs.channels.channel_map import ChannelMap, mapped_channels
-from frictioncli.logs.channels.recognition import (
-    JointChannels,
-    LogChannel,
-    assign_channels,
-    joint_in_name,
-    recognise_channels,
-)
+from frictioncli.logs.channels.joint_channels import JointChannels, assign_channels
+from frictioncli.logs.channels.recognition import LogChannel, joint_in_name, recognise_channels
 from frictioncli.logs.formats import open_logs
 from frictioncli.logs.log_source import LogSource, Refusal
 from frictioncli.logs.runs.discovery import LogFile, LogRun
