@@ -1,1 +1,1 @@
-"""What logs hold, how good they are, what they suffice for, and a first mapping file."""
+"""Inspection of logs: content, quality, sufficiency for each stage, and a first mapping file."""

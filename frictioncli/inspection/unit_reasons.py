@@ -27,7 +27,7 @@ def evidence(plan: JointPlan, quantity: str, given: Collection[str], largest: fl
         Largest magnitude of its values, in the unit used inside.
     """
     channel: LogChannel = getattr(plan.channels, quantity)
-    notes = remarks_on(plan, channel)
+    notes = _remarks_on(plan, channel)
     if quantity in given:
         return "; ".join(("as told", *notes))
     if any("read as" in text or "taken as" in text for text in notes):
@@ -39,7 +39,7 @@ def evidence(plan: JointPlan, quantity: str, given: Collection[str], largest: fl
     return "; ".join(("no unit in the header, taken as usual", *notes))
 
 
-def remarks_on(plan: JointPlan, channel: LogChannel) -> tuple[str, ...]:
+def _remarks_on(plan: JointPlan, channel: LogChannel) -> tuple[str, ...]:
     """Return notes and warnings on a channel, without its name in front."""
     return tuple(
         text.removeprefix(channel.name).lstrip(": ")

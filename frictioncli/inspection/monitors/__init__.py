@@ -1,1 +1,1 @@
-"""What a log's rows show while they go by once: each module looks for one thing."""
+"""Monitors of the inspection: statistics collected in one pass while a log is read."""

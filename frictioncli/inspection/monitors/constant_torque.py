@@ -7,6 +7,7 @@ import numpy as np
 from frictioncli.arrays import Array, Flags, Indices
 from frictioncli.inspection.monitors.joint_rows import JointRows
 from frictioncli.logs.channels import aliases as names
+from frictioncli.pairs.slices import true_runs
 
 _LEAST_CHANGING = 0.8
 """Share of samples in motion whose torque must change for constant torque to be conspicuous. [-]"""
@@ -17,6 +18,7 @@ _LEAST_BETWEEN = 0.1
 _LEAST_AT_LIMIT = 5
 _LEAST_FROZEN = 10
 _LEAST_SECONDS = 1.0
+_ONE_SLICE = np.zeros(1, np.int64)
 
 
 @dataclass(frozen=True, slots=True)
@@ -160,5 +162,5 @@ class ConstantTorqueMonitor:
 
 def _runs(flags: Flags) -> tuple[Indices, Indices]:
     """Return lengths and beginnings of the runs of set flags."""
-    edges = np.flatnonzero(np.diff(np.concatenate(([False], flags, [False])).astype(np.int8)))
-    return edges[1::2] - edges[::2], edges[::2]
+    start, stop, _ = true_runs(flags, _ONE_SLICE)
+    return stop - start, start

@@ -72,6 +72,12 @@ def find_grid(values: Array) -> Resolution | None:
     ----------
     values : ndarray, shape (n,)
         Distinct values, ascending.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> find_grid(np.array([0.0, 0.5, 1.0, 2.5])).step
+    0.5
     """
     if len(values) < _FEWEST:
         return None

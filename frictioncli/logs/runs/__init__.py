@@ -1,1 +1,1 @@
-"""Runs: which files belong together, what lies beside them, and opening them."""
+"""Runs: discovery of their files, manifest, sidecar files, merged traces, and opening of logs."""

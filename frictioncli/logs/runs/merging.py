@@ -150,7 +150,9 @@ class _Alignment:
     def __init__(self, file: SecondaryFile, columns: dict[int, int], size: int) -> None:
         self._file = file
         self._columns = columns
-        self._held = frozenset(c for c, own in columns.items() if own in file.zero_order_hold)
+        self._held = frozenset(
+            column for column, source in columns.items() if source in file.zero_order_hold
+        )
         self._size = size
         self._restart()
 
@@ -228,7 +230,10 @@ class _Alignment:
         for batch in file.source.batches({file.time, *self._columns.values()}, self._size):
             time = batch.values[file.time] * file.scale
             finite = np.isfinite(time)
-            columns = {(0, str(c)): batch.values[own][finite] for c, own in self._columns.items()}
+            columns = {
+                (0, str(column)): batch.values[source][finite]
+                for column, source in self._columns.items()
+            }
             yield LogRows(batch.lines[finite], time[finite], columns)
 
 

@@ -144,7 +144,7 @@ def _choices(
     merged = {log.file: log for files in traces for log in merge_trace(files, settings.joints)}
     used = {path for log in merged.values() for path in log.source.files}
     choices: dict[LogFile, _Choice | Refusal] = {}
-    alike: dict[tuple[tuple[str, ...], int], _Choice | Refusal] = {}
+    choices_by_header: dict[tuple[tuple[str, ...], int], _Choice | Refusal] = {}
     for file, source in sources.items():
         joint = _file_joint(file, settings, channel_map)
         if file in merged:
@@ -153,10 +153,12 @@ def _choices(
         elif file.path not in used:
             # logs of a folder mostly have the same columns
             key = source.columns, joint
-            if key not in alike:
+            if key not in choices_by_header:
                 channels = _channels(source.columns, channel_map, joint)
-                alike[key] = _choose(source, channels, settings.joints, file_joint=joint)
-            choice = alike[key]
+                choices_by_header[key] = _choose(
+                    source, channels, settings.joints, file_joint=joint
+                )
+            choice = choices_by_header[key]
             choices[file] = (
                 choice if isinstance(choice, Refusal) else replace(choice, source=source)
             )

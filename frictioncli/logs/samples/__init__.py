@@ -1,1 +1,1 @@
-"""Samples: rows checked, put in time order, and written."""
+"""Samples: rows converted, checked, put in the order of time, and written."""

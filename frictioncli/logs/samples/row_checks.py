@@ -19,7 +19,7 @@ LIMITS = {TIME: 1e11, POSITION: 1e6, VELOCITY: 1e6, TORQUE: 1e6}
 """
 
 _LOOK_AHEAD = 8
-"""Following rows by which a time stamp is judged."""
+"""Following rows with which a time stamp is compared."""
 
 _START_ROWS = 200
 """First rows of a log in which stale rows are sought."""
@@ -87,7 +87,7 @@ def drop_non_increasing_time(
 
 
 def _at_least_look_ahead(blocks: Iterable[LogRows]) -> Iterator[LogRows]:
-    """Yield the rows in blocks long enough to judge the last row of the block before."""
+    """Yield the rows in blocks long enough to check the last row of the block before."""
     held: LogRows | None = None
     for block in blocks:
         held = block if held is None else concatenate_rows(held, block)
@@ -103,7 +103,7 @@ def _increasing(
 ) -> tuple[LogRows, float]:
     """Return the rows whose time increases from ``last`` on, and the time of the last of them.
 
-    ``following`` holds the times after the block, by which its last rows are judged.
+    ``following`` holds the times after the block, with which its last rows are compared.
     """
     n = len(block)
     if n and _is_increasing(block.time, last) and _is_increasing(following, block.time[-1]):
