@@ -1,1 +1,1 @@
-"""The friction model (16) and its identification."""
+"""The friction model, equation (16) of the source paper, and its identification."""

@@ -1,4 +1,4 @@
-"""The weighted equations of a fit, their derivatives, and their summary where they are many."""
+"""Weighted equations of a fit of equation (16), their derivatives and their summary."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -12,9 +12,10 @@ COEFFICIENTS = ("tau_c", "alpha", "beta", "gamma")
 """The parameters in which equation (16) is linear, in the order used throughout."""
 
 _CACHED = 1 << 13
+"""Equations of one chunk, few enough for the processor's cache."""
 
 _BINS = 256
-"""Bins of temperature in a summary: of 50 °C, 0.2 °C each."""
+"""Temperature bins of a summary: 0.2 °C each over a span of 50 °C."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -24,12 +25,12 @@ class Equations:
     Attributes
     ----------
     constant, squared_load, root_speed : ndarray, shape (rows,)
-        What tau_c, alpha and beta multiply; gamma multiplies
+        Columns of tau_c, alpha and beta; the column of gamma is
         ``root_speed * exp(-delta * temperature)``.
     temperature : ndarray, shape (rows,)
         Temperature; any finite number where ``root_speed`` is zero. [°C]
     friction : ndarray, shape (rows,)
-        Right-hand side.
+        Right-hand side: friction torque over its standard deviation.
     """
 
     constant: Array
@@ -42,7 +43,15 @@ class Equations:
         return len(self.friction)
 
     def columns(self, terms: tuple[str, ...], delta: float) -> list[Array]:
-        """Return what each of the coefficients multiplies for a given delta."""
+        """Return the column of each coefficient for a given delta, shape (rows,) each.
+
+        Parameters
+        ----------
+        terms : tuple of str
+            Those of :data:`COEFFICIENTS` that are fitted.
+        delta : float
+            Rate of the decrease with temperature. [1/°C]
+        """
         column = {
             "tau_c": self.constant,
             "alpha": self.squared_load,
@@ -51,8 +60,8 @@ class Equations:
         }
         return [column[term] for term in terms]
 
-    def parts(self) -> Iterator["Equations"]:
-        """Yield the equations in parts that stay in the processor's cache while they are used."""
+    def chunks(self) -> Iterator["Equations"]:
+        """Yield the equations in chunks that fit into the processor's cache."""
         for begin in range(0, len(self), _CACHED):
             rows = slice(begin, begin + _CACHED)
             yield Equations(
@@ -67,56 +76,87 @@ class Equations:
 def jacobian(equations: Equations, terms: tuple[str, ...], parameters: FrictionParameters) -> Array:
     """Return the derivatives of the weighted model by ``terms`` and, with gamma, by delta.
 
-    The shape is (rows, parameters), with the rows of one parameter side by side in memory.
+    Parameters
+    ----------
+    equations : Equations
+        Weighted equations.
+    terms : tuple of str
+        Those of :data:`COEFFICIENTS` that are fitted.
+    parameters : FrictionParameters
+        Where the derivatives are taken.
+
+    Returns
+    -------
+    ndarray, shape (rows, parameters)
+        One column per parameter, contiguous in memory.
     """
     columns = equations.columns(terms, parameters.delta)
     if "gamma" in terms:
-        falling = columns[terms.index("gamma")]
-        columns.append(-parameters.gamma * equations.temperature * falling)
+        decaying = columns[terms.index("gamma")]
+        columns.append(-parameters.gamma * equations.temperature * decaying)
     return np.stack(columns).T
 
 
 def summarised(equations: Equations) -> Equations:
-    """Return few equations with nearly the same misfit for all parameters.
+    """Return few equations with nearly the same sum of squared residuals for all parameters.
 
-    A misfit is made of sums of products of the columns and the right-hand side. Only root_speed
-    changes with delta, by a factor of the temperature; so its products are summed in bins of
-    temperature, each of which is one equation of the result. Three more, without root_speed, bring
-    the products of the others to their whole sums. What is lost is the width of the bins.
+    The sum of squares consists of inner products of the columns and the right-hand side. Only the
+    column of gamma depends on delta, by a factor of the temperature; so products with root_speed
+    are summed in bins of temperature, each of which gives one equation. Three more equations,
+    without root_speed, complete the products of the other columns. The only approximation is the
+    width of the bins.
+
+    Parameters
+    ----------
+    equations : Equations
+        Weighted equations.
+
+    Returns
+    -------
+    Equations
+        At most 259 equations.
     """
     low, span = float(equations.temperature.min()), float(np.ptp(equations.temperature))
-    # the warmest equation belongs to the last bin
+    # the highest temperature belongs to the last bin
     scale = _BINS * (1 - 1e-9) / max(span, 1e-9)
-    sums, whole = np.zeros((5, _BINS)), np.zeros((3, 3))
-    for part in equations.parts():
-        code = ((part.temperature - low) * scale).astype(np.intp)
+    sums, products = np.zeros((5, _BINS)), np.zeros((3, 3))
+    for chunk in equations.chunks():
+        code = ((chunk.temperature - low) * scale).astype(np.intp)
         columns = np.stack(
             [
-                part.constant,
-                part.squared_load,
-                part.friction,
-                part.root_speed,
-                part.root_speed * part.temperature,
+                chunk.constant,
+                chunk.squared_load,
+                chunk.friction,
+                chunk.root_speed,
+                chunk.root_speed * chunk.temperature,
             ]
         )
-        whole += columns[:3] @ columns[:3].T
-        sums += [np.bincount(code, part.root_speed * column, _BINS) for column in columns]
-    *shared, squares, heat = sums[:, sums[3] > 0]
+        products += columns[:3] @ columns[:3].T
+        sums += [np.bincount(code, chunk.root_speed * column, _BINS) for column in columns]
+    *shared, squares, weighted_temperature = sums[:, sums[3] > 0]
     root_speed = np.sqrt(squares)
     bins = np.stack(shared) / root_speed
-    rest = _rows_with_products(whole, bins @ bins.T)
+    rest = _rows_with_products(products - bins @ bins.T, products)
     constant, squared_load, friction = np.hstack([bins, rest])
     return Equations(
         constant=constant,
         squared_load=squared_load,
         root_speed=np.append(root_speed, np.zeros(len(rest))),
-        temperature=np.append(heat / squares, np.full(len(rest), low)),
+        temperature=np.append(weighted_temperature / squares, np.full(len(rest), low)),
         friction=friction,
     )
 
 
-def _rows_with_products(whole: Array, part: Array) -> Array:
-    """Return columns, shape (n, n), whose products are what a part lacks of the whole."""
-    size = np.sqrt(np.maximum(np.diag(whole), 1e-300))
-    values, vectors = np.linalg.eigh((whole - part) / np.outer(size, size))
+def _rows_with_products(products: Array, scale: Array) -> Array:
+    """Return columns with given inner products, shape (n, n).
+
+    Parameters
+    ----------
+    products : ndarray, shape (n, n)
+        The inner products; negative eigenvalues, which are rounding errors, count as zero.
+    scale : ndarray, shape (n, n)
+        Inner products of the same units, by whose diagonal they are scaled.
+    """
+    size = np.sqrt(np.maximum(np.diag(scale), 1e-300))
+    values, vectors = np.linalg.eigh(products / np.outer(size, size))
     return np.asarray(size[:, np.newaxis] * vectors * np.sqrt(np.maximum(values, 0.0)))

@@ -1,4 +1,4 @@
-"""Stage ``fit``: the friction torques of a joint to its friction model."""
+"""Friction model of one joint from its friction torques."""
 
 from typing import Any
 
@@ -14,7 +14,7 @@ from frictioncli.model.paper_method import consecutive_fit
 from frictioncli.model.settings import FitSettings
 
 LEAST_PAIRS = 3
-"""Fewest pairs that a fit is tried with."""
+"""Least number of pairs for a fit."""
 
 
 def fit_joint(torques: pd.DataFrame, facts: dict[str, Any], settings: FitSettings) -> FrictionModel:
@@ -32,12 +32,12 @@ def fit_joint(torques: pd.DataFrame, facts: dict[str, Any], settings: FitSetting
     Returns
     -------
     FrictionModel
-        The model with intervals and with what the data cannot determine.
+        The parameters with confidence intervals, and those that the data do not determine.
 
     Raises
     ------
     NotEnoughData
-        If there are too few pairs, or the method or temperature needs what the log does not have.
+        If there are too few pairs, or the log lacks what the method or the temperature needs.
     """
     joint = int(torques["joint"].iloc[0])
     temperature = settings.temperature
@@ -76,7 +76,7 @@ def fit_joint(torques: pd.DataFrame, facts: dict[str, Any], settings: FitSetting
 def _with_temperature(
     torques: pd.DataFrame, kind: str, joint: int
 ) -> tuple[pd.DataFrame, list[str]]:
-    """Return the rows that can be used, and what is to be noted about the others."""
+    """Return the rows with a known temperature, and notes on the others."""
     columns = {"motor": ["motor_temperature"], "housing": ["housing_temperature"]}.get(
         kind, ["motor_temperature", "housing_temperature"]
     )

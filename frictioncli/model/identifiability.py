@@ -1,7 +1,8 @@
-"""Which parameters of equation (16) the data can tell, and what becomes of the others.
+"""Which parameters of equation (16) the data determine, and how the others are handled.
 
-A term that the experiment did not excite is not fitted: its share is then held by another term, or
-it is left out. Both are said, with the numbers that decided it.
+A term that the experiment did not excite, or whose confidence interval is too wide, is not fitted:
+another term takes over its share, or it is left out. The reason is given with the numbers that
+decided it.
 """
 
 from dataclasses import dataclass, field
@@ -14,30 +15,30 @@ from frictioncli.model.observations import Observations
 from frictioncli.model.variable_projection import DELTA_BOUNDS
 
 MIN_TEMPERATURE_SPAN = 10.0
-"""Least span of temperature that tells how friction falls with it. [°C]"""
+"""Least span of temperature from which gamma and delta are fitted. [°C]"""
 
 MIN_SPEED_RATIO = 1.5
-"""Least ratio of the highest to the lowest speed that tells viscous from Coulomb friction."""
+"""Least ratio of the highest to the lowest speed that separates viscous from Coulomb friction."""
 
 _VAGUE = 0.5
-"""A term whose half interval exceeds this share of the mean friction is not told by the data."""
+"""A term whose half interval exceeds this share of the mean friction is not determined."""
 
 _NEGLIGIBLE = 0.05
-"""A load term that may be zero is kept if at most it makes this share of the mean friction."""
+"""A load term that may be zero is kept if its upper bound is below this share of the friction."""
 
 
 @dataclass(frozen=True, slots=True)
 class Determination:
-    """The terms that are fitted; why others are not; what the remaining ones hold beside their own.
+    """The terms that are fitted, and why the others are not.
 
     Attributes
     ----------
     terms : tuple of str
         Coefficients that are fitted.
     dropped : dict of str to str
-        Parameters that are not, with the reason and what was done.
+        Parameters that are not fitted, with the reason and what was done.
     merged : dict of str to str
-        Parameters that hold another's share, with what they hold.
+        Parameters that took over another one's share, with what they hold.
     """
 
     terms: tuple[str, ...] = COEFFICIENTS
@@ -45,7 +46,19 @@ class Determination:
     merged: dict[str, str] = field(default_factory=dict)
 
     def without(self, term: str, reason: str, holder: str | None, holds: str) -> "Determination":
-        """Return the same without a term, whose share ``holder`` takes over."""
+        """Return the determination without a term.
+
+        Parameters
+        ----------
+        term : str
+            The coefficient that is no longer fitted.
+        reason : str
+            Why.
+        holder : str or None
+            Parameter that takes over its share.
+        holds : str
+            What that parameter then holds.
+        """
         dropped = self.dropped | {term: reason}
         if term == "gamma":
             dropped["delta"] = reason
@@ -54,7 +67,7 @@ class Determination:
 
 
 def determined_fit(observed: Observations) -> tuple[Estimate, Determination]:
-    """Fit what the data determine.
+    """Fit the parameters that the data determine.
 
     Parameters
     ----------
@@ -64,7 +77,7 @@ def determined_fit(observed: Observations) -> tuple[Estimate, Determination]:
     Returns
     -------
     Estimate, Determination
-        The fit, and which terms it has and why.
+        The fit, and which terms it has.
     """
     chosen = _by_excitation(observed)
     while True:
@@ -76,7 +89,7 @@ def determined_fit(observed: Observations) -> tuple[Estimate, Determination]:
 
 
 def at_bound(estimate: Estimate) -> dict[str, str]:
-    """Return the fitted parameters that a physical bound holds, with the reason."""
+    """Return the fitted parameters that lie at a physical bound, with the reason."""
     flags = {
         name: "at its lower bound 0: the data would rather have it negative"
         for name in estimate.names
@@ -90,6 +103,7 @@ def at_bound(estimate: Estimate) -> dict[str, str]:
 
 
 def _by_excitation(observed: Observations) -> Determination:
+    """Return the terms that the spans of temperature and speed excite."""
     chosen = Determination()
     temperatures = observed.temperature[np.isfinite(observed.temperature)]
     if not temperatures.size:
@@ -124,18 +138,18 @@ def _by_excitation(observed: Observations) -> Determination:
 def _by_interval(
     observed: Observations, estimate: Estimate, chosen: Determination
 ) -> Determination:
-    """Return the next simpler determination if some fitted term is not told by the data."""
+    """Return a determination with a term less if the data do not determine it, else the same."""
     friction = float(np.mean(np.abs(observed.friction)))
-    reach = {
+    half_width = {
         name: (high - low) / 2 for name in estimate.names for low, high in [estimate.interval(name)]
     }
     if "alpha" in chosen.terms:
         squares = observed.squared_load[observed.row_pair] + observed.squared_load_within
         low, high = estimate.interval("alpha")
-        vague = reach["alpha"] * np.ptp(squares) > _VAGUE * friction
-        # a load as great as the friction is the least that a user will ask the model about
-        asked = max(float(np.max(squares)), friction**2)
-        doubtful = low <= 0 and high * asked > _NEGLIGIBLE * friction
+        vague = half_width["alpha"] * np.ptp(squares) > _VAGUE * friction
+        # a user will ask for loads at least as great as the friction
+        greatest = max(float(np.max(squares)), friction**2)
+        doubtful = low <= 0 and high * greatest > _NEGLIGIBLE * friction
         if vague or doubtful or np.ptp(squares) <= np.square(3 * estimate.noise.point):
             return chosen.without(
                 "alpha",
@@ -144,7 +158,7 @@ def _by_interval(
                 None,
                 "",
             )
-    if "delta" in reach and reach["delta"] >= estimate.parameters.delta:
+    if "delta" in half_width and half_width["delta"] >= estimate.parameters.delta:
         if "beta" in chosen.terms:
             return chosen.without(
                 "beta",
@@ -159,9 +173,9 @@ def _by_interval(
             None,
             "",
         )
-    if "beta" in reach and "gamma" not in chosen.terms:
+    if "beta" in half_width and "gamma" not in chosen.terms:
         root_speed = np.sqrt(observed.speed)
-        if reach["beta"] * float(np.ptp(root_speed)) > _VAGUE * friction * 2:
+        if half_width["beta"] * float(np.ptp(root_speed)) > _VAGUE * friction * 2:
             return chosen.without(
                 "beta",
                 "too uncertain to be told from Coulomb friction; merged into tau_c",

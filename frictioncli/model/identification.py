@@ -1,8 +1,13 @@
-"""Joint identification of equation (16): least squares on all pairs, with honest intervals.
+r"""Identification of equation (16) by weighted least squares on all pairs.
 
-The estimate is a weighted least-squares fit: a pair weighs what its own noise allows, whatever its
-number of angle bins. Its covariance takes the noise as it is, with what pairs share and with slow
-drift (see :mod:`frictioncli.model.noise`), so the intervals hold when the experiment is repeated.
+Each pair has the weight of its own noise, whatever its number of angle bins. The covariance of the
+estimates accounts for the noise that pairs share and for slow drift
+(:mod:`frictioncli.model.noise`) by the sandwich
+
+.. math:: (X^\mathsf{T} X)^{+} X^\mathsf{T} C X (X^\mathsf{T} X)^{+}
+
+with the weighted derivatives *X* and the covariance *C* of the weighted noise, so that the
+confidence intervals hold when the experiment is repeated.
 """
 
 from dataclasses import dataclass
@@ -52,11 +57,21 @@ class Estimate:
     rmse: float
 
     def interval(self, name: str, level: float = 0.95) -> tuple[float, float]:
-        """Return the confidence interval of a fitted parameter."""
+        """Return the confidence interval of a fitted parameter.
+
+        Parameters
+        ----------
+        name : str
+            The parameter.
+        level : float, optional
+            Confidence level.
+        """
         index = self.names.index(name)
-        reach = stats.t.ppf(0.5 + level / 2, self.freedom) * np.sqrt(self.covariance[index, index])
+        half_width = stats.t.ppf(0.5 + level / 2, self.freedom) * np.sqrt(
+            self.covariance[index, index]
+        )
         centre = getattr(self.parameters, name)
-        return float(centre - reach), float(centre + reach)
+        return float(centre - half_width), float(centre + half_width)
 
 
 def fit_terms(observed: Observations, terms: tuple[str, ...]) -> Estimate:
@@ -101,7 +116,7 @@ def fit_terms(observed: Observations, terms: tuple[str, ...]) -> Estimate:
 
 
 def pair_residual(observed: Observations, parameters: FrictionParameters) -> Array:
-    """Return the mean of measured minus modelled friction torque of each pair. [N·m]."""
+    """Return measured minus modelled mean friction torque of each pair, shape (pairs,). [N·m]."""
     modelled = friction_torque(
         parameters,
         load=np.sqrt(observed.squared_load),
@@ -123,13 +138,21 @@ def pair_equations(observed: Observations) -> Equations:
 
 
 def weighted_equations(observed: Observations, noise: Noise) -> Equations:
-    """Return one equation per pair and one for the load's contrast inside all pairs."""
+    """Return one weighted equation per pair, and one for the load term within all pairs.
+
+    Parameters
+    ----------
+    observed : Observations
+        Friction of one joint.
+    noise : Noise
+        Noise that sets the weights. [N·m]
+    """
     deviation = np.sqrt(noise.pair**2 + noise.drift**2 + noise.point**2 / observed.bins)
     pairs = pair_equations(observed)
     contrast = np.sqrt(observed.load_contrast)
-    inside = 0.0
+    slope = 0.0
     if contrast > 0:
-        inside = float(observed.squared_load_within @ observed.friction_within) / contrast
+        slope = float(observed.squared_load_within @ observed.friction_within) / contrast
 
     def rows(between: Array, within: float) -> Array:
         return np.append(between / deviation, within / noise.point)
@@ -139,17 +162,28 @@ def weighted_equations(observed: Observations, noise: Noise) -> Equations:
         squared_load=rows(pairs.squared_load, contrast),
         root_speed=rows(pairs.root_speed, 0.0),
         temperature=np.append(pairs.temperature, 0.0),
-        friction=rows(pairs.friction, inside),
+        friction=rows(pairs.friction, slope),
     )
 
 
 def _finite(temperature: Array) -> Array:
-    """Without a temperature gamma is not fitted; the number then only has to be finite."""
+    """Return temperatures with 0 where unknown: gamma is then not fitted."""
     return np.nan_to_num(temperature, nan=0.0)
 
 
 def load_coefficient(observed: Observations) -> float:
-    """Return alpha of equation (10) from within the pairs alone; 0 where load does not vary."""
+    """Return alpha of equation (10) from within the pairs alone; 0 where load does not vary.
+
+    Parameters
+    ----------
+    observed : Observations
+        Friction of one joint.
+
+    Returns
+    -------
+    float
+        Load coefficient. [1/(N·m)]
+    """
     if observed.load_contrast <= 0:
         return 0.0
     slope = observed.squared_load_within @ observed.friction_within / observed.load_contrast
@@ -179,26 +213,39 @@ def _covariance(
     noise = plausible[0][0]
     weighted = jacobian(weighted_equations(observed, noise), terms, parameters)
     size = np.maximum(np.linalg.norm(weighted, axis=0), 1e-300)
-    between, inside = weighted[:-1] / size, weighted[-1] / size
+    between, within = weighted[:-1] / size, weighted[-1] / size
     deviation = np.sqrt(noise.pair**2 + noise.drift**2 + noise.point**2 / observed.bins)
-    spread = between / deviation[:, np.newaxis]
-    filling = np.outer(inside, inside) * contrast_inflation(observed, parameters.alpha, noise.point)
+    scaled = between / deviation[:, np.newaxis]
+    meat = np.outer(within, within) * contrast_inflation(observed, parameters.alpha, noise.point)
     for possible, weight in plausible:
         truth = pair_covariance(possible, time=observed.time, run=observed.run, bins=observed.bins)
-        filling += weight * (spread.T @ truth.times(spread))
-    bread = np.linalg.pinv(between.T @ between + np.outer(inside, inside))
+        meat += weight * (scaled.T @ truth.times(scaled))
+    bread = np.linalg.pinv(between.T @ between + np.outer(within, within))
     scale = np.outer(size, size)
-    # without gamma there is no telling delta
-    return np.divide(
-        bread @ filling @ bread, scale, out=np.full_like(scale, np.nan), where=scale > 0
-    )
+    # the column of delta is zero where gamma is
+    return np.divide(bread @ meat @ bread, scale, out=np.full_like(scale, np.nan), where=scale > 0)
 
 
 def contrast_inflation(observed: Observations, alpha: float, point: float) -> float:
-    """Return by how much the load's contrast varies more than independent bins would let it.
+    """Return the factor by which the variance of alpha exceeds that of independent bins.
 
-    Residuals that neighbouring bins of a pair share, or that all pairs share at an angle, make
-    alpha less certain; clustering by pair and by angle shows it.
+    Residuals shared by neighbouring bins of a pair, or by all pairs at an angle, make alpha less
+    certain. The factor is the greater one of the cluster-robust variances, by pair and by angle,
+    over the variance of independent bins.
+
+    Parameters
+    ----------
+    observed : Observations
+        Friction of one joint.
+    alpha : float
+        Load coefficient. [1/(N·m)]
+    point : float
+        Standard deviation of one angle bin about its pair. [N·m]
+
+    Returns
+    -------
+    float
+        The factor, 1 or more. [-]
     """
     if observed.load_contrast <= 0:
         return 1.0
@@ -211,11 +258,24 @@ def contrast_inflation(observed: Observations, alpha: float, point: float) -> fl
 
 
 def freedom(observed: Observations, noise: Noise, parameters: int) -> float:
-    """Return how many independent stretches the noise estimate rests on, less the parameters."""
+    """Return the effective degrees of freedom of the noise estimate.
+
+    The number of independent observations, a duration of two correlation times counting as one
+    where drift dominates, less the number of parameters.
+
+    Parameters
+    ----------
+    observed : Observations
+        Friction of one joint.
+    noise : Noise
+        Its noise. [N·m]
+    parameters : int
+        Number of fitted parameters.
+    """
     white = noise.pair**2 + noise.point**2 / np.mean(observed.bins)
     runs = [observed.time[observed.run == run] for run in np.unique(observed.run)]
-    stretches = sum(1 + np.ptp(time) / (2 * noise.drift_time) for time in runs)
+    independent = sum(1 + np.ptp(time) / (2 * noise.drift_time) for time in runs)
     share = noise.drift**2 / (noise.drift**2 + white)
     pairs = len(observed.friction)
-    effective = 1 / (share / min(stretches, pairs) + (1 - share) / pairs)
+    effective = 1 / (share / min(independent, pairs) + (1 - share) / pairs)
     return float(max(effective - parameters, 2.0))

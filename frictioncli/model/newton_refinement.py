@@ -1,4 +1,4 @@
-"""The last steps to the minimum of many equations, from that of their summary."""
+"""Newton refinement of the minimum of a summary to that of all equations."""
 
 import numpy as np
 
@@ -7,26 +7,26 @@ from frictioncli.model.equations import COEFFICIENTS, Equations, jacobian
 from frictioncli.model.friction import FrictionParameters
 
 _STEPS = 12
-"""Each step divides what is left by a hundred or more; two or three are usual."""
+"""Greatest number of steps; each reduces the distance a hundredfold, so that three are usual."""
 
-_ENOUGH = 1e-7
+_SMALL_STEP = 1e-7
 """The steps end where the next one would be this small. [standard errors]"""
 
 
-def settled(
+def refined_minimum(
     equations: Equations, summary: Equations, terms: tuple[str, ...], start: FrictionParameters
 ) -> tuple[FrictionParameters, float] | None:
-    """Return the minimum of all equations near that of their summary, and its misfit.
+    """Return the minimum of all equations near that of their summary, and its sum of squares.
 
-    The steps are those of Newton's method with the slopes of all equations and the curvature of
-    the summary. A wrong curvature makes more steps of it but no other minimum.
+    Newton's method with the gradient of all equations and the Hessian of the summary. An inexact
+    Hessian needs more steps but leads to the same minimum.
 
     Parameters
     ----------
     equations : Equations
         Weighted equations.
     summary : Equations
-        Few equations with nearly the same misfit.
+        Few equations with nearly the same sum of squares.
     terms : tuple of str
         Coefficients that are fitted, with gamma.
     start : FrictionParameters
@@ -35,31 +35,31 @@ def settled(
     Returns
     -------
     (FrictionParameters, float) or None
-        None where the minimum is at a bound, or the steps do not settle.
+        None where the minimum is at a bound, or the steps do not converge.
     """
     names = (*terms, "delta")
     values = np.array([getattr(start, name) for name in names])
     if (values <= 0).any():
         return None
-    normal, curvature = _curvature(summary, terms, start)
+    normal, hessian = _hessian(summary, terms, start)
     size = np.sqrt(np.diag(normal))
-    scaled = curvature / np.outer(size, size)
+    scaled = hessian / np.outer(size, size)
     if np.linalg.eigvalsh(scaled)[0] <= 0:
         return None
     rounding = 1e-13 * float(np.linalg.norm(summary.friction))
-    before = 0.0
+    previous = 0.0
     for _ in range(_STEPS):
-        slope, misfit = _slope(equations, terms, _parameters(names, values))
-        step = np.linalg.solve(scaled, slope / size) / size
+        gradient, squares = _negative_gradient(equations, terms, _parameters(names, values))
+        step = np.linalg.solve(scaled, gradient / size) / size
         values = values + step
-        # how far the modelled friction moves: one sigma is one standard error
-        moved = float(np.sqrt(step @ normal @ step))
-        if (values <= 0).any() or (before and moved > before):
+        # length in units of the standard errors of the modelled friction
+        length = float(np.sqrt(step @ normal @ step))
+        if (values <= 0).any() or (previous and length > previous):
             return None
-        following = moved * moved / before if before else moved
-        if following <= max(_ENOUGH * np.sqrt(misfit / len(equations)), rounding):
-            return _parameters(names, values), misfit - float(slope @ step)
-        before = moved
+        next_length = length * length / previous if previous else length
+        if next_length <= max(_SMALL_STEP * np.sqrt(squares / len(equations)), rounding):
+            return _parameters(names, values), squares - float(gradient @ step)
+        previous = length
     return None
 
 
@@ -68,33 +68,33 @@ def _parameters(names: tuple[str, ...], values: Array) -> FrictionParameters:
     return FrictionParameters(**found)
 
 
-def _slope(
+def _negative_gradient(
     equations: Equations, terms: tuple[str, ...], at: FrictionParameters
 ) -> tuple[Array, float]:
-    """Return the negative slopes of half the misfit over terms and delta, and the misfit."""
-    slope = np.zeros(len(terms) + 1)
-    misfit = 0.0
-    for part in equations.parts():
-        columns = part.columns(terms, at.delta)
-        residual = part.friction.copy()
+    """Return the negative gradient of half the sum of squares, and the sum of squares."""
+    gradient = np.zeros(len(terms) + 1)
+    squares = 0.0
+    for chunk in equations.chunks():
+        columns = chunk.columns(terms, at.delta)
+        residual = chunk.friction.copy()
         for term, column in zip(terms, columns, strict=True):
             residual -= getattr(at, term) * column
-        columns.append(-at.gamma * part.temperature * columns[terms.index("gamma")])
-        slope += [column @ residual for column in columns]
-        misfit += float(residual @ residual)
-    return slope, misfit
+        columns.append(-at.gamma * chunk.temperature * columns[terms.index("gamma")])
+        gradient += [column @ residual for column in columns]
+        squares += float(residual @ residual)
+    return gradient, squares
 
 
-def _curvature(
+def _hessian(
     summary: Equations, terms: tuple[str, ...], at: FrictionParameters
 ) -> tuple[Array, Array]:
-    """Return the normal matrix at a minimum, and the second derivatives of half the misfit."""
+    """Return the normal matrix at a minimum, and the Hessian of half the sum of squares."""
     derivatives = jacobian(summary, terms, at).T
     coefficients = np.array([getattr(at, term) for term in terms])
     residual = summary.friction - coefficients @ derivatives[:-1]
     normal = derivatives @ derivatives.T
-    curvature, gamma = normal.copy(), terms.index("gamma")
-    curvature[-1, -1] += (summary.temperature * derivatives[-1]) @ residual
-    curvature[-1, gamma] -= derivatives[-1] @ residual / at.gamma
-    curvature[gamma, -1] = curvature[-1, gamma]
-    return normal, curvature
+    hessian, gamma = normal.copy(), terms.index("gamma")
+    hessian[-1, -1] += (summary.temperature * derivatives[-1]) @ residual
+    hessian[-1, gamma] -= derivatives[-1] @ residual / at.gamma
+    hessian[gamma, -1] = hessian[-1, gamma]
+    return normal, hessian

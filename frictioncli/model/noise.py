@@ -5,10 +5,10 @@ The mean friction torque of pair *i* with :math:`n_i` angle bins is disturbed by
 .. math:: \bar e_i + p_i + d(t_i), \quad
     \operatorname{var} = \sigma_e^2 / n_i + \sigma_p^2 + \sigma_d^2
 
-with white :math:`p` and an Ornstein-Uhlenbeck drift :math:`d`, independent between runs, whose
-correlation is :math:`\exp(-|t_i - t_j| / \theta)`. Treating such data as independent makes
-intervals several times too narrow. The drift is a Markov process: its inverse covariance is
-tridiagonal, so every operation here costs O(pairs).
+with white :math:`p` and an Ornstein-Uhlenbeck drift :math:`d`, independent between runs, with the
+correlation :math:`\exp(-|t_i - t_j| / \theta)`. Treating such data as independent would make
+confidence intervals several times too narrow. The drift is a Markov process: its inverse covariance
+is tridiagonal [2]_, so that every operation here costs O(pairs).
 
 References
 ----------
@@ -26,23 +26,23 @@ from scipy.optimize import minimize
 from frictioncli.arrays import Array, Indices
 
 _DRIFT_TIMES = 12
-"""Number of correlation times that are tried, from the pairs' distance to the run's length."""
+"""Number of correlation times tried, from the distance of the pairs to the length of the run."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Noise:
-    """Standard deviations of the three parts, and the drift's correlation time.
+    """Standard deviations of point noise, pair noise and drift, and its correlation time.
 
     Attributes
     ----------
     point : float
-        One angle bin of one pair. [N·m]
+        Standard deviation of an angle bin about the mean of its pair. [N·m]
     pair : float
-        What all bins of a pair share and other pairs do not. [N·m]
+        Standard deviation that all bins of a pair share, independent between pairs. [N·m]
     drift : float
-        The slow drift. [N·m]
+        Standard deviation of the slow drift. [N·m]
     drift_time : float
-        Its correlation time. [s]
+        Correlation time of the drift. [s]
     """
 
     point: float
@@ -58,7 +58,7 @@ class PairCovariance:
     Attributes
     ----------
     white : ndarray, shape (pairs,)
-        Variance that pairs do not share. [(N·m)²]
+        Variance that is independent between pairs. [(N·m)²]
     factor : ndarray, shape (2, pairs)
         Banded Cholesky factor of the drift's precision plus ``1/white``.
     log_determinant : float
@@ -83,7 +83,7 @@ class PairCovariance:
 
     def times(self, right: Array) -> Array:
         """Return the covariance times ``right``, shape (pairs, columns)."""
-        # exp(-|Δt|/θ) summed forwards and backwards, as a first-order recursion in each direction
+        # the product with exp(-|Δt|/θ), as a first-order recursion forwards and one backwards
         forward, backward = np.array(right), np.array(right)
         for i in range(1, len(right)):
             forward[i] += self.correlation[i] * forward[i - 1]
@@ -96,8 +96,8 @@ class PairCovariance:
         """Return one random disturbance of the pair means, shape (pairs,). [N·m]."""
         drift = generator.standard_normal(len(self.white))
         for i in range(1, len(drift)):
-            fresh = np.sqrt(1 - self.correlation[i] ** 2)
-            drift[i] = self.correlation[i] * drift[i - 1] + fresh * drift[i]
+            innovation = np.sqrt(1 - self.correlation[i] ** 2)
+            drift[i] = self.correlation[i] * drift[i - 1] + innovation * drift[i]
         white = np.sqrt(self.white) * generator.standard_normal(len(self.white))
         return np.asarray(self.drift * drift + white)
 
@@ -115,7 +115,7 @@ def pair_covariance(
     Parameters
     ----------
     noise : Noise
-        The noise's parts.
+        Standard deviations and correlation time.
     time : ndarray, shape (pairs,)
         Times, growing within each run. [s]
     run : ndarray of int, shape (pairs,)
@@ -126,7 +126,7 @@ def pair_covariance(
         Further variance of the pair means, as of an uncertain temperature. [(N·m)²]
     """
     white = noise.pair**2 + noise.point**2 / bins + extra
-    # a drift of zero would have an infinite precision: the factor takes one far below all else
+    # a drift of zero would have an infinite precision: it is replaced by a negligible one
     variance = max(noise.drift**2, 1e-9 * float(np.mean(white)))
     step = np.where(np.diff(run) == 0, np.diff(time), np.inf)
     decay = np.exp(-np.maximum(step, 1e-3) / noise.drift_time)
@@ -154,7 +154,7 @@ def pair_covariance(
 
 
 def restricted_log_likelihood(covariance: PairCovariance, residual: Array, design: Array) -> float:
-    """Return the restricted log likelihood of pair residuals, but for a constant.
+    """Return the restricted log likelihood of pair residuals, up to a constant.
 
     Parameters
     ----------
@@ -185,11 +185,11 @@ def plausible_noise(
     point: float,
     extra: Array | float = 0.0,
 ) -> list[tuple[Noise, float]]:
-    """Return noises that agree with the residuals and how plausible each is, best first.
+    """Return noise models with their posterior probabilities, the most probable first.
 
-    One run says little about how slow its drift is. So the correlation time is scanned, the two
-    standard deviations are fitted at each of its values by restricted maximum likelihood [1]_, and
-    the likelihoods (with an even prior in the logarithm of time) become the weights.
+    One run holds little information on the correlation time of its drift. It is therefore scanned;
+    the two standard deviations are fitted at each value by restricted maximum likelihood [1]_, and
+    the likelihoods, with a uniform prior in the logarithm of time, become the weights.
 
     Parameters
     ----------
@@ -204,7 +204,7 @@ def plausible_noise(
     bins : ndarray, shape (pairs,)
         Angle bins of each pair.
     point : float
-        Standard deviation of one bin, known from within the pairs. [N·m]
+        Standard deviation of an angle bin, known from within the pairs. [N·m]
     extra : ndarray, shape (pairs,), optional
         Further variance of the pair means that is known beforehand. [(N·m)²]
 
@@ -213,14 +213,14 @@ def plausible_noise(
     list of (Noise, float)
         The weights sum to 1.
     """
-    # an orthonormal basis: alpha's column may be a multiple of tau_c's, and units differ widely
+    # an orthonormal basis, since columns may be collinear and their units differ widely
     length = np.linalg.norm(design, axis=0)
     basis, size, _ = np.linalg.svd(design / np.where(length > 0, length, 1.0), full_matrices=False)
     basis = basis[:, size > 1e-9 * size[0]]
     scale = max(float(np.std(residual)), 1e-9)
     gaps = np.diff(time)[np.diff(run) == 0]
     shortest = max(float(np.median(gaps)), 1e-3) if gaps.size else 1.0
-    # a drift slower than the run is an offset of that run: one run cannot tell it from tau_c
+    # a drift slower than the run is an offset of the run, as tau_c is
     longest = max(max(np.ptp(time[run == number]) for number in np.unique(run)), 2 * shortest)
 
     def of(logs: Array, duration: float) -> Noise:
@@ -240,8 +240,8 @@ def plausible_noise(
         found.append((of(best.x, float(duration)), -float(best.fun)))
     highest = max(likelihood for _, likelihood in found)
     weights = [np.exp(likelihood - highest) for _, likelihood in found]
-    together = [
+    weighted = [
         (noise, float(weight / sum(weights)))
         for (noise, _), weight in zip(found, weights, strict=True)
     ]
-    return sorted(together, key=lambda entry: -entry[1])
+    return sorted(weighted, key=lambda entry: -entry[1])

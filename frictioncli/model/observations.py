@@ -1,8 +1,8 @@
-"""What an identification needs of the torques: sums per pair, and the load's contrast inside pairs.
+"""Friction torques of a joint as means of pairs and deviations within them.
 
-Speed and temperature are constant within a pair, so only the load term varies there. Everything
-else of equation (16) is decided between pairs, on one mean per pair. The split is exact and makes
-the cost of a fit independent of the number of angle bins.
+Speed and temperature are constant within a pair, so that only the load term of equation (16) varies
+there. All other terms are determined by one mean per pair. The split is exact and makes the cost of
+a fit independent of the number of angle bins.
 """
 
 from dataclasses import dataclass
@@ -16,14 +16,14 @@ from frictioncli.model.zero_load import PAIR_KEY, temperature_of
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Observations:
-    """Friction of one joint, ordered by run and time.
+    """Friction of one joint by pair, ordered by run and time.
 
     Attributes
     ----------
     run : ndarray of int, shape (pairs,)
         Number of the run that each pair belongs to.
     time, speed, temperature : ndarray, shape (pairs,)
-        Of each pair. Temperature is NaN where the log has none. [s], [deg/s], [°C]
+        Time, speed and temperature of each pair; NaN without temperature. [s], [deg/s], [°C]
     friction, squared_load : ndarray, shape (pairs,)
         Means over the pair's angle bins. [N·m], [(N·m)²]
     bins : ndarray of int, shape (pairs,)

@@ -1,9 +1,16 @@
-r"""The source paper's consecutive identification: load first, then the viscous law on branch means.
+r"""Consecutive identification of the source paper: load first, then the viscous law.
 
-Within a pair friction is :math:`\alpha L^2 + G` (equations (9), (10)), which gives alpha and each
-pair's G. Heating and cooling branches of G are averaged (11), and the means are fitted by
-:math:`\tau^* = \tau_c + (\beta + \gamma e^{-\delta T^*}) \sqrt{\dot\varphi}` ((12), (13)).
-Intervals come from repeating all of it on data disturbed by the estimated noise.
+Within a pair friction is :math:`\alpha L^2 + G` (equations (9), (10)), which gives alpha and the
+zero-load friction G of each pair. Heating and cooling branches of G are averaged (11), and the
+means are fitted by
+:math:`\tau^* = \tau_c + (\beta + \gamma e^{-\delta T^*}) \sqrt{\dot\varphi}` ((12), (13)) [1]_.
+The covariance comes from a parametric bootstrap with the estimated noise.
+
+References
+----------
+.. [1] M. N. Nevmerzhitskiy, B. S. Notkin, A. V. Vara, and K. V. Zmeu, "Friction model of industrial
+   robot joint with temperature correction by example of KUKA KR10," J. Robotics, 2019,
+   doi:10.1155/2019/6931563.
 """
 
 import numpy as np
@@ -31,6 +38,8 @@ _GRID_STEP = 0.5
 """Distance of the temperatures at which the branches are averaged. [°C]"""
 
 _REPETITIONS = 200
+"""Bootstrap samples."""
+
 _SEED = 0
 
 
@@ -93,7 +102,7 @@ def consecutive_fit(
     torques : DataFrame
         Rows of :data:`frictioncli.schemas.TORQUES` of one joint, with the temperatures needed.
     observed : Observations
-        The same, summed per pair.
+        The same by pair.
     temperature : {"mean", "motor", "housing"}
         Temperature of the branch means; ``mean`` is the paper's.
 

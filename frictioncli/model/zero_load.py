@@ -1,4 +1,4 @@
-"""Friction of each pair without load: the points of the source paper's Figures 5, 6, 9 and 10."""
+"""Friction of each pair without load, as in Figures 5, 6, 9 and 10 of the source paper."""
 
 import numpy as np
 import pandas as pd
@@ -36,7 +36,7 @@ def friction_at_zero_load(torques: pd.DataFrame, alpha: float) -> pd.DataFrame:
     -----
     Within one pair, speed and temperature are constant, so equation (9) leaves
     :math:`\tau = \alpha L^2 + G`. G is the mean of :math:`\tau - \alpha L^2` over the pair's angle
-    bins: it uses them all, and exists also where the load never crosses zero.
+    bins, so that it exists also where the load never crosses zero.
     """
     unloaded = torques["friction_torque"] - alpha * np.square(torques["load_torque"])
     grouped = torques.assign(friction_torque=unloaded).groupby(PAIR_KEY, sort=False, observed=True)
