@@ -175,7 +175,7 @@ def record(
         )
         added = planted.torque(state)
         torque = torque + added.load + logger.sign * state.direction * added.friction
-    torque = torque + noise.at(
+    torque = torque + noise.torque_noise(
         generator, torque=torque, velocity=motion.velocity, interval=logger.interval
     )
     return Recording(

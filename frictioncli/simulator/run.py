@@ -9,8 +9,7 @@ from frictioncli.simulator import default_joint
 from frictioncli.simulator.cells import RoundTrips, cells_of, round_trips_of
 from frictioncli.simulator.enriched_protocol import PAYLOADS, SPEEDS, run_enriched
 from frictioncli.simulator.joint import SimulatedJoint
-from frictioncli.simulator.noise import SimulatedNoise
-from frictioncli.simulator.noise_kinds import noise_of_kind
+from frictioncli.simulator.noise import SimulatedNoise, noise_of_kind
 from frictioncli.simulator.paper_protocol import MeasuringSeries, PaperProgram, run_program
 from frictioncli.simulator.plain_joint import plain_joint
 from frictioncli.simulator.planted.operating_history import (

@@ -7,8 +7,7 @@ import pandas as pd
 
 from frictioncli.arrays import Array, Flags, Numbers
 from frictioncli.simulator.cells import Cells, cells_of
-from frictioncli.simulator.noise import SimulatedNoise
-from frictioncli.simulator.noise_kinds import OUTLIER, UnevenNoise
+from frictioncli.simulator.noise import OUTLIER, SimulatedNoise, HeteroscedasticNoise
 from frictioncli.simulator.planted.catalogue import requested_effects
 from frictioncli.simulator.planted.planting import PlantedEffects, plant
 from frictioncli.simulator.recording import registered
@@ -206,7 +205,7 @@ def _noise(
     """Return the noise of the means per direction and cell, cells in order of trip and angle."""
     shape = torque.shape
     spread, loud = np.ones(shape), np.zeros(shape)
-    if isinstance(noise, UnevenNoise):
+    if isinstance(noise, HeteroscedasticNoise):
         spread = noise.spread(torque, speed)
         loud = generator.binomial(np.broadcast_to(count, shape), noise.outliers).astype(float)
     white = noise.white * spread * np.sqrt(count + loud * (OUTLIER**2 - 1.0)) / count

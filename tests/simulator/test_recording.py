@@ -111,7 +111,7 @@ def test_noise_has_the_stated_deviation_and_memory():
     noise = SimulatedNoise(
         white=0.6, correlated=0.8, correlation_time=0.12, slow=0.0, slow_time=1.0, per_pair=0.0
     )
-    drawn = noise.torque(np.random.default_rng(7), count=200_000, interval=0.012)
+    drawn = noise.stationary_noise(np.random.default_rng(7), count=200_000, interval=0.012)
     assert drawn.std() == pytest.approx(1.0, rel=0.02)
     # Only the correlated part survives a lag of ten samples, one correlation time: 0.64/e.
     assert np.mean(drawn[10:] * drawn[:-10]) == pytest.approx(0.64 / np.e, abs=0.03)
