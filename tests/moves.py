@@ -39,8 +39,8 @@ def trapezoid(start, end, speed, *, acceleration=ACCELERATION, period=PERIOD, re
     )
 
 
-def journey(turns, speeds, **motion):
-    """Move after move between the turning angles, at the given speeds."""
+def move_sequence(turns, speeds, **motion):
+    """Sequence of moves between the turning angles, at the given speeds."""
     parts, clock = [], 0.0
     for start, end, speed in zip(turns[:-1], turns[1:], speeds, strict=True):
         part = trapezoid(start, end, speed, **motion)

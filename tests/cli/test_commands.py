@@ -14,7 +14,7 @@ from frictioncli.cli.commands import app
 from frictioncli.stages.settings import RunSettings
 from tests.command_line import invoke
 from tests.equation_16 import friction, write_recording
-from tests.moves import journey
+from tests.moves import move_sequence
 
 COMMANDS = (
     "inspect",
@@ -51,7 +51,7 @@ def write_log(
     path, *, turns=(0, 170, 0, 170, 0, 170, 0), speeds=(20, 20, 50, 50, 90, 90), **columns
 ):
     """Write a KUKA-style trace whose friction is 5 + 2 sqrt(v) N·m."""
-    motion = journey(list(turns), list(speeds))
+    motion = move_sequence(list(turns), list(speeds))
     direction = np.sign(motion["velocity"])
     truth = {"tau_c": 5.0, "alpha": 0.0, "beta": 2.0, "gamma": 0.0, "delta": 0.0}
     speed = motion["velocity"].abs()

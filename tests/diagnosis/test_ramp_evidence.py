@@ -16,7 +16,7 @@ from frictioncli.diagnosis.ramps.evidence import (
 from frictioncli.model.friction import PUBLISHED, friction_torque
 from frictioncli.provenance import Provenance
 from tests import found
-from tests.moves import journey, samples
+from tests.moves import move_sequence, samples
 
 SPEEDS = [15.0, 15.0, 30.0, 30.0, 60.0, 60.0, 100.0, 100.0] * 4
 GRAVITY = np.array([90.0, -5.0, 1.0])
@@ -25,9 +25,9 @@ INERTIA = 0.12
 
 
 def smooth_journey(period):
-    """A journey of trapezoids, averaged over 50 ms as a servo would, without any jump."""
+    """A move_sequence of trapezoids, averaged over 50 ms as a servo would, without any jump."""
     fine = 0.0005
-    motion = journey([0, 180] * (len(SPEEDS) // 2) + [0], SPEEDS, period=fine)
+    motion = move_sequence([0, 180] * (len(SPEEDS) // 2) + [0], SPEEDS, period=fine)
     window = np.hanning(101)[1:-1] / np.hanning(101).sum()
     channels = {
         name: np.convolve(np.pad(values, 49, mode="edge"), window, mode="valid")

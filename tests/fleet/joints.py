@@ -6,7 +6,7 @@ from datetime import datetime, timedelta
 import numpy as np
 
 from tests.equation_16 import friction, write_recording
-from tests.moves import journey
+from tests.moves import move_sequence
 
 SPEEDS = (20.0, 45.0, 90.0)
 """Speeds of each recording. [deg/s]"""
@@ -65,7 +65,7 @@ class Joint:
 def write_joint(folder, joint, *, axis=2):
     """Write the runs of a joint as ``folder/run=D`` with a manifest each."""
     turns = [-STROKE, *[STROKE, -STROKE] * len(SPEEDS)]
-    motion = journey(turns, np.repeat(SPEEDS, 2), period=joint.period)
+    motion = move_sequence(turns, np.repeat(SPEEDS, 2), period=joint.period)
     direction = np.sign(motion["velocity"].to_numpy())
     speed = np.repeat(SPEEDS, 2)[_move_of(motion)]
     load = 80 * np.cos(np.radians(motion["position"].to_numpy()))

@@ -16,7 +16,7 @@ from frictioncli.stages.pair import pair
 from frictioncli.stages.separate import separate
 from frictioncli.workfiles import RAMPS, SAMPLES, TORQUES
 from tests import found
-from tests.moves import journey, samples
+from tests.moves import move_sequence, samples
 
 
 def noisy(seed, period, count=6):
@@ -25,7 +25,7 @@ def noisy(seed, period, count=6):
     turns = np.concatenate([[0.0], generator.uniform(-120, 120, count)])
     speeds = generator.choice([20.0, 60.0, 400.0], count)
     rest = float(generator.choice([0.0, 0.02, 0.3]))
-    motion = journey(turns, speeds, period=period, rest=rest)
+    motion = move_sequence(turns, speeds, period=period, rest=rest)
     motion["velocity"] += generator.normal(0, 0.3, len(motion))
     motion["time"] += 100.0
     return motion
@@ -99,7 +99,7 @@ def test_joints_that_take_turns_give_the_same_as_one_after_the_other(small_chunk
 def test_a_move_without_end_is_cut_at_the_same_places(small_chunks, monkeypatch):
     monkeypatch.setattr(moves, "LONGEST_MOVE", 700)
     monkeypatch.setattr(chunks, "LONGEST_MOVE", 700)
-    frame = samples(journey([0, 900], [20.0]), friction=8.0)
+    frame = samples(move_sequence([0, 900], [20.0]), friction=8.0)
     assert len(frame) > 3500
     held, counts = whole(frame, 210)
     same((held, counts), whole(frame, 10**7))
@@ -152,7 +152,7 @@ def test_groups_between_long_pauses_pair_as_all_segments_do(monkeypatch):
 
 
 def test_groups_without_a_pause_lose_little(monkeypatch):
-    frame = samples(journey([0, 60] * 50, [60.0] * 99), friction=8.0)
+    frame = samples(move_sequence([0, 60] * 50, [60.0] * 99), friction=8.0)
     expected = found.pairs(frame)
     monkeypatch.setattr(matching_groups, "MOST_SEGMENTS", 9)
     grouped = found.pairs(frame)

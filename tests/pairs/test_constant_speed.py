@@ -17,7 +17,7 @@ from frictioncli.pairs.moves import (
     samples_in,
 )
 from frictioncli.pairs.settings import SteadySettings
-from tests.moves import journey, trapezoid
+from tests.moves import move_sequence, trapezoid
 
 
 class Segment(NamedTuple):
@@ -68,7 +68,7 @@ def test_smoothed_speed_is_the_mean_of_neighbours_within_the_move():
 
 
 def test_direction_is_in_the_sign_of_the_speed():
-    segments, _ = segments_of(journey([0, 180, 0], [50, 50]))
+    segments, _ = segments_of(move_sequence([0, 180, 0], [50, 50]))
     assert [np.sign(segment.speed) for segment in segments] == [1, -1]
 
 
@@ -88,7 +88,7 @@ def test_a_move_that_never_holds_its_speed_is_dropped():
 
 def test_stop_and_go_without_rest_gives_two_segments():
     """The joint slows down to 2 % of its speed and goes on in the same direction."""
-    motion = journey([0, 90, 180], [60, 60], rest=0.0)
+    motion = move_sequence([0, 90, 180], [60, 60], rest=0.0)
     motion["velocity"] = np.maximum(motion["velocity"], 1.2)
     segments, _ = segments_of(motion)
     assert len(segments) == 2
@@ -115,7 +115,7 @@ def test_slow_sampling_keeps_a_plateau_of_a_few_samples():
 
 
 def test_every_sample_is_in_a_segment_or_counted():
-    motion = journey([0, 180, 20, 150], [19.1, 67.5, 400.0])
+    motion = move_sequence([0, 180, 20, 150], [19.1, 67.5, 400.0])
     segments, dropped = segments_of(motion)
     assert sum(segment.stop - segment.start for segment in segments) + sum(dropped.values()) == len(
         motion

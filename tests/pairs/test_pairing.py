@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 from frictioncli.errors import NotEnoughData, OptionError
 from frictioncli.pairs.settings import PairingSettings
 from tests.found import pairs as paired
-from tests.moves import journey, samples
+from tests.moves import move_sequence, samples
 
 GRAVITY = 90.0
 
@@ -19,7 +19,7 @@ def halves(pairs):
 
 
 def test_full_strokes_give_friction_and_gravity_at_the_bin_centres():
-    frame = samples(journey([0, 180, 0, 180, 0], [20, 20, 60, 60]), friction=12.0)
+    frame = samples(move_sequence([0, 180, 0, 180, 0], [20, 20, 60, 60]), friction=12.0)
     result = paired(frame)
     friction, load = halves(result.pairs)
     np.testing.assert_allclose(friction, 12.0, atol=0.02)
@@ -33,7 +33,7 @@ def test_random_turn_angles_pair_as_well_as_full_strokes():
     turns = np.concatenate(
         [[0.0], np.where(np.arange(20) % 2, -1, 1) * generator.uniform(40, 100, 20)]
     )
-    frame = samples(journey(turns, [30.0] * 20), friction=8.0)
+    frame = samples(move_sequence(turns, [30.0] * 20), friction=8.0)
     result = paired(frame)
     friction, load = halves(result.pairs)
     np.testing.assert_allclose(friction, 8.0, atol=0.05)
@@ -50,7 +50,7 @@ def test_random_turn_angles_pair_as_well_as_full_strokes():
 def test_strokes_that_creep_forward_find_partners_on_the_way_back():
     """Out in overlapping steps, home in one move: bins that neighbours miss are matched later."""
     turns = [0, 60, 40, 120, 100, 180, 0]
-    frame = samples(journey(turns, [30.0] * 6), friction=8.0)
+    frame = samples(move_sequence(turns, [30.0] * 6), friction=8.0)
     covered = set(paired(frame).pairs["position"])
     assert {22.5, 32.5, 72.5, 82.5, 132.5, 152.5} <= covered
 
@@ -61,27 +61,29 @@ def test_every_sample_is_kept_or_counted_as_dropped(seed):
     generator = np.random.default_rng(seed)
     turns = np.concatenate([[0.0], generator.uniform(-150, 150, 8)])
     speeds = generator.choice([15.0, 40.0, 300.0, 301.0], 8)
-    frame = samples(journey([*turns, 0.0, 90.0, 0.0], [*speeds, 30.0, 30.0, 30.0]), friction=5.0)
+    frame = samples(
+        move_sequence([*turns, 0.0, 90.0, 0.0], [*speeds, 30.0, 30.0, 30.0]), friction=5.0
+    )
     result = paired(frame)
     kept = int(result.pairs["n_forward"].sum() + result.pairs["n_reverse"].sum())
     assert kept + sum(result.dropped.values()) == result.samples == len(frame)
 
 
 def test_different_speeds_are_no_pair():
-    frame = samples(journey([0, 180, 0], [40, 44]), friction=5.0)
+    frame = samples(move_sequence([0, 180, 0], [40, 44]), friction=5.0)
     with pytest.raises(NotEnoughData, match="no pair of counter-directed"):
         paired(frame)
 
 
 def test_different_temperatures_are_no_pair():
-    motion = journey([0, 180, 0], [40, 40])
+    motion = move_sequence([0, 180, 0], [40, 40])
     warm = np.where(motion["velocity"] < 0, 45.0, 40.0)
     with pytest.raises(NotEnoughData):
         paired(samples(motion, friction=5.0, motor_temperature=warm))
 
 
 def test_a_long_pause_parts_the_partners():
-    motion = journey([0, 180, 0], [40, 40])
+    motion = move_sequence([0, 180, 0], [40, 40])
     motion.loc[motion["velocity"] < 0, "time"] += 1000.0
     back = motion["velocity"].lt(0).idxmax()
     motion.loc[back:, "time"] = (
@@ -93,18 +95,18 @@ def test_a_long_pause_parts_the_partners():
 
 
 def test_one_direction_only_says_so():
-    motion = journey([0, 180, 0, 180], [40, 300, 40])
+    motion = move_sequence([0, 180, 0, 180], [40, 300, 40])
     with pytest.raises(NotEnoughData, match=r"2 constant-velocity parts forward at 40 to 40 deg/s"):
         paired(samples(motion, friction=5.0))
 
 
 def test_no_constant_speed_says_so():
     with pytest.raises(NotEnoughData, match="no constant-velocity motion"):
-        paired(samples(journey([0, 50, 0], [1000, 1000]), friction=5.0))
+        paired(samples(move_sequence([0, 50, 0], [1000, 1000]), friction=5.0))
 
 
 def test_slow_logs_get_wider_bins():
-    motion = journey([-100, 100, -100], [50, 50], period=0.5, rest=2.0)
+    motion = move_sequence([-100, 100, -100], [50, 50], period=0.5, rest=2.0)
     assert paired(samples(motion, friction=5.0)).bin_width == 25.0
 
 

@@ -13,14 +13,14 @@ from frictioncli.stages.pair import pair
 from frictioncli.stages.separate import separate
 from frictioncli.workfiles import PAIRS, RAMPS, TORQUES
 from tests.found import pairs as found_pairs
-from tests.moves import journey, samples
+from tests.moves import move_sequence, samples
 
 OTHER = "the partner has another payload"
 
 
 def moves(turns, names, speed=40.0):
     """One move after the other, each in the recording of its name; friction is 5 N·m."""
-    parts = [journey(ends, [speed]) for ends in pairwise(turns)]
+    parts = [move_sequence(ends, [speed]) for ends in pairwise(turns)]
     motion = pd.concat(parts, ignore_index=True).assign(time=lambda rows: 0.012 * rows.index)
     recording = np.repeat(np.array(names, dtype=object), [len(part) for part in parts])
     return samples(motion, friction=5.0, recording=recording)
@@ -69,7 +69,7 @@ def write_folder(folder, manifest):
     """Three recordings of moves there and back; gravity is 60 N·m and 10 N·m/kg of 0, 2, 4 kg."""
     folder.mkdir()
     for name, mass in (("a", 0.0), ("b", 2.0), ("c", 4.0)):
-        motion = journey([0, 170, 0, 170, 0], [30, 30, 60, 60])
+        motion = move_sequence([0, 170, 0, 170, 0], [30, 30, 60, 60])
         gravity = (60 + 10 * mass) * np.cos(np.radians(motion["position"]))
         torque = gravity + 8 * np.sign(motion["velocity"])
         frame = pd.DataFrame(

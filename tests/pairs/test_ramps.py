@@ -7,7 +7,7 @@ from frictioncli import schemas, tables
 from frictioncli.pairs.ramps import EDGES, slope, window_mean
 from frictioncli.provenance import Provenance
 from tests.found import ramps as found_ramps
-from tests.moves import journey, samples
+from tests.moves import move_sequence, samples
 
 
 def ramps(motion, **columns):
@@ -20,7 +20,7 @@ def part(table, move, name):
 
 def test_a_ramp_in_bins_of_distance():
     """At 400 deg/s² the joint is d deg on its way after sqrt(d / 200) s, 50 deg/s after 0.125 s."""
-    table = ramps(journey([0, 180, 0], [50, 50], period=0.001))
+    table = ramps(move_sequence([0, 180, 0], [50, 50], period=0.001))
     begins = part(table, 0, "accelerating")
     assert begins.index.tolist() == list(range(12))
     low, high = np.sqrt(EDGES[:6] / 200), np.sqrt(EDGES[1:7] / 200)  # ends at 1.73 deg: still fast
@@ -37,7 +37,7 @@ def test_a_ramp_in_bins_of_distance():
 
 def test_signs_in_both_directions():
     """Torque of 90 cos q + 10 sign(v) + 6 kg·m² times acceleration, whichever way."""
-    table = ramps(journey([0, 180, 0], [50, 50], period=0.002))
+    table = ramps(move_sequence([0, 180, 0], [50, 50], period=0.002))
     expected = {
         (0, "accelerating"): (1, 400.0, 0.0),
         (0, "braking"): (1, -400.0, 180.0),
@@ -58,7 +58,7 @@ def test_signs_in_both_directions():
 
 def test_acceleration_earlier_and_later():
     """Where braking begins, two samples later it has begun already."""
-    table = ramps(journey([0, 180], [40], period=0.012))
+    table = ramps(move_sequence([0, 180], [40], period=0.012))
     rows = part(table, 0, "braking")
     assert rows["acceleration_2_before"].sum() > rows["acceleration"].sum() + 100
     assert rows["acceleration"].sum() > rows["acceleration_2_after"].sum() - 1
@@ -82,12 +82,12 @@ def test_the_mean_over_the_window_is_the_slope_of_the_integral():
 
 
 def test_a_move_on_in_the_same_direction_is_no_reversal():
-    table = ramps(journey([0, 60, 120, 0, 60], [40] * 4))
+    table = ramps(move_sequence([0, 60, 120, 0, 60], [40] * 4))
     assert table.groupby("move")["reversal"].first().tolist() == [True, False, True, True]
 
 
 def test_a_joint_that_rings_after_it_stopped_is_still_known_to_reverse():
-    motion = journey([0, 90, 0], [40, 40], rest=0.5)
+    motion = move_sequence([0, 90, 0], [40, 40], rest=0.5)
     stopped = motion["position"].sub(90).abs() < 1e-9
     since = motion["time"] - motion["time"][stopped].iloc[0]
     ring = np.where(stopped, np.exp(-since / 0.1) * np.sin(40 * since), 0.0)
@@ -96,7 +96,7 @@ def test_a_joint_that_rings_after_it_stopped_is_still_known_to_reverse():
 
 
 def test_a_move_cut_off_by_the_recording_has_no_ramp_there():
-    motion = journey([0, 180, 0], [50, 50])
+    motion = move_sequence([0, 180, 0], [50, 50])
     motion = motion[motion["time"] > 1.0].reset_index(drop=True)
     table = ramps(motion)
     assert part(table, 0, "accelerating").empty
@@ -104,7 +104,7 @@ def test_a_move_cut_off_by_the_recording_has_no_ramp_there():
 
 
 def test_slow_sampling_gives_a_table_that_can_be_written(tmp_path):
-    table = ramps(journey([-100, 100, -100], [50, 50], period=0.5, rest=2.0))
+    table = ramps(move_sequence([-100, 100, -100], [50, 50], period=0.5, rest=2.0))
     path = tmp_path / "ramps.parquet"
     tables.write(path, table, schemas.RAMPS, Provenance("pair", {}, {}))
     assert len(tables.read(path, schemas.RAMPS)) == len(table)

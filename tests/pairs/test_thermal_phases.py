@@ -5,7 +5,7 @@ import pandas as pd
 
 from frictioncli.pairs import thermal_phases
 from tests.found import pairs
-from tests.moves import journey, samples
+from tests.moves import move_sequence, samples
 
 
 def phases_of(temperature):
@@ -41,7 +41,7 @@ def test_steady_and_unknown_temperature_are_sweeps():
 
 def test_a_given_phase_wins():
     """Four recordings of a joint that warms up by 10 °C each; the manifest speaks of the first."""
-    motion = journey([0, 170] * 6, [40] * 11)
+    motion = move_sequence([0, 170] * 6, [40] * 11)
     number = np.minimum(4 * np.arange(len(motion)) // len(motion), 3)
     frame = samples(
         motion,

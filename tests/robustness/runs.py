@@ -12,7 +12,7 @@ import numpy as np
 import pyarrow.parquet as pq
 
 from tests.equation_16 import friction, write_recording
-from tests.moves import journey
+from tests.moves import move_sequence
 
 PROGRAM = (sys.executable, "-c", "from frictioncli.cli import main; main()")
 SPEEDS = (20.0, 50.0, 90.0)
@@ -28,7 +28,7 @@ def write_warm_up(folder: Path, *, levels=(25, 32, 39, 46, 53, 60, 67), seed=0) 
     folder.mkdir(parents=True)
     rows = ["file;started_at;phase"]
     for number, celsius in enumerate(levels):
-        motion = journey([0, 100] * len(SPEEDS) + [0], np.repeat(SPEEDS, 2))
+        motion = move_sequence([0, 100] * len(SPEEDS) + [0], np.repeat(SPEEDS, 2))
         speed = motion["velocity"].abs()
         torque = (
             80 * np.cos(np.radians(motion["position"]))

@@ -7,7 +7,7 @@ import pandas as pd
 
 from frictioncli.arrays import Array, Flags, Numbers
 from frictioncli.simulator.cells import Cells, cells_of
-from frictioncli.simulator.noise import OUTLIER, SimulatedNoise, HeteroscedasticNoise
+from frictioncli.simulator.noise import OUTLIER, HeteroscedasticNoise, SimulatedNoise
 from frictioncli.simulator.planted.catalogue import requested_effects
 from frictioncli.simulator.planted.planting import PlantedEffects, plant
 from frictioncli.simulator.recording import registered

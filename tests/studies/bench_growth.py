@@ -17,7 +17,7 @@ from pathlib import Path
 
 import numpy as np
 
-from tests.moves import journey
+from tests.moves import move_sequence
 from tests.studies.bench_rounds import ROOT, STORE, measured_run, state
 from tests.studies.benching import MEGABYTE, Disagreement, command
 
@@ -47,7 +47,9 @@ def write_log(path: Path, samples: int) -> None:
     from pyarrow import csv
 
     generator = np.random.default_rng(9)
-    motion = journey([0, 140] * len(SPEEDS) + [0], [v for v in SPEEDS for _ in "to"], period=PERIOD)
+    motion = move_sequence(
+        [0, 140] * len(SPEEDS) + [0], [v for v in SPEEDS for _ in "to"], period=PERIOD
+    )
     lap = {name: motion[name].to_numpy() for name in ("position", "velocity", "acceleration")}
     load = 90 * np.cos(np.radians(lap["position"])) + 6 * np.radians(lap["acceleration"])
     names = ["Zeit[sec]", "AxisPos_Act2[°]", "GearTorq_Act2[Nm]", "Motortemperatur2[K]"]
