@@ -47,12 +47,22 @@ class ChannelMap:
 
 
 def read_map(path: Path) -> ChannelMap:
-    """Read a mapping file.
+    r"""Read a mapping file.
 
     Raises
     ------
     MappingError
         If it is not TOML, or has an unknown section, key, unit or value.
+
+    Examples
+    --------
+    >>> from tempfile import TemporaryDirectory
+    >>> with TemporaryDirectory() as folder:
+    ...     file = Path(folder, "channels.toml")
+    ...     _ = file.write_text('[channels]\ntorque = "M2"\n[units]\ntorque = "mNm"\n')
+    ...     channel_map = read_map(file)
+    >>> channel_map.channels, channel_map.units
+    ({'torque': 'M2'}, {'torque': 'mN·m'})
     """
     try:
         text = path.read_text(encoding="utf-8-sig")
