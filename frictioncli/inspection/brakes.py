@@ -5,7 +5,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from frictioncli.logs.channels import aliases as names
+from frictioncli.logs.channels import channel_names as names
 from frictioncli.logs.channels.joint_plan import JointPlan
 from frictioncli.logs.channels.recognition import split_unit
 from frictioncli.logs.log_source import LogSource

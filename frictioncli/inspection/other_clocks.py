@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from frictioncli.arrays import Array
-from frictioncli.logs.channels import aliases as names
+from frictioncli.logs.channels import channel_names as names
 from frictioncli.logs.channels import units
 from frictioncli.logs.channels.joint_plan import JointPlan
 from frictioncli.logs.channels.recognition import LogChannel, recognise_channels

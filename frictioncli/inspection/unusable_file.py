@@ -8,7 +8,7 @@ import numpy as np
 from frictioncli.inspection.findings import FileInspection
 from frictioncli.inspection.monitors.sampling import Sampling, SamplingMonitor
 from frictioncli.inspection.monitors.windows import Windows
-from frictioncli.logs.channels import aliases as names
+from frictioncli.logs.channels import channel_names as names
 from frictioncli.logs.channels import units
 from frictioncli.logs.channels.channel_map import ChannelMap
 from frictioncli.logs.channels.recognition import LogChannel, recognise_channels

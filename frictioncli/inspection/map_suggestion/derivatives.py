@@ -7,7 +7,7 @@ import numpy as np
 
 from frictioncli.arrays import Array
 from frictioncli.inspection.map_suggestion.log_head import LogHead
-from frictioncli.logs.channels import aliases as names
+from frictioncli.logs.channels import channel_names as names
 from frictioncli.logs.channels import unit_evidence
 from frictioncli.logs.channels.unit_evidence import MotionUnits
 from frictioncli.logs.channels.units import FACTORS

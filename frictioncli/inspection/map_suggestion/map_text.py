@@ -3,7 +3,7 @@
 from frictioncli.inspection.map_suggestion.columns import ColumnGuess
 from frictioncli.inspection.map_suggestion.log_head import LogHead
 from frictioncli.inspection.map_suggestion.suggestion import Suggestion
-from frictioncli.logs.channels import aliases as names
+from frictioncli.logs.channels import channel_names as names
 from frictioncli.plain_text import escaped, printable
 
 _MAX_COMMENT = 180

@@ -17,7 +17,7 @@ from frictioncli.inspection.map_suggestion.columns import (
 from frictioncli.inspection.map_suggestion.derivatives import Derivative
 from frictioncli.inspection.map_suggestion.measured_or_commanded import measured_first, same_motion
 from frictioncli.inspection.map_suggestion.time_columns import TimeColumn, possible_time_units
-from frictioncli.logs.channels import aliases as names
+from frictioncli.logs.channels import channel_names as names
 from frictioncli.logs.channels import unit_evidence, units
 
 _SURE_COSINE = 0.999

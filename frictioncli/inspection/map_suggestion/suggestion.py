@@ -25,7 +25,7 @@ from frictioncli.inspection.map_suggestion.torque_columns import (
     guess_load,
     guess_torque,
 )
-from frictioncli.logs.channels import aliases as names
+from frictioncli.logs.channels import channel_names as names
 
 
 @dataclass(frozen=True, slots=True)

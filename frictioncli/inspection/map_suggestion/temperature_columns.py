@@ -12,7 +12,7 @@ from frictioncli.inspection.map_suggestion.columns import (
     LogColumns,
 )
 from frictioncli.inspection.map_suggestion.log_head import LogHead
-from frictioncli.logs.channels import aliases as names
+from frictioncli.logs.channels import channel_names as names
 from frictioncli.logs.channels import units
 
 _RANGES = {"°C": (5.0, 110.0), "K": (278.0, 383.0)}

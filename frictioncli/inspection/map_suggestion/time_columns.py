@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from frictioncli.inspection.map_suggestion.log_head import LogHead
-from frictioncli.logs.channels import aliases as names
+from frictioncli.logs.channels import channel_names as names
 from frictioncli.logs.channels import units
 from frictioncli.logs.channels.recognition import recognise_channels, split_unit
 

@@ -16,7 +16,7 @@ from frictioncli.inspection.map_suggestion.columns import (
 )
 from frictioncli.inspection.map_suggestion.log_head import LogHead
 from frictioncli.inspection.map_suggestion.measured_or_commanded import is_command, is_derived
-from frictioncli.logs.channels import aliases as names
+from frictioncli.logs.channels import channel_names as names
 from frictioncli.logs.channels import units
 
 _LEAST_SPEED = 0.1

@@ -6,7 +6,7 @@ import numpy as np
 
 from frictioncli.arrays import Array, Flags, Indices
 from frictioncli.inspection.monitors.joint_rows import JointRows
-from frictioncli.logs.channels import aliases as names
+from frictioncli.logs.channels import channel_names as names
 from frictioncli.pairs.slices import true_runs
 
 _LEAST_CHANGING = 0.8

@@ -6,7 +6,7 @@ import numpy as np
 
 from frictioncli.arrays import Array, Flags
 from frictioncli.inspection.monitors.windows import Window
-from frictioncli.logs.channels import aliases as names
+from frictioncli.logs.channels import channel_names as names
 from frictioncli.logs.samples.differentiation import max_gap
 from frictioncli.pairs.settings import SteadySettings
 

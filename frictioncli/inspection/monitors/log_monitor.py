@@ -14,7 +14,7 @@ from frictioncli.inspection.monitors.spikes import SpikeMonitor
 from frictioncli.inspection.monitors.velocity_agreement import VelocityAgreementMonitor
 from frictioncli.inspection.monitors.windows import Window, Windows
 from frictioncli.inspection.unit_reasons import evidence, gear_ratio
-from frictioncli.logs.channels import aliases as names
+from frictioncli.logs.channels import channel_names as names
 from frictioncli.logs.channels.joint_plan import JointPlan
 from frictioncli.logs.channels.recognition import LogChannel
 from frictioncli.logs.samples.chunks import Chunk, PlannedLog

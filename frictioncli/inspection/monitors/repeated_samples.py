@@ -8,7 +8,7 @@ from frictioncli.arrays import Array, Flags, Numbers
 from frictioncli.inspection.monitors.joint_rows import JointRows
 from frictioncli.inspection.monitors.log_histogram import LogHistogram
 from frictioncli.inspection.monitors.windows import Window
-from frictioncli.logs.channels import aliases as names
+from frictioncli.logs.channels import channel_names as names
 
 _CHANNELS = (names.POSITION, names.VELOCITY, names.TORQUE, names.LOAD)
 _ALIKE = 2.5

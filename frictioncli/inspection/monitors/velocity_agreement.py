@@ -6,7 +6,7 @@ import numpy as np
 
 from frictioncli.inspection.monitors.joint_rows import JointRows
 from frictioncli.inspection.monitors.log_histogram import LogHistogram
-from frictioncli.logs.channels import aliases as names
+from frictioncli.logs.channels import channel_names as names
 
 _WIDTH = 8
 _FEWEST = 20

@@ -11,7 +11,14 @@ from typing import Any
 
 from frictioncli.errors import MappingError
 from frictioncli.logs.channels import units
-from frictioncli.logs.channels.aliases import CHANNELS, JOINT_SIDE, POSITION, TIME, TORQUE, Meaning
+from frictioncli.logs.channels.channel_names import (
+    CHANNELS,
+    JOINT_SIDE,
+    POSITION,
+    TIME,
+    TORQUE,
+    Meaning,
+)
 from frictioncli.logs.channels.recognition import LogChannel, recognise_channels, split_unit
 from frictioncli.logs.log_source import CsvHints, Refusal
 

@@ -3,7 +3,7 @@
 from collections.abc import Collection, Iterable, Sequence
 from dataclasses import dataclass, replace
 
-from frictioncli.logs.channels.aliases import (
+from frictioncli.logs.channels.channel_names import (
     HOUSING_TEMPERATURE,
     LOAD,
     MOTOR_SIDE,

@@ -5,7 +5,7 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from frictioncli.logs.channels import aliases as names
+from frictioncli.logs.channels import channel_names as names
 from frictioncli.logs.channels import unit_evidence, units
 from frictioncli.logs.channels.joint_channels import JointChannels
 from frictioncli.logs.channels.recognition import LogChannel

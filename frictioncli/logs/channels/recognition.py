@@ -4,7 +4,7 @@ import re
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
-from frictioncli.logs.channels.aliases import (
+from frictioncli.logs.channels.channel_names import (
     MEANINGS,
     TIME,
     TOOL,

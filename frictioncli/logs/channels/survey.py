@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from frictioncli.arrays import Array
-from frictioncli.logs.channels import aliases as names
+from frictioncli.logs.channels import channel_names as names
 from frictioncli.logs.channels.recognition import LogChannel
 from frictioncli.logs.log_source import LogSource, RawBatch, UnreadableLog
 

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from frictioncli.arrays import Array
-from frictioncli.logs.channels.aliases import POSITION, TIME, TORQUE
+from frictioncli.logs.channels.channel_names import POSITION, TIME, TORQUE
 from frictioncli.logs.formats.compression import refuse_compressed
 from frictioncli.logs.formats.containers import (
     ContainerLog,

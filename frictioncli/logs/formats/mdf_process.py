@@ -24,7 +24,7 @@ import pyarrow as pa
 from numpy.typing import NDArray
 
 from frictioncli.arrays import Array
-from frictioncli.logs.channels.aliases import TORQUE
+from frictioncli.logs.channels.channel_names import TORQUE
 from frictioncli.logs.formats.containers import Rows, recognised_quantities, with_unit
 
 _UNFINISHED = b"UnFinMF "

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from frictioncli.logs.channels import aliases as names
+from frictioncli.logs.channels import channel_names as names
 from frictioncli.logs.channels import units
 from frictioncli.logs.channels.recognition import LogChannel, recognise_channels, split_unit
 from frictioncli.logs.formats.diadem import DiademRecording

@@ -9,7 +9,7 @@ import numpy as np
 
 from frictioncli.arrays import Array, Flags
 from frictioncli.errors import LogError
-from frictioncli.logs.channels import aliases as names
+from frictioncli.logs.channels import channel_names as names
 from frictioncli.logs.channels.joint_plan import JointPlan
 from frictioncli.logs.channels.recognition import LogChannel
 from frictioncli.logs.channels.units import plausible_temperature

@@ -10,7 +10,7 @@ from itertools import pairwise
 import numpy as np
 
 from frictioncli.arrays import Array
-from frictioncli.logs.channels.aliases import POSITION, TIME, TORQUE, VELOCITY
+from frictioncli.logs.channels.channel_names import POSITION, TIME, TORQUE, VELOCITY
 from frictioncli.logs.samples.differentiation import local_slope
 from frictioncli.logs.samples.log_rows import NO_VALUES, LogRows, RejectedRows, concatenate_rows
 

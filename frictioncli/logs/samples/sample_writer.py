@@ -20,7 +20,7 @@ import pyarrow as pa
 
 from frictioncli import schemas, tables
 from frictioncli.arrays import Array
-from frictioncli.logs.channels import aliases as names
+from frictioncli.logs.channels import channel_names as names
 from frictioncli.logs.samples.log_rows import LogRows
 from frictioncli.logs.samples.quantized_temperature import Knots, interpolate_temperature
 from frictioncli.provenance import Provenance

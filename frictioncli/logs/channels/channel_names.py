@@ -1,4 +1,4 @@
-"""Channel names used by robot controllers and loggers, in German and English."""
+"""Quantities of a log's channels, and the names that controllers and loggers give them."""
 
 from dataclasses import dataclass
 
