@@ -1,6 +1,5 @@
 """Work folder: lock, removal of temporary files of killed runs, and check for outdated tables."""
 
-import json
 import os
 import shutil
 from collections.abc import Iterable, Iterator
@@ -9,7 +8,7 @@ from pathlib import Path
 
 from filelock import FileLock, Timeout
 
-from frictioncli import tables
+from frictioncli import documents, tables
 from frictioncli.errors import FrictionError, TableError
 from frictioncli.files import DRAFT_PREFIX, cannot_write
 from frictioncli.provenance import sha256
@@ -120,13 +119,14 @@ def _remove_temporary_folders(work: Path) -> None:
 def _origin(output: Path) -> tuple[str, dict[str, str]]:
     """Return the stage that made an output and its inputs; both empty where that is unknown."""
     try:
-        if output.suffix == ".parquet":
-            provenance = tables.metadata(output)
-        elif output.suffix == ".json":
-            provenance = json.loads(output.read_text(encoding="utf-8"))["provenance"]
+        if output.suffix == ".json":
+            provenance = documents.read_provenance(output)
+            stage, inputs = (provenance.stage, provenance.inputs) if provenance else ("", {})
+        elif output.suffix == ".parquet":
+            metadata = tables.metadata(output)
+            stage, inputs = str(metadata["stage"]), dict(metadata["inputs"])
         else:
             return "", {}
-        stage, inputs = str(provenance["stage"]), dict(provenance["inputs"])
     except (TableError, ValueError, KeyError, TypeError):  # not written by this program
         return "", {}
     return stage, {name: digest for name, digest in inputs.items() if Path(name).name == name}

@@ -11,9 +11,7 @@ these the update is exact at any sampling interval.
 """
 
 import math
-from collections.abc import Mapping
-from dataclasses import asdict, dataclass, field
-from typing import Any, Self
+from dataclasses import dataclass, field
 
 _SIGMAS = 1.959963984540054
 """Half-width of a 95 % interval in standard deviations."""
@@ -48,26 +46,6 @@ class GearLag:
     housing_share: float
     reference_power: float
     start_sd: float
-
-    def as_dict(self) -> dict[str, Any]:
-        """Return plain values for JSON."""
-        return asdict(self)
-
-    @classmethod
-    def of(cls, values: Mapping[str, Any]) -> Self:
-        """Return the parameters from plain values.
-
-        Raises
-        ------
-        KeyError, TypeError, ValueError
-            If a value is missing or is not a number.
-        """
-        interval = values["time_constant_ci95"]
-        numbers = {
-            name: float(values[name]) for name in cls.__slots__ if name != "time_constant_ci95"
-        }
-        low_high = None if interval is None else (float(interval[0]), float(interval[1]))
-        return cls(time_constant_ci95=low_high, **numbers)
 
 
 @dataclass(slots=True)

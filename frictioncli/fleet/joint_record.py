@@ -1,13 +1,12 @@
 """Record in the work folder of a joint: its row of the fleet's table, and the state of the work."""
 
-import json
 import shutil
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from frictioncli.documents import to_json
+from frictioncli import documents
 from frictioncli.errors import FrictionError, TableError
 from frictioncli.files import write_text
 
@@ -37,15 +36,14 @@ class JointRecord:
 def read_record(work: Path) -> JointRecord | None:
     """Return the record of a work folder; None if it is missing or damaged."""
     try:
-        document = json.loads((work / RECORD).read_text(encoding="utf-8"))
-        return JointRecord(key=document["key"], row=document["row"])
-    except (OSError, ValueError, KeyError, TypeError):
+        return documents.decode((work / RECORD).read_bytes(), JointRecord)
+    except (OSError, TableError):
         return None
 
 
 def write_record(work: Path, record: JointRecord) -> None:
     """Write the record of a joint into its work folder."""
-    write_text(work / RECORD, to_json({"key": record.key, "row": dict(record.row)}))
+    write_text(work / RECORD, documents.to_json(record))
 
 
 def read_row(work: Path) -> Mapping[str, Any]:

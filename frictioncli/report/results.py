@@ -1,6 +1,5 @@
 """Contents of a work folder as the report uses them, read once and passed on."""
 
-import json
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -10,7 +9,7 @@ import numpy as np
 import pandas as pd
 from numpy.typing import ArrayLike
 
-from frictioncli import schemas, tables
+from frictioncli import documents, schemas, tables
 from frictioncli.arrays import Array
 from frictioncli.diagnosis.documents.document import DiagnosisDocument
 from frictioncli.diagnosis.documents.extended_model import ExtendedModel, read_extended
@@ -254,8 +253,8 @@ def _read_metadata(work: Path) -> Iterator[tuple[str, Mapping[str, Any]]]:
     for name in (MODEL, DIAGNOSIS, EXTENDED):
         path = work / name
         if path.exists():
-            document = json.loads(path.read_text(encoding="utf-8"))
-            yield name, document.get("provenance") or {}
+            provenance = documents.read_provenance(path)
+            yield name, provenance.as_dict() if provenance else {}
 
 
 def _settings(metadata: Mapping[str, Mapping[str, Any]], file: str) -> Mapping[str, Any]:

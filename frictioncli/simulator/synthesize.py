@@ -1,15 +1,14 @@
 """Command ``synthesize``: simulated trace folders and the truth about them."""
 
-import json
 from dataclasses import asdict, dataclass, fields
 from pathlib import Path
 from typing import Any
 
+import msgspec
 import numpy as np
 
-from frictioncli import files
-from frictioncli.documents import to_json
-from frictioncli.errors import OptionError
+from frictioncli import documents, files
+from frictioncli.errors import OptionError, TableError
 from frictioncli.simulator.joint import SimulatedJoint
 from frictioncli.simulator.planted.catalogue import requested_effects
 from frictioncli.simulator.planted.planting import PlantedEffects, plant
@@ -24,6 +23,25 @@ TRUTH = "truth.json"
 
 _OPTIONAL_SETTINGS = ("effects", "blind", "joint_kind", "noise_kind", "protocol", "thin")
 """Settings that the truth holds only where they differ from the default."""
+
+
+class _WrittenFile(msgspec.Struct):
+    """The part of a recording's truth that names its file."""
+
+    file: str
+
+
+class _WrittenRun(msgspec.Struct):
+    """The part of a run's truth that names its folder and files."""
+
+    name: str
+    recordings: tuple[_WrittenFile, ...]
+
+
+class _WrittenRuns(msgspec.Struct):
+    """The part of ``truth.json`` that names what a synthesis wrote."""
+
+    runs: tuple[_WrittenRun, ...]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -111,7 +129,7 @@ def synthesize(folder: Path, settings: SynthesisSettings | None = None) -> Synth
         }
         if effects:
             document["effects"] = [one.truth() for one in planted.effects]
-        text = to_json(document)
+        text = documents.to_json(document)
         if not settings.blind:
             (draft / TRUTH).write_text(text, encoding="utf-8", newline="\n")
     if settings.blind:
@@ -162,8 +180,8 @@ def _refuse_foreign(folder: Path, beside: Path) -> None:
 def _files_of_synthesis(truth: Path) -> set[str]:
     """Return the files that a former synthesis wrote; none if ``truth`` cannot be read."""
     try:
-        runs = json.loads(truth.read_text(encoding="utf-8"))["runs"]
-        named = {f"{run['name']}/{one['file']}" for run in runs for one in run["recordings"]}
-        return named | {f"{run['name']}/{MANIFEST}" for run in runs} | {TRUTH}
-    except (OSError, ValueError, KeyError, TypeError):
+        runs = documents.decode(truth.read_bytes(), _WrittenRuns).runs
+    except (OSError, TableError):
         return set()
+    named = {f"{run.name}/{one.file}" for run in runs for one in run.recordings}
+    return named | {f"{run.name}/{MANIFEST}" for run in runs} | {TRUTH}
