@@ -2,6 +2,7 @@
 
 import json
 from collections.abc import Callable
+from functools import cache
 from pathlib import Path
 
 import numpy as np
@@ -9,9 +10,11 @@ import pandas as pd
 import pytest
 
 from frictioncli import schemas, tables
+from frictioncli.diagnosis.documents.reload import Reloaded
 from frictioncli.model.friction import PUBLISHED, friction_torque, temperature_from_friction
 from frictioncli.provenance import Provenance
 from frictioncli.report.results import JointResults, read_results
+from tests.report.diagnosis_documents import write_diagnosis
 
 CYCLE_SPEEDS = (19.1, 43.0, 67.5, 101.2)
 SWEEP_SPEEDS = (2.3, 5.0, 10.0, 19.1, 30.0, 43.0, 67.5, 85.0, 101.2)
@@ -31,6 +34,7 @@ def thermal_state(time: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]
     return motor, housing, zone
 
 
+@cache
 def make_torques(
     runs: tuple[str, ...], joint: int, *, temperature: bool = True, scale: float = 1.0, step=600.0
 ) -> pd.DataFrame:
@@ -275,7 +279,24 @@ def without_temperature(tmp_path_factory: pytest.TempPathFactory) -> JointResult
     return read_results(work).joints[0]
 
 
+@pytest.fixture(scope="session")
+def diagnosed_work(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A work folder with a diagnosis and an extended model; tests must not change it."""
+    return write_diagnosis(write_work(tmp_path_factory.mktemp("diagnosed"), schedule=False))
+
+
+@pytest.fixture(scope="session")
+def diagnosed(diagnosed_work: Path) -> JointResults:
+    return read_results(diagnosed_work).joints[0]
+
+
+@pytest.fixture(scope="session")
+def diagnosis(diagnosed: JointResults) -> Reloaded:
+    assert diagnosed.diagnosis is not None
+    return diagnosed.diagnosis
+
+
 @pytest.fixture
 def without_figures(monkeypatch: pytest.MonkeyPatch) -> None:
-    """For tests of what the page says: drawing takes most of a report's time."""
+    """Leave the figures out, whose drawing takes most of a report's time."""
     monkeypatch.setattr("frictioncli.report.drawing.FIGURES", ())

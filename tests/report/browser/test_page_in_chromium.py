@@ -12,7 +12,7 @@ from frictioncli.report.labels import number_text
 from frictioncli.report.page import write_report
 from frictioncli.report.results import read_results
 from frictioncli.stages.evaluate import evaluate
-from tests.report.planted import extended
+from tests.report.diagnosis_documents import extended_document
 
 HOSTILE = (
     "</script><script>window.broken = 1</script><img src=x onerror='window.broken = 2'>\u202e$x$"
@@ -25,7 +25,7 @@ WIDTHS = (390, 1440)
 def work(tmp_path_factory, write_work):
     """A work folder with a page; the base model's evaluation stands there, the other beside it."""
     work = write_work(tmp_path_factory.mktemp("browser"), runs=("day-1", HOSTILE), schedule=False)
-    model = extended(work, read_results(work).joints[0].torques, held_out=HOSTILE)
+    model = extended_document(work, read_results(work).joints[0].torques, held_out=HOSTILE)
     (work / "extended-model.json").write_text(json.dumps(model), encoding="utf-8")
     evaluate(work, GRID, extended=True)
     (work / "evaluation.parquet").rename(work / "extended.parquet")
@@ -196,7 +196,7 @@ def test_curves_follow_the_width(opened):
     assert float(narrow.split()[2]) < 390 < float(wide.split()[2])
 
 
-def test_hostile_names_are_inert(opened):
+def test_hostile_names_are_harmless(opened):
     driver = opened()
     assert driver.execute_script("return window.broken") is None
     shown = HOSTILE.replace("\u202e", "\N{REPLACEMENT CHARACTER}")

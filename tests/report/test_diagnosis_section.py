@@ -1,7 +1,8 @@
-"""The section on what the simulation gets wrong: its numbers, pictures and words."""
+"""Section on the diagnosis: its numbers, figures and sentences."""
 
 import json
 import re
+import shutil
 from copy import deepcopy
 from dataclasses import replace
 
@@ -18,120 +19,20 @@ from frictioncli.report.diagnosis_text import UNDETECTABLE, gain_sentence, p_val
 from frictioncli.report.drawing import draw_figure
 from frictioncli.report.page import write_report
 from frictioncli.report.results import read_results
-from tests.report.planted import EXPONENT, OFFSET, SHIFT, TORQUE, VELOCITY, extended
+from tests.report.diagnosis_documents import DIAGNOSIS_DOCUMENT, OFFSET, SHIFT, stribeck_term
 
 HOSTILE = "<script>alert(1)</script>&\"'$\\frac{kr10$"
 
 
-def cause(number, effects, probabilities, **changed):
-    return {
-        "effects": effects,
-        "probabilities": probabilities,
-        "channel": "friction",
-        "claim": "Friction is above the model at low speed.",
-        "equation": "dtau = ts*exp(-(v/vs)^k)",
-        "parameters": {
-            "velocity": {"estimate": VELOCITY, "ci95": None, "unit": "deg/s"},
-            "boundary_torque": {"estimate": TORQUE, "ci95": [2.5, 3.5], "unit": "N·m"},
-        },
-        "size": 1.25,
-        "p_value": 3e-9,
-        "seen_in": "speed",
-        "figure": f"diagnosis-{number}.svg",
-        "experiment": "Measure more speeds.",
-    } | changed
-
-
-DIAGNOSIS = {
-    "joint": 2,
-    "verdict": "unnamed",
-    "causes": [
-        cause(1, ["stribeck"], {"stribeck": 0.97, "drift": 0.02}),
-        cause(
-            2,
-            ["direction_asymmetry", "dress_pack"],
-            {"direction_asymmetry": 0.6, "dress_pack": 0.4},
-            channel="load",
-        ),
-        cause(
-            3,
-            [],
-            {},
-            seen_in="angle",
-            claim="Residuals have structure along angle.",
-            equation="",
-            parameters={},
-            figure=None,
-        ),
-    ],
-    "visible": [{"effects": ["inertia"], "size": 0.05, "p_value": 0.0}],
-    "gain": {
-        "basis": "new_run",
-        "rmse_before": 2.0,
-        "rmse_after": 1.0,
-        "reduction": 0.5,
-        "ci95": [0.4, 0.6],
-        "noise_floor": 0.7,
-    },
-    "detectable": {"stribeck": 0.4, "run_in": None},
-    "simulation": {
-        "rmse": 2.1,
-        "worst": [
-            {
-                "channel": "friction",
-                "axis": "temperature",
-                "low": 25.0,
-                "high": 31.0,
-                "speed": 67.5,
-                "misfit": -4.5,
-            }
-        ],
-    },
-    "torque_unit": "N·m",
-    "runs": ["day-1"],
-    "held_out": "day-2",
-    "settings": {"alpha": 0.05, "seed": 0},
-}
-
-
-def boundary(speed):
-    """The planted term, written out by hand."""
-    return TORQUE * np.exp(-((speed / VELOCITY) ** EXPONENT))
-
-
-def diagnosed(folder):
-    """Write a diagnosis into a work folder."""
-    torques = read_results(folder).joints[0].torques
-    (folder / "diagnosis.json").write_text(json.dumps(DIAGNOSIS), encoding="utf-8")
-    model = extended(folder, torques)
-    (folder / "extended-model.json").write_text(json.dumps(model), encoding="utf-8")
-    return folder
-
-
-@pytest.fixture(scope="module")
-def work(tmp_path_factory, write_work):
-    return diagnosed(write_work(tmp_path_factory.mktemp("diagnosed"), schedule=False))
-
-
-@pytest.fixture(scope="module")
-def results(work):
-    return read_results(work).joints[0]
-
-
-@pytest.fixture(scope="module")
-def diagnosis(results):
-    return results.diagnosis
-
-
-def test_recalled_misfits_are_those_of_the_files(diagnosis):
+def test_reloaded_misfits_are_those_of_the_files(diagnosis):
     seen, new = diagnosis.seen, diagnosis.new
     assert seen.problem.runs == ("day-1",)
     assert new.problem.runs == ("day-2",)
     for one in (seen, new):
         speed = one.problem.table.speed
-        np.testing.assert_allclose(one.terms[0].friction, boundary(speed))
+        np.testing.assert_allclose(one.terms[0].friction, stribeck_term(speed))
         np.testing.assert_allclose(one.terms[1].load, OFFSET)
-        wanted = one.before["friction"] - SHIFT - boundary(speed)
+        wanted = one.before["friction"] - SHIFT - stribeck_term(speed)
         np.testing.assert_allclose(one.after["friction"], wanted, atol=1e-9)
         np.testing.assert_allclose(one.after["load"], one.before["load"] - OFFSET, atol=1e-9)
         np.testing.assert_allclose(
@@ -141,28 +42,33 @@ def test_recalled_misfits_are_those_of_the_files(diagnosis):
     np.testing.assert_allclose(both, [11.0, 22.0, 9.0, 18.0])
 
 
-def test_section_says_what_was_found(results, diagnosis):
-    told = diagnosis_section(results)
-    assert "2.10 N·m (RMS, day-1)" in told.verdict
-    assert "The model lacks stribeck." in told.verdict
-    assert "one of direction asymmetry and dress pack" in told.verdict
-    assert "Beside that, structure is left" in told.verdict
-    assert [one.effects for one in told.causes] == [
+def test_section_says_what_was_found(diagnosed, diagnosis):
+    section = diagnosis_section(diagnosed)
+    assert "2.10 N·m (RMS, day-1)" in section.verdict
+    assert "The model lacks stribeck." in section.verdict
+    assert "one of direction asymmetry and dress pack" in section.verdict
+    assert "Beside that, structure is left" in section.verdict
+    assert [one.effects for one in section.causes] == [
         "stribeck 97 %",
         "direction asymmetry 60 % or dress pack 40 %",
     ]
-    first = told.causes[0]
+    first = section.causes[0]
     assert (first.size, first.p_value) == ("1.2 N·m", "3e−09")
     assert first.parameters == "velocity 8.00 deg/s; boundary torque 3.00 N·m (2.50 to 3.50)"
-    assert [one.claim for one in told.unnamed] == ["Residuals have structure along angle."]
-    assert told.visible[0].startswith(
+    assert [one.claim for one in section.unnamed] == ["Residuals have structure along angle."]
+    assert section.visible[0].startswith(
         "inertia stands out of the noise (0.050 N·m RMS, chance below 1e−300)"
     )
-    assert "run day-2, which the diagnosis has not seen" in told.gain
-    assert "50 % less (95 % interval: 40 % less to 60 % less)" in told.gain
-    assert told.detectable.rows[0][2] == "0.40"
-    assert told.detectable.rows[1][2] == UNDETECTABLE
-    assert told.worst.rows[0] == ("temperature 25.0 to 31.0 °C", "67.5 deg/s", "friction", "−4.50")
+    assert "run day-2, which the diagnosis has not seen" in section.gain
+    assert "50 % less (95 % interval: 40 % less to 60 % less)" in section.gain
+    assert section.detectable.rows[0][2] == "0.40"
+    assert section.detectable.rows[1][2] == UNDETECTABLE
+    assert section.worst.rows[0] == (
+        "temperature 25.0 to 31.0 °C",
+        "67.5 deg/s",
+        "friction",
+        "−4.50",
+    )
     names = [figure.name for figure in diagnosis_figures(diagnosis)]
     assert names == [
         "diagnosis-simulation",
@@ -174,7 +80,7 @@ def test_section_says_what_was_found(results, diagnosis):
 
 
 def test_a_gain_that_is_none_is_said_to_be_none():
-    document = convert(DIAGNOSIS, DiagnosisDocument)
+    document = convert(DIAGNOSIS_DOCUMENT, DiagnosisDocument)
 
     def sentence(**changed):
         gain = structs.replace(document.gain, **changed)
@@ -194,19 +100,20 @@ def test_a_gain_that_is_none_is_said_to_be_none():
     assert p_value_text(0.031) == "0.031"
 
 
-def test_silence_is_explained_and_draws_no_gain(results, work):
-    document, model = deepcopy(DIAGNOSIS), json.loads((work / "extended-model.json").read_text())
+def test_silence_is_explained_and_draws_no_gain(diagnosed, diagnosed_work):
+    document = deepcopy(DIAGNOSIS_DOCUMENT)
+    model = json.loads((diagnosed_work / "extended-model.json").read_text())
     document |= {"verdict": "no_evidence", "causes": [], "gain": None}
     model["effects"] = []
     found = reload(
-        results.torques,
+        diagnosed.torques,
         convert(document, DiagnosisDocument),
         extended_model(convert(model, ExtendedDocument)),
     )
     assert found.seen.after is found.seen.before
-    silent = replace(results, diagnosis=found)
-    told = diagnosis_section(silent)
-    assert "No cause was found in that" in told.verdict
+    silent = replace(diagnosed, diagnosis=found)
+    section = diagnosis_section(silent)
+    assert "No cause was found in that" in section.verdict
     figures = diagnosis_figures(found)
     assert [figure.name for figure in figures] == ["diagnosis-simulation", "diagnosis-maps"]
     for figure in figures:
@@ -217,7 +124,7 @@ def test_without_a_diagnosis_the_section_names_the_command(tmp_path, write_work)
     work = write_work(tmp_path, runs=("day-1",), temperature=False)
     results = read_results(work).joints[0]
     assert "'frictioncli diagnose' does it" in diagnosis_section(results).missing
-    document = deepcopy(DIAGNOSIS) | {"causes": [], "gain": None}
+    document = deepcopy(DIAGNOSIS_DOCUMENT) | {"causes": [], "gain": None}
     (work / "diagnosis.json").write_text(json.dumps(document))
     (work / "extended-model.json").write_text((work / "model.json").read_text())
     with pytest.raises(TableError, match="diagnose"):
@@ -242,9 +149,9 @@ def test_without_a_diagnosis_the_section_names_the_command(tmp_path, write_work)
         lambda document, model: model["effects"][0].update(coefficients={}),
     ],
 )
-def test_damaged_files_are_refused(tmp_path, work, damage):
-    document = json.loads((work / "diagnosis.json").read_text(encoding="utf-8"))
-    model = json.loads((work / "extended-model.json").read_text(encoding="utf-8"))
+def test_damaged_files_are_refused(tmp_path, diagnosed_work, damage):
+    document = json.loads((diagnosed_work / "diagnosis.json").read_text(encoding="utf-8"))
+    model = json.loads((diagnosed_work / "extended-model.json").read_text(encoding="utf-8"))
     damage(document, model)
     (tmp_path / "diagnosis.json").write_text(json.dumps(document))
     (tmp_path / "extended-model.json").write_text(json.dumps(model))
@@ -253,8 +160,11 @@ def test_damaged_files_are_refused(tmp_path, work, damage):
 
 
 @pytest.mark.usefixtures("without_figures")
-def test_page_has_the_section_after_the_figures_escaped_and_the_same_twice(work):
-    document = deepcopy(DIAGNOSIS)
+def test_page_has_the_section_after_the_figures_escaped_and_the_same_twice(
+    tmp_path, diagnosed_work
+):
+    work = shutil.copytree(diagnosed_work, tmp_path / "copied")
+    document = deepcopy(DIAGNOSIS_DOCUMENT)
     document["causes"][0] |= {"claim": HOSTILE, "equation": HOSTILE, "experiment": HOSTILE}
     document["causes"][1]["effects"] = ["direction_asymmetry", HOSTILE]
     document["detectable"][HOSTILE] = None

@@ -1,4 +1,4 @@
-"""Lights of data quality: what is good, fair and poor, and why."""
+"""Ratings of data quality: good, fair and poor, and why."""
 
 from dataclasses import replace
 
@@ -20,7 +20,7 @@ from frictioncli.report.quality_ratings import (
     temperature_rating,
     time_rating,
 )
-from tests.report.planted import diagnosis
+from tests.report.diagnosis_documents import diagnosis
 
 CLEAN = IngestCounts(
     rows=10_000, rejected=0, files=8, unusable_files=0, time_known=True, warnings=0
@@ -93,10 +93,10 @@ def test_parameters(two_runs, without_temperature):
     wide = ParameterEstimate(estimate=2.0, ci95=(0.9, 3.1), unit="N·m", determined=True)
     model = two_runs.model
     rough = replace(model, parameters=dict(model.parameters) | {"tau_c": wide})
-    light = parameters_rating(replace(two_runs, model=rough))
-    assert (light.level, "but τc only" in light.reason) == (FAIR, True)
-    light = parameters_rating(without_temperature)
-    assert (light.level, light.reason) == (POOR, "The data do not determine γ and δ.")
+    rating = parameters_rating(replace(two_runs, model=rough))
+    assert (rating.level, "but τc only" in rating.reason) == (FAIR, True)
+    rating = parameters_rating(without_temperature)
+    assert (rating.level, rating.reason) == (POOR, "The data do not determine γ and δ.")
 
 
 @pytest.mark.parametrize(
@@ -110,16 +110,16 @@ def test_parameters(two_runs, without_temperature):
 )
 def test_model_goes_by_the_verdict(two_runs, verdict, effects, level, word):
     document = diagnosis(verdict=verdict, sets=(effects,), rmse=3.0)
-    light = model_rating(two_runs, document)
-    assert light.level == level
-    assert word in light.reason
-    assert "3.00 N·m (RMS)" in light.reason
+    rating = model_rating(two_runs, document)
+    assert rating.level == level
+    assert word in rating.reason
+    assert "3.00 N·m (RMS)" in rating.reason
 
 
-def test_every_light_has_a_reason(two_runs):
+def test_every_rating_has_a_reason(two_runs):
     found = quality_ratings(two_runs, CLEAN, None)
     assert len(found) == 8
-    assert all(light.level in (GOOD, FAIR, POOR) for light in found)
-    assert all(light.reason.endswith(".") for light in found)
+    assert all(rating.level in (GOOD, FAIR, POOR) for rating in found)
+    assert all(rating.reason.endswith(".") for rating in found)
     unread = quality_ratings(two_runs, replace(CLEAN, files=0, time_known=None), None)
     assert len(unread) == 6

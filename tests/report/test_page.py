@@ -1,4 +1,4 @@
-"""The page is whole, self-contained, safe against hostile names and the same at every call."""
+"""The page is complete, self-contained, safe against hostile names and the same at every call."""
 
 import json
 import re
@@ -8,10 +8,7 @@ from itertools import pairwise
 import pytest
 
 from frictioncli.errors import TableError
-from frictioncli.report.labels import list_text
 from frictioncli.report.page import write_report
-from frictioncli.report.page_tables import epsilon_tables
-from frictioncli.report.parameters import is_published_joint, parameter_rows
 
 HOSTILE = "<script>alert(1)</script>&\"'$\\frac{kr10$\u202e=1+1\x1b"
 
@@ -129,36 +126,3 @@ def test_page_tells_what_became_of_the_data(tmp_path, write_work):
     assert text.count("sign +1 found") == 1
     assert "cd" * 32 in text
     assert "the log has no temperature; merged into beta" in text
-
-
-def test_parameters_are_those_of_the_model(two_runs):
-    rows = parameter_rows(two_runs)
-    assert [row.estimate for row in rows] == ["10.57", "0.001400", "3.480", "15.66", "0.05600"]
-    assert rows[0].interval == "10.0 to 11.1"
-    assert [row.published for row in rows] == ["10.57", "0.0014", "3.48", "15.66", "0.056"]
-    assert [row.remark for row in rows] == [""] * 5
-
-
-def test_published_values_stand_only_beside_the_published_joint(two_runs, current_log):
-    assert is_published_joint(two_runs, "sample_logs/KR 10 R900/day-1.csv")
-    assert not is_published_joint(two_runs, "sample_logs/ur5/day-1.csv")
-    assert not is_published_joint(current_log, "kr10")
-
-
-def test_errors_stand_beside_the_number_of_corrections(two_runs):
-    first, second, bounded, _ = epsilon_tables(two_runs)
-    assert first.title.startswith("day-1: error ε of equation (21) [N·m]")
-    assert first.groups == (("", 2), ("heating", 3), ("cooling", 3))
-    assert first.rows[0] == ("no correction", "", "4.00 (0)", "", "", "5.00 (0)", "", "")
-    marked = first.rows[first.marked[0]]
-    assert marked[:5] == ("k = 5", "60", "0.667 (6)", "0.733 (7)", "0.867 (6)")
-    assert "(14, 1 failed)" in first.rows[2][2]
-    assert second.rows == first.rows
-    assert bounded.header == ("bound [N·m]", "uncertainty", "uncertainty")
-    assert bounded.rows[2] == ("2", "0.600 (6)", "0.750 (6)")
-    assert not bounded.marked
-
-
-def test_long_lists_are_cut():
-    assert list_text(["a"]) == "a"
-    assert list_text(list("abcdefg")) == "a, b, c, d, e and 2 more"

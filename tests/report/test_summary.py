@@ -1,16 +1,12 @@
-"""The top of the page: verdict, formula, figures that matter; what the data do not tell."""
+"""Top of the page: the result in a paragraph, key numbers, what was measured."""
 
 from dataclasses import replace
 
 import numpy as np
-import pytest
 from msgspec import structs
 
 from frictioncli.diagnosis.documents.document import GainRecord
-from frictioncli.model.document import ParameterEstimate
-from frictioncli.report.formula import formula_symbols, friction_formula, unit_markup
 from frictioncli.report.page_tables import epsilon_tables
-from frictioncli.report.parameters import correlation_table, correlation_text, limitations
 from frictioncli.report.results import read_results
 from frictioncli.report.summary import (
     corrections_needed,
@@ -18,7 +14,7 @@ from frictioncli.report.summary import (
     measurement_text,
     summary_text,
 )
-from tests.report.planted import cause, diagnosis
+from tests.report.diagnosis_documents import diagnosis
 
 GAIN = GainRecord(
     basis="new_run",
@@ -28,7 +24,6 @@ GAIN = GainRecord(
     ci95=(0.7, 0.9),
     noise_floor=0.5,
 )
-OPEN = cause(["run_in", "drift"], experiment="Rest a day.")
 DIAGNOSIS = diagnosis(
     sets=[["thermal_lag"]], gain=GAIN, detectable={"stribeck": 0.5, "drift": None}, rmse=5.2
 )
@@ -39,19 +34,6 @@ def error(results, run, phase):
     own = results.schedule[(results.schedule["run"] == run) & (results.schedule["phase"] == phase)]
     missed = [a - b for a, b in zip(own["friction_predicted"], own["friction_smoothed"])]  # noqa: B905
     return (sum(one * one for one in missed) / len(missed)) ** 0.5
-
-
-def test_formula_has_the_numbers_with_their_units(two_runs, without_temperature):
-    assert friction_formula(two_runs).striptags() == (
-        "τ = 10.57 N·m + 0.001400/(N·m) · L² + (3.480 N·m/(deg/s)½ + 15.66 N·m/(deg/s)½"
-        " · e−0.05600/°C · T) · √v"
-    )
-    assert friction_formula(without_temperature).striptags() == (
-        "τ = 10.57 N·m + 0.001400/(N·m) · L² + 6.500 N·m/(deg/s)½ · √v"
-    )
-    assert "T: motor temperature Tm in °C" in formula_symbols(two_runs)
-    assert "T:" not in formula_symbols(without_temperature)
-    assert unit_markup("<b>^2") == "&lt;b&gt;²"
 
 
 def test_verdict_gives_error_corrections_and_what_they_bring(two_runs):
@@ -119,8 +101,8 @@ def test_fewest_corrections_that_suffice(two_runs, tmp_path, write_work):
     assert corrections_needed(empty) is None
 
 
-def test_key_figures_have_units_and_what_to_read_them_with(two_runs, without_temperature):
-    names = [figure.name for figure in key_numbers(two_runs, DIAGNOSIS)]
+def test_key_numbers_have_units_and_what_to_read_them_with(two_runs, without_temperature):
+    names = [number.name for number in key_numbers(two_runs, DIAGNOSIS)]
     assert names == [
         "error ε in heating",
         "error ε in cooling",
@@ -131,45 +113,4 @@ def test_key_figures_have_units_and_what_to_read_them_with(two_runs, without_tem
     last = key_numbers(two_runs, DIAGNOSIS)[-1]
     assert last.value == "1.00 N·m"
     assert "on day-2, a run it has not seen; base model 5.00 N·m" in last.context
-    assert [figure.name for figure in key_numbers(without_temperature, None)] == [names[3]]
-
-
-@pytest.fixture
-def correlated(two_runs):
-    known = {
-        "tau_c": {"tau_c": 1.0, "beta": -0.954, "delta": 0.004},
-        "beta": {"tau_c": -0.954, "beta": 1.0, "delta": 0.5},
-        "delta": {"tau_c": 0.004, "beta": 0.5, "delta": 1.0},
-    }
-    return replace(two_runs, model=replace(two_runs.model, correlation=known))
-
-
-def test_correlations_stand_once(correlated, two_runs):
-    table = correlation_table(correlated)
-    assert table.header == ("", "τc", "β", "δ")
-    assert table.rows == (
-        ("τc", "1", "", ""),
-        ("β", "−0.95", "1", ""),
-        ("δ", "0", "+0.50", "1"),
-    )
-    assert correlation_table(two_runs) is None
-    assert correlation_text(-0.001) == "0"
-
-
-def test_unknowns_are_told(correlated, without_temperature):
-    vague = ParameterEstimate(estimate=2.0, ci95=(0.5, 3.5), unit="N·m", determined=True)
-    parameters = dict(correlated.model.parameters) | {"beta": vague}
-    told = limitations(
-        replace(correlated, model=replace(correlated.model, parameters=parameters)),
-        structs.replace(DIAGNOSIS, causes=(OPEN,)),
-    )
-    assert told == [
-        "β is known only roughly: 0.500 to 3.50 N·m.",
-        "τc and β are told only together (correlation −0.95): one may be off if the other is off"
-        " with it.",
-        "Which of run in and drift is at work: these data cannot tell them apart. Rest a day.",
-        "Whether there is drift: these data cannot show it.",
-    ]
-    alone = limitations(without_temperature, None)
-    assert alone[0] == ("γ is not determined: the log has no temperature; merged into beta.")
-    assert "has not been judged" in alone[-1]
+    assert [number.name for number in key_numbers(without_temperature, None)] == [names[3]]

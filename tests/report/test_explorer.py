@@ -1,4 +1,4 @@
-"""The explorer holds what the evaluation and the simulation say, for every setting of the grid."""
+"""Data of the explorer agree with evaluation and simulation at every setting of the grid."""
 
 import json
 import re
@@ -17,7 +17,7 @@ from frictioncli.report.page import write_report
 from frictioncli.report.results import read_results
 from frictioncli.stages.evaluate import evaluate
 from frictioncli.stages.simulate import simulate
-from tests.report.planted import extended
+from tests.report.diagnosis_documents import extended_document
 
 GRID = EvaluationGrid(k=(1.0, 2.5, 5.0, 10.0), tmax=(1800.0, 3600.0, 14400.0))
 
@@ -26,7 +26,7 @@ GRID = EvaluationGrid(k=(1.0, 2.5, 5.0, 10.0), tmax=(1800.0, 3600.0, 14400.0))
 def work(tmp_path_factory, write_work):
     folder = write_work(tmp_path_factory.mktemp("explored"), schedule=False)
     torques = read_results(folder).joints[0].torques
-    model = extended(folder, torques)
+    model = extended_document(folder, torques)
     (folder / "extended-model.json").write_text(json.dumps(model), encoding="utf-8")
     simulate(folder, ScheduleSettings(k=2.5, tmax=3600.0))
     evaluate(folder, GRID)
@@ -168,7 +168,7 @@ def test_a_large_grid_stays_small(copied):
 
 
 @pytest.mark.usefixtures("without_figures")
-def test_names_in_the_data_are_inert(tmp_path, write_work):
+def test_names_in_the_data_are_harmless(tmp_path, write_work):
     hostile = "</script><script>alert(1)</script>\u202e=1+1'\""
     folder = write_work(tmp_path, runs=(hostile,), schedule=False)
     evaluate(folder, GRID)
