@@ -16,7 +16,7 @@ BIN_WIDTH = 5.0
 """Width of the angle bins [deg]."""
 
 SETTLING = 0.2
-"""Settling time after acceleration, at most a quarter of the constant part [s]."""
+"""Settling time after acceleration, at most a quarter of the constant speed [s]."""
 
 LAG = 0.03
 """Delay of the joint behind its command [s]."""
@@ -104,12 +104,23 @@ def cells_of(
     ----------
     joint : SimulatedJoint
         The joint with that payload.
-    program, history, operation, trips : PaperProgram, History, OperatingHistory, RoundTrips
-        The run.
+    program : PaperProgram
+        Motion program.
+    history : History
+        Temperatures of the run.
+    operation : OperatingHistory
+        Operating history of the run.
+    trips : RoundTrips
+        Round trips of the run.
     payload_index : int
         Which of the run's payloads.
     interval : float
         Sampling interval. [s]
+
+    Returns
+    -------
+    Cells
+        The cells.
     """
     low, high = operation.angles
     acceleration = joint.servo.acceleration

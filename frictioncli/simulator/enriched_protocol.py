@@ -52,6 +52,13 @@ def run_enriched(
     history_type : type of History
         Integrator of the temperatures.
 
+    Returns
+    -------
+    History
+        Temperatures of the run.
+    tuple of MeasuringSeries
+        Its recordings, in order of time.
+
     Raises
     ------
     OptionError

@@ -106,7 +106,7 @@ def friction_torque(
     speed: ArrayLike,
     temperatures: Mapping[str, ArrayLike],
 ) -> Array:
-    """Return the joint's friction torque: the sum over its zones [N·m].
+    """Return the friction torque of the joint: the sum over its zones.
 
     Parameters
     ----------
@@ -116,8 +116,13 @@ def friction_torque(
         Load torque. [N·m]
     speed : array_like
         Absolute joint velocity. [deg/s]
-    temperatures : mapping
+    temperatures : mapping of str to array_like
         Temperature by node name. [°C]
+
+    Returns
+    -------
+    ndarray
+        Friction torque, positive where it opposes the motion. [N·m]
     """
     total = np.zeros(np.broadcast_shapes(np.shape(load), np.shape(speed)))
     for zone in zones:

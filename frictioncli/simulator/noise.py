@@ -140,6 +140,11 @@ def noise_of_kind(kind: str, default: SimulatedNoise) -> SimulatedNoise:
         with torque and speed.
     default : SimulatedNoise
         The default noise.
+
+    Returns
+    -------
+    SimulatedNoise
+        Noise of that kind.
     """
     if kind == "default":
         return default

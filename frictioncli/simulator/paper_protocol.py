@@ -14,7 +14,7 @@ from frictioncli.simulator.thermal_network import Ambient
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class PaperProgram:
-    """The experiment's motion program.
+    """Motion program of an experiment.
 
     Attributes
     ----------
@@ -54,11 +54,11 @@ class PaperProgram:
         return self if series.angles is None else replace(self, angles=series.angles)
 
     def trips(self, speed: float) -> RoundTripMotion:
-        """Return the round trips at one speed."""
+        """Return the continued round trips at one speed [deg/s]."""
         return RoundTripMotion(speed=speed, angles=self.angles, dwell=self.dwell)
 
     def trip_durations(self, servo: Servo, speeds: tuple[float, ...]) -> list[float]:
-        """Return how long a round trip takes at each speed, its dwells included [s]."""
+        """Return the duration of a round trip at each speed, dwells included [s]."""
         distance = abs(self.angles[1] - self.angles[0])
         return [
             2.0 * (move_duration(servo, distance=distance, speed=speed) + self.dwell)
@@ -66,12 +66,12 @@ class PaperProgram:
         ]
 
     def trip_begins(self, servo: Servo, speeds: tuple[float, ...]) -> Array:
-        """Return when each round trip of a recording begins, from its first sample on [s]."""
+        """Return the start of each round trip since the first sample of a recording [s]."""
         durations = self.trip_durations(servo, speeds)
         return np.asarray(self.lead + np.concatenate([[0.0], np.cumsum(durations)[:-1]]))
 
     def move_begins(self, servo: Servo, speeds: tuple[float, ...]) -> Array:
-        """Return when each move of a recording begins, two per round trip [s]."""
+        """Return the start of each move since the first sample of a recording [s]."""
         halves = np.repeat(self.trip_durations(servo, speeds), 2) / 2.0
         return np.asarray(self.lead + np.concatenate([[0.0], np.cumsum(halves)[:-1]]))
 

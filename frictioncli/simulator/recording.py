@@ -68,7 +68,25 @@ class Recording:
 
 
 def registered(value: ArrayLike, step: float) -> Array:
-    """Return ``value`` as a sensor with resolution ``step`` registers it: the nearest step."""
+    """Return a value as a sensor registers it: rounded to the nearest step.
+
+    Parameters
+    ----------
+    value : array_like
+        True value. [any unit]
+    step : float
+        Resolution of the sensor. [same unit]
+
+    Returns
+    -------
+    ndarray
+        Registered value. [same unit]
+
+    Examples
+    --------
+    >>> registered([24.4, 24.5], 1.0)
+    array([24., 25.])
+    """
     return np.asarray(np.floor(np.asarray(value, dtype=float) / step + 0.5) * step)
 
 
@@ -80,7 +98,7 @@ def control_torque(
     sign: int,
     friction_offset: Array | float = 0.0,
 ) -> Array:
-    r"""Return the control torque of a motion, without noise [N·m].
+    r"""Return the control torque of a motion, without noise.
 
     Parameters
     ----------
@@ -88,12 +106,17 @@ def control_torque(
         The joint.
     motion : MotionProfile
         Its motion.
-    temperatures : dict
-        Node temperatures at the motion's samples. [°C]
+    temperatures : dict of str to ndarray
+        Node temperatures at the samples. [°C]
     sign : int
         Sign convention of the log, +1 or -1.
     friction_offset : ndarray or float
         Further friction torque. [N·m]
+
+    Returns
+    -------
+    ndarray, shape (samples,)
+        Control torque. [N·m]
 
     Notes
     -----
@@ -145,6 +168,11 @@ def record(
         Effects that add torque.
     operation : OperatingHistory, optional
         Operating history on which the effects depend.
+
+    Returns
+    -------
+    Recording
+        Logged signals.
     """
     motion, time, trips = round_trips(
         joint.servo,

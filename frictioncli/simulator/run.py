@@ -167,6 +167,11 @@ def simulate(
         Setups of the runs, in order of time.
     history_type : type of History
         Integrator of the temperatures.
+
+    Returns
+    -------
+    list of SimulatedRun
+        The simulated runs.
     """
     simulated = [_run(setup, history_type) for setup in setups]
     total = sum(history.time for history, _ in simulated)

@@ -119,7 +119,7 @@ def generator_of(seed: np.random.SeedSequence) -> np.random.Generator:
 
 
 def _durations(series: tuple[MeasuringSeries, ...]) -> tuple[float, float]:
-    """Return how long the first heat-up and the first cool-down took [s]."""
+    """Return the durations of the first heat-up and the first cool-down [s]."""
     phases = [one.phase for one in series]
     hot = phases.index("heat-up")
     cool = phases.index("cool-down", hot)

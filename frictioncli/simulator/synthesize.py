@@ -97,11 +97,16 @@ def synthesize(folder: Path, settings: SynthesisSettings | None = None) -> Synth
     settings : SynthesisSettings, optional
         What to simulate.
 
+    Returns
+    -------
+    SynthesisSummary
+        Files that were written, and the truth about them.
+
     Raises
     ------
     OptionError
-        If an effect is unknown or cannot be planted, or the folder holds anything but a former
-        synthesis.
+        If an effect is unknown or cannot be planted, or the folder holds files that no former
+        synthesis wrote.
     """
     settings = SynthesisSettings() if settings is None else settings
     effects = requested_effects(settings.effects)

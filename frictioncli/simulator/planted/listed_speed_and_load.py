@@ -25,6 +25,7 @@ NEVMERZHITSKIY = "Nevmerzhitskiy et al. 2019, doi:10.1155/2019/6931563"
 def _stribeck(
     state: State, *, magnitude: float, velocity: float, exponent: float, shift: float
 ) -> AddedTorque:
+    """Friction of boundary lubrication; the Stribeck velocity shifts with temperature."""
     stribeck_velocity = velocity * np.exp(shift * (state.gear - 40.0))
     return AddedTorque(
         friction=magnitude * np.exp(-((state.speed / stribeck_velocity) ** exponent))
@@ -57,6 +58,7 @@ def _velocity_exponent(
     floor: float,
     thinning: float,
 ) -> AddedTorque:
+    """Viscous friction with an exponent of speed other than one half."""
     ratio = state.speed / crossing
     thin = np.exp(-thinning * (state.motor - 40.0))
     viscous = floor + (1.0 - floor) * thin
@@ -82,6 +84,7 @@ VELOCITY_EXPONENT = EffectDefinition(
 
 
 def _linear_viscous(state: State, *, magnitude: float, rounding: float) -> AddedTorque:
+    """Viscous friction proportional to speed, rounded near rest."""
     rounded = np.hypot(state.speed, rounding) - rounding
     return AddedTorque(friction=magnitude * rounded / 100.0)
 
@@ -101,6 +104,7 @@ LINEAR_VISCOUS = EffectDefinition(
 def _quadratic_drag(
     state: State, *, magnitude: float, exponent: float, thinning: float
 ) -> AddedTorque:
+    """Churning of the lubricant, which grows about with the square of speed."""
     thin = np.exp(-thinning * (state.gear - 40.0))
     return AddedTorque(friction=magnitude * thin * (state.speed / 100.0) ** exponent)
 
@@ -121,6 +125,7 @@ QUADRATIC_DRAG = EffectDefinition(
 def _coulomb_temperature(
     state: State, *, magnitude: float, rate: float, reference: float
 ) -> AddedTorque:
+    """Coulomb friction that falls with motor temperature."""
     return AddedTorque(friction=magnitude * np.expm1(-rate * (state.motor - reference)))
 
 
@@ -138,6 +143,7 @@ COULOMB_TEMPERATURE = EffectDefinition(
 
 
 def _load_linear(state: State, *, magnitude: float, rounding: float) -> AddedTorque:
+    """Friction proportional to the absolute load, rounded at zero load."""
     rounded = np.hypot(state.load, rounding) - rounding
     return AddedTorque(friction=magnitude * rounded / 50.0)
 
@@ -157,6 +163,7 @@ LOAD_LINEAR = EffectDefinition(
 def _load_velocity(
     state: State, *, magnitude: float, load_exponent: float, speed_exponent: float
 ) -> AddedTorque:
+    """Friction that grows with load and speed together."""
     load = (np.abs(state.load) / 50.0) ** load_exponent
     speed = (state.speed / 50.0) ** speed_exponent
     return AddedTorque(friction=magnitude * load * speed)
@@ -178,6 +185,7 @@ LOAD_VELOCITY = EffectDefinition(
 def _load_temperature(
     state: State, *, magnitude: float, reference: float, width: float
 ) -> AddedTorque:
+    """Friction by load that falls with temperature."""
     fall = np.tanh((state.motor - reference) / width)
     return AddedTorque(friction=-magnitude * np.square(state.load / 50.0) * fall)
 
@@ -238,6 +246,7 @@ def gear_minus_motor(
 
 
 def _thermal_lag(state: State, *, magnitude: float, heating: float, loss: float) -> AddedTorque:
+    """Friction at a hidden gear temperature in place of the motor temperature."""
     difference = gear_minus_motor(state.operation, magnitude=magnitude, heating=heating, loss=loss)
     shift = state.operation.at(state.time, difference)
     shifted = {name: value + shift for name, value in state.temperatures.items()}

@@ -18,6 +18,7 @@ from frictioncli.simulator.planted.state import AddedTorque, State
 
 
 def _drift(state: State, *, magnitude: float, time_constant: float, way: float) -> AddedTorque:
+    """Slow drift of friction over the hours of operation, kept overnight."""
     hours = state.operated / 3600.0
     return AddedTorque(friction=-way * magnitude * np.expm1(-hours / time_constant))
 
@@ -36,6 +37,7 @@ DRIFT = EffectDefinition(
 
 
 def _run_in(state: State, *, magnitude: float, turns: float, exponent: float) -> AddedTorque:
+    """Running-in: friction that falls with travel, not with time."""
     ratio = state.travelled / 360.0 / turns
     return AddedTorque(friction=magnitude * np.exp(-(ratio**exponent)))
 
@@ -56,6 +58,7 @@ RUN_IN = EffectDefinition(
 def _rest_recovery(
     state: State, *, magnitude: float, recovery: float, travel: float
 ) -> AddedTorque:
+    """Friction that is higher after a rest and decays with travel."""
     rest, since = state.operation.last_rest(state.time)
     gained = -np.expm1(-rest / recovery)
     return AddedTorque(friction=magnitude * gained * np.exp(-since / travel))
@@ -77,6 +80,7 @@ REST_RECOVERY = EffectDefinition(
 def _step_change(
     state: State, *, magnitude: float, moment: float, duration: float, way: float
 ) -> AddedTorque:
+    """Sudden lasting change of friction."""
     since = (state.progress - moment) * state.operation.earlier.total
     done = 0.5 + 0.5 * np.tanh(since / duration)
     return AddedTorque(friction=way * magnitude * done)
@@ -105,6 +109,7 @@ def _direction_asymmetry(
     thinning: float,
     way: float,
 ) -> AddedTorque:
+    """Friction that is higher in one direction."""
     thin = np.exp(-thinning * (state.motor - 40.0))
     viscous = (state.speed / 50.0) ** exponent * thin
     law = constant + (1.0 - constant) * viscous
@@ -129,6 +134,7 @@ DIRECTION_ASYMMETRY = EffectDefinition(
 def _torque_constant(
     state: State, *, magnitude: float, reference: float, curvature: float
 ) -> AddedTorque:
+    """Torque that is logged with the torque constant of a cold magnet."""
     warmth = state.motor - reference
     lost = magnitude * warmth * (1.0 + curvature * warmth)
     factor = 1.0 / np.maximum(1.0 - lost, 0.05) - 1.0
@@ -154,6 +160,7 @@ TORQUE_CONSTANT = EffectDefinition(
 def _payload_change(
     state: State, *, magnitude: float, moment: float, along: float, across: float, way: float
 ) -> AddedTorque:
+    """Mass that is put on or taken off at one moment."""
     mass = np.where(state.progress >= moment, way * magnitude, 0.0)
     angle = np.radians(state.position)
     arm = along * np.cos(angle) - across * np.sin(angle)
@@ -186,6 +193,7 @@ PAYLOAD_CHANGE = EffectDefinition(
 
 
 def _dress_pack(state: State, *, magnitude: float, rest: float, stiffening: float) -> AddedTorque:
+    """Stiffening spring of hoses and cables."""
     turn = (state.position - rest) / 90.0
     return AddedTorque(load=magnitude * (turn + stiffening * turn**3))
 
@@ -212,6 +220,7 @@ def _position_ripple(
     second: float,
     second_phase: float,
 ) -> AddedTorque:
+    """Ripple of friction at a fixed order of the joint angle, with one harmonic."""
     angle = order * np.radians(state.position)
     second_harmonic = second * np.sin(2.0 * angle + second_phase)
     return AddedTorque(friction=magnitude * (np.sin(angle + phase) + second_harmonic))
@@ -233,6 +242,7 @@ POSITION_RIPPLE = EffectDefinition(
 
 
 def _inertia(state: State, *, magnitude: float, settling: float) -> AddedTorque:
+    """Inertia that is not in the model, and a speed that settles slowly."""
     decay = np.exp(-state.since_reversal / settling)
     settling_acceleration = state.velocity / settling * decay
     return AddedTorque(load=magnitude * np.radians(state.acceleration + settling_acceleration))
@@ -254,6 +264,7 @@ INERTIA = EffectDefinition(
 def _reversal_transient(
     state: State, *, magnitude: float, travel: float, exponent: float
 ) -> AddedTorque:
+    """Presliding: friction that has not built up yet after a reversal."""
     ratio = state.since_turn / travel
     return AddedTorque(friction=-magnitude * np.exp(-(ratio**exponent)))
 

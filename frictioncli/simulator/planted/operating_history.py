@@ -111,6 +111,11 @@ def operating_history(
         Time of the run's first sample; the rest before it is a night's. [s]
     earlier : EarlierRuns
         Totals of the runs before.
+
+    Returns
+    -------
+    OperatingHistory
+        Temperatures, heat, travel and rests of the run.
     """
     intervals = history.intervals()
     edges = np.array([intervals[0].start, *(one.end for one in intervals)])

@@ -17,6 +17,7 @@ ASSUMED = "Assumed; no catalogue entry has this form"
 
 
 def _speed_resonance(state: State, *, magnitude: float, centre: float, width: float) -> AddedTorque:
+    """Peak of friction at one speed, as at a resonance of the drive train."""
     speed = np.maximum(state.speed, 1e-3)
     distance = np.log(speed / centre) / width
     return AddedTorque(friction=magnitude * np.exp(-np.square(distance) / 2.0))
@@ -37,6 +38,7 @@ SPEED_RESONANCE = EffectDefinition(
 
 
 def _stroke_bump(state: State, *, magnitude: float, centre: float, width: float) -> AddedTorque:
+    """Peak of friction at one angle."""
     distance = (state.position - centre) / width
     return AddedTorque(friction=magnitude * np.exp(-np.square(distance) / 2.0))
 
@@ -58,6 +60,7 @@ STROKE_BUMP = EffectDefinition(
 def _cooling_fan(
     state: State, *, magnitude: float, period: float, phase: float, flattening: float
 ) -> AddedTorque:
+    """Slow oscillation of friction in time, as of a fan that goes on and off."""
     swing = np.sin(2.0 * np.pi * state.operated / period + phase)
     flat = np.tanh(flattening * swing) / np.tanh(flattening)
     return AddedTorque(friction=magnitude * flat)
@@ -81,6 +84,7 @@ COOLING_FAN = EffectDefinition(
 def _position_temperature(
     state: State, *, magnitude: float, angle: float, reference: float
 ) -> AddedTorque:
+    """Friction by angle that grows with temperature, as of a warped housing."""
     warp = np.cos(2.0 * np.radians(state.position - angle))
     return AddedTorque(friction=magnitude * warp * (state.motor - reference) / 20.0)
 
@@ -100,6 +104,7 @@ POSITION_TEMPERATURE = EffectDefinition(
 
 
 def _lifting_loss(state: State, *, magnitude: float, exponent: float) -> AddedTorque:
+    """Friction by load that differs between lifting and lowering."""
     lifting = state.direction * np.sign(state.load)
     load = (np.abs(state.load) / 50.0) ** exponent
     return AddedTorque(friction=magnitude * lifting * load)
