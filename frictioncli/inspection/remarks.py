@@ -73,7 +73,20 @@ def is_stationary(found: JointInspection) -> bool:
 
 
 def unit_of(quantity: str, torque_unit: str) -> str:
-    """Return the unit in which a quantity is shown."""
+    """Return the unit in which a quantity is shown.
+
+    Parameters
+    ----------
+    quantity : str
+        Canonical name of the quantity.
+    torque_unit : str
+        Unit of the torque: ``N·m`` or ``A``.
+
+    Examples
+    --------
+    >>> unit_of("velocity", "A"), unit_of("torque", "A")
+    ('deg/s', 'A')
+    """
     unit = _UNITS[quantity]
     return torque_unit if unit == TORQUE else unit
 

@@ -14,7 +14,16 @@ _MAD_TO_STD = 1.4826
 
 @dataclass(slots=True)
 class LogHistogram:
-    """Histogram with bins of 0.01 % of the value; values up to 0 are ignored."""
+    """Histogram with bins of 0.01 % of the value; values up to 0 are ignored.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> histogram = LogHistogram()
+    >>> histogram.add(np.array([1.0, 2.0, 2.0, 5.0]))
+    >>> histogram.quantile(0.5), histogram.above(3.0)
+    (2.0, 1)
+    """
 
     _keys: Numbers = field(default_factory=lambda: np.empty(0, np.int64))
     _counts: Array = field(default_factory=lambda: np.empty(0))

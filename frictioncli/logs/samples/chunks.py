@@ -75,7 +75,15 @@ class Chunk:
 
 
 def plan_log(log: OpenedLog, plans: Iterable[JointPlan]) -> PlannedLog:
-    """Return a log with its plan, and first time and period from its first rows."""
+    """Return a log with its plan, and first time and period from its first rows.
+
+    Parameters
+    ----------
+    log : OpenedLog
+        The log.
+    plans : iterable of JointPlan
+        Columns and units of each joint.
+    """
     plans = tuple(plans)
     conversion = plans[0].conversions[names.TIME]
     time_column = _column(plans[0], names.TIME)

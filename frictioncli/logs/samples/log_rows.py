@@ -55,7 +55,15 @@ class LogRows:
 
 
 def concatenate_rows(first: LogRows, second: LogRows) -> LogRows:
-    """Return two sets of rows with the same columns, one after the other."""
+    """Return two sets of rows with the same columns, one after the other.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> rows = LogRows(np.array([2, 3]), np.array([0.0, 0.1]), {})
+    >>> concatenate_rows(rows, rows).lines
+    array([2, 3, 2, 3])
+    """
     return LogRows(
         np.concatenate((first.lines, second.lines)),
         np.concatenate((first.time, second.time)),

@@ -13,7 +13,15 @@ _TABLE_ROWS = 1 << 15
 
 
 def recording_rows(run: str, recordings: Sequence[PlacedRecording]) -> pa.Table:
-    """Return the rows of ``recordings`` for a run: one per recording and joint."""
+    """Return the rows of ``recordings`` for a run: one per recording and joint.
+
+    Parameters
+    ----------
+    run : str
+        Name of the run.
+    recordings : sequence of PlacedRecording
+        Its recordings.
+    """
     rows = []
     for placed in recordings:
         recording, entry = placed.recording, placed.entry
@@ -40,7 +48,17 @@ def recording_rows(run: str, recordings: Sequence[PlacedRecording]) -> pa.Table:
 
 
 def rejected_rows(log: OpenedLog, rejected: RejectedRows, batch_bytes: int) -> Iterator[pa.Table]:
-    """Yield the rows of ``rejected`` for the lines of a log that were not kept."""
+    """Yield the rows of ``rejected`` for the lines of a log that were not kept.
+
+    Parameters
+    ----------
+    log : OpenedLog
+        The log.
+    rejected : RejectedRows
+        Its rejected lines.
+    batch_bytes : int
+        Size of a batch in the file. [byte]
+    """
     lines, codes = rejected.in_line_order()
     texts = log.source.texts(lines, batch_bytes)
     for start in range(0, len(lines), _TABLE_ROWS):

@@ -74,6 +74,13 @@ def drop_non_increasing_time(
     """Yield the rows whose time increases.
 
     A damaged time stamp far ahead costs its own row only, not the good rows that follow it.
+
+    Parameters
+    ----------
+    blocks : iterable of LogRows
+        Consecutive rows, in blocks of any size.
+    rejected : RejectedRows
+        Takes the lines of the other rows.
     """
     last = -np.inf
     held: LogRows | None = None
