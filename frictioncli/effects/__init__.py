@@ -1,4 +1,4 @@
-"""The catalogue of effects that the friction model may lack, one file each."""
+"""The catalogue of effects that the friction model (16) lacks, one module each."""
 
 from collections.abc import Mapping
 from types import MappingProxyType

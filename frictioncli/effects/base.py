@@ -1,4 +1,8 @@
-"""What the catalogue says of one effect, and the table that an effect is evaluated on."""
+"""Record of an effect in the catalogue, and the table on which effects are evaluated.
+
+An effect adds a linear combination of the columns of its basis to the friction or the load torque.
+Shape parameters change the columns; coefficients multiply them.
+"""
 
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
@@ -13,25 +17,25 @@ Channel = Literal["friction", "load"]
 Search = Literal["linear", "logarithmic"]
 
 REFERENCE_TEMPERATURE = 25.0
-"""Temperature from which effects count. [°C]"""
+"""Reference temperature of effects. [°C]"""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Parameter:
-    """A bounded number of an effect.
+    """A shape parameter or coefficient of an effect, with its physical bounds.
 
     Attributes
     ----------
     name, symbol, unit : str
         Its name, its symbol in the equation and its unit; ``torque`` stands for the torque unit.
     lower, upper : float
-        Physical bounds.
+        Physical bounds, in its unit.
     description : str
         What it means.
     search : {"linear", "logarithmic"}
-        How a grid over a shape parameter is spaced.
+        Spacing of the grid over a shape parameter.
     points : int
-        Number of values that such a grid needs in order not to miss the effect.
+        Number of values of the grid, enough not to miss the effect.
     """
 
     name: str
@@ -50,19 +54,19 @@ class Parameter:
             raise ValueError(f"{self.name}: a logarithmic search cannot start at {self.lower}")
 
     def grid(self) -> Array:
-        """Return the values to try first, from bound to bound."""
+        """Return the values of the grid from bound to bound, shape (points,)."""
         if self.search == "logarithmic":
             return np.geomspace(self.lower, self.upper, self.points)
         return np.linspace(self.lower, self.upper, self.points)
 
     def at(self, share: float) -> float:
-        """Return the value at a share of the way from bound to bound, by the search's scale."""
+        """Return the value at a share of the range, on the scale of the search."""
         if self.search == "logarithmic":
             return float(self.lower * (self.upper / self.lower) ** share)
         return float(self.lower + share * (self.upper - self.lower))
 
     def share(self, value: float) -> float:
-        """Return the share of the way from bound to bound at which a value lies."""
+        """Return the share of the range at which a value lies, the inverse of :meth:`at`."""
         if self.search == "logarithmic":
             place = np.log(value / self.lower) / np.log(self.upper / self.lower)
         else:
@@ -72,14 +76,14 @@ class Parameter:
 
 @dataclass(frozen=True, slots=True)
 class Signature:
-    """What residuals show where the effect is at work.
+    """What the residuals show where the effect is present.
 
     Attributes
     ----------
     axis : str
         Column of :class:`EffectTable` against which residuals are drawn.
     claim : str
-        What is then seen, in a sentence.
+        What is seen, in one sentence.
     """
 
     axis: str
@@ -88,7 +92,7 @@ class Signature:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class EffectTable:
-    """Pairs and angle bins of one joint, ordered by run and time, with the fitted base model.
+    """Angle bins of the pairs of one joint, ordered by run and time, with the fitted base model.
 
     Attributes
     ----------
@@ -99,30 +103,29 @@ class EffectTable:
     time : ndarray, shape (rows,)
         Middle of the pair since the run's first sample. [s]
     clock : ndarray, shape (rows,)
-        The same on one clock for all runs, where the days are known; else runs follow each other.
-        [s]
+        Time on one clock for all runs, where dates are known; else runs follow each other. [s]
     speed, position : ndarray, shape (rows,)
         Speed of the pair and centre of the angle bin. [deg/s], [deg]
     load : ndarray, shape (rows,)
         Load torque of the base model at that angle. [N·m]
     temperature : ndarray, shape (rows,)
-        Temperature that the base model is given. [°C]
+        Temperature input of the base model. [°C]
     motor_temperature, housing_temperature : ndarray, shape (rows,)
         As measured; NaN where unknown. [°C]
     friction : ndarray, shape (rows,)
         Friction torque of the base model. [N·m]
     viscous : ndarray, shape (rows,)
-        Its viscous factor beta + gamma exp(-delta T). [N·m/(deg/s)^0.5]
+        Its viscous coefficient beta + gamma exp(-delta T). [N·m/(deg/s)^0.5]
     temperature_slope : ndarray, shape (rows,)
         Its derivative by temperature at fixed speed, <= 0. [N·m/°C]
     load_slope : ndarray, shape (rows,)
         Its derivative by load torque. [1]
     travel : ndarray, shape (rows,)
-        Way travelled in the run up to the pair; that of unrecorded moves is guessed. [deg]
+        Distance travelled in the run before the pair; that of unrecorded moves is estimated. [deg]
     rest : ndarray, shape (rows,)
-        Time without recorded motion before the measuring series of the pair. [s]
+        Rest before the measuring series of the pair. [s]
     order : ndarray, shape (rows,)
-        Place of the pair in its measuring series, from 0.
+        Number of the pair in its measuring series, from 0.
     """
 
     run: Indices
@@ -145,9 +148,13 @@ class EffectTable:
 
 
 class Basis(NamedTuple):
-    """Columns by which an effect's coefficients are multiplied, one set per channel.
+    """Columns that the coefficients of an effect multiply.
 
-    Both have shape (rows, coefficients); a channel that the effect leaves alone holds zeros.
+    Attributes
+    ----------
+    friction, load : ndarray, shape (rows, coefficients)
+        Columns in both channels; zeros in a channel that the effect does not change. [N·m per unit
+        of the coefficient]
     """
 
     friction: Array
@@ -156,43 +163,43 @@ class Basis(NamedTuple):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Effect:
-    """A cause of model error: linear in its coefficients, with a few bounded shape parameters.
+    """A cause of model error, linear in its coefficients, with a few bounded shape parameters.
 
-    A basis may refer to its whole table (its first moment, its mean speed, its angle range).
-    Training and test rows are therefore taken from one basis of all runs.
+    A basis may depend on the whole table (its start, its mean speed, its angle range). Training and
+    hold-out rows are therefore taken from one basis of all runs.
 
     Attributes
     ----------
     name : str
-        Name in the contract.
+        Name in commands and documents.
     summary : str
         The cause in a short sentence.
     equation : str
-        What it adds to torque, in symbols.
+        What it adds to the torque, in symbols.
     source : str
-        Where it is described.
+        Reference.
     channel : {"friction", "load"}
-        Where it shows most.
+        Channel where it shows most.
     shape : tuple of Parameter
         Nonlinear parameters; searched between their bounds.
     coefficients : tuple of Parameter
-        Linear parameters; their bounds are the physical gate.
+        Linear parameters; a fit beyond their bounds is rejected as unphysical.
     basis : callable
         ``basis(table, **shape) -> Basis``.
     moments : callable or None
-        Of an effect with a shape parameter ``moment``: the moments worth trying, from the table.
+        For an effect with the shape parameter ``moment``: the moments to try, from the table.
     needs : tuple of str
-        Columns of the table that must be known and vary, or the effect cannot be judged.
+        Columns of the table that must be known and vary for the effect to be tested.
     uses : tuple of str
         Further columns that the basis reads, beside ``run`` and ``pair``; they may be constant.
     signature : Signature
-        What it looks like.
+        What the residuals show.
     confounders : tuple of str
-        Names of the effects it is most easily taken for.
+        Names of the effects with which it is most easily confused.
     experiment : str
-        The experiment that separates it from them.
+        The experiment that isolates it from them.
     mirror : str
-        What must hold in the other channel; empty where nothing must.
+        What must hold in the other channel; may be empty.
     """
 
     name: str
@@ -212,7 +219,7 @@ class Effect:
     moments: Callable[[EffectTable], Array] | None = None
 
     def shapes(self, table: EffectTable) -> list[dict[str, float]]:
-        """Return the shapes to try first: a grid from bound to bound, or the table's moments."""
+        """Return the shapes to try: the grid of the shape parameters, or the moments of a table."""
         if self.moments is not None:
             return [{"moment": float(moment)} for moment in self.moments(table)]
         axes = [[(axis.name, float(value)) for value in axis.grid()] for axis in self.shape]
@@ -224,13 +231,13 @@ class Effect:
 
 
 def friction_only(*columns: Array) -> Basis:
-    """Return a basis that leaves the load channel alone."""
+    """Return a basis of columns in friction, shape (rows,) each, and zeros in load."""
     stacked = np.column_stack(columns)
     return Basis(stacked, np.zeros_like(stacked))
 
 
 def load_only(*columns: Array) -> Basis:
-    """Return a basis that leaves the friction channel alone."""
+    """Return a basis of columns in load, shape (rows,) each, and zeros in friction."""
     stacked = np.column_stack(columns)
     return Basis(np.zeros_like(stacked), stacked)
 

@@ -1,4 +1,7 @@
-"""Coulomb friction, which the base model keeps constant, changes with temperature."""
+r"""Coulomb friction, constant in the base model, changes with temperature.
+
+.. math:: \Delta\tau = c_T (T - 25) / 10
+"""
 
 from frictioncli.effects.base import (
     REFERENCE_TEMPERATURE,
@@ -12,7 +15,7 @@ from frictioncli.effects.base import (
 
 
 def basis(table: EffectTable) -> Basis:
-    """Return the temperature above 25 °C, in tens of °C."""
+    """Return the temperature above 25 °C, shape (rows, 1). [10 °C]."""
     return friction_only((table.temperature - REFERENCE_TEMPERATURE) / 10.0)
 
 

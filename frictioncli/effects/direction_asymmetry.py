@@ -1,8 +1,13 @@
-"""Friction differs between the two directions of motion.
+r"""Friction differs between the two directions of motion.
 
-With friction :math:`f_+` forward and :math:`f_-` reverse, half the sum of the torques is the load
-plus :math:`(f_+ - f_-)/2`: the asymmetry ends up in the load channel, half the difference of the
-torques keeps the mean of both. A constant asymmetry looks like an offset of the torque sensor.
+With friction :math:`f_+` forward and :math:`f_-` in reverse, half the sum of the torques is the
+load plus :math:`(f_+ - f_-)/2`, and half the difference is the mean of both: the asymmetry appears
+in the load channel,
+
+.. math::
+    \Delta L = c_0 + \left[c_1 + c_2 (\beta + \gamma e^{-\delta T}) \sqrt{50}\right] (v/50)^p .
+
+A constant asymmetry looks like an offset of the torque sensor.
 """
 
 import numpy as np
@@ -14,9 +19,14 @@ _REFERENCE_SPEED = 50.0
 
 
 def basis(table: EffectTable, *, exponent: float) -> Basis:
-    """Return one, a power of speed, and the same that thins as the base's viscous friction does.
+    """Return 1, a power of speed, and that times the viscous torque of the base model at 50 deg/s.
 
-    The latter two are 1 and the base's viscous torque at 50 deg/s.
+    Parameters
+    ----------
+    table : EffectTable
+        Pairs and angle bins.
+    exponent : float
+        Power of speed p. [-]
     """
     power = (table.speed / _REFERENCE_SPEED) ** exponent
     viscous = table.viscous * np.sqrt(_REFERENCE_SPEED)

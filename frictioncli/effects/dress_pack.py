@@ -1,7 +1,10 @@
-"""Cables and hoses along the arm pull like a spring.
+r"""Cables and hoses along the arm act as a spring.
 
-A spring acts alike in both directions of motion and so belongs to the load channel. The rest angle
-of an even spring cannot be told from a constant offset; that of a spring that stiffens can.
+.. math:: \Delta L = k (x + c x^3), \quad x = q - q_\mathrm{mid} - q_0
+
+A spring acts in the same way in both directions of motion and therefore shows in the load channel.
+The rest angle of a linear spring cannot be distinguished from a constant offset; that of a
+stiffening spring can.
 """
 
 import numpy as np
@@ -10,7 +13,17 @@ from frictioncli.effects.base import Basis, Effect, EffectTable, Parameter, Sign
 
 
 def basis(table: EffectTable, *, rest: float, stiffening: float) -> Basis:
-    """Return the angle from the rest angle in rad, with the growth of a stiffening spring."""
+    """Return the spring torque per stiffness, shape (rows, 1). [rad].
+
+    Parameters
+    ----------
+    table : EffectTable
+        Pairs and angle bins.
+    rest : float
+        Rest angle from the middle of the angles. [deg]
+    stiffening : float
+        Coefficient of the cubic term. [1/rad²]
+    """
     middle = (np.min(table.position) + np.max(table.position)) / 2
     angle = np.radians(table.position - middle - rest)
     return load_only(angle + stiffening * angle**3)

@@ -1,4 +1,7 @@
-"""Friction changes steadily with time: wear, ageing grease, a drifting sensor."""
+r"""Friction changes steadily with time: wear, ageing grease, a drifting sensor.
+
+.. math:: \Delta\tau = k_w\, t_h \left(1 - e^{-(t - t_0)/t_h}\right)
+"""
 
 import numpy as np
 
@@ -6,7 +9,15 @@ from frictioncli.effects.base import Basis, Effect, EffectTable, Parameter, Sign
 
 
 def basis(table: EffectTable, *, time_constant: float) -> Basis:
-    """Return the time since the first pair of all runs, in hours, slowing down as it goes on."""
+    """Return the time since the first pair of all runs, saturating, shape (rows, 1). [h].
+
+    Parameters
+    ----------
+    table : EffectTable
+        Pairs and angle bins.
+    time_constant : float
+        Time constant of the saturation. [h]
+    """
     hours = (table.clock - np.min(table.clock)) / 3600.0
     return friction_only(-time_constant * np.expm1(-hours / time_constant))
 

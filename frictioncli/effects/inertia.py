@@ -1,4 +1,4 @@
-r"""Speed is not constant near the ends of the stroke, and acceleration costs torque.
+r"""Near the ends of the stroke the speed is not constant, and inertia adds to the torque.
 
 Forward, the joint accelerates at the low end (:math:`\ddot q > 0`) and brakes at the high end
 (:math:`\ddot q < 0`). In reverse it accelerates at the high end, towards lower angles
@@ -7,10 +7,10 @@ same sign in both directions at each end: it adds to the load, plus at the low e
 high end, and cancels in friction. Only if the joint accelerates harder than it brakes does half the
 difference remain in friction, with the same sign at both ends.
 
-How far from the end the speed still changes depends on what makes it change. A ramp cut off at a
-fixed angle leaves the same distance at all speeds, and a torque that grows with :math:`v^2`. A
+The distance from the end over which the speed still changes depends on the cause. A ramp cut off at
+a fixed angle leaves the same distance at all speeds, and a torque that grows with :math:`v^2`. A
 speed controller settles in a fixed time :math:`\theta`: the distance is :math:`v \theta`, and the
-torque grows with :math:`v`. The shape ``growth`` lies between the two: 0 and 1.
+torque grows with :math:`v`. The shape parameter ``growth`` is 0 in the first case, 1 in the second.
 """
 
 import numpy as np
@@ -20,17 +20,27 @@ from frictioncli.effects.pair_series import stroke_ends
 
 
 def basis(table: EffectTable, *, distance: float, growth: float) -> Basis:
-    """Return the inertial torque near both ends: equal in both moves, and unequal; 1 at 100 deg/s.
+    """Return the inertial torque near both ends, relative to that at 100 deg/s.
 
-    The first column is zero in friction, the second in load.
+    The first column, of equal acceleration and braking, is zero in friction; the second, of half
+    their difference, is zero in load.
+
+    Parameters
+    ----------
+    table : EffectTable
+        Pairs and angle bins.
+    distance : float
+        Distance from the end at which 37 % remain at 100 deg/s. [deg]
+    growth : float
+        Power of speed with which the distance grows. [-]
     """
     speed = table.speed / 100.0
     low, high = stroke_ends(table, distance=distance * speed**growth)
     torque = speed ** (2.0 - growth)
-    none = np.zeros_like(torque)
+    zeros = np.zeros_like(torque)
     return Basis(
-        np.column_stack([none, torque * (low + high)]),
-        np.column_stack([torque * (low - high), none]),
+        np.column_stack([zeros, torque * (low + high)]),
+        np.column_stack([torque * (low - high), zeros]),
     )
 
 

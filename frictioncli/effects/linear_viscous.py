@@ -1,10 +1,13 @@
-"""A part of viscous friction is proportional to speed and does not depend on temperature."""
+r"""A part of viscous friction is proportional to speed and independent of temperature.
+
+.. math:: \Delta\tau = k_v v
+"""
 
 from frictioncli.effects.base import Basis, Effect, EffectTable, Parameter, Signature, friction_only
 
 
 def basis(table: EffectTable) -> Basis:
-    """Return the speed, in deg/s."""
+    """Return the speed, shape (rows, 1). [deg/s]."""
     return friction_only(table.speed)
 
 

@@ -1,4 +1,7 @@
-"""Friction grows with the amount of load, not only with its square."""
+r"""Friction grows with the absolute load torque, not only with its square.
+
+.. math:: \Delta\tau = a_l |L|
+"""
 
 import numpy as np
 
@@ -6,7 +9,7 @@ from frictioncli.effects.base import Basis, Effect, EffectTable, Parameter, Sign
 
 
 def basis(table: EffectTable) -> Basis:
-    """Return the amount of the load torque."""
+    """Return the absolute load torque, shape (rows, 1). [N·m]."""
     return friction_only(np.abs(table.load))
 
 

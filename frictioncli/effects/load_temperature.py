@@ -1,4 +1,7 @@
-"""The load's part of friction depends on temperature."""
+r"""The load-dependent part of friction changes with temperature.
+
+.. math:: \Delta\tau = a_T (L/10)^2\, \frac{1 - e^{-b (T - 25)}}{10\, b}
+"""
 
 import numpy as np
 
@@ -14,10 +17,18 @@ from frictioncli.effects.base import (
 
 
 def basis(table: EffectTable, *, bend: float) -> Basis:
-    """Return squared load times warming, 1 at load 10 and near 35 °C."""
-    warm = table.temperature - REFERENCE_TEMPERATURE
-    # a bend of 0 is the limit: expm1(-b x) / -b goes to x
-    warming = warm / 10.0 if abs(bend) < 1e-9 else -np.expm1(-bend * warm) / (10.0 * bend)
+    """Return squared load times warming, shape (rows, 1); 1 at load 10 and near 35 °C. [-].
+
+    Parameters
+    ----------
+    table : EffectTable
+        Pairs and angle bins.
+    bend : float
+        Rate at which the change decays with warming; 0 where it is linear. [1/°C]
+    """
+    excess = table.temperature - REFERENCE_TEMPERATURE
+    # in the limit of b = 0, (1 - exp(-b x)) / b is x
+    warming = excess / 10.0 if abs(bend) < 1e-9 else -np.expm1(-bend * excess) / (10.0 * bend)
     return friction_only(np.square(table.load / 10.0) * warming)
 
 

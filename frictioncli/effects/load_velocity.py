@@ -1,4 +1,7 @@
-"""The load's part of friction depends on speed."""
+r"""The load-dependent part of friction changes with speed.
+
+.. math:: \Delta\tau = a_v (L/10)^2 \sqrt{v/100}
+"""
 
 import numpy as np
 
@@ -6,7 +9,7 @@ from frictioncli.effects.base import Basis, Effect, EffectTable, Parameter, Sign
 
 
 def basis(table: EffectTable) -> Basis:
-    """Return squared load times root of speed, 1 at load 10 and 100 deg/s."""
+    """Return squared load times root of speed, shape (rows, 1); 1 at load 10 and 100 deg/s. [-]."""
     return friction_only(np.square(table.load / 10.0) * np.sqrt(table.speed / 100.0))
 
 

@@ -1,4 +1,4 @@
-"""Steps that effects share: from rows to pairs and back, and what integrates from pair to pair."""
+"""Functions shared by effects: values per pair, first-order lags over time, ends of the stroke."""
 
 from dataclasses import dataclass
 
@@ -8,28 +8,28 @@ from frictioncli.arrays import Array, Flags, Indices
 from frictioncli.effects.base import EffectTable
 
 _HALF_WINDOW = 300.0
-"""How far around a moment pairs tell of its heat and of the motor's warming. [s]"""
+"""Half the window over which friction power and warming of the motor are averaged. [s]"""
 
 _FEW_SERIES = 5
-"""With fewer series a change may come before any pair."""
+"""With fewer series a change is tried before every pair."""
 
 _MOST_MOMENTS = 160
-"""Moments that a change is looked for at, at most."""
+"""Greatest number of moments tried for a change."""
 
 _CUT_ALIKE = 10.0
-"""What is cut off a stroke at constant speed is alike at both ends within this. [deg]"""
+"""Tolerance within which the same angle is cut off both ends of a stroke. [deg]"""
 
 
 @dataclass(frozen=True, slots=True)
 class PairHeads:
-    """Where the pairs of a table are.
+    """Positions of the pairs in a table.
 
     Attributes
     ----------
     first : ndarray of int, shape (pairs,)
         First row of each pair.
     of_row : ndarray of int, shape (rows,)
-        Place of each row's pair among the pairs.
+        Number of each row's pair.
     """
 
     first: Indices
@@ -53,34 +53,34 @@ class PairHeads:
 
 
 def pair_heads(table: EffectTable) -> PairHeads:
-    """Return where the pairs of a table are; a pair of another run is another pair."""
+    """Return the positions of the pairs in a table; each run has its own pairs."""
     begins = starts(table.pair) | starts(table.run)
     return PairHeads(np.flatnonzero(begins), np.cumsum(begins) - 1)
 
 
 def starts(labels: Indices) -> Flags:
-    """Return where a label differs from the one before; the first one does."""
+    """Return where a label differs from the one before, True at first, shape (rows,)."""
     return np.concatenate([np.ones(min(1, len(labels)), bool), labels[1:] != labels[:-1]])
 
 
 def first_order_lag(*, time: Array, value: Array, restart: Flags, time_constant: float) -> Array:
-    r"""Return by how much a first-order follower is above the value it follows.
+    r"""Return the difference of a first-order lag and its input.
 
     Parameters
     ----------
     time : ndarray, shape (pairs,)
-        Moments of the values, growing between two restarts. [s]
+        Times of the values, increasing between two restarts. [s]
     value : ndarray, shape (pairs,)
-        What is followed, linear from one moment to the next.
+        Input, linear between two times.
     restart : ndarray of bool, shape (pairs,)
-        Where the follower stands at the value itself.
+        Where the lag is reset to its input.
     time_constant : float
-        Time in which the follower closes 63 % of its lag. [s]
+        Time constant of the lag. [s]
 
     Returns
     -------
     ndarray, shape (pairs,)
-        Follower less value, in the value's unit.
+        Output minus input, in the unit of the input.
 
     Notes
     -----
@@ -88,6 +88,18 @@ def first_order_lag(*, time: Array, value: Array, restart: Flags, time_constant:
     :math:`x = y - u`, exactly
 
     .. math:: x_1 = x_0 e^{-h/\theta} - (u_1 - u_0) \frac{1 - e^{-h/\theta}}{h/\theta}
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> lag = first_order_lag(
+    ...     time=np.array([0.0, 100.0, 1e6]),
+    ...     value=np.array([20.0, 30.0, 30.0]),
+    ...     restart=np.array([True, False, False]),
+    ...     time_constant=100.0,
+    ... )
+    >>> print(lag.round(2) + 0.0)
+    [ 0.   -6.32  0.  ]
     """
     ratio = np.maximum(np.diff(time), 0.0) / time_constant
     share = np.where(ratio > 0, -np.expm1(-ratio) / np.where(ratio > 0, ratio, 1.0), 1.0)
@@ -97,27 +109,39 @@ def first_order_lag(*, time: Array, value: Array, restart: Flags, time_constant:
 def first_order_response(
     *, time: Array, level: Array, restart: Flags, time_constant: float
 ) -> Array:
-    r"""Return a first-order follower of an input that is constant between two moments.
+    r"""Return the output of a first-order lag whose input is constant between two times.
 
     Parameters
     ----------
     time : ndarray, shape (pairs,)
-        Moments, growing between two restarts. [s]
+        Times, increasing between two restarts. [s]
     level : ndarray, shape (pairs - 1,)
-        Input from each moment to the next.
+        Input from each time to the next.
     restart : ndarray of bool, shape (pairs,)
-        Where the follower stands at zero.
+        Where the output is reset to zero.
     time_constant : float
-        Time in which the follower closes 63 % of its distance to the input. [s]
+        Time constant of the lag. [s]
 
     Returns
     -------
     ndarray, shape (pairs,)
-        The follower, in the input's unit.
+        Output, in the unit of the input.
 
     Notes
     -----
     .. math:: y_1 = y_0 e^{-h/\theta} + u (1 - e^{-h/\theta})
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> response = first_order_response(
+    ...     time=np.array([0.0, 100.0]),
+    ...     level=np.array([2.0]),
+    ...     restart=np.array([True, False]),
+    ...     time_constant=100.0,
+    ... )
+    >>> print(response.round(3))
+    [0.    1.264]
     """
     ratio = np.maximum(np.diff(time), 0.0) / time_constant
     return _accumulated(np.exp(-ratio), -level * np.expm1(-ratio), restart)
@@ -127,32 +151,34 @@ def _accumulated(decay: Array, gain: Array, restart: Flags) -> Array:
     """Return x with ``x[i + 1] = decay[i] x[i] + gain[i]``, and 0 at each restart."""
     state = 0.0
     states = [state]
-    for kept, added, anew in zip(decay.tolist(), gain.tolist(), restart[1:].tolist(), strict=True):
-        state = 0.0 if anew else kept * state + added
+    for factor, added, reset in zip(
+        decay.tolist(), gain.tolist(), restart[1:].tolist(), strict=True
+    ):
+        state = 0.0 if reset else factor * state + added
         states.append(state)
     return np.array(states)
 
 
 def friction_power(table: EffectTable, heads: PairHeads) -> Array:
-    """Return the heat that friction gives off from each pair to the next.
+    """Return the mean friction power from each pair to the next.
 
     Parameters
     ----------
     table : EffectTable
         Pairs and angle bins.
     heads : PairHeads
-        Where its pairs are.
+        Positions of its pairs.
 
     Returns
     -------
     ndarray, shape (pairs - 1,)
-        Mean power; 1 at 100 deg/s and the table's mean friction.
+        Mean power, relative to that at 100 deg/s and the mean friction of the table. [-]
 
     Notes
     -----
-    While the joint moves, the power is friction times speed, averaged over the pairs of ten
-    minutes. What it does between pairs is often not recorded: it is taken to move all the time
-    while the motor warms, and else only for the way recorded.
+    During motion the power is friction times speed, averaged over the pairs of ten minutes. Motion
+    between pairs is often not recorded: the joint is assumed to move all the time while the motor
+    warms, and otherwise only over the recorded distance.
     """
     run, time = table.run[heads.first], table.time[heads.first]
     friction, speed = heads.mean(table.friction), table.speed[heads.first]
@@ -174,7 +200,7 @@ def friction_power(table: EffectTable, heads: PairHeads) -> Array:
 
 
 def _mean_around(time: Array, value: Array) -> Array:
-    """Return the mean of the values within half a window before and after each moment."""
+    """Return the mean of the values within half a window before and after each time."""
     total = np.concatenate([[0.0], np.cumsum(value)])
     low = np.searchsorted(time, time - _HALF_WINDOW, side="left")
     high = np.searchsorted(time, time + _HALF_WINDOW, side="right")
@@ -191,8 +217,8 @@ def measured_share(table: EffectTable) -> Array:
 def series_starts(table: EffectTable) -> Array:
     """Return the shares of all pairs measured before each measuring series, shape (moments,).
 
-    What is done to a joint is done between two series. If a table has more than 160 of them, only
-    every second is returned, or every third, and so on.
+    Work on a joint takes place between two series. If a table has more than 160 of them, only every
+    second is returned, or every third, and so on.
     """
     heads = pair_heads(table)
     clock = table.clock[heads.first]
@@ -204,60 +230,60 @@ def series_starts(table: EffectTable) -> Array:
 
 
 def stroke_ends(table: EffectTable, *, distance: Array | float) -> tuple[Array, Array]:
-    """Return how near each row is to the low and to the high end of its pair's angles.
+    """Return exponentials that decay from the low and from the high end of each pair's angles.
 
     Parameters
     ----------
     table : EffectTable
         Pairs and angle bins.
     distance : float or ndarray, shape (rows,)
-        Distance from the end at which nearness has fallen to 37 %. [deg]
+        Distance from the end at which they have decayed to 37 %. [deg]
 
     Returns
     -------
     low, high : ndarray, shape (rows,)
-        Nearness, 1 in the outermost bin.
+        1 in the outermost bin. [-]
     """
     heads = pair_heads(table)
     ends = heads.minimum(table.position), heads.maximum(table.position)
-    return _nearness(table, heads, ends, distance)
+    return _decays(table, heads, ends, distance)
 
 
 def turning_points(table: EffectTable, *, distance: float) -> tuple[Array, Array]:
-    """Return how near each row is to the low and to the high angle where its pair turns.
+    """Return exponentials that decay from the low and from the high reversal of each pair.
 
-    A fast move reaches its speed later, so its first bin lies further from where it turned, and its
-    last one as far from the other turn. Pairs that lack as much of their run's angles at one end as
-    at the other are taken to turn at the outermost angles; others where they end.
+    A fast move reaches its speed later, so that its first bin lies further from the reversal, and
+    its last one as far from the other. Pairs that lack the same angle at both ends of the range of
+    their run are assumed to reverse at the ends of that range; others at their own ends.
 
     Parameters
     ----------
     table : EffectTable
         Pairs and angle bins.
     distance : float
-        Distance from the turn at which nearness has fallen to 37 %. [deg]
+        Distance from the reversal at which they have decayed to 37 %. [deg]
 
     Returns
     -------
     low, high : ndarray, shape (rows,)
-        Nearness, 1 in the outermost bin.
+        1 at the reversal. [-]
     """
     heads = pair_heads(table)
     lowest, highest = heads.minimum(table.position), heads.maximum(table.position)
     run = table.run[heads.first]
     for number in np.unique(run):
-        own = run == number
-        least, most = np.min(lowest[own]), np.max(highest[own])
+        chosen = run == number
+        least, most = np.min(lowest[chosen]), np.max(highest[chosen])
         cut_low, cut_high = lowest - least, most - highest
-        same = own & (np.abs(cut_low - cut_high) < _CUT_ALIKE)
+        same = chosen & (np.abs(cut_low - cut_high) < _CUT_ALIKE)
         lowest[same], highest[same] = least, most
-    return _nearness(table, heads, (lowest, highest), distance)
+    return _decays(table, heads, (lowest, highest), distance)
 
 
-def _nearness(
+def _decays(
     table: EffectTable, heads: PairHeads, ends: tuple[Array, Array], distance: Array | float
 ) -> tuple[Array, Array]:
-    """Return how near each row is to the low and to the high of its pair's two angles."""
+    """Return exponentials that decay from the low and from the high of each pair's two angles."""
     low = table.position - heads.spread(ends[0])
     high = heads.spread(ends[1]) - table.position
     return np.exp(-low / distance), np.exp(-high / distance)

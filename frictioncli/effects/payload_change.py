@@ -1,8 +1,10 @@
-"""The arm carries another mass from some moment on.
+r"""The payload changes at an unknown moment.
 
-The load torque gains a gravity term of any phase, since the new mass may sit at any angle. Friction
-changes with the load as the base model's alpha L^2 does, to first order. The moment counts as in
-:mod:`frictioncli.effects.step_change`.
+.. math:: \Delta L = P_c \cos q + P_s \sin q, \quad \Delta\tau = 2 \alpha L\, \Delta L
+
+from the moment on. The gravity term has any phase, since the new mass may sit at any angle.
+Friction changes with the load as the term :math:`\alpha L^2` of the base model, to first order. The
+moment is defined as in :mod:`frictioncli.effects.step_change`.
 """
 
 import numpy as np
@@ -12,7 +14,15 @@ from frictioncli.effects.pair_series import measured_share, series_starts
 
 
 def basis(table: EffectTable, *, moment: float) -> Basis:
-    """Return cosine and sine of the angle from the moment on, 0 before."""
+    """Return cosine and sine of the angle from the moment on, 0 before, shape (rows, 2). [-].
+
+    Parameters
+    ----------
+    table : EffectTable
+        Pairs and angle bins.
+    moment : float
+        Share of all pairs measured before the change. [-]
+    """
     after = np.where(measured_share(table) >= moment, 1.0, 0.0)
     angle = np.radians(table.position)
     load = np.column_stack([after * np.cos(angle), after * np.sin(angle)])

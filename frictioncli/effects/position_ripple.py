@@ -1,8 +1,9 @@
-"""Friction varies with the angle: eccentric gears, bearings, a seal.
+r"""Friction varies periodically with the angle: eccentric gears, bearings, a seal.
 
-Angle bins sample a ripple: an order above half their number per turn cannot be told from a lower
-one, so the search stops there. At order 2 a ripple resembles the load term of a joint under
-gravity.
+.. math:: \Delta\tau = A_s \sin N q + A_c \cos N q + B_s \sin 2 N q + B_c \cos 2 N q
+
+Angle bins sample a ripple: an order above half their number per turn is aliased (Nyquist), so that
+the search ends there. At order 2 a ripple resembles the load term of a joint under gravity.
 """
 
 import numpy as np
@@ -10,23 +11,30 @@ import numpy as np
 from frictioncli.effects.base import Basis, Effect, EffectTable, Parameter, Signature, friction_only
 
 _LEAST_PERIODS = 1.25
-"""Over fewer periods a ripple cannot be told from a load term or a bend at the ends."""
+"""Over fewer periods a ripple cannot be distinguished from a load term."""
 
 
 def basis(table: EffectTable, *, order: float) -> Basis:
-    """Return sine and cosine of the angle times the order and twice the order.
+    """Return sine and cosine at the order and at twice the order, shape (rows, 4). [-].
 
-    Columns are zero where the bins are too wide for them, or the stroke is too short to see the
-    ripple come back.
+    Columns are zero where the bins are too wide for the order, or the stroke is shorter than 1.25
+    periods.
+
+    Parameters
+    ----------
+    table : EffectTable
+        Pairs and angle bins.
+    order : float
+        Periods per turn of the joint. [1/turn]
     """
     angles = np.unique(table.position)
     finest = float(np.min(np.diff(angles))) if len(angles) > 1 else 360.0
-    whole = order * float(np.ptp(angles)) / 360.0 >= _LEAST_PERIODS
+    long_enough = order * float(np.ptp(angles)) / 360.0 >= _LEAST_PERIODS
     columns = []
     for harmonic in (order, 2 * order):
         phase = harmonic * np.radians(table.position)
-        seen = 1.0 if whole and harmonic <= 180.0 / finest else 0.0
-        columns += [seen * np.sin(phase), seen * np.cos(phase)]
+        resolved = 1.0 if long_enough and harmonic <= 180.0 / finest else 0.0
+        columns += [resolved * np.sin(phase), resolved * np.cos(phase)]
     return friction_only(*columns)
 
 

@@ -1,15 +1,18 @@
-"""Gear and bearings churn lubricant: drag grows with the square of speed."""
+r"""Drag of churned lubricant grows with the square of speed.
+
+.. math:: \Delta\tau = k_d (v/100)^2
+"""
 
 import numpy as np
 
 from frictioncli.effects.base import Basis, Effect, EffectTable, Parameter, Signature, friction_only
 
 REFERENCE_SPEED = 100.0
-"""Speed to which the drag is related. [deg/s]"""
+"""Speed at which the drag is stated. [deg/s]"""
 
 
 def basis(table: EffectTable) -> Basis:
-    """Return the squared speed, 1 at 100 deg/s."""
+    """Return the squared speed, 1 at 100 deg/s, shape (rows, 1). [-]."""
     return friction_only(np.square(table.speed / REFERENCE_SPEED))
 
 

@@ -1,4 +1,9 @@
-"""After a rest grease has flowed back, and the first moves push it away again."""
+r"""After a rest friction is higher, until the first moves have displaced the grease again.
+
+.. math:: \Delta\tau = A R\, e^{-n/n_0}, \quad \Delta L = B R\, e^{-n/n_0}, \quad R = 1 - e^{-r/r_0}
+
+with the number *n* of the pair after a rest *r*.
+"""
 
 import numpy as np
 
@@ -6,17 +11,28 @@ from frictioncli.effects.base import Basis, Effect, EffectTable, Parameter, Sign
 
 
 def basis(table: EffectTable, *, pairs: float, rest_time: float, at_start: float) -> Basis:
-    """Return the recovered friction that is left, in friction and, of the first move, in load.
+    """Return the remaining excess in friction and, of the first move of a pair, in load. [-].
 
-    How long the joint rested before a run's first series the log does not say: ``at_start`` is the
-    share that has recovered then. The move that comes first in a pair has more of it than
-    the one that comes back, and half the difference is seen as load.
+    The log does not state the rest before the first series of a run: ``at_start`` is the share
+    recovered by then. The first move of a pair has more of the excess than the move back, and half
+    the difference appears as load.
+
+    Parameters
+    ----------
+    table : EffectTable
+        Pairs and angle bins.
+    pairs : float
+        Number of pairs after which 37 % of the excess remain.
+    rest_time : float
+        Rest in which 63 % of the excess recover. [s]
+    at_start : float
+        Share recovered before the first series of a run. [-]
     """
     known = np.isfinite(table.rest)
     recovered = np.where(known, -np.expm1(-np.where(known, table.rest, 0.0) / rest_time), at_start)
-    left = recovered * np.exp(-table.order / pairs)
-    none = np.zeros_like(left)
-    return Basis(np.column_stack([left, none]), np.column_stack([none, left]))
+    excess = recovered * np.exp(-table.order / pairs)
+    zeros = np.zeros_like(excess)
+    return Basis(np.column_stack([excess, zeros]), np.column_stack([zeros, excess]))
 
 
 EFFECT = Effect(

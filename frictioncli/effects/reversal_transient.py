@@ -1,11 +1,12 @@
-r"""After a reversal the contacts have to be bent over before full friction acts.
+r"""After a reversal friction builds up over an angle (presliding).
 
-Friction builds up over some angle from the reversal, :math:`f = f_\infty - b\,e^{-|q - q_r|/s}`.
-Forward moves reverse at the low end, reverse moves at the high end. In friction both lacks add,
-:math:`-b (e_{lo} + e_{hi})/2`; in load they subtract, :math:`\mp b (e_{lo} - e_{hi})/2`, where the
-sign is that with which the log counts friction. It is not known here, so both are tried, as the
-shape ``side``. Unlike inertia it does not grow with speed, and it starts where the joint turns, the
-same angle for slow and fast moves.
+.. math:: f = f_\infty - b\,e^{-|q - q_r|/s}
+
+with the angle :math:`q_r` of the reversal. Forward moves start at the low end, reverse moves at the
+high end. In friction both deficits add, :math:`-b (e_{lo} + e_{hi})/2`; in load they subtract,
+:math:`\mp b (e_{lo} - e_{hi})/2`, with the sign convention of the log. It is not known here, so
+that both are tried, as the shape parameter ``side``. Unlike inertia the deficit does not grow with
+speed, and it starts at the reversal, the same angle for slow and fast moves.
 """
 
 import numpy as np
@@ -15,7 +16,17 @@ from frictioncli.effects.pair_series import turning_points
 
 
 def basis(table: EffectTable, *, distance: float, side: float) -> Basis:
-    """Return the friction that is lacking after the turn, in friction and in load."""
+    """Return the deficit after the reversal in friction and in load, shape (rows, 1). [-].
+
+    Parameters
+    ----------
+    table : EffectTable
+        Pairs and angle bins.
+    distance : float
+        Angle after which 37 % of the deficit remain. [deg]
+    side : float
+        Sign convention of the log: positive or negative.
+    """
     low, high = turning_points(table, distance=distance)
     sign = 1.0 if side > 0 else -1.0
     return Basis(

@@ -1,7 +1,9 @@
-"""Friction falls with the way travelled, as surfaces and grease settle.
+r"""Friction decreases with the distance travelled, as surfaces and grease run in.
 
-Surfaces stay run in, so the way of earlier runs counts too. What is back on every cold start is no
-running-in, but an effect of temperature, or of rest, after which grease has flowed back.
+.. math:: \Delta\tau = A\, e^{-s/s_0}
+
+Surfaces stay run in, so that the distance *s* includes that of earlier runs. An excess that returns
+on every cold start is no running-in, but an effect of temperature or of rest.
 """
 
 import numpy as np
@@ -11,7 +13,15 @@ from frictioncli.effects.pair_series import starts
 
 
 def basis(table: EffectTable, *, distance: float) -> Basis:
-    """Return the share of the running-in that is still to come."""
+    """Return the remaining share of the running-in, shape (rows, 1). [-].
+
+    Parameters
+    ----------
+    table : EffectTable
+        Pairs and angle bins.
+    distance : float
+        Distance after which 37 % remain. [deg]
+    """
     begins = starts(table.run)
     run = np.cumsum(begins) - 1
     covered = np.maximum.reduceat(table.travel, np.flatnonzero(begins))

@@ -1,7 +1,9 @@
-"""Friction changes once, at an unknown moment: a repair, new grease, damage.
+r"""Friction changes once, at an unknown moment: a repair, new grease, damage.
 
-The moment is the share of all pairs measured before the change, by the clock: a moment within a run
-is then found as easily as one between two runs, however long the joint stood still in between.
+.. math:: \Delta\tau = d \quad \text{from the moment on}
+
+The moment is the share of all pairs measured before the change, in order of time: a moment within a
+run is then resolved as well as one between two runs, however long the joint rested in between.
 """
 
 import numpy as np
@@ -11,7 +13,15 @@ from frictioncli.effects.pair_series import measured_share, series_starts
 
 
 def basis(table: EffectTable, *, moment: float) -> Basis:
-    """Return 1 from the moment on, 0 before."""
+    """Return 1 from the moment on, 0 before, shape (rows, 1). [-].
+
+    Parameters
+    ----------
+    table : EffectTable
+        Pairs and angle bins.
+    moment : float
+        Share of all pairs measured before the change. [-]
+    """
     return friction_only(np.where(measured_share(table) >= moment, 1.0, 0.0))
 
 

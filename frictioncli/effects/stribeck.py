@@ -1,4 +1,7 @@
-"""Friction rises towards standstill: the lubricant film is not yet complete."""
+r"""Stribeck effect: boundary friction rises towards standstill.
+
+.. math:: \Delta\tau = t_s \exp\!\left[-(v/v_s)^k\right], \quad v_s = v_{s,40}\, e^{c (T - 40)}
+"""
 
 import numpy as np
 
@@ -9,9 +12,21 @@ _REFERENCE = 40.0
 
 
 def basis(table: EffectTable, *, velocity: float, exponent: float, shift: float) -> Basis:
-    """Return the share of full boundary friction at each speed and temperature."""
-    fall = velocity * np.exp(shift * (table.temperature - _REFERENCE))
-    return friction_only(np.exp(-((table.speed / fall) ** exponent)))
+    """Return the share of the full boundary friction, shape (rows, 1). [-].
+
+    Parameters
+    ----------
+    table : EffectTable
+        Pairs and angle bins.
+    velocity : float
+        Stribeck velocity at 40 °C. [deg/s]
+    exponent : float
+        Exponent k. [-]
+    shift : float
+        Growth of the Stribeck velocity with temperature. [1/°C]
+    """
+    stribeck_velocity = velocity * np.exp(shift * (table.temperature - _REFERENCE))
+    return friction_only(np.exp(-((table.speed / stribeck_velocity) ** exponent)))
 
 
 EFFECT = Effect(

@@ -1,4 +1,4 @@
-r"""The gear, where friction arises, has another temperature than the sensor.
+r"""The gear, where friction arises, has another temperature than the motor sensor.
 
 The gear follows the motor, loses heat to surroundings at :math:`T_a` and is warmed by its own
 friction power :math:`P`:
@@ -6,14 +6,15 @@ friction power :math:`P`:
 .. math:: \theta \dot T_g = a T_m + (1 - a) T_a - T_g + b\,P/P_0
 
 To first order friction differs by :math:`\partial\tau/\partial T\,(T_g - T_m)`, and at fixed
-:math:`\theta` the lag is a sum of known columns: that of a pure follower of the motor, the filtered
-friction power, and the housing's distance to the motor. What is left, :math:`(1 - a)(T_a - T_m)`,
-goes with the motor's temperature alone and is taken up by the base model's delta.
+:math:`\theta` the lag is a sum of known columns: a first-order lag of the motor temperature, the
+filtered friction power, and the difference of housing and motor temperature. The remainder,
+:math:`(1 - a)(T_a - T_m)`, depends on the motor temperature alone and is absorbed by delta of the
+base model.
 
-A follower alone always lags: friction is higher while heating than while cooling. The loop turns
-round where the gear is the warmer one: by its friction power, or, with a negative share, because
+With a lag alone friction is higher while heating than while cooling. The hysteresis loop has the
+opposite sense where the gear is warmer: by its friction power, or, with a negative share, because
 it leads and the motor follows (a lag at small :math:`\theta` is :math:`-\theta \dot T_m`). At the
-start of each run the gear is taken to be as warm as the motor.
+start of each run the gear is assumed to have the temperature of the motor.
 """
 
 import numpy as np
@@ -29,10 +30,17 @@ from frictioncli.effects.pair_series import (
 
 
 def basis(table: EffectTable, *, time_constant: float) -> Basis:
-    """Return the change of friction by the follower's lag, by friction heat and by the housing.
+    """Return the change of friction by lag, by friction heat and by the housing temperature.
 
-    The first and the last column are in units of torque, the second is torque per °C. The last is
-    zero where the housing's temperature is not known.
+    The first and the last column are torques [N·m], the second is torque per degree [N·m/°C]. The
+    last is zero where the housing temperature is not known.
+
+    Parameters
+    ----------
+    table : EffectTable
+        Pairs and angle bins.
+    time_constant : float
+        Time constant of the gear. [s]
     """
     heads = pair_heads(table)
     time, motor = table.time[heads.first], table.motor_temperature[heads.first]

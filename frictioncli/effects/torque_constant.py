@@ -1,8 +1,10 @@
-"""Magnets weaken when hot, and the torque computed from current is then too high.
+r"""The torque constant falls as the magnets warm, and torque computed from current is too high.
 
-The motor needs more current for the same torque, so friction and load grow in the log by the same
-percentage: one coefficient for both channels. Ferrite magnets lose about 0.2 %/°C, neodymium ones
-about 0.11 %/°C. A negative coefficient means a controller that corrects too much.
+.. math:: \Delta\tau = k_t \tau\, (T_m - 25)/100, \quad \Delta L = k_t L\, (T_m - 25)/100
+
+The motor needs more current for the same torque, so that friction and load grow in the log by the
+same percentage: one coefficient for both channels. Ferrite magnets lose about 0.2 %/°C, neodymium
+magnets about 0.11 %/°C. A negative coefficient means that the controller overcompensates.
 """
 
 import numpy as np
@@ -18,7 +20,7 @@ from frictioncli.effects.base import (
 
 
 def basis(table: EffectTable) -> Basis:
-    """Return both torques times the motor's warming above 25 °C, in hundreds of °C."""
+    """Return both torques times the motor temperature above 25 °C. [N·m·100 °C]."""
     warming = (table.motor_temperature - REFERENCE_TEMPERATURE) / 100.0
     return Basis(
         np.column_stack([table.friction * warming]), np.column_stack([table.load * warming])

@@ -4,9 +4,9 @@ Where a share *s* of the viscous friction follows the power *p*, it differs from
 
 .. math:: s\,(\beta + \gamma e^{-\delta T})\sqrt v\,[(v/v_0)^{p - 1/2} - 1]
 
-:math:`v_0` is the geometric mean speed of the pairs, where the refitted base model holds. Over a
-few speeds a small share at a far exponent looks like a whole one near 1/2: only the product is
-sharp.
+with the geometric mean speed :math:`v_0` of the pairs, where the refitted base model holds. With
+few speeds a small share of a distant exponent resembles a full share of one near 1/2: only the
+product is well determined.
 """
 
 import numpy as np
@@ -16,7 +16,15 @@ from frictioncli.effects.pair_series import pair_heads
 
 
 def basis(table: EffectTable, *, exponent: float) -> Basis:
-    """Return the change of viscous friction if all of it follows the exponent, in torque."""
+    """Return the change of viscous friction if all of it has the exponent, shape (rows, 1). [N·m].
+
+    Parameters
+    ----------
+    table : EffectTable
+        Pairs and angle bins.
+    exponent : float
+        Exponent of speed p. [-]
+    """
     logarithm = np.log(table.speed)
     mean = np.mean(logarithm[pair_heads(table).first])
     growth = np.expm1((exponent - 0.5) * (logarithm - mean))
