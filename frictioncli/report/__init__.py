@@ -1,1 +1,1 @@
-"""Figures and the page that a user reads; the only importer of matplotlib."""
+"""Report: the figures and the page; the only part that imports matplotlib."""

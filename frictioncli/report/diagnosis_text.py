@@ -72,14 +72,14 @@ def verdict_sentence(document: DiagnosisDocument, unit: str) -> str:
             " structure. The table below says how large each effect would have to be to be found."
         )
     sentences = []
-    certain = [in_words(one[0]) for one in named if len(one) == 1]
+    certain = [in_words(effects[0]) for effects in named if len(effects) == 1]
     if certain:
         sentences.append(f"The model lacks {list_text(certain)}.")
     sentences += [
-        f"The model lacks one of {list_text([in_words(name) for name in several])}: these data"
+        f"The model lacks one of {list_text([in_words(name) for name in effects])}: these data"
         " cannot tell them apart."
-        for several in named
-        if len(several) > 1
+        for effects in named
+        if len(effects) > 1
     ]
     if document.verdict == "unnamed":
         start = "Beside that, structure" if named else "Structure"
@@ -133,10 +133,10 @@ def _parameter(name: str, stated: ParameterRecord) -> str:
 def visible_sentences(document: DiagnosisDocument, unit: str) -> tuple[str, ...]:
     """Return the effects that are significant but do not improve the prediction."""
     return tuple(
-        f"{' or '.join(in_words(name) for name in one.effects)} stands out of the noise"
-        f" ({number_text(one.size, 2)} {unit} RMS, chance {p_value_text(one.p_value)}), but"
+        f"{' or '.join(in_words(name) for name in entry.effects)} stands out of the noise"
+        f" ({number_text(entry.size, 2)} {unit} RMS, chance {p_value_text(entry.p_value)}), but"
         " the extended model is no better with it: it is not worth modelling."
-        for one in document.visible
+        for entry in document.visible
     )
 
 

@@ -136,12 +136,12 @@ def _replayed(
     grid: ScheduleGrid,
 ) -> ReplayedPhase:
     time, speed, temperature, smoothed = (
-        np.concatenate([getattr(one, column) for one in segments])
+        np.concatenate([getattr(segment, column) for segment in segments])
         for column in ("time", "speed", "temperature", "smoothed")
     )
-    uncorrected = _joined([replay(one, parameters, ()) for one in segments])
-    by_segment = [_replays(one, parameters, grid) for one in segments]
-    replays = [_joined(own) for own in zip(*by_segment, strict=True)]
+    uncorrected = _joined([replay(segment, parameters, ()) for segment in segments])
+    by_segment = [_replays(segment, parameters, grid) for segment in segments]
+    replays = [_joined(parts) for parts in zip(*by_segment, strict=True)]
     return ReplayedPhase(
         run=run,
         name=name,
@@ -152,14 +152,14 @@ def _replayed(
         term=parameters.gamma * np.exp(-parameters.delta * temperature) * np.sqrt(speed),
         error=uncorrected.predicted - smoothed,
         uncorrected=uncorrected.epsilon(smoothed),
-        epsilon=np.array([one.epsilon(smoothed) for one in replays]),
+        epsilon=np.array([replayed.epsilon(smoothed) for replayed in replays]),
         events=tuple(
             Events(
-                time=time[one.corrected],
-                correction=one.correction[one.corrected],
-                failed=one.failed[one.corrected],
+                time=time[replayed.corrected],
+                correction=replayed.correction[replayed.corrected],
+                failed=replayed.failed[replayed.corrected],
             )
-            for one in replays
+            for replayed in replays
         ),
     )
 
@@ -168,14 +168,14 @@ def _replays(data: PhaseData, parameters: FrictionParameters, grid: ScheduleGrid
     settings = np.array(list(product(grid.k, grid.tmax)))
     reading = BY_READING[grid.criterion]
     instants = reading(data.time, data.reading, k=settings[:, 0], tmax=settings[:, 1])
-    return [replay(data, parameters, own) for own in instants]
+    return [replay(data, parameters, corrected) for corrected in instants]
 
 
 def _joined(replays: Sequence[Replay]) -> Replay:
-    """Return the replays of successive segments joined to one."""
+    """Return the replays of successive segments joined into one."""
     return Replay(
         *(
-            np.concatenate([getattr(one, part) for one in replays])
+            np.concatenate([getattr(replayed, part) for replayed in replays])
             for part in ("corrected", "failed", "correction", "predicted")
         )
     )

@@ -144,8 +144,8 @@ def speed_figure(results: JointResults) -> Figure:
                 results.style(speed),
                 opacity=0.35,
                 tooltips=[
-                    f"{speed_text(speed)}: {number_text(one)} {results.unit}"
-                    for one in group["carried"]
+                    f"{speed_text(speed)}: {number_text(friction)} {results.unit}"
+                    for friction in group["carried"]
                 ],
             )
         means = own.groupby("speed")["carried"].mean()

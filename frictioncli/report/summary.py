@@ -269,7 +269,9 @@ def _diagnosis_sentence(results: JointResults, diagnosis: DiagnosisDocument | No
     if diagnosis is None:
         return ""
     lacking = [
-        " or ".join(in_words(n) for n in one.effects) for one in diagnosis.causes if one.effects
+        " or ".join(in_words(name) for name in cause.effects)
+        for cause in diagnosis.causes
+        if cause.effects
     ]
     if diagnosis.verdict == "no_evidence":
         return "No cause was found in what the function misses."

@@ -26,8 +26,10 @@ from frictioncli.report.style import (
 _LEVEL = "#2B6CB0"
 _BAND = "#BFD4EA"
 _LIMIT = "#C44536"
-_MOST_NAMES = 12
+_MOST_TICKS = 12
 _ROW = 0.24
+"""Height of a reference condition. [inch]"""
+
 _NAME = "trend"
 
 
@@ -69,22 +71,23 @@ def trend_figure(document: ComparisonDocument) -> Figure:
 def _draw_runs(axes: Axes, document: ComparisonDocument) -> None:
     runs, trend = document.runs, document.trend.percent
     dated = document.trend.per_1000_h is not None
-    place: Any = np.arange(1, len(runs) + 1)
+    x: Any = np.arange(1, len(runs) + 1)
     if dated:
-        place = [datetime.fromisoformat(run.started_at) for run in runs if run.started_at]
-    share = np.array([run.days for run in runs] if dated else np.arange(len(runs)), dtype=float)
-    share = share / share[-1]
+        x = [datetime.fromisoformat(run.started_at) for run in runs if run.started_at]
+    # time or, without dates, order of the runs, from 0 to 1
+    elapsed = np.array([run.days for run in runs] if dated else np.arange(len(runs)), dtype=float)
+    elapsed = elapsed / elapsed[-1]
     level = np.array([run.level for run in runs])
-    reach = np.array([run.ci95[1] for run in runs]) - level
-    middle = float(np.mean(level))
-    around = share - share.mean()
-    axes.plot(place, middle + trend.estimate * around, color=MODEL, label="trend")
-    ends = [middle + slope * around for slope in trend.ci95]
+    half_width = np.array([run.ci95[1] for run in runs]) - level
+    mean_level = float(np.mean(level))
+    centred = elapsed - elapsed.mean()
+    axes.plot(x, mean_level + trend.estimate * centred, color=MODEL, label="trend")
+    limits = [mean_level + slope * centred for slope in trend.ci95]
     axes.fill_between(
-        place, np.minimum(*ends), np.maximum(*ends), color=_BAND, alpha=0.5, linewidth=0
+        x, np.minimum(*limits), np.maximum(*limits), color=_BAND, alpha=0.5, linewidth=0
     )
     axes.plot(
-        place,
+        x,
         [run.measured for run in runs],
         linestyle="none",
         marker="o",
@@ -93,16 +96,16 @@ def _draw_runs(axes: Axes, document: ComparisonDocument) -> None:
         label="as measured",
     )
     axes.errorbar(
-        place,
+        x,
         level,
-        yerr=reach,
+        yerr=half_width,
         linestyle="none",
         marker="o",
         color=_LEVEL,
         elinewidth=1.2,
         label="at equal surroundings",
     )
-    _draw_limits(axes, document, middle + trend.estimate * float(around[0]))
+    _draw_limits(axes, document, mean_level + trend.estimate * float(centred[0]))
     axes.set_ylabel("friction against the mean [%]")
     axes.set_title(
         f"Friction of joint {document.joint}, first run to last:"
@@ -116,7 +119,7 @@ def _draw_runs(axes: Axes, document: ComparisonDocument) -> None:
         axes.xaxis.set_major_formatter(ConciseDateFormatter(locator))
         axes.set_xlabel("date of the run")
     else:
-        _name_runs(axes, runs)
+        _label_run_numbers(axes, runs)
     legend_above(axes)
 
 
@@ -129,20 +132,20 @@ def _draw_limits(axes: Axes, document: ComparisonDocument, start: float) -> None
         axes.axhline(limit, color=_LIMIT, linestyle=(0, (5, 3)), linewidth=1.2, label=label)
 
 
-def _name_runs(axes: Axes, runs: Sequence[RunRecord]) -> None:
+def _label_run_numbers(axes: Axes, runs: Sequence[RunRecord]) -> None:
     axes.set_xlabel("run, in the order given")
-    if len(runs) <= _MOST_NAMES:
+    if len(runs) <= _MOST_TICKS:
         axes.set_xticks(range(1, len(runs) + 1))
 
 
 def _draw_conditions(axes: Axes, rows: Sequence[ConditionRecord]) -> None:
     styles = speed_styles(pd.DataFrame({"speed": [row.speed for row in rows], "phase": "sweep"}))
-    for place, row in enumerate(rows):
+    for index, row in enumerate(rows):
         change = row.percent
         centre = change.estimate
         axes.errorbar(
             centre,
-            place,
+            index,
             xerr=[[centre - change.ci95[0]], [change.ci95[1] - centre]],
             marker=styles[row.speed].marker,
             color=styles[row.speed].colour,
