@@ -36,7 +36,7 @@ def _interruptible():
     signal.signal(signal.SIGINT, signal.SIG_DFL)
 
 
-def started(*arguments):
+def started(*arguments, **environment):
     """Start the command in a process group of its own."""
     return subprocess.Popen(
         [sys.executable, "-c", PROGRAM, "fleet", *map(str, arguments)],
@@ -44,7 +44,7 @@ def started(*arguments):
         stderr=subprocess.PIPE,
         text=True,
         encoding="utf-8",
-        env=ENVIRONMENT,
+        env=ENVIRONMENT | environment,
         start_new_session=True,
         preexec_fn=_interruptible,
     )

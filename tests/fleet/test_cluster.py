@@ -82,7 +82,10 @@ def test_workers_of_another_version_are_refused(logs, tmp_path):
 def test_a_scheduler_that_goes_is_one_message_and_the_next_call_goes_on(alone, logs, tmp_path):
     out = tmp_path / "out"
     with scheduler() as (address, process), worker(address, tmp_path / "one"):
-        running = started(logs, "-w", out, "--scheduler", address, "--no-report")
+        # the client looks for a lost scheduler until this has passed
+        patience = {"DASK_DISTRIBUTED__COMM__TIMEOUTS__CONNECT": "5s"}
+        words = (logs, "-w", out, "--scheduler", address, "--no-report")
+        running = started(*words, **patience)
         until(lambda: done(out) and begun(out))
         process.kill()
         _, errors = running.communicate(timeout=300)

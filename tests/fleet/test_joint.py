@@ -39,9 +39,17 @@ def finished(logs, tmp_path_factory):
     )
 
 
+@pytest.fixture(scope="module")
+def one_run(tmp_path_factory):
+    """Logs of one run, for what does not depend on their contents."""
+    folder = tmp_path_factory.mktemp("short") / "joint=2"
+    write_joint(folder, Joint(seed=5, runs=1, cycle=6))
+    return JointLogs(robot="A", joint=2, folder=folder)
+
+
 @pytest.fixture
-def task(logs, tmp_path):
-    return JointTask(logs=logs, work=tmp_path / "out", settings=QUICK, report=False)
+def task(one_run, tmp_path):
+    return JointTask(logs=one_run, work=tmp_path / "out", settings=QUICK, report=False)
 
 
 def test_a_row_tells_the_joint_that_made_the_logs(finished):
