@@ -26,9 +26,6 @@ from frictioncli.simulator.thermal_network import Ambient
 FIRST_DAY = datetime(2019, 3, 4, 8, 0, 0)
 """Start of the first run; each further run starts a day later."""
 
-DAY = 24 * 3600.0
-"""Time between the starts of two runs [s]."""
-
 _ORDER_STREAM = 1_000_000
 """Keeps the random numbers of an enriched protocol apart from those of the noise."""
 
@@ -179,8 +176,6 @@ def simulate(
     runs = []
     for setup, (history, series) in zip(setups, simulated, strict=True):
         earlier = EarlierRuns(
-            run=setup.number,
-            clock=setup.number * DAY,
             operated=operated,
             travelled=travelled,
             total=total,

@@ -11,7 +11,7 @@ from frictioncli.simulator.paper_protocol import MeasuringSeries, measure
 from frictioncli.simulator.planted.catalogue import requested_effects
 from frictioncli.simulator.planted.operating_history import EarlierRuns, operating_history
 from frictioncli.simulator.planted.planting import PlantedEffects, plant
-from frictioncli.simulator.run import DAY, RunSetup, SimulatedRun, joint_of, run_setup
+from frictioncli.simulator.run import RunSetup, SimulatedRun, joint_of, run_setup
 from frictioncli.simulator.settings import SynthesisSettings
 from frictioncli.simulator.thermal_history import MOTOR, History
 from tests.simulation.fast_history import FastHistory
@@ -98,8 +98,6 @@ def simulate_programmes(
     runs, cells = [], []
     for setup, history, series, configurations in simulated:
         earlier = EarlierRuns(
-            run=setup.number,
-            clock=setup.number * DAY,
             operated=operated,
             travelled=travelled,
             total=total,

@@ -19,7 +19,7 @@ ARM = default_joint.joint(payload=2.0, motor_heat_share=0.5).arm
 JOINT = plain_joint(arm=ARM, servo=default_joint.SERVO, motor_heat_share=0.5)
 GRID = np.arange(0.0, 14401.0, 10.0)
 OPERATION = OperatingHistory(
-    earlier=EarlierRuns(run=1, clock=86400.0, operated=14400.0, travelled=36000.0, total=28800.0),
+    earlier=EarlierRuns(operated=14400.0, travelled=36000.0, total=28800.0),
     angles=(0.0, 180.0),
     times=GRID,
     temperatures={name: np.full(GRID.shape, 60.0) for name in ("motor sensor", "gear", "housing")},

@@ -23,10 +23,6 @@ class EarlierRuns:
 
     Attributes
     ----------
-    run : int
-        Number of the run, from 0.
-    clock : float
-        Time from the start of the experiment to that of the run. [s]
     operated : float
         Duration of the runs before. [s]
     travelled : float
@@ -35,8 +31,6 @@ class EarlierRuns:
         Duration of all runs together. [s]
     """
 
-    run: int
-    clock: float
     operated: float
     travelled: float
     total: float

@@ -9,7 +9,7 @@ from frictioncli.arrays import Array
 from frictioncli.simulator.joint import SimulatedJoint
 from frictioncli.simulator.motion_profile import MotionProfile
 from frictioncli.simulator.planted.operating_history import OperatingHistory
-from frictioncli.simulator.thermal_history import HOUSING, MOTOR
+from frictioncli.simulator.thermal_history import MOTOR
 
 STANDING_SPEED = 0.2
 """Velocity below which friction falls linearly to zero, so that torque is load at rest [deg/s]."""
@@ -84,11 +84,6 @@ class State:
     def gear(self) -> Array:
         """Gear temperature [°C]."""
         return self.temperatures["gear"]
-
-    @property
-    def housing(self) -> Array:
-        """Housing temperature [°C]."""
-        return self.temperatures[HOUSING]
 
     @property
     def travelled(self) -> Array:
