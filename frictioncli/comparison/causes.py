@@ -73,7 +73,7 @@ class CauseOfChange:
     channel : {"friction", "load"}
         Channel that changed.
     change : LevelEstimate
-        Change from the first run to the last, by the most probable time course [%].
+        Change from the first run to the last, by the most probable time course. [%]
     change_point : int or None
         Number of the first run after the change, if it is a step change.
     """
@@ -96,7 +96,7 @@ def time_courses(time: Array) -> Iterator[TimeCourse]:
     Parameters
     ----------
     time : ndarray, shape (runs,)
-        Time of each run, increasing [any unit].
+        Time of each run, increasing. [any unit]
 
     Yields
     ------
@@ -124,7 +124,7 @@ def cause_of(levels: Array, model: LevelModel, time: Array, channel: str) -> Cau
     Parameters
     ----------
     levels : ndarray, shape (runs,)
-        Levels of friction or of the load torque [%].
+        Levels of friction or of the load torque. [%]
     model : LevelModel
         Covariance of levels without a change.
     time : ndarray, shape (runs,)

@@ -35,9 +35,9 @@ class Change:
     Attributes
     ----------
     estimate : float
-        Difference, the same at any speed, load and temperature [torque unit].
+        Difference, the same at any speed, load and temperature. [torque unit]
     ci95 : (float, float)
-        95 % confidence interval [torque unit].
+        95 % confidence interval. [torque unit]
     """
 
     estimate: float
@@ -127,11 +127,11 @@ def _prediction_variance(offsets: Array, covariance: Array, noise: float) -> flo
     Parameters
     ----------
     offsets : ndarray, shape (runs,)
-        Offsets of the earlier runs, two or more [N·m].
+        Offsets of the earlier runs, two or more. [N·m]
     covariance : ndarray, shape (runs, runs)
-        Covariance of the offsets by noise within the runs [(N·m)²].
+        Covariance of the offsets by noise within the runs. [(N·m)²]
     noise : float
-        Variance of the difference by noise within the runs [(N·m)²].
+        Variance of the difference by noise within the runs. [(N·m)²]
     """
     count = len(offsets)
     factor = 1 + 1 / count

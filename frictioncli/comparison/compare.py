@@ -44,21 +44,21 @@ class Comparison:
     history : RunHistory
         The runs.
     mean_friction : float
-        Mean of all measurements, to which percentages refer [torque unit].
+        Mean of all measurements, to which percentages refer. [torque unit]
     levels : ndarray, shape (runs,)
-        Friction level of each run less the mean of all, as measured [%].
+        Friction level of each run less the mean of all, as measured. [%]
     adjusted : ndarray, shape (runs,)
-        The levels less the effect of ambient temperature [%].
+        The levels less the effect of ambient temperature. [%]
     half_widths : ndarray, shape (runs,)
-        Half-width of the 95 % interval of each adjusted level [%].
+        Half-width of the 95 % interval of each adjusted level. [%]
     day_to_day : float
-        Day-to-day standard deviation that the intervals assume [%].
+        Day-to-day standard deviation that the intervals assume. [%]
     trend : LevelEstimate
-        Linear trend from the first run to the last [%].
+        Linear trend from the first run to the last. [%]
     last_run : LevelEstimate or None
-        Last run less the mean of the earlier ones; None with two runs, where it is the trend [%].
+        Last run less the mean of the earlier ones; None with two runs, where it is the trend. [%]
     load : LevelEstimate or None
-        Linear trend of the load torque; None where the joint carries nearly no load [%].
+        Linear trend of the load torque; None where the joint carries nearly no load. [%]
     conditions : tuple of ReferenceCondition
         Change of friction at reference conditions; empty where the runs cannot distinguish its
         constant and its viscous part, or no temperature is known.
@@ -69,7 +69,7 @@ class Comparison:
     verdict : {"no_evidence", "changed", "undetermined"}
         ``undetermined``: nothing found, and a change of ``margin`` is not ruled out.
     margin : float
-        Change that should be detected [%].
+        Change that should be detected. [%]
     exceeded : bool or None
         Whether a change above the threshold was found; None without a threshold.
     settings : ComparisonSettings

@@ -26,16 +26,16 @@ class ReferenceCondition:
     Attributes
     ----------
     temperature : float
-        Reference temperature [°C].
+        Reference temperature. [°C]
     speed : float
-        Reference speed [deg/s].
+        Reference speed. [deg/s]
     load : float
         RMS load torque of the data; changes of the load term alone are not considered [torque unit,
         or that of the log's load channel].
     friction : float
-        Friction torque of the model that all runs share [torque unit].
+        Friction torque of the model that all runs share. [torque unit]
     change : LevelEstimate
-        Change from the first run to the last [%].
+        Change from the first run to the last. [%]
     extrapolated : bool
         Whether some runs did not reach this temperature.
     """
@@ -64,9 +64,9 @@ def changes_at_references(
     levels : RunLevels
         Levels of the constant and the viscous component.
     ambient : ndarray, shape (runs,)
-        Ambient temperature [°C].
+        Ambient temperature. [°C]
     day_to_day : float
-        Assumed day-to-day standard deviation [%].
+        Assumed day-to-day standard deviation. [%]
     design : ndarray, shape (runs, 2)
         Ones, and the time course of the change from 0 to 1.
 
@@ -114,7 +114,7 @@ def common_speeds(problem: Problem) -> list[float]:
     Returns
     -------
     list of float
-        Speeds [deg/s].
+        Speeds. [deg/s]
     """
     layout, table = problem.layout, problem.table
     speed = layout.means(table.speed[:, np.newaxis])[:, 0]

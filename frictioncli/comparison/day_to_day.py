@@ -49,9 +49,9 @@ class LevelModel:
     Attributes
     ----------
     covariance : ndarray, shape (runs, runs)
-        V [%²].
+        V. [%²]
     ambient : ndarray, shape (runs, runs)
-        The part of it that is due to ambient temperature [%²].
+        The part of it that is due to ambient temperature. [%²]
     """
 
     covariance: Array
@@ -64,11 +64,11 @@ class LevelModel:
         Parameters
         ----------
         within : ndarray, shape (runs, runs)
-            Covariance by noise within the runs [%²].
+            Covariance by noise within the runs. [%²]
         ambient : ndarray, shape (runs,)
-            Ambient temperature of each run; NaN where unknown [°C].
+            Ambient temperature of each run; NaN where unknown. [°C]
         day_to_day : float
-            Assumed day-to-day standard deviation [%].
+            Assumed day-to-day standard deviation. [%]
         """
         away = (ambient - ambient.mean()) / 10.0
         by_ambient = _AMBIENT_SLOPE**2 * np.outer(away, away)
@@ -84,7 +84,7 @@ class LevelModel:
         Parameters
         ----------
         levels : ndarray, shape (runs,)
-            Levels [%].
+            Levels. [%]
         design : ndarray, shape (runs, columns)
             Linearly independent columns.
 
@@ -126,7 +126,7 @@ class LevelModel:
         Returns
         -------
         ndarray, shape (runs,)
-            Part of the levels that is due to ambient temperature [%].
+            Part of the levels that is due to ambient temperature. [%]
         """
         residual = levels - design @ self.fit(levels, design).coefficients
         return np.asarray(self.ambient @ np.linalg.solve(self.covariance, residual))
@@ -139,9 +139,9 @@ class LevelFit:
     Attributes
     ----------
     coefficients : ndarray, shape (columns,)
-        Coefficients of the design's columns [%].
+        Coefficients of the design's columns. [%]
     covariance : ndarray, shape (columns, columns)
-        Their scale matrix [%²].
+        Their scale matrix. [%²]
     degrees_of_freedom : float
         Degrees of freedom of the Student distribution.
     variance_factor : float
@@ -163,14 +163,14 @@ class LevelFit:
         Parameters
         ----------
         within : ndarray, shape (runs, runs)
-            Covariance by noise within the runs; the common part of all runs is removed [%²].
+            Covariance by noise within the runs; the common part of all runs is removed. [%²]
         day_to_day : float
-            Assumed day-to-day standard deviation [%].
+            Assumed day-to-day standard deviation. [%]
 
         Returns
         -------
         ndarray, shape (runs,)
-            Half-widths [%].
+            Half-widths. [%]
         """
         centred = np.eye(len(within)) - 1 / len(within)
         variance = np.diag(centred @ within @ centred) + day_to_day**2
@@ -203,9 +203,9 @@ class LevelEstimate:
     Attributes
     ----------
     value : float
-        Estimate [%].
+        Estimate. [%]
     low, high : float
-        Ends of the 95 % interval [%].
+        Ends of the 95 % interval. [%]
     p_value : float
         Of the hypothesis that the true value is zero.
     """

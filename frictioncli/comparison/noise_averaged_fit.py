@@ -32,11 +32,11 @@ def noise_averaged_fit(
     design : ndarray, shape (pairs, columns)
         Columns of length 1.
     residual : ndarray, shape (pairs,)
-        Values to fit [N·m].
+        Values to fit. [N·m]
     noises : sequence of (Noise, float)
         Noises and their plausibility, from :func:`frictioncli.model.noise.plausible_noise`.
     time : ndarray, shape (pairs,)
-        Time of each pair [s].
+        Time of each pair. [s]
     run : ndarray of int, shape (pairs,)
         Number of its run.
     bins : ndarray, shape (pairs,)

@@ -33,7 +33,7 @@ class ComparedFolder:
     started_at : mapping of str to datetime
         Start of each run, where the logs state it.
     ambient : mapping of str to float
-        Ambient temperature of each run, where the manifest states it [°C].
+        Ambient temperature of each run, where the manifest states it. [°C]
     """
 
     name: str
@@ -56,7 +56,7 @@ class ComparedRun:
     started_at : datetime or None
         Start, where the logs of all runs state it.
     ambient : float
-        Ambient temperature; NaN where unknown [°C].
+        Ambient temperature; NaN where unknown. [°C]
     """
 
     folder: str

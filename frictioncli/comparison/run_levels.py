@@ -38,7 +38,7 @@ class RunLevels:
     Attributes
     ----------
     coefficients : ndarray, shape (runs, components)
-        Coefficient of each component in each run [N·m for the constant component].
+        Coefficient of each component in each run. [N·m for the constant component]
     covariance : ndarray, shape (runs * components, runs * components)
         Covariance by noise within the runs, in the order of the flattened coefficients.
     comparable : bool
@@ -95,7 +95,7 @@ def run_levels(
         Noises and their plausibility.
     load_scale : ndarray, shape (runs,)
         Load torque of each run relative to the common gravity torque: friction that increases with
-        the weight of another payload is no change of the joint [-].
+        the weight of another payload is no change of the joint. [-]
 
     Returns
     -------
@@ -144,7 +144,7 @@ def load_levels(problem: Problem) -> tuple[Array, LevelModel] | None:
     Returns
     -------
     levels : ndarray, shape (runs,)
-        Factors less 1 [%].
+        Factors less 1. [%]
     model : LevelModel
         Their covariance without a change. None in place of both where the joint carries nearly no
         load.

@@ -38,16 +38,16 @@ class TemperatureCorrector:
     k : float
         Scale of criterion (20).
     tmax : float
-        Time after which a correction is forced [s].
+        Time after which a correction is forced. [s]
     reading : {"first_degree", "latest_degree"}
         Which change by 1 °C counts as :math:`\Delta t`.
 
     Attributes
     ----------
     correction : float
-        Temperature correction in force, :math:`\Delta T` of (19); 0 before the first [°C].
+        Temperature correction in force, :math:`\Delta T` of (19); 0 before the first. [°C]
     motor_temperature : float
-        Latest motor temperature; NaN before the first update [°C].
+        Latest motor temperature; NaN before the first update. [°C]
 
     Examples
     --------
@@ -92,12 +92,12 @@ class TemperatureCorrector:
         Parameters
         ----------
         time : float
-            Time of the sample, not before that of the latest one [s].
+            Time of the sample, not before that of the latest one. [s]
         motor_temperature : float
-            Motor temperature [°C].
+            Motor temperature. [°C]
         registered : float, optional
             Motor temperature for the criterion, in whole degrees, where ``motor_temperature`` is
-            known more precisely [°C].
+            known more precisely. [°C]
         """
         self._time, self.motor_temperature = time, motor_temperature
         self._registered = motor_temperature if registered is None else registered
@@ -128,9 +128,9 @@ class TemperatureCorrector:
         friction, load : float
             Friction torque [torque unit] and load torque [N·m] of the pair, by (8).
         speed : float
-            Speed of the pair, > 0 [deg/s].
+            Speed of the pair, > 0. [deg/s]
         motor_temperature : float, optional
-            Motor temperature of the pair; by default the latest one [°C].
+            Motor temperature of the pair; by default the latest one. [°C]
 
         Returns
         -------
@@ -155,14 +155,14 @@ class TemperatureCorrector:
         Parameters
         ----------
         load : float
-            Load torque [N·m].
+            Load torque. [N·m]
         speed : float
-            Absolute joint velocity [deg/s].
+            Absolute joint velocity. [deg/s]
 
         Returns
         -------
         float
-            Friction torque [torque unit].
+            Friction torque. [torque unit]
         """
         temperature = self.motor_temperature + self.correction
         torque = friction_torque(self.parameters, load=load, speed=speed, temperature=temperature)

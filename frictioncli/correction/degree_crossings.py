@@ -15,7 +15,7 @@ def next_degree_changes(temperature: Array) -> Indices:
     Parameters
     ----------
     temperature : ndarray, shape (instants,)
-        Registered temperature [°C].
+        Registered temperature. [°C]
 
     Returns
     -------

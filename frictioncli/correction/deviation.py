@@ -60,15 +60,15 @@ class DeviationProcess:
     weight : ndarray, shape (candidates,)
         Normalised likelihood of each candidate.
     rate : ndarray, shape (candidates,)
-        Rate r of the clock [°C/s].
+        Rate r of the clock. [°C/s]
     length : ndarray, shape (candidates,)
-        Correlation length on the clock [°C].
+        Correlation length on the clock. [°C]
     mean : ndarray, shape (candidates,)
-        Mean deviation [torque unit/(deg/s)^0.5].
+        Mean deviation. [torque unit/(deg/s)^0.5]
     variance : ndarray, shape (candidates,)
-        Variance about the mean, with that of the estimated mean [torque unit²/(deg/s)].
+        Variance about the mean, with that of the estimated mean. [torque unit²/(deg/s)]
     noise : ndarray, shape (candidates,)
-        Variance of the white measurement noise [torque unit²/(deg/s)].
+        Variance of the white measurement noise. [torque unit²/(deg/s)]
     """
 
     weight: Array
@@ -88,11 +88,11 @@ class CorrectionPairs:
     run : ndarray of int, shape (pairs,)
         Number of the run.
     time : ndarray, shape (pairs,)
-        Time [s].
+        Time. [s]
     travel : ndarray, shape (pairs,)
-        Sum of the absolute changes of the motor temperature since the first pair [°C].
+        Sum of the absolute changes of the motor temperature since the first pair. [°C]
     deviation : ndarray, shape (pairs,)
-        Measured deviation of the viscous coefficient [torque unit/(deg/s)^0.5].
+        Measured deviation of the viscous coefficient. [torque unit/(deg/s)^0.5]
     """
 
     run: Indices
@@ -114,8 +114,8 @@ def measured_deviation(data: PhaseData, parameters: FrictionParameters) -> Array
     Returns
     -------
     ndarray, shape (pairs,)
-        Deviation; NaN where (18) has no solution, as no temperature gives that friction
-        [torque unit/(deg/s)^0.5].
+        Deviation; NaN where (18) has no solution, as no temperature gives that friction.
+        [torque unit/(deg/s)^0.5]
     """
     modelled = friction_torque(parameters, load=0.0, speed=data.speed, temperature=data.temperature)
     temperature = temperature_from_friction(
@@ -139,7 +139,7 @@ def temperature_travel(data: PhaseData) -> Array:
     Returns
     -------
     ndarray, shape (pairs,)
-        Travel of the motor temperature [°C].
+        Travel of the motor temperature. [°C]
     """
     rows = np.unique(data.correction_pair)
     change = np.abs(np.diff(data.temperature[rows], prepend=data.temperature[rows[0]]))

@@ -269,7 +269,7 @@ def epsilon(rows: pd.DataFrame, reference: str) -> float:
     Returns
     -------
     float
-        Error [torque unit].
+        Error. [torque unit]
 
     Examples
     --------

@@ -22,13 +22,13 @@ class PhaseData:
     Attributes
     ----------
     time : ndarray, shape (pairs,)
-        Time [s].
+        Time. [s]
     speed : ndarray, shape (pairs,)
-        Speed [deg/s].
+        Speed. [deg/s]
     temperature, reading : ndarray, shape (pairs,)
-        Motor temperature, and the value that the controller registered [°C].
+        Motor temperature, and the value that the controller registered. [°C]
     friction, smoothed : ndarray, shape (pairs,)
-        Measured friction torque, and the same smoothed over temperature for each speed [N·m].
+        Measured friction torque, and the same smoothed over temperature for each speed. [N·m]
     correction_pair : ndarray of int, shape (pairs,)
         For each pair the index of the one at the correction speed that is nearest in time.
     """
@@ -51,9 +51,9 @@ class Replay:
     corrected, failed : ndarray of bool, shape (pairs,)
         Where a correction was made, and where (18) had no solution for it.
     correction : ndarray, shape (pairs,)
-        Temperature correction in force [°C].
+        Temperature correction in force. [°C]
     predicted : ndarray, shape (pairs,)
-        Friction torque at zero load predicted by (16) and (17) [N·m].
+        Friction torque at zero load predicted by (16) and (17). [N·m]
     """
 
     corrected: Flags
@@ -67,7 +67,7 @@ class Replay:
         Parameters
         ----------
         measured : ndarray, shape (pairs,)
-            Measured friction torque [N·m].
+            Measured friction torque. [N·m]
         """
         return float(np.sqrt(np.mean(np.square(self.predicted - measured))))
 
@@ -81,7 +81,7 @@ def phase_data(pairs: pd.DataFrame, *, correction_speed: float, degree: int) -> 
         Rows of :func:`frictioncli.model.zero_load.friction_at_zero_load` of one phase, in time
         order, all with a motor temperature.
     correction_speed : float
-        Speed of the pairs that corrections use; the nearest one in the data is taken [deg/s].
+        Speed of the pairs that corrections use; the nearest one in the data is taken. [deg/s]
     degree : int
         Degree of the polynomials in temperature that smooth the measured friction.
 
@@ -126,7 +126,7 @@ def smoothed_friction(*, temperature: Array, speed: Array, friction: Array, degr
     Returns
     -------
     ndarray, shape (pairs,)
-        Smoothed friction torque [N·m].
+        Smoothed friction torque. [N·m]
 
     Examples
     --------

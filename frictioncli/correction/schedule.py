@@ -41,13 +41,13 @@ def first_degree(
     Parameters
     ----------
     time : ndarray, shape (instants,)
-        Increasing times at which the criterion is evaluated; the first one is a correction [s].
+        Increasing times at which the criterion is evaluated; the first one is a correction. [s]
     temperature : ndarray, shape (instants,)
-        Registered motor temperature [°C].
+        Registered motor temperature. [°C]
     k : array_like, shape (schedules,)
         Scale of the criterion in each schedule.
     tmax : array_like, shape (schedules,)
-        Time after which a correction is forced [s].
+        Time after which a correction is forced. [s]
 
     Returns
     -------
@@ -122,7 +122,7 @@ def equally_spaced(time: Array, count: int) -> Indices:
     Parameters
     ----------
     time : ndarray, shape (instants,)
-        Increasing times [s].
+        Increasing times. [s]
     count : int
         Number of corrections; the first one is at the first instant.
 

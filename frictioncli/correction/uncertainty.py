@@ -52,11 +52,11 @@ class FilterState:
     Attributes
     ----------
     clock : ndarray, shape (candidates,)
-        Reading of each candidate's clock [°C].
+        Reading of each candidate's clock. [°C]
     estimate : ndarray, shape (candidates,)
-        Estimate of the deviation [torque unit/(deg/s)^0.5].
+        Estimate of the deviation. [torque unit/(deg/s)^0.5]
     variance : ndarray, shape (candidates,)
-        Its variance [torque unit²/(deg/s)].
+        Its variance. [torque unit²/(deg/s)]
     is_initial : bool
         Whether no correction was made yet: the temperature correction is then zero.
     """
@@ -72,7 +72,7 @@ class FilterState:
         Parameters
         ----------
         clock : ndarray, shape (instants, candidates)
-            Readings of the clocks, none before those of the state [°C].
+            Readings of the clocks, none before those of the state. [°C]
         process : DeviationProcess
             Process of the deviation.
 
@@ -109,9 +109,9 @@ class FilterState:
         Parameters
         ----------
         measured : float
-            Measured deviation [torque unit/(deg/s)^0.5].
+            Measured deviation. [torque unit/(deg/s)^0.5]
         clock : ndarray, shape (candidates,)
-            Readings of the clocks at the measurement [°C].
+            Readings of the clocks at the measurement. [°C]
         process : DeviationProcess
             Process of the deviation.
         """
@@ -143,9 +143,9 @@ def replay_with_filter(
     process : DeviationProcess
         Process of the deviation.
     bound : float
-        Greatest standard deviation of the predicted friction [torque unit].
+        Greatest standard deviation of the predicted friction. [torque unit]
     speed : float
-        Speed at which the bound must hold, the highest of the joint [deg/s].
+        Speed at which the bound must hold, the highest of the joint. [deg/s]
 
     Returns
     -------

@@ -27,7 +27,7 @@ class DeployedModel:
     schedule : ScheduleSettings
         Default schedule of corrections.
     correction_speed : float
-        Speed of the pairs that corrections use [deg/s].
+        Speed of the pairs that corrections use. [deg/s]
     extension : DeployedExtension or None
         Deployable part of the extended model, if it is exported.
     origin : mapping of str to str
@@ -67,16 +67,16 @@ class DeployedModel:
         Parameters
         ----------
         load : array_like
-            Load torque [N·m].
+            Load torque. [N·m]
         speed : array_like
-            Absolute velocity [deg/s].
+            Absolute velocity. [deg/s]
         temperature : array_like
-            Temperature [°C].
+            Temperature. [°C]
 
         Returns
         -------
         ndarray
-            Friction torque [torque unit].
+            Friction torque. [torque unit]
         """
         torque = friction_torque(self.base, load=load, speed=speed, temperature=temperature)
         if self.extension:

@@ -51,10 +51,10 @@ class ExtendedCorrector:
         time, motor_temperature, registered
             As for :meth:`TemperatureCorrector.update`.
         housing_temperature : float
-            Temperature of the housing; NaN where it is not known [°C].
+            Temperature of the housing; NaN where it is not known. [°C]
         power : float
-            Mean friction power, torque times speed, since the previous sample
-            [torque unit·deg/s].
+            Mean friction power, torque times speed, since the previous sample.
+            [torque unit·deg/s]
         """
         self.base.update(time, motor_temperature, registered)
         self._housing = housing_temperature

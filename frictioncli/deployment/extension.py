@@ -85,18 +85,18 @@ class DeployedExtension:
         Parameters
         ----------
         load : array_like, shape (rows,) or ()
-            Load torque [N·m].
+            Load torque. [N·m]
         speed : array_like, shape (rows,) or ()
-            Absolute velocity [deg/s].
+            Absolute velocity. [deg/s]
         temperature : array_like, shape (rows,) or ()
-            Uncorrected temperature of the base model [°C].
+            Uncorrected temperature of the base model. [°C]
         excess : array_like, shape (rows,) or ()
-            Temperature of the gear above it [°C].
+            Temperature of the gear above it. [°C]
 
         Returns
         -------
         ndarray, shape (rows,) or ()
-            Added friction torque [torque unit].
+            Added friction torque. [torque unit]
         """
         inputs = (load, speed, temperature, excess)
         load, speed, temperature, excess = np.broadcast_arrays(*inputs, subok=False)
@@ -131,7 +131,7 @@ def deployable_extension(
     model : ExtendedModel
         The extended model.
     time_constant_ci95 : (float, float) or None
-        95 % interval of the gear's time constant, from the diagnosis [s].
+        95 % interval of the gear's time constant, from the diagnosis. [s]
 
     Returns
     -------

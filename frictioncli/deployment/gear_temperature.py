@@ -24,19 +24,19 @@ class GearLag:
     Attributes
     ----------
     time_constant : float
-        Time constant [s].
+        Time constant. [s]
     time_constant_ci95 : (float, float) or None
-        95 % interval of the time constant [s].
+        95 % interval of the time constant. [s]
     lag_share : float
-        Coefficient a: share of the motor temperature that the gear follows with lag [1].
+        Coefficient a: share of the motor temperature that the gear follows with lag. [1]
     friction_heating : float
-        Coefficient b: gear above motor in equilibrium at the reference power [°C].
+        Coefficient b: gear above motor in equilibrium at the reference power. [°C]
     housing_share : float
-        Coefficient h: share of the way from motor to housing temperature [1].
+        Coefficient h: share of the way from motor to housing temperature. [1]
     reference_power : float
-        Reference power :math:`P_0` [torque unit·deg/s].
+        Reference power :math:`P_0`. [torque unit·deg/s]
     start_sd : float
-        Standard deviation of the initial state, which is unknown: the RMS of E in the log [°C].
+        Standard deviation of the initial state, which is unknown: the RMS of E in the log. [°C]
     """
 
     time_constant: float
@@ -119,14 +119,14 @@ class GearTemperature:
         Parameters
         ----------
         time : float
-            Time of the sample, not before that of the latest one [s].
+            Time of the sample, not before that of the latest one. [s]
         motor_temperature : float
-            Motor temperature [°C].
+            Motor temperature. [°C]
         housing_temperature : float
-            Housing temperature; where it is NaN, that of the motor is taken [°C].
+            Housing temperature; where it is NaN, that of the motor is taken. [°C]
         power : float
-            Mean friction power, torque times speed, since the previous sample
-            [torque unit·deg/s].
+            Mean friction power, torque times speed, since the previous sample.
+            [torque unit·deg/s]
         """
         if math.isnan(self._time):
             self._start_time = time

@@ -32,11 +32,11 @@ class LookupTable:
     axes : tuple of ndarray
         Increasing knots of speed [deg/s], temperature [°C] and load [N·m].
     friction : ndarray, shape (speeds, temperatures, loads)
-        Friction torque at the knots, rounded as in the file [torque unit].
+        Friction torque at the knots, rounded as in the file. [torque unit]
     error : float
-        Greatest interpolation error between the knots [torque unit].
+        Greatest interpolation error between the knots. [torque unit]
     tolerance : float
-        Greatest error allowed [torque unit].
+        Greatest error allowed. [torque unit]
     """
 
     axes: Axes
@@ -57,7 +57,7 @@ def lookup_table(
     conditions : OperatingConditions
         Range of speeds; temperatures and loads cover the range of the data.
     tolerance : float or None
-        Greatest interpolation error; None: a thousandth of the greatest friction [torque unit].
+        Greatest interpolation error; None: a thousandth of the greatest friction. [torque unit]
 
     Raises
     ------

@@ -18,15 +18,15 @@ class OperatingConditions:
     Attributes
     ----------
     speeds : (float, float)
-        Range of speeds of the fit [deg/s].
+        Range of speeds of the fit. [deg/s]
     load : float
-        Load torque of the fit [N·m].
+        Load torque of the fit. [N·m]
     temperature : float
-        Temperature of the fit [°C].
+        Temperature of the fit. [°C]
     loads : (float, float)
-        Range of loads in the data [N·m].
+        Range of loads in the data. [N·m]
     temperatures : (float, float)
-        Range of temperatures in the data [°C].
+        Range of temperatures in the data. [°C]
     remarks : tuple of str
         Conditions that the data do not cover.
     """

@@ -21,15 +21,15 @@ class SimplifiedFriction:
     Attributes
     ----------
     dry : float
-        Coulomb friction [N·m].
+        Coulomb friction. [N·m]
     damping : float
-        Viscous damping [N·m·s/rad].
+        Viscous damping. [N·m·s/rad]
     rms, worst : float
-        RMS and greatest error at the conditions of the fit [N·m].
+        RMS and greatest error at the conditions of the fit. [N·m]
     worst_speed : float
-        Speed of the greatest error [deg/s].
+        Speed of the greatest error. [deg/s]
     worst_in_range : float
-        Greatest error over all loads and temperatures of the data [N·m].
+        Greatest error over all loads and temperatures of the data. [N·m]
     """
 
     dry: float
@@ -45,12 +45,12 @@ class SimplifiedFriction:
         Parameters
         ----------
         speed : ndarray
-            Absolute velocity [deg/s].
+            Absolute velocity. [deg/s]
 
         Returns
         -------
         ndarray
-            Friction torque [N·m].
+            Friction torque. [N·m]
         """
         return self.dry + self.damping * np.radians(speed)
 
@@ -84,7 +84,7 @@ def simplified_friction(
     conditions : OperatingConditions
         Conditions of the fit.
     torque_constant : float or None
-        Torque at the joint per unit of the log's torque [N·m/A].
+        Torque at the joint per unit of the log's torque. [N·m/A]
 
     Returns
     -------

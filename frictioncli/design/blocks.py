@@ -61,7 +61,7 @@ def short_series(limits: Limits, payload: float | None = None) -> SeriesStep:
     limits : Limits
         Limits of the joint.
     payload : float or None
-        Payload to mount before it; None: the mounted one stays [kg].
+        Payload to mount before it; None: the mounted one stays. [kg]
     """
     return SeriesStep(
         speeds=limits.speeds(4, slowest=limits.stroke / _SERIES_MOVE_TIME),

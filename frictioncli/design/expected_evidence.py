@@ -40,7 +40,7 @@ class CandidateNoises:
     Attributes
     ----------
     noises : tuple of Noise
-        The noises [N·m].
+        The noises. [N·m]
     expected_squares : ndarray, shape (noises,)
         Expected sum of squares of the true noise, whitened by each noise.
     log_determinants : ndarray, shape (noises,)
@@ -89,9 +89,9 @@ def candidate_noises(layout: PairLayout, true: Noise, extra: Array, base: Array)
     layout : PairLayout
         The pairs.
     true : Noise
-        True noise of friction [N·m].
+        True noise of friction. [N·m]
     extra : ndarray, shape (pairs,)
-        Additional variance of the pair means that is known [(N·m)²].
+        Additional variance of the pair means that is known. [(N·m)²]
     base : ndarray, shape (pairs, columns)
         Pair means of the base model's columns.
 

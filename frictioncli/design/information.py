@@ -21,7 +21,7 @@ class Information:
     problem : Problem
         The rows.
     noise : (Noise, Noise)
-        Noise of friction and of load [N·m].
+        Noise of friction and of load. [N·m]
     true_inputs : EffectTable
         Inputs of the rows with the true travel of planned runs. A diagnosis estimates the travel of
         unrecorded moves, and so may take a cause that depends on travel for another one.
@@ -46,7 +46,7 @@ class Information:
         columns : ModelColumns
             Columns of the model in both channels.
         noises : sequence of Noise
-            Noises of the pair means of friction; the noise of a single angle bin is kept [N·m].
+            Noises of the pair means of friction; the noise of a single angle bin is kept. [N·m]
 
         Yields
         ------

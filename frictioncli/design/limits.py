@@ -29,15 +29,15 @@ class Limits:
     Attributes
     ----------
     low, high : float
-        Range of the angle [deg].
+        Range of the angle. [deg]
     slowest, fastest : float
-        Range of the speed [deg/s].
+        Range of the speed. [deg/s]
     hottest : float
-        Motor temperature at which heating moves end [°C].
+        Motor temperature at which heating moves end. [°C]
     payloads : tuple of float
-        Payloads that may be mounted [kg].
+        Payloads that may be mounted. [kg]
     speed_step : float or None
-        Speeds are whole multiples of it: one per cent of the rated speed [deg/s].
+        Speeds are whole multiples of it: one per cent of the rated speed. [deg/s]
     beyond : tuple of str
         Limits that exceed the measured range because the user set them so.
     """
@@ -86,7 +86,7 @@ class Limits:
         count : int
             Number of speeds.
         slowest : float
-            Lowest speed, if it is above the limit [deg/s].
+            Lowest speed, if it is above the limit. [deg/s]
         """
         # the highest speed needs room to accelerate and to stay constant
         high = min(self.fastest, self.highest_useful)

@@ -207,9 +207,9 @@ def choose_check(
     blocks : sequence of Block
         The programme.
     budget : float
-        Time for the check [s].
+        Time for the check. [s]
     payload : float or None
-        Payload that is mounted before the first block [kg].
+        Payload that is mounted before the first block. [kg]
     seed : int
         Seed of the random starts and exchanges.
 

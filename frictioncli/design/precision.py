@@ -103,7 +103,7 @@ def response_surface_log_determinants(tables: Sequence[EffectTable]) -> list[flo
     Returns
     -------
     list of float
-        One value per table [nat].
+        One value per table. [nat]
     """
     inputs = [_inputs(table) for table in tables]
     stacked = np.vstack(inputs)

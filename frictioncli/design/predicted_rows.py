@@ -54,7 +54,7 @@ class PlannedJoint:
     parameters : FrictionParameters
         Parameters of the base model.
     gravity : ndarray, shape (3,) or (5,)
-        Coefficients of the gravity torque [N·m], [N·m/kg].
+        Coefficients of the gravity torque. [N·m], [N·m/kg]
     thermal_model : ThermalModel or None
         Thermal model of the motor; None where its temperature is not known.
     """
@@ -79,9 +79,9 @@ class Timing:
     Attributes
     ----------
     start, end : float
-        Time since the start of the programme, after a change of payload [s].
+        Time since the start of the programme, after a change of payload. [s]
     temperatures : (float, float)
-        Motor temperature at the start and at the end; NaN where unknown [°C].
+        Motor temperature at the start and at the end; NaN where unknown. [°C]
     """
 
     start: float
@@ -93,7 +93,7 @@ class _Pair(NamedTuple):
     """A planned pair.
 
     Mid time [s], speed [deg/s], motor temperature [°C], bin centres [deg], payload [kg] and travel
-    before it [deg].
+    before it. [deg]
     """
 
     time: float
@@ -122,7 +122,7 @@ def predict_rows(
     -------
     rows : DataFrame
         Planned rows with the noise-free torques of the base model. Column ``travel`` is the true
-        travel before the pair, recorded or not [deg].
+        travel before the pair, recorded or not. [deg]
     timings : tuple of Timing
         One per step.
     """
@@ -162,16 +162,16 @@ def constant_speed_bins(speed: float, low: float, high: float, width: float) -> 
     Parameters
     ----------
     speed : float
-        Speed of the move [deg/s].
+        Speed of the move. [deg/s]
     low, high : float
-        Ends of the move [deg].
+        Ends of the move. [deg]
     width : float
-        Width of the bins [deg].
+        Width of the bins. [deg]
 
     Returns
     -------
     ndarray, shape (bins,)
-        Bin centres [deg].
+        Bin centres. [deg]
 
     Examples
     --------

@@ -92,7 +92,7 @@ class OpenQuestions:
     questions : tuple of Question
         Causes with several possible names.
     noise : (Noise, Noise)
-        Noise of friction and of load beside the likeliest causes [N·m].
+        Noise of friction and of load beside the likeliest causes. [N·m]
     """
 
     settled: tuple[EffectFit, ...]

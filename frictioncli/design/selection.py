@@ -39,12 +39,12 @@ def seconds_of(blocks: Sequence[Block], payload: float | None) -> float:
     blocks : sequence of Block
         The blocks.
     payload : float or None
-        Payload that is mounted before the first [kg].
+        Payload that is mounted before the first. [kg]
 
     Returns
     -------
     float
-        Duration [s].
+        Duration. [s]
     """
     steps = steps_of(blocks)
     return duration(steps) + PAYLOAD_CHANGE * sum(payload_changes(steps, payload))
@@ -67,9 +67,9 @@ def choose_blocks(
     criterion : callable
         Value of a programme from its steps.
     budget : float
-        Time for all blocks [s].
+        Time for all blocks. [s]
     payload : float or None
-        Payload that is mounted before the first [kg].
+        Payload that is mounted before the first. [kg]
     seed : int
         Seed of the random starts and exchanges.
     exchanges : int

@@ -25,11 +25,11 @@ class SeriesStep:
     Attributes
     ----------
     speeds : tuple of float
-        Speeds in their order [deg/s].
+        Speeds in their order. [deg/s]
     low, high : float
-        Ends of the moves [deg].
+        Ends of the moves. [deg]
     payload : float or None
-        Payload to mount; None: the mounted one stays [kg].
+        Payload to mount; None: the mounted one stays. [kg]
     """
 
     speeds: tuple[float, ...]
@@ -50,13 +50,13 @@ class HeatStep:
     Attributes
     ----------
     speed : float
-        Speed [deg/s].
+        Speed. [deg/s]
     low, high : float
-        Ends of the moves [deg].
+        Ends of the moves. [deg]
     seconds : float
-        Longest duration [s].
+        Longest duration. [s]
     until : float or None
-        Motor temperature at which the moves end earlier [°C].
+        Motor temperature at which the moves end earlier. [°C]
     """
 
     speed: float
@@ -73,9 +73,9 @@ class RestStep:
     Attributes
     ----------
     seconds : float
-        Longest duration [s].
+        Longest duration. [s]
     until : float or None
-        Motor temperature at which the hold ends earlier [°C].
+        Motor temperature at which the hold ends earlier. [°C]
     """
 
     seconds: float
@@ -91,14 +91,14 @@ def round_trip(speed: float, stroke: float) -> float:
     Parameters
     ----------
     speed : float
-        Constant speed [deg/s].
+        Constant speed. [deg/s]
     stroke : float
-        Angle of one move [deg].
+        Angle of one move. [deg]
 
     Returns
     -------
     float
-        Duration [s].
+        Duration. [s]
 
     Examples
     --------
@@ -124,7 +124,7 @@ def payload_changes(steps: Sequence[Step], payload: float | None) -> Iterator[bo
     steps : sequence of Step
         The steps.
     payload : float or None
-        Payload that is mounted before the first [kg].
+        Payload that is mounted before the first. [kg]
 
     Yields
     ------

@@ -42,13 +42,13 @@ class ThermalModel:
     Attributes
     ----------
     ambient : float
-        Ambient temperature, also that of a cold start [°C].
+        Ambient temperature, also that of a cold start. [°C]
     time_constant : float
-        Thermal time constant [s].
+        Thermal time constant. [s]
     heating : float
-        Rate of warming per friction power [°C/s per N·m·deg/s].
+        Rate of warming per friction power. [°C/s per N·m·deg/s]
     housing_share : float
-        Rise of the housing above ambient per rise of the motor [-].
+        Rise of the housing above ambient per rise of the motor. [-]
     """
 
     ambient: float
@@ -62,16 +62,16 @@ class ThermalModel:
         Parameters
         ----------
         temperature : float
-            Motor temperature at the start [°C].
+            Motor temperature at the start. [°C]
         seconds : float
-            Duration [s].
+            Duration. [s]
         power : float
-            Friction power [N·m·deg/s].
+            Friction power. [N·m·deg/s]
 
         Returns
         -------
         float
-            Motor temperature [°C].
+            Motor temperature. [°C]
 
         Examples
         --------
@@ -91,12 +91,12 @@ class ThermalModel:
         Parameters
         ----------
         motor : ndarray
-            Motor temperature [°C].
+            Motor temperature. [°C]
 
         Returns
         -------
         ndarray
-            Housing temperature [°C].
+            Housing temperature. [°C]
         """
         return self.ambient + self.housing_share * (motor - self.ambient)
 
@@ -157,7 +157,7 @@ def _rises(pairs: pd.DataFrame, highest_power: float) -> tuple[Array, Array, Arr
     pairs : DataFrame
         One row per pair, in order of time within each run.
     highest_power : float
-        Friction power at the highest speed, taken for unrecorded motion [N·m·deg/s].
+        Friction power at the highest speed, taken for unrecorded motion. [N·m·deg/s]
     """
     found: list[tuple[float, float, float, float, bool]] = []
     for _, run in pairs.groupby("run", observed=True):
@@ -190,13 +190,13 @@ def _fit(
     Parameters
     ----------
     rise, above : ndarray, shape (intervals,)
-        Rise of temperature, and mean temperature above ambient [°C].
+        Rise of temperature, and mean temperature above ambient. [°C]
     heat : ndarray, shape (intervals,)
-        Friction power times duration [N·m·deg].
+        Friction power times duration. [N·m·deg]
     seconds : ndarray, shape (intervals,)
-        Duration [s].
+        Duration. [s]
     usual : float
-        Heating where the data do not show any [°C/s per N·m·deg/s].
+        Heating where the data do not show any. [°C/s per N·m·deg/s]
     """
     best = (np.inf, _USUAL_TIME_CONSTANT, usual)
     prior = 1e-2 * max(float(heat @ heat), 1.0)

@@ -30,7 +30,7 @@ class RobotProgram:
     limits : Limits
         Limits of the motion.
     seconds : float
-        Expected duration [s].
+        Expected duration. [s]
     """
 
     name: str
