@@ -13,6 +13,7 @@ from msgspec import inspect
 from frictioncli import documents
 from frictioncli.comparison.document import ComparisonDocument
 from frictioncli.deployment.document import DeployedDocument
+from frictioncli.design.document import PlanDocument
 from frictioncli.diagnosis.data.gravity import GravityCoefficients
 from frictioncli.diagnosis.documents.document import DiagnosisDocument
 from frictioncli.diagnosis.documents.extended_model import ExtendedDocument
@@ -29,6 +30,7 @@ KINDS = (
     ComparisonDocument,
     DeployedDocument,
     JointRecord,
+    PlanDocument,
 )
 
 NUMBERS = st.floats(allow_nan=False, allow_infinity=False)

@@ -1,19 +1,19 @@
 """Plan of the next experiment: ``plan``."""
 
-from collections.abc import Mapping
 from dataclasses import asdict, replace
 from pathlib import Path
-from typing import Any
 
 from frictioncli import schemas, tables
-from frictioncli.design.document import block_document, limits_document, plan_document, plan_text
+from frictioncli.design.document import PlanDocument, ProgrammeRecord
+from frictioncli.design.from_plan import block_record, limits_record, plan_document
 from frictioncli.design.paper_protocol import algorithms, new_limits, usual_seconds
 from frictioncli.design.plan import plan_joint
 from frictioncli.design.programs import FORMS
 from frictioncli.design.programs.robot_program import SAFETY_NOTE, RobotProgram
 from frictioncli.design.settings import PlanSettings
+from frictioncli.design.text import plan_text
 from frictioncli.diagnosis.documents.reload import is_current, read_documents
-from frictioncli.documents import to_json
+from frictioncli.documents import write as write_document
 from frictioncli.errors import NotEnoughData, OptionError, TableError
 from frictioncli.files import write_text
 from frictioncli.model.document import read_models
@@ -87,8 +87,8 @@ def plan(work: Path, settings: PlanSettings | None = None) -> StageResult:
         checks = _write_program(work, check, settings.to)
     units = {one: entry.unit for one, entry in models[joint].parameters.items()}
     inputs = input_hashes([work / TORQUES, work / MODEL, work / DIAGNOSIS, work / EXTENDED])
-    planned = plan_document(experiment, units, files, checks)
-    _write_plan(work, planned, settings, Provenance("plan", asdict(settings), inputs))
+    planned = plan_document(experiment, units, files, checks, settings.minutes)
+    write_document(work / PLAN, planned, Provenance("plan", asdict(settings), inputs))
     return StageResult(work / PLAN, plan_text(experiment, units, [*files, *checks]))
 
 
@@ -119,17 +119,18 @@ def plan_new(work: Path, settings: PlanSettings) -> StageResult:
         seconds=seconds,
     )
     files = _write_program(work, program, settings.to)
-    document = {
-        "joint": settings.joint,
-        "verdict": None,
-        "limits": limits_document(limits),
-        "programme": {
-            "files": files,
-            "duration_s": seconds,
-            "blocks": [block_document(block, None) for block in blocks],
-        },
-    }
-    _write_plan(work, document, settings, Provenance("plan", asdict(settings), {}))
+    document = PlanDocument(
+        joint=settings.joint,
+        verdict=None,
+        limits=limits_record(limits),
+        programme=ProgrammeRecord(
+            files=tuple(files),
+            duration_s=seconds,
+            blocks=tuple(block_record(block) for block in blocks),
+        ),
+        budget_min=settings.minutes,
+    )
+    write_document(work / PLAN, document, Provenance("plan", asdict(settings), {}))
     sweep, cycle = blocks[0].steps[0], blocks[1].steps[1]
     text = "\n".join(
         [
@@ -154,11 +155,3 @@ def _write_program(work: Path, program: RobotProgram, form: str) -> list[str]:
     for file, text in files.items():
         write_text(work / file, text)
     return sorted(files)
-
-
-def _write_plan(
-    work: Path, document: Mapping[str, Any], settings: PlanSettings, provenance: Provenance
-) -> None:
-    """Write ``plan.json``."""
-    budget = {"budget_min": settings.minutes, "provenance": provenance.as_dict()}
-    write_text(work / PLAN, to_json({**document, **budget}))

@@ -1,0 +1,99 @@
+"""A plan in plain words."""
+
+from collections.abc import Mapping, Sequence
+from itertools import groupby
+
+from frictioncli.design.from_plan import interval_records, raised_chances
+from frictioncli.design.plan import Plan
+from frictioncli.design.programs.robot_program import SAFETY_NOTE
+
+_LIKELY = 0.01
+"""Least probability of a rival that is mentioned."""
+
+
+def plan_text(plan: Plan, units: Mapping[str, str], files: Sequence[str]) -> str:
+    """Return the plan in plain words."""
+    whole = plan.timings[-1].end
+    lines = [
+        f"joint {plan.joint}: {plan.verdict}; next: {whole / 60:.0f} min"
+        + (f", and {plan.check_timings[-1].end / 60:.0f} min on the next day" if plan.check else "")
+    ]
+    for number, question in enumerate(plan.criterion.open_questions.questions):
+        shares = ", ".join(f"{name} {share:.0%}" for name, share in question.probabilities.items())
+        now, after = plan.expected[0].decision[number], plan.expected[-1].decision[number]
+        lines.append(f"  open: {shares}; the right name alone: {_chance(now)} now,")
+        last = plan.after_check.decision[number]
+        checked = f", {_chance(last)} with the check" if plan.check else ""
+        lines.append(f"    {_chance(after)} after it{checked}{_too_little(last)}")
+    if plan.verdict == "unnamed":
+        lines.append("  no known effect explains the structure: blocks that spread over all inputs")
+    told: set[str] = set()
+    for first, last in _alike(plan):
+        lines += _blocks_text(plan, first, last, tell=plan.blocks[first].name not in told)
+        told.add(plan.blocks[first].name)
+    if plan.check:
+        names = ", ".join(block.name for block in plan.check)
+        lines.append(f"  next day, cold, as a check: {names}")
+        lines.append(
+            "    log both as runs of their own: diagnose learns from all runs but the last,"
+        )
+        lines.append("    which shows whether what it has learned is worth modelling")
+    wide = [one for one in interval_records(plan, units) if one.wide]
+    for one in wide:
+        lines.append(
+            f"  {one.parameter} {one.estimate:.3g} {one.unit}:"
+            f" +-{one.half_width_now:.2g} now, +-{one.half_width_after:.2g} after"
+        )
+    limits = plan.limits
+    lines.append(
+        f"  within {limits.low:g} to {limits.high:g} deg, {limits.slowest:.3g} to"
+        f" {limits.fastest:.4g} deg/s"
+        + (f", motor up to {limits.hottest:.0f} °C" if plan.criterion.joint.thermal_model else "")
+        + (f"; beyond the data: {'; '.join(limits.beyond)}" if limits.beyond else "")
+    )
+    lines.append(f"  program: {', '.join(files)}. {SAFETY_NOTE}")
+    return "\n".join(lines)
+
+
+def _alike(plan: Plan) -> list[tuple[int, int]]:
+    """Return the numbers of the first and the last of the blocks of one kind in a row."""
+    groups = groupby(range(len(plan.blocks)), key=lambda place: plan.blocks[place].name)
+    rows = [list(places) for _, places in groups]
+    return [(places[0], places[-1]) for places in rows]
+
+
+def _blocks_text(plan: Plan, first: int, last: int, *, tell: bool) -> list[str]:
+    """Return what there is to say of blocks of one kind in a row; their reason where asked."""
+    block, start, end = plan.blocks[first], plan.timings[first], plan.timings[last]
+    count = last - first + 1
+    number = f"{first + 1}." if count == 1 else f"{first + 1}-{last + 1}."
+    low, high = start.temperatures[0], end.temperatures[1]
+    warm = f", motor {low:.0f} to {high:.0f} °C" if low == low else ""
+    often = f", {count} times" if count > 1 else ""
+    lines = [
+        f"  {number:>6s} {_clock(start.start)} {block.name}{often}"
+        f" ({(end.end - start.start) / 60:.1f} min{warm})"
+    ]
+    if tell:
+        lines.append(f"         {block.reason}")
+    before, after = plan.expected[first], plan.expected[last + 1]
+    for place, question in enumerate(plan.criterion.open_questions.questions):
+        likely = question.probabilities
+        raised = raised_chances(question, before, after, place)
+        for truth, rival, old, new in [one for one in raised if likely[one[0]] >= _LIKELY][:2]:
+            lines.append(
+                f"         rules out {rival} if {truth} is at work: {old:.0%} to {new:.0%}"
+            )
+    return lines
+
+
+def _chance(value: float) -> str:
+    return "less than 1 %" if value < 0.01 else f"{value:.0%}"
+
+
+def _too_little(value: float) -> str:
+    return "; more time (--minutes), payloads or range are needed" if value < 0.5 else ""
+
+
+def _clock(seconds: float) -> str:
+    return f"{int(seconds) // 60:d}:{int(seconds) % 60:02d}"
