@@ -25,6 +25,8 @@ from pathlib import Path
 
 from filelock import FileLock
 
+from frictioncli.cli.commands import app
+
 ROOT = Path(__file__).parents[2]
 REAL = Path(os.environ.get("FRICTIONCLI_REAL", ROOT.parent / "shared" / "real"))
 LIST = Path(__file__).with_name("same.sha256")
@@ -32,24 +34,6 @@ PLACE = Path(tempfile.gettempdir()) / "frictioncli-same"
 SAMPLE = ROOT / "sample_logs" / "kr10"
 
 _SECONDS = re.compile(rb"[0-9]+ s of work")
-
-COMMANDS = (
-    "inspect",
-    "ingest",
-    "pair",
-    "separate",
-    "fit",
-    "simulate",
-    "evaluate",
-    "diagnose",
-    "report",
-    "run",
-    "plan",
-    "export",
-    "compare",
-    "fleet",
-    "synthesize",
-)
 
 
 class Outputs:
@@ -93,8 +77,9 @@ class Outputs:
 def command_help(out: Outputs) -> None:
     """``--help`` of every command."""
     out.call("help", "--help")
-    for command in COMMANDS:
-        out.call(command, command, "--help")
+    for command in app.registered_commands:
+        name = command.callback.__name__
+        out.call(name, name, "--help")
 
 
 def sample(out: Outputs) -> None:
