@@ -26,20 +26,20 @@ class PlanSettings:
     Attributes
     ----------
     minutes : float
-        Total time with the check on the next day [min].
+        Total time with the check on the next day. [min]
     low, high : float or None
-        Range of the angle; None: the measured one [deg].
+        Range of the angle; None: the measured one. [deg]
     max_speed : float or None
-        Highest speed; None: the highest measured [deg/s].
+        Highest speed; None: the highest measured. [deg/s]
     max_temperature : float or None
         Motor temperature at which heating moves end; None: the highest measured, at least 65 °C
-        [°C].
+       [°C].
     payload : tuple of float
-        Payloads that may be mounted; none: the mounted one stays [kg].
+        Payloads that may be mounted; none: the mounted one stays. [kg]
     to : {"csv", "krl", "urscript"}
         Form of the robot program.
     rated_speed : float or None
-        Speed of the axis at 100 %; KUKA programs state speeds in whole per cent of it [deg/s].
+        Speed of the axis at 100 %; KUKA programs state speeds in whole per cent of it. [deg/s]
     joint : int or None
         Joint to plan for; None: the one with the most pairs.
     seed : int

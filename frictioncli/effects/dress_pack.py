@@ -13,7 +13,7 @@ from frictioncli.effects.base import Basis, Effect, EffectTable, Parameter, Sign
 
 
 def basis(table: EffectTable, *, rest: float, stiffening: float) -> Basis:
-    """Return the spring torque per stiffness, shape (rows, 1). [rad].
+    """Return the spring torque per stiffness, shape (rows, 1) [rad].
 
     Parameters
     ----------

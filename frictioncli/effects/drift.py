@@ -9,7 +9,7 @@ from frictioncli.effects.base import Basis, Effect, EffectTable, Parameter, Sign
 
 
 def basis(table: EffectTable, *, time_constant: float) -> Basis:
-    """Return the time since the first pair of all runs, saturating, shape (rows, 1). [h].
+    """Return the time since the first pair of all runs, saturating, shape (rows, 1) [h].
 
     Parameters
     ----------

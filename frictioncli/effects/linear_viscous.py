@@ -7,7 +7,7 @@ from frictioncli.effects.base import Basis, Effect, EffectTable, Parameter, Sign
 
 
 def basis(table: EffectTable) -> Basis:
-    """Return the speed, shape (rows, 1). [deg/s]."""
+    """Return the speed, shape (rows, 1) [deg/s]."""
     return friction_only(table.speed)
 
 

@@ -9,7 +9,7 @@ from frictioncli.effects.base import Basis, Effect, EffectTable, Parameter, Sign
 
 
 def basis(table: EffectTable) -> Basis:
-    """Return the absolute load torque, shape (rows, 1). [N·m]."""
+    """Return the absolute load torque, shape (rows, 1) [N·m]."""
     return friction_only(np.abs(table.load))
 
 

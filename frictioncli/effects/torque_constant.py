@@ -20,7 +20,7 @@ from frictioncli.effects.base import (
 
 
 def basis(table: EffectTable) -> Basis:
-    """Return both torques times the motor temperature above 25 °C. [N·m·100 °C]."""
+    """Return both torques times the motor temperature above 25 °C [N·m·100 °C]."""
     warming = (table.motor_temperature - REFERENCE_TEMPERATURE) / 100.0
     return Basis(
         np.column_stack([table.friction * warming]), np.column_stack([table.load * warming])

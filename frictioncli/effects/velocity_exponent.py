@@ -16,7 +16,7 @@ from frictioncli.effects.pair_series import pair_heads
 
 
 def basis(table: EffectTable, *, exponent: float) -> Basis:
-    """Return the change of viscous friction if all of it has the exponent, shape (rows, 1). [N·m].
+    """Return the change of viscous friction if all of it has the exponent, shape (rows, 1) [N·m].
 
     Parameters
     ----------

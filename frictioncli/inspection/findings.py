@@ -89,7 +89,7 @@ class JointInspection:
     spikes : tuple of Spikes
         Spikes of each channel.
     frozen_spans, frozen_s : int, float
-        Intervals of constant torque at standstill, and their sum [s].
+        Intervals of constant torque at standstill, and their sum. [s]
     brake_closed_s : float or None
         Time with the brake closed, by a brake column. [s]
     moves : mapping of str to int

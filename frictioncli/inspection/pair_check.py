@@ -60,7 +60,7 @@ def segments_and_pairs(
         Number of constant-speed segments.
     pairs : DataFrame
         One row per pair: run, joint, pair, speed [deg/s], phase, motor temperature [°C], mean half
-        difference of the torques, lowest and highest load [N·m or A].
+        difference of the torques, lowest and highest load. [N·m or A]
     """
     with PartitionedStore[Joint](folder) as moving, PartitionedStore[Joint](folder) as paired:
         found = find_segments(samples, settings.steady, settings.bin_width, moving)

@@ -116,7 +116,7 @@ def fit_terms(observed: Observations, terms: tuple[str, ...]) -> Estimate:
 
 
 def pair_residual(observed: Observations, parameters: FrictionParameters) -> Array:
-    """Return measured minus modelled mean friction torque of each pair, shape (pairs,). [N·m]."""
+    """Return measured minus modelled mean friction torque of each pair, shape (pairs,) [N·m]."""
     modelled = friction_torque(
         parameters,
         load=np.sqrt(observed.squared_load),
@@ -191,7 +191,7 @@ def load_coefficient(observed: Observations) -> float:
 
 
 def point_noise(observed: Observations, alpha: float) -> float:
-    """Return the standard deviation of one angle bin about its pair. [N·m]."""
+    """Return the standard deviation of one angle bin about its pair [N·m]."""
     within = observed.friction_within - alpha * observed.squared_load_within
     freedom = max(len(within) - len(observed.friction) - 1, 1)
     floor = 1e-6 * max(float(np.mean(np.abs(observed.friction))), 1e-12)

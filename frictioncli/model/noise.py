@@ -93,7 +93,7 @@ class PairCovariance:
         return (right.T * self.white).T + drift
 
     def draw(self, generator: np.random.Generator) -> Array:
-        """Return one random disturbance of the pair means, shape (pairs,). [N·m]."""
+        """Return one random disturbance of the pair means, shape (pairs,) [N·m]."""
         drift = generator.standard_normal(len(self.white))
         for i in range(1, len(drift)):
             innovation = np.sqrt(1 - self.correlation[i] ** 2)

@@ -107,7 +107,7 @@ def ramp_means(
     dict of str to ndarray, shape (rows,)
         The :data:`COLUMNS`: accelerations at :data:`LAGS` [deg/s²]; ``spread`` is the standard
         deviation of the angle [deg]; ``elapsed`` is the time since the start of the move, or until
-        its end [s].
+        its end. [s]
     """
     low, high, origin, clock = _halves(channels, segments)
     index = slice_indices(low, high)

@@ -128,7 +128,7 @@ def cell_means(across: MapAxis, up: MapAxis, misfit: Array, pair: Indices) -> tu
 
 
 def colour_limit(maps: list[tuple[Array, Array]]) -> float:
-    """Return the limit of the colour scale, large enough that noise is pale. [N·m].
+    """Return the limit of the colour scale, large enough that noise is pale [N·m].
 
     Parameters
     ----------

@@ -112,7 +112,7 @@ class JointResults:
         return self.styles[min(self.styles, key=lambda known: abs(known - speed))]
 
     def predict(self, *, load: ArrayLike, speed: ArrayLike, temperature: ArrayLike) -> Array:
-        """Return the modelled friction torque. [torque unit].
+        """Return the modelled friction torque [torque unit].
 
         Parameters
         ----------

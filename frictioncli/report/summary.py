@@ -259,7 +259,7 @@ def _correction_result(results: JointResults, phase: str) -> _CorrectionResult |
 
 
 def _error(schedule: pd.DataFrame) -> float:
-    """Return the error (21) over rows of a schedule. [torque unit]."""
+    """Return the error (21) over rows of a schedule [torque unit]."""
     return float(
         np.sqrt(np.mean(np.square(schedule["friction_smoothed"] - schedule["friction_predicted"])))
     )

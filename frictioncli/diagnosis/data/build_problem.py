@@ -68,7 +68,7 @@ def build_problems(
 
 
 def _typical_misfit(problem: Problem, chosen: Flags) -> float:
-    """Return the median absolute misfit of the mean friction of the chosen pairs. [N·m]."""
+    """Return the median absolute misfit of the mean friction of the chosen pairs [N·m]."""
     misfit = problem.layout.means(problem.friction_misfit[:, np.newaxis])[:, 0]
     return float(np.median(np.abs(misfit[np.unique(problem.layout.row_pair[chosen])])))
 

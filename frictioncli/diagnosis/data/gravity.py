@@ -28,7 +28,7 @@ _APART = 0.001
 
 
 def known_payload(torques: pd.DataFrame) -> Array:
-    """Return the payload of each row, NaN where unknown, shape (rows,). [kg].
+    """Return the payload of each row, NaN where unknown, shape (rows,) [kg].
 
     Parameters
     ----------
@@ -99,7 +99,7 @@ def without_offset(columns: Array) -> Array:
 
 
 def carried_load(columns: Array, gravity: Array) -> Array:
-    """Return the load torque that the gear carries, shape (rows,). [N·m].
+    """Return the load torque that the gear carries, shape (rows,) [N·m].
 
     Gravity without its offset: a torque that is the same at all angles is an offset of the sensor,
     or an asymmetry of friction, and does not load the gear.

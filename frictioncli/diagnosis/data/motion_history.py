@@ -49,7 +49,7 @@ def series(layout: PairLayout, temperature: Array) -> tuple[Array, Array]:
 
 
 def clock_of(layout: PairLayout) -> Array:
-    """Return times in which runs follow each other without a pause, shape (pairs,). [s]."""
+    """Return times in which runs follow each other without a pause, shape (pairs,) [s]."""
     clock = layout.time.copy()
     for run in np.unique(layout.run)[1:]:
         clock[layout.run == run] += clock[layout.run == run - 1][-1]
@@ -57,7 +57,7 @@ def clock_of(layout: PairLayout) -> Array:
 
 
 def travel_of(rows: pd.DataFrame, layout: PairLayout, temperature: Array) -> Array:
-    """Return the distance that a joint has travelled before each pair since its run's start. [deg].
+    """Return the distance that a joint has travelled before each pair since its run's start [deg].
 
     The log has the strokes of its pairs. Where the motor warmed during a pause, the joint is
     assumed to have moved at the highest recorded speed, as in a heating programme. That distance

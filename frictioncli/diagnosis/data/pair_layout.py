@@ -131,7 +131,7 @@ class PairLayout:
         return np.asarray((total.T / self.bins).T)
 
     def point_deviation(self, residual: Array) -> float:
-        """Return the standard deviation of an angle bin about the mean of its pair. [N·m].
+        """Return the standard deviation of an angle bin about the mean of its pair [N·m].
 
         Parameters
         ----------

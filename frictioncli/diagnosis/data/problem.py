@@ -110,12 +110,12 @@ class Problem:
 
     @property
     def friction_misfit(self) -> Array:
-        """Measured minus simulated friction torque, shape (rows,). [N·m]."""
+        """Measured minus simulated friction torque, shape (rows,) [N·m]."""
         return self.friction - self.table.friction
 
     @property
     def load_misfit(self) -> Array:
-        """Measured minus simulated load torque, shape (rows,). [N·m]."""
+        """Measured minus simulated load torque, shape (rows,) [N·m]."""
         return self.load - self.load_base @ self.gravity
 
     def part(self, chosen: Flags) -> "Problem":

@@ -13,7 +13,7 @@ from frictioncli.model.document import FrictionModel
 def friction_beyond(
     torques: pd.DataFrame, model: FrictionModel, extension: ExtendedModel
 ) -> tuple[pd.Series, FrictionModel]:
-    """Return the friction torque beyond the base in each row, and the base. [torque unit].
+    """Return the friction torque beyond the base in each row, and the base [torque unit].
 
     Parameters
     ----------

@@ -23,7 +23,7 @@ _NO_GRAVITY = GravityCoefficients(cosine=0.0, sine=0.0, offset=0.0)
 
 @dataclass(frozen=True, slots=True)
 class Term:
-    """What one effect of the extended model adds to both channels, shape (rows,). [N·m]."""
+    """What one effect of the extended model adds to both channels, shape (rows,) [N·m]."""
 
     effect: Effect
     friction: Array
@@ -149,7 +149,7 @@ class ExtendedDocument(FrictionModel):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Beyond:
-    """What an extended model adds to the base, shape (rows,) each. [N·m]."""
+    """What an extended model adds to the base, shape (rows,) each [N·m]."""
 
     friction: Array
     load: Array

@@ -41,7 +41,7 @@ class Misfits:
     terms: tuple[Term, ...]
 
     def without(self, number: int, channel: str) -> Array:
-        """Return what the extended model misses when one of its terms is taken out. [N·m].
+        """Return what the extended model misses when one of its terms is taken out [N·m].
 
         Parameters
         ----------
@@ -54,7 +54,7 @@ class Misfits:
 
     @staticmethod
     def torque(channels: Mapping[str, Array]) -> Array:
-        """Return the misfit of the torque, all rows forward, then all in reverse. [N·m]."""
+        """Return the misfit of the torque, all rows forward, then all in reverse [N·m]."""
         return np.concatenate(
             [channels["load"] + channels["friction"], channels["load"] - channels["friction"]]
         )

@@ -172,7 +172,7 @@ def _shape_derivative(problem: Problem, one: EffectFit, axis: Parameter) -> Basi
 
 
 def misfits(problem: Problem, fitted: Refit) -> tuple[Array, Array]:
-    """Return measured minus extended torque in both channels, shape (rows,) each. [N·m].
+    """Return measured minus extended torque in both channels, shape (rows,) each [N·m].
 
     Parameters
     ----------

@@ -192,7 +192,7 @@ class HypothesisTest:
         return self.log_bayes_factor + max(fit.statistic - self.statistic, 0.0) / 2
 
     def detectable_size(self, level: float) -> float | None:
-        r"""Return the RMS size that would be found four times in five. [N·m].
+        r"""Return the RMS size that would be found four times in five [N·m].
 
         Under the alternative hypothesis the statistic is noncentral chi-squared. The noncentrality
         with which it exceeds the critical value with a probability of 80 % is the squared whitened

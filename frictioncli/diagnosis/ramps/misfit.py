@@ -80,7 +80,7 @@ class RampMisfit:
     inertial : ndarray, shape (rows, columns)
         Acceleration at each of :data:`frictioncli.pairs.ramps.LAGS` counted as friction
         [deg/s²], and that without lag times the payload above the mean where payloads differ
-        [kg·deg/s²].
+       [kg·deg/s²].
     misfit : ndarray, shape (rows,)
         Measured minus simulated friction, without inertia. [N·m]
     projection : Projection
@@ -174,7 +174,7 @@ class RampMisfit:
         return -self.after_reversal * np.exp(-self.rows["distance"].to_numpy(float) / distance)
 
     def delayed_acceleration(self, time: float) -> Array:
-        """Return the acceleration of the ramps after a first-order lag, shape (rows,). [deg/s²].
+        """Return the acceleration of the ramps after a first-order lag, shape (rows,) [deg/s²].
 
         Parameters
         ----------
@@ -189,6 +189,6 @@ class RampMisfit:
 
 
 def _ramp_time(rows: pd.DataFrame, accelerating: Flags) -> Array:
-    """Return the duration of each row's acceleration: speed over greatest acceleration. [s]."""
+    """Return the duration of each row's acceleration: speed over greatest acceleration [s]."""
     steepest = rows["acceleration"].abs().where(accelerating).groupby(rows["move"]).transform("max")
     return np.asarray(rows["speed"] / np.maximum(steepest.fillna(0.0), 1.0), dtype=float)

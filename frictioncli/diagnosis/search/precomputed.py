@@ -125,7 +125,7 @@ def _groups(hypotheses: Sequence[Hypothesis]) -> Groups:
 
 
 def point_noise(problem: Problem, accepted: Sequence[Basis] = ()) -> tuple[float, float]:
-    """Return the standard deviation of an angle bin about its pair in friction and load. [N·m].
+    """Return the standard deviation of an angle bin about its pair in friction and load [N·m].
 
     Parameters
     ----------

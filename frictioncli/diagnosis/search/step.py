@@ -280,7 +280,7 @@ class Step:
         )
 
     def size(self, fit: EffectFit) -> float:
-        """Return the RMS torque of an effect in the channel where it shows most. [N·m].
+        """Return the RMS torque of an effect in the channel where it shows most [N·m].
 
         Several columns of an effect may cancel each other and leave the rest to the base; so only
         the residual of the base counts, unless the effect has a single column.
@@ -290,7 +290,7 @@ class Step:
         return float(np.sqrt(np.mean(np.square(self._torque(fit)))))
 
     def visible(self, fit: EffectFit) -> float:
-        """Return the RMS of an effect's torque after a fit of the base model to it. [N·m]."""
+        """Return the RMS of an effect's torque after a fit of the base model to it [N·m]."""
         residual = residual_of_base(self.problem, self._torque(fit), fit.effect.channel)
         return float(np.sqrt(np.mean(np.square(residual))))
 

@@ -79,7 +79,7 @@ class Sampling:
     missing_samples : int
         Samples missing between others, without gaps; 0 where the jitter is too large to count them.
     gaps, gaps_s : int, float
-        Steps of more than five periods, and their sum [s].
+        Steps of more than five periods, and their sum. [s]
     longest_gaps : tuple of Gap
         The longest ones, longest first.
     duplicated_times, backward_times : int
