@@ -20,25 +20,25 @@ def channel(columns):
     )
 
 
-BASE, RIVALS, MISFIT = channel(3), channel(5), channel(1)
+BASE, CANDIDATES, MISFIT = channel(3), channel(5), channel(1)
 SPECTRA = spectra_of(PAIRS, POINT, np.linspace(0, 0.2, COUNT), MISFIT.means[:, 0])
-SIDE = ChannelLikelihood.of(SPECTRA, POINT, BASE, MISFIT)
+CHANNEL = ChannelLikelihood.of(SPECTRA, POINT, BASE, MISFIT)
 
 
 def products(chosen, setting):
     """White products of the deviations, and those of the means under the dense covariance."""
-    inside = np.hstack([BASE.within, RIVALS.within[:, chosen], MISFIT.within]) / POINT
-    means = np.hstack([BASE.means, RIVALS.means[:, chosen], MISFIT.means])
+    inside = np.hstack([BASE.within, CANDIDATES.within[:, chosen], MISFIT.within]) / POINT
+    means = np.hstack([BASE.means, CANDIDATES.means[:, chosen], MISFIT.means])
     noise = dense_noise.covariance(PAIRS, SPECTRA, setting)
     return inside.T @ inside, means.T @ np.linalg.solve(noise, means)
 
 
 @pytest.mark.parametrize("setting", [(0, 0), (1, 3), (5, 7)])
 @pytest.mark.parametrize("columns", [[[2]], [[0, 1], [3, 4]], [[4, 0, 1], [1, 2, 3]]])
-def test_equations_of_many_rivals_are_those_of_their_rows(columns, setting):
-    modes = SPECTRA.modes_at(setting[0], RIVALS.means)
-    found = SIDE.normal_equations_each(RIVALS, modes, np.array(columns), setting)
-    assert found.determinant == SIDE.null.determinant[setting]
+def test_equations_of_many_candidates_are_those_of_their_rows(columns, setting):
+    modes = SPECTRA.modes_at(setting[0], CANDIDATES.means)
+    found = CHANNEL.normal_equations_each(CANDIDATES, modes, np.array(columns), setting)
+    assert found.determinant == CHANNEL.null.determinant[setting]
     assert found.freedom == COUNT - 3
     for number, chosen in enumerate(columns):
         inside, between = products(chosen, setting)
@@ -47,8 +47,8 @@ def test_equations_of_many_rivals_are_those_of_their_rows(columns, setting):
 
 
 def test_equations_of_the_base_alone_hold_base_and_misfit():
-    nothing = ChannelColumns(RIVALS.within[:, :0], RIVALS.means[:, :0])
-    found = SIDE.normal_equations(nothing, nothing.means, (2, 4))
+    nothing = ChannelColumns(CANDIDATES.within[:, :0], CANDIDATES.means[:, :0])
+    found = CHANNEL.normal_equations(nothing, nothing.means, (2, 4))
     inside, between = products([], (2, 4))
     np.testing.assert_allclose(found.within, inside, rtol=1e-9, atol=1e-9)
     np.testing.assert_allclose(found.between, between, rtol=1e-7, atol=1e-8)

@@ -21,7 +21,7 @@ GENERATOR = np.random.default_rng(4)
 DATA = GENERATOR.normal(size=(COUNT, 1))
 BASE = np.column_stack([np.ones(COUNT), GENERATOR.normal(size=(COUNT, 2))])
 SPECTRA = spectra_of(PAIRS, 0.3, np.linspace(0, 0.3, COUNT), DATA[:, 0])
-RIVALS = np.column_stack([GENERATOR.normal(size=(COUNT, 3)), PAIRS.time / 100.0])
+CANDIDATES = np.column_stack([GENERATOR.normal(size=(COUNT, 3)), PAIRS.time / 100.0])
 GROUPS = Groups.of([1, 2, 1])
 NULL = fit_null(SPECTRA, BASE, DATA)
 EVERY = dense_noise.settings(SPECTRA)
@@ -31,8 +31,8 @@ def modes(columns, spectra=SPECTRA):
     return [spectra.modes(spectrum, spectra.scaled(columns)) for spectrum in spectra.spectra]
 
 
-def scanned(draws, seed=0, rivals=RIVALS, groups=GROUPS):
-    return scan(SPECTRA, NULL, modes(rivals), groups, draws, np.random.default_rng(seed))
+def scanned(draws, seed=0, candidates=CANDIDATES, groups=GROUPS):
+    return scan(SPECTRA, NULL, modes(candidates), groups, draws, np.random.default_rng(seed))
 
 
 def profiled(square, determinant, count):
@@ -68,35 +68,37 @@ def test_determinant_is_the_restricted_one_but_for_a_constant():
 
 @pytest.mark.parametrize("strength", [0.0, 0.7, 40.0])
 def test_under_one_noise_the_statistic_is_that_of_generalised_least_squares(monkeypatch, strength):
-    """(n - p) log of the square sums without and with the rival, by a dense inverse."""
+    """(n - p) log of the square sums without and with the candidate, by a dense inverse."""
     monkeypatch.setattr(scanning, "STRENGTHS", np.array([strength]))
     spectra = replace(SPECTRA, spectra=SPECTRA.spectra[2:3])
     noise = np.diag(spectra.profile) + strength * dense_noise.alike(PAIRS, spectra.spectra[0].time)
     null = fit_null(spectra, BASE, DATA)
     drawn = scanning._drawn_noise(spectra, null, 25, np.random.default_rng(8))
     drawn = drawn * np.sqrt(spectra.profile)[:, None]
-    found = scan(spectra, null, modes(RIVALS, spectra), GROUPS, 25, np.random.default_rng(8)).drawn
+    found = scan(
+        spectra, null, modes(CANDIDATES, spectra), GROUPS, 25, np.random.default_rng(8)
+    ).drawn
     alone = dense_noise.left_square(drawn, BASE, noise)
     for group in range(3):
-        both = np.hstack([BASE, RIVALS[:, GROUPS.columns(group)]])
+        both = np.hstack([BASE, CANDIDATES[:, GROUPS.columns(group)]])
         ratio = np.log(alone / dense_noise.left_square(drawn, both, noise))
         np.testing.assert_allclose(found[group], (COUNT - 3) * ratio, rtol=1e-6, atol=1e-9)
 
 
-def test_over_all_noises_the_best_is_taken_with_and_without_the_rival():
+def test_over_all_noises_the_best_is_taken_with_and_without_the_candidate():
     drawn = scanning._drawn_noise(SPECTRA, NULL, 15, np.random.default_rng(3))
     data = np.hstack([DATA, drawn * np.sqrt(SPECTRA.profile)[:, None]])
     found = scanned(15, seed=3)
-    alone, rivals = [], []
+    alone, candidates = [], []
     for setting in EVERY:
         noise = dense_noise.covariance(PAIRS, SPECTRA, setting)
         square, determinant, count = dense_noise.restricted(data, BASE, noise)
         alone.append(profiled(square, determinant, count))
-        rivals.append(
+        candidates.append(
             [
                 profiled(
                     dense_noise.left_square(
-                        data, np.hstack([BASE, RIVALS[:, GROUPS.columns(group)]]), noise
+                        data, np.hstack([BASE, CANDIDATES[:, GROUPS.columns(group)]]), noise
                     ),
                     determinant,
                     count,
@@ -104,25 +106,25 @@ def test_over_all_noises_the_best_is_taken_with_and_without_the_rival():
                 for group in range(3)
             ]
         )
-    best = np.max(rivals, axis=0)
+    best = np.max(candidates, axis=0)
     ratio = 2 * (best - np.max(alone, axis=0))
     np.testing.assert_allclose(found.drawn, ratio[:, 1:], rtol=1e-6, atol=1e-6)
-    which = np.argmax(np.array(rivals)[:, :, 0], axis=0)
+    which = np.argmax(np.array(candidates)[:, :, 0], axis=0)
     assert [tuple(map(int, place)) for place in found.best] == [EVERY[i] for i in which]
 
 
-def test_a_rival_never_explains_less_than_nothing():
+def test_a_candidate_never_explains_less_than_nothing():
     assert (scanned(50).drawn >= 0).all()
 
 
 @pytest.mark.parametrize("kind", ["in the base", "zero", "nearly in the base"])
-def test_a_rival_that_the_base_leaves_nothing_of_says_nothing(kind):
+def test_a_candidate_that_the_base_leaves_nothing_of_says_nothing(kind):
     column = {
         "in the base": BASE @ np.array([1.0, -2.0, 0.5]),
         "zero": np.zeros(COUNT),
-        "nearly in the base": BASE[:, 1] * 1e4 + RIVALS[:, 0],
+        "nearly in the base": BASE[:, 1] * 1e4 + CANDIDATES[:, 0],
     }[kind][:, None]
-    found = scanned(20, rivals=column, groups=Groups.of([1]))
+    found = scanned(20, candidates=column, groups=Groups.of([1]))
     np.testing.assert_allclose(found.drawn, 0.0, atol=1e-9)
 
 
@@ -253,26 +255,28 @@ def test_sums_are_by_group():
 def test_inner_products_of_modes_are_those_under_the_dense_noise(setting):
     inverse = np.linalg.inv(dense_noise.covariance(PAIRS, SPECTRA, setting))
     spectrum = SPECTRA.spectra[setting[0]]
-    found = weighted_gram(SPECTRA, setting, SPECTRA.modes(spectrum, SPECTRA.scaled(RIVALS)))
-    np.testing.assert_allclose(found, RIVALS.T @ inverse @ RIVALS, rtol=1e-7, atol=1e-9)
+    found = weighted_gram(SPECTRA, setting, SPECTRA.modes(spectrum, SPECTRA.scaled(CANDIDATES)))
+    np.testing.assert_allclose(found, CANDIDATES.T @ inverse @ CANDIDATES, rtol=1e-7, atol=1e-9)
 
 
 @pytest.mark.parametrize("setting", [(0, 0), (2, 4)])
 def test_inner_products_with_others_are_those_of_each_group(setting):
     inverse = np.linalg.inv(dense_noise.covariance(PAIRS, SPECTRA, setting))
-    own = SPECTRA.modes_at(setting[0], RIVALS)
+    own = SPECTRA.modes_at(setting[0], CANDIDATES)
     stacked = np.stack([own[:, :2], own[:, 2:]])
     found = weighted_gram(SPECTRA, setting, stacked, SPECTRA.modes_at(setting[0], BASE))
     assert found.shape == (2, 2, 3)
-    np.testing.assert_allclose(np.vstack(found), RIVALS.T @ inverse @ BASE, rtol=1e-7, atol=1e-9)
+    np.testing.assert_allclose(
+        np.vstack(found), CANDIDATES.T @ inverse @ BASE, rtol=1e-7, atol=1e-9
+    )
 
 
 def test_groups_that_do_not_show_leave_the_others_as_they_are():
     """Zeros before, between and after: they take nothing, and the base's noise suits them best."""
     places = [1, 2, 3, 6]
     padded = np.zeros((COUNT, 8))
-    padded[:, places] = RIVALS
-    found = scanned(20, rivals=padded, groups=Groups.of([1, 1, 2, 2, 1, 1]))
+    padded[:, places] = CANDIDATES
+    found = scanned(20, candidates=padded, groups=Groups.of([1, 1, 2, 2, 1, 1]))
     plain = scanned(20)
     shows = [1, 2, 4]
     np.testing.assert_allclose(found.drawn[shows], plain.drawn, rtol=1e-12)

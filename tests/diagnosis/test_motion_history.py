@@ -24,13 +24,13 @@ def pairs(time, run=0):
     )
 
 
-def told(time, warm=40.0, run=0):
+def rests(time, warm=40.0, run=0):
     rest, order = series(pairs(time, run), np.broadcast_to(warm, len(time)).astype(float))
     return rest.tolist(), order.tolist()
 
 
 def test_a_pause_of_more_than_two_minutes_is_a_rest():
-    rest, order = told([0, 60, 180, 301, 401, 1001])
+    rest, order = rests([0, 60, 180, 301, 401, 1001])
     assert rest == [INF, INF, INF, 121, 121, 600]
     assert order == [0, 1, 2, 0, 1, 0]
 
@@ -40,17 +40,17 @@ def test_a_pause_of_more_than_two_minutes_is_a_rest():
 )
 def test_a_pause_in_which_the_motor_warmed_is_no_rest(after, rest):
     """It begins a new series all the same."""
-    found = told([0, 60, 560, 620], [40.0, 40.0, after, after])
+    found = rests([0, 60, 560, 620], [40.0, 40.0, after, after])
     assert found == ([INF, INF, rest, rest], [0, 1, 0, 1])
 
 
 def test_a_motor_that_warms_from_pair_to_pair_changes_nothing_in_a_series():
-    assert told([0, 60, 120], [40.0, 45.0, 50.0]) == ([INF] * 3, [0, 1, 2])
+    assert rests([0, 60, 120], [40.0, 45.0, 50.0]) == ([INF] * 3, [0, 1, 2])
 
 
 def test_a_run_begins_after_a_rest_of_unknown_length():
     """Whatever its clock and its motor's temperature."""
-    found = told([0, 60, 5000, 5060, 10], [40.0, 40.0, 20.0, 20.0, 60.0], [0, 0, 1, 1, 2])
+    found = rests([0, 60, 5000, 5060, 10], [40.0, 40.0, 20.0, 20.0, 60.0], [0, 0, 1, 1, 2])
     assert found == ([INF] * 5, [0, 1, 0, 1, 0])
 
 

@@ -39,12 +39,12 @@ def test_a_column_needs_a_thousandth_of_its_length(left, seen):
     np.testing.assert_allclose(mixed, np.eye(5)[:, :2] * [1.0, seen], atol=1e-12)
 
 
-@pytest.mark.parametrize(("share", "told"), [(0.0, 0), (0.5e-4, 0), (2e-4, 1)])
-def test_a_column_needs_a_ten_thousandth_beside_the_others_of_its_group(share, told):
+@pytest.mark.parametrize(("share", "length"), [(0.0, 0), (0.5e-4, 0), (2e-4, 1)])
+def test_a_column_needs_a_ten_thousandth_beside_the_others_of_its_group(share, length):
     first, second, new, last = np.eye(6)[:, :4].T
     columns = np.column_stack([first, second, 0.6 * first + 0.8 * second + share * new, last])
     mixed = columns @ gram_schmidt(inner_products(columns), squares(columns)).T
-    np.testing.assert_allclose(np.linalg.norm(mixed, axis=0), [1.0, 1.0, told, 1.0], atol=1e-6)
+    np.testing.assert_allclose(np.linalg.norm(mixed, axis=0), [1.0, 1.0, length, 1.0], atol=1e-6)
     np.testing.assert_allclose(mixed[:, 3], last, atol=1e-12)
 
 

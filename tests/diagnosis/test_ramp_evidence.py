@@ -1,4 +1,4 @@
-"""Inertia, and friction that lacks after a reversal, are found in the ramps and told apart."""
+"""Inertia and a friction deficit after a reversal, estimated from ramps and distinguished."""
 
 from types import SimpleNamespace
 
@@ -47,8 +47,8 @@ def since_reversal(motion):
     return (position - first["position"]).abs(), motion["time"] - first["time"]
 
 
-def log(*, lack=0.0, distance=6.0, settling=0.0, sign=1, late=0, noise=0.3, seed=0, period=0.004):
-    """Ramps of a joint of exactly known friction, gravity, inertia, lack and unseen settling."""
+def log(*, deficit=0.0, distance=6.0, delayed=0.0, sign=1, late=0, noise=0.3, seed=0, period=0.004):
+    """Ramps of a joint of exactly known friction, gravity, inertia, deficit and delayed inertia."""
     motion = smooth_journey(period)
     angle = np.radians(motion["position"])
     load = GRAVITY @ np.vstack([np.cos(angle), np.sin(angle), np.ones_like(angle)])
@@ -56,10 +56,10 @@ def log(*, lack=0.0, distance=6.0, settling=0.0, sign=1, late=0, noise=0.3, seed
         PUBLISHED, load=load, speed=motion["velocity"].abs(), temperature=40.0
     )
     travelled, passed = since_reversal(motion)
-    friction -= lack * np.exp(-travelled / distance)
-    unseen = motion["velocity"] / 0.3 * np.exp(-passed / 0.3)
+    friction -= deficit * np.exp(-travelled / distance)
+    lagged = motion["velocity"] / 0.3 * np.exp(-passed / 0.3)
     torque = load + sign * np.sign(motion["velocity"]) * friction
-    torque += (INERTIA * motion["acceleration"] + settling * unseen).shift(late, fill_value=0.0)
+    torque += (INERTIA * motion["acceleration"] + delayed * lagged).shift(late, fill_value=0.0)
     torque += np.random.default_rng(seed).normal(0, noise, len(motion))
     frame = samples(motion, friction=0.0, torque=torque)
     return RampLog(found.ramps(frame), sign)
@@ -82,23 +82,23 @@ def test_inertia_alone_is_measured_and_no_finding(sign):
     assert found.rms_after < 0.1 * found.rms_before
 
 
-@pytest.mark.parametrize(("lack", "distance"), [(3.0, 4.0), (2.0, 8.0)])
+@pytest.mark.parametrize(("deficit", "distance"), [(3.0, 4.0), (2.0, 8.0)])
 @pytest.mark.parametrize("sign", [1, -1])
-def test_a_lack_of_friction_is_measured(lack, distance, sign):
-    found = evidence_of(log(lack=lack, distance=distance, sign=sign, noise=0.1))
+def test_a_friction_deficit_is_measured(deficit, distance, sign):
+    found = evidence_of(log(deficit=deficit, distance=distance, sign=sign, noise=0.1))
     assert found.inertia.value == pytest.approx(INERTIA, rel=0.01)
-    assert found.deficit.value == pytest.approx(lack, rel=0.05)
+    assert found.deficit.value == pytest.approx(deficit, rel=0.05)
     assert found.distance.value == pytest.approx(distance, rel=0.08)
-    assert found.deficit.low < lack < found.deficit.high
+    assert found.deficit.low < deficit < found.deficit.high
     assert found.distance.low < distance < found.distance.high
     assert found.log_odds == MAX_LOG_ODDS
 
 
-@pytest.mark.parametrize("settling", [0.03, -0.03])
-def test_inertia_that_settles_unseen_is_no_lack_of_friction(settling):
-    found = evidence_of(log(settling=settling))
+@pytest.mark.parametrize("delayed", [0.03, -0.03])
+def test_inertia_that_acts_late_is_no_friction_deficit(delayed):
+    found = evidence_of(log(delayed=delayed))
     assert found.log_odds < -5
-    assert found.delayed_inertia.value * settling > 0
+    assert found.delayed_inertia.value * delayed > 0
 
 
 @pytest.mark.parametrize("late", [-2, 1, 2])
@@ -109,19 +109,19 @@ def test_a_servo_that_lags_is_seen_through(late):
     assert found.log_odds < 3
 
 
-def test_a_wrong_base_is_no_lack_of_friction():
+def test_a_wrong_base_is_no_friction_deficit():
     """Friction 15 % too high and gravity 5 % too low: as wrong after a reversal as before one."""
     off = type(PUBLISHED)(tau_c=12.0, alpha=0.0016, beta=4.0, gamma=18.0, delta=0.056)
     found = evidence_of(log(), parameters=off, gravity=0.95 * GRAVITY)
     assert found.inertia.value == pytest.approx(INERTIA, rel=0.02)
     assert found.log_odds < 3
-    lacking = evidence_of(log(lack=3.0), parameters=off, gravity=0.95 * GRAVITY)
-    assert lacking.deficit.value == pytest.approx(3.0, rel=0.1)
-    assert lacking.log_odds > 5
+    with_deficit = evidence_of(log(deficit=3.0), parameters=off, gravity=0.95 * GRAVITY)
+    assert with_deficit.deficit.value == pytest.approx(3.0, rel=0.1)
+    assert with_deficit.log_odds > 5
 
 
 def test_payload_and_a_load_channel_of_its_own():
-    rows = log(lack=3.0, distance=4.0).rows
+    rows = log(deficit=3.0, distance=4.0).rows
     heavy = rows.assign(payload=np.where(rows["move"] % 4 < 2, 0.0, 3.0))
     more = 3.0 * 8.0 * np.cos(np.radians(heavy["position"])) * (heavy["payload"] > 0)
     heavy["torque"] += more
@@ -156,7 +156,7 @@ EVIDENCE = {"inertia": 20.0, "reversal_transient": 19.0, "dress_pack": 15.0, "dr
 
 
 def test_arbitration_moves_only_the_two():
-    found = evidence_of(log(lack=3.0))
+    found = evidence_of(log(deficit=3.0))
     assert found.log_odds > 5
     after = with_ramp_evidence(EVIDENCE, found)
     assert {name: after[name] for name in ("dress_pack", "drift")} == {
@@ -174,5 +174,5 @@ def test_arbitration_moves_only_the_two():
     "evidence", [{"drift": 4.0}, {"inertia": 4.0}, {"inertia": 4.0, "reversal_transient": -np.inf}]
 )
 def test_arbitration_creates_nothing(evidence):
-    assert with_ramp_evidence(evidence, evidence_of(log(lack=3.0))) == evidence
+    assert with_ramp_evidence(evidence, evidence_of(log(deficit=3.0))) == evidence
     assert with_ramp_evidence(EVIDENCE, None) == EVIDENCE

@@ -33,7 +33,7 @@ def inner(spectra, setting, columns):
 
 
 def both(seed=0, contrasts=50):
-    """Random columns (two of the base, two of a rival) and data of both channels."""
+    """Random columns (two of the base, two of a candidate) and data of both channels."""
     generator = np.random.default_rng(seed)
     truth = np.array([1.0, -0.5, 0.8, 0.3])
     inside, means, channels = [], [], []
@@ -122,23 +122,23 @@ def test_a_channel_that_says_nothing_changes_nothing():
 
 
 def test_likelihood_is_that_of_the_contrasts():
-    """Base alone against base and rival, each under another noise; scipy on contrasts K'y.
+    """Base alone against base and candidate, each under another noise; scipy on contrasts K'y.
 
     Friction and load share no column, and nothing is known inside pairs: then it is exact.
     """
     generator = np.random.default_rng(5)
-    base, rival = generator.normal(size=(COUNT, 2)), generator.normal(size=(COUNT, 1))
+    base, candidate = generator.normal(size=(COUNT, 2)), generator.normal(size=(COUNT, 1))
     own, other = spectra(seed=1), spectra(seed=2)
     offset = np.ones((COUNT, 1))
-    friction = (0.5 * rival + 0.3 * generator.normal(size=(COUNT, 1))) + base @ [[1.0], [2.0]]
+    friction = (0.5 * candidate + 0.3 * generator.normal(size=(COUNT, 1))) + base @ [[1.0], [2.0]]
     load = generator.normal(size=(COUNT, 1))
     null = fit_null(own, base, friction), fit_null(other, offset, load)
 
-    def likelihood(setting, *rivals):
+    def likelihood(setting, *candidates):
         known = 3
         zero = np.zeros((COUNT, 1))
-        first = np.hstack([base, zero, *rivals, friction])
-        second = np.hstack([zero, zero, offset, *(0 * one for one in rivals), load])
+        first = np.hstack([base, zero, *candidates, friction])
+        second = np.hstack([zero, zero, offset, *(0 * one for one in candidates), load])
         places = [(null[0], own, setting, first), (null[1], other, (2, 3), second)]
         channels = (
             NormalEquations(
@@ -151,25 +151,25 @@ def test_likelihood_is_that_of_the_contrasts():
         )
         return fit_channels(tuple(channels), known).likelihood
 
-    def direct(setting, *rivals):
+    def direct(setting, *candidates):
         contrasts = null_space(base.T)
         noise = contrasts.T @ dense_noise.covariance(PAIRS, own, setting) @ contrasts
         seen = (contrasts.T @ friction)[:, 0]
-        if rivals:
-            column = contrasts.T @ rivals[0]
+        if candidates:
+            column = contrasts.T @ candidates[0]
             weighted = np.linalg.solve(noise, column)
             seen = seen - column @ np.linalg.solve(column.T @ weighted, weighted.T @ seen)
         scale = seen @ np.linalg.solve(noise, seen) / len(seen)
         return stats.multivariate_normal.logpdf(seen, cov=scale * noise)
 
-    found = likelihood((1, 3), rival) - likelihood((3, 5))
-    assert found == pytest.approx(direct((1, 3), rival) - direct((3, 5)), abs=1e-5)
+    found = likelihood((1, 3), candidate) - likelihood((3, 5))
+    assert found == pytest.approx(direct((1, 3), candidate) - direct((3, 5)), abs=1e-5)
     assert found > 5
-    same = likelihood((3, 5), rival) - likelihood((3, 5))
-    assert same == pytest.approx(direct((3, 5), rival) - direct((3, 5)), abs=1e-5)
+    same = likelihood((3, 5), candidate) - likelihood((3, 5))
+    assert same == pytest.approx(direct((3, 5), candidate) - direct((3, 5)), abs=1e-5)
 
 
-def test_what_the_base_leaves_of_the_rival_is_its_white_length():
+def test_what_the_base_leaves_of_the_candidate_is_its_white_length():
     channels, inside, means = both(2)
     fit = fitted(channels, inside, means)
     whitened = [
@@ -214,7 +214,7 @@ def test_columns_that_say_nothing_new_are_not_counted(change, freedom):
         assert fit.visible[1] == 0.0
 
 
-def test_the_base_alone_has_no_rival():
+def test_the_base_alone_has_no_candidate():
     channels, inside, means = both(4)
     fit = fitted(channels, inside, means, base=4)
     assert fit.visible.shape == (0,)
@@ -230,12 +230,12 @@ def test_units_of_the_columns_do_not_matter():
     assert scaled.likelihood == pytest.approx(plain.likelihood, abs=1e-6)
 
 
-def test_a_rival_never_lowers_the_likelihood():
+def test_a_candidate_never_lowers_the_likelihood():
     channels, inside, means = both(7)
-    rival = fitted(channels, inside, means).likelihood
+    candidate = fitted(channels, inside, means).likelihood
     chosen = [0, 1, 4]
     alone = fitted(channels, [one[:, chosen] for one in inside], [one[:, chosen] for one in means])
-    assert rival >= alone.likelihood - 1e-9
+    assert candidate >= alone.likelihood - 1e-9
 
 
 @pytest.mark.parametrize("setting", [(0, 0), (2, 5)])
@@ -269,7 +269,7 @@ def test_a_column_that_is_nearly_nothing_changes_nothing(size):
     assert found.likelihood == pytest.approx(without.likelihood, rel=1e-9)
 
 
-def test_many_rivals_at_once_are_fitted_as_each_alone():
+def test_many_candidates_at_once_are_fitted_as_each_alone():
     """Among them a repeated column and one of zeros, which must not touch their neighbours."""
     channels, inside, means = both(8)
     cases = []
