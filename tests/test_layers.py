@@ -156,3 +156,12 @@ def test_formats_import_channels_and_channels_import_neither_formats_nor_runs(fo
     for module in (PACKAGE / "logs" / folder).glob("*.py"):
         imported = re.findall(r"frictioncli\.logs\.(\w+)", module.read_text(encoding="utf-8"))
         assert set(imported) <= allowed, module
+
+
+def test_no_class_name_stands_for_two_things():
+    owners: dict[str, list[str]] = {}
+    for module in MODULES:
+        for node in ast.walk(ast.parse(module.read_text(encoding="utf-8"))):
+            if isinstance(node, ast.ClassDef):
+                owners.setdefault(node.name, []).append(str(module.relative_to(PACKAGE)))
+    assert {name: places for name, places in owners.items() if len(places) > 1} == {}

@@ -29,7 +29,7 @@ from frictioncli.logs.log_source import Refusal
 from frictioncli.logs.run_logs import plan_run
 from frictioncli.logs.runs.discovery import LogRun, discover
 from frictioncli.logs.runs.manifest import RunManifest, read_run_manifest
-from frictioncli.logs.samples.chunks import Chunk, PlannedLog
+from frictioncli.logs.samples.chunks import LogChunk, PlannedLog
 from frictioncli.logs.samples.log_rows import RejectedRows
 from frictioncli.logs.samples.recording import RecordingSummary, SampleSink, read_recording
 from frictioncli.logs.samples.timeline import DatedLog, RunClock
@@ -196,7 +196,7 @@ def _manifest(run: LogRun, inspected: _InspectedLogs) -> RunManifest:
 
 
 def _inspect_log(
-    planned: PlannedLog, chunks: Iterator[Chunk], sink: SampleSink, settings: IngestSettings
+    planned: PlannedLog, chunks: Iterator[LogChunk], sink: SampleSink, settings: IngestSettings
 ) -> tuple[FileInspection, RecordingSummary | None]:
     """Return what one log holds; its samples go to the sink."""
     monitor, rejected = LogMonitor(planned), RejectedRows()

@@ -9,7 +9,7 @@ from frictioncli.logs.reading_plan import planned_logs
 from frictioncli.logs.runs.discovery import LogRun
 from frictioncli.logs.runs.manifest import RunManifest
 from frictioncli.logs.runs.opening import RefusedLog, open_run
-from frictioncli.logs.samples.chunks import Chunk
+from frictioncli.logs.samples.chunks import LogChunk
 from frictioncli.logs.samples.read_ahead import read_chunks
 from frictioncli.logs.samples.timeline import DatedLog, RunClock, in_time_order
 from frictioncli.logs.settings import IngestSettings
@@ -32,7 +32,7 @@ class RunLogs:
 
     def recordings(
         self, clock: RunClock, batch_bytes: int
-    ) -> Iterator[tuple[DatedLog, float, Iterator[Chunk]]]:
+    ) -> Iterator[tuple[DatedLog, float, Iterator[LogChunk]]]:
         """Yield each log with its start since the run's first sample [s], and its chunks.
 
         Parameters

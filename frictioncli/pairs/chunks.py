@@ -51,7 +51,7 @@ class SampleSource(NamedTuple):
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Chunk:
+class SampleChunk:
     """Samples of one recording and joint, with whole moves.
 
     Attributes
@@ -101,7 +101,7 @@ class _Buffer:
 
 def chunks(
     batches: Iterable[pa.RecordBatch], names: Sequence[str], settings: SteadySettings
-) -> Iterator[Chunk]:
+) -> Iterator[SampleChunk]:
     """Yield samples in chunks with whole moves, recording by recording.
 
     Parameters
@@ -116,7 +116,7 @@ def chunks(
 
     Yields
     ------
-    Chunk
+    SampleChunk
         Samples of one recording and joint.
 
     Raises
@@ -189,7 +189,7 @@ def _values(batch: pa.RecordBatch, name: str) -> Array:
 
 def _next_chunk(
     source: SampleSource, buffer: _Buffer, settings: SteadySettings, *, ended: bool
-) -> Chunk:
+) -> SampleChunk:
     """Return the samples that hold whole moves, and leave the others in the buffer."""
     channels = {
         name: np.concatenate([batch[name] for batch in buffer.batches])
@@ -211,7 +211,7 @@ def _next_chunk(
     if not ended and len(stop) and stop[-1] == known and stop[-1] - start[-1] < LONGEST_MOVE:
         end = int(start[-1])
         start, stop = start[:-1], stop[:-1]
-    chunk = Chunk(
+    chunk = SampleChunk(
         source=source,
         channels=channels,
         total=total,

@@ -12,7 +12,7 @@ import pyarrow as pa
 
 from frictioncli.arrays import Array
 from frictioncli.pairs.bins import bin_means
-from frictioncli.pairs.chunks import Chunk, chunks
+from frictioncli.pairs.chunks import SampleChunk, chunks
 from frictioncli.pairs.constant_speed import (
     REASONS,
     ConstantSpeedSegments,
@@ -147,7 +147,7 @@ class _Finder:
     )
     _last_moves: dict[int, tuple[int, int]] = field(default_factory=dict)
 
-    def add(self, chunk: Chunk) -> None:
+    def add(self, chunk: SampleChunk) -> None:
         source, channels = chunk.source, chunk.channels
         if not self.recordings or self.recordings[-1] != source[:2]:
             self.recordings.append(source[:2])

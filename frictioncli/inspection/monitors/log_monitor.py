@@ -17,7 +17,7 @@ from frictioncli.inspection.unit_reasons import evidence, gear_ratio
 from frictioncli.logs.channels import channel_names as names
 from frictioncli.logs.channels.joint_plan import JointPlan
 from frictioncli.logs.channels.recognition import LogChannel
-from frictioncli.logs.samples.chunks import Chunk, PlannedLog
+from frictioncli.logs.samples.chunks import LogChunk, PlannedLog
 
 _MOTION_CHANNELS = (names.POSITION, names.VELOCITY, names.TORQUE)
 
@@ -108,7 +108,7 @@ class LogMonitor:
         self._joints = {plan.channels.joint: _JointMonitor() for plan in planned.plans}
         self.rows_read = 0
 
-    def observe(self, chunks: Iterable[Chunk]) -> Iterator[Chunk]:
+    def observe(self, chunks: Iterable[LogChunk]) -> Iterator[LogChunk]:
         """Yield the chunks of the log as they come, and collect statistics."""
         for chunk in chunks:
             self.rows_read += chunk.rows_read

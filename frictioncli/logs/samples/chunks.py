@@ -56,7 +56,7 @@ class PlannedLog:
 
 
 @dataclass(frozen=True, slots=True)
-class Chunk:
+class LogChunk:
     """Consecutive rows of a log.
 
     Attributes
@@ -104,17 +104,17 @@ def plan_log(log: OpenedLog, plans: Iterable[JointPlan]) -> PlannedLog:
     )
 
 
-def empty_chunk(planned: PlannedLog) -> Chunk:
+def empty_chunk(planned: PlannedLog) -> LogChunk:
     """Return a chunk without rows."""
     columns = {
         (plan.channels.joint, name): np.empty(0)
         for plan in planned.plans
         for name in plan.conversions
     }
-    return Chunk(LogRows(np.empty(0, np.int64), np.empty(0), columns), RejectedRows(), 0)
+    return LogChunk(LogRows(np.empty(0, np.int64), np.empty(0), columns), RejectedRows(), 0)
 
 
-def convert_chunk(batch: RawBatch, planned: PlannedLog) -> Chunk:
+def convert_chunk(batch: RawBatch, planned: PlannedLog) -> LogChunk:
     """Convert raw rows, and reject those that are unreadable or lack a required value.
 
     Parameters
@@ -140,7 +140,7 @@ def convert_chunk(batch: RawBatch, planned: PlannedLog) -> Chunk:
         if name in plan.conversions
     ]
     rows = drop_missing_values(rows, required, rejected)
-    return Chunk(rows, rejected, len(batch.lines) + len(batch.bad_lines))
+    return LogChunk(rows, rejected, len(batch.lines) + len(batch.bad_lines))
 
 
 def _converted(batch: RawBatch, plans: Iterable[JointPlan]) -> LogRows:

@@ -9,7 +9,7 @@ from itertools import chain, groupby
 from typing import TypeVar
 
 from frictioncli.logs.log_source import RawBatch, ReadTask, UnreadableLog
-from frictioncli.logs.samples.chunks import Chunk, PlannedLog, convert_chunk, empty_chunk
+from frictioncli.logs.samples.chunks import LogChunk, PlannedLog, convert_chunk, empty_chunk
 
 T = TypeVar("T")
 
@@ -25,7 +25,7 @@ _GROUP_BYTES = 1 << 21
 
 def read_chunks(
     logs: Sequence[PlannedLog], batch_bytes: int
-) -> Iterator[tuple[PlannedLog, Iterator[Chunk]]]:
+) -> Iterator[tuple[PlannedLog, Iterator[LogChunk]]]:
     """Yield each log with its chunks in order; parsing runs ahead, into the next logs too.
 
     The iterator of chunks raises ``UnreadableLog`` where a log cannot be read further.
@@ -66,10 +66,10 @@ class _ChunkResult:
     """A chunk of the log with this number, or why the log cannot be read further."""
 
     number: int
-    chunk: Chunk | UnreadableLog
+    chunk: LogChunk | UnreadableLog
 
 
-def _chunks(results: Iterable[_ChunkResult]) -> Iterator[Chunk]:
+def _chunks(results: Iterable[_ChunkResult]) -> Iterator[LogChunk]:
     for result in results:
         if isinstance(result.chunk, UnreadableLog):
             raise result.chunk
@@ -79,7 +79,7 @@ def _chunks(results: Iterable[_ChunkResult]) -> Iterator[Chunk]:
 def _tasks(logs: Iterable[PlannedLog], batch_bytes: int) -> Iterator[ReadTask[_ChunkResult]]:
     """Yield the tasks of all logs one after the other; each log has at least one."""
     for number, planned in enumerate(logs):
-        last: Chunk | UnreadableLog | None = empty_chunk(planned)
+        last: LogChunk | UnreadableLog | None = empty_chunk(planned)
         try:
             for task in planned.log.source.tasks(planned.columns, batch_bytes):
                 yield ReadTask(partial(_read, number, planned, task), task.size)

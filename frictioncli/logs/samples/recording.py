@@ -9,7 +9,7 @@ from frictioncli.arrays import Array
 from frictioncli.logs.channels import channel_names as names
 from frictioncli.logs.log_source import Refusal, UnreadableLog
 from frictioncli.logs.runs.opening import OpenedLog
-from frictioncli.logs.samples.chunks import Chunk, PlannedLog
+from frictioncli.logs.samples.chunks import LogChunk, PlannedLog
 from frictioncli.logs.samples.differentiation import half_window, max_gap
 from frictioncli.logs.samples.log_rows import NO_VALUES, REASONS, LogRows, RejectedRows
 from frictioncli.logs.samples.quantized_temperature import longest_change_interval
@@ -65,7 +65,7 @@ class RecordingSummary:
 
 def read_recording(
     planned: PlannedLog,
-    chunks: Iterable[Chunk],
+    chunks: Iterable[LogChunk],
     rejected: RejectedRows,
     sink: SampleSink,
     continuous: Collection[int] = (),
@@ -76,7 +76,7 @@ def read_recording(
     ----------
     planned : PlannedLog
         The log.
-    chunks : iterable of Chunk
+    chunks : iterable of LogChunk
         Its rows.
     rejected : RejectedRows
         Takes the lines that are rejected.
@@ -98,7 +98,7 @@ def read_recording(
     """
     rows_read = 0
 
-    def counted() -> Iterator[Chunk]:
+    def counted() -> Iterator[LogChunk]:
         nonlocal rows_read
         for chunk in chunks:
             rows_read += chunk.rows_read
@@ -126,7 +126,7 @@ def read_recording(
 
 
 def _usable_rows(
-    planned: PlannedLog, chunks: Iterable[Chunk], rejected: RejectedRows
+    planned: PlannedLog, chunks: Iterable[LogChunk], rejected: RejectedRows
 ) -> Iterator[LogRows]:
     """Yield the rows that become samples, with all channels, in ascending time."""
 

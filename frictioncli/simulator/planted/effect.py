@@ -12,7 +12,7 @@ Draw = Callable[[np.random.Generator], float]
 
 
 @dataclass(frozen=True, slots=True)
-class Parameter:
+class Range:
     """A shape parameter of a planted effect.
 
     Attributes
@@ -45,7 +45,7 @@ class EffectDefinition:
         Its law in one line, as the truth document prints it.
     magnitude : str
         What the factor ``magnitude`` of the law is, with its unit in brackets.
-    parameters : tuple of Parameter
+    parameters : tuple of Range
         Shape parameters in the order in which they are drawn.
     law : callable
         Pure function of a :class:`State`, ``magnitude`` and the shape parameters that returns the
@@ -63,7 +63,7 @@ class EffectDefinition:
     name: str
     equation: str
     magnitude: str
-    parameters: tuple[Parameter, ...]
+    parameters: tuple[Range, ...]
     law: Callable[..., AddedTorque]
     source: str
     listed: bool = True

@@ -10,7 +10,7 @@ from scipy.signal import lfilter
 from frictioncli.arrays import Array
 from frictioncli.simulator.planted.effect import (
     EffectDefinition,
-    Parameter,
+    Range,
     either,
     log_uniform,
     uniform,
@@ -37,9 +37,9 @@ STRIBECK = EffectDefinition(
     equation="m exp(-(|v| / vs)^k), vs = vs40 exp(c (Tgear - 40))",
     magnitude="torque at rest [N·m]",
     parameters=(
-        Parameter("velocity", log_uniform(3.0, 15.0), "deg/s", "Stribeck velocity at 40 °C"),
-        Parameter("exponent", uniform(0.8, 2.0), "-", "exponent k"),
-        Parameter("shift", uniform(0.0, 0.02), "1/K", "growth of vs with gear temperature"),
+        Range("velocity", log_uniform(3.0, 15.0), "deg/s", "Stribeck velocity at 40 °C"),
+        Range("exponent", uniform(0.8, 2.0), "-", "exponent k"),
+        Range("shift", uniform(0.0, 0.02), "1/K", "growth of vs with gear temperature"),
     ),
     law=_stribeck,
     source=(
@@ -71,12 +71,10 @@ VELOCITY_EXPONENT = EffectDefinition(
     equation="m (f + (1 - f) exp(-d (Tmotor - 40))) ((|v| / vc)^p - (|v| / vc)^0.5)",
     magnitude="viscous torque at the speed vc and 40 °C [N·m]",
     parameters=(
-        Parameter(
-            "exponent", either(uniform(0.3, 0.4), uniform(0.65, 0.95)), "-", "p in place of 1/2"
-        ),
-        Parameter("crossing", log_uniform(15.0, 50.0), "deg/s", "speed at which both laws agree"),
-        Parameter("floor", uniform(0.3, 0.7), "-", "share of the torque that does not thin"),
-        Parameter("thinning", uniform(0.02, 0.06), "1/K", "rate at which the rest thins"),
+        Range("exponent", either(uniform(0.3, 0.4), uniform(0.65, 0.95)), "-", "p in place of 1/2"),
+        Range("crossing", log_uniform(15.0, 50.0), "deg/s", "speed at which both laws agree"),
+        Range("floor", uniform(0.3, 0.7), "-", "share of the torque that does not thin"),
+        Range("thinning", uniform(0.02, 0.06), "1/K", "rate at which the rest thins"),
     ),
     law=_velocity_exponent,
     source=f"Equation (13) of {NEVMERZHITSKIY}, where the exponent is fixed at 1/2",
@@ -94,7 +92,7 @@ LINEAR_VISCOUS = EffectDefinition(
     equation="m (sqrt(v^2 + vr^2) - vr) / 100",
     magnitude="torque at 100 deg/s [N·m]",
     parameters=(
-        Parameter("rounding", log_uniform(0.5, 4.0), "deg/s", "speed below which it is rounded"),
+        Range("rounding", log_uniform(0.5, 4.0), "deg/s", "speed below which it is rounded"),
     ),
     law=_linear_viscous,
     source=f"Equation (5) of {NEVMERZHITSKIY}, rounded at rest",
@@ -114,8 +112,8 @@ QUADRATIC_DRAG = EffectDefinition(
     equation="m (|v| / 100)^n exp(-c (Tgear - 40))",
     magnitude="torque at 100 deg/s and 40 °C [N·m]",
     parameters=(
-        Parameter("exponent", uniform(1.85, 2.3), "-", "exponent n"),
-        Parameter("thinning", uniform(0.0, 0.01), "1/K", "fall with gear temperature"),
+        Range("exponent", uniform(1.85, 2.3), "-", "exponent n"),
+        Range("thinning", uniform(0.0, 0.01), "1/K", "fall with gear temperature"),
     ),
     law=_quadratic_drag,
     source="Drag of churned lubricant, near its turbulent limit",
@@ -134,8 +132,8 @@ COULOMB_TEMPERATURE = EffectDefinition(
     equation="m (exp(-k (Tmotor - T0)) - 1)",
     magnitude="Coulomb torque that depends on temperature [N·m]",
     parameters=(
-        Parameter("rate", log_uniform(0.005, 0.03), "1/K", "rate k of the fall"),
-        Parameter("reference", uniform(30.0, 55.0), "°C", "temperature T0 with nothing added"),
+        Range("rate", log_uniform(0.005, 0.03), "1/K", "rate k of the fall"),
+        Range("reference", uniform(30.0, 55.0), "°C", "temperature T0 with nothing added"),
     ),
     law=_coulomb_temperature,
     source=f"Linear term beside equation (16) of {NEVMERZHITSKIY}, here exponential",
@@ -152,9 +150,7 @@ LOAD_LINEAR = EffectDefinition(
     name="load_linear",
     equation="m (sqrt(L^2 + Lr^2) - Lr) / 50",
     magnitude="torque at a load of 50 N·m [N·m]",
-    parameters=(
-        Parameter("rounding", log_uniform(0.5, 5.0), "N·m", "load below which it is rounded"),
-    ),
+    parameters=(Range("rounding", log_uniform(0.5, 5.0), "N·m", "load below which it is rounded"),),
     law=_load_linear,
     source=f"Equation (4) of {NEVMERZHITSKIY}, rounded at zero load",
 )
@@ -174,8 +170,8 @@ LOAD_VELOCITY = EffectDefinition(
     equation="m (|L| / 50)^a (|v| / 50)^b",
     magnitude="torque at 50 N·m and 50 deg/s [N·m]",
     parameters=(
-        Parameter("load_exponent", uniform(1.6, 2.2), "-", "exponent a of the load"),
-        Parameter("speed_exponent", uniform(0.4, 0.8), "-", "exponent b of the speed"),
+        Range("load_exponent", uniform(1.6, 2.2), "-", "exponent a of the load"),
+        Range("speed_exponent", uniform(0.4, 0.8), "-", "exponent b of the speed"),
     ),
     law=_load_velocity,
     source=f"Product of the load and speed terms of equation (16) of {NEVMERZHITSKIY}",
@@ -195,8 +191,8 @@ LOAD_TEMPERATURE = EffectDefinition(
     equation="-m (L / 50)^2 tanh((Tmotor - T0) / w)",
     magnitude="torque at 50 N·m that is lost when hot [N·m]",
     parameters=(
-        Parameter("reference", uniform(35.0, 50.0), "°C", "temperature T0 with nothing added"),
-        Parameter("width", uniform(15.0, 40.0), "K", "width w of the fall"),
+        Range("reference", uniform(35.0, 50.0), "°C", "temperature T0 with nothing added"),
+        Range("width", uniform(15.0, 40.0), "K", "width w of the fall"),
     ),
     law=_load_temperature,
     source=f"Product of the load and temperature terms of equation (16) of {NEVMERZHITSKIY}",
@@ -264,8 +260,8 @@ THERMAL_LAG = EffectDefinition(
     ),
     magnitude="time constant tau of conduction from the motor [min]",
     parameters=(
-        Parameter("heating", zero_or(log_uniform(0.08, 0.22)), "K/kJ", "gear heating k per energy"),
-        Parameter("loss", log_uniform(600.0, 3000.0), "min", "time constant ta of its own loss"),
+        Range("heating", zero_or(log_uniform(0.08, 0.22)), "K/kJ", "gear heating k per energy"),
+        Range("loss", log_uniform(600.0, 3000.0), "min", "time constant ta of its own loss"),
     ),
     law=_thermal_lag,
     source=(

@@ -7,7 +7,7 @@ import numpy as np
 
 from frictioncli.simulator.planted.effect import (
     EffectDefinition,
-    Parameter,
+    Range,
     log_uniform,
     uniform,
 )
@@ -28,8 +28,8 @@ SPEED_RESONANCE = EffectDefinition(
     equation="m exp(-(ln(|v| / v0) / w)^2 / 2)",
     magnitude="torque at the peak [N·m]",
     parameters=(
-        Parameter("centre", log_uniform(15.0, 80.0), "deg/s", "speed v0 of the peak"),
-        Parameter("width", uniform(0.15, 0.4), "-", "width w in the logarithm of speed"),
+        Range("centre", log_uniform(15.0, 80.0), "deg/s", "speed v0 of the peak"),
+        Range("width", uniform(0.15, 0.4), "-", "width w in the logarithm of speed"),
     ),
     law=_speed_resonance,
     source=ASSUMED,
@@ -48,8 +48,8 @@ STROKE_BUMP = EffectDefinition(
     equation="m exp(-((q - q0) / w)^2 / 2)",
     magnitude="torque at the peak [N·m]",
     parameters=(
-        Parameter("centre", uniform(50.0, 130.0), "deg", "angle q0 of the peak"),
-        Parameter("width", uniform(6.0, 20.0), "deg", "width w"),
+        Range("centre", uniform(50.0, 130.0), "deg", "angle q0 of the peak"),
+        Range("width", uniform(6.0, 20.0), "deg", "width w"),
     ),
     law=_stroke_bump,
     source=ASSUMED,
@@ -71,9 +71,9 @@ COOLING_FAN = EffectDefinition(
     equation="m tanh(c sin(2 pi t / P + p)) / tanh(c)",
     magnitude="amplitude [N·m]",
     parameters=(
-        Parameter("period", uniform(660.0, 2220.0), "s", "period P"),
-        Parameter("phase", uniform(0.0, 6.2831853), "rad", "phase p"),
-        Parameter("flattening", uniform(0.5, 3.0), "-", "c; the larger, the flatter the tops"),
+        Range("period", uniform(660.0, 2220.0), "s", "period P"),
+        Range("phase", uniform(0.0, 6.2831853), "rad", "phase p"),
+        Range("flattening", uniform(0.5, 3.0), "-", "c; the larger, the flatter the tops"),
     ),
     law=_cooling_fan,
     source=ASSUMED,
@@ -94,8 +94,8 @@ POSITION_TEMPERATURE = EffectDefinition(
     equation="m cos(2 (q - q0)) (Tmotor - T0) / 20",
     magnitude="torque at 20 K above the reference [N·m]",
     parameters=(
-        Parameter("angle", uniform(0.0, 360.0), "deg", "angle q0 of the most friction"),
-        Parameter("reference", uniform(35.0, 50.0), "°C", "T0, at which the housing is straight"),
+        Range("angle", uniform(0.0, 360.0), "deg", "angle q0 of the most friction"),
+        Range("reference", uniform(35.0, 50.0), "°C", "T0, at which the housing is straight"),
     ),
     law=_position_temperature,
     source=ASSUMED,
@@ -116,7 +116,7 @@ LIFTING_LOSS = EffectDefinition(
     magnitude="torque at a load of 50 N·m [N·m]",
     parameters=(
         # far from 1, so that it is not mistaken for an error of the mass
-        Parameter("exponent", uniform(1.5, 2.5), "-", "exponent a of the load"),
+        Range("exponent", uniform(1.5, 2.5), "-", "exponent a of the load"),
     ),
     law=_lifting_loss,
     source=ASSUMED,
