@@ -1,7 +1,7 @@
 """The gear's state, told pair by pair, is what the extended model computes from the whole log."""
 
 import math
-from dataclasses import asdict, replace
+from dataclasses import replace
 from itertools import pairwise
 
 import numpy as np
@@ -16,7 +16,7 @@ from frictioncli.correction.evaluation import simulate
 from frictioncli.correction.settings import CorrectionSettings, ScheduleSettings
 from frictioncli.deployment.extended_corrector import ExtendedCorrector
 from frictioncli.deployment.extension import MEMORYLESS, deployable_extension
-from frictioncli.deployment.gear_temperature import GearTemperature
+from frictioncli.deployment.gear_temperature import GearLag, GearTemperature
 from frictioncli.diagnosis.data.gravity import GravityCoefficients
 from frictioncli.diagnosis.documents.apply_extension import (
     friction_beyond,
@@ -24,6 +24,7 @@ from frictioncli.diagnosis.documents.apply_extension import (
     without_effects,
 )
 from frictioncli.diagnosis.documents.extended_model import ExtendedModel, FittedEffect
+from frictioncli.documents import decode, to_json
 from frictioncli.effects import BY_NAME
 from frictioncli.model.friction import PUBLISHED
 from tests.correction.models import published_model
@@ -254,5 +255,5 @@ def test_an_unknown_housing_counts_as_as_warm_as_the_motor():
     assert gear.excess == pytest.approx(0.4 * -10.0)
 
 
-def test_the_lag_goes_through_plain_values():
-    assert type(LAG).of(asdict(LAG)) == LAG
+def test_the_lag_goes_through_json():
+    assert decode(to_json(LAG).encode(), GearLag) == LAG

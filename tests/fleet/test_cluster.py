@@ -20,6 +20,7 @@ pytest.importorskip("distributed", reason="needs the extra 'cluster'")
 QUICK = RunSettings(diagnosis=None)
 
 
+@pytest.mark.slow
 def test_two_workers_one_of_them_killed_give_the_same_bytes(alone, logs, tmp_path):
     out = tmp_path / "out"
     with (
@@ -38,6 +39,7 @@ def test_two_workers_one_of_them_killed_give_the_same_bytes(alone, logs, tmp_pat
     assert contents(out) == contents(alone[0])
 
 
+@pytest.mark.slow
 def test_a_joint_that_takes_down_workers_fails_alone(tmp_path):
     for number in (1, 2):
         folder = tmp_path / "logs" / "robot=A" / f"joint={number}"
@@ -79,6 +81,7 @@ def test_workers_of_another_version_are_refused(logs, tmp_path):
         list(run_on_cluster([task], address))
 
 
+@pytest.mark.slow
 def test_a_scheduler_that_goes_is_one_message_and_the_next_call_goes_on(alone, logs, tmp_path):
     out = tmp_path / "out"
     with scheduler() as (address, process), worker(address, tmp_path / "one"):
