@@ -334,7 +334,10 @@ def test_version_is_told():
 
 def test_synthesize_makes_what_run_reads(tmp_path):
     made = frictioncli(
-        "synthesize", tmp_path / "made", "--seed", 4, "--runs", 1, "--lowest", 40, "--highest", 48
+        "synthesize",
+        tmp_path / "made",
+        *("--seed", 4, "--runs", 1, "--thin", 8),
+        *("--lowest", 40, "--highest", 48),
     )
     assert made.returncode == 0, made.stderr
     assert (tmp_path / "made" / "truth.json").exists()

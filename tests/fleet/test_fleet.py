@@ -76,6 +76,7 @@ def is_worker(pid):
         return b"spawn_main" in stream.read()
 
 
+@pytest.mark.slow
 def test_ctrl_c_leaves_what_is_done_and_the_next_call_goes_on(alone, logs, tmp_path):
     out = tmp_path / "out"
     process = started(logs, "-w", out, "--workers", 1, "--no-report")

@@ -96,6 +96,7 @@ def test_a_damaged_stream_is_refused_by_ingest(tmp_path, ending):
     assert not (tmp_path / "work" / "samples.parquet").exists()
 
 
+@pytest.mark.slow
 @packed
 def test_memory_is_bounded_whatever_the_decompressed_size(tmp_path, ending):
     """32 MiB of equal lines are compressed to a few kilobytes."""

@@ -38,10 +38,8 @@ def test_a_run_killed_at_random_times(worlds):
     assert hits  # else nothing was killed at all
 
 
-@pytest.mark.parametrize(
-    "stage",
-    [one if one == "pair" else pytest.param(one, marks=pytest.mark.slow) for one in STAGES],
-)
+@pytest.mark.slow
+@pytest.mark.parametrize("stage", STAGES)
 def test_a_stage_killed_before_each_of_its_changes_on_disk(worlds, stage):
     number = 0
     while True:
