@@ -13,13 +13,13 @@ import pandas as pd
 
 from frictioncli.deployment.settings import ExportSettings
 from frictioncli.model.zero_load import friction_at_zero_load
-from frictioncli.stages import run as pipeline
 from frictioncli.stages.export import deployed, export
+from frictioncli.stages.run import analyse
 
 logs = Path(__file__).parents[1] / "sample_logs" / "kr10"
 work = Path(sys.argv[1] if len(sys.argv) > 1 else "friction-run")
 if not (work / "diagnosis.json").exists():
-    pipeline.analyse([logs], work)
+    analyse([logs], work)
 
 # %% Write it down; each file says what was lost in its form
 for target in ("c", "json", "urdf", "mjcf", "csv"):

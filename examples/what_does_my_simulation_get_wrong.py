@@ -9,13 +9,13 @@ import sys
 from pathlib import Path
 
 from frictioncli.diagnosis.documents.document import read_diagnoses
-from frictioncli.stages import run as pipeline
+from frictioncli.stages.run import analyse
 from frictioncli.stages.simulate import simulate
 
 logs = Path(__file__).parents[1] / "sample_logs" / "kr10"
 work = Path(sys.argv[1] if len(sys.argv) > 1 else "friction-run")
 if not (work / "diagnosis.json").exists():
-    pipeline.analyse([logs], work)
+    analyse([logs], work)
 
 # %% The verdict, and each cause with its size and its parameters
 (diagnosis,) = read_diagnoses(work / "diagnosis.json").values()

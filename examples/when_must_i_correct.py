@@ -11,14 +11,14 @@ from pathlib import Path
 import pandas as pd
 
 from frictioncli.correction.settings import EvaluationGrid, ScheduleSettings
-from frictioncli.stages import run as pipeline
 from frictioncli.stages.evaluate import evaluate
+from frictioncli.stages.run import analyse
 from frictioncli.stages.simulate import simulate
 
 logs = Path(__file__).parents[1] / "sample_logs" / "kr10"
 work = Path(sys.argv[1] if len(sys.argv) > 1 else "friction-run")
 if not (work / "model.json").exists():
-    pipeline.analyse([logs], work)
+    analyse([logs], work)
 
 # %% The paper's rule, never, and where the predicted uncertainty exceeds 2 N·m
 for schedule in (

@@ -24,7 +24,7 @@ from frictioncli.fleet.joint_record import (
 )
 from frictioncli.fleet.table_row import table_row, unused_runs
 from frictioncli.provenance import sha256
-from frictioncli.stages import run as pipeline
+from frictioncli.stages.run import analyse, run
 from frictioncli.stages.settings import RunSettings
 from frictioncli.stages.stage import StageResult
 from frictioncli.workfolder import locked
@@ -182,9 +182,9 @@ def _run_stages(task: JointTask, runs: Mapping[str, Path], settings: RunSettings
             left_out.append(f"{stage} {result}")
 
     if task.report:
-        pipeline.run(runs, task.work, settings, collect)
+        run(runs, task.work, settings, collect)
     else:
-        pipeline.analyse(runs, task.work, settings, collect)
+        analyse(runs, task.work, settings, collect)
     unused = unused_runs(task.work, runs)
     if unused:
         left_out.append(f"no pairs from run {', '.join(unused)}")

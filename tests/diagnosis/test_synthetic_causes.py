@@ -40,16 +40,11 @@ BESIDE_A_LAG = ("coulomb_temperature", "payload_change", "position_ripple")
 QUICK = (
     "thermal_lag",
     "stribeck",
-    "velocity_exponent",
-    "linear_viscous",
-    "quadratic_drag",
     "coulomb_temperature",
     "load_linear",
-    "load_velocity",
-    "load_temperature",
     "payload_change",
 )
-"""Effects that are found in a few seconds; thermal_lag takes longer, and is the most important."""
+"""One effect of each kind: lag, speed, temperature, load, and change in time."""
 
 
 @functools.cache

@@ -141,7 +141,7 @@ def test_a_bug_is_a_failed_joint_with_its_traceback(task, monkeypatch):
     def broken(*_, **__):
         raise ZeroDivisionError("by zero")
 
-    monkeypatch.setattr(joints.pipeline, "analyse", broken)
+    monkeypatch.setattr(joints, "analyse", broken)
     outcome = run_joint(task)
     assert (outcome.status, outcome.message) == ("failed", "a bug: ZeroDivisionError: by zero")
     assert "Traceback" in (task.work / "failure.txt").read_text(encoding="utf-8")

@@ -52,7 +52,14 @@ def refused(path):
     return found
 
 
-@pytest.mark.parametrize(("version", "compression"), [("4.10", 2), ("4.20", 0), ("3.30", 0)])
+@pytest.mark.parametrize(
+    ("version", "compression"),
+    [
+        ("4.10", 2),
+        pytest.param("4.20", 0, marks=pytest.mark.slow),
+        pytest.param("3.30", 0, marks=pytest.mark.slow),
+    ],
+)
 def test_a_measurement_gives_the_samples_of_the_csv(tmp_path, version, compression):
     temperature = signal("motor_temperature_2", "°C", TEMPERATURE)
     mode = signal("mode", "", np.array([b"auto"] * len(TIME)), encoding="utf-8")
@@ -76,6 +83,7 @@ def test_a_slower_group_is_merged_by_zero_order_hold(tmp_path):
     assert_same_as_csv(path, tmp_path, held)
 
 
+@pytest.mark.slow
 def test_before_and_after_its_samples_a_group_has_no_values(tmp_path):
     """Positions from 1 s to 5 s only: rows outside have none and are counted."""
     part = (TIME >= 1.0) & (TIME <= 5.0)
@@ -116,6 +124,7 @@ def test_zero_order_hold(tmp_path_factory, slow, rows):
     np.testing.assert_array_equal(found, expected)
 
 
+@pytest.mark.slow
 def test_samples_marked_as_invalid_have_no_value(tmp_path):
     invalid = np.zeros(len(TIME), bool)
     invalid[[3, 250]] = True
@@ -125,6 +134,7 @@ def test_samples_marked_as_invalid_have_no_value(tmp_path):
     assert summary.rows_rejected == {"missing_value": 2}
 
 
+@pytest.mark.slow
 def test_scaled_integers(tmp_path):
     """Raw counts with a linear conversion, as data loggers write them."""
     counts = np.round((POSITION + 100) / 0.01).astype(np.uint16)
@@ -150,6 +160,7 @@ def test_damaged_files_are_refused(tmp_path):
     assert not (tmp_path / "work" / "samples.parquet").exists()
 
 
+@pytest.mark.slow
 def test_damage_late_in_the_file_is_not_taken_as_its_end(tmp_path):
     """A late one of separately compressed blocks is damaged: the file is refused as a whole."""
     times = np.arange(400_000) * 1e-3

@@ -11,13 +11,13 @@ import pytest
 
 from frictioncli.errors import FrictionError
 from frictioncli.files import atomic_write, write_text
-from frictioncli.stages import run as pipeline
 from frictioncli.stages.diagnose import diagnose
 from frictioncli.stages.evaluate import evaluate
 from frictioncli.stages.fit import fit
 from frictioncli.stages.ingest import ingest
 from frictioncli.stages.pair import pair
 from frictioncli.stages.report import report
+from frictioncli.stages.run import run
 from frictioncli.stages.separate import separate
 from frictioncli.stages.simulate import simulate
 from tests.robustness.runs import check_readable, digests, finished, outputs, refused, write_warm_up
@@ -31,7 +31,7 @@ STAGES = {
     "simulate": lambda logs, work: simulate(work),
     "evaluate": lambda logs, work: evaluate(work),
     "report": lambda logs, work: report(work),
-    "run": lambda logs, work: pipeline.run([logs], work),
+    "run": lambda logs, work: run([logs], work),
 }
 WRITING = {"ingest": (64_000, 16_000, 100), "report": (20_000, 100)}
 _PROCESSES = multiprocessing.get_context("forkserver")
@@ -43,7 +43,7 @@ def done(tmp_path_factory):
     """A finished run, and its logs."""
     folder = tmp_path_factory.mktemp("done")
     write_warm_up(folder / "logs" / "day", levels=(25, 32, 39, 46, 53))
-    pipeline.run([folder / "logs"], folder / "work")
+    run([folder / "logs"], folder / "work")
     return folder
 
 

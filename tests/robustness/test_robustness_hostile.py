@@ -6,7 +6,7 @@ from html.parser import HTMLParser
 
 import pytest
 
-from frictioncli.stages import run as pipeline
+from frictioncli.stages.run import run as run_chain
 from tests.logs.logs import kuka_columns, text_of
 from tests.robustness.runs import finished, refused, write_warm_up
 
@@ -39,7 +39,7 @@ def test_hostile_names_are_harmless_in_the_report(tmp_path):
     (run / "s1.csv").unlink()
     manifest = (run / "manifest.csv").read_text(encoding="utf-8")
     (run / "manifest.csv").write_text(manifest.replace("s1.csv", hostile.name), encoding="utf-8")
-    page = pipeline.run([run], tmp_path / "work")
+    page = run_chain([run], tmp_path / "work")
     text = page.read_text(encoding="utf-8")
     assert "&lt;script&gt;" in text
     for path in (page, *page.parent.glob("*.svg")):

@@ -10,10 +10,10 @@ import pytest
 
 from frictioncli.errors import FrictionError
 from frictioncli.pairs.settings import PairingSettings
-from frictioncli.stages import run as pipeline
 from frictioncli.stages.fit import fit
 from frictioncli.stages.pair import pair
 from frictioncli.stages.report import report
+from frictioncli.stages.run import analyse
 from frictioncli.stages.separate import separate
 from frictioncli.workfolder import locked, outdated
 from tests.robustness.runs import digests, finished, refused, started, write_warm_up
@@ -26,7 +26,7 @@ def done(tmp_path_factory):
     """A work folder with everything but the report, and its logs."""
     folder = tmp_path_factory.mktemp("done")
     write_warm_up(folder / "logs" / "day", levels=LEVELS)
-    pipeline.analyse([folder / "logs"], folder / "work")
+    analyse([folder / "logs"], folder / "work")
     return folder
 
 

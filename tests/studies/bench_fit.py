@@ -17,7 +17,9 @@ START = (9.0, 0.0016, 3.0, 17.0, 0.05)
 TIMES = 7
 """Fits in each process; their median counts. The first one warms up."""
 
-SOURCES = tuple(f"model/{name}.py" for name in ("equations", "projection", "settling"))
+SOURCES = tuple(
+    f"model/{name}.py" for name in ("equations", "variable_projection", "newton_refinement")
+)
 
 SAME = 1e-6
 """Greatest difference from the exact minimum. [standard errors]"""

@@ -22,8 +22,8 @@ from tests.studies.blind_examined import COLUMNS, examined
 from tests.studies.blind_figures import confusion_picture, power_picture
 from tests.studies.blind_page import page
 from tests.studies.blind_rows import told
-from tests.studies.blind_worlds import KEY, KINDS, ROOT, World, sources, worlds
-from tests.studies.rows import Rows
+from tests.studies.blind_worlds import KEY, KINDS, World, sources, worlds
+from tests.studies.rows import ROOT, Rows
 
 ROWS = Rows(ROOT / "build" / "blind.csv", COLUMNS, KEY)
 DOCS = ROOT / "docs"

@@ -3,14 +3,13 @@
 import hashlib
 from collections.abc import Iterable
 from dataclasses import dataclass
-from pathlib import Path
 
 import numpy as np
 
 from frictioncli.effects import BY_NAME
 from frictioncli.simulator.settings import NOISE_KINDS, PROTOCOLS, SynthesisSettings
+from tests.studies.rows import sources_digest
 
-ROOT = Path(__file__).parents[2]
 PACKAGES = ("diagnosis", "effects", "simulator", "model")
 """Packages that a result depends on."""
 
@@ -109,9 +108,4 @@ def _of(protocol: str, seed: int) -> list[World]:
 
 def sources() -> str:
     """Return a digest of the sources that the results depend on."""
-    files = [
-        file
-        for package in PACKAGES
-        for file in sorted((ROOT / "frictioncli" / package).rglob("*.py"))
-    ]
-    return hashlib.sha256(b"\0".join(file.read_bytes() for file in files)).hexdigest()[:12]
+    return sources_digest(*(f"frictioncli/{package}" for package in PACKAGES), "tests/simulation")

@@ -19,7 +19,8 @@ from pathlib import Path
 import pandas as pd
 
 from frictioncli import schemas, tables
-from frictioncli.stages import run as pipeline
+from frictioncli.stages.run import analyse
+from frictioncli.stages.run import run as run_chain
 from tests.fleet.clusters import scheduler, worker
 from tests.fleet.fleets import ENVIRONMENT, PROGRAM, ROOT, contents
 from tests.fleet.joints import Joint, write_joint
@@ -117,7 +118,7 @@ def stages(logs: list[Path], work: Path, *, report: bool = False) -> dict[str, f
         now = time.process_time()
         found[stage], last = now - last, now
 
-    (pipeline.run if report else pipeline.analyse)(logs, work, None, tell)
+    (run_chain if report else analyse)(logs, work, None, tell)
     return found
 
 

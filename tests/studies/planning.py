@@ -13,8 +13,8 @@ import time
 
 from tests.studies.planning_examined import COLUMNS, examined
 from tests.studies.planning_page import page
-from tests.studies.planning_worlds import KEY, ROOT, sources, worlds
-from tests.studies.rows import Rows
+from tests.studies.planning_worlds import KEY, sources, worlds
+from tests.studies.rows import ROOT, Rows
 
 ROWS = Rows(ROOT / "build" / "planning.csv", COLUMNS, KEY)
 PAGE = ROOT / "docs" / "planning.md"

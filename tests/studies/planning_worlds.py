@@ -3,15 +3,14 @@
 import hashlib
 from collections.abc import Sequence
 from dataclasses import dataclass
-from pathlib import Path
 
 import numpy as np
 
 from frictioncli.design.steps import PAYLOAD_CHANGE, HeatStep, SeriesStep, Step, payload_changes
 from frictioncli.simulator.settings import SynthesisSettings
 from tests.simulation.motion_programme import MeasuredMoves, Motion, Standstill, UnrecordedMoves
+from tests.studies.rows import sources_digest
 
-ROOT = Path(__file__).parents[2]
 PACKAGES = ("diagnosis", "effects", "design", "simulator", "model")
 """Packages that a result depends on."""
 
@@ -147,9 +146,4 @@ def beginning(acts: Sequence[Motion], seconds: float) -> list[Motion]:
 
 def sources() -> str:
     """Return a digest of the sources that the results depend on."""
-    files = [
-        file
-        for package in PACKAGES
-        for file in sorted((ROOT / "frictioncli" / package).rglob("*.py"))
-    ]
-    return hashlib.sha256(b"\0".join(file.read_bytes() for file in files)).hexdigest()[:12]
+    return sources_digest(*(f"frictioncli/{package}" for package in PACKAGES), "tests/simulation")

@@ -4,6 +4,7 @@ A row holds, beside its world's key, a digest of the sources that it depends on.
 """
 
 import csv
+import hashlib
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
@@ -11,8 +12,27 @@ from pathlib import Path
 
 import pandas as pd
 
+ROOT = Path(__file__).parents[2]
+
 SOURCES = "sources"
 """Column of the digest."""
+
+
+def sources_digest(*places: str) -> str:
+    """Return a digest of the Python files of folders, relative to the repository.
+
+    Raises
+    ------
+    FileNotFoundError
+        If a folder holds none.
+    """
+    files = []
+    for place in places:
+        found = sorted((ROOT / place).rglob("*.py"))
+        if not found:
+            raise FileNotFoundError(f"{place}: no Python files")
+        files += found
+    return hashlib.sha256(b"\0".join(file.read_bytes() for file in files)).hexdigest()[:12]
 
 
 @dataclass(frozen=True, slots=True)

@@ -2,7 +2,9 @@
 
 import pytest
 
-from tests.studies.rows import Rows
+from tests.studies import bench, blind_worlds, fuzz, planning_worlds, wear
+from tests.studies.bench_rounds import state
+from tests.studies.rows import Rows, sources_digest
 
 
 @pytest.fixture
@@ -49,3 +51,17 @@ def test_rows_of_an_earlier_study_keep_what_they_have(rows, tmp_path):
     found = wider.read("new", keep=False)
     assert list(found["said"]) == ["1,5; 2", "3"]
     assert list(found["more"]) == ["", "m"]
+
+
+def test_the_sources_of_every_study_exist():
+    """Digests of folders and files that were renamed raise, instead of missing changes."""
+    assert blind_worlds.sources() != planning_worlds.sources()
+    assert len(wear.sources()) == 12
+    assert fuzz.sources()
+    for work in bench.works(small=False):
+        assert state(*work.sources)
+
+
+def test_a_missing_source_would_be_seen():
+    with pytest.raises(FileNotFoundError):
+        sources_digest("frictioncli/no_such_folder")

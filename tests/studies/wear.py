@@ -35,7 +35,6 @@ _METHOD = (
     "causes",
     "compare",
     "run_levels",
-    "loads",
     "day_to_day",
     "settings",
 )
@@ -109,7 +108,7 @@ def _said(found: Comparison, prefix: str) -> dict[str, object]:
         "p_trend": found.trend.p_value,
         "p_last": None if found.last_run is None else found.last_run.p_value,
         "load": None if found.load is None else found.load.value,
-        "scatter": found.scatter,
+        "scatter": found.day_to_day,
         "causes": causes,
         "cause_change": found.causes[0].change.value if found.causes else None,
     }
