@@ -13,7 +13,7 @@ import numpy as np
 import pandas as pd
 
 from frictioncli.diagnosis.data.build_problem import build_problems
-from frictioncli.diagnosis.data.problem import Problem
+from frictioncli.diagnosis.data.problem import Misfit, Problem
 from frictioncli.diagnosis.fit.extension import Extension, Gain, extend, measured_gain
 from frictioncli.diagnosis.ramps.evidence import RampEvidence, RampLog, ramp_evidence
 from frictioncli.diagnosis.search.cause_search import Cause, SearchResult, find_causes
@@ -41,32 +41,6 @@ _UNNAMED_RELATIVE_SIZE = 0.3
 
 _UNNAMED_RELATIVE_STATISTIC = 0.1
 """Least statistic beside causes, as a share of the sum of theirs: no equation is exact."""
-
-
-@dataclass(frozen=True, slots=True)
-class Misfit:
-    """Mean misfit of the simulated torque in one range of an axis at one speed.
-
-    Attributes
-    ----------
-    channel : {"friction", "load"}
-        The channel.
-    axis : {"temperature", "angle"}
-        The axis.
-    low, high : float
-        The range. [°C] or [deg]
-    speed : float
-        Speed of the pairs. [deg/s]
-    misfit : float
-        Mean of measured minus simulated torque there. [N·m]
-    """
-
-    channel: str
-    axis: str
-    low: float
-    high: float
-    speed: float
-    misfit: float
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -22,6 +22,32 @@ from frictioncli.effects.base import Basis, Effect, EffectTable
 from frictioncli.model.friction import FrictionParameters
 
 
+@dataclass(frozen=True, slots=True)
+class Misfit:
+    """Mean misfit of the simulated torque in one range of an axis at one speed.
+
+    Attributes
+    ----------
+    channel : {"friction", "load"}
+        The channel.
+    axis : {"temperature", "angle"}
+        The axis.
+    low, high : float
+        The range. [°C] or [deg]
+    speed : float
+        Speed of the pairs. [deg/s]
+    misfit : float
+        Mean of measured minus simulated torque there. [N·m]
+    """
+
+    channel: str
+    axis: str
+    low: float
+    high: float
+    speed: float
+    misfit: float
+
+
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Problem:
     """One joint's measurements and base model, rows by run, time and angle.

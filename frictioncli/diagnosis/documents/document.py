@@ -7,7 +7,7 @@ from typing import Annotated
 import msgspec
 
 from frictioncli import documents
-from frictioncli.diagnosis.diagnose import Misfit
+from frictioncli.diagnosis.data.problem import Misfit
 from frictioncli.diagnosis.documents.extended_model import ParameterRecord
 from frictioncli.diagnosis.settings import DiagnosisSettings
 
