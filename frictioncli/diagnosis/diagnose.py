@@ -24,6 +24,12 @@ from frictioncli.effects import EFFECTS
 from frictioncli.effects.base import Effect
 from frictioncli.errors import NotEnoughData
 
+MARGIN_SHARE = 0.005
+"""Smallest size worth a name, as a share of the mean friction."""
+
+LEAST_MARGIN = 0.1
+"""Smallest size worth a name, where torque is in N·m. [N·m]"""
+
 LEAST_PAIRS = 12
 """With fewer pairs noise cannot be distinguished from structure."""
 
@@ -69,6 +75,8 @@ class Diagnosis:
         The rows without the hold-out run, with the base model about which the extension is linear.
     detectable : dict of str to (float or None)
         Smallest RMS size that would be found four times in five, by effect. [N·m]
+    margin : float
+        Smallest size worth a name. [N·m]
     rmse : float
         RMS misfit of the base model. [N·m]
     worst : tuple of Misfit
@@ -89,6 +97,7 @@ class Diagnosis:
     extension: Extension | None
     base: Problem
     detectable: dict[str, float | None]
+    margin: float
     rmse: float
     worst: tuple[Misfit, ...]
     runs: tuple[str, ...]
@@ -168,12 +177,31 @@ def diagnose_joint(
         extension=extension,
         base=problem,
         detectable=found.detectable_sizes(effects, settings.alpha),
+        margin=margin_of(problem, torque_unit, settings),
         rmse=float(np.sqrt(np.mean(squared))),
         worst=worst_misfits(problem),
         runs=problem.runs,
         held_out=held_out,
         ramps=evidence,
     )
+
+
+def margin_of(problem: Problem, torque_unit: str, settings: DiagnosisSettings) -> float:
+    """Return the smallest size worth a name, in the torque unit.
+
+    Parameters
+    ----------
+    problem : Problem
+        The rows, whose mean friction counts.
+    torque_unit : str
+        Unit of everything torque-like; the least margin of 0.1 N·m holds for N·m only.
+    settings : DiagnosisSettings
+        Its margin is taken where it is given.
+    """
+    if settings.margin is not None:
+        return settings.margin
+    share = MARGIN_SHARE * float(np.mean(np.abs(problem.friction)))
+    return max(share, LEAST_MARGIN) if torque_unit == "N·m" else share
 
 
 def _unnamed_structure(

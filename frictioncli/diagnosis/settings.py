@@ -18,6 +18,9 @@ class DiagnosisSettings:
         Seed of the simulated noise.
     most : int
         Greatest number of causes.
+    margin : float or None
+        Smallest size worth a name; by default 0.5 % of the mean friction, at least 0.1 N·m.
+        [torque unit]
     """
 
     alpha: float = field(
@@ -25,8 +28,17 @@ class DiagnosisSettings:
     )
     seed: int = field(default=0, metadata=option("Seed of the simulated noise."))
     most: int = field(default=4, metadata=option("Greatest number of causes, up to 4."))
+    margin: float | None = field(
+        default=None,
+        metadata=option(
+            "Smallest size worth a name [torque unit]; else 0.5 % of the mean friction and"
+            " 0.1 N·m at least."
+        ),
+    )
 
     def __post_init__(self) -> None:
+        if self.margin is not None and not self.margin >= 0:
+            raise OptionError(f"margin {self.margin:g}: expected 0 or more")
         if not 0 < self.alpha < 0.5:
             raise OptionError(f"alpha {self.alpha:g}: expected between 0 and 0.5")
         if not 1 <= self.most <= 4:

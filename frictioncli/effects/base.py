@@ -14,6 +14,7 @@ import numpy as np
 from frictioncli.arrays import Array, Indices
 
 Channel = Literal["friction", "load"]
+Kind = Literal["friction", "load", "measurement"]
 Search = Literal["linear", "logarithmic"]
 
 REFERENCE_TEMPERATURE = 25.0
@@ -186,6 +187,9 @@ class Effect:
         Linear parameters; a fit beyond their bounds is rejected as unphysical.
     basis : callable
         ``basis(table, **shape) -> Basis``.
+    measurement : bool
+        Whether it is a property of the measurement and not of the joint: what it explains is
+        corrected, and no friction cause may explain it instead.
     moments : callable or None
         For an effect with the shape parameter ``moment``: the moments to try, from the table.
     needs : tuple of str
@@ -216,7 +220,13 @@ class Effect:
     experiment: str
     mirror: str = ""
     uses: tuple[str, ...] = ()
+    measurement: bool = False
     moments: Callable[[EffectTable], Array] | None = None
+
+    @property
+    def kind(self) -> Kind:
+        """What the effect is a property of: the joint's friction, its load, or the measurement."""
+        return "measurement" if self.measurement else self.channel
 
     def shapes(self, table: EffectTable) -> list[dict[str, float]]:
         """Return the shapes to try: the grid of the shape parameters, or the moments of a table."""

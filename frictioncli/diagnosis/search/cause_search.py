@@ -55,6 +55,15 @@ class Cause:
         RMS in its channel. [N·m]
     visible : float
         RMS of its residual after a fit of the base model. [N·m]
+    visible_interval : (float, float)
+        95 % interval of that. [N·m]
+    standing : {"named", "visible", "negligible", "undetermined"}
+        What may be said of it: it is named; it stands out of the noise but is not named; it is
+        smaller than the margin; its size is not known well enough.
+    reason : str
+        Why it is not named, in words; empty where it is.
+    holds_on_new_run : bool or None
+        Whether it is there on the hold-out run too; None where that cannot be tested.
     """
 
     fit: EffectFit
@@ -63,6 +72,10 @@ class Cause:
     probabilities: dict[str, float]
     size: float
     visible: float
+    visible_interval: tuple[float, float] = (0.0, float("inf"))
+    standing: str = "named"
+    reason: str = ""
+    holds_on_new_run: bool | None = None
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
