@@ -23,7 +23,7 @@ LAYERS = [
     {"tables", "documents"},
     {"schemas", "files", "provenance", "workfiles", "options"},
     {"linear_algebra"},
-    {"quantities", "errors", "arrays", "plain_text", "__init__"},
+    {"quantities", "errors", "arrays", "plain_text", "wording", "__init__"},
 ]
 """Top to bottom; parts of one layer do not know each other."""
 

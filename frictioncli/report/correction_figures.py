@@ -4,15 +4,10 @@ import pandas as pd
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from frictioncli.report.labels import (
-    TEMPERATURE_SYMBOLS,
-    figure_text,
-    friction_label,
-    number_text,
-    speed_text,
-)
+from frictioncli.report.labels import TEMPERATURE_SYMBOLS, figure_text, friction_label
 from frictioncli.report.results import MOST_RUNS, JointResults, by_speed
 from frictioncli.report.style import FAINT, MODEL, WIDTH, label_right, legend_above, points
+from frictioncli.wording import number_text, speed_text
 
 _LABEL_DISTANCE = 0.028
 """Least distance between two labels as a share of the time shown."""

@@ -8,10 +8,10 @@ from typing import Any
 
 import pandas as pd
 
-from frictioncli.report.labels import count_text, in_words, thousands_text
 from frictioncli.report.page_tables import TextTable
 from frictioncli.report.quality_ratings import IngestCounts
 from frictioncli.report.results import JointResults, WorkFolderResults
+from frictioncli.wording import count_text, in_words, thousands_text
 from frictioncli.workfiles import PAIRS
 
 _MOST_INPUTS = 200

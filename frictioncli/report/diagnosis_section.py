@@ -24,12 +24,12 @@ from frictioncli.report.diagnosis_text import (
 )
 from frictioncli.report.evidence_figure import evidence_figure
 from frictioncli.report.figures import FigureSpec
-from frictioncli.report.labels import in_words
 from frictioncli.report.missing_data import nothing_missing
 from frictioncli.report.page_tables import TextTable
 from frictioncli.report.residual_maps import residual_map_figure
 from frictioncli.report.results import JointResults
 from frictioncli.report.simulation_figures import gain_figure, simulation_figure
+from frictioncli.wording import in_words
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

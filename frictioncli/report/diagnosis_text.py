@@ -5,7 +5,9 @@ from dataclasses import dataclass
 from frictioncli.diagnosis.documents.document import CauseRecord, DiagnosisDocument
 from frictioncli.diagnosis.documents.extended_model import ParameterRecord
 from frictioncli.effects import BY_NAME
-from frictioncli.report.labels import (
+from frictioncli.report.page_tables import TextTable
+from frictioncli.report.results import JointResults
+from frictioncli.wording import (
     count_text,
     in_words,
     list_text,
@@ -13,8 +15,6 @@ from frictioncli.report.labels import (
     probability_text,
     speed_text,
 )
-from frictioncli.report.page_tables import TextTable
-from frictioncli.report.results import JointResults
 
 UNDETECTABLE = "cannot be shown by these data"
 

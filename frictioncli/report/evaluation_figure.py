@@ -6,13 +6,7 @@ import pandas as pd
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from frictioncli.report.labels import (
-    CRITERION_WORDS,
-    count_text,
-    figure_text,
-    number_text,
-    range_text,
-)
+from frictioncli.report.labels import CRITERION_WORDS, figure_text
 from frictioncli.report.results import MOST_RUNS, JointResults
 from frictioncli.report.style import (
     FAINT,
@@ -23,6 +17,7 @@ from frictioncli.report.style import (
     panels,
 )
 from frictioncli.report.tooltips import set_tooltips
+from frictioncli.wording import count_text, number_text, range_text
 
 BASELINES = ("none", "equal")
 """Criteria with which the others are compared."""

@@ -15,9 +15,9 @@ from frictioncli.report.binning import (
     bin_numbers,
     residual_series,
 )
-from frictioncli.report.labels import in_words, probability_text
 from frictioncli.report.results import JointResults
 from frictioncli.report.style import FAINT, MODEL, WIDTH
+from frictioncli.wording import in_words, probability_text
 
 _AXES = {
     "speed": ("speed |φ'| [deg/s]", 1.0),

@@ -16,15 +16,11 @@ from frictioncli.errors import NotEnoughData
 from frictioncli.plain_text import without_control_characters
 from frictioncli.report.evaluation_figure import compared_criterion
 from frictioncli.report.grid_replay import ReplayedPhase, ScheduleGrid, replayed_phases
-from frictioncli.report.labels import (
-    CRITERION_WORDS,
-    TEMPERATURE_SYMBOLS,
-    number_text,
-    speed_text,
-)
+from frictioncli.report.labels import CRITERION_WORDS, TEMPERATURE_SYMBOLS
 from frictioncli.report.missing_data import evaluation_missing
 from frictioncli.report.results import MOST_RUNS, JointResults
 from frictioncli.report.style import PHASE_WORDS
+from frictioncli.wording import number_text, speed_text
 
 _MOST_POINTS = 400
 """Greatest number of pairs drawn per phase; ε is computed from all pairs."""

@@ -12,14 +12,7 @@ from frictioncli.report.evaluation_figure import (
     setting_text,
     uncertainty_text,
 )
-from frictioncli.report.labels import (
-    TEMPERATURE_WORDS,
-    count_text,
-    duration_text,
-    list_text,
-    number_text,
-    speed_text,
-)
+from frictioncli.report.labels import TEMPERATURE_WORDS
 from frictioncli.report.load_speed_figures import (
     REFERENCE_TEMPERATURE,
     has_temperature_term,
@@ -47,6 +40,7 @@ from frictioncli.report.thermal_figures import (
     temperature_figure,
     thermal_runs,
 )
+from frictioncli.wording import count_text, duration_text, list_text, number_text, speed_text
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

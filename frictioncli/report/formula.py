@@ -4,8 +4,9 @@ import re
 
 from markupsafe import Markup, escape
 
-from frictioncli.report.labels import TEMPERATURE_WORDS, number_text
+from frictioncli.report.labels import TEMPERATURE_WORDS
 from frictioncli.report.results import JointResults
+from frictioncli.wording import number_text
 
 _DIGITS = 4
 _POWERS = {"^0.5": Markup("<sup>½</sup>"), "^2": Markup("²")}

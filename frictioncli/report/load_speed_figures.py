@@ -5,7 +5,7 @@ import pandas as pd
 from matplotlib.figure import Figure
 
 from frictioncli.model.friction import carried_to_temperature
-from frictioncli.report.labels import figure_text, friction_label, number_text, speed_text
+from frictioncli.report.labels import figure_text, friction_label
 from frictioncli.report.results import MOST_RUNS, JointResults, by_speed
 from frictioncli.report.style import (
     FAINT,
@@ -17,6 +17,7 @@ from frictioncli.report.style import (
     panels,
     points,
 )
+from frictioncli.wording import number_text, speed_text
 
 REFERENCE_TEMPERATURE = 20.0
 """Temperature T0 of Figure 8. [°C]"""

@@ -18,8 +18,8 @@ from frictioncli.report.drawing import draw_figures
 from frictioncli.report.figure_files import svg_file
 from frictioncli.report.formula import unit_markup
 from frictioncli.report.joint_section import JointSection, joint_section
-from frictioncli.report.labels import list_text
 from frictioncli.report.results import WorkFolderResults, read_results
+from frictioncli.wording import list_text
 
 
 def write_report(work: Path) -> Path:

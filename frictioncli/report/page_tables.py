@@ -6,9 +6,10 @@ from dataclasses import dataclass
 import pandas as pd
 
 from frictioncli.report.evaluation_figure import compared_criterion
-from frictioncli.report.labels import CRITERION_WORDS, number_text, speed_text
+from frictioncli.report.labels import CRITERION_WORDS
 from frictioncli.report.results import JointResults, by_speed
 from frictioncli.report.style import PHASE_WORDS, PHASES
+from frictioncli.wording import number_text, speed_text
 
 _NEIGHBOURS = 3
 """Settings shown on each side of the simulated one, along k."""

@@ -6,10 +6,11 @@ from itertools import combinations
 from frictioncli.diagnosis.documents.document import DiagnosisDocument
 from frictioncli.model.document import PARAMETERS
 from frictioncli.model.friction import PUBLISHED
-from frictioncli.report.labels import PARAMETER_SYMBOLS, in_words, list_text, number_text
+from frictioncli.report.labels import PARAMETER_SYMBOLS
 from frictioncli.report.page_tables import TextTable
 from frictioncli.report.quality_ratings import imprecise_parameters
 from frictioncli.report.results import JointResults
+from frictioncli.wording import in_words, list_text, number_text
 
 _MEANINGS = {
     "tau_c": "Coulomb friction",

@@ -4,8 +4,10 @@ from dataclasses import dataclass
 
 from frictioncli.diagnosis.documents.document import DiagnosisDocument
 from frictioncli.model.document import PARAMETERS
-from frictioncli.report.labels import (
-    PARAMETER_SYMBOLS,
+from frictioncli.report.labels import PARAMETER_SYMBOLS
+from frictioncli.report.results import JointResults
+from frictioncli.report.style import PHASE_WORDS, PHASES
+from frictioncli.wording import (
     count_text,
     in_words,
     list_text,
@@ -13,8 +15,6 @@ from frictioncli.report.labels import (
     speed_text,
     thousands_text,
 )
-from frictioncli.report.results import JointResults
-from frictioncli.report.style import PHASE_WORDS, PHASES
 
 GOOD, FAIR, POOR = "good", "fair", "poor"
 

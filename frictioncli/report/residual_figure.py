@@ -7,9 +7,10 @@ import pandas as pd
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from frictioncli.report.labels import TEMPERATURE_LABELS, speed_text
+from frictioncli.report.labels import TEMPERATURE_LABELS
 from frictioncli.report.results import JointResults, by_speed
 from frictioncli.report.style import COOLING, HEATING, MODEL, OTHER_PHASE, RASTER_FROM, WIDTH
+from frictioncli.wording import speed_text
 
 _ANGLE_BINS = 36
 _MOST_NAMED = 4

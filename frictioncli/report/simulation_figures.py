@@ -9,9 +9,10 @@ from matplotlib.figure import Figure
 
 from frictioncli.diagnosis.documents.reload import Misfits, Reloaded
 from frictioncli.report.binning import bin_numbers, merge_close_values
-from frictioncli.report.labels import figure_text, number_text, speed_text
+from frictioncli.report.labels import figure_text
 from frictioncli.report.results import JointResults
 from frictioncli.report.style import FAINT, MODEL, WIDTH, SpeedStyle
+from frictioncli.wording import number_text, speed_text
 
 _CLOCK = 1 / 3600.0
 _MOST_SPEEDS = 4

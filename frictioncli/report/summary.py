@@ -8,19 +8,10 @@ import pandas as pd
 from frictioncli.diagnosis.documents.document import DiagnosisDocument
 from frictioncli.model.document import PARAMETERS
 from frictioncli.report.evaluation_figure import compared_criterion, setting_text
-from frictioncli.report.labels import (
-    CRITERION_WORDS,
-    PARAMETER_SYMBOLS,
-    TEMPERATURE_WORDS,
-    count_text,
-    in_words,
-    list_text,
-    number_text,
-    range_text,
-    speed_text,
-)
+from frictioncli.report.labels import CRITERION_WORDS, PARAMETER_SYMBOLS, TEMPERATURE_WORDS
 from frictioncli.report.results import JointResults
 from frictioncli.report.style import PHASE_WORDS, PHASES
+from frictioncli.wording import count_text, in_words, list_text, number_text, range_text, speed_text
 
 _TARGET_ERROR = 2.0
 """Error that the source paper reaches. [N·m]"""

@@ -6,14 +6,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from frictioncli.model.paper_method import branch_means
-from frictioncli.report.labels import (
-    TEMPERATURE_LABELS,
-    duration_text,
-    figure_text,
-    friction_label,
-    number_text,
-    speed_text,
-)
+from frictioncli.report.labels import TEMPERATURE_LABELS, figure_text, friction_label
 from frictioncli.report.results import MOST_RUNS, JointResults, by_speed
 from frictioncli.report.style import (
     COOLING,
@@ -28,6 +21,7 @@ from frictioncli.report.style import (
     panels,
     points,
 )
+from frictioncli.wording import duration_text, number_text, speed_text
 
 _PANEL_HEIGHT = 3.6
 

@@ -13,7 +13,7 @@ from matplotlib.figure import Figure
 
 from frictioncli.comparison.document import ComparisonDocument, ConditionRecord, RunRecord
 from frictioncli.report.figure_files import png, svg, svg_file
-from frictioncli.report.labels import figure_text, number_text, speed_text
+from frictioncli.report.labels import figure_text
 from frictioncli.report.style import (
     FAINT,
     MODEL,
@@ -22,6 +22,7 @@ from frictioncli.report.style import (
     speed_styles,
     style_context,
 )
+from frictioncli.wording import number_text, speed_text
 
 _LEVEL = "#2B6CB0"
 _BAND = "#BFD4EA"

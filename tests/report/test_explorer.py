@@ -12,11 +12,11 @@ from frictioncli import schemas, tables
 from frictioncli.correction.settings import EvaluationGrid, ScheduleSettings
 from frictioncli.provenance import Provenance
 from frictioncli.report.explorer import explorer
-from frictioncli.report.labels import number_text
 from frictioncli.report.page import write_report
 from frictioncli.report.results import read_results
 from frictioncli.stages.evaluate import evaluate
 from frictioncli.stages.simulate import simulate
+from frictioncli.wording import number_text
 from tests.report.diagnosis_documents import extended_document
 
 GRID = EvaluationGrid(k=(1.0, 2.5, 5.0, 10.0), tmax=(1800.0, 3600.0, 14400.0))

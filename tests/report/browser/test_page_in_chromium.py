@@ -8,10 +8,10 @@ import pytest
 
 from frictioncli import schemas, tables
 from frictioncli.correction.settings import EvaluationGrid
-from frictioncli.report.labels import number_text
 from frictioncli.report.page import write_report
 from frictioncli.report.results import read_results
 from frictioncli.stages.evaluate import evaluate
+from frictioncli.wording import number_text
 from tests.report.diagnosis_documents import extended_document
 
 HOSTILE = (

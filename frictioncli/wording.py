@@ -1,0 +1,220 @@
+"""Numbers, counts and names as text, for messages, tables and figures."""
+
+import math
+from collections.abc import Sequence
+
+_MOST_NAMES = 5
+
+_SHORT = 0.5
+"""Times below are stated in milliseconds. [s]"""
+
+
+def speed_text(speed: float) -> str:
+    """Return a speed with its unit, with one decimal or, below 1 deg/s, with two digits.
+
+    Parameters
+    ----------
+    speed : float
+        Joint speed. [deg/s]
+
+    Examples
+    --------
+    >>> speed_text(67.5), speed_text(0.123)
+    ('67.5 deg/s', '0.12 deg/s')
+    """
+    shown = f"{speed:.1f}".removesuffix(".0") if speed >= 1.0 else f"{speed:.2g}"
+    return f"{shown} deg/s"
+
+
+def number_text(value: float | None, digits: int = 3) -> str:
+    """Return a number with the given significant digits, or a dash if it is missing.
+
+    Digits before the decimal point are never rounded.
+
+    Parameters
+    ----------
+    value : float or None
+        The number.
+    digits : int
+        Significant digits.
+
+    Examples
+    --------
+    >>> number_text(0.06182), number_text(1234.5), number_text(None)
+    ('0.0618', '1234', '–')
+    """
+    if value is None or not math.isfinite(value):
+        return "–"
+    if value == 0.0:
+        return "0"
+    magnitude = math.floor(math.log10(abs(value)))
+    if magnitude < -4:
+        return f"{value:.{digits - 1}e}".replace("-", "−")
+    shown = f"{value:.{max(digits - 1 - magnitude, 0)}f}"
+    return shown.replace("-", "−")
+
+
+def probability_text(share: float) -> str:
+    """Return a probability in per cent; 99.5 % and more are written as "over 99 %".
+
+    Parameters
+    ----------
+    share : float
+        Probability, from 0 to 1.
+    """
+    if share >= 0.995:
+        return "over 99 %"
+    return f"{100 * share:.0f} %" if share >= 0.015 else f"{100 * share:.1f} %"
+
+
+def in_words(name: str) -> str:
+    """Return an identifier, such as an effect's name, with spaces for underscores.
+
+    Parameters
+    ----------
+    name : str
+        The identifier.
+    """
+    return name.replace("_", " ")
+
+
+def count_text(count: int, singular: str, plural: str = "") -> str:
+    """Return a count with its noun.
+
+    Parameters
+    ----------
+    count : int
+        The count.
+    singular, plural : str
+        The noun; the default plural is the singular with an s.
+
+    Examples
+    --------
+    >>> count_text(1, "pair"), count_text(2, "pair")
+    ('1 pair', '2 pairs')
+    """
+    noun = singular if count == 1 else plural or singular + "s"
+    return f"{thousands_text(count)} {noun}"
+
+
+def thousands_text(count: int) -> str:
+    """Return a count with thin spaces between groups of three digits."""
+    return f"{count:,}".replace(",", "\u202f")
+
+
+def duration_text(seconds: float) -> str:
+    """Return a duration in minutes, or in hours and minutes from three hours on.
+
+    Parameters
+    ----------
+    seconds : float
+        The duration. [s]
+
+    Examples
+    --------
+    >>> duration_text(5490.0), duration_text(17490.0)
+    ('92 min', '4 h 52 min')
+    """
+    minutes = seconds / 60.0
+    if minutes >= 180.0:
+        hours, rest = divmod(round(minutes), 60)
+        return f"{hours} h {rest:02d} min"
+    return f"{minutes:.0f} min"
+
+
+def list_text(names: Sequence[str]) -> str:
+    """Return names as an enumeration in words, cut after five names.
+
+    Parameters
+    ----------
+    names : sequence of str
+        At least one name.
+
+    Examples
+    --------
+    >>> list_text(["a", "b", "c"])
+    'a, b and c'
+    """
+    shown = list(names[:_MOST_NAMES])
+    if len(names) > _MOST_NAMES:
+        shown.append(f"{len(names) - _MOST_NAMES} more")
+    return shown[0] if len(shown) == 1 else f"{', '.join(shown[:-1])} and {shown[-1]}"
+
+
+def range_text(ascending: Sequence[str]) -> str:
+    """Return the range of ascending values as text; one value if the ends read the same.
+
+    Parameters
+    ----------
+    ascending : sequence of str
+        At least one value, as text.
+
+    Examples
+    --------
+    >>> range_text(["2", "4", "7"]), range_text(["2", "2"])
+    ('2 to 7', '2')
+    """
+    first, last = ascending[0], ascending[-1]
+    return first if first == last else f"{first} to {last}"
+
+
+def interval_text(low: float, high: float) -> str:
+    """Return an interval with as many decimals as its width deserves.
+
+    Parameters
+    ----------
+    low, high : float
+        Its ends.
+
+    Examples
+    --------
+    >>> interval_text(0.0112, 0.0131), interval_text(1.52, 2.31), interval_text(-120.0, 940.0)
+    ('0.011 to 0.013', '1.5 to 2.3', '−120 to 940')
+    """
+    return " to ".join(_alike((low, high), (low, high)))
+
+
+def quantity_text(value: float, interval: tuple[float, float] | None, unit: str) -> str:
+    """Return an estimate with its unit and, in brackets, its interval.
+
+    Times below half a second are stated in milliseconds.
+
+    Parameters
+    ----------
+    value : float
+        The estimate. [unit]
+    interval : (float, float) or None
+        Its interval, if it is known. [unit]
+    unit : str
+        Its unit; ``1`` for a pure number.
+
+    Examples
+    --------
+    >>> quantity_text(1.94, (1.52, 2.31), "N·m")
+    '1.9 N·m (1.5 to 2.3)'
+    >>> quantity_text(0.0121, (0.0112, 0.0131), "s"), quantity_text(0.254, None, "1")
+    ('12 ms (11 to 13)', '0.25')
+    """
+    known = (value, *(interval or ()))
+    if unit == "s" and max(abs(one) for one in known) < _SHORT:
+        return quantity_text(
+            1000 * value,
+            None if interval is None else (1000 * interval[0], 1000 * interval[1]),
+            "ms",
+        )
+    noun = "" if unit == "1" else f" {unit}"
+    if interval is None or not all(math.isfinite(one) for one in known):
+        return f"{number_text(value, 2)}{noun}"
+    estimate, low, high = _alike(known, interval)
+    return f"{estimate}{noun} ({low} to {high})"
+
+
+def _alike(values: Sequence[float], interval: tuple[float, float]) -> list[str]:
+    """Return values with the decimals that show an interval's half-width with one digit."""
+    half = (interval[1] - interval[0]) / 2
+    if not math.isfinite(half) or not half >= 1e-5:
+        return [number_text(value) for value in values]
+    # a half-width of 0.95 counts as 1
+    decimals = max(-math.floor(math.log10(1.1 * half)), 0)
+    rounded = [round(value, decimals) + 0.0 for value in values]
+    return [f"{value:.{decimals}f}".replace("-", "−") for value in rounded]
