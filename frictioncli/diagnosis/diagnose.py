@@ -73,6 +73,10 @@ class Diagnosis:
         The base with the causes, refitted.
     base : Problem
         The rows without the hold-out run, with the base model about which the extension is linear.
+    judged : Problem
+        The rows on which the gain is measured: those of the hold-out run where there is one.
+    floor : float
+        RMS of point and pair noise, which no model can predict. [N·m]
     detectable : dict of str to (float or None)
         Smallest RMS size that would be found four times in five, by effect. [N·m]
     margin : float
@@ -96,6 +100,8 @@ class Diagnosis:
     gain: Gain | None
     extension: Extension | None
     base: Problem
+    judged: Problem
+    floor: float
     detectable: dict[str, float | None]
     margin: float
     rmse: float
@@ -176,6 +182,8 @@ def diagnose_joint(
         gain=gain,
         extension=extension,
         base=problem,
+        judged=new or problem,
+        floor=_floor(found),
         detectable=found.detectable_sizes(effects, settings.alpha),
         margin=margin_of(problem, torque_unit, settings),
         rmse=float(np.sqrt(np.mean(squared))),

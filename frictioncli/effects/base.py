@@ -204,6 +204,9 @@ class Effect:
         The experiment that isolates it from them.
     mirror : str
         What must hold in the other channel; may be empty.
+    statement : str
+        What is said where it is found: a sentence with names of its parameters in braces, which
+        stand for their values. Where it is empty, the summary is said.
     """
 
     name: str
@@ -219,6 +222,7 @@ class Effect:
     confounders: tuple[str, ...]
     experiment: str
     mirror: str = ""
+    statement: str = ""
     uses: tuple[str, ...] = ()
     measurement: bool = False
     moments: Callable[[EffectTable], Array] | None = None

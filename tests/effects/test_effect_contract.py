@@ -2,6 +2,7 @@
 
 from dataclasses import FrozenInstanceError, replace
 from itertools import product
+from string import Formatter
 
 import numpy as np
 import pytest
@@ -280,3 +281,11 @@ def test_impossible_parameters_are_refused(wrong):
     valid = {"name": "p", "symbol": "p", "unit": "1", "lower": 0.0, "upper": 1.0}
     with pytest.raises(ValueError, match="p: "):
         Parameter(**(valid | {"description": "any"} | wrong))
+
+
+@every_effect
+def test_a_statement_names_parameters_of_its_effect_only(effect):
+    known = {parameter.name for parameter in (*effect.shape, *effect.coefficients)}
+    named = {field for _, field, _, _ in Formatter().parse(effect.statement) if field is not None}
+    assert named <= known
+    assert not effect.statement or effect.statement.endswith(".")
