@@ -52,6 +52,7 @@ _REASONS = {
     "position_ripple": "goes with the angle",
     "inertia": "goes with acceleration, and is no friction",
 }
+_MEASUREMENT_REASON = "is a property of the log, not of the joint"
 _LOAD_REASON = "shows in the load, not in friction"
 
 
@@ -148,8 +149,10 @@ def deployable_extension(
         gear=_gear_lag(torques, model, lag, time_constant_ci95) if lag else None,
         terms=tuple(fitted for name, fitted in effects.items() if name in MEMORYLESS),
         left_out={
-            name: _REASONS.get(name, _LOAD_REASON)
-            for name in effects
+            name: _MEASUREMENT_REASON
+            if fitted.effect.measurement
+            else _REASONS.get(name, _LOAD_REASON)
+            for name, fitted in effects.items()
             if name != LAG and name not in MEMORYLESS
         },
     )
@@ -194,6 +197,8 @@ def _table(about: FrictionParameters, load: Array, speed: Array, temperature: Ar
         speed=speed,
         position=unknown,
         load=load,
+        load_gradient=unknown,
+        load_curvature=unknown,
         temperature=temperature,
         motor_temperature=unknown,
         housing_temperature=unknown,

@@ -1,9 +1,14 @@
-"""The catalogue of effects that the friction model (16) lacks, one module each."""
+"""The catalogue of effects, one module each.
+
+Friction and load that the friction model (16) lacks, and properties of the measurement that look
+like them.
+"""
 
 from collections.abc import Mapping
 from types import MappingProxyType
 
 from frictioncli.effects import (
+    backlash,
     coulomb_temperature,
     direction_asymmetry,
     dress_pack,
@@ -11,6 +16,7 @@ from frictioncli.effects import (
     inertia,
     linear_viscous,
     load_linear,
+    load_offset,
     load_temperature,
     load_velocity,
     payload_change,
@@ -19,10 +25,13 @@ from frictioncli.effects import (
     rest_recovery,
     reversal_transient,
     run_in,
+    sensor_lag,
     step_change,
     stribeck,
     thermal_lag,
     torque_constant,
+    torque_delay,
+    torque_filter,
     velocity_exponent,
 )
 from frictioncli.effects.base import Effect
@@ -49,12 +58,23 @@ EFFECTS: tuple[Effect, ...] = (
     inertia.EFFECT,
     reversal_transient.EFFECT,
 )
-"""All effects, in the order of reports."""
+"""Effects of friction and load, in the order of reports."""
 
-BY_NAME: Mapping[str, Effect] = MappingProxyType({effect.name: effect for effect in EFFECTS})
-"""The same by name."""
+MEASUREMENT_EFFECTS: tuple[Effect, ...] = (
+    load_offset.EFFECT,
+    torque_delay.EFFECT,
+    torque_filter.EFFECT,
+    backlash.EFFECT,
+    sensor_lag.EFFECT,
+)
+"""Effects of kind ``measurement``, in the order of reports."""
+
+BY_NAME: Mapping[str, Effect] = MappingProxyType(
+    {effect.name: effect for effect in (*EFFECTS, *MEASUREMENT_EFFECTS)}
+)
+"""Both by name."""
 
 NEEDS: Mapping[str, tuple[str, ...]] = MappingProxyType(
-    {effect.name: effect.needs for effect in EFFECTS}
+    {effect.name: effect.needs for effect in BY_NAME.values()}
 )
 """Columns that must be known and vary, by effect."""

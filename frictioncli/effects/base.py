@@ -109,6 +109,11 @@ class EffectTable:
         Speed of the pair and centre of the angle bin. [deg/s], [deg]
     load : ndarray, shape (rows,)
         Load torque of the base model at that angle. [N·m]
+    load_gradient : ndarray, shape (rows,)
+        Derivative of the fitted gravity by the angle; with the opposite sign where the log counts
+        torque the other way than motion. [N·m/deg]
+    load_curvature : ndarray, shape (rows,)
+        Second derivative of the fitted gravity by the angle. [N·m/deg²]
     temperature : ndarray, shape (rows,)
         Temperature input of the base model. [°C]
     motor_temperature, housing_temperature : ndarray, shape (rows,)
@@ -136,6 +141,8 @@ class EffectTable:
     speed: Array
     position: Array
     load: Array
+    load_gradient: Array
+    load_curvature: Array
     temperature: Array
     motor_temperature: Array
     housing_temperature: Array

@@ -11,7 +11,7 @@ from frictioncli import schemas, tables
 from frictioncli.diagnosis.diagnose import diagnose_joint
 from frictioncli.diagnosis.documents.text import verdict_text
 from frictioncli.diagnosis.settings import DiagnosisSettings
-from frictioncli.effects import BY_NAME
+from frictioncli.effects import EFFECTS
 from frictioncli.errors import NotEnoughData, OptionError, TableError
 from frictioncli.provenance import Provenance
 from frictioncli.simulator.settings import SynthesisSettings
@@ -136,7 +136,7 @@ def test_one_day_only_says_that_its_gain_flatters():
 
 def test_detectable_sizes_cover_the_catalogue():
     diagnosis = diagnosed(days(1))
-    assert set(diagnosis.detectable) == set(BY_NAME)
+    assert set(diagnosis.detectable) == {effect.name for effect in EFFECTS}
     known = [size for size in diagnosis.detectable.values() if size is not None]
     assert all(size > 0 for size in known)
     # a ripple is averaged over 160 pairs of 34 bins of 0.3 N·m: about 0.3 * sqrt(2 * 25 / 5440)

@@ -153,3 +153,35 @@ def test_an_extended_model_with_payloads_is_read_back(tmp_path):
     (model,) = read_models(tmp_path / EXTENDED)
     added = without_effects(stored, model, read_extended(tmp_path / EXTENDED)[2])[2]
     assert added.abs().max() < 1.0  # the effect is of the load: friction hardly changes
+
+
+@pytest.mark.parametrize("sign", [1, -1])
+def test_gravity_s_derivatives_are_differences_over_the_angle_and_turn_with_the_sign(sign):
+    rows = carried()
+    forward = rows["load_torque"] + sign * rows["friction_torque"]
+    reverse = rows["load_torque"] - sign * rows["friction_torque"]
+    rows = rows.assign(torque_forward=forward, torque_reverse=reverse)
+    table = build_problems(rows, "motor")[0].table
+    for name in np.unique(table.pair)[::40]:
+        one = table.pair == name
+        angle, load = table.position[one], table.load[one]
+        gradient, curvature = sign * table.load_gradient[one], table.load_curvature[one]
+        # central differences, error h²/6 of the third derivative
+        assert gradient[1:-1] == pytest.approx(
+            (load[2:] - load[:-2]) / (angle[2:] - angle[:-2]), rel=0.01
+        )
+        step = angle[1] - angle[0]
+        assert curvature[1:-1] == pytest.approx(np.diff(load, 2) / step**2, rel=0.01)
+
+
+def test_gravity_s_slope_is_that_of_the_logged_current_where_load_is_a_channel_of_its_own():
+    rows = carried(payloads=(3.0,))
+    current = 0.02 * rows["load_torque"]
+    rows = rows.assign(
+        load=rows["load_torque"],
+        torque_forward=current + 1.0,
+        torque_reverse=current - 1.0,
+    )
+    table = build_problems(rows, "motor")[0].table
+    other = build_problems(carried(payloads=(3.0,)), "motor")[0].table
+    assert table.load_gradient == pytest.approx(0.02 * other.load_gradient)

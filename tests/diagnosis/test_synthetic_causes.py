@@ -12,7 +12,7 @@ import pytest
 
 from frictioncli.diagnosis.diagnose import Diagnosis, diagnose_joint
 from frictioncli.diagnosis.settings import DiagnosisSettings
-from frictioncli.effects import BY_NAME
+from frictioncli.effects import BY_NAME, EFFECTS
 from frictioncli.simulator.settings import SynthesisSettings
 from tests.simulation.torque_table import simulate_torques
 
@@ -77,7 +77,10 @@ def sets(diagnosis: Diagnosis) -> list[tuple[str, ...]]:
 
 @pytest.mark.parametrize(
     "name",
-    [one if one in QUICK else pytest.param(one, marks=pytest.mark.slow) for one in BY_NAME],
+    [
+        effect.name if effect.name in QUICK else pytest.param(effect.name, marks=pytest.mark.slow)
+        for effect in EFFECTS
+    ],
 )
 def test_a_hidden_effect_is_in_a_set_of_few(name):
     effect, seed = hidden(name)

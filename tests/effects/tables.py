@@ -61,6 +61,8 @@ def two_days(*, bins: int = 13, series: int = 12) -> EffectTable:
         pair=np.repeat(np.arange(len(per_pair)), bins),
         position=position,
         load=load,
+        load_gradient=-60.0 * np.radians(1.0) * np.sin(np.radians(position)),
+        load_curvature=-np.square(np.radians(1.0)) * load,
         friction=friction,
         viscous=viscous,
         temperature_slope=slope,

@@ -7,7 +7,7 @@ from string import Formatter
 import numpy as np
 import pytest
 
-from frictioncli.effects import BY_NAME, EFFECTS, NEEDS
+from frictioncli.effects import BY_NAME, EFFECTS, MEASUREMENT_EFFECTS, NEEDS
 from frictioncli.effects.base import Parameter, applicable, missing_columns
 from tests.effects.tables import COLUMNS, selected, small, two_days
 
@@ -34,12 +34,23 @@ CONTRACT = [
     "reversal_transient",
 ]
 
+MEASUREMENT = ["load_offset", "torque_delay", "torque_filter", "backlash", "sensor_lag"]
+
 LOAD_ONLY = {"direction_asymmetry", "dress_pack"}
-BOTH = {"torque_constant", "payload_change", "inertia", "reversal_transient", "rest_recovery"}
+BOTH = {
+    "torque_constant",
+    "payload_change",
+    "inertia",
+    "reversal_transient",
+    "rest_recovery",
+    "torque_delay",
+    "torque_filter",
+    "backlash",
+}
 FREE_IN_LOAD = {"rest_recovery"}
 """Of these one channel says nothing of the other."""
 
-FRICTION_ONLY = set(CONTRACT) - LOAD_ONLY - BOTH
+FRICTION_ONLY = {*CONTRACT, *MEASUREMENT} - LOAD_ONLY - BOTH
 
 ANGLE_DEPENDENT = {
     "load_linear",
@@ -51,9 +62,15 @@ ANGLE_DEPENDENT = {
     "position_ripple",
     "inertia",
     "reversal_transient",
+    "load_offset",
+    "torque_delay",
+    "torque_filter",
+    "backlash",
 }
 
-every_effect = pytest.mark.parametrize("effect", EFFECTS, ids=lambda effect: effect.name)
+ALL = (*EFFECTS, *MEASUREMENT_EFFECTS)
+
+every_effect = pytest.mark.parametrize("effect", ALL, ids=lambda effect: effect.name)
 
 
 @pytest.fixture(scope="module")
@@ -107,7 +124,14 @@ def test_moments_lie_within_the_bounds_of_their_search(effect):
 
 def test_catalogue_holds_the_names_of_the_contract_in_order():
     assert [effect.name for effect in EFFECTS] == CONTRACT
-    assert list(BY_NAME) == list(NEEDS) == CONTRACT
+    assert [effect.name for effect in MEASUREMENT_EFFECTS] == MEASUREMENT
+    assert list(BY_NAME) == list(NEEDS) == CONTRACT + MEASUREMENT
+
+
+@every_effect
+def test_kind_is_the_channel_or_the_measurement(effect):
+    expected = "measurement" if effect.name in MEASUREMENT else effect.channel
+    assert effect.kind == expected
 
 
 @every_effect
@@ -123,6 +147,9 @@ def test_basis_has_one_finite_column_per_coefficient(effect, table):
 def test_every_column_is_well_scaled(effect, table):
     basis = effect.evaluate(table, middle(effect))
     size = np.sqrt(np.mean(np.square(basis.friction) + np.square(basis.load), axis=0))
+    if effect.measurement:
+        # times in seconds: the size is that at the bound
+        size *= [parameter.upper for parameter in effect.coefficients]
     assert np.all((size > 0.03) & (size < 300.0)), size
 
 
@@ -250,7 +277,7 @@ def test_references_to_columns_and_effects_exist(effect):
     assert {*effect.needs, *effect.uses, effect.signature.axis} <= set(COLUMNS)
     assert not set(effect.needs) & set(effect.uses)
     assert effect.confounders
-    assert set(effect.confounders) <= set(CONTRACT) - {effect.name}
+    assert set(effect.confounders) <= {*CONTRACT, *MEASUREMENT} - {effect.name}
     assert bool(effect.mirror) or effect.name not in BOTH - FREE_IN_LOAD
 
 
@@ -262,11 +289,11 @@ def test_effect_without_a_needed_column_is_left_out(effect, table):
         for values in (np.full(rows, np.nan), np.full(rows, 20.0)):
             poorer = replace(table, **{name: values})
             assert missing_columns(effect, poorer) == (name,)
-            assert effect not in applicable(EFFECTS, poorer)
+            assert effect not in applicable(ALL, poorer)
 
 
 def test_all_effects_can_be_judged_on_two_full_days(table):
-    assert applicable(EFFECTS, table) == EFFECTS
+    assert applicable(ALL, table) == ALL
 
 
 def test_effects_cannot_be_changed():

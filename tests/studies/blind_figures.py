@@ -13,10 +13,10 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Rectangle
 from numpy.typing import NDArray
 
-from frictioncli.effects import BY_NAME
 from frictioncli.simulator.settings import PROTOCOLS
 from tests.studies.blind_rows import POWER, asked, claimed_size, interval, powers, sets_of
 from tests.studies.blind_worlds import SIZES, UNLISTED
+from tests.studies.effect_names import EFFECT_NAMES
 
 COLOURS = dict(zip(PROTOCOLS, ("#0072B2", "#D55E00"), strict=True))
 MARKERS = dict(zip(PROTOCOLS, ("o", "s"), strict=True))
@@ -42,10 +42,12 @@ def answer(row: dict[str, object]) -> str:
 
 def confusion(rows: pd.DataFrame) -> tuple[NDArray[np.float64], NDArray[np.intp]]:
     """Return the shares of the answers per row of the matrix, and the joints behind each row."""
-    titles = [*BY_NAME, *ANSWERS]
+    titles = [*EFFECT_NAMES, *ANSWERS]
     single = asked(rows, "single")
     parts = [asked(rows, "clean")]
-    parts += [single[(single["hidden"] == name) & (single["size"] >= LEAST)] for name in BY_NAME]
+    parts += [
+        single[(single["hidden"] == name) & (single["size"] >= LEAST)] for name in EFFECT_NAMES
+    ]
     unlisted = asked(rows, "unlisted")
     parts += [unlisted[unlisted["hidden"] == name] for name in UNLISTED]
     shares = np.zeros((len(parts), len(titles)))
@@ -79,19 +81,23 @@ def _matrix(axes: Axes, shares: NDArray[np.float64], counts: NDArray[np.intp]) -
             fontsize=9,
             color="white" if value > 0.6 else "black",
         )
-    hidden = [NOTHING, *BY_NAME, *UNLISTED]
+    hidden = [NOTHING, *EFFECT_NAMES, *UNLISTED]
     labels = [f"{name}  ({count})" for name, count in zip(hidden, counts, strict=True)]
     axes.set_yticks(range(len(hidden)), labels, fontsize=9)
-    names = [*BY_NAME, *ANSWERS]
+    names = [*EFFECT_NAMES, *ANSWERS]
     axes.set_xticks(range(len(names)), names, rotation=45, ha="right", fontsize=9)
     axes.set_xticks(np.arange(len(names) + 1) - 0.5, minor=True)
     axes.set_yticks(np.arange(len(hidden) + 1) - 0.5, minor=True)
     axes.grid(which="minor", color="#E4E6EA", linewidth=0.6)
     axes.tick_params(which="both", length=0)
-    axes.axvline(len(BY_NAME) - 0.5, color="#6B7078", linewidth=1.2)
-    for line in (0.5, len(BY_NAME) + 0.5):
+    axes.axvline(len(EFFECT_NAMES) - 0.5, color="#6B7078", linewidth=1.2)
+    for line in (0.5, len(EFFECT_NAMES) + 0.5):
         axes.axhline(line, color="#6B7078", linewidth=1.2)
-    right = [len(BY_NAME) + 2, *range(len(BY_NAME)), *[len(BY_NAME) + 1] * len(UNLISTED)]
+    right = [
+        len(EFFECT_NAMES) + 2,
+        *range(len(EFFECT_NAMES)),
+        *[len(EFFECT_NAMES) + 1] * len(UNLISTED),
+    ]
     for line, column in enumerate(right):
         axes.add_patch(
             Rectangle((column - 0.46, line - 0.46), 0.92, 0.92, fill=False, edgecolor="#D55E00")
@@ -103,7 +109,7 @@ def power_picture(rows: pd.DataFrame, path: Path) -> None:
     """Draw how often each effect is found by its size, with what the diagnosis claims."""
     figure = Figure(figsize=(13.0, 14.0), layout="constrained")
     panels = figure.subplots(5, 4, sharex=True, sharey=True)
-    for axes, name in zip(panels.flat, BY_NAME, strict=True):
+    for axes, name in zip(panels.flat, EFFECT_NAMES, strict=True):
         for protocol in PROTOCOLS:
             _power(axes, rows, name, protocol)
         axes.set_title(name, loc="left", fontsize=10.5, weight="bold")

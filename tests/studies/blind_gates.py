@@ -5,12 +5,12 @@ from collections.abc import Callable
 import numpy as np
 import pandas as pd
 
-from frictioncli.effects import BY_NAME
 from frictioncli.model.document import PARAMETERS
 from frictioncli.model.friction import PUBLISHED
 from frictioncli.simulator.settings import PROTOCOLS
 from tests.studies.blind_rows import asked, power_size, share
 from tests.studies.blind_truth import COUNTERPARTS, LEAVES_BASE
+from tests.studies.effect_names import EFFECT_NAMES
 
 ALIKE = ("linear_viscous", "quadratic_drag", "velocity_exponent", "drift", "run_in")
 """Effects that these protocols hardly tell from each other: two families, of speed and of time."""
@@ -116,7 +116,7 @@ def _small_effects(part: pd.DataFrame) -> str:
 
 
 def _pairs_of(part: pd.DataFrame) -> list[tuple[str, str]]:
-    return [(name, protocol) for protocol in part["protocol"].unique() for name in BY_NAME]
+    return [(name, protocol) for protocol in part["protocol"].unique() for name in EFFECT_NAMES]
 
 
 def _names(part: pd.DataFrame) -> str:

@@ -6,7 +6,6 @@ from pathlib import Path
 
 import pandas as pd
 
-from frictioncli.effects import BY_NAME
 from frictioncli.model.document import PARAMETERS
 from frictioncli.model.friction import PUBLISHED
 from frictioncli.simulator.settings import NOISE_KINDS, PROTOCOLS
@@ -15,6 +14,7 @@ from tests.studies.blind_gates import WORTH, coefficients, errors, gates, holds,
 from tests.studies.blind_rows import asked, claimed_size, percent, power_size, share
 from tests.studies.blind_truth import COUNTERPARTS, LEAVES_BASE
 from tests.studies.blind_worlds import LAG, SIZES, UNLISTED
+from tests.studies.effect_names import EFFECT_NAMES
 
 TEXT = Path(__file__).with_name("blind.txt")
 
@@ -106,7 +106,7 @@ def _size(value: float | None) -> str:
 
 def _sizes(rows: pd.DataFrame) -> str:
     lines = []
-    for name in BY_NAME:
+    for name in EFFECT_NAMES:
         cells = [name]
         for protocol in PROTOCOLS:
             if not (rows["hidden"] == name).any():
@@ -122,7 +122,7 @@ def _sizes(rows: pd.DataFrame) -> str:
 def _effects(rows: pd.DataFrame) -> str:
     single = asked(rows, "single")
     lines = []
-    for name in BY_NAME:
+    for name in EFFECT_NAMES:
         for size in SIZES:
             chosen = (single["hidden"] == name) & (single["size"] == size)
             parts = _by_protocol(single[chosen])
@@ -180,7 +180,7 @@ def _hopeless(rows: pd.DataFrame) -> str:
 def _pairs(rows: pd.DataFrame) -> str:
     pairs = asked(rows, "pair")
     lines = []
-    for name in BY_NAME:
+    for name in EFFECT_NAMES:
         parts = _by_protocol(pairs[pairs["hidden"] == f"{LAG}+{name}"])
         if not any(len(part) for part in parts):
             continue

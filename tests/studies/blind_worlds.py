@@ -6,8 +6,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from frictioncli.effects import BY_NAME
 from frictioncli.simulator.settings import NOISE_KINDS, PROTOCOLS, SynthesisSettings
+from tests.studies.effect_names import EFFECT_NAMES
 from tests.studies.rows import sources_digest
 
 PACKAGES = ("diagnosis", "effects", "simulator", "model")
@@ -93,12 +93,12 @@ def worlds(seeds: int) -> list[World]:
 
 
 def _of(protocol: str, seed: int) -> list[World]:
-    others = [name for name in BY_NAME if name != LAG]
+    others = [name for name in EFFECT_NAMES if name != LAG]
     return [
         *(World("clean", noise, protocol, "", 0.0, seed) for noise in NOISE_KINDS),
         *(
             World("single", "default", protocol, name, size, seed)
-            for name in BY_NAME
+            for name in EFFECT_NAMES
             for size in SIZES
         ),
         *(World("pair", "default", protocol, f"{LAG}+{name}", 1.0, seed) for name in others),

@@ -20,10 +20,10 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 
-from frictioncli.effects import BY_NAME
 from frictioncli.simulator.settings import SynthesisSettings
 from tests.simulation.torque_table import simulate_world
 from tests.studies.competitors import METHODS
+from tests.studies.effect_names import EFFECT_NAMES
 from tests.studies.joints import SLIGHT, WORTHWHILE, Finding, Joint
 
 ROOT = Path(__file__).parents[2]
@@ -71,7 +71,7 @@ def worlds(seeds: int) -> list[World]:
     """Return the clean joints of so many seeds, and those with an effect of one seed less."""
     clean = [World("", noise, seed) for seed in range(seeds) for noise in NOISES]
     hiding = range(max(seeds - 1, 1))
-    return clean + [World(name, "default", seed) for seed in hiding for name in BY_NAME]
+    return clean + [World(name, "default", seed) for seed in hiding for name in EFFECT_NAMES]
 
 
 def sources() -> dict[str, str]:
@@ -217,7 +217,7 @@ def _gated_answers(part: pd.DataFrame) -> list[str]:
 def _effects(hiding: pd.DataFrame) -> str:
     """Return what each method said of each effect, one sign per joint."""
     lines = ["| hidden | " + " | ".join(METHODS) + " |", "|---|" + "---|" * len(METHODS)]
-    for name in BY_NAME:
+    for name in EFFECT_NAMES:
         part = hiding[hiding["hidden"] == name]
         cells = [
             " ".join(SIGNS[answer] for answer in part.loc[part["method"] == method, "answer"])

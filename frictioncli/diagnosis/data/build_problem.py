@@ -9,6 +9,7 @@ from frictioncli.arrays import Array, Flags
 from frictioncli.diagnosis.data.base_models import candidate_bases
 from frictioncli.diagnosis.data.gravity import (
     NAMES,
+    by_angle,
     carried_load,
     columns_of,
     differs,
@@ -130,6 +131,7 @@ def _assembled(
     )
     motor = rows["motor_temperature"].to_numpy(float)
     rest, order = series(layout, motor[heads])
+    in_torque = gravity if rows["load"].isna().all() else _gravity_in_torque(rows, columns)
     table = EffectTable(
         run=run,
         pair=pair,
@@ -138,6 +140,8 @@ def _assembled(
         speed=speed,
         position=position,
         load=load,
+        load_gradient=_counted(rows) * (by_angle(columns) @ in_torque),
+        load_curvature=by_angle(by_angle(columns)) @ in_torque,
         temperature=known_temperature,
         motor_temperature=motor,
         housing_temperature=rows["housing_temperature"].to_numpy(float),
@@ -168,6 +172,23 @@ def _assembled(
         runs=tuple(str(name) for name in run_names),
     )
     return _with_friction(without_friction)
+
+
+def _counted(rows: pd.DataFrame) -> float:
+    """Return the sign convention of separated torques: +1 where forward is load plus friction."""
+    if not {"torque_forward", "torque_reverse"} <= set(rows):
+        return 1.0
+    difference = rows["torque_forward"].to_numpy(float) - rows["torque_reverse"].to_numpy(float)
+    return -1.0 if np.nansum(difference * rows["friction_torque"].to_numpy(float)) < 0 else 1.0
+
+
+def _gravity_in_torque(rows: pd.DataFrame, columns: Array) -> Array:
+    """Return gravity as it stands in the logged torque, which may have another unit than load."""
+    if not {"torque_forward", "torque_reverse"} <= set(rows):
+        return np.full(columns.shape[1], np.nan)
+    mean = (rows["torque_forward"] + rows["torque_reverse"]).to_numpy(float) / 2
+    known = np.isfinite(mean)
+    return np.asarray(np.linalg.lstsq(columns[known], mean[known], rcond=None)[0])
 
 
 def _with_friction(problem: Problem) -> Problem:

@@ -91,6 +91,33 @@ def columns_of(torques: pd.DataFrame, *, payloads: bool) -> Array:
     return gravity_columns(position, known_payload(torques) if payloads else None)
 
 
+def by_angle(columns: Array) -> Array:
+    """Return the derivatives of the columns of gravity by the joint angle [1/deg].
+
+    Parameters
+    ----------
+    columns : ndarray, shape (rows, 3) or (rows, 5)
+        As of :func:`gravity_columns`, or their derivatives.
+
+    Returns
+    -------
+    ndarray, shape (rows, 3) or (rows, 5)
+        The derivatives.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> print(by_angle(gravity_columns(np.array([0.0, 90.0]))).round(4))
+    [[-0.      0.0175  0.    ]
+     [-0.0175  0.      0.    ]]
+    """
+    derivative = np.zeros_like(columns)
+    for cosine in range(0, columns.shape[1], len(NAMES)):
+        derivative[:, cosine] = -columns[:, cosine + 1]
+        derivative[:, cosine + 1] = columns[:, cosine]
+    return derivative * (np.pi / 180)
+
+
 def without_offset(columns: Array) -> Array:
     """Return the columns of gravity with zeros in place of the offset's, of the same shape."""
     without = columns.copy()

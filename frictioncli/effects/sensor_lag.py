@@ -1,0 +1,87 @@
+r"""The temperature sensor follows the part that it measures with a delay.
+
+A sensor of time constant :math:`\theta_s` reads :math:`T - \theta_s \dot T`, and friction is that
+of the true temperature,
+
+.. math:: \Delta\tau = \frac{\partial\tau}{\partial T}\, \theta_s\, \dot T,
+
+lower while heating and higher while cooling than the reading tells. The slope :math:`\dot T` is
+that of a line through the readings of ten minutes.
+"""
+
+import numpy as np
+
+from frictioncli.arrays import Array
+from frictioncli.effects.base import Basis, Effect, EffectTable, Parameter, Signature, friction_only
+from frictioncli.effects.pair_series import pair_heads, starts
+
+_HALF_WINDOW = 300.0
+"""Half the window of the line through the readings. [s]"""
+
+
+def basis(table: EffectTable) -> Basis:
+    """Return the change of friction per time constant of the sensor, shape (rows, 1) [N·m/s]."""
+    heads = pair_heads(table)
+    run, time = table.run[heads.first], table.time[heads.first]
+    temperature = table.temperature[heads.first]
+    slope = np.zeros_like(time)
+    begins = np.flatnonzero(starts(run))
+    for begin, end in zip(begins, np.append(begins[1:], len(time)), strict=True):
+        slope[begin:end] = _slopes(time[begin:end], temperature[begin:end])
+    return friction_only(table.temperature_slope * heads.spread(slope))
+
+
+def _slopes(time: Array, value: Array) -> Array:
+    """Return the slope of the line through the values around each time, 0 where there is none."""
+    pairs = np.arange(len(time))
+    # a pair and its neighbours at least, however long the pause between them
+    low = np.minimum(np.searchsorted(time, time - _HALF_WINDOW, side="left"), pairs - 1)
+    high = np.maximum(np.searchsorted(time, time + _HALF_WINDOW, side="right"), pairs + 2)
+    low, high = np.maximum(low, 0), np.minimum(high, len(time))
+    count = high - low
+    moved, raised = time - time.mean(), value - value.mean()
+
+    def total(values: Array) -> Array:
+        sums = np.concatenate([[0.0], np.cumsum(values)])
+        return np.asarray(sums[high] - sums[low])
+
+    middle = total(moved) / count
+    spread = total(np.square(moved)) - count * np.square(middle)
+    together = total(moved * raised) - middle * total(raised)
+    known = spread > 1e-9 * np.maximum(np.square(np.ptp(time)), 1e-9)
+    return np.divide(together, spread, out=np.zeros_like(together), where=known)
+
+
+EFFECT = Effect(
+    name="sensor_lag",
+    summary="The temperature sensor lags behind the part that it measures.",
+    equation="dtau = dtau/dT*theta_s*dT/dt",
+    source="Response of first order of a temperature sensor, to first order in its time constant",
+    channel="friction",
+    shape=(),
+    coefficients=(
+        Parameter(
+            name="time_constant",
+            symbol="theta_s",
+            unit="s",
+            lower=0.0,
+            upper=300.0,
+            description="Time constant with which the sensor follows",
+        ),
+    ),
+    basis=basis,
+    measurement=True,
+    needs=("time", "temperature", "temperature_slope"),
+    signature=Signature(
+        axis="motor_temperature",
+        claim=(
+            "At the same reading friction is lower while heating than while cooling, in proportion"
+            " to the pace of the reading."
+        ),
+    ),
+    confounders=("thermal_lag", "drift", "run_in"),
+    experiment=(
+        "Stop the joint while it heats and read the sensor every few seconds: a sensor that lags"
+        " goes on rising at first."
+    ),
+)

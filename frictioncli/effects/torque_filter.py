@@ -1,0 +1,87 @@
+r"""The logged torque has passed a low-pass filter.
+
+A filter of first order, time constant :math:`\theta`, gives at constant velocity
+
+.. math:: u - \theta \dot u + \theta^2 \ddot u - \theta^3 \dddot u + \dots
+
+The first term is that of a delay :math:`\theta`, and stands in
+:mod:`frictioncli.effects.torque_delay`. Here are the second and the third,
+
+.. math::
+    \Delta L = s_2\, v^2 \frac{d^2 L}{dq^2}, \quad
+    \Delta\tau = s_2\, v^2 \frac{d^2 \tau}{dq^2} - s_3\, v^3 \frac{d^3 L}{dq^3},
+
+where a filter behind a delay *d* has
+:math:`s_2 = \theta^2 + \theta d + d^2/2` and a delay alone has half the square of the whole delay
+*D*: the time constant is :math:`\theta = (2 s_2 - D^2)^{1/2}`. Gravity is a sine of the angle, so
+that its third derivative is known from the first.
+"""
+
+import numpy as np
+
+from frictioncli.effects.base import Basis, Effect, EffectTable, Parameter, Signature
+
+_RADIANS = np.pi / 180
+
+
+def basis(table: EffectTable) -> Basis:
+    """Return the second term of both torques [N·m/s²] and the third of friction [N·m/s³].
+
+    Parameters
+    ----------
+    table : EffectTable
+        Pairs and angle bins.
+    """
+    squared = np.square(table.speed)
+    square = float(np.sum(np.square(table.load)))
+    # friction is alpha*L^2 of the load: 2*alpha is the derivative of its slope
+    twice_alpha = float(table.load_slope @ table.load) / square if square > 0 else 0.0
+    bend = twice_alpha * np.square(table.load_gradient) + table.load_slope * table.load_curvature
+    third = table.speed**3 * table.load_gradient * _RADIANS**2
+    load = squared * table.load_curvature
+    return Basis(np.column_stack([squared * bend, third]), np.column_stack([load, 0.0 * load]))
+
+
+EFFECT = Effect(
+    name="torque_filter",
+    summary="The logged torque is smoothed by a filter.",
+    equation="dL = s2*v^2*d2L/dq2, dtau = s2*v^2*d2tau/dq2 - s3*v^3*d3L/dq3",
+    source="Moments of the impulse response of a filter of first order behind a delay",
+    channel="load",
+    shape=(),
+    coefficients=(
+        Parameter(
+            name="second_moment",
+            symbol="s2",
+            unit="s²",
+            lower=0.0,
+            upper=0.1,
+            description=(
+                "Half the second moment of the filter's response in time: the square of the time"
+                " constant for a filter alone, half the square of the delay for a delay alone"
+            ),
+        ),
+        Parameter(
+            name="third_moment",
+            symbol="s3",
+            unit="s³",
+            lower=-0.001,
+            upper=0.03,
+            description="A sixth of the third moment of the filter's response in time",
+        ),
+    ),
+    basis=basis,
+    measurement=True,
+    needs=("speed", "load_curvature"),
+    uses=("load_gradient", "load_slope", "load"),
+    signature=Signature(
+        axis="position",
+        claim="The amplitude of the load torque over the angle falls with the square of speed.",
+    ),
+    confounders=("torque_delay", "torque_constant", "direction_asymmetry", "inertia"),
+    experiment=(
+        "Reverse the motion at high acceleration and look at the torque of single samples: a delay"
+        " shifts the step of friction, a filter smears it exponentially."
+    ),
+    mirror="Friction must lag as the torque_delay says, by the filter's time constant or more.",
+)
