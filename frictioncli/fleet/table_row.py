@@ -109,6 +109,8 @@ def _diagnosis_columns(work: Path) -> dict[str, Any]:
 def causes_text(causes: Sequence[CauseRecord]) -> str:
     """Return the causes of a diagnosis, strongest first: ``thermal_lag; drift or run_in``.
 
+    Properties of the measurement are findings like others; what is only visible is not listed.
+
     Parameters
     ----------
     causes : sequence of CauseRecord

@@ -7,6 +7,7 @@ from functools import partial
 from matplotlib.figure import Figure
 
 from frictioncli.diagnosis.documents.reload import Reloaded
+from frictioncli.diagnosis.documents.sentences import margin_text
 from frictioncli.report.diagnosis_text import (
     CauseText,
     cause_texts,
@@ -19,7 +20,7 @@ from frictioncli.report.diagnosis_text import (
     simulation_caption,
     unnamed_texts,
     verdict_sentence,
-    visible_sentences,
+    visible_table,
     worst_table,
 )
 from frictioncli.report.evidence_figure import evidence_figure
@@ -44,8 +45,10 @@ class DiagnosisSection:
         The verdict and the gain by the extended model, in words.
     causes, unnamed : tuple of CauseText
         Causes found, and structure that no effect of the catalogue explains.
-    visible : tuple of str
-        Effects that are significant but do not improve the prediction.
+    visible : TextTable or None
+        What was found and is not named, with the reason.
+    margin : str
+        The smallest size worth a name, in words.
     worst, detectable : TextTable or None
         Largest misfits of the simulation; smallest size at which each effect would be found.
     """
@@ -54,7 +57,8 @@ class DiagnosisSection:
     verdict: str = ""
     causes: tuple[CauseText, ...] = ()
     unnamed: tuple[CauseText, ...] = ()
-    visible: tuple[str, ...] = ()
+    visible: TextTable | None = None
+    margin: str = ""
     gain: str = ""
     worst: TextTable | None = None
     detectable: TextTable | None = None
@@ -76,7 +80,8 @@ def diagnosis_section(results: JointResults) -> DiagnosisSection:
         verdict=verdict_sentence(document, unit),
         causes=tuple(cause_texts(document, unit)),
         unnamed=tuple(unnamed_texts(document, unit)),
-        visible=visible_sentences(document, unit),
+        visible=visible_table(document, unit),
+        margin=margin_text(document, unit),
         gain=gain_sentence(document, unit),
         worst=worst if worst.rows else None,
         detectable=detectable_table(document, unit),

@@ -4,6 +4,15 @@ from dataclasses import dataclass
 
 from frictioncli.diagnosis.documents.document import CauseRecord, DiagnosisDocument
 from frictioncli.diagnosis.documents.extended_model import ParameterRecord
+from frictioncli.diagnosis.documents.sentences import (
+    alternatives_text,
+    finding_text,
+    lasting_text,
+    p_value_text,
+    remainder_text,
+    size_text,
+    standing_text,
+)
 from frictioncli.effects import BY_NAME
 from frictioncli.report.page_tables import TextTable
 from frictioncli.report.results import JointResults
@@ -13,6 +22,7 @@ from frictioncli.wording import (
     list_text,
     number_text,
     probability_text,
+    quantity_text,
     speed_text,
 )
 
@@ -29,21 +39,27 @@ class CauseText:
     ----------
     effects : str
         Effects that may be the cause, with their probabilities.
-    channel : str
-        Channel of the residuals in which it shows.
-    size : str
-        RMS of the fitted term, with its unit.
+    kind : str
+        What it is a property of: friction, load, or the measurement.
+    size, details : str
+        RMS of the fitted term, with its unit; the same with its interval, where it shows and what
+        the base model leaves of it.
     p_value : str
         Probability that noise alone would give as much.
+    finding, lasting : str
+        The cause in a sentence with values; whether it lasts, empty where that cannot be tested.
     claim, equation, parameters, experiment : str
         What was seen, the term and its fitted parameters, and what to measure next. The equation
         is empty if no effect explains the structure.
     """
 
     effects: str
-    channel: str
+    kind: str
     size: str
+    details: str
     p_value: str
+    finding: str
+    lasting: str
     claim: str
     equation: str
     parameters: str
@@ -60,44 +76,68 @@ def verdict_sentence(document: DiagnosisDocument, unit: str) -> str:
     unit : str
         Unit of torque.
     """
-    named = [cause.effects for cause in document.causes if cause.effects]
     misfit = (
         f"The simulated torque misses the measured one by"
         f" {number_text(document.simulation.rmse)} {unit} (RMS,"
         f" {list_text(document.runs)})."
     )
     if document.verdict == "no_evidence":
-        return (
-            f"{misfit} No cause was found in that: no effect of the catalogue and no other"
-            " structure. The table below says how large each effect would have to be to be found."
+        found = (
+            "No cause is named in that; what stands out of the noise, and why it is not named,"
+            " says the table below."
+            if document.visible
+            else "No cause was found in that: no effect of the catalogue and no other structure."
+            " The table below says how large each effect would have to be to be found."
         )
+        return _joined(misfit, found, remainder_text(document, unit))
+    named, lost, measured = (
+        [cause for cause in document.named_causes if wanted(cause)]
+        for wanted in (
+            lambda cause: not cause.is_measurement and cause.holds_on_new_run is not False,
+            lambda cause: not cause.is_measurement and cause.holds_on_new_run is False,
+            lambda cause: cause.is_measurement,
+        )
+    )
     sentences = []
-    certain = [in_words(effects[0]) for effects in named if len(effects) == 1]
+    certain = [in_words(cause.effects[0]) for cause in named if len(cause.effects) == 1]
     if certain:
         sentences.append(f"The model lacks {list_text(certain)}.")
     sentences += [
-        f"The model lacks one of {list_text([in_words(name) for name in effects])}: these data"
-        " cannot tell them apart."
-        for effects in named
-        if len(effects) > 1
+        f"The model lacks one of {list_text([in_words(name) for name in cause.effects])}: these"
+        " data cannot tell them apart."
+        for cause in named
+        if len(cause.effects) > 1
     ]
+    sentences += [
+        f"{alternatives_text(cause).capitalize()}: {_lower(lasting_text(cause, document))}"
+        for cause in lost
+    ]
+    sentences += [f"Of the measurement: {_lower(finding_text(cause))}" for cause in measured]
     if document.verdict == "unnamed":
-        start = "Beside that, structure" if named else "Structure"
+        start = "Beside that, structure" if sentences else "Structure"
         sentences.append(f"{start} is left that no effect of the catalogue explains.")
-    return " ".join([misfit, *sentences])
+    return _joined(misfit, *sentences, remainder_text(document, unit))
+
+
+def _joined(*sentences: str) -> str:
+    return " ".join(sentence for sentence in sentences if sentence)
+
+
+def _lower(sentence: str) -> str:
+    return sentence[:1].lower() + sentence[1:]
 
 
 def cause_texts(document: DiagnosisDocument, unit: str) -> list[CauseText]:
     """Return the causes that effects of the catalogue explain, strongest first."""
-    return [_cause(cause, unit) for cause in document.causes if cause.effects]
+    return [_cause(cause, document, unit) for cause in document.named_causes]
 
 
 def unnamed_texts(document: DiagnosisDocument, unit: str) -> list[CauseText]:
     """Return the structure that no effect of the catalogue explains."""
-    return [_cause(cause, unit) for cause in document.causes if not cause.effects]
+    return [_cause(cause, document, unit) for cause in document.causes if not cause.effects]
 
 
-def _cause(cause: CauseRecord, unit: str) -> CauseText:
+def _cause(cause: CauseRecord, document: DiagnosisDocument, unit: str) -> CauseText:
     probabilities = cause.probabilities
     return CauseText(
         effects=" or ".join(
@@ -106,9 +146,12 @@ def _cause(cause: CauseRecord, unit: str) -> CauseText:
             else in_words(name)
             for name in cause.effects
         ),
-        channel=cause.channel,
+        kind=cause.kind or cause.channel,
         size=f"{number_text(cause.size, 2)} {unit}",
+        details=size_text(cause, unit),
         p_value=p_value_text(cause.p_value),
+        finding=finding_text(cause),
+        lasting=lasting_text(cause, document),
         claim=cause.claim,
         equation=cause.equation,
         parameters="; ".join(_parameter(name, stated) for name, stated in cause.parameters.items()),
@@ -116,27 +159,36 @@ def _cause(cause: CauseRecord, unit: str) -> CauseText:
     )
 
 
-def p_value_text(p_value: float) -> str:
-    """Return a p-value as text."""
-    if p_value < 1e-300:
-        return "below 1e−300"
-    return f"{p_value:.0e}".replace("-", "−") if p_value < 1e-3 else number_text(p_value, 2)
-
-
 def _parameter(name: str, stated: ParameterRecord) -> str:
-    unit = "" if stated.unit == "1" else f" {stated.unit}"
-    interval = stated.ci95
-    span = f" ({number_text(interval[0])} to {number_text(interval[1])})" if interval else ""
-    return f"{in_words(name)} {number_text(stated.estimate)}{unit}{span}"
+    return f"{in_words(name)} {quantity_text(stated.estimate, stated.ci95, stated.unit)}"
 
 
-def visible_sentences(document: DiagnosisDocument, unit: str) -> tuple[str, ...]:
-    """Return the effects that are significant but do not improve the prediction."""
-    return tuple(
-        f"{' or '.join(in_words(name) for name in entry.effects)} stands out of the noise"
-        f" ({number_text(entry.size, 2)} {unit} RMS, chance {p_value_text(entry.p_value)}), but"
-        " the extended model is no better with it: it is not worth modelling."
-        for entry in document.visible
+def visible_table(document: DiagnosisDocument, unit: str) -> TextTable | None:
+    """Return what was found and is not named, with the reason; None if there is nothing.
+
+    Parameters
+    ----------
+    document : DiagnosisDocument
+        The joint's part of ``diagnosis.json``.
+    unit : str
+        Unit of torque.
+    """
+    if not document.visible:
+        return None
+    return TextTable(
+        title="Seen, but not named",
+        header=("effect", "kind", "why it is not named", f"RMS [{unit}]", "chance of noise alone"),
+        rows=tuple(
+            (
+                alternatives_text(cause),
+                cause.kind or cause.channel,
+                standing_text(cause),
+                quantity_text(cause.size, cause.size_ci95, "1"),
+                p_value_text(cause.p_value),
+            )
+            for cause in document.visible
+        ),
+        texts=3,
     )
 
 
@@ -270,6 +322,7 @@ def gain_caption(results: JointResults, *, document: DiagnosisDocument) -> str:
 
 def cause_title(cause: CauseRecord, number: int) -> str:
     """Return the heading of a cause's figure."""
-    return f"Cause {number}. {' or '.join(in_words(name) for name in cause.effects[:3])}" + (
+    kind = "Measurement" if cause.is_measurement else "Cause"
+    return f"{kind} {number}. {' or '.join(in_words(name) for name in cause.effects[:3])}" + (
         f" or {count_text(len(cause.effects) - 3, 'other')}" if len(cause.effects) > 3 else ""
     )

@@ -3,13 +3,13 @@
 from dataclasses import dataclass
 
 from frictioncli.diagnosis.documents.document import DiagnosisDocument
+from frictioncli.diagnosis.documents.sentences import alternatives_text
 from frictioncli.model.document import PARAMETERS
 from frictioncli.report.labels import PARAMETER_SYMBOLS
 from frictioncli.report.results import JointResults
 from frictioncli.report.style import PHASE_WORDS, PHASES
 from frictioncli.wording import (
     count_text,
-    in_words,
     list_text,
     number_text,
     speed_text,
@@ -264,25 +264,41 @@ def model_rating(results: JointResults, diagnosis: DiagnosisDocument | None) -> 
             level=FAIR, name="Model", reason="What the model misses has not been judged yet."
         )
     missed = f"{number_text(diagnosis.simulation.rmse)} {results.unit} (RMS)"
-    causes = [[in_words(name) for name in cause.effects] for cause in diagnosis.causes]
-    named = list_text([" or ".join(names) for names in causes if names] or ["nothing"])
+    left = diagnosis.remainder
+    beside = (
+        f" It is still {number_text(left.rmse)} {results.unit}"
+        f"{' on a new run' if left.basis == 'new_run' else ''}, where noise alone is"
+        f" {number_text(left.noise_floor)} {results.unit}."
+        if left
+        else ""
+    )
     if diagnosis.verdict == "no_evidence":
         return QualityRating(
-            level=GOOD,
+            level=FAIR if left else GOOD,
             name="Model",
-            reason=f"No cause was found in what the simulated torque misses, {missed}.",
+            reason=f"No cause was found in what the simulated torque misses, {missed}.{beside}",
         )
     if diagnosis.verdict == "unnamed":
         return QualityRating(
             level=POOR,
             name="Model",
             reason=f"The simulated torque misses {missed}, with structure that no known effect"
-            " explains.",
+            f" explains.{beside}",
         )
+    lacking, measured = (
+        list_text(names) if names else ""
+        for names in (
+            [alternatives_text(one) for one in diagnosis.named_causes if not one.is_measurement],
+            [alternatives_text(one) for one in diagnosis.named_causes if one.is_measurement],
+        )
+    )
+    lacks = f"lacks {lacking}" if lacking else "does not know what the measurement adds"
+    adds = f" (the measurement adds {measured})" if measured else ""
     return QualityRating(
         level=FAIR,
         name="Model",
-        reason=f"Equation (16) lacks {named}: alone it misses {missed}. The extended model has it.",
+        reason=f"Equation (16) {lacks}{adds}: alone it misses {missed}. The extended model has"
+        f" it.{beside}",
     )
 
 

@@ -6,12 +6,13 @@ import numpy as np
 import pandas as pd
 
 from frictioncli.diagnosis.documents.document import DiagnosisDocument
+from frictioncli.diagnosis.documents.sentences import alternatives_text
 from frictioncli.model.document import PARAMETERS
 from frictioncli.report.evaluation_figure import compared_criterion, setting_text
 from frictioncli.report.labels import CRITERION_WORDS, PARAMETER_SYMBOLS, TEMPERATURE_WORDS
 from frictioncli.report.results import JointResults
 from frictioncli.report.style import PHASE_WORDS, PHASES
-from frictioncli.wording import count_text, in_words, list_text, number_text, range_text, speed_text
+from frictioncli.wording import count_text, list_text, number_text, range_text, speed_text
 
 _TARGET_ERROR = 2.0
 """Error that the source paper reaches. [N·m]"""
@@ -259,14 +260,16 @@ def _error(schedule: pd.DataFrame) -> float:
 def _diagnosis_sentence(results: JointResults, diagnosis: DiagnosisDocument | None) -> str:
     if diagnosis is None:
         return ""
-    lacking = [
-        " or ".join(in_words(name) for name in cause.effects)
-        for cause in diagnosis.causes
-        if cause.effects
-    ]
+    causes = diagnosis.named_causes
+    lacking = [alternatives_text(cause) for cause in causes if not cause.is_measurement]
+    measured = [alternatives_text(cause) for cause in causes if cause.is_measurement]
     if diagnosis.verdict == "no_evidence":
-        return "No cause was found in what the function misses."
+        found = "is named" if diagnosis.visible else "was found"
+        return f"No cause {found} in what the function misses."
     text = f"The function lacks {list_text(lacking)}" if lacking else "No known effect is named"
+    if measured:
+        beside = f"{text}, and the" if lacking else "The"
+        text = f"{beside} measurement adds {list_text(measured)}"
     if diagnosis.verdict == "unnamed":
         text += ", and structure is left that no known effect explains"
     gain = diagnosis.gain

@@ -42,32 +42,33 @@ def diagnose(work: Path, settings: DiagnosisSettings | None = None) -> StageResu
     unit = facts.get("torque_unit", "N·m")
     ramps = ramp_logs(work / RAMPS, facts.get("sign", {}))
     inputs = existing(work / TORQUES, work / MODEL, work / RAMPS)
-    diagnoses, faults = [], []
+    diagnoses, extended, faults = {}, {}, []
     for model in read_models(work / MODEL):
         rows = torques[torques["joint"] == model.joint]
         try:
             diagnosis = diagnose_joint(
                 rows, model.temperature, unit, settings, ramps=ramps.get(model.joint)
             )
-            diagnoses.append((model, diagnosis))
         except NotEnoughData as fault:
             faults.append(str(fault))
+        else:
+            diagnoses[model.joint] = diagnosis_document(diagnosis, settings)
+            extended[model.joint] = extended_document(diagnosis, model)
     if not diagnoses:
         raise NotEnoughData("; ".join(faults))
     provenance = Provenance("diagnose", asdict(settings), input_hashes(inputs))
-    main_joint = max(diagnoses, key=lambda pair: pair[0].n_pairs)[0].joint
-    for name, documents in (
-        (DIAGNOSIS, {m.joint: diagnosis_document(d, settings) for m, d in diagnoses}),
-        (EXTENDED, {m.joint: extended_document(d, m) for m, d in diagnoses}),
-    ):
-        write_joints(work / name, documents, main_joint, provenance)
-    return StageResult(
-        work / DIAGNOSIS, "\n".join([*(verdict_text(d) for _, d in diagnoses), *faults])
-    )
+    main_joint = max(extended, key=lambda joint: extended[joint].n_pairs)
+    write_joints(work / DIAGNOSIS, diagnoses, main_joint, provenance)
+    write_joints(work / EXTENDED, extended, main_joint, provenance)
+    texts = (verdict_text(document) for document in diagnoses.values())
+    return StageResult(work / DIAGNOSIS, "\n".join([*texts, *faults]))
 
 
 def has_finding(work: Path, *, named_only: bool) -> bool:
-    """Return whether the diagnosis of any joint holds a cause.
+    """Return whether the diagnosis of any joint has found something.
+
+    A finding is a cause that is named, a property of the measurement and a change that did not
+    last included, or structure without a name. What is listed as visible is none.
 
     Parameters
     ----------
@@ -77,5 +78,8 @@ def has_finding(work: Path, *, named_only: bool) -> bool:
         Whether only causes that have a single name count.
     """
     diagnoses = read_diagnoses(work / DIAGNOSIS).values()
-    causes = [cause for diagnosis in diagnoses for cause in diagnosis.causes]
-    return any(len(cause.effects) == 1 or not named_only for cause in causes)
+    return any(
+        len(cause.effects) == 1 and cause.standing == "named" if named_only else True
+        for diagnosis in diagnoses
+        for cause in diagnosis.causes
+    )

@@ -54,29 +54,30 @@ def extended_document(work, torques, *, held_out="day-2"):
     return model
 
 
-def cause(names, experiment="Wait."):
+def cause(names, **changed):
     """A cause with this credible set."""
-    return CauseRecord(
-        effects=tuple(names),
-        probabilities={},
-        channel="friction",
-        claim="",
-        equation="",
-        parameters={},
-        size=1.0,
-        p_value=1e-9,
-        seen_in="speed",
-        figure=None,
-        experiment=experiment,
-    )
+    fields = {
+        "probabilities": {},
+        "channel": "friction",
+        "claim": "",
+        "equation": "",
+        "parameters": {},
+        "size": 1.0,
+        "p_value": 1e-9,
+        "seen_in": "speed",
+        "figure": None,
+        "experiment": "Wait.",
+    } | changed
+    return CauseRecord(effects=tuple(names), **fields)
 
 
-def diagnosis(*, sets, rmse, **changed):
+def diagnosis(*, sets=(), rmse=1.0, **changed):
     """A diagnosis whose causes have these credible sets, and nothing else."""
+    causes = changed.pop("causes", tuple(cause(names) for names in sets))
     fields = {"verdict": "named", "gain": None, "detectable": {}, "held_out": "day-2"} | changed
     return DiagnosisDocument(
         joint=2,
-        causes=tuple(cause(names) for names in sets),
+        causes=causes,
         simulation=SimulationRecord(rmse=rmse),
         torque_unit="N·m",
         runs=("day-1",),
@@ -126,7 +127,21 @@ DIAGNOSIS_DOCUMENT = {
             figure=None,
         ),
     ],
-    "visible": [{"effects": ["inertia"], "size": 0.05, "p_value": 0.0}],
+    "visible": [
+        cause_document(
+            4,
+            ["inertia"],
+            {"inertia": 1.0},
+            kind="load",
+            standing="negligible",
+            reason="the base leaves 0.05 N·m, less than 0.10 N·m",
+            size=0.05,
+            size_ci95=[0.031, 0.069],
+            p_value=0.0,
+            figure=None,
+        )
+    ],
+    "margin": 0.1,
     "gain": {
         "basis": "new_run",
         "rmse_before": 2.0,

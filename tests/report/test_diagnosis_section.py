@@ -54,11 +54,18 @@ def test_section_says_what_was_found(diagnosed, diagnosis):
     ]
     first = section.causes[0]
     assert (first.size, first.p_value) == ("1.2 N·m", "3e−09")
-    assert first.parameters == "velocity 8.00 deg/s; boundary torque 3.00 N·m (2.50 to 3.50)"
+    assert first.parameters == "velocity 8.0 deg/s; boundary torque 3.0 N·m (2.5 to 3.5)"
     assert [one.claim for one in section.unnamed] == ["Residuals have structure along angle."]
-    assert section.visible[0].startswith(
-        "inertia stands out of the noise (0.050 N·m RMS, chance below 1e−300)"
+    assert section.visible.rows == (
+        (
+            "inertia",
+            "load",
+            "smaller than what is worth a name: the base leaves 0.05 N·m, less than 0.10 N·m",
+            "0.05 (0.03 to 0.07)",
+            "below 1e−300",
+        ),
     )
+    assert section.margin == "Sizes below 0.10 N·m are not named (--margin)."
     assert "run day-2, which the diagnosis has not seen" in section.gain
     assert "50 % less (95 % interval: 40 % less to 60 % less)" in section.gain
     assert section.detectable.rows[0][2] == "0.40"
@@ -103,7 +110,7 @@ def test_a_gain_that_is_none_is_said_to_be_none():
 def test_silence_is_explained_and_draws_no_gain(diagnosed, diagnosed_work):
     document = deepcopy(DIAGNOSIS_DOCUMENT)
     model = json.loads((diagnosed_work / "extended-model.json").read_text())
-    document |= {"verdict": "no_evidence", "causes": [], "gain": None}
+    document |= {"verdict": "no_evidence", "causes": [], "visible": [], "gain": None}
     model["effects"] = []
     found = reload(
         diagnosed.torques,

@@ -14,12 +14,31 @@ from frictioncli.diagnosis.settings import DiagnosisSettings
 Channel = Annotated[str, msgspec.Meta(pattern="^(friction|load)$")]
 """The part of the torque in which something shows."""
 
+Kind = Annotated[str, msgspec.Meta(pattern="^(friction|load|measurement)$")]
+"""What a cause is a property of."""
+
+Standing = Annotated[str, msgspec.Meta(pattern="^(named|visible|negligible|undetermined)$")]
+"""What may be said of a cause."""
+
 
 class CauseRecord(msgspec.Struct, frozen=True, kw_only=True):
     """A cause of what the simulated torque misses.
 
+    Files of versions that did not judge standings lack some of the keys; these have defaults.
+
     Attributes
     ----------
+    kind : {"friction", "load", "measurement"} or None
+        Whether it is a property of the joint's friction, of its load, or of the log; None for
+        structure without a name.
+    standing : {"named", "visible", "negligible", "undetermined"}
+        What may be said of it: it is named; it stands out of the noise, but is not named; it is
+        smaller than the margin; its size is not known well enough.
+    holds_on_new_run : bool or None
+        Whether it is there on the hold-out run too: if not, it is a change that did not last. None
+        where that cannot be tested.
+    reason : str
+        Why it is not named; empty where it is.
     effects : tuple of str
         The credible set: effects that these data cannot tell apart; empty for structure that no
         effect of the catalogue explains.
@@ -27,12 +46,21 @@ class CauseRecord(msgspec.Struct, frozen=True, kw_only=True):
         Probability of each effect. [1]
     channel : {"friction", "load"}
         The part of the torque in which it shows.
-    claim, equation : str
-        The cause in words and in symbols.
+    statement, claim, equation : str
+        The cause in a sentence with values, what is seen of it, and the cause in symbols.
+    when : str
+        The runs and hours in which it was there; empty where it always is.
     parameters : mapping of str to ParameterRecord
         Its shape parameters and coefficients.
     size : float
         RMS in these data. [torque unit]
+    size_ci95 : (float, float) or None
+        95 % interval of that. [torque unit]
+    visible_size : float or None
+        RMS of what the base model leaves of it: the rest is in the base model's parameters.
+        [torque unit]
+    visible_ci95 : (float, float) or None
+        95 % interval of that. [torque unit]
     p_value : float
         Probability that noise alone gives as much, corrected for the number of candidates. [1]
     seen_in : str
@@ -43,35 +71,87 @@ class CauseRecord(msgspec.Struct, frozen=True, kw_only=True):
         What to measure next.
     """
 
+    kind: Kind | None = None
+    standing: Standing = "named"
+    holds_on_new_run: bool | None = None
+    reason: str = ""
     effects: tuple[str, ...]
     probabilities: Mapping[str, float]
     channel: Channel
+    statement: str = ""
     claim: str
     equation: str
+    when: str = ""
     parameters: Mapping[str, ParameterRecord]
     size: float
+    size_ci95: tuple[float, float] | None = None
+    visible_size: float | None = None
+    visible_ci95: tuple[float, float] | None = None
     p_value: float
     seen_in: str
     figure: str | None
     experiment: str
 
+    @property
+    def is_measurement(self) -> bool:
+        """Whether it is a property of the log, which the extended model corrects."""
+        return self.kind == "measurement"
 
-class VisibleRecord(msgspec.Struct, frozen=True, kw_only=True):
-    """A cause that stands out of the noise, but does not improve the extended model.
+
+class StructureRecord(msgspec.Struct, frozen=True, kw_only=True):
+    """Structure of the misfit that no effect of the catalogue explains.
 
     Attributes
     ----------
-    effects : tuple of str
-        The credible set.
+    axis : tuple of str
+        The columns along which it shows: ``position``, ``speed``, ``temperature``, ``time`` or
+        ``load``.
+    channel : {"friction", "load"}
+        The part of the torque in which it shows.
+    description : str
+        The structure in words.
+    formula : str or None
+        An equation that describes it, if there is one.
     size : float
         RMS in these data. [torque unit]
-    p_value : float
-        Probability that noise alone gives as much. [1]
+    ci95 : (float, float) or None
+        95 % interval of that. [torque unit]
     """
 
-    effects: tuple[str, ...]
+    axis: tuple[str, ...]
+    channel: Channel
+    description: str
+    formula: str | None = None
     size: float
-    p_value: float
+    ci95: tuple[float, float] | None = None
+
+
+class RemainderRecord(msgspec.Struct, frozen=True, kw_only=True):
+    """What the extended model still misses, where that is clearly more than noise.
+
+    Attributes
+    ----------
+    basis : {"new_run", "within_run"}
+        Whether it was measured on a run that the diagnosis has not used.
+    rmse, noise_floor : float
+        RMS misfit of the extended model, and RMS of the noise. [torque unit]
+    size : float
+        RMS of what is left beside the noise. [torque unit]
+    axis : str
+        The column along which most of it shows.
+    channel : {"friction", "load"}
+        The part of the torque in which that is.
+    axis_size : float
+        RMS of the means along that column. [torque unit]
+    """
+
+    basis: str
+    rmse: float
+    noise_floor: float
+    size: float
+    axis: str
+    channel: Channel
+    axis_size: float
 
 
 class GainRecord(msgspec.Struct, frozen=True, kw_only=True):
@@ -146,11 +226,17 @@ class DiagnosisDocument(msgspec.Struct, frozen=True, kw_only=True):
     verdict : {"no_evidence", "named", "ambiguous", "unnamed"}
         Whether all causes have one name, several, or none.
     causes : tuple of CauseRecord
-        The causes, strongest first; structure without a name is the last.
-    visible : tuple of VisibleRecord
-        Causes that do not improve the extended model.
+        The causes that are named, strongest first; structure without a name is the last.
+    visible : tuple of CauseRecord
+        Everything else that was found and is not named, with the reason.
+    structure : StructureRecord or None
+        The structure without a name.
+    margin : float or None
+        Smallest size worth a name; None in files of versions without it. [torque unit]
     gain : GainRecord or None
         How much less the extended model misses; none without causes.
+    remainder : RemainderRecord or None
+        What the extended model still misses; none where it is hardly more than noise.
     detectable : mapping of str to (float or None)
         Smallest RMS of each effect that is found four times in five; none where these data cannot
         show it. [torque unit]
@@ -171,8 +257,11 @@ class DiagnosisDocument(msgspec.Struct, frozen=True, kw_only=True):
     joint: int
     verdict: str
     causes: tuple[CauseRecord, ...]
-    visible: tuple[VisibleRecord, ...] = ()
+    visible: tuple[CauseRecord, ...] = ()
+    structure: StructureRecord | None = None
+    margin: float | None = None
     gain: GainRecord | None
+    remainder: RemainderRecord | None = None
     detectable: Mapping[str, float | None]
     simulation: SimulationRecord
     ramps: RampsRecord | None = None

@@ -3,6 +3,7 @@
 from dataclasses import fields, replace
 
 import numpy as np
+from msgspec import structs
 
 from frictioncli.diagnosis.data.gravity import gravity_document
 from frictioncli.diagnosis.diagnose import Diagnosis
@@ -12,23 +13,26 @@ from frictioncli.diagnosis.documents.document import (
     GainRecord,
     RampsRecord,
     SimulationRecord,
-    VisibleRecord,
+    StructureRecord,
 )
 from frictioncli.diagnosis.documents.extended_model import (
     EffectRecord,
     ExtendedDocument,
     ParameterRecord,
 )
-from frictioncli.diagnosis.fit.extension import Extension
+from frictioncli.diagnosis.documents.parameters import (
+    Z95,
+    extension_coefficients,
+    extension_parameters,
+    fitted_parameters,
+    statement,
+)
+from frictioncli.diagnosis.documents.remainder import remainder_record
 from frictioncli.diagnosis.search.cause_search import Cause
 from frictioncli.diagnosis.search.lack_of_fit import Structure
 from frictioncli.diagnosis.settings import DiagnosisSettings
-from frictioncli.effects.base import Parameter
 from frictioncli.model.document import PARAMETERS, FrictionModel
 from frictioncli.model.friction import FrictionParameters
-from frictioncli.quantities import TORQUE
-
-_Z95 = 1.96
 
 
 def diagnosis_document(diagnosis: Diagnosis, settings: DiagnosisSettings) -> DiagnosisDocument:
@@ -51,10 +55,9 @@ def diagnosis_document(diagnosis: Diagnosis, settings: DiagnosisSettings) -> Dia
         joint=diagnosis.joint,
         verdict=diagnosis.verdict,
         causes=tuple(causes),
-        visible=tuple(
-            VisibleRecord(effects=cause.effects, size=cause.size, p_value=cause.test.p_value)
-            for cause in diagnosis.visible
-        ),
+        visible=tuple(_visible_record(diagnosis, cause) for cause in diagnosis.visible),
+        structure=None if diagnosis.structure is None else _structure_record(diagnosis.structure),
+        margin=diagnosis.margin,
         gain=None
         if gain is None
         else GainRecord(
@@ -65,6 +68,7 @@ def diagnosis_document(diagnosis: Diagnosis, settings: DiagnosisSettings) -> Dia
             ci95=gain.interval,
             noise_floor=gain.floor,
         ),
+        remainder=remainder_record(diagnosis),
         detectable=diagnosis.detectable,
         simulation=SimulationRecord(rmse=diagnosis.rmse, worst=diagnosis.worst),
         ramps=_ramps_record(diagnosis),
@@ -98,7 +102,7 @@ def extended_document(diagnosis: Diagnosis, model: FrictionModel) -> ExtendedDoc
         parameters[name] = replace(
             parameters[name],
             estimate=value,
-            ci95=(value - _Z95 * float(error), value + _Z95 * float(error)),
+            ci95=(value - Z95 * float(error), value + Z95 * float(error)),
         )
     effects = [
         EffectRecord(
@@ -106,7 +110,7 @@ def extended_document(diagnosis: Diagnosis, model: FrictionModel) -> ExtendedDoc
             equation=one.effect.equation,
             channel=one.effect.channel,
             shape=one.shape,
-            coefficients=_coefficients(extension, number, diagnosis.torque_unit),
+            coefficients=extension_coefficients(extension, number, diagnosis.torque_unit),
         )
         for number, one in enumerate(extension.effects)
     ]
@@ -139,72 +143,115 @@ def _ramps_record(diagnosis: Diagnosis) -> RampsRecord | None:
 
 
 def _cause_record(diagnosis: Diagnosis, cause: Cause, number: int) -> CauseRecord:
-    effect = cause.fit.effect
-    extension = diagnosis.extension
+    """Return a named cause; its parameters are those of the extended model."""
+    extension, unit = diagnosis.extension, diagnosis.torque_unit
     assert extension is not None  # there is one wherever there is a cause
+    parameters = extension_parameters(extension, cause.fit.effect.name, unit)
+    return _record(cause, parameters, f"diagnosis-{number}.svg")
+
+
+def _visible_record(diagnosis: Diagnosis, cause: Cause) -> CauseRecord:
+    """Return a cause that is not named; its parameters are those of its own fit."""
+    record = _record(cause, fitted_parameters(cause.fit, diagnosis.torque_unit), None)
+    if cause.standing != "named":
+        return record
+    return structs.replace(
+        record, standing="visible", reason="the extended model is no better with it"
+    )
+
+
+def _record(
+    cause: Cause, parameters: dict[str, ParameterRecord], figure: str | None
+) -> CauseRecord:
+    effect = cause.fit.effect
     return CauseRecord(
+        kind=effect.kind,
+        standing=cause.standing,
+        holds_on_new_run=cause.holds_on_new_run,
+        reason=cause.reason,
         effects=cause.effects,
         probabilities=cause.probabilities,
         channel=effect.channel,
+        statement=statement(effect, parameters),
         claim=effect.signature.claim,
         equation=effect.equation,
-        parameters=_shapes(extension, number - 1)
-        | _coefficients(extension, number - 1, diagnosis.torque_unit),
+        parameters=parameters,
         size=cause.size,
+        size_ci95=_size_interval(cause),
+        visible_size=cause.visible,
+        visible_ci95=_known(cause.visible_interval),
         p_value=cause.test.p_value,
         seen_in=effect.signature.axis,
-        figure=f"diagnosis-{number}.svg",
+        figure=figure,
         experiment=effect.experiment,
     )
 
 
+def _size_interval(cause: Cause) -> tuple[float, float] | None:
+    """Return the interval of a cause's size.
+
+    The size of an effect with one coefficient is in proportion to it; that of others is what the
+    base leaves of them.
+    """
+    if len(cause.fit.coefficients) != 1:
+        return _known(cause.visible_interval)
+    value = abs(float(cause.fit.coefficients[0]))
+    reach = Z95 * float(np.sqrt(max(float(cause.fit.covariance[0, 0]), 0.0)))
+    if value == 0.0:
+        return None
+    scale = cause.size / value
+    return (scale * max(value - reach, 0.0), scale * (value + reach))
+
+
+def _known(interval: tuple[float, float]) -> tuple[float, float] | None:
+    """Return an interval, or None where it has no end."""
+    low, high = (float(end) for end in interval)
+    return (low, high) if np.isfinite(low) and np.isfinite(high) else None
+
+
+def _structure_record(structure: Structure) -> StructureRecord:
+    return StructureRecord(
+        axis=structure_axes(structure.axis),
+        channel=structure.channel,
+        description=_description(structure),
+        size=structure.size,
+    )
+
+
+def structure_axes(axis: str) -> tuple[str, ...]:
+    """Return the columns of the catalogue's table along which structure shows.
+
+    Parameters
+    ----------
+    axis : str
+        One axis or two, in words.
+
+    Examples
+    --------
+    >>> structure_axes("angle and speed")
+    ('position', 'speed')
+    """
+    return tuple("position" if one == "angle" else one for one in axis.split(" and "))
+
+
+def _description(structure: Structure) -> str:
+    return f"Residuals of the {structure.channel} have structure along {structure.axis}."
+
+
 def _unnamed_record(structure: Structure) -> CauseRecord:
-    channel, axis = structure.channel, structure.axis
+    """Return structure without a name in the form of a cause."""
     return CauseRecord(
+        standing="visible",
+        reason="no effect of the catalogue explains it",
         effects=(),
         probabilities={},
-        channel=channel,
-        claim=f"Residuals of the {channel} have structure along {axis}.",
+        channel=structure.channel,
+        claim=_description(structure),
         equation="",
         parameters={},
         size=structure.size,
         p_value=structure.p_value,
-        seen_in=axis,
+        seen_in=structure.axis,
         figure=None,
-        experiment=f"Measure more values of {axis}, in random order, on another day.",
+        experiment=f"Measure more values of {structure.axis}, in random order, on another day.",
     )
-
-
-def _coefficients(extension: Extension, number: int, unit: str) -> dict[str, ParameterRecord]:
-    start = len(extension.names) + len(extension.gravity)
-    start += sum(len(one.effect.coefficients) for one in extension.effects[:number])
-    one = extension.effects[number]
-    errors = extension.errors[start : start + len(one.coefficients)]
-    return {
-        parameter.name: _coefficient(parameter, value, error, unit)
-        for parameter, value, error in zip(
-            one.effect.coefficients, one.coefficients, errors, strict=True
-        )
-    }
-
-
-def _coefficient(parameter: Parameter, value: float, error: float, unit: str) -> ParameterRecord:
-    return ParameterRecord(
-        estimate=float(value),
-        ci95=(float(value - _Z95 * error), float(value + _Z95 * error)),
-        unit=parameter.unit.replace(TORQUE, unit),
-    )
-
-
-def _shapes(extension: Extension, number: int) -> dict[str, ParameterRecord]:
-    """Return an effect's shape parameters; what the data cannot tell spans its whole range."""
-    start = sum(len(one.effect.shape) for one in extension.effects[:number])
-    found = {}
-    for axis, error in zip(
-        extension.effects[number].effect.shape, extension.shape_errors[start:], strict=False
-    ):
-        value = extension.effects[number].shape[axis.name]
-        reach = _Z95 * float(error) if error > 0 else np.inf
-        interval = (max(value - reach, axis.lower), min(value + reach, axis.upper))
-        found[axis.name] = ParameterRecord(estimate=value, ci95=interval, unit=axis.unit)
-    return found

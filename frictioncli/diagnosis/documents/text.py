@@ -1,65 +1,89 @@
-"""The result of a diagnosis in plain words."""
+"""The result of a diagnosis in plain words, for the terminal."""
 
-from frictioncli.diagnosis.diagnose import Diagnosis
+from collections.abc import Iterator
+
+from frictioncli.diagnosis.documents.document import (
+    CauseRecord,
+    DiagnosisDocument,
+    GainRecord,
+)
+from frictioncli.diagnosis.documents.sentences import (
+    detectable_text,
+    finding_text,
+    lasting_text,
+    margin_text,
+    p_value_text,
+    remainder_text,
+    size_text,
+    standing_text,
+)
 
 
-def verdict_text(diagnosis: Diagnosis) -> str:
-    """Return what is wrong, where, why we think so, what it is worth, what to measure next."""
-    unit = diagnosis.torque_unit
-    lines = [
-        f"joint {diagnosis.joint}: {diagnosis.verdict}; the simulated torque misses the measured"
-        f" one by {diagnosis.rmse:.3g} {unit} (RMS)"
+def verdict_text(document: DiagnosisDocument) -> str:
+    """Return what is wrong, where, why we think so, what it is worth, what to measure next.
+
+    Parameters
+    ----------
+    document : DiagnosisDocument
+        The joint's diagnosis.
+    """
+    unit = document.torque_unit
+    first = (
+        f"joint {document.joint}: {document.verdict}; the simulated torque misses the measured one"
+        f" by {document.simulation.rmse:.3g} {unit} (RMS)"
+    )
+    lines = [line for cause in document.named_causes for line in _cause_lines(cause, document)]
+    lines += [line for cause in document.causes if not cause.effects for line in _left(cause, unit)]
+    if not document.causes:
+        lines.append("no cause is named" if document.visible else "no cause found")
+    lines += [_visible_line(cause, unit) for cause in document.visible]
+    if document.gain is not None:
+        lines.append(_gain_text(document.gain, document))
+    lines += [
+        remainder_text(document, unit),
+        margin_text(document, unit),
+        detectable_text(document, unit),
     ]
-    for cause in diagnosis.causes:
-        effect = cause.fit.effect
-        shares = ", ".join(
-            f"{name} {cause.probabilities.get(name, 0.0):.0%}" for name in cause.effects
-        )
-        lines.append(
-            f"  {' or '.join(cause.effects)} ({shares}): {effect.summary} {cause.size:.2g} {unit}"
-            f" RMS in the {effect.channel}, chance {cause.test.p_value:.1g}"
-        )
-        lines.append(f"    seen: {effect.signature.claim}")
-        lines.append(f"    next: {effect.experiment}")
-    if diagnosis.structure is not None:
-        left = diagnosis.structure
-        lines.append(
-            f"  structure that no effect of the catalogue explains: along {left.axis}, in the"
-            f" {left.channel}, {left.size:.2g} {unit} RMS, chance {left.p_value:.1g}"
-        )
-    for cause in diagnosis.visible:
-        lines.append(
-            f"  {' or '.join(cause.effects)}: stands out of the noise ({cause.size:.2g} {unit} RMS,"
-            f" chance {cause.test.p_value:.1g}), but is not worth modelling"
-        )
-    if not diagnosis.causes and diagnosis.structure is None:
-        lines.append(f"  no cause found; {_silence(diagnosis)}")
-    if diagnosis.gain is not None:
-        lines.append(f"  {_gain_text(diagnosis)}")
-    return "\n".join(lines)
+    return "\n  ".join([first, *(line for line in lines if line)])
 
 
-def _gain_text(diagnosis: Diagnosis) -> str:
-    gain, unit = diagnosis.gain, diagnosis.torque_unit
-    assert gain is not None  # only asked where something was found
+def _cause_lines(cause: CauseRecord, document: DiagnosisDocument) -> Iterator[str]:
+    shares = ", ".join(f"{name} {cause.probabilities.get(name, 0.0):.0%}" for name in cause.effects)
+    kind = "measurement: " if cause.is_measurement else ""
+    yield f"{kind}{' or '.join(cause.effects)} ({shares}): {finding_text(cause)}"
+    unit = document.torque_unit
+    yield f"  size: {size_text(cause, unit)}; chance {p_value_text(cause.p_value)}"
+    if lasting := lasting_text(cause, document):
+        yield f"  when: {lasting}"
+    yield f"  seen: {cause.claim}"
+    yield f"  next: {cause.experiment}"
+
+
+def _left(cause: CauseRecord, unit: str) -> Iterator[str]:
+    """Return the lines on structure without a name."""
+    yield (
+        f"structure that no effect of the catalogue explains: {cause.claim}"
+        f" {size_text(cause, unit)}; chance {p_value_text(cause.p_value)}"
+    )
+    yield f"  next: {cause.experiment}"
+
+
+def _visible_line(cause: CauseRecord, unit: str) -> str:
+    return (
+        f"not named: {' or '.join(cause.effects)}, {size_text(cause, unit)}, chance"
+        f" {p_value_text(cause.p_value)}; {standing_text(cause)}"
+    )
+
+
+def _gain_text(gain: GainRecord, document: DiagnosisDocument) -> str:
+    unit = document.torque_unit
     where = (
-        f"on run {diagnosis.held_out}, new to the extension"
+        f"on run {document.held_out}, new to the extension"
         if gain.basis == "new_run"
         else "within the same run, which flatters"
     )
     return (
-        f"extended model: {gain.before:.3g} -> {gain.after:.3g} {unit} {where}, a gain of"
-        f" {gain.reduction:.0%} ({gain.interval[0]:.0%} to {gain.interval[1]:.0%}); noise floor"
-        f" {gain.floor:.2g} {unit}"
-    )
-
-
-def _silence(diagnosis: Diagnosis) -> str:
-    sizes = [(size, name) for name, size in diagnosis.detectable.items() if size is not None]
-    if not sizes:
-        return "the data can show none of the effects"
-    least, most = min(sizes), max(sizes)
-    return (
-        f"an effect would have been found four times in five from {least[0]:.2g}"
-        f" ({least[1]}) to {most[0]:.2g} {diagnosis.torque_unit} RMS ({most[1]})"
+        f"extended model: {gain.rmse_before:.3g} -> {gain.rmse_after:.3g} {unit} {where}, a gain of"
+        f" {gain.reduction:.0%} ({gain.ci95[0]:.0%} to {gain.ci95[1]:.0%}); noise floor"
+        f" {gain.noise_floor:.2g} {unit}"
     )

@@ -1,0 +1,120 @@
+"""Parameters of a cause with their intervals, from the fit of its effect or from the extension."""
+
+from collections.abc import Mapping
+
+import numpy as np
+
+from frictioncli.arrays import Array
+from frictioncli.diagnosis.documents.extended_model import ParameterRecord
+from frictioncli.diagnosis.fit.extension import Extension
+from frictioncli.diagnosis.fit.hypotheses import EffectFit
+from frictioncli.effects.base import Effect, Parameter
+from frictioncli.quantities import TORQUE
+from frictioncli.wording import quantity_text
+
+Z95 = 1.96
+"""Half-width of a 95 % interval in standard errors."""
+
+
+def fitted_parameters(fit: EffectFit, unit: str) -> dict[str, ParameterRecord]:
+    """Return the parameters of an effect by its own fit, the shape without intervals.
+
+    Parameters
+    ----------
+    fit : EffectFit
+        The effect, fitted beside the causes.
+    unit : str
+        Unit of torque.
+    """
+    units = {axis.name: axis.unit for axis in fit.effect.shape}
+    shapes = {
+        name: ParameterRecord(estimate=value, ci95=None, unit=units.get(name, "1"))
+        for name, value in fit.shape.items()
+    }
+    errors = np.sqrt(np.maximum(np.diag(np.atleast_2d(fit.covariance)), 0.0))
+    return shapes | _coefficients(fit.effect, fit.coefficients, errors, unit)
+
+
+def extension_parameters(extension: Extension, name: str, unit: str) -> dict[str, ParameterRecord]:
+    """Return the parameters of an effect of the extended model, all refitted together.
+
+    What the data cannot tell of a shape spans its whole range.
+
+    Parameters
+    ----------
+    extension : Extension
+        The extended model.
+    name : str
+        Name of the effect.
+    unit : str
+        Unit of torque.
+    """
+    number = [one.effect.name for one in extension.effects].index(name)
+    return _shapes(extension, number) | extension_coefficients(extension, number, unit)
+
+
+def extension_coefficients(
+    extension: Extension, number: int, unit: str
+) -> dict[str, ParameterRecord]:
+    """Return the coefficients of one effect of the extended model.
+
+    Parameters
+    ----------
+    extension : Extension
+        The extended model.
+    number : int
+        Place of the effect, from 0.
+    unit : str
+        Unit of torque.
+    """
+    start = len(extension.names) + len(extension.gravity)
+    start += sum(len(one.effect.coefficients) for one in extension.effects[:number])
+    one = extension.effects[number]
+    errors = extension.errors[start : start + len(one.coefficients)]
+    return _coefficients(one.effect, one.coefficients, errors, unit)
+
+
+def statement(effect: Effect, parameters: Mapping[str, ParameterRecord]) -> str:
+    """Return what is said of an effect that was found, with the values of its parameters.
+
+    Parameters
+    ----------
+    effect : Effect
+        The effect.
+    parameters : mapping of str to ParameterRecord
+        Its parameters.
+    """
+    values = {
+        name: quantity_text(one.estimate, one.ci95, one.unit) for name, one in parameters.items()
+    }
+    return (effect.statement or effect.summary).format_map(values)
+
+
+def _coefficients(
+    effect: Effect, values: Array, errors: Array, unit: str
+) -> dict[str, ParameterRecord]:
+    return {
+        parameter.name: _coefficient(parameter, value, error, unit)
+        for parameter, value, error in zip(effect.coefficients, values, errors, strict=True)
+    }
+
+
+def _coefficient(parameter: Parameter, value: float, error: float, unit: str) -> ParameterRecord:
+    return ParameterRecord(
+        estimate=float(value),
+        ci95=(float(value - Z95 * error), float(value + Z95 * error)),
+        unit=parameter.unit.replace(TORQUE, unit),
+    )
+
+
+def _shapes(extension: Extension, number: int) -> dict[str, ParameterRecord]:
+    start = sum(len(one.effect.shape) for one in extension.effects[:number])
+    found = {}
+    for axis, error in zip(
+        extension.effects[number].effect.shape, extension.shape_errors[start:], strict=False
+    ):
+        value = extension.effects[number].shape[axis.name]
+        reach = Z95 * float(error) if error > 0 else np.inf
+        interval = (max(value - reach, axis.lower), min(value + reach, axis.upper))
+        found[axis.name] = ParameterRecord(estimate=value, ci95=interval, unit=axis.unit)
+    return found

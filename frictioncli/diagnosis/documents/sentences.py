@@ -1,0 +1,177 @@
+"""What a diagnosis found, sentence by sentence, as terminal and page say it."""
+
+from frictioncli.diagnosis.documents.document import CauseRecord, DiagnosisDocument
+from frictioncli.wording import in_words, list_text, number_text, quantity_text
+
+_STANDING = {
+    "named": "named",
+    "visible": "stands out of the noise, but is not named",
+    "negligible": "smaller than what is worth a name",
+    "undetermined": "its size is not known well enough",
+}
+
+_AXES = {
+    "position": "the joint angle",
+    "speed": "the speed",
+    "temperature": "the temperature",
+    "time": "time",
+    "load": "the load",
+}
+
+_LEFT_BY_BASE = 0.95
+"""Share of its size from which on it is not worth saying what the base model leaves of a cause."""
+
+
+def alternatives_text(cause: CauseRecord) -> str:
+    """Return the credible set of a cause in words.
+
+    Parameters
+    ----------
+    cause : CauseRecord
+        A cause.
+    """
+    return " or ".join(in_words(name) for name in cause.effects)
+
+
+def finding_text(cause: CauseRecord) -> str:
+    """Return a cause in a sentence with values; a property of the log is said to be corrected.
+
+    Parameters
+    ----------
+    cause : CauseRecord
+        A cause.
+    """
+    said = cause.statement or cause.claim
+    if cause.is_measurement and cause.standing == "named":
+        return f"{said.removesuffix('.')}; corrected."
+    return said
+
+
+def size_text(cause: CauseRecord, unit: str) -> str:
+    """Return the size of a cause with its interval, where it shows and what the base leaves of it.
+
+    Parameters
+    ----------
+    cause : CauseRecord
+        A cause.
+    unit : str
+        Unit of torque.
+    """
+    text = f"{quantity_text(cause.size, cause.size_ci95, unit)} RMS in the {cause.channel}"
+    left = cause.visible_size
+    if left is None or left >= _LEFT_BY_BASE * cause.size:
+        return text
+    return f"{text}, of which the base model leaves {quantity_text(left, cause.visible_ci95, unit)}"
+
+
+def lasting_text(cause: CauseRecord, document: DiagnosisDocument) -> str:
+    """Return whether a cause is there on the run kept out; empty where that cannot be tested.
+
+    Parameters
+    ----------
+    cause : CauseRecord
+        A cause.
+    document : DiagnosisDocument
+        The joint's diagnosis.
+    """
+    held_out = f"the run kept out ({document.held_out})"
+    if cause.holds_on_new_run is None or document.held_out is None:
+        return f"There {cause.when}." if cause.when else ""
+    if cause.holds_on_new_run:
+        when = f"there {cause.when}, and " if cause.when else "there "
+        return f"{when[0].upper()}{when[1:]}on {held_out} too."
+    when = cause.when or f"in {_runs_text(document.runs)}"
+    return f"A change that did not last: there {when}, not on {held_out}."
+
+
+def standing_text(cause: CauseRecord) -> str:
+    """Return why a cause is not named.
+
+    Parameters
+    ----------
+    cause : CauseRecord
+        A cause.
+    """
+    return f"{_STANDING[cause.standing]}{': ' if cause.reason else ''}{cause.reason}"
+
+
+def margin_text(document: DiagnosisDocument, unit: str) -> str:
+    """Return the smallest size worth a name; empty where the document does not say it.
+
+    Parameters
+    ----------
+    document : DiagnosisDocument
+        The joint's diagnosis.
+    unit : str
+        Unit of torque.
+    """
+    if document.margin is None:
+        return ""
+    return f"Sizes below {number_text(document.margin, 2)} {unit} are not named (--margin)."
+
+
+def detectable_text(document: DiagnosisDocument, unit: str) -> str:
+    """Return from which size on effects would have been found.
+
+    Parameters
+    ----------
+    document : DiagnosisDocument
+        The joint's diagnosis.
+    unit : str
+        Unit of torque.
+    """
+    known = sorted((size, name) for name, size in document.detectable.items() if size is not None)
+    if not known:
+        return "These data can show none of the effects."
+    (least, easiest), (most, hardest) = known[0], known[-1]
+    return (
+        f"Smallest sizes that would be found four times in five: {number_text(least, 2)} {unit} RMS"
+        f" ({in_words(easiest)}) to {number_text(most, 2)} {unit} ({in_words(hardest)})."
+    )
+
+
+def remainder_text(document: DiagnosisDocument, unit: str) -> str:
+    """Return what the extended model leaves, where and along which axis; empty if only noise is.
+
+    Parameters
+    ----------
+    document : DiagnosisDocument
+        The joint's diagnosis.
+    unit : str
+        Unit of torque.
+    """
+    left = document.remainder
+    if left is None:
+        return ""
+    on = f"on run {document.held_out}" if left.basis == "new_run" else "on the data fitted"
+    model = "extended" if document.named_causes else "base"
+    most = ", most of it" if left.axis_size**2 >= 0.5 * left.size**2 else ", mostly"
+    return (
+        f"Something is left: {on} the {model} model misses the torque by"
+        f" {number_text(left.rmse, 2)} {unit} (RMS), where noise alone is"
+        f" {number_text(left.noise_floor, 2)} {unit}. That leaves {number_text(left.size, 2)}"
+        f" {unit}{most} along {_AXES.get(left.axis, left.axis)}, in the {left.channel}"
+        f" ({number_text(left.axis_size, 2)} {unit})."
+    )
+
+
+def p_value_text(p_value: float) -> str:
+    """Return a p-value as text.
+
+    Parameters
+    ----------
+    p_value : float
+        A probability. [1]
+
+    Examples
+    --------
+    >>> p_value_text(0.031), p_value_text(2e-9), p_value_text(0.0)
+    ('0.031', '2e−09', 'below 1e−300')
+    """
+    if p_value < 1e-300:
+        return "below 1e−300"
+    return f"{p_value:.0e}".replace("-", "−") if p_value < 1e-3 else number_text(p_value, 2)
+
+
+def _runs_text(runs: tuple[str, ...]) -> str:
+    return f"run {runs[0]}" if len(runs) == 1 else f"runs {list_text(runs)}"

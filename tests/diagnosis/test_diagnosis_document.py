@@ -1,0 +1,148 @@
+"""The document of a diagnosis: its numbers against the fits they are of."""
+
+import json
+from dataclasses import replace
+from types import SimpleNamespace
+
+import msgspec
+import numpy as np
+import pytest
+
+from frictioncli.diagnosis.diagnose import diagnose_joint
+from frictioncli.diagnosis.documents.document import read_diagnoses
+from frictioncli.diagnosis.documents.from_diagnosis import diagnosis_document, structure_axes
+from frictioncli.diagnosis.documents.remainder import largest_structure, remainder_record
+from frictioncli.diagnosis.search.lack_of_fit import Structure
+from frictioncli.diagnosis.settings import DiagnosisSettings
+from frictioncli.errors import TableError
+from frictioncli.stages.diagnose import has_finding
+from tests.diagnosis.test_diagnose import days
+from tests.report.diagnosis_documents import DIAGNOSIS_DOCUMENT, cause_document
+
+SETTINGS = DiagnosisSettings()
+AMPLITUDE = 0.8
+
+
+@pytest.fixture(scope="module")
+def found():
+    """The diagnosis of a ripple in two days of measurements."""
+    rows = days(5)
+    ripple = AMPLITUDE * np.sin(9.3 * np.radians(rows["position"]) + 0.4)
+    rippled = rows.assign(friction_torque=rows["friction_torque"] + ripple)
+    return diagnose_joint(rippled, "motor", "N·m", SETTINGS)
+
+
+def test_a_named_cause_says_its_kind_and_an_interval_that_holds_its_size(found):
+    document = diagnosis_document(found, SETTINGS)
+    cause = next(one for one in document.causes if one.effects == ("position_ripple",))
+    assert (cause.kind, cause.standing, cause.reason) == ("friction", "named", "")
+    assert cause.visible_size == pytest.approx(AMPLITUDE / np.sqrt(2), rel=0.1)
+    assert document.margin == found.margin >= 0.1
+    assert cause.statement
+
+
+def test_what_is_visible_has_parameters_of_its_own_fit(found):
+    named = found.causes[0]
+    count = len(named.fit.coefficients)
+    fit = replace(
+        named.fit, coefficients=np.arange(1.0, count + 1), covariance=0.04 * np.eye(count)
+    )
+    unnamed = replace(
+        named, fit=fit, standing="undetermined", reason="why", visible_interval=(0.1, 0.9)
+    )
+    document = diagnosis_document(replace(found, visible=(unnamed,)), SETTINGS)
+    (record,) = document.visible
+    assert (record.standing, record.reason, record.figure) == ("undetermined", "why", None)
+    assert record.visible_ci95 == record.size_ci95 == (0.1, 0.9)
+    sine, order = record.parameters["sine"], record.parameters["order"]
+    assert sine.estimate == 1.0
+    assert sine.ci95 == pytest.approx((1 - 1.96 * 0.2, 1 + 1.96 * 0.2))
+    assert (order.estimate, order.ci95, order.unit) == (fit.shape["order"], None, "1/turn")
+    # the same keys as a named cause
+    keys = {tuple(msgspec.to_builtins(one)) for one in (*document.causes, record)}
+    assert len(keys) == 1
+
+
+def test_size_of_a_single_coefficient_has_its_relative_interval(found):
+    named = found.causes[0]
+    fit = replace(named.fit, coefficients=np.array([-2.0]), covariance=np.array([[0.25]]))
+    effect = SimpleNamespace(**{name: getattr(fit.effect, name) for name in fit.effect.__slots__})
+    effect.kind, effect.coefficients = "friction", fit.effect.coefficients[:1]
+    alone = replace(named, fit=replace(fit, effect=effect), size=3.0)
+    (record,) = diagnosis_document(replace(found, visible=(alone,)), SETTINGS).visible
+    assert record.size_ci95 == pytest.approx((3.0 * 1.02 / 2, 3.0 * 2.98 / 2))
+
+
+def test_structure_is_stated_by_columns_and_stands_among_the_causes(found):
+    structure = Structure(
+        axis="angle and speed", channel="load", p_value=1e-9, statistic=90, freedom=8, size=0.7
+    )
+    document = diagnosis_document(replace(found, structure=structure), SETTINGS)
+    assert document.structure.axis == ("position", "speed")
+    assert (document.structure.channel, document.structure.formula) == ("load", None)
+    assert document.causes[-1].effects == ()
+    assert document.causes[-1].claim == document.structure.description
+    assert structure_axes("load and temperature") == ("load", "temperature")
+
+
+def test_what_is_left_on_the_new_run_is_found_along_its_axis(found):
+    problem = found.judged
+    clean = replace(
+        found,
+        extension=None,
+        judged=replace(
+            problem,
+            friction=problem.table.friction
+            + np.random.default_rng(1).normal(0, 0.5, len(problem.friction)),
+            load=problem.load_base @ problem.gravity,
+        ),
+        floor=0.5,
+    )
+    assert remainder_record(clean) is None
+    hours = problem.table.clock / 3600
+    slow = 1.5 * np.sin(2 * np.pi * (hours - hours.min()) / np.ptp(hours))
+    drifting = replace(clean.judged, friction=clean.judged.friction + slow)
+    left = remainder_record(replace(clean, judged=drifting))
+    assert (left.axis, left.channel, left.basis) == ("time", "friction", "new_run")
+    assert left.size == pytest.approx(np.sqrt(np.mean(slow**2)), rel=0.1)
+    assert left.axis_size == pytest.approx(left.size, rel=0.15)
+
+
+def test_noise_has_hardly_any_structure(found):
+    problem = found.judged
+    generator = np.random.default_rng(3)
+    pairs = generator.normal(0, 0.3, len(problem.layout.time))[problem.layout.row_pair]
+    noise = pairs + generator.normal(0, 0.5, len(problem.friction))
+    one = largest_structure(problem, noise, generator.normal(0, 0.5, len(noise)))
+    assert one.size < 0.12
+
+
+def write(path, **changed):
+    path.write_text(json.dumps(DIAGNOSIS_DOCUMENT | changed), encoding="utf-8")
+
+
+def test_findings_are_what_is_named_measurement_included(tmp_path):
+    path = tmp_path / "diagnosis.json"
+    write(path, causes=[])
+    assert not has_finding(tmp_path, named_only=False)
+    delay = cause_document(1, ["torque_delay"], {}, kind="measurement", standing="named")
+    write(path, causes=[delay])
+    assert has_finding(tmp_path, named_only=True)
+    either = cause_document(1, ["drift", "run_in"], {})
+    write(path, causes=[either])
+    assert has_finding(tmp_path, named_only=False)
+    assert not has_finding(tmp_path, named_only=True)
+
+
+def test_files_of_earlier_versions_are_read_or_refused_with_the_command(tmp_path):
+    path = tmp_path / "diagnosis.json"
+    old = {name: value for name, value in DIAGNOSIS_DOCUMENT.items() if name != "margin"}
+    path.write_text(json.dumps(old | {"visible": []}), encoding="utf-8")
+    (document,) = read_diagnoses(path).values()
+    assert document.margin is None
+    assert document.structure is None
+    assert {cause.standing for cause in document.causes} == {"named"}
+    assert document.causes[0].kind is None
+    write(path, visible=[{"effects": ["inertia"], "size": 0.05, "p_value": 0.0}])
+    with pytest.raises(TableError, match="run 'frictioncli diagnose' again"):
+        read_diagnoses(path)

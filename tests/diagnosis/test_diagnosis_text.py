@@ -1,0 +1,90 @@
+"""What the terminal says of a diagnosis."""
+
+from frictioncli.diagnosis.documents.document import RemainderRecord
+from frictioncli.diagnosis.documents.sentences import lasting_text, size_text
+from frictioncli.diagnosis.documents.text import verdict_text
+from tests.report.diagnosis_documents import cause, diagnosis
+
+DELAY = cause(
+    ["torque_delay"],
+    kind="measurement",
+    statement="The torque in these logs is 12 ms (11 to 13) late.",
+    size=0.9,
+    size_ci95=(0.8, 1.0),
+)
+STEP = cause(["step_change"], kind="friction", statement="Friction stepped by 1.2 N·m.")
+
+
+def lines(**changed):
+    return [line.strip() for line in verdict_text(diagnosis(**changed)).splitlines()]
+
+
+def test_a_property_of_the_log_is_said_to_be_corrected():
+    said = lines(causes=(DELAY,))
+    assert said[1].startswith("measurement: torque_delay")
+    assert said[1].endswith("The torque in these logs is 12 ms (11 to 13) late; corrected.")
+    assert said[2] == "size: 0.9 N·m (0.8 to 1.0) RMS in the friction; chance 1e−09"
+
+
+def test_a_change_that_did_not_last_says_when_it_was_there():
+    document = diagnosis(sets=[["step_change"]])
+    lost = cause(["step_change"], holds_on_new_run=False, when="in run day-1 from 3.1 h on")
+    assert lasting_text(lost, document) == (
+        "A change that did not last: there in run day-1 from 3.1 h on, not on the run kept out"
+        " (day-2)."
+    )
+    without = cause(["step_change"], holds_on_new_run=False)
+    assert "there in run day-1, not on" in lasting_text(without, document)
+    kept = cause(["step_change"], holds_on_new_run=True, when="from 4.0 h on in every run")
+    assert lasting_text(kept, document) == (
+        "There from 4.0 h on in every run, and on the run kept out (day-2) too."
+    )
+    assert lasting_text(STEP, document) == ""
+
+
+def test_size_says_what_the_base_model_leaves():
+    both = cause(["drift"], size=1.9, size_ci95=(1.5, 2.3), visible_size=0.8)
+    assert size_text(both, "A") == (
+        "1.9 A (1.5 to 2.3) RMS in the friction, of which the base model leaves 0.80 A"
+    )
+    assert "leaves" not in size_text(cause(["drift"], size=1.0, visible_size=0.99), "A")
+
+
+def test_what_is_not_named_is_listed_with_its_reason():
+    small = cause(["drift"], standing="negligible", reason="below 0.23 N·m", size=0.12)
+    said = lines(sets=[["stribeck"]], visible=(small,), margin=0.23)
+    assert said[-3] == (
+        "not named: drift, 0.12 N·m RMS in the friction, chance 1e−09; smaller than what is worth"
+        " a name: below 0.23 N·m"
+    )
+    assert said[-2] == "Sizes below 0.23 N·m are not named (--margin)."
+    assert "no cause is named" in lines(verdict="no_evidence", visible=(small,))
+    assert "no cause found" in lines(verdict="no_evidence")
+
+
+def test_what_is_left_is_said_with_size_and_axis():
+    left = RemainderRecord(
+        basis="new_run",
+        rmse=1.38,
+        noise_floor=0.67,
+        size=1.21,
+        axis="time",
+        channel="friction",
+        axis_size=0.95,
+    )
+    said = "\n".join(lines(sets=[["coulomb_temperature"]], remainder=left))
+    assert (
+        "Something is left: on run day-2 the extended model misses the torque by 1.4 N·m (RMS),"
+        " where noise alone is 0.67 N·m. That leaves 1.2 N·m, most of it along time, in the"
+        " friction (0.95 N·m)."
+    ) in said
+    assert "Something is left" not in "\n".join(lines(sets=[["coulomb_temperature"]]))
+
+
+def test_detectable_sizes_are_said():
+    said = lines(sets=[["drift"]], detectable={"stribeck": 0.2, "run_in": None, "drift": 1.5})
+    assert said[-1] == (
+        "Smallest sizes that would be found four times in five: 0.20 N·m RMS (stribeck) to 1.5 N·m"
+        " (drift)."
+    )
+    assert lines(detectable={"run_in": None})[-1] == "These data can show none of the effects."
