@@ -46,6 +46,7 @@ EFFECT = Effect(
         axis="position",
         claim="Friction follows the slope of gravity over the angle, at all speeds alike.",
     ),
+    statement="At the same true position logged positions forward and in reverse differ by {play}.",
     confounders=("torque_delay", "load_offset", "position_ripple", "load_linear"),
     experiment=(
         "Approach the same angle from both sides against a dial gauge: what the gauge shows beyond"

@@ -43,6 +43,7 @@ EFFECT = Effect(
         axis="temperature",
         claim="Residuals change with temperature by the same torque at all speeds.",
     ),
+    statement="Coulomb friction changes with temperature, by {coulomb_slope}.",
     confounders=("torque_constant", "load_temperature", "thermal_lag"),
     experiment=(
         "Measure at slow speed, where viscous friction is small, cold and hot, with a known"

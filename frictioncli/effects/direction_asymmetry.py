@@ -86,6 +86,10 @@ EFFECT = Effect(
         axis="speed",
         claim="The load torque, which gravity alone should set, shifts with speed.",
     ),
+    statement=(
+        "Half the difference of friction between the directions is {offset}, and"
+        " {speed_asymmetry} more at 50 deg/s."
+    ),
     confounders=("dress_pack", "reversal_transient", "torque_constant"),
     experiment=(
         "Measure where gravity does not load the joint, or with the arm mounted the other way"

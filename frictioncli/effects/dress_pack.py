@@ -71,6 +71,7 @@ EFFECT = Effect(
         axis="position",
         claim="The load torque is not a sine of the angle: a straight line adds to it.",
     ),
+    statement="Cables and hoses pull the joint like a spring of {stiffness}.",
     confounders=("payload_change", "direction_asymmetry", "inertia"),
     experiment=(
         "Sweep the whole angle range with two payloads: the spring stays, gravity scales."

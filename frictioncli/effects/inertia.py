@@ -97,6 +97,7 @@ EFFECT = Effect(
         axis="position",
         claim="Near the ends of the stroke the load torque bends away, more at high speed.",
     ),
+    statement="Acceleration adds {inertial_torque} at the ends of the stroke at 100 deg/s.",
     confounders=("reversal_transient", "load_velocity", "dress_pack", "quadratic_drag"),
     experiment=(
         "Cut 30 deg off both ends instead of 10 deg, and repeat with half the acceleration:"

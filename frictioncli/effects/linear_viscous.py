@@ -34,6 +34,7 @@ EFFECT = Effect(
         axis="speed",
         claim="Friction bends up with speed, equally when cold and when hot.",
     ),
+    statement="Friction has a part proportional to speed, of {viscous_coefficient}.",
     confounders=("quadratic_drag", "velocity_exponent", "stribeck"),
     experiment=(
         "Measure at ten or more speeds up to the fastest, at two temperatures held constant,"

@@ -39,6 +39,7 @@ EFFECT = Effect(
         axis="load",
         claim="Residuals have a kink at zero load and rise on both sides of it.",
     ),
+    statement="Friction grows with the amount of load, by a share of {load_share}.",
     confounders=("position_ripple", "load_velocity", "load_temperature"),
     experiment=(
         "Measure with three payloads, at angles on both sides of zero load: the kink stays at zero"

@@ -45,6 +45,7 @@ EFFECT = Effect(
         axis="load",
         claim="Friction is lowest at another load torque than zero.",
     ),
+    statement="{not_carried} of the constant load torque do not load the gear.",
     confounders=("dress_pack", "payload_change", "load_linear", "backlash"),
     experiment=(
         "Read the torque with motors off for the zero of its sensor, and weigh or detach what may"

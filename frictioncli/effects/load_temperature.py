@@ -69,6 +69,10 @@ EFFECT = Effect(
         axis="temperature",
         claim="The parabola of friction over load is flatter when hot than when cold.",
     ),
+    statement=(
+        "The load's part of friction changes with temperature, by"
+        " {load_temperature_coefficient} at load torque 10."
+    ),
     confounders=("torque_constant", "load_velocity", "coulomb_temperature"),
     experiment=(
         "Sweep two payloads at 30, 45 and 60 °C, each held constant: only the loaded angles change."

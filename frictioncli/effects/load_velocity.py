@@ -39,6 +39,10 @@ EFFECT = Effect(
         axis="load",
         claim="The parabola of friction over load opens differently at each speed.",
     ),
+    statement=(
+        "The load's part of friction grows with speed, by {load_speed_coefficient} at"
+        " load torque 10 and 100 deg/s."
+    ),
     confounders=("inertia", "load_linear", "quadratic_drag"),
     experiment="Measure every speed with every one of two or more payloads at one temperature.",
 )

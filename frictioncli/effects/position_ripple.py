@@ -95,6 +95,7 @@ EFFECT = Effect(
         axis="position",
         claim="Residuals repeat over the angle, with the same phase at all speeds.",
     ),
+    statement="Friction goes up and down with the angle, of order {order}.",
     confounders=("load_linear", "reversal_transient", "inertia"),
     experiment=(
         "Sample the angle finely, without bins, at two speeds: a ripple of the gear keeps its"

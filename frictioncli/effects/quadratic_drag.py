@@ -39,6 +39,7 @@ EFFECT = Effect(
         axis="speed",
         claim="Only the fastest speeds lie above the model.",
     ),
+    statement="Drag grows with the square of speed, to {drag} at 100 deg/s.",
     confounders=("linear_viscous", "velocity_exponent", "inertia"),
     experiment="Measure at three or more speeds above 150 deg/s, away from the ends of the stroke.",
 )

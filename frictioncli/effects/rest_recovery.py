@@ -100,6 +100,7 @@ EFFECT = Effect(
         axis="order",
         claim="Friction is above the model in the first pairs after a rest and settles with them.",
     ),
+    statement="The first pair after a long rest has {excess} more friction.",
     confounders=("stribeck", "velocity_exponent", "run_in"),
     experiment=(
         "Measure the speeds in random order after rests of different, noted length: with one fixed"

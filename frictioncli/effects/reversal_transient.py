@@ -83,6 +83,9 @@ EFFECT = Effect(
         axis="position",
         claim="Friction is below the model just after each reversal, equally at all speeds.",
     ),
+    statement=(
+        "Just after a reversal friction lacks {lack}; 37 % of that are left after {distance}."
+    ),
     confounders=("inertia", "position_ripple", "direction_asymmetry"),
     experiment=(
         "Approach the same angles from the same side after a longer way, at the slowest speed:"

@@ -62,6 +62,10 @@ EFFECT = Effect(
         axis="travel",
         claim="Friction starts above the model and falls with the way travelled, not with time.",
     ),
+    statement=(
+        "Friction was {initial_excess} above the settled one at the start and falls with"
+        " the way travelled."
+    ),
     confounders=("drift", "thermal_lag", "rest_recovery"),
     experiment=(
         "Compare two stretches of equal duration, one with much motion and one at rest:"

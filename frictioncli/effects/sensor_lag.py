@@ -79,6 +79,7 @@ EFFECT = Effect(
             " to the pace of the reading."
         ),
     ),
+    statement="The temperature sensor lags by {time_constant}.",
     confounders=("thermal_lag", "drift", "run_in"),
     experiment=(
         "Stop the joint while it heats and read the sensor every few seconds: a sensor that lags"

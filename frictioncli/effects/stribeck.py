@@ -85,6 +85,9 @@ EFFECT = Effect(
         axis="speed",
         claim="Friction is above the model only at the lowest speeds, and the more the slower.",
     ),
+    statement=(
+        "Boundary friction of {boundary_torque} at standstill has fallen to 37 % at {velocity}."
+    ),
     confounders=("rest_recovery", "linear_viscous", "velocity_exponent"),
     experiment=(
         "Measure at six or more speeds below 20 deg/s, in random order, so that slow moves are not"

@@ -51,6 +51,7 @@ EFFECT = Effect(
         axis="motor_temperature",
         claim="Friction and load torque grow with motor temperature by the same percentage.",
     ),
+    statement="The logged torque grows by {percent_per_degree} with the motor's temperature.",
     confounders=("coulomb_temperature", "load_temperature", "payload_change"),
     experiment=(
         "Hold a known payload still, or against a brake, cold and hot: gravity does not change, so"

@@ -50,6 +50,7 @@ EFFECT = Effect(
             " where gravity grows."
         ),
     ),
+    statement="The torque in these logs is {delay} late.",
     confounders=("torque_filter", "backlash", "load_velocity", "position_ripple"),
     experiment=(
         "Reverse the motion where gravity is small, at high acceleration: the step of friction"

@@ -78,6 +78,10 @@ EFFECT = Effect(
         axis="position",
         claim="The amplitude of the load torque over the angle falls with the square of speed.",
     ),
+    statement=(
+        "The torque in these logs is smoothed by a filter, whose response has a second"
+        " moment of {second_moment}."
+    ),
     confounders=("torque_delay", "torque_constant", "direction_asymmetry", "inertia"),
     experiment=(
         "Reverse the motion at high acceleration and look at the torque of single samples: a delay"

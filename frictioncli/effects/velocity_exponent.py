@@ -71,6 +71,9 @@ EFFECT = Effect(
             " and the bow flattens as the joint warms."
         ),
     ),
+    statement=(
+        "A share of {share} of the viscous friction follows speed to the power {exponent}, not 1/2."
+    ),
     confounders=("linear_viscous", "quadratic_drag", "stribeck"),
     experiment=(
         "Sweep speeds from the slowest to the fastest at two temperatures held constant: the bow of"

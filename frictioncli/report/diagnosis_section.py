@@ -8,16 +8,18 @@ from matplotlib.figure import Figure
 
 from frictioncli.diagnosis.documents.reload import Reloaded
 from frictioncli.diagnosis.documents.sentences import margin_text
+from frictioncli.report.diagnosis_captions import (
+    cause_title,
+    evidence_caption,
+    gain_caption,
+    map_caption,
+    simulation_caption,
+)
 from frictioncli.report.diagnosis_text import (
     CauseText,
     cause_texts,
-    cause_title,
     detectable_table,
-    evidence_caption,
-    gain_caption,
     gain_sentence,
-    map_caption,
-    simulation_caption,
     unnamed_texts,
     verdict_sentence,
     visible_table,

@@ -316,3 +316,5 @@ def test_a_statement_names_parameters_of_its_effect_only(effect):
     named = {field for _, field, _, _ in Formatter().parse(effect.statement) if field is not None}
     assert named <= known
     assert not effect.statement or effect.statement.endswith(".")
+    # what is corrected in a log is said with its amount
+    assert named or not effect.measurement
