@@ -87,7 +87,7 @@ def test_simulator_shares_no_code_with_the_analysis(module):
 
 
 def test_subfolders_of_the_simulator_are_examined():
-    assert {module.parent.name for module in SIMULATOR} == {"simulator", "planted"}
+    assert {module.parent.name for module in SIMULATOR} == {"simulator", "planted", "nuisances"}
 
 
 def module_name(module: Path) -> str:

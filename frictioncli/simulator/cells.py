@@ -7,6 +7,8 @@ import numpy as np
 from frictioncli.arrays import Array, Numbers
 from frictioncli.simulator.joint import SimulatedJoint
 from frictioncli.simulator.motion_profile import MotionProfile, Servo, move_duration
+from frictioncli.simulator.nuisances.definition import NO_NUISANCES, Nuisances
+from frictioncli.simulator.nuisances.motion_and_torque import rippled
 from frictioncli.simulator.paper_protocol import MeasuringSeries, PaperProgram
 from frictioncli.simulator.planted.operating_history import OperatingHistory
 from frictioncli.simulator.planted.state import State, state_of
@@ -24,8 +26,14 @@ LAG = 0.03
 LEAST_COVERAGE = 0.6
 """Least share of a bin that is crossed at constant velocity [-]."""
 
-_GAUSS_POINT = 1.0 / np.sqrt(3.0)
-"""Points of the two-point Gauss rule for the mean over a bin, in half widths, are at ± this."""
+_GAUSS_POINTS = np.array([-1.0, 1.0]) / np.sqrt(3.0)
+"""Points of the two-point Gauss rule for the mean over a bin, in half widths."""
+
+_MANY_POINTS = (np.arange(8) - 3.5) / 4.0
+"""Midpoints of equal parts of a bin, for structure finer than the bin, in half widths."""
+
+_FILTER_NODES, _FILTER_WEIGHTS = np.polynomial.laguerre.laggauss(3)
+"""Gauss-Laguerre rule for the mean over what a first-order filter remembers."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -40,15 +48,22 @@ class Cells:
         Centre of the angle bin. [deg]
     count : ndarray, shape (cells,)
         Samples of each direction in it.
+    logged : ndarray
+        Logged angles of the points that are averaged; axes as in the state. [deg]
     state : State
-        State of the joint; every array has the axes point in the bin, direction (forward first) and
-        cell.
+        State of the joint there; every array has the axes point in the bin, direction (forward
+        first) and cell.
+    earlier : tuple of (float, State)
+        States whose torque is logged there, with weights that sum to 1: the state itself unless the
+        torque is late or filtered.
     """
 
     trip: Numbers
     position: Array
     count: Numbers
+    logged: Array
     state: State
+    earlier: tuple[tuple[float, State], ...]
 
 
 @dataclass(frozen=True, slots=True)
@@ -97,6 +112,7 @@ def cells_of(
     *,
     payload_index: int,
     interval: float,
+    nuisances: Nuisances = NO_NUISANCES,
 ) -> Cells:
     """Return the cells of all round trips with one payload.
 
@@ -116,6 +132,8 @@ def cells_of(
         Which of the run's payloads.
     interval : float
         Sampling interval. [s]
+    nuisances : Nuisances, optional
+        What joint and log do besides.
 
     Returns
     -------
@@ -135,10 +153,13 @@ def cells_of(
     start, stop, count = (np.concatenate(column) for column in zip(*edges, strict=True))
     speed, begin = trips.speed[trip], trips.begin[trip]
     middle, half = (start + stop) / 2.0, (stop - start) / 2.0
-    points = np.stack([middle - half * _GAUSS_POINT, middle + half * _GAUSS_POINT])
-    position = np.stack([points, points], axis=1)
+    inside = _MANY_POINTS if nuisances else _GAUSS_POINTS
+    points = middle + inside[:, None] * half
+    logged = np.stack([points, points], axis=1)
+    way = np.array([1.0, -1.0])[:, None]
+    position = logged - way * nuisances.size("backlash") / 2.0
     # The reverse move comes half a round trip later, from the other end.
-    distance = np.stack([points - low, high - points], axis=1)
+    distance = np.stack([position[:, 0] - low, high - position[:, 1]], axis=1)
     since = distance / speed + speed / (2.0 * acceleration) + LAG
     halves = {
         value: move_duration(joint.servo, distance=high - low, speed=value) + program.dwell
@@ -146,18 +167,44 @@ def cells_of(
     }
     later = np.array([0.0, 1.0])[:, None] * np.array([halves[value] for value in speed])
     time = begin + later + since
-    signed_speed = np.array([1.0, -1.0])[:, None] * speed
-    velocity = np.broadcast_to(signed_speed, position.shape)
-    state = state_of(
-        joint,
-        operation,
-        MotionProfile(position=position, velocity=velocity, acceleration=np.zeros(position.shape)),
-        time=time,
-        since_reversal=since,
-        temperatures=history.at(time),
+    velocity = np.broadcast_to(way * speed, position.shape)
+
+    def state_before(delay: float) -> State:
+        motion = MotionProfile(
+            position=position - velocity * delay,
+            velocity=velocity,
+            acceleration=np.zeros(position.shape),
+        )
+        return state_of(
+            joint,
+            operation,
+            rippled(motion, nuisances),
+            time=time - delay,
+            since_reversal=np.maximum(since - delay, 0.0),
+            temperatures=history.at(time - delay),
+        )
+
+    state = state_before(0.0)
+    delays = _delays(nuisances)
+    return Cells(
+        trip=trip,
+        position=(np.floor(middle / BIN_WIDTH) + 0.5) * BIN_WIDTH,
+        count=count.astype(np.int64),
+        logged=logged,
+        state=state,
+        earlier=tuple((weight, state_before(delay)) for weight, delay in delays)
+        if delays
+        else ((1.0, state),),
     )
-    centre = (np.floor(middle / BIN_WIDTH) + 0.5) * BIN_WIDTH
-    return Cells(trip=trip, position=centre, count=count.astype(np.int64), state=state)
+
+
+def _delays(nuisances: Nuisances) -> list[tuple[float, float]]:
+    """Return weights and delays [s] of the torques that are logged together, none if there are."""
+    late, time_constant = nuisances.size("torque_delay"), nuisances.size("torque_filter")
+    if time_constant > 0.0:
+        nodes = late + time_constant * _FILTER_NODES
+        return list(zip(_FILTER_WEIGHTS.tolist(), nodes.tolist(), strict=True))
+    return [(1.0, late)] if late > 0.0 else []
 
 
 def _bins(

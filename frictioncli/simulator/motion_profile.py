@@ -111,6 +111,7 @@ def round_trips(
     lead: float,
     dwell: float,
     interval: float,
+    delay: float = 0.0,
 ) -> tuple[MotionProfile, Array, Numbers]:
     """Return moves there and back at each speed, sampled from standing to standing.
 
@@ -128,13 +129,15 @@ def round_trips(
         Standing time after each move. [s]
     interval : float
         Sampling interval. [s]
+    delay : float
+        Time by which the motion is earlier than its sample; the joint stands before it. [s]
 
     Returns
     -------
     MotionProfile
         The sampled motion.
     ndarray
-        Sample times. [s]
+        Times of that motion. [s]
     ndarray
         Number of the round trip that each sample belongs to.
     """
@@ -147,8 +150,9 @@ def round_trips(
             moves.append((clock, start, signed, speed))
             clock += move_duration(servo, distance=abs(signed), speed=speed) + dwell
     times = np.arange(int(np.ceil(clock / interval)), dtype=np.float64) * interval
+    times = times - delay
     # A move has the samples until the next one begins; the first also has the lead.
-    edges = [0.0, *(begin for begin, *_ in moves[1:]), np.inf]
+    edges = [-np.inf, *(begin for begin, *_ in moves[1:]), np.inf]
     profiles: list[MotionProfile] = []
     trips = np.zeros(times.shape, dtype=np.int64)
     for number, ((low, high), (begin, start, signed, speed)) in enumerate(

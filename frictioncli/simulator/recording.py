@@ -5,10 +5,18 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
-from frictioncli.arrays import Array
+from frictioncli.arrays import Array, Numbers
 from frictioncli.simulator.joint import SimulatedJoint
 from frictioncli.simulator.motion_profile import MotionProfile, round_trips
 from frictioncli.simulator.noise import SimulatedNoise
+from frictioncli.simulator.nuisances.definition import NO_NUISANCES, Nuisances
+from frictioncli.simulator.nuisances.motion_and_torque import (
+    clock_factor,
+    filtered,
+    logged_position,
+    other_joint_torque,
+    rippled,
+)
 from frictioncli.simulator.paper_protocol import MeasuringSeries, PaperProgram
 from frictioncli.simulator.planted.operating_history import OperatingHistory
 from frictioncli.simulator.planted.planting import PlantedEffects
@@ -143,6 +151,8 @@ def record(
     generator: np.random.Generator,
     planted: PlantedEffects | None = None,
     operation: OperatingHistory | None = None,
+    nuisances: Nuisances = NO_NUISANCES,
+    number: tuple[int, int] = (0, 0),
 ) -> Recording:
     """Return the recording of a series.
 
@@ -168,20 +178,33 @@ def record(
         Effects that add torque.
     operation : OperatingHistory, optional
         Operating history on which the effects depend.
+    nuisances : Nuisances, optional
+        What joint and log do besides.
+    number : tuple of int
+        Numbers of the run and of the series in it.
 
     Returns
     -------
     Recording
         Logged signals.
     """
-    motion, time, trips = round_trips(
-        joint.servo,
-        speeds=series.speeds,
-        angles=program.angles,
-        lead=program.lead,
-        dwell=program.dwell,
-        interval=logger.interval,
-    )
+    interval = logger.interval * clock_factor(nuisances)
+
+    def sampled(delay: float) -> tuple[MotionProfile, Array, Numbers]:
+        motion, time, trips = round_trips(
+            joint.servo,
+            speeds=series.speeds,
+            angles=program.angles,
+            lead=program.lead,
+            dwell=program.dwell,
+            interval=interval,
+            delay=delay,
+        )
+        return rippled(motion, nuisances), time, trips
+
+    logged, logged_time, _ = sampled(0.0)
+    # the torque of a sample is that of an earlier moment if it is logged late
+    motion, time, trips = sampled(nuisances.size("torque_delay"))
     temperatures = history.at(series.start + time)
     torque = control_torque(
         joint,
@@ -203,13 +226,19 @@ def record(
         )
         added = planted.torque(state)
         torque = torque + added.load + logger.sign * state.direction * added.friction
+    if nuisances:
+        torque = filtered(
+            torque + other_joint_torque(nuisances, *number, since_start=time), interval, nuisances
+        )
+        torque = torque + nuisances.size("torque_offset")
     torque = torque + noise.torque_noise(
         generator, torque=torque, velocity=motion.velocity, interval=logger.interval
     )
+    registers = history.at(series.start + logged_time)
     return Recording(
-        time=time,
-        position=registered(motion.position, logger.position_step),
+        time=logged_time / clock_factor(nuisances),
+        position=registered(logged_position(logged, nuisances), logger.position_step),
         torque=registered(torque, logger.torque_step),
-        motor_temperature=registered(temperatures[MOTOR], logger.motor_step),
-        housing_temperature=registered(temperatures[HOUSING], logger.housing_step),
+        motor_temperature=registered(registers[MOTOR], logger.motor_step),
+        housing_temperature=registered(registers[HOUSING], logger.housing_step),
     )

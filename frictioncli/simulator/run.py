@@ -10,6 +10,10 @@ from frictioncli.simulator.cells import RoundTrips, cells_of, round_trips_of
 from frictioncli.simulator.enriched_protocol import PAYLOADS, SPEEDS, run_enriched
 from frictioncli.simulator.joint import SimulatedJoint
 from frictioncli.simulator.noise import SimulatedNoise, noise_of_kind
+from frictioncli.simulator.nuisances.catalogue import requested_nuisances
+from frictioncli.simulator.nuisances.changed_joint import changed_joint
+from frictioncli.simulator.nuisances.daily_ambient import changed_ambient
+from frictioncli.simulator.nuisances.definition import NO_NUISANCES, Nuisances
 from frictioncli.simulator.paper_protocol import MeasuringSeries, PaperProgram, run_program
 from frictioncli.simulator.plain_joint import plain_joint
 from frictioncli.simulator.planted.operating_history import (
@@ -60,6 +64,8 @@ class RunSetup:
         Seeds of all its random parts.
     enriched : bool
         Whether the protocol is the enriched one.
+    nuisances : Nuisances
+        What joint and log do besides.
     """
 
     name: str
@@ -74,6 +80,7 @@ class RunSetup:
     noise: SimulatedNoise
     seeds: np.random.SeedSequence
     enriched: bool
+    nuisances: Nuisances = NO_NUISANCES
 
     @property
     def joint(self) -> SimulatedJoint:
@@ -116,6 +123,7 @@ class SimulatedRun:
                 self.trips,
                 payload_index=index,
                 interval=self.setup.logger.interval,
+                nuisances=self.setup.nuisances,
             ).state
             for index, joint in enumerate(self.setup.joints)
         ]
@@ -127,6 +135,7 @@ def run_setup(settings: SynthesisSettings, number: int, seeds: np.random.SeedSeq
     def of_run(values: tuple[float, ...]) -> float:
         return values[number % len(values)]
 
+    nuisances = requested_nuisances(settings.nuisances, settings.seed)
     enriched = settings.protocol == "enriched"
     payloads = tuple(settings.payload + more for more in (PAYLOADS if enriched else (0.0,)))
     program = replace(default_joint.PROGRAM, lowest=settings.lowest, highest=settings.highest)
@@ -137,20 +146,35 @@ def run_setup(settings: SynthesisSettings, number: int, seeds: np.random.SeedSeq
         axis=settings.joint,
         payloads=payloads,
         joints=tuple(
-            joint_of(settings.joint_kind, payload, of_run(settings.motor_heat_share))
+            joint_of(settings.joint_kind, payload, of_run(settings.motor_heat_share), nuisances)
             for payload in payloads
         ),
         program=replace(program, sweep_speeds=(), cycle_speeds=SPEEDS) if enriched else program,
-        ambient=Ambient(start=of_run(settings.ambient), drift=of_run(settings.ambient_drift)),
+        ambient=changed_ambient(
+            Ambient(start=of_run(settings.ambient), drift=of_run(settings.ambient_drift)),
+            nuisances,
+        ),
         logger=replace(
             default_joint.LOGGER,
             sign=settings.sign,
             interval=default_joint.LOGGER.interval * settings.thin,
+            motor_step=nuisances.size("sensor_step") or default_joint.LOGGER.motor_step,
         ),
-        noise=noise_of_kind(settings.noise_kind, default_joint.NOISE).scaled(settings.noise_scale),
+        noise=_noise(settings, nuisances).scaled(settings.noise_scale),
         seeds=seeds,
         enriched=enriched,
+        nuisances=nuisances,
     )
+
+
+def _noise(settings: SynthesisSettings, nuisances: Nuisances) -> SimulatedNoise:
+    """Return the noise of the settings' kind; noise along a move takes the place of its own."""
+    noise = noise_of_kind(settings.noise_kind, default_joint.NOISE)
+    size = nuisances.size("move_noise")
+    if size == 0.0:
+        return noise
+    memory = nuisances.parameter("move_noise", "correlation_time")
+    return replace(noise, correlated=size, correlation_time=memory)
 
 
 def simulate(
@@ -209,9 +233,11 @@ def _run(
     return run_enriched(setup.joints, setup.program, setup.ambient, generator, history_type)
 
 
-def joint_of(kind: str, payload: float, motor_heat_share: float) -> SimulatedJoint:
+def joint_of(
+    kind: str, payload: float, motor_heat_share: float, nuisances: Nuisances = NO_NUISANCES
+) -> SimulatedJoint:
     """Return the joint of a kind with a payload [kg] and a share of heat at the motor."""
     joint = default_joint.joint(payload=payload, motor_heat_share=motor_heat_share)
-    if kind == "zones":
-        return joint
-    return plain_joint(arm=joint.arm, servo=joint.servo, motor_heat_share=motor_heat_share)
+    if kind == "plain":
+        joint = plain_joint(arm=joint.arm, servo=joint.servo, motor_heat_share=motor_heat_share)
+    return changed_joint(joint, nuisances)

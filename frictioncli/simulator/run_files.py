@@ -83,7 +83,8 @@ def write_run(
     recordings = _recordings(run, generator_of(offset_seed))
     folder.mkdir(parents=True)
     rows = 0
-    for one, seed in zip(recordings, torque_seeds, strict=True):
+    motor_decimals = 0 if setup.logger.motor_step % 1.0 == 0.0 else 2
+    for number, (one, seed) in enumerate(zip(recordings, torque_seeds, strict=True)):
         logged = record(
             setup.joints[one.series.payload_index],
             setup.program,
@@ -95,8 +96,10 @@ def write_run(
             generator=generator_of(seed),
             planted=planted,
             operation=run.operation,
+            nuisances=setup.nuisances,
+            number=(setup.number, number),
         )
-        write_trace(folder / one.file, logged, joint=setup.axis)
+        write_trace(folder / one.file, logged, joint=setup.axis, motor_decimals=motor_decimals)
         rows += len(logged.time)
     manifest = manifest_text(_manifest_row(run, one) for one in recordings)
     (folder / MANIFEST).write_text(manifest, encoding="utf-8", newline="\n")

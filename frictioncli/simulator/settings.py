@@ -55,6 +55,8 @@ class SynthesisSettings:
     effects : tuple of str
         Effects to add, each ``NAME`` or ``NAME:SIZE``; SIZE is the root mean square of its torque
         at constant speed. [N·m]
+    nuisances : tuple of str
+        What joint and log do besides, each ``NAME``, ``NAME:SIZE`` or ``all``.
     blind : bool
         Whether the truth is written beside the folder instead of into it, and not printed.
     joint_kind : str
@@ -102,6 +104,15 @@ class SynthesisSettings:
             "Effect to hide, repeatable; SIZE is its RMS at constant speed [N·m], 0.5 to 2 if not"
             " given. A wrong name lists all.",
             "--effect",
+            metavar="NAME[:SIZE]",
+        ),
+    )
+    nuisances: tuple[str, ...] = field(
+        default=(),
+        metadata=option(
+            "What joint and log do besides, repeatable; all: each in an ordinary size. A wrong name"
+            " lists all; units are those of truth.json [s, N·m, deg, °C, %].",
+            "--nuisance",
             metavar="NAME[:SIZE]",
         ),
     )

@@ -10,6 +10,7 @@ import numpy as np
 from frictioncli import documents, files
 from frictioncli.errors import OptionError, TableError
 from frictioncli.simulator.joint import SimulatedJoint
+from frictioncli.simulator.nuisances.definition import NO_NUISANCES, Nuisances
 from frictioncli.simulator.planted.catalogue import requested_effects
 from frictioncli.simulator.planted.planting import PlantedEffects, plant
 from frictioncli.simulator.run import run_setup, simulate
@@ -21,7 +22,15 @@ __all__ = ["TRUTH", "SynthesisSettings", "SynthesisSummary", "synthesize"]
 TRUTH = "truth.json"
 """File with the truth about the traces."""
 
-_OPTIONAL_SETTINGS = ("effects", "blind", "joint_kind", "noise_kind", "protocol", "thin")
+_OPTIONAL_SETTINGS = (
+    "effects",
+    "nuisances",
+    "blind",
+    "joint_kind",
+    "noise_kind",
+    "protocol",
+    "thin",
+)
 """Settings that the truth holds only where they differ from the default."""
 
 
@@ -55,6 +64,7 @@ class SynthesisSummary:
     blind: bool
     friction: str
     planted: PlantedEffects
+    nuisances: Nuisances = NO_NUISANCES
 
     def files_text(self) -> str:
         """Return the text about the files."""
@@ -78,6 +88,11 @@ class SynthesisSummary:
         lines += [
             f"  {one.effect.name}, {one.rms:.2f} N·m: {one.effect.definition.equation}"
             for one in self.planted.effects
+        ]
+        lines += [
+            f"  nuisance {one.name}, {one.size:.3g} {one.definition.unit}:"
+            f" {one.definition.description}"
+            for one in self.nuisances.present
         ]
         return "\n".join(lines)
 
@@ -116,15 +131,16 @@ def synthesize(folder: Path, settings: SynthesisSettings | None = None) -> Synth
         raise OptionError(f"{beside}: is no truth of a former synthesis; choose another folder")
     seeds = np.random.SeedSequence(settings.seed).spawn(settings.runs)
     runs = simulate([run_setup(settings, number, seed) for number, seed in enumerate(seeds)])
+    nuisances = runs[0].setup.nuisances
     planted = PlantedEffects()
-    if effects:
+    if effects or nuisances:
         states = [state for run in runs for state in run.states()]
-        planted = plant(effects, settings.seed, states, settings.sign)
+        planted = plant(effects, settings.seed, states, settings.sign, nuisances)
     summaries: list[RunSummary] = []
     truths: list[dict[str, Any]] = []
     with files.atomic_write(folder) as draft:
         for run in runs:
-            summary, truth = write_run(draft / run.setup.name, run, planted if effects else None)
+            summary, truth = write_run(draft / run.setup.name, run, planted if planted else None)
             summaries.append(summary)
             truths.append(truth)
         document = {
@@ -134,6 +150,8 @@ def synthesize(folder: Path, settings: SynthesisSettings | None = None) -> Synth
         }
         if effects:
             document["effects"] = [one.truth() for one in planted.effects]
+        if nuisances:
+            document["nuisances"] = nuisances.truth()
         text = documents.to_json(document)
         if not settings.blind:
             (draft / TRUTH).write_text(text, encoding="utf-8", newline="\n")
@@ -148,6 +166,7 @@ def synthesize(folder: Path, settings: SynthesisSettings | None = None) -> Synth
         blind=settings.blind,
         friction=_friction(runs[0].setup.joint, settings.joint_kind),
         planted=planted,
+        nuisances=nuisances,
     )
 
 

@@ -36,7 +36,7 @@ class ManifestRow:
     ambient: float
 
 
-def trace_text(recording: Recording, *, joint: int) -> str:
+def trace_text(recording: Recording, *, joint: int, motor_decimals: int = 0) -> str:
     """Return a recording as text of a trace of axis ``joint``, separated by ``;``."""
     header = ";".join(
         (
@@ -54,13 +54,15 @@ def trace_text(recording: Recording, *, joint: int) -> str:
         recording.motor_temperature.tolist(),
         recording.housing_temperature.tolist(),
     )
-    rows = map("%.3f;%.3f;%.2f;%.0f;%.1f".__mod__, zip(*columns, strict=True))
+    form = f"%.3f;%.3f;%.2f;%.{motor_decimals}f;%.1f"
+    rows = map(form.__mod__, zip(*columns, strict=True))
     return "\n".join((header, *rows, ""))
 
 
-def write_trace(path: Path, recording: Recording, *, joint: int) -> None:
+def write_trace(path: Path, recording: Recording, *, joint: int, motor_decimals: int = 0) -> None:
     """Write a recording as a trace file."""
-    path.write_bytes(trace_text(recording, joint=joint).encode(ENCODING))
+    text = trace_text(recording, joint=joint, motor_decimals=motor_decimals)
+    path.write_bytes(text.encode(ENCODING))
 
 
 def manifest_text(rows: Iterable[ManifestRow]) -> str:

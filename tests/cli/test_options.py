@@ -250,6 +250,11 @@ COMMANDS = {
             "--ambient-drift": ("0.25", "synthesize.settings.ambient_drift", (0.25,)),
             "--motor-heat-share": ("0.4", "synthesize.settings.motor_heat_share", (0.4,)),
             "--noise-scale": ("0", "synthesize.settings.noise_scale", 0.0),
+            "--nuisance": (
+                "all --nuisance backlash:0.02",
+                "synthesize.settings.nuisances",
+                ("all", "backlash:0.02"),
+            ),
             "--effect": (
                 "drift:0.5 --effect stribeck",
                 "synthesize.settings.effects",

@@ -9,18 +9,22 @@ from frictioncli.simulator.thermal_history import History
 from frictioncli.simulator.thermal_network import Ambient
 
 STEP = 30.0
-"""Longest step; the fastest part of the joint, its sensor, takes minutes [s]."""
+"""Longest step, in which the dissipated power is held [s]."""
 
 
 class FastHistory(History):
-    """The history by the midpoint rule, the dissipated power held within each step."""
+    """The history in exact steps of a network whose dissipated power is held in each."""
 
     def __init__(self, joint: SimulatedJoint, ambient: Ambient) -> None:
         super().__init__(joint, ambient)
         self._names = joint.network.names
         self._times = [0.0]
         self._states = [self.state]
-        self._decay = -self._conductance / self._capacities[:, None]
+        # symmetric in the square roots of the capacities, so that its eigenvalues are real
+        root = np.sqrt(self._capacities)
+        rates, vectors = np.linalg.eigh(self._conductance / np.outer(root, root))
+        self._rates = rates
+        self._to_modes, self._from_modes = vectors.T * root, vectors / root[:, None]
 
     def at(self, time: ArrayLike) -> dict[str, Array]:
         """Return the temperatures at times [s] within the history, by node name [°C]."""
@@ -57,8 +61,11 @@ class FastHistory(History):
         return np.asarray(heat / self._capacities)
 
     def _stepped(self, source: Array, step: float) -> Array:
-        middle = self.state + step / 2.0 * (source + self._decay @ self.state)
-        return np.asarray(self.state + step * (source + self._decay @ middle))
+        """Return the state after a step, exact for a constant source."""
+        memory = np.exp(-self._rates * step)
+        modes = memory * (self._to_modes @ self.state)
+        modes = modes + (1.0 - memory) / self._rates * (self._to_modes @ source)
+        return np.asarray(self._from_modes @ modes)
 
     def _keep(self, step: float, state: Array) -> None:
         self.time += step

@@ -115,9 +115,10 @@ def simulate_programmes(
         travelled += float(operation.travel[-1])
     planted = PlantedEffects()
     effects = requested_effects(settings.effects)
-    if effects:
+    nuisances = runs[0].setup.nuisances
+    if effects or nuisances:
         states = [part.state for parts in cells[:sizing_runs] for part in parts]
-        planted = plant(effects, settings.seed, states, settings.sign)
+        planted = plant(effects, settings.seed, states, settings.sign, nuisances)
     return [table_of(run, parts, planted) for run, parts in zip(runs, cells, strict=True)]
 
 
@@ -132,7 +133,7 @@ def _run(
     )
     share = settings.motor_heat_share[setup.number % len(settings.motor_heat_share)]
     masses = tuple(settings.payload + more for more, _, _ in configurations)
-    joints = tuple(joint_of(settings.joint_kind, mass, share) for mass in masses)
+    joints = tuple(joint_of(settings.joint_kind, mass, share, setup.nuisances) for mass in masses)
     history = FastHistory(joints[0], setup.ambient)
     series = []
     for motion in motions:
@@ -174,6 +175,7 @@ def _cells(run: SimulatedRun, configurations: Sequence[Configuration]) -> list[C
             run.trips,
             payload_index=number,
             interval=setup.logger.interval,
+            nuisances=setup.nuisances,
         )
         for number, (joint, (_, low, high)) in enumerate(
             zip(setup.joints, configurations, strict=True)

@@ -8,6 +8,8 @@ import pandas as pd
 from frictioncli.arrays import Array, Flags, Numbers
 from frictioncli.simulator.cells import Cells, cells_of
 from frictioncli.simulator.noise import OUTLIER, HeteroscedasticNoise, SimulatedNoise
+from frictioncli.simulator.nuisances.definition import Nuisances
+from frictioncli.simulator.nuisances.motion_and_torque import clock_factor, other_joint_torque
 from frictioncli.simulator.planted.catalogue import requested_effects
 from frictioncli.simulator.planted.planting import PlantedEffects, plant
 from frictioncli.simulator.recording import registered
@@ -33,11 +35,14 @@ class World:
     torques : DataFrame
         A row per round trip and angle bin, with the columns of the table ``torques``.
     planted : PlantedEffects
-        Planted effects.
+        Planted effects, and weak disturbances among the nuisances.
+    nuisances : Nuisances
+        What joint and log do besides, with true sizes.
     """
 
     torques: pd.DataFrame
     planted: PlantedEffects
+    nuisances: Nuisances
 
 
 def simulate_torques(settings: SynthesisSettings, *, rebuilt: bool = True) -> pd.DataFrame:
@@ -68,10 +73,11 @@ def simulate_world(settings: SynthesisSettings, *, rebuilt: bool = True) -> Worl
     setups = [run_setup(settings, number, seed) for number, seed in enumerate(seeds)]
     runs = simulate(setups, FastHistory)
     cells = [run_cells(run) for run in runs]
+    nuisances = setups[0].nuisances
     planted = PlantedEffects()
-    if effects:
+    if effects or nuisances:
         states = [part.state for parts in cells for part in parts]
-        planted = plant(effects, settings.seed, states, settings.sign)
+        planted = plant(effects, settings.seed, states, settings.sign, nuisances)
     tables = [
         table_of(run, parts, planted, rebuilt) for run, parts in zip(runs, cells, strict=True)
     ]
@@ -81,7 +87,7 @@ def simulate_world(settings: SynthesisSettings, *, rebuilt: bool = True) -> Worl
         ("phase", ["cool-down", "heat-up", "sweep"]),
     ):
         together[name] = pd.Categorical(together[name], categories=values)
-    return World(together, planted)
+    return World(together, planted, nuisances)
 
 
 def run_cells(run: SimulatedRun) -> list[Cells]:
@@ -96,6 +102,7 @@ def run_cells(run: SimulatedRun) -> list[Cells]:
             run.trips,
             payload_index=index,
             interval=setup.logger.interval,
+            nuisances=setup.nuisances,
         )
         for index, joint in enumerate(setup.joints)
     ]
@@ -111,7 +118,7 @@ def table_of(
     offsets = setup.noise.pair_offsets(offset_seed, trips.begin)
     trip = np.concatenate([part.trip for part in parts])
     order = np.lexsort((np.concatenate([part.position for part in parts]), trip))
-    torque = np.concatenate([_torque(part, planted, sign) for part in parts], axis=1)[:, order]
+    torque = np.concatenate([_torque(run, part, planted) for part in parts], axis=1)[:, order]
     trip = trip[order]
     count = np.concatenate([part.count for part in parts])[order]
     way = sign * np.array([1.0, -1.0])[:, None]
@@ -127,7 +134,7 @@ def table_of(
             "run": setup.name,
             "joint": np.int16(setup.axis),
             "pair": trip,
-            "speed": trips.speed[trip],
+            "speed": trips.speed[trip] * clock_factor(setup.nuisances),
             "time": (middle - run.series[0].start)[trip],
             "phase": phases[trip],
             "motor_temperature": motor[trip],
@@ -146,19 +153,38 @@ def table_of(
     )
 
 
-def _torque(part: Cells, planted: PlantedEffects, sign: int) -> Array:
+def _torque(run: SimulatedRun, part: Cells, planted: PlantedEffects) -> Array:
     """Return the mean torque per direction and cell, without noise [N·m].
 
     A bin that was passed in part has its mean off its centre; as from traces, the mean is carried
     there along the slope.
     """
-    state = part.state
-    added = planted.torque(state)
-    friction = state.friction + added.friction
-    torque = state.load + added.load + sign * state.direction * friction
-    slope = np.diff(torque, axis=0)[0] / np.diff(state.position, axis=0)[0]
-    away = part.position - np.mean(state.position, axis=0)
+    sign, nuisances = run.setup.logger.sign, run.setup.nuisances
+    torque = np.zeros(part.logged.shape)
+    for weight, state in part.earlier:
+        added = planted.torque(state)
+        friction = state.friction + added.friction
+        load = state.load + added.load + state.inertial
+        torque = torque + weight * (load + sign * state.direction * friction)
+    if nuisances:
+        torque = torque + _disturbance(run, part) + nuisances.size("torque_offset")
+    from_mean = part.logged - np.mean(part.logged, axis=0)
+    slope = np.sum(from_mean * torque, axis=0) / np.sum(np.square(from_mean), axis=0)
+    away = part.position - np.mean(part.logged, axis=0)
     return np.asarray(np.mean(torque, axis=0) + slope * away)
+
+
+def _disturbance(run: SimulatedRun, part: Cells) -> Array:
+    """Return the torque of another joint at the beginning of recordings [N·m]."""
+    nuisances, series = run.setup.nuisances, run.trips.series[part.trip]
+    found = np.zeros(part.logged.shape)
+    if nuisances.size("other_joint") == 0.0:
+        return found
+    for number in np.unique(series):
+        at = series == number
+        since = part.state.time[..., at] - run.series[number].start
+        found[..., at] = other_joint_torque(nuisances, run.setup.number, int(number), since)
+    return found
 
 
 def _middles(run: SimulatedRun) -> Array:

@@ -58,6 +58,9 @@ class EffectDefinition:
         Whether its size is taken within the first 20 deg after a reversal only.
     scales_torque : bool
         Whether it acts on the torque of all other effects as well.
+    axes : tuple of str
+        For an unlisted effect, what its torque changes with: ``speed``, ``position``, ``time``,
+        ``temperature``, ``load`` or two of them. A diagnosis that locates it names these.
     """
 
     name: str
@@ -69,6 +72,7 @@ class EffectDefinition:
     listed: bool = True
     at_reversal: bool = False
     scales_torque: bool = False
+    axes: tuple[str, ...] = ()
 
     def draw(self, generator: np.random.Generator) -> "PlantedEffect":
         """Return the effect with random shape parameters and magnitude 1."""
