@@ -47,7 +47,7 @@ _REASONS = {
     "drift": "goes with the time since the first log",
     "run_in": "goes with the hours since the first log",
     "rest_recovery": "goes with the rests between the log's series",
-    "step_change": "happened at one moment of the log",
+    "step_change": "came and went with the hours of the log",
     "reversal_transient": "goes with the angle since the joint turned",
     "position_ripple": "goes with the angle",
     "inertia": "goes with acceleration, and is no friction",

@@ -27,6 +27,7 @@ from frictioncli.design.information import Information
 from frictioncli.design.rivals import Question
 from frictioncli.diagnosis.fit.columns import base_columns, basis_columns, joined, reduced
 from frictioncli.diagnosis.fit.hypotheses import EffectFit
+from frictioncli.effects.history import history, rescaled
 from frictioncli.linear_algebra import schur_complement
 
 _NEGLIGIBLE = 1e-9
@@ -140,7 +141,7 @@ def tried_shapes(fit: EffectFit, information: Information) -> list[dict[str, flo
         chosen = np.unique(np.linspace(0, len(grid) - 1, _MOST_SHAPES).round().astype(int))
         grid = [grid[place] for place in chosen]
     if fit.effect.moments is not None and information.observed_share < 1:
-        grid.append({"moment": information.observed_share})
+        grid.append(history([(information.observed_share, 1.0)]))
     return [_rescaled_shape(fit, information.observed_share), *grid]
 
 
@@ -218,4 +219,4 @@ def _rescaled_shape(fit: EffectFit, observed_share: float) -> dict[str, float]:
     """Return a fitted shape in terms of all rows: moments are shares of a greater number now."""
     if fit.effect.moments is None:
         return fit.shape
-    return {name: value * observed_share for name, value in fit.shape.items()}
+    return rescaled(fit.shape, observed_share)

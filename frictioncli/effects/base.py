@@ -198,7 +198,8 @@ class Effect:
         Whether it is a property of the measurement and not of the joint: what it explains is
         corrected, and no friction cause may explain it instead.
     moments : callable or None
-        For an effect with the shape parameter ``moment``: the moments to try, from the table.
+        For an effect that comes and goes: the histories to try, from the table
+        (:mod:`frictioncli.effects.history`). Such a shape may have further stretches.
     needs : tuple of str
         Columns of the table that must be known and vary for the effect to be tested.
     uses : tuple of str
@@ -232,7 +233,7 @@ class Effect:
     statement: str = ""
     uses: tuple[str, ...] = ()
     measurement: bool = False
-    moments: Callable[[EffectTable], Array] | None = None
+    moments: Callable[[EffectTable], list[dict[str, float]]] | None = None
 
     @property
     def kind(self) -> Kind:
@@ -240,11 +241,27 @@ class Effect:
         return "measurement" if self.measurement else self.channel
 
     def shapes(self, table: EffectTable) -> list[dict[str, float]]:
-        """Return the shapes to try: the grid of the shape parameters, or the moments of a table."""
+        """Return the shapes to try: the grid of the shape parameters, or histories of a table."""
         if self.moments is not None:
-            return [{"moment": float(moment)} for moment in self.moments(table)]
+            return self.moments(table)
         axes = [[(axis.name, float(value)) for value in axis.grid()] for axis in self.shape]
         return [dict(values) for values in product(*axes)]
+
+    def has_shape(self, names: Iterable[str]) -> bool:
+        """Return whether names are those of its shape parameters.
+
+        A history may have further stretches, as ``moment_2`` and ``end_2``.
+
+        Parameters
+        ----------
+        names : iterable of str
+            Names of shape parameters.
+        """
+        given, known = set(names), {axis.name for axis in self.shape}
+        if self.moments is not None:
+            numbers = range(2, len(given) // len(known) + 1)
+            known |= {f"{name}_{number}" for number in numbers for name in known}
+        return given == known
 
     def evaluate(self, table: EffectTable, shape: Mapping[str, float]) -> Basis:
         """Return the basis for given values of the shape parameters."""

@@ -1,46 +1,36 @@
-r"""Friction changes once, at an unknown moment: a repair, new grease, damage.
+r"""Friction is another for a while: a repair, new grease, damage, or what is done every day.
 
-.. math:: \Delta\tau = d \quad \text{from the moment on}
+.. math:: \Delta\tau = d \quad \text{while it is there}
 
-The moment is the share of all pairs measured before the change, in order of time: a moment within a
-run is then resolved as well as one between two runs, however long the joint rested in between.
+When it is there tells its history (:mod:`frictioncli.effects.history`): from a moment on, between
+two moments, or in a part of every run.
 """
 
-import numpy as np
-
 from frictioncli.effects.base import Basis, Effect, EffectTable, Parameter, Signature, friction_only
-from frictioncli.effects.pair_series import measured_share, series_starts
+from frictioncli.effects.history import SHAPE, presence
+from frictioncli.effects.history_search import histories
 
 
-def basis(table: EffectTable, *, moment: float) -> Basis:
-    """Return 1 from the moment on, 0 before, shape (rows, 1). [-].
+def basis(table: EffectTable, **shape: float) -> Basis:
+    """Return 1 while the change is there and 0 elsewhere, shape (rows, 1). [-].
 
     Parameters
     ----------
     table : EffectTable
         Pairs and angle bins.
-    moment : float
-        Share of all pairs measured before the change. [-]
+    **shape : float
+        Its history: ``moment`` and ``end``, and further stretches.
     """
-    return friction_only(np.where(measured_share(table) >= moment, 1.0, 0.0))
+    return friction_only(presence(table, shape))
 
 
 EFFECT = Effect(
     name="step_change",
-    summary="Friction changed once and stayed.",
-    equation="dtau = d*(1 from m on, 0 before)",
+    summary="Friction stepped to another level, for good or for a while.",
+    equation="dtau = d*(1 from m to e, else 0)",
     source="Step at an unknown moment, as in change-point detection",
     channel="friction",
-    shape=(
-        Parameter(
-            name="moment",
-            symbol="m",
-            unit="share of pairs",
-            lower=0.0,
-            upper=1.0,
-            description="Share of all pairs measured before the change",
-        ),
-    ),
+    shape=SHAPE,
     coefficients=(
         Parameter(
             name="change",
@@ -48,15 +38,15 @@ EFFECT = Effect(
             unit="torque",
             lower=-20.0,
             upper=20.0,
-            description="Friction after less friction before",
+            description="Friction while it is there less friction at other times",
         ),
     ),
     basis=basis,
-    moments=series_starts,
+    moments=histories,
     needs=("clock",),
     signature=Signature(
         axis="clock",
-        claim="Residuals jump at one moment and keep their level before and after.",
+        claim="Residuals jump from one level to another, and keep each level between two jumps.",
     ),
     confounders=("drift", "run_in", "payload_change"),
     experiment=(

@@ -14,6 +14,8 @@ from frictioncli.diagnosis.fit.hypotheses import Hypothesis, hypothesis_of
 from frictioncli.diagnosis.search.precomputed import Catalogue, Precomputed, point_noise
 from frictioncli.effects import BY_NAME, EFFECTS
 from frictioncli.effects.base import Basis
+from frictioncli.effects.history import present
+from frictioncli.effects.pair_series import measured_share
 from frictioncli.model.friction import FrictionParameters, friction_torque
 from tests.diagnosis import dense_noise
 from tests.diagnosis.dense_noise import problem
@@ -253,7 +255,11 @@ def test_moments_that_leave_all_rows_on_one_side_are_not_tried():
     day = replace(both, rows=first, layout=dense_noise.layout(40, bins=34))
     for name in ("step_change", "payload_change"):
         effect = BY_NAME[name]
-        moments = [shape["moment"] for shape in hypothesis_of(effect, day).shapes]
-        assert moments == pytest.approx(np.arange(1, 10) / 20)
-        whole = [shape["moment"] for shape in hypothesis_of(effect, both).shapes]
+        lasting = [one["moment"] for one in hypothesis_of(effect, day).shapes if one["end"] == 1.0]
+        assert lasting == pytest.approx(np.arange(1, 10) / 20)
+        share = measured_share(both.all_runs)[first]
+        columns = {tuple(present(share, one)) for one in hypothesis_of(effect, day).shapes}
+        assert len(columns) == len(hypothesis_of(effect, day).shapes)
+        assert all(any(there) and not all(there) for there in columns)
+        whole = [one["moment"] for one in hypothesis_of(effect, both).shapes if one["end"] == 1.0]
         assert whole == pytest.approx(np.arange(1, 20) / 20)

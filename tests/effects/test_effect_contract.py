@@ -85,10 +85,11 @@ def long_log():
 
 
 def middle(effect):
-    """Return the middle of each shape parameter's grid."""
-    return {
+    """Return the middle of each shape parameter's grid; a change that starts there lasts."""
+    found = {
         parameter.name: float(parameter.grid()[parameter.points // 2]) for parameter in effect.shape
     }
+    return found if effect.moments is None else found | {"end": 1.0}
 
 
 def corners(effect):
@@ -99,27 +100,41 @@ def corners(effect):
 
 
 @every_effect
-def test_shapes_to_try_first_are_a_grid_or_the_moments_between_series(effect, table):
+def test_shapes_to_try_first_are_a_grid_or_histories_between_series(effect, table):
     shapes = effect.shapes(table)
     names = {axis.name for axis in effect.shape}
-    assert all(set(shape) == names for shape in shapes)
+    assert all(names <= set(shape) and effect.has_shape(shape) for shape in shapes)
     assert len({tuple(shape.values()) for shape in shapes}) == len(shapes)
     if effect.moments is None:
         assert len(shapes) == np.prod([axis.points for axis in effect.shape])
         for axis in effect.shape:
             assert {shape[axis.name] for shape in shapes} == set(axis.grid().tolist())
     else:
-        # 24 series of 4 pairs each: between the first and the last
-        moments = [shape["moment"] for shape in shapes]
+        # 24 series of 4 pairs each: lasting changes between the first and the last
+        moments = [shape["moment"] for shape in shapes if shape["end"] == 1.0]
         assert moments == pytest.approx(np.arange(1, 24) / 24)
+        assert len(shapes) <= 190
 
 
 @every_effect
 def test_moments_lie_within_the_bounds_of_their_search(effect):
     """Of a long log too: 300 series of 4 pairs."""
-    for axis in effect.shape:
-        for shape in effect.shapes(long_log()):
+    for shape in effect.shapes(long_log()):
+        for axis in effect.shape:
             assert axis.lower <= shape[axis.name] <= axis.upper
+
+
+def test_only_a_history_may_have_further_stretches():
+    whole = {"moment": 0.2, "end": 0.4}
+    further = whole | {"moment_2": 0.6, "end_2": 1.0}
+    for name in ("step_change", "payload_change"):
+        assert BY_NAME[name].has_shape(whole)
+        assert BY_NAME[name].has_shape(further)
+        assert not BY_NAME[name].has_shape(whole | {"moment_2": 0.6})
+        assert not BY_NAME[name].has_shape(whole | {"moment_3": 0.6, "end_3": 1.0})
+        assert not BY_NAME[name].has_shape({"moment": 0.2})
+    assert BY_NAME["drift"].has_shape(["time_constant"])
+    assert not BY_NAME["drift"].has_shape(["time_constant", "time_constant_2"])
 
 
 def test_catalogue_holds_the_names_of_the_contract_in_order():

@@ -65,11 +65,9 @@ class FittedEffect:
         if name not in BY_NAME:
             raise TableError(f"unknown effects {name}")
         effect = BY_NAME[name]
-        known = {axis.name for axis in effect.shape}
-        if set(shape) != known:
-            raise TableError(
-                f"{name} has the shape parameters {sorted(shape)}, expected {sorted(known)}"
-            )
+        if not effect.has_shape(shape):
+            known = sorted(axis.name for axis in effect.shape)
+            raise TableError(f"{name} has the shape parameters {sorted(shape)}, expected {known}")
         missing = [one.name for one in effect.coefficients if one.name not in coefficients]
         if missing:
             raise TableError(f"{name} lacks the coefficients {missing}")

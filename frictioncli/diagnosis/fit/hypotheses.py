@@ -12,6 +12,7 @@ from frictioncli.diagnosis.data.problem import Problem
 from frictioncli.diagnosis.fit.columns import ModelColumns, main_channel, reduced
 from frictioncli.diagnosis.noise.significance import NullDistribution
 from frictioncli.effects.base import Effect
+from frictioncli.effects.history import distinct
 from frictioncli.effects.pair_series import measured_share
 from frictioncli.quantities import TORQUE
 
@@ -106,12 +107,12 @@ def hypothesis_of(
 
 
 def _informative_shapes(effect: Effect, problem: Problem) -> list[dict[str, float]]:
-    """Return the shapes to try first, without moments that have all rows on one side."""
+    """Return the shapes to try first; of histories those that differ in the problem's runs."""
     tried = effect.shapes(problem.all_runs)
     if effect.moments is None:
         return tried
     share = measured_share(problem.all_runs)[problem.rows]
-    return [one for one in tried if share.min() < one["moment"] <= share.max()] or tried[:1]
+    return distinct(tried, share) or tried[:1]
 
 
 @dataclass(frozen=True, slots=True)
