@@ -35,6 +35,12 @@ MOTOR_TEMPERATURE_READING = Quantity(
     "motor_temperature_reading", "Tm", "°C", "motor temperature as the controller registered it"
 )
 HOUSING_TEMPERATURE = Quantity("housing_temperature", "Tc", "°C", "temperature of the housing")
+OTHER_SPEED = Quantity(
+    "other_speed",
+    "",
+    "deg/s",
+    "mean speed of the fastest other joint of the recording over half a second; 0 below 0.5 deg/s",
+)
 LOAD = Quantity("load", "L", "N·m", "load torque from a channel of its own")
 PAYLOAD = Quantity("payload", "m", "kg", "payload given by the manifest")
 FRICTION_TORQUE = Quantity("friction_torque", "τ", TORQUE, "friction torque, opposes the motion")

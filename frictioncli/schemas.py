@@ -78,6 +78,7 @@ SAMPLES = Table(
         _of(q.HOUSING_TEMPERATURE, nullable=True),
         _of(q.MOTOR_TEMPERATURE_READING, nullable=True),
         _of(q.LOAD, nullable=True),
+        _of(q.OTHER_SPEED, nullable=True),
     ),
 )
 

@@ -95,9 +95,10 @@ def inspect(
             for run in discover(logs)
             for batch in _inspect_run(run, settings, channel_map, folder, inspected)
         )
-        segments, pairs = segments_and_pairs(
+        segments, pairs, other_motion = segments_and_pairs(
             combined(samples), inspected.conditions, pairing, folder
         )
+    inspected.remarks += other_motion.texts(pairs["joint"].unique().tolist())
     return Inspection(
         files=tuple(_with_segments(file, segments) for file in inspected.files),
         joints=tuple(

@@ -10,6 +10,7 @@ import pandas as pd
 import pyarrow as pa
 
 from frictioncli.errors import NotEnoughData
+from frictioncli.pairs.other_joints import OtherMotion
 from frictioncli.pairs.pair_tables import pair_rows
 from frictioncli.pairs.pairing import pair_segments
 from frictioncli.pairs.partitioned_store import PartitionedStore
@@ -40,7 +41,7 @@ def segments_and_pairs(
     conditions: Callable[[], pd.DataFrame],
     settings: PairingSettings,
     folder: Path,
-) -> tuple[SegmentCounts, pd.DataFrame]:
+) -> tuple[SegmentCounts, pd.DataFrame, OtherMotion]:
     """Find the constant-speed segments of samples, and their pairs.
 
     Parameters
@@ -61,6 +62,8 @@ def segments_and_pairs(
     pairs : DataFrame
         One row per pair: run, joint, pair, speed [deg/s], phase, motor temperature [°C], mean half
         difference of the torques, lowest and highest load. [N·m or A]
+    other_motion : OtherMotion
+        Samples taken while other joints moved.
     """
     with PartitionedStore[Joint](folder) as moving, PartitionedStore[Joint](folder) as paired:
         found = find_segments(samples, settings.steady, settings.bin_width, moving)
@@ -68,9 +71,10 @@ def segments_and_pairs(
         try:
             pairing = pair_segments(found, settings, paired, known["payload"])
         except NotEnoughData:
-            return _segment_counts(found), pd.DataFrame(columns=_PAIR_COLUMNS)
+            none = pd.DataFrame(columns=_PAIR_COLUMNS)
+            return _segment_counts(found), none, found.other_motion
         pairs = [_pair_means(rows) for rows in pair_rows(found, pairing, known["phase"])]
-        return _segment_counts(found), pd.concat(pairs, ignore_index=True)
+        return _segment_counts(found), pd.concat(pairs, ignore_index=True), found.other_motion
 
 
 def _segment_counts(found: SegmentTables) -> SegmentCounts:

@@ -18,6 +18,7 @@ _CHANNELS = (
     names.MOTOR_TEMPERATURE,
     names.HOUSING_TEMPERATURE,
     names.LOAD,
+    names.OTHER_SPEED,
 )
 _SAMPLES = "samples"
 _BATCH_ROWS = 1 << 16

@@ -13,9 +13,10 @@ from numpy.typing import NDArray
 
 from frictioncli import schemas, tables
 from frictioncli.arrays import Numbers
+from frictioncli.pairs.other_joints import OtherMotion
 from frictioncli.pairs.pairing import Pairing
 from frictioncli.pairs.partitioned_store import Columns
-from frictioncli.pairs.ramps import COLUMNS, PARTS
+from frictioncli.pairs.ramps import COLUMNS, PARTS, SHARED
 from frictioncli.pairs.segments import TEMPERATURES, Joint, SegmentTables
 from frictioncli.pairs.thermal_phases import phases, phases_of
 
@@ -112,6 +113,9 @@ def ramp_rows(segments: SegmentTables, payload: pd.Series) -> Iterator[pa.Table]
     before = 0
     for joint in sorted(segments.counts):
         for (ramps,) in segments.store.read(joint, "ramps"):
+            if segments.other_motion.leaves_out(joint[1]):
+                alone = ~ramps[SHARED]
+                ramps = {name: values[alone] for name, values in ramps.items()}
             carried = _of_recordings(segments, ramps["recording"], payload)
             yield _table(
                 joint,
@@ -166,7 +170,9 @@ class PairCounts:
             yield rows
 
 
-def pairing_text(counts: PairCounts, facts: Mapping[str, Any], requested_width: float) -> str:
+def pairing_text(
+    counts: PairCounts, facts: Mapping[str, Any], other_motion: OtherMotion, requested_width: float
+) -> str:
     """Return the text on pairs per speed and samples dropped per reason.
 
     Parameters
@@ -175,6 +181,8 @@ def pairing_text(counts: PairCounts, facts: Mapping[str, Any], requested_width: 
         Counts of the pairs.
     facts : mapping
         ``samples``, ``dropped`` and ``bin_width`` of the pairing.
+    other_motion : OtherMotion
+        Samples taken while other joints moved.
     requested_width : float
         Requested width of the angle bins. [deg]
     """
@@ -193,6 +201,9 @@ def pairing_text(counts: PairCounts, facts: Mapping[str, Any], requested_width: 
             else ""
         )
         lines.append(f"joint {joint}: {speeds.total()} pairs: {text}{more} deg/s")
+    for joint in sorted(counts.speeds):
+        kind = "note" if other_motion.leaves_out(joint) else "warning"
+        lines += [f"{kind}: {text}" for text in other_motion.texts([joint])]
     dropped = "; ".join(f"{reason} {count}" for reason, count in facts["dropped"].items() if count)
     lines.append(
         f"samples: {facts['samples']} read, {counts.samples} in pairs; dropped: {dropped or 0}"

@@ -1,6 +1,7 @@
 """Pairs of counter-directed segments of the same speed, joint, temperature and angles."""
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -10,6 +11,7 @@ from frictioncli.arrays import Array, Flags, Numbers
 from frictioncli.errors import NotEnoughData
 from frictioncli.pairs.matching import Matches, SegmentArrays, match_bins
 from frictioncli.pairs.matching_groups import MatchingGroup, matching_groups
+from frictioncli.pairs.other_joints import OTHER_MOVES, OtherMotion
 from frictioncli.pairs.partitioned_store import Columns, PartitionedStore
 from frictioncli.pairs.segments import TEMPERATURES, Joint, SegmentTables
 from frictioncli.pairs.settings import PairingSettings
@@ -20,6 +22,7 @@ Level = tuple[int, int]
 _ALONE = "no counter-directed partner"
 _NOT_SHARED = "angle not shared with the partner"
 _OTHER_PAYLOAD = "the partner has another payload"
+_REASONS = (OTHER_MOVES, _ALONE, _NOT_SHARED, _OTHER_PAYLOAD)
 
 _SAME_COMMAND = 0.01
 """Speeds this close to the median of their level, as a share, are one commanded speed."""
@@ -48,6 +51,11 @@ class Pairing:
     speeds: dict[Level, float]
     medians: dict[Level, float]
     dropped: dict[str, int]
+
+    @property
+    def joints(self) -> list[int]:
+        """The joints that have pairs."""
+        return sorted({joint for _, joint in self.store.keys})
 
     def speed_of(self, joint: int, pairs: Columns) -> Array:
         """Return the speed of pairs; one commanded speed has one value [deg/s]."""
@@ -103,14 +111,20 @@ def pair_segments(
         _steps_and_levels(segments, settings),
         _payloads(segments, payload),
         store,
-        dict.fromkeys((_ALONE, _NOT_SHARED, _OTHER_PAYLOAD), 0),
+        segments.other_motion,
     )
-    for joint in sorted(segments.counts):
-        count = 0
-        for group in matching_groups(segments.store, joint):
-            count += pairer.add(joint, group, count)
+    pairer.add_all(segments, sorted(segments.counts))
+    motion = segments.other_motion
+    paired = {joint for joint, _ in pairer.speeds}
+    motion.needed |= {joint for joint in motion.shared if motion.leaves_out(joint)} - paired
+    if motion.needed:
+        again = [joint for joint in sorted(segments.counts) if joint[1] in motion.needed]
+        pairer.add_all(segments, again)
+    dropped = pairer.total()
     if not pairer.speeds:
-        mixed = f", {_OTHER_PAYLOAD}" if pairer.dropped[_OTHER_PAYLOAD] else ""
+        mixed = "".join(
+            f", {reason}" for reason in (_OTHER_PAYLOAD, OTHER_MOVES) if dropped[reason]
+        )
         raise NotEnoughData(
             f"no pair of counter-directed moves: {_directions_text(segments)}{mixed}; expected"
             " motion there and back over the same angles at the same speed; log both directions,"
@@ -118,7 +132,7 @@ def pair_segments(
         )
     medians = {level: counts.median for level, counts in pairer.speeds.items()}
     speeds = _common_speeds(store, medians)
-    return Pairing(store, speeds, medians, segments.dropped | pairer.dropped)
+    return Pairing(store, speeds, medians, segments.dropped | dropped)
 
 
 @dataclass(slots=True)
@@ -129,12 +143,29 @@ class _Pairer:
     steps_and_levels: tuple[Numbers, Numbers]
     payloads: Array
     store: PartitionedStore[Joint]
-    dropped: dict[str, int]
+    other_motion: OtherMotion
+    dropped: dict[Joint, dict[str, int]] = field(default_factory=dict)
     speeds: dict[Level, SpeedCounts] = field(default_factory=dict)
+
+    def add_all(self, segments: SegmentTables, joints: Sequence[Joint]) -> None:
+        """Pair the segments of runs and joints; one of which no pair was found may come again."""
+        for joint in joints:
+            self.dropped[joint] = dict.fromkeys(_REASONS, 0)
+            count = 0
+            for group in matching_groups(segments.store, joint):
+                count += self.add(joint, group, count)
+
+    def total(self) -> dict[str, int]:
+        """Return the samples dropped of all joints, by reason."""
+        return {reason: sum(one[reason] for one in self.dropped.values()) for reason in _REASONS}
 
     def add(self, joint: Joint, group: MatchingGroup, count: int) -> int:
         """Pair the segments of a group, numbered from ``count``; return the number of pairs."""
         segments, bins = group.segments, group.bins
+        if self.other_motion.leaves_out(joint[1]):
+            shared = bins["shared"]
+            self.dropped[joint][OTHER_MOVES] += int(bins["n"][shared].sum())
+            bins = {name: values[~shared] for name, values in bins.items()}
         steps, levels = self.steps_and_levels
         level = levels[np.searchsorted(steps, steps_of(segments["speed"]))]
         payload = self.payloads[segments["recording"]]
@@ -156,7 +187,7 @@ class _Pairer:
             (_NOT_SHARED, ~matched & ~other_payload & ~alone),
             (_OTHER_PAYLOAD, other_payload),
         ):
-            self.dropped[reason] += int(bins["n"][rows].sum())
+            self.dropped[joint][reason] += int(bins["n"][rows].sum())
         if not len(paired):
             return 0
         pairs, number = _pairs(segments, matches, level, payload, count)

@@ -42,6 +42,9 @@ MEANS = (
 )
 _MOTION = (*LAGS, "distance", "spread", "elapsed")
 
+SHARED = "shared"
+"""Whether another joint moved; beside the columns."""
+
 COLUMNS = ("move", "part", "direction", "reversal", "speed", "bin", *MEANS, *_MOTION, "samples")
 """Columns of the rows; ``move`` is the number of the segment, ``part`` that in :data:`PARTS`."""
 
@@ -52,6 +55,7 @@ _KINDS = dict.fromkeys(COLUMNS, np.float64) | {
     "reversal": np.bool_,
     "bin": np.int64,
     "samples": np.int64,
+    SHARED: np.bool_,
 }
 
 _HALF_WINDOW = 0.015
@@ -93,8 +97,9 @@ def ramp_means(
     Parameters
     ----------
     channels : dict of str to ndarray, shape (samples,)
-        time, position, velocity, torque, load, motor_temperature, housing_temperature of one
-        recording and joint. [s], [deg], [deg/s], [N·m], [N·m], [°C], [°C]
+        time, position, velocity, torque, load, motor_temperature, housing_temperature and
+        other_speed of one recording and joint. [s], [deg], [deg/s], [N·m], [N·m], [°C], [°C],
+        [deg/s]
     segments : ConstantSpeedSegments
         Constant-speed segments, with the bounds of their moves.
     period : float
@@ -105,9 +110,9 @@ def ramp_means(
     Returns
     -------
     dict of str to ndarray, shape (rows,)
-        The :data:`COLUMNS`: accelerations at :data:`LAGS` [deg/s²]; ``spread`` is the standard
-        deviation of the angle [deg]; ``elapsed`` is the time since the start of the move, or until
-        its end. [s]
+        The :data:`COLUMNS` and :data:`SHARED`: accelerations at :data:`LAGS` [deg/s²]; ``spread``
+        is the standard deviation of the angle [deg]; ``elapsed`` is the time since the start of the
+        move, or until its end. [s]
     """
     low, high, origin, clock = _halves(channels, segments)
     index = slice_indices(low, high)
@@ -132,6 +137,7 @@ def ramp_means(
     key = owner * (len(EDGES) - 1) + number
     count = np.bincount(key)
     hit = np.flatnonzero(count)
+    shared = np.bincount(key, channels["other_speed"][index] > 0)[hit] > 0
     means = {name: np.bincount(key, value)[hit] / count[hit] for name, value in values.items()}
     means["spread"] = np.sqrt(np.maximum(means["spread"] - np.square(means["distance"]), 0.0))
     owner, number = np.divmod(hit, len(EDGES) - 1)
@@ -144,8 +150,9 @@ def ramp_means(
         "speed": np.abs(speed),
         "bin": number,
         "samples": count[hit],
+        SHARED: shared,
     }
-    return {name: rows[name] for name in COLUMNS}
+    return {name: rows[name] for name in (*COLUMNS, SHARED)}
 
 
 def slope(time: Array, values: Array, half: int) -> Array:

@@ -18,6 +18,7 @@ from frictioncli.pairs.constant_speed import (
     ConstantSpeedSegments,
     constant_speed_segments,
 )
+from frictioncli.pairs.other_joints import OtherMotion, bins_with_other_motion
 from frictioncli.pairs.partitioned_store import Columns, PartitionedStore
 from frictioncli.pairs.ramps import MEANS, PreviousMove, ramp_means
 from frictioncli.pairs.settings import SteadySettings
@@ -27,7 +28,7 @@ from frictioncli.pairs.speed_levels import SpeedCounts
 Joint = tuple[str, int]
 
 TEMPERATURES = ("motor_temperature", "housing_temperature", "motor_temperature_reading")
-_CHANNELS = (*MEANS, "motor_temperature_reading")
+_CHANNELS = (*MEANS, "motor_temperature_reading", "other_speed")
 
 _FIRST_ROWS = 1 << 17
 """Samples from which it is found whether the angle bins must be wider."""
@@ -49,8 +50,9 @@ class SegmentTables:
         ``recordings``), direction (+1, -1), speed [deg/s], start, stop [s], motor_temperature,
         housing_temperature, motor_temperature_reading [°C]. ``bins``, one row per segment and angle
         bin: segment (number within run and joint), bin (number), n (samples), torque at the bin's
-        centre, load, time [s]. ``ramps``: rows of :func:`frictioncli.pairs.ramps.ramp_means` with
-        recording; ``move`` is the number of the segment.
+        centre, load, time [s], shared (whether another joint moved meanwhile). ``ramps``: rows of
+        :func:`frictioncli.pairs.ramps.ramp_means` with recording; ``move`` is the number of the
+        segment.
     counts : dict of (str, int) to int
         Number of segments of each run and joint that has some.
     recordings : list of tuple of str
@@ -63,6 +65,8 @@ class SegmentTables:
         Counts of the segments' speeds, by direction.
     samples : int
         Number of samples read.
+    other_motion : OtherMotion
+        Samples in bins during which other joints moved.
     """
 
     store: PartitionedStore[Joint]
@@ -72,6 +76,7 @@ class SegmentTables:
     dropped: dict[str, int]
     speeds: dict[int, SpeedCounts]
     samples: int
+    other_motion: OtherMotion
 
 
 def find_segments(
@@ -145,6 +150,7 @@ class _Finder:
     speeds: dict[int, SpeedCounts] = field(
         default_factory=lambda: {1: SpeedCounts(), -1: SpeedCounts()}
     )
+    other_motion: OtherMotion = field(default_factory=OtherMotion)
     _last_moves: dict[int, tuple[int, int]] = field(default_factory=dict)
 
     def add(self, chunk: SampleChunk) -> None:
@@ -172,7 +178,7 @@ class _Finder:
         previous = PreviousMove(direction, stop - chunk.offset)
         tables = {
             "segments": self._segments(channels, found),
-            "bins": self._bins(channels, found),
+            "bins": self._bins(channels, found, source.joint),
             "ramps": ramp_means(channels, found, chunk.period, previous),
         }
         for name in ("segments", "ramps"):
@@ -197,7 +203,9 @@ class _Finder:
             "stop": channels["time"][found.stop - 1],
         } | {name: slice_means(channels[name], found.start, found.stop) for name in TEMPERATURES}
 
-    def _bins(self, channels: dict[str, Array], found: ConstantSpeedSegments) -> Columns:
+    def _bins(
+        self, channels: dict[str, Array], found: ConstantSpeedSegments, joint: int
+    ) -> Columns:
         time, start, stop = channels["time"], found.start, found.stop
         means = bin_means(
             position=channels["position"],
@@ -212,10 +220,16 @@ class _Finder:
         expected = np.maximum(self.width / np.maximum(step, 1e-9), 1.0)
         covered = means.n >= _LEAST_COVERAGE * expected[means.segment]
         self.dropped[_BARELY] += int(means.n[~covered].sum())
-        return {
+        bins = {
             name: getattr(means, name)[covered]
             for name in ("segment", "bin", "n", "torque", "load", "time")
         }
+        position = channels["position"]
+        shared = bins_with_other_motion(
+            channels["other_speed"], position, start, stop, self.width, bins["segment"], bins["bin"]
+        )
+        self.other_motion.add(joint, bins["n"], shared)
+        return bins | {"shared": shared}
 
     def result(self) -> SegmentTables:
         return SegmentTables(
@@ -226,4 +240,5 @@ class _Finder:
             self.dropped,
             self.speeds,
             self.samples,
+            self.other_motion,
         )

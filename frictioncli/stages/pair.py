@@ -61,10 +61,15 @@ def pair(work: Path, settings: PairingSettings | None = None) -> StageResult:
             "samples": segments.samples,
             "dropped": pairing.dropped,
             "bin_width": segments.bin_width,
+            "other_joints": {
+                str(joint): share
+                for joint, share in segments.other_motion.kept(pairing.joints).items()
+            },
         }
         ramps.facts = pairs.facts = facts
         for rows in ramp_rows(segments, manifest["payload"]):
             ramps.write(rows)
         for rows in counts.count(pair_rows(segments, pairing, manifest["phase"])):
             pairs.write(rows)
-    return StageResult(work / PAIRS, pairing_text(counts, facts, settings.bin_width))
+    text = pairing_text(counts, facts, segments.other_motion, settings.bin_width)
+    return StageResult(work / PAIRS, text)

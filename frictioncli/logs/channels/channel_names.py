@@ -9,6 +9,9 @@ TORQUE = "torque"
 MOTOR_TEMPERATURE = "motor_temperature"
 HOUSING_TEMPERATURE = "housing_temperature"
 LOAD = "load"
+OTHER_SPEED = "other_speed"
+"""Not a channel of a log: the speed of the fastest other joint, from its position."""
+
 TOOL = "tool"
 CHANNELS = (TIME, POSITION, VELOCITY, TORQUE, MOTOR_TEMPERATURE, HOUSING_TEMPERATURE, LOAD)
 

@@ -1,6 +1,6 @@
 """Chunks of a log: consecutive raw rows, converted to the units used inside and checked."""
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from contextlib import suppress
 from dataclasses import dataclass
 from statistics import median
@@ -39,12 +39,15 @@ class PlannedLog:
         Time of the first row by the clock of the log; NaN where it has none. [s]
     period : float
         Median time between the first samples; 1 where they do not show it. [s]
+    others : mapping of int to (int, float)
+        Joints that are not read but whose position is known: its column, and the factor to deg.
     """
 
     log: OpenedLog
     plans: tuple[JointPlan, ...]
     first_time: float
     period: float
+    others: Mapping[int, tuple[int, float]]
 
     @property
     def columns(self) -> set[int]:
@@ -52,6 +55,7 @@ class PlannedLog:
         columns = {self.plans[0].channels.time.column}
         for plan in self.plans:
             columns.update(_column(plan, name) for name in plan.conversions)
+        columns.update(column for column, _ in self.others.values())
         return columns
 
 
@@ -101,7 +105,31 @@ def plan_log(log: OpenedLog, plans: Iterable[JointPlan]) -> PlannedLog:
         plans,
         first_time=float(finite[0]) * conversion.factor if len(finite) else np.nan,
         period=median(steps.tolist()) * conversion.factor if len(steps) else 1.0,
+        others=_other_positions(log.channels, plans),
     )
+
+
+def _other_positions(
+    channels: Iterable[LogChannel], plans: tuple[JointPlan, ...]
+) -> dict[int, tuple[int, float]]:
+    """Return column and factor of the positions of joints that are not read.
+
+    They are in the unit of the positions that are read and have the same name but for the number.
+    """
+    factors = {
+        plan.channels.position.family: plan.conversions[names.POSITION].factor
+        for plan in plans
+        if plan.channels.position.meaning.side != names.MOTOR_SIDE
+    }
+    known = {plan.channels.joint for plan in plans}
+    return {
+        channel.joint: (channel.column, factors[channel.family])
+        for channel in channels
+        if channel.quantity == names.POSITION
+        and channel.joint is not None
+        and channel.joint not in known
+        and channel.family in factors
+    }
 
 
 def empty_chunk(planned: PlannedLog) -> LogChunk:
@@ -110,7 +138,7 @@ def empty_chunk(planned: PlannedLog) -> LogChunk:
         (plan.channels.joint, name): np.empty(0)
         for plan in planned.plans
         for name in plan.conversions
-    }
+    } | {(joint, names.POSITION): np.empty(0) for joint in planned.others}
     return LogChunk(LogRows(np.empty(0, np.int64), np.empty(0), columns), RejectedRows(), 0)
 
 
@@ -132,7 +160,7 @@ def convert_chunk(batch: RawBatch, planned: PlannedLog) -> LogChunk:
     rejected = RejectedRows()
     for reason in sorted(set(batch.bad_reasons)):
         rejected.add(batch.bad_lines[np.array(batch.bad_reasons) == reason], reason)
-    rows = _drop_implausible_positions(_converted(batch, planned.plans), batch, planned, rejected)
+    rows = _drop_implausible_positions(_converted(batch, planned), batch, planned, rejected)
     required = [
         (plan.channels.joint, name)
         for plan in planned.plans
@@ -143,9 +171,12 @@ def convert_chunk(batch: RawBatch, planned: PlannedLog) -> LogChunk:
     return LogChunk(rows, rejected, len(batch.lines) + len(batch.bad_lines))
 
 
-def _converted(batch: RawBatch, plans: Iterable[JointPlan]) -> LogRows:
-    columns: dict[tuple[int, str], Array] = {}
-    for plan in plans:
+def _converted(batch: RawBatch, planned: PlannedLog) -> LogRows:
+    columns: dict[tuple[int, str], Array] = {
+        (joint, names.POSITION): batch.values[column] * factor
+        for joint, (column, factor) in planned.others.items()
+    }
+    for plan in planned.plans:
         for name, conversion in plan.conversions.items():
             values = batch.values[_column(plan, name)]
             if (conversion.factor, conversion.offset) != (1.0, 0.0):

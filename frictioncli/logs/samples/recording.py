@@ -12,6 +12,7 @@ from frictioncli.logs.runs.opening import OpenedLog
 from frictioncli.logs.samples.chunks import LogChunk, PlannedLog
 from frictioncli.logs.samples.differentiation import half_window, max_gap
 from frictioncli.logs.samples.log_rows import NO_VALUES, REASONS, LogRows, RejectedRows
+from frictioncli.logs.samples.other_joints import with_other_speed
 from frictioncli.logs.samples.quantized_temperature import longest_change_interval
 from frictioncli.logs.samples.row_checks import (
     add_velocity,
@@ -144,7 +145,9 @@ def _usable_rows(
     increasing = drop_non_increasing_time(blocks(), rejected)
     started = drop_stale_first_rows(increasing, positions, rejected)
     half, gap = half_window(planned.period), max_gap(planned.period)
-    for rows in add_velocity(started, derived, rejected, half=half, gap=gap):
+    moving = add_velocity(started, derived, rejected, half=half, gap=gap)
+    joints = [plan.channels.joint for plan in planned.plans]
+    for rows in with_other_speed(moving, joints):
         if len(rows):
             yield rows
 

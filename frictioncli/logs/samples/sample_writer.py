@@ -36,6 +36,7 @@ _COPIED_CHANNELS = (
     names.MOTOR_TEMPERATURE,
     names.HOUSING_TEMPERATURE,
     names.LOAD,
+    names.OTHER_SPEED,
 )
 
 RunKnots = Mapping[tuple[str, int], Sequence[Knots | None]]

@@ -1,0 +1,113 @@
+"""Samples of a joint while other joints of the same recording move.
+
+A joint that moves loads its neighbours with its inertia and turns the weight that they carry, which
+the separation of friction and load cannot know. Such samples are left out, unless they are more
+than half of what there is, or no pair would be left.
+"""
+
+from collections.abc import Iterable
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from frictioncli.arrays import Array, Flags, Numbers
+from frictioncli.pairs.slices import slice_indices
+
+OTHER_MOVES = "other joint moves"
+"""Reason why samples at constant speed are in no pair."""
+
+LEFT_OUT = "left out"
+KEPT = "used nonetheless, and its torque holds what the others add"
+"""What becomes of such samples."""
+
+_MOST = 0.5
+"""Share of a joint's samples at constant speed above which they are kept."""
+
+
+@dataclass(slots=True)
+class OtherMotion:
+    """How many samples at constant speed were taken while another joint moved.
+
+    Attributes
+    ----------
+    samples, shared : dict of int to int
+        Samples in angle bins by joint, and those in bins during which another joint moved.
+    needed : set of int
+        Joints of which no pair is left without such samples.
+    """
+
+    samples: dict[int, int] = field(default_factory=dict)
+    shared: dict[int, int] = field(default_factory=dict)
+    needed: set[int] = field(default_factory=set)
+
+    def add(self, joint: int, count: Numbers, moves: Flags) -> None:
+        """Add bins of a joint: their samples, and whether another joint moved meanwhile."""
+        self.samples[joint] = self.samples.get(joint, 0) + int(count.sum())
+        self.shared[joint] = self.shared.get(joint, 0) + int(count[moves].sum())
+
+    def share(self, joint: int) -> float:
+        """Return the share of a joint's samples at constant speed while another one moved."""
+        return self.shared.get(joint, 0) / max(self.samples.get(joint, 0), 1)
+
+    def leaves_out(self, joint: int) -> bool:
+        """Return whether such samples of a joint are left out."""
+        return joint not in self.needed and 0 < self.share(joint) <= _MOST
+
+    def kept(self, joints: Iterable[int]) -> dict[int, float]:
+        """Return the share of such samples of those of some joints of which they are kept."""
+        return {
+            joint: self.share(joint)
+            for joint in joints
+            if self.share(joint) and not self.leaves_out(joint)
+        }
+
+    def texts(self, joints: Iterable[int]) -> list[str]:
+        """Return a sentence for each of some joints during whose motion another one moves."""
+        return [
+            f"joint {joint}: another joint moves during {100 * self.share(joint):.0f} % of its"
+            " motion at constant speed: " + (LEFT_OUT if self.leaves_out(joint) else KEPT)
+            for joint in joints
+            if self.share(joint)
+        ]
+
+
+def bins_with_other_motion(
+    other_speed: Array,
+    position: Array,
+    start: Numbers,
+    stop: Numbers,
+    width: float,
+    segment: Numbers,
+    number: Numbers,
+) -> Flags:
+    """Return during which angle bins of segments another joint moved.
+
+    Parameters
+    ----------
+    other_speed : ndarray, shape (samples,)
+        Speed of the fastest other joint; NaN where not known. [deg/s]
+    position : ndarray, shape (samples,)
+        Joint angle. [deg]
+    start, stop : ndarray of int, shape (segments,)
+        First and past-the-end sample of each segment.
+    width : float
+        Width of the bins. [deg]
+    segment, number : ndarray of int, shape (bins,)
+        Segment and number of each bin.
+
+    Returns
+    -------
+    ndarray of bool, shape (bins,)
+        True where one sample or more was taken while another joint moved.
+    """
+    moving = other_speed > 0
+    index = slice_indices(start, stop)
+    moves = moving[index]
+    if not moves.any():
+        return np.zeros(len(segment), bool)
+    owner = np.repeat(np.arange(len(start)), stop - start)[moves]
+    crossed = np.floor(position[index[moves]] / width).astype(np.int64)
+    lowest = min(int(crossed.min()), int(number.min(initial=0)))
+    span = max(int(crossed.max()), int(number.max(initial=0))) - lowest + 1
+    found: Flags = np.isin(segment * span + number - lowest, owner * span + crossed - lowest)
+    return found
