@@ -292,13 +292,13 @@ def model_rating(results: JointResults, diagnosis: DiagnosisDocument | None) -> 
             [alternatives_text(one) for one in diagnosis.named_causes if one.is_measurement],
         )
     )
-    lacks = f"lacks {lacking}" if lacking else "does not know what the measurement adds"
-    adds = f" (the measurement adds {measured})" if measured else ""
+    lacks = f"lacks {lacking}" if lacking else ""
+    adds = f"does not know {measured} of the measurement" if measured else ""
     return QualityRating(
         level=FAIR,
         name="Model",
-        reason=f"Equation (16) {lacks}{adds}: alone it misses {missed}. The extended model has"
-        f" it.{beside}",
+        reason=f"Equation (16) {' and '.join(filter(None, [lacks, adds]))}: alone it misses"
+        f" {missed}. The extended model has it.{beside}",
     )
 
 

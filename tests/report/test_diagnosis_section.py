@@ -13,19 +13,33 @@ from msgspec import convert, structs
 from frictioncli.diagnosis.documents.document import DiagnosisDocument
 from frictioncli.diagnosis.documents.extended_model import ExtendedDocument, extended_model
 from frictioncli.diagnosis.documents.reload import is_current, read_documents, reload
+from frictioncli.diagnosis.documents.sentences import p_value_text
 from frictioncli.errors import TableError
+from frictioncli.report.diagnosis_captions import cause_title
 from frictioncli.report.diagnosis_section import diagnosis_figures, diagnosis_section
-from frictioncli.report.diagnosis_text import UNDETECTABLE, gain_sentence, p_value_text
+from frictioncli.report.diagnosis_text import (
+    UNDETECTABLE,
+    cause_texts,
+    gain_sentence,
+    verdict_sentence,
+)
 from frictioncli.report.drawing import draw_figure
 from frictioncli.report.page import write_report
 from frictioncli.report.results import read_results
-from tests.report.diagnosis_documents import DIAGNOSIS_DOCUMENT, OFFSET, SHIFT, stribeck_term
+from tests.report.diagnosis_documents import (
+    DIAGNOSIS_DOCUMENT,
+    OFFSET,
+    SHIFT,
+    cause,
+    diagnosis,
+    stribeck_term,
+)
 
 HOSTILE = "<script>alert(1)</script>&\"'$\\frac{kr10$"
 
 
-def test_reloaded_misfits_are_those_of_the_files(diagnosis):
-    seen, new = diagnosis.seen, diagnosis.new
+def test_reloaded_misfits_are_those_of_the_files(diagnosed):
+    seen, new = diagnosed.diagnosis.seen, diagnosed.diagnosis.new
     assert seen.problem.runs == ("day-1",)
     assert new.problem.runs == ("day-2",)
     for one in (seen, new):
@@ -42,7 +56,7 @@ def test_reloaded_misfits_are_those_of_the_files(diagnosis):
     np.testing.assert_allclose(both, [11.0, 22.0, 9.0, 18.0])
 
 
-def test_section_says_what_was_found(diagnosed, diagnosis):
+def test_section_says_what_was_found(diagnosed):
     section = diagnosis_section(diagnosed)
     assert "2.10 N·m (RMS, day-1)" in section.verdict
     assert "The model lacks stribeck." in section.verdict
@@ -76,7 +90,7 @@ def test_section_says_what_was_found(diagnosed, diagnosis):
         "friction",
         "−4.50",
     )
-    names = [figure.name for figure in diagnosis_figures(diagnosis)]
+    names = [figure.name for figure in diagnosis_figures(diagnosed.diagnosis)]
     assert names == [
         "diagnosis-simulation",
         "diagnosis-maps",
@@ -125,6 +139,34 @@ def test_silence_is_explained_and_draws_no_gain(diagnosed, diagnosed_work):
     assert [figure.name for figure in figures] == ["diagnosis-simulation", "diagnosis-maps"]
     for figure in figures:
         assert draw_figure(figure, silent, "joint2-").name == f"joint2-{figure.name}"
+
+
+def test_verdict_tells_joint_measurement_and_what_did_not_last_apart():
+    document = diagnosis(
+        causes=(
+            cause(["stribeck"], kind="friction"),
+            cause(["drift", "run_in"], kind="friction"),
+            cause(["payload_change"], kind="load", holds_on_new_run=False, when="in run day-1"),
+            cause(
+                ["torque_delay"],
+                kind="measurement",
+                statement="The torque in these logs is 12 ms (11 to 13) late.",
+            ),
+        ),
+        verdict="ambiguous",
+    )
+    sentence = verdict_sentence(document, "N·m")
+    assert "The model lacks stribeck. The model lacks one of drift and run in" in sentence
+    assert (
+        "Payload change: a change that did not last: there in run day-1, not on the run kept out"
+        " (day-2)."
+    ) in sentence
+    assert "Of the measurement: the torque in these logs is 12 ms (11 to 13) late; corrected." in (
+        sentence
+    )
+    third = cause_texts(document, "N·m")[3]
+    assert third.kind == "measurement"
+    assert cause_title(document.causes[3], 4) == "Measurement 4. torque delay"
 
 
 def test_without_a_diagnosis_the_section_names_the_command(tmp_path, write_work):

@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import pytest
 
+from frictioncli.diagnosis.documents.document import RemainderRecord
 from frictioncli.model.document import ParameterEstimate
 from frictioncli.report.quality_ratings import (
     FAIR,
@@ -20,7 +21,7 @@ from frictioncli.report.quality_ratings import (
     temperature_rating,
     time_rating,
 )
-from tests.report.diagnosis_documents import diagnosis
+from tests.report.diagnosis_documents import cause, diagnosis
 
 CLEAN = IngestCounts(
     rows=10_000, rejected=0, files=8, unusable_files=0, time_known=True, warnings=0
@@ -114,6 +115,27 @@ def test_model_goes_by_the_verdict(two_runs, verdict, effects, level, word):
     assert rating.level == level
     assert word in rating.reason
     assert "3.00 N·m (RMS)" in rating.reason
+
+
+def test_model_that_leaves_something_on_a_new_run_is_not_good(two_runs):
+    left = RemainderRecord(
+        basis="new_run",
+        rmse=1.4,
+        noise_floor=0.7,
+        size=1.2,
+        axis="time",
+        channel="friction",
+        axis_size=1.0,
+    )
+    rating = model_rating(two_runs, diagnosis(verdict="no_evidence", remainder=left))
+    assert rating.level == FAIR
+    assert "still 1.40 N·m on a new run, where noise alone is 0.700 N·m" in rating.reason
+
+
+def test_measurement_is_no_fault_of_the_equation(two_runs):
+    delay = cause(["torque_delay"], kind="measurement")
+    reason = model_rating(two_runs, diagnosis(causes=(delay,))).reason
+    assert "Equation (16) does not know torque delay of the measurement: alone" in reason
 
 
 def test_every_rating_has_a_reason(two_runs):

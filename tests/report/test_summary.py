@@ -14,7 +14,7 @@ from frictioncli.report.summary import (
     measurement_text,
     summary_text,
 )
-from tests.report.diagnosis_documents import diagnosis
+from tests.report.diagnosis_documents import cause, diagnosis
 
 GAIN = GainRecord(
     basis="new_run",
@@ -74,6 +74,15 @@ def test_verdict_tells_the_causes_and_their_worth(two_runs):
     assert "No known effect is named, and structure is left" in summary_text(two_runs, unsure)
     silent = diagnosis(verdict="no_evidence", sets=[], rmse=5.2)
     assert "No cause was found" in summary_text(two_runs, silent)
+    seen = structs.replace(silent, visible=(cause(["drift"], standing="negligible"),))
+    assert "No cause is named" in summary_text(two_runs, seen)
+    delay = cause(["torque_delay"], kind="measurement")
+    logged = diagnosis(causes=(delay,))
+    assert summary_text(two_runs, logged).endswith("The measurement adds torque delay.")
+    both = diagnosis(causes=(cause(["stribeck"]), delay))
+    assert summary_text(two_runs, both).endswith(
+        "The function lacks stribeck, and the measurement adds torque delay."
+    )
 
 
 def test_verdict_says_what_is_not_determined(without_temperature):
