@@ -11,7 +11,8 @@ from frictioncli.diagnosis.documents.document import DiagnosisDocument
 from frictioncli.diagnosis.documents.extended_model import ExtendedModel
 from frictioncli.diagnosis.fit.hypotheses import EffectFit, hypothesis_of
 from frictioncli.diagnosis.noise.significance import posterior_probabilities
-from frictioncli.diagnosis.search.precomputed import Catalogue, Precomputed
+from frictioncli.diagnosis.search.catalogue import Catalogue
+from frictioncli.diagnosis.search.precomputed import Precomputed
 from frictioncli.diagnosis.search.step import Step
 from frictioncli.effects import BY_NAME
 from frictioncli.effects.base import missing_columns
@@ -171,7 +172,7 @@ def _fit_rivals(step: Step, names: Sequence[str]) -> Question:
     effects = [BY_NAME[name] for name in [*names, *confounders[:_MOST_CONFOUNDERS]]]
     available = [effect for effect in effects if not missing_columns(effect, problem.table)]
     hypotheses = [hypothesis_of(effect, problem) for effect in available]
-    tests = step.tested(Catalogue.of(step.precomputed, hypotheses), seed=0, draws=0)
+    tests = step.tested(Catalogue.of(step.precomputed, hypotheses))
     rivals = []
     for effect in available:
         test = tests[effect.name]

@@ -7,7 +7,7 @@ where there is one.
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import pandas as pd
@@ -16,9 +16,11 @@ from frictioncli.diagnosis.data.build_problem import build_problems
 from frictioncli.diagnosis.data.problem import Misfit, Problem
 from frictioncli.diagnosis.fit.extension import Extension, Gain, extend, measured_gain
 from frictioncli.diagnosis.ramps.evidence import RampEvidence, RampLog, ramp_evidence
-from frictioncli.diagnosis.search.cause_search import Cause, SearchResult, find_causes
-from frictioncli.diagnosis.search.cause_selection import LEAST_VISIBLE, select_causes
+from frictioncli.diagnosis.search.cause import Cause
+from frictioncli.diagnosis.search.cause_search import SearchResult, find_causes
+from frictioncli.diagnosis.search.cause_selection import judged_on_new_run
 from frictioncli.diagnosis.search.lack_of_fit import Structure, structures
+from frictioncli.diagnosis.search.standing import with_standing
 from frictioncli.diagnosis.settings import DiagnosisSettings
 from frictioncli.effects import EFFECTS
 from frictioncli.effects.base import Effect
@@ -39,14 +41,12 @@ _WORST = 5
 _UNNAMED_P_VALUE = 1e-3
 """Greatest p-value of structure that no effect explains."""
 
-_UNNAMED_SIZE = 0.003
-"""Least size of such structure where no cause was found, as a share of the mean friction."""
+_MOST_LEFT = 0.5
+"""Structure without a name that is greater than this share of a cause in its channel says that the
+cause is not understood."""
 
-_UNNAMED_RELATIVE_SIZE = 0.3
-"""Least size beside causes, as a share of the visible size of the largest one."""
-
-_UNNAMED_RELATIVE_STATISTIC = 0.1
-"""Least statistic beside causes, as a share of the sum of theirs: no equation is exact."""
+_CLEAR = 1e-3
+"""Greatest p-value of an effect of the measurement that is listed though it is not named."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -153,20 +153,29 @@ def diagnose_joint(
             " noise from structure; log more moves there and back"
         )
     problem, new = build_problems(torques, temperature, held_out)
+    margin = margin_of(problem, torque_unit, settings)
     evidence = ramp_evidence(ramps, problem, temperature) if ramps else None
-    found = find_causes(problem, effects, settings, evidence)
+    found = find_causes(problem, effects, settings, margin, evidence)
     weighted_fit = found.step.weighted_fit()
-    selected, visible = select_causes(found, weighted_fit, new or problem, settings.seed)
-    unnamed = _unnamed_structure(found, selected, settings)
-    # a cause that explains less than the unnamed structure may be a part of it
-    causes = tuple(cause for cause in selected if unnamed is None or _exceeds(cause, unnamed))
-    visible += tuple(cause for cause in selected if cause not in causes)
+    judged = with_standing((*found.measurement, *found.causes), problem, margin, settings.alpha)
+    named = [cause for cause in judged if cause.standing == "named"]
+    if new:
+        named = list(judged_on_new_run(named, problem, weighted_fit, new, settings.seed))
+    unnamed = _unnamed_structure(found, margin, settings)
+    causes = tuple(
+        cause
+        for cause in named
+        if cause.standing == "named" and not (unnamed and _is_part(cause, unnamed))
+    )
+    visible = _visible(judged, named, causes, unnamed)
+    lasting = [cause for cause in causes if cause.holds_on_new_run is not False]
     extension = gain = None
     if causes:
         extension = extend(problem, weighted_fit, [cause.fit for cause in causes])
+    if lasting:
         gain = measured_gain(
             new or problem,
-            extension,
+            extend(problem, weighted_fit, [cause.fit for cause in lasting]),
             basis="new_run" if new else "within_run",
             floor=_floor(found),
             seed=settings.seed,
@@ -184,8 +193,8 @@ def diagnose_joint(
         base=problem,
         judged=new or problem,
         floor=_floor(found),
-        detectable=found.detectable_sizes(effects, settings.alpha),
-        margin=margin_of(problem, torque_unit, settings),
+        detectable=found.detectable_sizes(effects, settings.alpha, margin),
+        margin=margin,
         rmse=float(np.sqrt(np.mean(squared))),
         worst=worst_misfits(problem),
         runs=problem.runs,
@@ -213,29 +222,44 @@ def margin_of(problem: Problem, torque_unit: str, settings: DiagnosisSettings) -
 
 
 def _unnamed_structure(
-    found: SearchResult, causes: Sequence[Cause], settings: DiagnosisSettings
+    found: SearchResult, margin: float, settings: DiagnosisSettings
 ) -> Structure | None:
-    """Return the structure beside the causes if it is more than noise or errors of their form."""
-    step = found.step
-    largest = max((cause.visible for cause in causes), default=0.0)
-    friction = float(np.mean(np.abs(step.problem.friction)))
-    least = (
-        max(LEAST_VISIBLE * friction, _UNNAMED_RELATIVE_SIZE * largest)
-        if causes
-        else _UNNAMED_SIZE * friction
-    )
-    named = sum(cause.test.statistic for cause in found.causes) if causes else 0.0
-    for one in structures(step, settings.seed):
+    """Return the most significant structure beside the causes that is surely above the margin."""
+    for one in structures(found.step):
         significant = one.p_value < min(_UNNAMED_P_VALUE, settings.alpha)
-        excess = one.statistic - one.freedom
-        if significant and one.size >= least and excess > _UNNAMED_RELATIVE_STATISTIC * named:
+        if significant and one.interval[0] > margin:
             return one
     return None
 
 
-def _exceeds(cause: Cause, unnamed: Structure) -> bool:
-    """Return whether a cause explains more than structure without a name."""
-    return cause.test.statistic > unnamed.statistic - unnamed.freedom
+def _is_part(cause: Cause, unnamed: Structure) -> bool:
+    """Return whether a cause may be a part of structure without a name along its axis."""
+    effect = cause.fit.effect
+    return (
+        not effect.measurement
+        and effect.channel == unnamed.channel
+        and unnamed.size > _MOST_LEFT * cause.visible
+    )
+
+
+def _visible(
+    judged: Sequence[Cause],
+    named: Sequence[Cause],
+    causes: Sequence[Cause],
+    unnamed: Structure | None,
+) -> tuple[Cause, ...]:
+    """Return what was found and is not named, with the reason, largest first."""
+    left = [cause for cause in judged if cause.standing != "named"]
+    # an effect of the measurement that nothing speaks for is not worth a line
+    left = [one for one in left if not one.fit.effect.measurement or one.test.p_value < _CLEAR]
+    for cause in named:
+        if any(cause is other for other in causes):
+            continue
+        if cause.standing == "named" and unnamed is not None:
+            reason = f"structure along {unnamed.axis} is left that no effect explains"
+            cause = replace(cause, standing="visible", reason=reason)
+        left.append(cause)
+    return tuple(sorted(left, key=lambda cause: -cause.visible))
 
 
 def _verdict(causes: Sequence[Cause], unnamed: Structure | None) -> str:

@@ -69,6 +69,15 @@ MEASUREMENT_EFFECTS: tuple[Effect, ...] = (
 )
 """Effects of kind ``measurement``, in the order of reports."""
 
+BASE_MEASUREMENT: tuple[Effect, ...] = (
+    load_offset.EFFECT,
+    torque_delay.EFFECT,
+    torque_filter.EFFECT,
+    backlash.EFFECT,
+)
+"""Those that stand beside the base model from the start. A lag of the sensor does not: it is told
+from a lag of the gear only by its sign."""
+
 BY_NAME: Mapping[str, Effect] = MappingProxyType(
     {effect.name: effect for effect in (*EFFECTS, *MEASUREMENT_EFFECTS)}
 )

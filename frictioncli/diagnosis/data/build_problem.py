@@ -128,7 +128,7 @@ def _assembled(
         time=rows["time"].to_numpy(float)[heads],
         speed=speed[heads],
         position=position,
-    )
+    ).with_noise_from(rows[["friction_torque", "load_torque"]].to_numpy(float), position)
     motor = rows["motor_temperature"].to_numpy(float)
     rest, order = series(layout, motor[heads])
     in_torque = gravity if rows["load"].isna().all() else _gravity_in_torque(rows, columns)

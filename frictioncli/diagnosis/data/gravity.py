@@ -128,8 +128,9 @@ def without_offset(columns: Array) -> Array:
 def carried_load(columns: Array, gravity: Array) -> Array:
     """Return the load torque that the gear carries, shape (rows,) [N·m].
 
-    Gravity without its offset: a torque that is the same at all angles is an offset of the sensor,
-    or an asymmetry of friction, and does not load the gear.
+    All of the fitted gravity, as the model of :func:`frictioncli.model.fitting` takes it. A
+    constant that is an offset of the sensor, and does not load the gear, is estimated as an effect
+    of its own (:mod:`frictioncli.effects.load_offset`).
 
     Parameters
     ----------
@@ -142,9 +143,9 @@ def carried_load(columns: Array, gravity: Array) -> Array:
     --------
     >>> import numpy as np
     >>> float(carried_load(gravity_columns(np.array([0.0])), np.array([95.0, 0.0, 4.0]))[0])
-    95.0
+    99.0
     """
-    return np.asarray(without_offset(columns) @ gravity)
+    return np.asarray(columns @ gravity)
 
 
 class GravityCoefficients(msgspec.Struct, frozen=True, kw_only=True, omit_defaults=True):

@@ -1,17 +1,24 @@
 """Division of rows into pairs: means of pairs and deviations within them.
 
-Rows are angle bins. Noise within a pair is white; noise of the pair means is correlated in time.
-Deviations within neighbouring pairs at one speed are pooled by angle, which keeps their inner
-products with every effect that is the same in these pairs.
+Rows are angle bins. Noise of the pair means is correlated in time, noise within a pair along the
+move (:mod:`frictioncli.diagnosis.data.within_noise`). Deviations within neighbouring pairs at one
+speed are pooled by angle, which keeps their inner products with every effect that is the same in
+these pairs, and made white.
 """
 
 from dataclasses import dataclass
 
 import numpy as np
 import pandas as pd
-from scipy.sparse import csr_array
+from scipy.sparse import block_diag, csr_array
 
 from frictioncli.arrays import Array, Indices
+from frictioncli.diagnosis.data.within_noise import (
+    LEAST_FREEDOM,
+    WithinNoise,
+    whitening,
+    within_noise_of,
+)
 
 _POOLED = 5
 """Neighbouring pairs at one speed whose deviations are pooled."""
@@ -56,7 +63,12 @@ class PairLayout:
         Speed level of each pair.
     pooling : sparse matrix, shape (groups, rows)
         Sums over a group of neighbouring pairs at one speed and angle, over the root of their
-        number; its rows are orthonormal, so that white deviations stay white.
+        number, made white: deviations of variance 1 stay so.
+    noise : WithinNoise
+        Noise within pairs.
+    blocks : tuple of ndarray of int
+        Rows of each set of neighbouring pairs at one speed that cross the same bins, shape (pairs,
+        bins).
     """
 
     row_pair: Indices
@@ -64,7 +76,10 @@ class PairLayout:
     run: Indices
     time: Array
     level: Indices
+    speed: Array
     pooling: csr_array
+    noise: WithinNoise
+    blocks: tuple[Indices, ...]
 
     @classmethod
     def of(
@@ -75,6 +90,7 @@ class PairLayout:
         time: Array,
         speed: Array,
         position: Array,
+        noise: WithinNoise | None = None,
     ) -> "PairLayout":
         """Return the layout of rows whose pairs are numbered from 0 in order.
 
@@ -86,23 +102,78 @@ class PairLayout:
             Of each pair. [-], [s], [deg/s]
         position : ndarray, shape (rows,)
             Centre of each row's angle bin. [deg]
+        noise : WithinNoise, optional
+            Noise within pairs; by default it is white.
         """
         level = speed_level(speed)
         pairs = pd.DataFrame({"run": run, "level": level})
         pairs["block"] = pairs.groupby(["run", "level"]).cumcount() // _POOLED
-        keys = pairs.iloc[row_pair].assign(position=position)
-        group = keys.groupby(["run", "level", "block", "position"]).ngroup().to_numpy()
+        block = pairs.groupby(["run", "level", "block"]).ngroup().to_numpy()
+        keys = pd.DataFrame({"block": block[row_pair], "position": position})
+        group = keys.groupby(["block", "position"]).ngroup().to_numpy()
         weight = 1 / np.sqrt(np.bincount(group))
         pooling = csr_array(
             (weight[group], (group, np.arange(len(group)))), shape=(len(weight), len(group))
         )
+        if noise is not None and noise.share > 0:
+            pooling = csr_array(_white(noise, keys, speed, block) @ pooling)
         return cls(
             row_pair=row_pair,
             bins=np.bincount(row_pair).astype(float),
             run=run,
             time=time,
             level=level,
+            speed=speed,
             pooling=pooling,
+            noise=noise or WithinNoise(),
+            blocks=_same_bins(row_pair, block, position),
+        )
+
+    def pure_error(self, rows: Array) -> list[tuple[float, Indices, Array]]:
+        """Return the scatter of neighbouring pairs about their common course over the angle.
+
+        Parameters
+        ----------
+        rows : ndarray, shape (rows, columns)
+            Values of each angle bin.
+
+        Returns
+        -------
+        list of (float, ndarray, ndarray)
+            Of each block: the speed [deg/s], its rows, shape (pairs, bins), and the scatter, shape
+            (columns, pairs, bins).
+        """
+        deviations = rows - self.means(rows)[self.row_pair]
+        found = []
+        for chosen in self.blocks:
+            values = np.moveaxis(deviations[chosen], -1, 0)
+            speed = float(self.speed[self.row_pair[chosen[0, 0]]])
+            found.append((speed, chosen, values - values.mean(axis=1, keepdims=True)))
+        return found
+
+    def with_noise_from(self, rows: Array, position: Array) -> "PairLayout":
+        """Return the layout with the noise within pairs that is estimated from some rows.
+
+        Parameters
+        ----------
+        rows : ndarray, shape (rows, channels)
+            Measured torque in each channel. [N·m]
+        position : ndarray, shape (rows,)
+            Centre of each row's angle bin. [deg]
+        """
+        noise = within_noise_of(
+            [
+                (speed, position[chosen[0]], scatter)
+                for speed, chosen, scatter in self.pure_error(rows)
+            ]
+        )
+        return PairLayout.of(
+            row_pair=self.row_pair,
+            run=self.run,
+            time=self.time,
+            speed=self.speed,
+            position=position,
+            noise=noise,
         )
 
     def contrasts(self, rows: Array) -> Array:
@@ -130,6 +201,13 @@ class PairLayout:
         total = np.add.reduceat(rows, starts, axis=0)
         return np.asarray((total.T / self.bins).T)
 
+    @property
+    def within_freedom(self) -> int:
+        """Degrees of freedom of the pooled deviations from the pair means."""
+        levels = pd.DataFrame({"run": self.run, "level": self.level})
+        blocks = -(-levels.groupby(["run", "level"]).size() // _POOLED)
+        return max(self.pooling.shape[0] - int(blocks.sum()), 1)
+
     def point_deviation(self, residual: Array) -> float:
         """Return the standard deviation of an angle bin about the mean of its pair [N·m].
 
@@ -141,3 +219,58 @@ class PairLayout:
         within = residual - self.means(residual[:, np.newaxis])[:, 0][self.row_pair]
         freedom = max(len(within) - len(self.bins), 1)
         return float(np.sqrt(within @ within / freedom))
+
+    def pure_deviation(self, rows: Array, position: Array) -> Array | None:
+        """Return the standard deviation of an angle bin from pure error, shape (columns,) [N·m].
+
+        Parameters
+        ----------
+        rows : ndarray, shape (rows, columns)
+            Measured torque. [N·m]
+        position : ndarray, shape (rows,)
+            Centre of each row's angle bin. [deg]
+
+        Returns
+        -------
+        ndarray or None
+            None where too few neighbouring pairs cross the same bins.
+        """
+        square, freedom = np.zeros(rows.shape[1]), 0
+        known: dict[tuple[float, bytes], Array] = {}
+        for speed, chosen, scatter in self.pure_error(rows):
+            bins = position[chosen[0]]
+            key = (round(speed, 1), bins.tobytes())
+            if key not in known:
+                white = whitening(self.noise.correlation(bins, speed))[0]
+                known[key] = white @ white
+            square += np.einsum("cpi,ij,cpj->c", scatter, known[key], scatter)
+            freedom += (scatter.shape[1] - 1) * (scatter.shape[2] - 1)
+        if freedom < LEAST_FREEDOM:
+            return None
+        return np.sqrt(square / freedom)
+
+
+def _white(noise: WithinNoise, keys: pd.DataFrame, speed: Array, block: Indices) -> csr_array:
+    """Return the matrix that makes pooled deviations white, block by block."""
+    pairs_speed = pd.Series(speed).groupby(block).mean().to_numpy()
+    groups = keys.drop_duplicates().sort_values(["block", "position"])
+    known: dict[tuple[float, bytes], Array] = {}
+    parts = []
+    for number, own in groups.groupby("block")["position"]:
+        position, at = own.to_numpy(), float(pairs_speed[number])
+        key = (round(at, 1), position.tobytes())
+        if key not in known:
+            known[key] = whitening(noise.correlation(position, at))[0]
+        parts.append(known[key])
+    return csr_array(block_diag(parts, format="csr"))
+
+
+def _same_bins(row_pair: Indices, block: Indices, position: Array) -> tuple[Indices, ...]:
+    """Return the rows of the pairs of each block that cross the same bins, shape (pairs, bins)."""
+    starts = np.flatnonzero(np.diff(row_pair, prepend=-1))
+    ends = np.append(starts[1:], len(row_pair))
+    alike: dict[tuple[int, bytes], list[Indices]] = {}
+    for pair, (start, end) in enumerate(zip(starts, ends, strict=True)):
+        key = (int(block[pair]), position[start:end].tobytes())
+        alike.setdefault(key, []).append(np.arange(start, end))
+    return tuple(np.array(rows) for rows in alike.values() if len(rows) > 1 and len(rows[0]) > 2)

@@ -16,7 +16,6 @@ from dataclasses import dataclass, fields, replace
 import numpy as np
 
 from frictioncli.arrays import Array, Flags, Indices
-from frictioncli.diagnosis.data.gravity import without_offset
 from frictioncli.diagnosis.data.pair_layout import PairLayout
 from frictioncli.effects.base import Basis, Effect, EffectTable
 from frictioncli.model.friction import FrictionParameters
@@ -118,7 +117,7 @@ class Problem:
         if self.has_load_channel:
             return np.zeros_like(self.load_base)
         slope = 2 * self.parameters.alpha * self.table.load
-        return slope[:, np.newaxis] * without_offset(self.load_base)
+        return slope[:, np.newaxis] * self.load_base
 
     def squared(self, friction: Array, load: Array) -> Array:
         """Return the squared misfit of the simulated torque, shape (rows,). [(N·m)²].
@@ -163,6 +162,7 @@ class Problem:
             time=self.layout.time[pairs],
             speed=table.speed[np.flatnonzero(np.diff(row_pair, prepend=-1))],
             position=table.position,
+            noise=self.layout.noise,
         )
         return replace(
             self,

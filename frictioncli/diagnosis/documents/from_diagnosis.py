@@ -28,7 +28,7 @@ from frictioncli.diagnosis.documents.parameters import (
     statement,
 )
 from frictioncli.diagnosis.documents.remainder import remainder_record
-from frictioncli.diagnosis.search.cause_search import Cause
+from frictioncli.diagnosis.search.cause import Cause
 from frictioncli.diagnosis.search.lack_of_fit import Structure
 from frictioncli.diagnosis.settings import DiagnosisSettings
 from frictioncli.model.document import PARAMETERS, FrictionModel

@@ -20,11 +20,12 @@ _USUAL_FRICTION = 20.0
 """Mean friction torque up to which the catalogue's bounds in units of torque hold; the bounds of a
 joint with more friction grow in proportion. [N·m]"""
 
-_TOLERANCE = 2.0
-"""A coefficient may miss its physical bound by as many standard errors."""
-
 _POWER = 0.8
 """Probability with which an effect of the smallest detectable size is found."""
+
+_ABOVE = 1.96 + 0.84
+"""Standard errors by which a size must exceed the margin for its lower bound to do so four times in
+five."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -54,20 +55,6 @@ class Hypothesis:
     rms: Array
     lower: Array
     upper: Array
-
-    def allows(self, coefficients: Array, covariance: Array) -> bool:
-        """Return whether coefficients lie within two standard errors of their physical bounds.
-
-        Parameters
-        ----------
-        coefficients : ndarray, shape (width,)
-            The coefficients.
-        covariance : ndarray, shape (width, width)
-            Their covariance.
-        """
-        margin = _TOLERANCE * np.sqrt(np.maximum(np.diag(covariance), 0.0))
-        above = coefficients >= self.lower - margin
-        return bool(np.all(above & (coefficients <= self.upper + margin)))
 
 
 def hypothesis_of(
@@ -165,6 +152,8 @@ class HypothesisTest:
         Distribution of the statistic under the null hypothesis, searched over all shapes.
     size_scale : float
         RMS in its channel per unit of whitened length. [N·m]
+    left_share : float
+        Share of its RMS that the base leaves.
     """
 
     name: str
@@ -177,6 +166,7 @@ class HypothesisTest:
     freedom: int
     null: NullDistribution
     size_scale: float
+    left_share: float = 1.0
 
     def effect_fit(self, effect: Effect) -> EffectFit:
         """Return the fit of an effect that the hypothesis stands for."""
@@ -192,17 +182,20 @@ class HypothesisTest:
         """
         return self.log_bayes_factor + max(fit.statistic - self.statistic, 0.0) / 2
 
-    def detectable_size(self, level: float) -> float | None:
-        r"""Return the RMS size that would be found four times in five [N·m].
+    def detectable_size(self, level: float, margin: float = 0.0) -> float | None:
+        r"""Return the RMS size that would be named four times in five [N·m].
 
         Under the alternative hypothesis the statistic is noncentral chi-squared. The noncentrality
         with which it exceeds the critical value with a probability of 80 % is the squared whitened
-        length of the torque.
+        length of the torque. Besides, the lower bound of what the base leaves must exceed the
+        margin.
 
         Parameters
         ----------
         level : float
             Significance level of this one test.
+        margin : float, optional
+            Smallest size worth a name. [N·m]
 
         Returns
         -------
@@ -217,6 +210,8 @@ class HypothesisTest:
         needed = brentq(
             lambda noncentrality: stats.ncx2.sf(threshold, self.freedom, noncentrality) - _POWER,
             1e-6,
-            1e4,
+            1e5,
         )
-        return float(np.sqrt(needed) * self.size_scale)
+        # a size of one standard error has a whitened length of 1
+        above = margin / max(self.left_share, 1e-3) + _ABOVE * self.size_scale
+        return float(max(np.sqrt(needed) * self.size_scale, above if margin > 0 else 0.0))

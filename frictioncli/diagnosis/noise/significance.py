@@ -1,10 +1,10 @@
 r"""P-values, Bayes factors, posterior probabilities and credible sets of candidate effects.
 
-The test statistic is twice the log likelihood ratio of a candidate to the null hypothesis. Its
-shape parameters, and the noise model that suits it best, are searched, so that it is the greatest
-of many statistics; its distribution under the null hypothesis is simulated: noise alone goes
-through the same search. A gamma distribution with the simulated mean and variance gives p-values
-below one over the number of draws.
+The test statistic is twice the log likelihood ratio of a candidate to the null hypothesis. At one
+shape, with *k* coefficients and :math:`\nu` degrees of freedom of the noise whose scale is
+estimated, :math:`F = \frac{\nu}{k} (e^{\Lambda/\nu} - 1)` has an F distribution under the null
+hypothesis. A search over shapes tries as many as there are independent directions among their
+columns; the p-value is corrected for their number (Bonferroni).
 
 With a normal prior on a coefficient of *g* times its sampling variance the Bayes factor of a
 statistic :math:`\Lambda` with *k* coefficients is [1]_
@@ -32,62 +32,77 @@ _PRIOR_VARIANCE = 100.0
 """Prior variance g of a coefficient, in units of its sampling variance."""
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, kw_only=True)
 class NullDistribution:
-    """Distribution of a test statistic under the null hypothesis: a gamma distribution.
-
-    The statistic of one coefficient without a shape parameter is chi-squared with one degree of
-    freedom, which is a gamma distribution; the greatest of many such is nearly one.
+    """Distribution of a test statistic, the greatest over shapes, under the null hypothesis.
 
     Attributes
     ----------
-    shape, scale : float
-        Parameters of the gamma distribution; a scale of 0 where the null hypothesis has none, as
-        for columns of zeros.
+    coefficients : int
+        Number of coefficients at one shape; 0 where the data determine none.
+    freedom : float
+        Degrees of freedom of the noise whose scale is estimated.
+    shapes : float
+        Effective number of independent shapes tried.
 
     Examples
     --------
-    >>> chi_squared = NullDistribution(shape=0.5, scale=2.0)
-    >>> round(chi_squared.p_value(3.841), 3)
+    >>> one = NullDistribution(coefficients=1, freedom=1e9)
+    >>> round(one.p_value(3.841), 3)
     0.05
-    >>> round(chi_squared.critical_value(0.05), 3)
-    3.841
+    >>> round(one.critical_value(0.05), 2)
+    3.84
     """
 
-    shape: float
-    scale: float
+    coefficients: int
+    freedom: float
+    shapes: float = 1.0
 
     def p_value(self, statistic: float) -> float:
         """Return the probability that noise alone gives more than a statistic."""
-        if self.scale == 0.0:
+        if self.coefficients == 0 or statistic <= 0:
             return 1.0
-        return float(stats.gamma.sf(statistic, self.shape, scale=self.scale))
+        ratio = self.freedom / self.coefficients * np.expm1(min(statistic / self.freedom, 500.0))
+        tail = float(stats.f.sf(ratio, self.coefficients, self.freedom))
+        return min(1.0, self.shapes * tail)
 
     def critical_value(self, probability: float) -> float:
         """Return the statistic that noise alone exceeds with a probability."""
-        if self.scale == 0.0:
+        if self.coefficients == 0:
             return float("inf")
-        return float(stats.gamma.isf(probability, self.shape, scale=self.scale))
+        ratio = stats.f.isf(probability / self.shapes, self.coefficients, self.freedom)
+        return float(self.freedom * np.log1p(ratio * self.coefficients / self.freedom))
 
 
-def fit_null_distribution(drawn: Array) -> NullDistribution:
-    """Return the gamma distribution with the mean and variance of simulated statistics.
+def independent_directions(inner: Array, width: int) -> float:
+    """Return the effective number of independent shapes among columns.
 
     Parameters
     ----------
-    drawn : ndarray, shape (draws,)
-        Statistics of noise alone.
+    inner : ndarray, shape (shapes * width, shapes * width)
+        Inner products of what the null hypothesis leaves of the columns, shape after shape.
+    width : int
+        Columns of each shape.
+
+    Returns
+    -------
+    float
+        From 1, where all shapes are alike, to their number, where they are orthogonal: the squared
+        sum of the eigenvalues of the columns' correlation, over the sum of their squares.
 
     Examples
     --------
     >>> import numpy as np
-    >>> fit_null_distribution(np.array([1.0, 3.0]))
-    NullDistribution(shape=4.0, scale=0.5)
+    >>> independent_directions(np.ones((3, 3)), 1), independent_directions(np.eye(3), 1)
+    (1.0, 3.0)
     """
-    if len(drawn) < 2 or not np.var(drawn) > 0:
-        return NullDistribution(1.0, 0.0)
-    mean, variance = float(np.mean(drawn)), float(np.var(drawn))
-    return NullDistribution(mean**2 / variance, variance / mean)
+    size = np.sqrt(np.maximum(np.diagonal(inner), 0.0))
+    present = size > 1e-9 * size.max(initial=0.0)
+    if not present.any():
+        return 1.0
+    unit = inner[np.ix_(present, present)] / np.outer(size[present], size[present])
+    count = np.trace(unit) ** 2 / float(np.sum(np.square(unit)))
+    return max(float(count) / width, 1.0)
 
 
 def log_bayes_factor(grid: Array, freedom: int) -> float:

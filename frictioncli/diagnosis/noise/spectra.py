@@ -64,6 +64,8 @@ class Spectra:
         Diagonal of H: white variance of each pair relative to the mean one.
     known : float
         Mean of the variance that is known beforehand. [(N·m)²]
+    white : float
+        Mean of the white variance of the pair means. [(N·m)²]
     runs : tuple of slice
         Pairs of each run.
     spectra : tuple of Spectrum
@@ -72,6 +74,7 @@ class Spectra:
 
     profile: Array
     known: float
+    white: float
     runs: tuple[slice, ...]
     spectra: tuple[Spectrum, ...]
 
@@ -139,28 +142,10 @@ def spectra_of(layout: PairLayout, point: float, extra: Array, residual: Array) 
     return Spectra(
         profile=profile,
         known=float(np.mean(known)),
+        white=float(np.mean(white)),
         runs=runs,
         spectra=tuple(_spectrum(layout.time, float(time), profile, runs) for time in times),
     )
-
-
-def weighted_gram(
-    spectra: Spectra, noise: NoiseIndex, modes: Array, others: Array | None = None
-) -> Array:
-    """Return inner products of modes under a noise of scale 1, with each other or with others.
-
-    Parameters
-    ----------
-    spectra : Spectra
-        The channel's noise models.
-    noise : (int, int)
-        Index of the noise model.
-    modes, others : ndarray, shape (..., pairs, columns)
-        Modes of columns.
-    """
-    variance = 1 + STRENGTHS[noise[1]] * spectra.spectra[noise[0]].values
-    second = modes if others is None else others
-    return np.asarray(modes.swapaxes(-1, -2) @ (second / variance[:, np.newaxis]))
 
 
 def _spectrum(

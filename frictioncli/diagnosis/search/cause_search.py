@@ -1,81 +1,45 @@
 """Forward search for causes: test every effect, accept the best, refit, test again.
 
-At each step every other effect is tested against the null hypothesis, the base with the effects
-accepted so far, with the noise model that suits either best. The search ends when no effect is
-significant. At the end each accepted effect is tested against all others once more beside the other
-accepted ones: every effect that explains its part nearly as well joins its credible set.
+Effects of the measurement stand beside the base from the start, so that no other effect can explain
+what they explain. At each step every other effect is tested against the null hypothesis, the base
+with the effects accepted so far, with the variances of noise and discrepancy that suit either best.
+The search ends when no effect is significant and large enough to matter. At the end each accepted
+effect is tested against all others once more beside the other accepted ones: every effect that
+explains its part nearly as well joins its credible set.
 """
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+from scipy import stats
 
 from frictioncli.diagnosis.data.problem import Problem
 from frictioncli.diagnosis.fit.hypotheses import EffectFit, HypothesisTest, hypothesis_of
-from frictioncli.diagnosis.noise.significance import credible_set, posterior_probabilities
+from frictioncli.diagnosis.noise.discrepancy import SHARE
+from frictioncli.diagnosis.noise.significance import (
+    NullDistribution,
+    credible_set,
+    posterior_probabilities,
+)
 from frictioncli.diagnosis.ramps.evidence import RampEvidence, with_ramp_evidence
-from frictioncli.diagnosis.search.precomputed import Catalogue, Precomputed
-from frictioncli.diagnosis.search.step import DRAWS, Step
+from frictioncli.diagnosis.search.catalogue import Catalogue
+from frictioncli.diagnosis.search.cause import CONVINCING, Cause
+from frictioncli.diagnosis.search.precomputed import Precomputed
+from frictioncli.diagnosis.search.step import Step
 from frictioncli.diagnosis.settings import DiagnosisSettings
-from frictioncli.effects import BY_NAME
+from frictioncli.effects import BASE_MEASUREMENT, BY_NAME
 from frictioncli.effects.base import Effect, applicable
 
-_CONVINCING = 3.0
-"""Log Bayes factor that an effect needs: with twenty effects, any of which may be at work, e³ is
-about their number. An effect below it could not be told from most others anyway."""
+_LEAST_SHARE = 0.5
+"""Share of the margin that the base must leave of an effect for the search to go on with it."""
 
-_FORM = 0.02
-"""An effect with less than this share of the statistic of one accepted before may only correct the
-form of that one: no equation of the catalogue is exact."""
-
-_FORM_ALIKE = 0.05
-"""The same share where both show along the stroke, or both from pair to pair."""
-
-_REFINED = 4
+_REFINED = 3
 """Number of effects whose shapes are refined off the grid before the best is accepted."""
 
 _CLEARLY = 3.0
 """Log Bayes factor by which another effect must fit better to replace an accepted one."""
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Cause:
-    """A cause found: the effect accepted, and the effects that could replace it.
-
-    Attributes
-    ----------
-    fit : EffectFit
-        The effect accepted, fitted beside the other causes.
-    test : HypothesisTest
-        Its test beside the other causes, over all its shapes.
-    effects : tuple of str
-        Its credible set.
-    probabilities : dict of str to float
-        Probability of each effect that could replace it.
-    size : float
-        RMS in its channel. [N·m]
-    visible : float
-        RMS of its residual after a fit of the base model. [N·m]
-    visible_interval : (float, float)
-        95 % interval of that. [N·m]
-    standing : {"named", "visible", "negligible", "undetermined"}
-        What may be said of it: it is named; it stands out of the noise but is not named; it is
-        smaller than the margin; its size is not known well enough.
-    reason : str
-        Why it is not named, in words; empty where it is.
-    holds_on_new_run : bool or None
-        Whether it is there on the hold-out run too; None where that cannot be tested.
-    """
-
-    fit: EffectFit
-    test: HypothesisTest
-    effects: tuple[str, ...]
-    probabilities: dict[str, float]
-    size: float
-    visible: float
-    visible_interval: tuple[float, float] = (0.0, float("inf"))
-    standing: str = "named"
-    reason: str = ""
-    holds_on_new_run: bool | None = None
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -86,18 +50,26 @@ class SearchResult:
     ----------
     causes : tuple of Cause
         Causes found, strongest first.
+    measurement : tuple of Cause
+        Effects of the measurement that stand beside the base, and are significant.
     rejected : dict of str to HypothesisTest
         Tests of all other effects at the last step.
+    dropped : dict of str to str
+        Effects that were accepted and given up again, with the reason.
     step : Step
-        The last step: base, causes and their noise.
+        The last step: base, causes, noise and discrepancy.
     """
 
     causes: tuple[Cause, ...]
+    measurement: tuple[Cause, ...]
     rejected: dict[str, HypothesisTest]
+    dropped: dict[str, str]
     step: Step
 
-    def detectable_sizes(self, effects: Sequence[Effect], alpha: float) -> dict[str, float | None]:
-        """Return the smallest RMS size of each effect that would be found four times in five.
+    def detectable_sizes(
+        self, effects: Sequence[Effect], alpha: float, margin: float
+    ) -> dict[str, float | None]:
+        """Return the smallest RMS size of each effect that would be named four times in five.
 
         Parameters
         ----------
@@ -105,6 +77,8 @@ class SearchResult:
             The catalogue.
         alpha : float
             Significance level of the whole search.
+        margin : float
+            Smallest size worth a name. [N·m]
 
         Returns
         -------
@@ -114,7 +88,7 @@ class SearchResult:
         count = max(len(self.rejected) + len(self.causes), 1)
         tests = self.rejected | {cause.fit.effect.name: cause.test for cause in self.causes}
         return {
-            effect.name: tests[effect.name].detectable_size(alpha / count)
+            effect.name: tests[effect.name].detectable_size(alpha / count, margin)
             if effect.name in tests
             else None
             for effect in effects
@@ -125,7 +99,9 @@ def find_causes(
     problem: Problem,
     effects: Sequence[Effect],
     settings: DiagnosisSettings,
+    margin: float,
     ramps: RampEvidence | None = None,
+    discrepancy: float = SHARE,
 ) -> SearchResult:
     """Search the catalogue for the causes of a problem's misfit.
 
@@ -137,49 +113,45 @@ def find_causes(
         The catalogue.
     settings : DiagnosisSettings
         Significance level, seed and greatest number of causes.
+    margin : float
+        Smallest size worth a name. [N·m]
     ramps : RampEvidence, optional
         Evidence of the ramps on inertia and on friction after a reversal.
+    discrepancy : float, optional
+        RMS of the discrepancy that is expected, relative to the mean friction; 0 for none.
     """
-    precomputed = Precomputed.of(problem)
+    beside = applicable(BASE_MEASUREMENT, problem.table)
+    precomputed = Precomputed.of(problem, beside, discrepancy)
     hypotheses = [hypothesis_of(effect, problem) for effect in applicable(effects, problem.table)]
-    search = _Search(precomputed, Catalogue.of(precomputed, hypotheses), settings, ramps)
+    search = _Search(precomputed, Catalogue.of(precomputed, hypotheses), settings, margin, ramps)
     accepted: list[EffectFit] = []
-    dropped: set[str] = set()
+    dropped: dict[str, str] = {}
     while True:
-        step, tests = search.tested(accepted, DRAWS)
+        step, tests = search.tested(accepted)
         significant = [
             one
             for one in tests.values()
             if one.p_value < settings.alpha
-            and one.log_bayes_factor > _CONVINCING
-            and one.statistic > _form_error(accepted, one.name)
+            and one.log_bayes_factor > CONVINCING
             and one.name not in dropped
+            and search.matters(step, one)
         ]
         if not significant or len(accepted) >= settings.most:
             break
         candidates = [*accepted, _best(step, significant)]
         retested = search.retested(candidates)
         # an effect that another one has made superfluous must not come back again and again
-        dropped |= _names(candidates) - _names(retested)
+        for name in _names(candidates) - _names(retested):
+            dropped[name] = "other causes explain what it explained"
         accepted = retested
     causes = [_cause(search, accepted, i) for i in range(len(accepted))]
-    strongest_first = tuple(sorted(causes, key=lambda cause: -cause.size))
-    return SearchResult(causes=strongest_first, rejected=tests, step=step)
-
-
-def _form_error(accepted: Sequence[EffectFit], name: str) -> float:
-    """Return the statistic that errors in the form of the accepted effects may have."""
-    within_stroke = _within_stroke(BY_NAME[name])
-    shares = [
-        one.statistic * (_FORM_ALIKE if _within_stroke(one.effect) == within_stroke else _FORM)
-        for one in accepted
-    ]
-    return max(shares, default=0.0)
-
-
-def _within_stroke(effect: Effect) -> bool:
-    """Return whether an effect shows along the stroke, and not only from pair to pair."""
-    return effect.channel == "load" or bool({"position", "load"} & set(effect.needs))
+    return SearchResult(
+        causes=tuple(sorted(causes, key=lambda cause: -cause.size)),
+        measurement=_measurement(step, beside),
+        rejected=tests,
+        dropped={name: why for name, why in dropped.items() if name not in _names(accepted)},
+        step=step,
+    )
 
 
 def _names(fits: Sequence[EffectFit]) -> set[str]:
@@ -204,21 +176,24 @@ class _Search:
     precomputed: Precomputed
     catalogue: Catalogue
     settings: DiagnosisSettings
+    margin: float
     ramps: RampEvidence | None
 
-    def tested(
-        self, accepted: Sequence[EffectFit], draws: int = 0
-    ) -> tuple[Step, dict[str, HypothesisTest]]:
+    def tested(self, accepted: Sequence[EffectFit]) -> tuple[Step, dict[str, HypothesisTest]]:
         """Return the step with these effects accepted, and the tests of all others there."""
         step = Step.of(self.precomputed, accepted)
-        candidates = self.catalogue.without(_names(accepted))
-        tests = step.tested(candidates, self.settings.seed, draws)
+        tests = step.tested(self.catalogue, skip=_names(accepted))
         factors = with_ramp_evidence(
             {name: one.log_bayes_factor for name, one in tests.items()}, self.ramps
         )
         return step, {
             name: replace(one, log_bayes_factor=factors[name]) for name, one in tests.items()
         }
+
+    def matters(self, step: Step, test: HypothesisTest) -> bool:
+        """Return whether the base leaves enough of an effect for the search to go on with it."""
+        size, _, _ = step.visible(test.effect_fit(BY_NAME[test.name]))
+        return size > _LEAST_SHARE * self.margin
 
     def retested(self, accepted: list[EffectFit]) -> list[EffectFit]:
         """Return the accepted effects, each tested once more beside the others.
@@ -243,7 +218,7 @@ class _Search:
         step, tests = self.tested(others)
         best = max(tests.values(), key=lambda test: test.log_bayes_factor)
         own = tests[one.effect.name]
-        if best.log_bayes_factor <= _CONVINCING:
+        if best.log_bayes_factor <= CONVINCING:
             return None
         again = step.refined(one)
         factor = own.refined_log_bayes_factor(again)
@@ -256,7 +231,7 @@ def _cause(search: _Search, accepted: Sequence[EffectFit], number: int) -> Cause
     """Return an accepted effect with its credible set, beside the other accepted effects."""
     one = accepted[number]
     others = [other for other in accepted if other is not one]
-    step, tests = search.tested(others, DRAWS)
+    step, tests = search.tested(others)
     fit = step.refined(one)
     own = tests[one.effect.name]
     factors = {name: test.log_bayes_factor for name, test in tests.items()}
@@ -267,6 +242,46 @@ def _cause(search: _Search, accepted: Sequence[EffectFit], number: int) -> Cause
         test=own,
         effects=credible_set(share),
         probabilities={name: value for name, value in share.items() if value >= 1e-3},
-        size=step.size(fit),
-        visible=step.visible(fit),
+        **_sizes(step, fit),
     )
+
+
+def _measurement(step: Step, effects: Sequence[Effect]) -> tuple[Cause, ...]:
+    """Return the effects of the measurement beside the base as causes, with their tests."""
+    fit, first = step.fit, step.components.base - sum(len(one.coefficients) for one in effects)
+    found = []
+    for effect in effects:
+        place = slice(first, first + len(effect.coefficients))
+        first = place.stop
+        coefficients, covariance = fit.coefficients[place], fit.covariance[place, place]
+        statistic = float(coefficients @ np.linalg.pinv(covariance, hermitian=True) @ coefficients)
+        own = EffectFit(effect, {}, coefficients, covariance, statistic)
+        null = NullDistribution(coefficients=len(coefficients), freedom=step.components.pairs)
+        test = HypothesisTest(
+            name=effect.name,
+            shape={},
+            coefficients=coefficients,
+            covariance=covariance,
+            statistic=statistic,
+            p_value=min(1.0, len(effects) * float(stats.chi2.sf(statistic, len(coefficients)))),
+            log_bayes_factor=statistic / 2,
+            freedom=len(coefficients),
+            null=null,
+            size_scale=0.0,
+        )
+        found.append(
+            Cause(
+                fit=own,
+                test=test,
+                effects=(effect.name,),
+                probabilities={effect.name: 1.0},
+                **_sizes(step, own),
+            )
+        )
+    return tuple(found)
+
+
+def _sizes(step: Step, fit: EffectFit) -> dict[str, Any]:
+    """Return the sizes of a cause by the names of its fields."""
+    visible, low, high = step.visible(fit)
+    return {"size": step.size(fit), "visible": visible, "visible_interval": (low, high)}

@@ -1,6 +1,11 @@
-"""Backward elimination: which of the causes found improve the prediction of hold-out rows."""
+"""Which of the causes found extend the model: those named that the hold-out rows do not contradict.
+
+A cause is judged on rows that the fit has not seen: does the prediction become better by it? A
+cause of which a new run shows nothing did not last; it is said so, and not extrapolated.
+"""
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 
@@ -8,76 +13,49 @@ from frictioncli.arrays import Array
 from frictioncli.diagnosis.data.problem import Problem
 from frictioncli.diagnosis.fit.extension import misfits, reduction_interval, refit
 from frictioncli.diagnosis.fit.weighted_fit import WeightedFit
-from frictioncli.diagnosis.search.cause_search import Cause, SearchResult
+from frictioncli.diagnosis.search.cause import Cause
 
 _Squares = dict[str, Array]
 
-LEAST_REDUCTION = 0.03
-"""A cause that reduces the misfit by less than this share is visible, but not modelled."""
 
-BEYOND_DOUBT = 1e-6
-"""Unless its p-value is below this, and the hold-out rows do not contradict it."""
-
-LEAST_VISIBLE = 0.001
-"""A cause of which the base leaves less than this share of the friction is never modelled."""
-
-
-def select_causes(
-    found: SearchResult, weighted_fit: WeightedFit, hold_out: Problem, seed: int
-) -> tuple[tuple[Cause, ...], tuple[Cause, ...]]:
-    """Return the causes that are modelled, and those that are only visible in the data.
-
-    The cause with the least reduction is dropped, and the others refitted, until each remaining
-    one either reduces the misfit of its channel by at least 3 %; or is smaller beside the noise,
-    which no model can predict, but beyond doubt (p < 1e-6), and the 95 % interval of its reduction
-    on the hold-out rows reaches above zero. A cause of which the base leaves less than 0.1 % of the
-    friction is always dropped.
+def judged_on_new_run(
+    causes: Sequence[Cause], problem: Problem, weighted_fit: WeightedFit, new: Problem, seed: int
+) -> tuple[Cause, ...]:
+    """Return causes with whether they hold on a new run, and their standing after it.
 
     Parameters
     ----------
-    found : SearchResult
-        Result of the search.
+    causes : sequence of Cause
+        Causes that are named.
+    problem : Problem
+        The rows to which they were fitted.
     weighted_fit : WeightedFit
         Weights of both channels.
-    hold_out : Problem
-        Rows on which a cause must prove itself, of a new run where there is one.
+    new : Problem
+        Rows of a run that was held out.
     seed : int
         Seed of the block bootstrap.
     """
-    least = LEAST_VISIBLE * float(np.mean(np.abs(hold_out.friction)))
-    kept = [cause for cause in found.causes if cause.visible >= least]
-    dropped = [cause for cause in found.causes if cause.visible < least]
-    with_all = _squares(found, weighted_fit, kept, hold_out)
-    while kept:
-        fewer = [kept[:i] + kept[i + 1 :] for i in range(len(kept))]
-        without = [_squares(found, weighted_fit, causes, hold_out) for causes in fewer]
-        reductions = [
-            _reduction(cause, hold_out, one, with_all, seed)
-            for cause, one in zip(kept, without, strict=True)
-        ]
-        weakest = reductions.index(min(reductions))
-        if reductions[weakest][0]:
-            break
-        dropped.append(kept[weakest])
-        kept, with_all = fewer[weakest], without[weakest]
-    return tuple(kept), tuple(dropped)
-
-
-def _reduction(
-    cause: Cause, hold_out: Problem, without: _Squares, with_all: _Squares, seed: int
-) -> tuple[bool, float]:
-    """Return whether a cause is modelled, and by how much it reduces the RMS misfit."""
-    before, after = (one[cause.fit.effect.channel] for one in (without, with_all))
-    reduction = 1 - float(np.sqrt(np.mean(after) / np.mean(before)))
-    _, high = reduction_interval(hold_out, before, after, seed)
-    certain = cause.test.p_value < BEYOND_DOUBT and high > 0
-    return reduction >= LEAST_REDUCTION or certain, reduction
+    found = []
+    with_all = _squares(problem, weighted_fit, causes, new)
+    for cause in causes:
+        fewer = [other for other in causes if other is not cause]
+        without = _squares(problem, weighted_fit, fewer, new)
+        channel = cause.fit.effect.channel
+        low, high = reduction_interval(new, without[channel], with_all[channel], seed)
+        holds = True if low > 0 else False if high < 0 else None
+        judged = replace(cause, holds_on_new_run=holds)
+        if holds is False and cause.fit.effect.moments is None:
+            reason = "the run that was held out is predicted worse with it"
+            judged = replace(judged, standing="visible", reason=reason)
+        found.append(judged)
+    return tuple(found)
 
 
 def _squares(
-    found: SearchResult, weighted_fit: WeightedFit, causes: Sequence[Cause], hold_out: Problem
+    problem: Problem, weighted_fit: WeightedFit, causes: Sequence[Cause], new: Problem
 ) -> _Squares:
     """Return the squared misfit per channel that the base with these causes leaves. [(N·m)²]."""
-    fitted = refit(found.step.problem, weighted_fit, [cause.fit for cause in causes])
-    friction, load = misfits(hold_out, fitted)
+    fitted = refit(problem, weighted_fit, [cause.fit for cause in causes])
+    friction, load = misfits(new, fitted)
     return {"friction": np.square(friction), "load": np.square(load)}

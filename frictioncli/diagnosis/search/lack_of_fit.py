@@ -11,10 +11,11 @@ import numpy as np
 
 from frictioncli.arrays import Array, Indices
 from frictioncli.diagnosis.data.problem import Problem
-from frictioncli.diagnosis.fit.columns import reduced, residual_of_base
+from frictioncli.diagnosis.fit.columns import reduced
 from frictioncli.diagnosis.fit.hypotheses import Hypothesis
-from frictioncli.diagnosis.search.precomputed import Catalogue
-from frictioncli.diagnosis.search.step import DRAWS, Step
+from frictioncli.diagnosis.fit.left_by_base import left_by, visible_size
+from frictioncli.diagnosis.search.catalogue import Catalogue
+from frictioncli.diagnosis.search.step import Step
 from frictioncli.linear_algebra import orthonormal_basis
 
 _HARMONICS = 12
@@ -39,8 +40,9 @@ class Structure:
 
     Attributes
     ----------
-    axis : str
-        The axis, or the two axes, along which it shows.
+    axes : tuple of str
+        The axis, or the two axes, along which it shows: ``position``, ``speed``, ``temperature``,
+        ``time`` or ``load``.
     channel : {"friction", "load"}
         The channel.
     p_value : float
@@ -51,49 +53,63 @@ class Structure:
         Number of coefficients that the data determine.
     size : float
         RMS of what base and effects leave of the structure, less what noise contributes. [N·m]
+    interval : (float, float)
+        95 % interval of that. [N·m]
     """
 
-    axis: str
+    axes: tuple[str, ...]
     channel: str
     p_value: float
     statistic: float
     freedom: int
     size: float
+    interval: tuple[float, float]
+
+    @property
+    def axis(self) -> str:
+        """The axes in words."""
+        return " and ".join(self.axes)
 
 
-def structures(step: Step, seed: int) -> list[Structure]:
+def structures(step: Step) -> list[Structure]:
     """Return the lack of fit along every axis, ordered by p-value.
+
+    The discrepancy counts with the amplitude that is expected of it, so that what is larger than
+    any model's small errors stands out.
 
     Parameters
     ----------
     step : Step
         Base and accepted effects.
-    seed : int
-        Seed of the draws of noise.
     """
-    problem = step.problem
-    accepted = [problem.basis(one.effect, one.shape) for one in step.accepted]
+    problem, precomputed = step.problem, step.precomputed
     axes = {place: _orthogonal(columns) for place, columns in _axes(problem).items()}
-    hypotheses = [
-        _hypothesis(problem, axis, channel, columns) for (axis, channel), columns in axes.items()
-    ]
-    tests = step.tested(Catalogue.of(step.precomputed, hypotheses), seed, DRAWS)
+    hypotheses = [_hypothesis(problem, *place, columns) for place, columns in axes.items()]
+    catalogue = Catalogue.of(precomputed, hypotheses)
+    tests = step.tested_against_expected(catalogue)
+    accepted = [problem.basis(one.effect, one.shape) for one in step.accepted]
+    beside = [*precomputed.measurement, *accepted]
     found = []
-    for (axis, channel), columns in axes.items():
-        one = tests[f"{axis}, {channel}"]
-        excess = max(one.statistic - one.freedom, 0.0) / max(one.statistic, 1e-300)
-        residual = residual_of_base(problem, columns @ one.coefficients, channel, accepted)
+    for (names, channel), columns in axes.items():
+        one = tests[_name(names, channel)]
+        left = left_by(problem, columns, channel, beside)
+        size, low, high = visible_size(left, one.coefficients, one.covariance)
         found.append(
             Structure(
-                axis=axis,
+                axes=names,
                 channel=channel,
                 p_value=one.p_value,
                 statistic=one.statistic,
                 freedom=one.freedom,
-                size=float(np.sqrt(excess * np.mean(np.square(residual)))),
+                size=size,
+                interval=(low, high),
             )
         )
     return sorted(found, key=lambda structure: structure.p_value)
+
+
+def _name(axes: tuple[str, ...], channel: str) -> str:
+    return f"{' and '.join(axes)}, {channel}"
 
 
 def _orthogonal(columns: Array) -> Array:
@@ -101,12 +117,14 @@ def _orthogonal(columns: Array) -> Array:
     return orthonormal_basis(columns, tolerance=1e-7) * np.sqrt(len(columns))
 
 
-def _hypothesis(problem: Problem, axis: str, channel: str, columns: Array) -> Hypothesis:
+def _hypothesis(
+    problem: Problem, axes: tuple[str, ...], channel: str, columns: Array
+) -> Hypothesis:
     """Return the hypothesis of free coefficients of columns in one channel."""
     zeros = np.zeros_like(columns)
     friction, load = (columns, zeros) if channel == "friction" else (zeros, columns)
     return Hypothesis(
-        name=f"{axis}, {channel}",
+        name=_name(axes, channel),
         shapes=({},),
         width=columns.shape[1],
         columns=reduced(problem.layout, friction, load),
@@ -116,7 +134,7 @@ def _hypothesis(problem: Problem, axis: str, channel: str, columns: Array) -> Hy
     )
 
 
-def _axes(problem: Problem) -> dict[tuple[str, str], Array]:
+def _axes(problem: Problem) -> dict[tuple[tuple[str, ...], str], Array]:
     """Return columns by axis and channel, shape (rows, columns) each."""
     table = problem.table
     angle = np.radians(table.position)
@@ -133,21 +151,23 @@ def _axes(problem: Problem) -> dict[tuple[str, str], Array]:
     relative_temperature = ((table.temperature - table.temperature.mean()) / 10.0)[:, np.newaxis]
     relative_speed = (table.speed / table.speed.mean())[:, np.newaxis]
     return {
-        ("speed", "friction"): speed,
-        ("temperature", "friction"): np.hstack([temperature * rising, temperature * (1 - rising)]),
-        ("angle", "friction"): harmonics,
-        ("angle", "load"): harmonics,
-        ("time", "friction"): time,
-        ("time", "load"): np.hstack([time, time * np.cos(angle)[:, np.newaxis]]),
-        ("load and speed", "friction"): squared * speed,
-        ("load and temperature", "friction"): squared * temperature,
-        ("speed and temperature", "friction"): _products(_levels(table.speed), temperature),
-        ("angle and temperature", "friction"): waves * relative_temperature,
-        ("angle and speed", "friction"): waves * relative_speed,
-        ("angle and time", "friction"): _products(waves, time[:, :2]),
-        ("angle and speed", "load"): waves * relative_speed,
-        ("speed", "load"): speed,
-        ("temperature", "load"): np.hstack(
+        (("speed",), "friction"): speed,
+        (("temperature",), "friction"): np.hstack(
+            [temperature * rising, temperature * (1 - rising)]
+        ),
+        (("position",), "friction"): harmonics,
+        (("position",), "load"): harmonics,
+        (("time",), "friction"): time,
+        (("time",), "load"): np.hstack([time, time * np.cos(angle)[:, np.newaxis]]),
+        (("load", "speed"), "friction"): squared * speed,
+        (("load", "temperature"), "friction"): squared * temperature,
+        (("speed", "temperature"), "friction"): _products(_levels(table.speed), temperature),
+        (("position", "temperature"), "friction"): waves * relative_temperature,
+        (("position", "speed"), "friction"): waves * relative_speed,
+        (("position", "time"), "friction"): _products(waves, time[:, :2]),
+        (("position", "speed"), "load"): waves * relative_speed,
+        (("speed",), "load"): speed,
+        (("temperature",), "load"): np.hstack(
             [temperature, temperature * np.cos(angle)[:, np.newaxis]]
         ),
     }

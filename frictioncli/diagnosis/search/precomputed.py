@@ -1,4 +1,4 @@
-"""What is computed once for all steps of a search: columns and covariance spectra."""
+"""What is computed once for all steps of a search: columns, noise models and inner products."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -10,14 +10,21 @@ from frictioncli.diagnosis.fit.columns import (
     RANK,
     ModelColumns,
     base_columns,
+    basis_columns,
     joined,
     misfit_column,
     residual_of_base,
 )
-from frictioncli.diagnosis.fit.hypotheses import Hypothesis
-from frictioncli.diagnosis.noise.orthonormal_groups import Groups
-from frictioncli.diagnosis.noise.spectra import Modes, Spectra, spectra_of
-from frictioncli.effects.base import Basis
+from frictioncli.diagnosis.fit.transformed_columns import NoiseModels, Part, TransformedColumns
+from frictioncli.diagnosis.fit.variance_components import (
+    LEAST_VARIANCE,
+    Components,
+    Products,
+    Variances,
+)
+from frictioncli.diagnosis.noise.discrepancy import SHARE, SPREAD, Discrepancy, discrepancy_of
+from frictioncli.diagnosis.noise.spectra import STRENGTHS, spectra_of
+from frictioncli.effects.base import Basis, Effect
 from frictioncli.linear_algebra import least_squares_residual
 
 _LEAST_NOISE = 1e-9
@@ -26,117 +33,146 @@ _LEAST_NOISE = 1e-9
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Precomputed:
-    """Data of one joint with the base's columns and the noise models of both channels.
+    """Data of one joint with the columns that every hypothesis has, and the noise models.
 
     Attributes
     ----------
     problem : Problem
         The rows with the base model.
+    measurement : tuple of Basis
+        Columns of the measurement effects that stand beside the base.
     base : ModelColumns
-        Columns of the base model.
-    misfit : ModelColumns
-        The misfit of the simulated torque, one column.
-    spectra : (Spectra, Spectra)
-        Noise models of friction and load.
+        Columns of the base model and of these.
+    discrepancy : Discrepancy
+        Random functions beside the base.
+    columns : TransformedColumns
+        Base, discrepancy and the misfit, which is the last.
+    products : Products
+        Their inner products.
+    point : (float, float)
+        Standard deviation of an angle bin about its pair in friction and load. [N·m]
+    start : Variances
+        Variance components before anything is fitted.
+    components : Components
+        What the variance components belong to.
     """
 
     problem: Problem
+    measurement: tuple[Basis, ...]
     base: ModelColumns
-    misfit: ModelColumns
-    spectra: tuple[Spectra, Spectra]
+    discrepancy: Discrepancy
+    columns: TransformedColumns
+    products: Products
+    point: tuple[float, float]
+    start: Variances
+    components: Components
 
     @classmethod
-    def of(cls, problem: Problem) -> "Precomputed":
-        """Return the columns and spectra of a problem."""
+    def of(
+        cls, problem: Problem, measurement: Sequence[Effect] = (), discrepancy: float = SHARE
+    ) -> "Precomputed":
+        """Return the columns and noise models of a problem.
+
+        Parameters
+        ----------
+        problem : Problem
+            The rows with the base model.
+        measurement : sequence of Effect
+            Effects of the measurement that stand beside the base.
+        discrepancy : float, optional
+            RMS of the discrepancy that is expected, relative to the mean friction; 0 for none.
+        """
         layout = problem.layout
-        base, misfit = base_columns(problem), misfit_column(problem)
-        extra = (problem.temperature_variance, np.zeros_like(layout.time))
-        friction, load = (
-            spectra_of(
-                layout,
-                point,
-                known,
-                least_squares_residual(columns.means, one.means[:, 0], tolerance=RANK),
-            )
-            for point, known, columns, one in zip(
-                point_noise(problem), extra, base.channels, misfit.channels, strict=True
-            )
+        bases = [problem.basis(one, {}) for one in measurement]
+        base = joined([base_columns(problem), *(basis_columns(problem, one) for one in bases)])
+        misfit = misfit_column(problem)
+        point = point_noise(problem, bases)
+        noises = _noise_models(problem, base, misfit, point)
+        smooth = discrepancy_of(problem, discrepancy)
+        prior = float(np.log(max(smooth.amplitude, _LEAST_NOISE)))
+        columns = TransformedColumns(
+            (Part(joined([base, smooth.columns]), noises), Part(misfit, noises))
         )
-        return cls(problem=problem, base=base, misfit=misfit, spectra=(friction, load))
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Catalogue:
-    """Hypotheses with their columns in the eigenvectors of the noise.
-
-    Attributes
-    ----------
-    hypotheses : tuple of Hypothesis
-        The hypotheses.
-    columns : ModelColumns
-        Their columns, side by side.
-    groups : Groups
-        Division of the columns: one group for each shape of each hypothesis.
-    modes : (Modes, Modes)
-        Of friction and load: the columns in the eigenvectors of each correlation time.
-    """
-
-    hypotheses: tuple[Hypothesis, ...]
-    columns: ModelColumns
-    groups: Groups
-    modes: tuple[Modes, Modes]
-
-    @classmethod
-    def of(cls, precomputed: Precomputed, hypotheses: Sequence[Hypothesis]) -> "Catalogue":
-        """Return the catalogue of these hypotheses."""
-        empty = precomputed.base.take(slice(0, 0))
-        columns = joined([empty, *(one.columns for one in hypotheses)])
-        friction, load = (
-            spectra.all_modes(part.means)
-            for spectra, part in zip(precomputed.spectra, columns.channels, strict=True)
-        )
+        quiet = [
+            max(spectra.white, deviation**2 * 1e-6, LEAST_VARIANCE)
+            for spectra, deviation in zip(noises.spectra, point, strict=True)
+        ]
         return cls(
-            hypotheses=tuple(hypotheses),
+            problem=problem,
+            measurement=tuple(bases),
+            base=base,
+            discrepancy=smooth,
             columns=columns,
-            groups=_groups(hypotheses),
-            modes=(friction, load),
+            products=columns.products(),
+            point=point,
+            start=Variances(
+                noise=(0, 0),
+                within=(point[0] ** 2, point[1] ** 2),
+                between=(quiet[0], quiet[1]),
+                amplitude=np.full(len(smooth.components), prior),
+            ),
+            components=Components(
+                base=base.count,
+                functions=tuple(
+                    slice(base.count + one.columns.start, base.count + one.columns.stop)
+                    for one in smooth.components
+                ),
+                widths=smooth.widths,
+                prior=prior,
+                spread=SPREAD,
+                within=(layout.within_freedom,) * 2,
+                pairs=len(layout.time),
+                determinants=(noises.determinants(0), noises.determinants(1)),
+            ),
         )
 
-    def without(self, names: set[str]) -> "Catalogue":
-        """Return the catalogue without some of its hypotheses."""
-        kept = [one.name not in names for one in self.hypotheses]
-        if all(kept):
-            return self
-        chosen = np.flatnonzero(np.repeat(kept, [one.columns.count for one in self.hypotheses]))
-        remaining = [one for one, wanted in zip(self.hypotheses, kept, strict=True) if wanted]
-        friction, load = (
-            tuple(np.take(part, chosen, axis=1) for part in channel) for channel in self.modes
+    @property
+    def noises(self) -> NoiseModels:
+        """Noise models of the pair means."""
+        return self.columns.noises
+
+
+def _noise_models(
+    problem: Problem, base: ModelColumns, misfit: ModelColumns, point: tuple[float, float]
+) -> NoiseModels:
+    """Return the noise models of the pair means of both channels."""
+    extra = (problem.temperature_variance, np.zeros_like(problem.layout.time))
+    friction, load = (
+        spectra_of(
+            problem.layout,
+            deviation,
+            known,
+            least_squares_residual(columns.means, one.means[:, 0], tolerance=RANK),
         )
-        return Catalogue(
-            hypotheses=tuple(remaining),
-            columns=self.columns.take(chosen),
-            groups=_groups(remaining),
-            modes=(friction, load),
+        for deviation, known, columns, one in zip(
+            point, extra, base.channels, misfit.channels, strict=True
         )
+    )
+    indices = tuple(
+        (time, strength)
+        for time in range(len(friction.spectra))
+        for strength in range(0 if time == 0 else 1, len(STRENGTHS))
+    )
+    return NoiseModels((friction, load), indices)
 
 
-def _groups(hypotheses: Sequence[Hypothesis]) -> Groups:
-    return Groups.of([one.width for one in hypotheses for _ in one.shapes])
-
-
-def point_noise(problem: Problem, accepted: Sequence[Basis] = ()) -> tuple[float, float]:
+def point_noise(problem: Problem, beside: Sequence[Basis] = ()) -> tuple[float, float]:
     """Return the standard deviation of an angle bin about its pair in friction and load [N·m].
+
+    From pure error, the scatter of neighbouring pairs at one speed about their common course; from
+    the residual of the base where too few pairs can be compared.
 
     Parameters
     ----------
     problem : Problem
-        The rows; of their misfit the residual of the base is taken.
-    accepted : sequence of Basis
-        Columns of accepted effects, fitted beside the base.
+        The rows.
+    beside : sequence of Basis
+        Columns fitted beside the base.
     """
-    friction = residual_of_base(problem, problem.friction_misfit, "friction", accepted)
-    load = residual_of_base(problem, problem.load_misfit, "load", accepted)
-    return (
-        max(problem.layout.point_deviation(friction), _LEAST_NOISE),
-        max(problem.layout.point_deviation(load), _LEAST_NOISE),
-    )
+    measured = np.column_stack([problem.friction, problem.load])
+    pure = problem.layout.pure_deviation(measured, problem.table.position)
+    if pure is None:
+        friction = residual_of_base(problem, problem.friction_misfit, "friction", beside)
+        load = residual_of_base(problem, problem.load_misfit, "load", beside)
+        pure = np.array([problem.layout.point_deviation(one) for one in (friction, load)])
+    return max(float(pure[0]), _LEAST_NOISE), max(float(pure[1]), _LEAST_NOISE)

@@ -1,0 +1,99 @@
+r"""Coefficients of candidates within their physical bounds, from inner products.
+
+A candidate's coefficients *c* raise twice the log likelihood by
+:math:`2 u^\mathsf{T} c - c^\mathsf{T} S c`, with the inner products *S* of what the null hypothesis
+leaves of its columns and *u* of these with the misfit. The greatest value between the bounds is
+found by trying which coefficients lie on a bound: a candidate has few.
+"""
+
+from itertools import product
+
+import numpy as np
+
+from frictioncli.arrays import Array, Flags
+
+_RANK = 1e-9
+"""Eigenvalues of the inner products at unit length below this count as zero."""
+
+
+def bounded_coefficients(
+    inner: Array, right: Array, lower: Array, upper: Array
+) -> tuple[Array, Array, Flags]:
+    """Return the best coefficients of each candidate within bounds.
+
+    Parameters
+    ----------
+    inner : ndarray, shape (candidates, width, width)
+        Inner products of what the null hypothesis leaves of the columns.
+    right : ndarray, shape (candidates, width)
+        Those with the misfit.
+    lower, upper : ndarray, shape (width,)
+        Bounds of the coefficients.
+
+    Returns
+    -------
+    coefficients : ndarray, shape (candidates, width)
+        The coefficients.
+    gain : ndarray, shape (candidates,)
+        Twice the gain in log likelihood.
+    free : ndarray of bool, shape (candidates, width)
+        Coefficients that lie on no bound and that the data determine.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> inner, right = np.eye(2)[np.newaxis], np.array([[2.0, -1.0]])
+    >>> found = bounded_coefficients(inner, right, np.zeros(2), np.full(2, 5.0))
+    >>> print(found[0], found[1], found[2])
+    [[2. 0.]] [4.] [[ True False]]
+    """
+    size = np.sqrt(np.maximum(np.diagonal(inner, axis1=1, axis2=2), 0.0))
+    determined = size > 0
+    everything = np.ones(inner.shape[1], bool)
+    coefficients, gain = _solved(inner, right, everything, np.zeros_like(right))
+    free = determined.copy()
+    outside = np.any((coefficients < lower) | (coefficients > upper), axis=1)
+    if not outside.any():
+        return coefficients, gain, free
+    where = np.flatnonzero(outside)
+    best = np.zeros(len(where))
+    coefficients[where], free[where] = 0.0, False
+    states = [
+        [0, *([1] if np.isfinite(low) else []), *([2] if np.isfinite(high) else [])]
+        for low, high in zip(lower, upper, strict=True)
+    ]
+    for state in product(*states):
+        at = np.array(state)
+        fixed = np.where(
+            at == 1, np.nan_to_num(lower), np.where(at == 2, np.nan_to_num(upper), 0.0)
+        )
+        tried, value = _solved(
+            inner[where], right[where], at == 0, np.broadcast_to(fixed, right[where].shape)
+        )
+        inside = np.all((tried >= lower - 1e-12) & (tried <= upper + 1e-12), axis=1)
+        better = inside & (value > best)
+        best[better] = value[better]
+        coefficients[where[better]] = tried[better]
+        free[where[better]] = (at == 0) & determined[where[better]]
+    gain[where] = best
+    return coefficients, gain, free
+
+
+def _solved(inner: Array, right: Array, free: Array, fixed: Array) -> tuple[Array, Array]:
+    """Return coefficients with some of them fixed, and twice the gain in log likelihood."""
+    coefficients = np.where(free, 0.0, fixed)
+    if free.any():
+        own = inner[:, free][:, :, free]
+        rest = right[:, free] - np.einsum("gij,gj->gi", inner[:, free], coefficients)
+        coefficients[:, free] = np.einsum("gij,gj->gi", pseudo_inverse(own), rest)
+    gain = 2 * np.sum(right * coefficients, axis=1)
+    gain = gain - np.einsum("gi,gij,gj->g", coefficients, inner, coefficients)
+    return coefficients, np.maximum(gain, 0.0)
+
+
+def pseudo_inverse(inner: Array) -> Array:
+    """Return the pseudo-inverses of inner products of few columns, scaled to unit length."""
+    size = np.sqrt(np.maximum(np.diagonal(inner, axis1=1, axis2=2), 0.0))
+    size = np.where(size > 0, size, np.inf)
+    sizes = size[:, :, np.newaxis] * size[:, np.newaxis, :]
+    return np.asarray(np.linalg.pinv(inner / sizes, rcond=_RANK, hermitian=True) / sizes)

@@ -1,0 +1,167 @@
+"""Hypotheses with their columns, and inner products of these with the null hypothesis."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from itertools import pairwise
+
+import numpy as np
+
+from frictioncli.arrays import Array
+from frictioncli.diagnosis.fit.columns import RANK, joined
+from frictioncli.diagnosis.fit.hypotheses import Hypothesis
+from frictioncli.diagnosis.fit.transformed_columns import Part, TransformedColumns
+from frictioncli.diagnosis.fit.variance_components import Variances
+from frictioncli.diagnosis.noise.significance import independent_directions
+from frictioncli.diagnosis.search.precomputed import Precomputed
+from frictioncli.linear_algebra import orthonormal_basis
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Catalogue:
+    """Hypotheses with their columns.
+
+    Attributes
+    ----------
+    precomputed : Precomputed
+        The data.
+    hypotheses : tuple of Hypothesis
+        The hypotheses.
+    places : tuple of slice
+        Columns of each.
+    part : Part
+        Their columns, side by side.
+    """
+
+    precomputed: Precomputed
+    hypotheses: tuple[Hypothesis, ...]
+    places: tuple[slice, ...]
+    part: Part
+    _within: dict[tuple[int, int], tuple[Part, Array]] = field(default_factory=dict)
+    _own: dict[tuple[int, int], Array] = field(default_factory=dict)
+    _directions: dict[int, float] = field(default_factory=dict)
+
+    @classmethod
+    def of(cls, precomputed: Precomputed, hypotheses: Sequence[Hypothesis]) -> "Catalogue":
+        """Return the catalogue of these hypotheses."""
+        empty = precomputed.base.take(slice(0, 0))
+        ends = np.cumsum([0, *(one.columns.count for one in hypotheses)]).tolist()
+        columns = joined([empty, *(one.columns for one in hypotheses)])
+        return cls(
+            precomputed=precomputed,
+            hypotheses=tuple(hypotheses),
+            places=tuple(slice(first, last) for first, last in pairwise(ends)),
+            part=Part(columns, precomputed.noises),
+        )
+
+    def products(
+        self, number: int, known: TransformedColumns, variances: Variances
+    ) -> tuple[Array, Array]:
+        """Return inner products of a hypothesis under given variance components.
+
+        Parameters
+        ----------
+        number : int
+            Number of the hypothesis.
+        known : TransformedColumns
+            Columns of the null hypothesis and the misfit.
+        variances : Variances
+            Variance components.
+
+        Returns
+        -------
+        across : ndarray, shape (columns, shapes * width)
+            With the columns of the null hypothesis and the misfit.
+        own : ndarray, shape (shapes, width, width)
+            Of each shape's columns.
+        """
+        hypothesis, place = self.hypotheses[number], self.places[number]
+        shapes, width = len(hypothesis.shapes), hypothesis.width
+        across = np.zeros((known.count, shapes * width))
+        own = np.zeros((shapes, width, width))
+        noises = self.precomputed.noises
+        for channel in (0, 1):
+            part = self.part.columns.channels[channel]
+            if not (part.within[:, place].any() or part.means[:, place].any()):
+                continue
+            scale = variances.within[channel]
+            across += self._across_within(channel, known)[:, place] / scale
+            own += self._own_within(channel, number) / scale
+            noise = variances.noise[channel]
+            weight = 1 / (noises.variance(channel, noise) * variances.between[channel])
+            time = noises.indices[noise][0]
+            modes = self.part.modes(channel, time)[:, place]
+            across += known.modes(channel, time).T @ (modes * weight[:, np.newaxis])
+            own += _blocks(modes, weight, shapes, width)
+        return across, own
+
+    def lengths(self, number: int, shape: int, variances: Variances) -> tuple[float, float]:
+        """Return squared lengths of one shape of a hypothesis: within pairs, and of pair means."""
+        width = self.hypotheses[number].width
+        first = self.places[number].start + shape * width
+        within = between = 0.0
+        for channel in (0, 1):
+            part = self.part.columns.channels[channel]
+            deviations = part.within[:, first : first + width]
+            within += float(np.sum(np.square(deviations))) / variances.within[channel]
+            means = part.means[:, first : first + width]
+            centred = means - means.mean(axis=0)
+            between += float(np.sum(np.square(centred))) / variances.between[channel]
+        return within, between
+
+    def directions(self, number: int) -> float:
+        """Return the effective number of independent shapes of a hypothesis.
+
+        From what the base leaves of their columns before anything else is fitted.
+        """
+        if number not in self._directions:
+            alone = len(self.hypotheses[number].shapes) == 1
+            self._directions[number] = 1.0 if alone else self._independent(number)
+        return self._directions[number]
+
+    def _independent(self, number: int) -> float:
+        start, place, base = self.precomputed.start, self.places[number], self.precomputed.base
+        columns, beside = [], []
+        for channel in (0, 1):
+            own, known = self.part.columns.channels[channel], base.channels[channel]
+            for values, others, scale in (
+                (own.within, known.within, start.within[channel]),
+                (own.means, known.means, start.between[channel]),
+            ):
+                if values[:, place].any():
+                    columns.append(values[:, place] / np.sqrt(scale))
+                    beside.append(others / np.sqrt(scale))
+        if not columns:
+            return 1.0
+        stacked = np.vstack(columns)
+        span = orthonormal_basis(np.vstack(beside), tolerance=RANK)
+        left = stacked - span @ (span.T @ stacked)
+        return independent_directions(left.T @ left, self.hypotheses[number].width)
+
+    def _across_within(self, channel: int, known: TransformedColumns) -> Array:
+        """Return inner products of deviations with those of known columns."""
+        found = []
+        for part in known.parts:
+            key = (channel, id(part))
+            if key not in self._within:
+                own = self.part.columns.channels[channel].within
+                product = part.columns.channels[channel].within.T @ own
+                self._within[key] = (part, product)  # the part lives as long as its number
+            found.append(self._within[key][1])
+        return np.vstack(found)
+
+    def _own_within(self, channel: int, number: int) -> Array:
+        if (channel, number) not in self._own:
+            hypothesis = self.hypotheses[number]
+            part = self.part.columns.channels[channel].within[:, self.places[number]]
+            self._own[channel, number] = _blocks(
+                part, None, len(hypothesis.shapes), hypothesis.width
+            )
+        return self._own[channel, number]
+
+
+def _blocks(columns: Array, weight: Array | None, shapes: int, width: int) -> Array:
+    """Return inner products within each shape, shape (shapes, width, width)."""
+    weighted = columns if weight is None else columns * weight[:, np.newaxis]
+    grouped = columns.reshape(len(columns), shapes, width)
+    second = weighted.reshape(len(columns), shapes, width)
+    return np.einsum("rsi,rsj->sij", grouped, second)

@@ -1,0 +1,97 @@
+"""What may be said of a cause: named, visible, negligible or undetermined, with the reason."""
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from frictioncli.arrays import Array
+from frictioncli.diagnosis.data.problem import Problem
+from frictioncli.diagnosis.fit.columns import main_channel
+from frictioncli.diagnosis.search.cause import CONVINCING, Cause
+
+_Z95 = 1.96
+
+_CANCELLING = 0.5
+"""Two causes cancel each other if their sum has less than this share of the smaller one's RMS."""
+
+
+def with_standing(
+    causes: Sequence[Cause], problem: Problem, margin: float, alpha: float
+) -> tuple[Cause, ...]:
+    """Return causes with their standing, in the same order.
+
+    *Named* needs significance, a lower bound of what the base leaves above the margin, and a
+    physically possible result; else a cause is *negligible* if the upper bound is below the margin,
+    *undetermined* if the interval holds both the margin and next to nothing, and *visible*
+    otherwise.
+
+    Parameters
+    ----------
+    causes : sequence of Cause
+        Causes found.
+    problem : Problem
+        The rows.
+    margin : float
+        Smallest size worth a name. [N·m]
+    alpha : float
+        Significance level.
+    """
+    judged = [_judged(cause, margin, alpha) for cause in causes]
+    for weaker in sorted(range(len(judged)), key=lambda i: judged[i].test.statistic):
+        for other in range(len(judged)):
+            both = judged[weaker], judged[other]
+            named = weaker != other and all(one.standing == "named" for one in both)
+            if named and _cancel(problem, *both):
+                judged[weaker] = replace(
+                    judged[weaker],
+                    standing="undetermined",
+                    reason=f"it and {judged[other].fit.effect.name} cancel each other",
+                )
+    return tuple(judged)
+
+
+def _judged(cause: Cause, margin: float, alpha: float) -> Cause:
+    low, high = cause.visible_interval
+    if not (cause.test.p_value < alpha and cause.test.log_bayes_factor > CONVINCING):
+        return replace(cause, standing="undetermined", reason="noise may be the reason")
+    impossible = _impossible(cause)
+    if impossible:
+        return replace(cause, standing="undetermined", reason=impossible)
+    if low > margin:
+        return replace(cause, standing="named", reason="")
+    if high < margin:
+        reason = f"the base leaves less of it than the margin of {margin:.2g}"
+        return replace(cause, standing="negligible", reason=reason)
+    reason = f"the base may leave less of it than the margin of {margin:.2g}"
+    return replace(cause, standing="visible" if low > 0 else "undetermined", reason=reason)
+
+
+def _impossible(cause: Cause) -> str:
+    """Return why a cause is physically impossible or not determined; empty if it is not."""
+    fit = cause.fit
+    errors = np.sqrt(np.maximum(np.diag(fit.covariance), 0.0))
+    at_zero = True
+    for parameter, value, error in zip(
+        fit.effect.coefficients, fit.coefficients, errors, strict=True
+    ):
+        if value < parameter.lower - _Z95 * error or value > parameter.upper + _Z95 * error:
+            return f"{parameter.name} of {value:.3g} {parameter.unit} is physically impossible"
+        at_zero = at_zero and abs(value) <= _Z95 * error
+    if at_zero and len(errors) == 1:
+        return "its coefficient may be zero"
+    return ""
+
+
+def _cancel(problem: Problem, one: Cause, other: Cause) -> bool:
+    """Return whether two causes in one channel cancel each other."""
+    if one.fit.effect.channel != other.fit.effect.channel:
+        return False
+    first, second = _torque(problem, one), _torque(problem, other)
+    rms = [float(np.sqrt(np.mean(np.square(values)))) for values in (first, second, first + second)]
+    return rms[2] < _CANCELLING * min(rms[0], rms[1])
+
+
+def _torque(problem: Problem, cause: Cause) -> Array:
+    basis = problem.basis(cause.fit.effect, cause.fit.shape)
+    return np.asarray(main_channel(basis, cause.fit.effect) @ cause.fit.coefficients)
