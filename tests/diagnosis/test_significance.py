@@ -1,4 +1,4 @@
-"""Null distributions of simulated statistics, and Bayes factors by quadrature."""
+"""Null distributions beside simulated statistics, and Bayes factors by quadrature."""
 
 import numpy as np
 import pytest
@@ -9,62 +9,111 @@ from scipy import integrate, stats
 from frictioncli.diagnosis.noise.significance import (
     NullDistribution,
     credible_set,
-    fit_null_distribution,
+    independent_directions,
     log_bayes_factor,
     posterior_probabilities,
 )
 
 
-@pytest.mark.parametrize("freedom", [1, 2, 4])
-def test_chance_of_one_try_is_the_chi_squared_tail(freedom):
-    drawn = stats.chi2.rvs(freedom, size=40_000, random_state=1)
-    chance = fit_null_distribution(drawn)
+def one_shape(coefficients, freedom):
+    return NullDistribution(coefficients=coefficients, freedom=freedom)
+
+
+@pytest.mark.parametrize("coefficients", [1, 2, 4])
+def test_with_noise_well_known_the_tail_is_that_of_chi_squared(coefficients):
+    null = one_shape(coefficients, 1e9)
     for probability in (0.5, 0.1, 0.05, 0.01):
-        statistic = stats.chi2.isf(probability, freedom)
-        assert chance.p_value(statistic) == pytest.approx(probability, rel=0.06)
-        assert chance.critical_value(probability) == pytest.approx(statistic, rel=0.04)
+        statistic = stats.chi2.isf(probability, coefficients)
+        assert null.p_value(statistic) == pytest.approx(probability, rel=1e-6)
+        assert null.critical_value(probability) == pytest.approx(statistic, rel=1e-6)
 
 
-def test_exact_moments_give_the_exact_tail():
-    """A mean of n and a variance of 2 n are those of chi squared."""
-    drawn = 3.0 + np.sqrt(6.0) * np.array([1.0, -1.0])
-    assert fit_null_distribution(drawn).p_value(11.0) == pytest.approx(
-        stats.chi2.sf(11.0, 3), rel=1e-12
-    )
+@pytest.mark.parametrize(("coefficients", "rows"), [(1, 8), (2, 12), (4, 20)])
+def test_with_noise_of_unknown_scale_a_likelihood_ratio_passes_as_often_as_its_p_value(
+    coefficients, rows
+):
+    """Twice the log likelihood ratio of 20,000 regressions, n ln(S0/S1) of their square sums."""
+    generator = np.random.default_rng(coefficients)
+    columns = np.linalg.qr(generator.normal(size=(rows, coefficients)))[0]
+    data = generator.normal(size=(rows, 20_000))
+    before = np.sum(data**2, axis=0)
+    after = before - np.sum((columns.T @ data) ** 2, axis=0)
+    freedom = rows - coefficients
+    ratios = freedom * np.log(before / after)
+    found = np.array([one_shape(coefficients, freedom).p_value(one) for one in ratios[:4000]])
+    for level in (0.5, 0.1, 0.05):
+        # the standard deviation of a share of 4,000
+        error = np.sqrt(level * (1 - level) / 4000)
+        assert np.mean(found < level) == pytest.approx(level, abs=4 * error)
 
 
-@pytest.mark.parametrize("tries", [1, 5, 20])
-def test_the_greatest_of_many_passes_as_often_as_its_chance_says(tries):
-    """200 draws tell what 20,000 further ones do: 5 % are found in 3 to 7.5 %."""
-    generator = np.random.default_rng(3)
-    shares = []
-    for _ in range(20):
-        drawn = np.square(generator.normal(size=(200, tries))).max(axis=1)
-        new = np.square(generator.normal(size=(1000, tries))).max(axis=1)
-        shares.append(np.mean(new > fit_null_distribution(drawn).critical_value(0.05)))
-    assert 0.03 < np.mean(shares) < 0.075
-
-
-@given(st.floats(0.3, 20.0), st.floats(0.1, 10.0), st.floats(1e-9, 0.9))
+@given(st.integers(1, 5), st.floats(2.0, 1e5), st.floats(1.0, 30.0), st.floats(1e-9, 0.9))
 @settings(max_examples=60)
-def test_limit_and_beyond_are_inverse(shape, scale, probability):
-    chance = NullDistribution(shape, scale)
-    assert chance.p_value(chance.critical_value(probability)) == pytest.approx(
-        probability, rel=1e-6
-    )
+def test_critical_value_and_p_value_are_inverse(coefficients, freedom, shapes, probability):
+    null = NullDistribution(coefficients=coefficients, freedom=freedom, shapes=shapes)
+    assert null.p_value(null.critical_value(probability)) == pytest.approx(probability, rel=1e-6)
 
 
-@pytest.mark.parametrize("drawn", [[], [3.0], [0.0] * 50, [2.0] * 50])
-def test_noise_that_says_nothing_is_no_measure_of_chance(drawn):
-    chance = fit_null_distribution(np.array(drawn))
-    assert chance.p_value(100.0) == 1.0
-    assert chance.critical_value(0.01) == np.inf
+def test_p_values_go_with_the_number_of_shapes_and_stay_below_one():
+    null = NullDistribution(coefficients=1, freedom=50.0, shapes=7.0)
+    assert null.p_value(9.0) == pytest.approx(7 * one_shape(1, 50.0).p_value(9.0))
+    assert null.p_value(0.1) == 1.0
+
+
+def ripples(orders, angle):
+    waves = angle[:, None] * orders
+    return np.stack([np.sin(waves), np.cos(waves)], axis=-1).reshape(len(angle), -1)
+
+
+SEARCHES = {
+    "three waves": (np.sin(np.linspace(0, np.pi, 120)[:, None] * np.linspace(5, 6, 3)), 1),
+    "forty waves": (np.sin(np.linspace(0, np.pi, 120)[:, None] * np.linspace(5, 6, 40)), 1),
+    "ripples": (ripples(np.linspace(3, 20, 34), np.linspace(0, np.pi, 120)), 2),
+    "steps": ((np.linspace(0, 1, 120)[:, None] > np.linspace(0.05, 0.95, 19)) - 0.5, 1),
+    "decays": (np.exp(-np.linspace(0, 1, 120)[:, None] / np.geomspace(0.05, 2, 8)), 1),
+}
+"""Columns of several shapes side by side, and the columns of each."""
+
+
+@pytest.mark.parametrize("name", SEARCHES)
+def test_the_greatest_of_several_shapes_passes_about_as_often_as_its_p_value_says(name):
+    """20,000 draws of white noise."""
+    columns, width = SEARCHES[name]
+    columns = columns - columns.mean(axis=0)
+    count = independent_directions(columns.T @ columns, width)
+    noise = np.random.default_rng(1).normal(size=(120, 20_000))
+    greatest = np.zeros(20_000)
+    for first in range(0, columns.shape[1], width):
+        span = np.linalg.qr(columns[:, first : first + width])[0]
+        greatest = np.maximum(greatest, np.sum(np.square(span.T @ noise), axis=0))
+    null = NullDistribution(coefficients=width, freedom=1e9, shapes=count)
+    for level, most in ((0.05, 1.5), (0.01, 2.1)):
+        share = np.mean(greatest > null.critical_value(level))
+        # the farther the tail, the less the shapes are alike there
+        assert 0.7 * level < share < most * level
+
+
+def test_directions_of_two_columns_each_count_once():
+    """Planes that are orthogonal are as many tries; a plane and itself are one."""
+    planes = np.eye(6)
+    assert independent_directions(planes, 2) == pytest.approx(3.0)
+    assert independent_directions(np.kron(np.ones((3, 3)), np.eye(2)), 2) == pytest.approx(1.0)
+    assert independent_directions(np.diag([4.0, 9.0, 0.0]), 1) == pytest.approx(2.0)
+    assert independent_directions(np.zeros((3, 3)), 1) == 1.0
+
+
+def test_a_coefficient_that_no_data_determine_is_never_significant():
+    null = NullDistribution(coefficients=0, freedom=100.0)
+    assert null.p_value(100.0) == 1.0
+    assert null.critical_value(0.01) == np.inf
+    assert one_shape(1, 100.0).p_value(0.0) == 1.0
 
 
 def test_far_tails_do_not_vanish():
     """By the integral of the density of chi squared with two degrees, exp(-x/2)."""
-    assert NullDistribution(1.0, 2.0).p_value(600.0) == pytest.approx(np.exp(-300.0), rel=1e-9)
-    assert NullDistribution(1.0, 2.0).critical_value(np.exp(-300.0)) == pytest.approx(600.0)
+    null = one_shape(2, 1e12)
+    assert null.p_value(600.0) == pytest.approx(np.exp(-300.0), rel=1e-3)
+    assert null.critical_value(np.exp(-30.0)) == pytest.approx(60.0, rel=1e-6)
 
 
 @pytest.mark.parametrize("estimate", [0.0, 1.0, 4.0])

@@ -18,6 +18,9 @@ References
 .. [2] G. Wang, A. Sarkar, P. Carbonetto and M. Stephens, "A simple new approach to variable
    selection in regression, with application to genetic fine mapping," J. R. Stat. Soc. B 82(5),
    2020, doi:10.1111/rssb.12388 (credible sets).
+.. [3] J. Li and L. Ji, "Adjusting multiple testing in multilocus analyses using the eigenvalues of
+   a correlation matrix," Heredity 95, 2005, doi:10.1038/sj.hdy.6800717 (there the fractions of
+   greater eigenvalues count too, which makes the number jump where one is whole).
 """
 
 from collections.abc import Mapping
@@ -87,8 +90,8 @@ def independent_directions(inner: Array, width: int) -> float:
     Returns
     -------
     float
-        From 1, where all shapes are alike, to their number, where they are orthogonal: the squared
-        sum of the eigenvalues of the columns' correlation, over the sum of their squares.
+        From 1, where all shapes are alike, to their number, where they are orthogonal: the sum of
+        the eigenvalues of the columns' correlation, of which each counts as one at most [3]_.
 
     Examples
     --------
@@ -101,8 +104,8 @@ def independent_directions(inner: Array, width: int) -> float:
     if not present.any():
         return 1.0
     unit = inner[np.ix_(present, present)] / np.outer(size[present], size[present])
-    count = np.trace(unit) ** 2 / float(np.sum(np.square(unit)))
-    return max(float(count) / width, 1.0)
+    count = float(np.sum(np.clip(np.linalg.eigvalsh(unit), 0.0, 1.0)))
+    return max(count / width, 1.0)
 
 
 def log_bayes_factor(grid: Array, freedom: int) -> float:
