@@ -77,13 +77,13 @@ def diagnosis_section(results: JointResults) -> DiagnosisSection:
     if results.diagnosis is None:
         return DiagnosisSection(missing=results.diagnosis_missing)
     document, unit = results.diagnosis.document, results.unit
-    worst = worst_table(document, unit)
+    worst = worst_table(document)
     return DiagnosisSection(
         verdict=verdict_sentence(document, unit),
-        causes=tuple(cause_texts(document, unit)),
-        unnamed=tuple(unnamed_texts(document, unit)),
-        visible=visible_table(document, unit),
-        margin=margin_text(document, unit),
+        causes=tuple(cause_texts(document)),
+        unnamed=tuple(unnamed_texts(document)),
+        visible=visible_table(document),
+        margin=margin_text(document),
         gain=gain_sentence(document, unit),
         worst=worst if worst.rows else None,
         detectable=detectable_table(document, unit),

@@ -87,7 +87,7 @@ def verdict_sentence(document: DiagnosisDocument, unit: str) -> str:
             else "No cause was found in that: no effect of the catalogue and no other structure."
             " The table below says how large each effect would have to be to be found."
         )
-        return _joined(misfit, found, remainder_text(document, unit))
+        return _joined(misfit, found, remainder_text(document))
     named, lost, measured = (
         [cause for cause in document.named_causes if wanted(cause)]
         for wanted in (
@@ -114,7 +114,7 @@ def verdict_sentence(document: DiagnosisDocument, unit: str) -> str:
     if document.verdict == "unnamed":
         start = "Beside that, structure" if sentences else "Structure"
         sentences.append(f"{start} is left that no effect of the catalogue explains.")
-    return _joined(misfit, *sentences, remainder_text(document, unit))
+    return _joined(misfit, *sentences, remainder_text(document))
 
 
 def _joined(*sentences: str) -> str:
@@ -125,17 +125,17 @@ def _lower(sentence: str) -> str:
     return sentence[:1].lower() + sentence[1:]
 
 
-def cause_texts(document: DiagnosisDocument, unit: str) -> list[CauseText]:
+def cause_texts(document: DiagnosisDocument) -> list[CauseText]:
     """Return the causes that effects of the catalogue explain, strongest first."""
-    return [_cause(cause, document, unit) for cause in document.named_causes]
+    return [_cause(cause, document) for cause in document.named_causes]
 
 
-def unnamed_texts(document: DiagnosisDocument, unit: str) -> list[CauseText]:
+def unnamed_texts(document: DiagnosisDocument) -> list[CauseText]:
     """Return the structure that no effect of the catalogue explains."""
-    return [_cause(cause, document, unit) for cause in document.causes if not cause.effects]
+    return [_cause(cause, document) for cause in document.causes if not cause.effects]
 
 
-def _cause(cause: CauseRecord, document: DiagnosisDocument, unit: str) -> CauseText:
+def _cause(cause: CauseRecord, document: DiagnosisDocument) -> CauseText:
     probabilities = cause.probabilities
     return CauseText(
         effects=" or ".join(
@@ -145,8 +145,8 @@ def _cause(cause: CauseRecord, document: DiagnosisDocument, unit: str) -> CauseT
             for name in cause.effects
         ),
         kind=cause.kind or cause.channel,
-        size=f"{number_text(cause.size, 2)} {unit}",
-        details=size_text(cause, unit),
+        size=f"{number_text(cause.size, 2)} {document.unit_of(cause.channel)}",
+        details=size_text(cause, document),
         p_value=p_value_text(cause.p_value),
         finding=finding_text(cause),
         lasting=lasting_text(cause, document),
@@ -161,27 +161,25 @@ def _parameter(name: str, stated: ParameterRecord) -> str:
     return f"{in_words(name)} {quantity_text(stated.estimate, stated.ci95, stated.unit)}"
 
 
-def visible_table(document: DiagnosisDocument, unit: str) -> TextTable | None:
+def visible_table(document: DiagnosisDocument) -> TextTable | None:
     """Return what was found and is not named, with the reason; None if there is nothing.
 
     Parameters
     ----------
     document : DiagnosisDocument
         The joint's part of ``diagnosis.json``.
-    unit : str
-        Unit of torque.
     """
     if not document.visible:
         return None
     return TextTable(
         title="Seen, but not named",
-        header=("effect", "kind", "why it is not named", f"RMS [{unit}]", "chance of noise alone"),
+        header=("effect", "kind", "why it is not named", "size (RMS)", "chance of noise alone"),
         rows=tuple(
             (
                 alternatives_text(cause),
                 cause.kind or cause.channel,
                 standing_text(cause),
-                quantity_text(cause.size, cause.size_ci95, "1"),
+                quantity_text(cause.size, cause.size_ci95, document.unit_of(cause.channel)),
                 p_value_text(cause.p_value),
             )
             for cause in document.visible
@@ -229,7 +227,7 @@ def _reduction_text(reduction: float) -> str:
 
 
 def detectable_table(document: DiagnosisDocument, unit: str) -> TextTable:
-    """Return the smallest size at which each effect would be found in these data.
+    """Return the smallest size at which each effect would be named in these data.
 
     Parameters
     ----------
@@ -242,7 +240,7 @@ def detectable_table(document: DiagnosisDocument, unit: str) -> TextTable:
     names = [name for name in BY_NAME if name in sizes]
     names += sorted(set(sizes) - set(names))
     return TextTable(
-        title="Smallest size of each effect that would be found four times in five",
+        title="Smallest size of each effect that would be named four times in five",
         header=("effect", "what it is", f"RMS [{unit}]"),
         rows=tuple(
             (
@@ -256,18 +254,18 @@ def detectable_table(document: DiagnosisDocument, unit: str) -> TextTable:
     )
 
 
-def worst_table(document: DiagnosisDocument, unit: str) -> TextTable:
+def worst_table(document: DiagnosisDocument) -> TextTable:
     """Return the conditions under which the simulated torque is furthest from the measured one."""
     return TextTable(
         title="Where the simulated torque misses most",
-        header=("where", "speed", "channel", f"measured − simulated, mean [{unit}]"),
+        header=("where", "speed", "channel", "measured − simulated, mean"),
         rows=tuple(
             (
                 f"{place.axis} {number_text(place.low)} to {number_text(place.high)}"
                 f" {_AXIS_UNITS.get(place.axis, '')}".rstrip(),
                 speed_text(place.speed),
                 place.channel,
-                number_text(place.misfit),
+                f"{number_text(place.misfit)} {document.unit_of(place.channel)}",
             )
             for place in document.simulation.worst
         ),

@@ -10,7 +10,7 @@ import pytest
 
 from frictioncli.diagnosis.diagnose import diagnose_joint
 from frictioncli.diagnosis.documents.document import read_diagnoses
-from frictioncli.diagnosis.documents.from_diagnosis import diagnosis_document, structure_axes
+from frictioncli.diagnosis.documents.from_diagnosis import diagnosis_document
 from frictioncli.diagnosis.documents.remainder import largest_structure, remainder_record
 from frictioncli.diagnosis.search.lack_of_fit import Structure
 from frictioncli.diagnosis.settings import DiagnosisSettings
@@ -68,6 +68,7 @@ def test_size_of_a_single_coefficient_has_its_relative_interval(found):
     fit = replace(named.fit, coefficients=np.array([-2.0]), covariance=np.array([[0.25]]))
     effect = SimpleNamespace(**{name: getattr(fit.effect, name) for name in fit.effect.__slots__})
     effect.kind, effect.coefficients = "friction", fit.effect.coefficients[:1]
+    effect.statement = ""
     alone = replace(named, fit=replace(fit, effect=effect), size=3.0)
     (record,) = diagnosis_document(replace(found, visible=(alone,)), SETTINGS).visible
     assert record.size_ci95 == pytest.approx((3.0 * 1.02 / 2, 3.0 * 2.98 / 2))
@@ -75,14 +76,21 @@ def test_size_of_a_single_coefficient_has_its_relative_interval(found):
 
 def test_structure_is_stated_by_columns_and_stands_among_the_causes(found):
     structure = Structure(
-        axis="angle and speed", channel="load", p_value=1e-9, statistic=90, freedom=8, size=0.7
+        axes=("position", "speed"),
+        channel="load",
+        p_value=1e-9,
+        statistic=90,
+        freedom=8,
+        size=0.7,
+        interval=(0.5, 0.9),
     )
     document = diagnosis_document(replace(found, structure=structure), SETTINGS)
     assert document.structure.axis == ("position", "speed")
     assert (document.structure.channel, document.structure.formula) == ("load", None)
     assert document.causes[-1].effects == ()
     assert document.causes[-1].claim == document.structure.description
-    assert structure_axes("load and temperature") == ("load", "temperature")
+    assert "along angle and speed" in document.structure.description
+    assert document.structure.ci95 == document.causes[-1].size_ci95 == (0.5, 0.9)
 
 
 def test_what_is_left_on_the_new_run_is_found_along_its_axis(found):

@@ -44,10 +44,13 @@ def test_a_change_that_did_not_last_says_when_it_was_there():
 
 def test_size_says_what_the_base_model_leaves():
     both = cause(["drift"], size=1.9, size_ci95=(1.5, 2.3), visible_size=0.8)
-    assert size_text(both, "A") == (
+    document = diagnosis(torque_unit="A", load_unit="N·m")
+    assert size_text(both, document) == (
         "1.9 A (1.5 to 2.3) RMS in the friction, of which the base model leaves 0.80 A"
     )
-    assert "leaves" not in size_text(cause(["drift"], size=1.0, visible_size=0.99), "A")
+    assert "leaves" not in size_text(cause(["drift"], size=1.0, visible_size=0.99), document)
+    # a load channel is in N·m where the torque is a current
+    assert size_text(cause(["dress_pack"], channel="load"), document).startswith("1.0 N·m RMS")
 
 
 def test_what_is_not_named_is_listed_with_its_reason():
@@ -84,7 +87,7 @@ def test_what_is_left_is_said_with_size_and_axis():
 def test_detectable_sizes_are_said():
     said = lines(sets=[["drift"]], detectable={"stribeck": 0.2, "run_in": None, "drift": 1.5})
     assert said[-1] == (
-        "Smallest sizes that would be found four times in five: 0.20 N·m RMS (stribeck) to 1.5 N·m"
+        "Smallest sizes that would be named four times in five: 0.20 N·m RMS (stribeck) to 1.5 N·m"
         " (drift)."
     )
     assert lines(detectable={"run_in": None})[-1] == "These data can show none of the effects."

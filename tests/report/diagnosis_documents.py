@@ -74,12 +74,17 @@ def cause(names, **changed):
 def diagnosis(*, sets=(), rmse=1.0, **changed):
     """A diagnosis whose causes have these credible sets, and nothing else."""
     causes = changed.pop("causes", tuple(cause(names) for names in sets))
-    fields = {"verdict": "named", "gain": None, "detectable": {}, "held_out": "day-2"} | changed
+    fields = {
+        "verdict": "named",
+        "gain": None,
+        "detectable": {},
+        "held_out": "day-2",
+        "torque_unit": "N·m",
+    } | changed
     return DiagnosisDocument(
         joint=2,
         causes=causes,
         simulation=SimulationRecord(rmse=rmse),
-        torque_unit="N·m",
         runs=("day-1",),
         settings=DiagnosisSettings(),
         **fields,

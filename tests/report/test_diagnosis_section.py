@@ -75,7 +75,7 @@ def test_section_says_what_was_found(diagnosed):
             "inertia",
             "load",
             "smaller than what is worth a name: the base leaves 0.05 N·m, less than 0.10 N·m",
-            "0.05 (0.03 to 0.07)",
+            "0.05 N·m (0.03 to 0.07)",
             "below 1e−300",
         ),
     )
@@ -88,7 +88,7 @@ def test_section_says_what_was_found(diagnosed):
         "temperature 25.0 to 31.0 °C",
         "67.5 deg/s",
         "friction",
-        "−4.50",
+        "−4.50 N·m",
     )
     names = [figure.name for figure in diagnosis_figures(diagnosed.diagnosis)]
     assert names == [
@@ -164,7 +164,7 @@ def test_verdict_tells_joint_measurement_and_what_did_not_last_apart():
     assert "Of the measurement: the torque in these logs is 12 ms (11 to 13) late; corrected." in (
         sentence
     )
-    third = cause_texts(document, "N·m")[3]
+    third = cause_texts(document)[3]
     assert third.kind == "measurement"
     assert cause_title(document.causes[3], 4) == "Measurement 4. torque delay"
 

@@ -246,6 +246,8 @@ class DiagnosisDocument(msgspec.Struct, frozen=True, kw_only=True):
         What the ramps show; none where the log has no ramps.
     torque_unit : str
         Unit of torque.
+    load_unit : str or None
+        Unit of what shows in the load, where the log has a load channel of its own; else None.
     runs : tuple of str
         Runs that the diagnosis has used.
     held_out : str or None
@@ -266,6 +268,7 @@ class DiagnosisDocument(msgspec.Struct, frozen=True, kw_only=True):
     simulation: SimulationRecord
     ramps: RampsRecord | None = None
     torque_unit: str
+    load_unit: str | None = None
     runs: tuple[str, ...]
     held_out: str | None
     settings: DiagnosisSettings
@@ -274,6 +277,16 @@ class DiagnosisDocument(msgspec.Struct, frozen=True, kw_only=True):
     def named_causes(self) -> tuple[CauseRecord, ...]:
         """The causes that effects of the catalogue explain, in the order of the extended model."""
         return tuple(cause for cause in self.causes if cause.effects)
+
+    def unit_of(self, channel: str) -> str:
+        """Return the unit of sizes in a channel.
+
+        Parameters
+        ----------
+        channel : {"friction", "load"}
+            The channel.
+        """
+        return (self.load_unit if channel == "load" else None) or self.torque_unit
 
 
 def read_diagnoses(path: Path) -> dict[int, DiagnosisDocument]:

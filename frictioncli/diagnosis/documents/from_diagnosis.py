@@ -3,7 +3,6 @@
 from dataclasses import fields, replace
 
 import numpy as np
-from msgspec import structs
 
 from frictioncli.diagnosis.data.gravity import gravity_document
 from frictioncli.diagnosis.diagnose import Diagnosis
@@ -31,8 +30,13 @@ from frictioncli.diagnosis.documents.remainder import remainder_record
 from frictioncli.diagnosis.search.cause import Cause
 from frictioncli.diagnosis.search.lack_of_fit import Structure
 from frictioncli.diagnosis.settings import DiagnosisSettings
+from frictioncli.effects.base import Effect
+from frictioncli.effects.history_text import history_text
 from frictioncli.model.document import PARAMETERS, FrictionModel
 from frictioncli.model.friction import FrictionParameters
+
+_LOAD_UNIT = "N·m"
+"""Unit of a load channel."""
 
 
 def diagnosis_document(diagnosis: Diagnosis, settings: DiagnosisSettings) -> DiagnosisDocument:
@@ -73,6 +77,7 @@ def diagnosis_document(diagnosis: Diagnosis, settings: DiagnosisSettings) -> Dia
         simulation=SimulationRecord(rmse=diagnosis.rmse, worst=diagnosis.worst),
         ramps=_ramps_record(diagnosis),
         torque_unit=diagnosis.torque_unit,
+        load_unit=_LOAD_UNIT if diagnosis.base.has_load_channel else None,
         runs=diagnosis.runs,
         held_out=diagnosis.held_out,
         settings=settings,
@@ -144,24 +149,26 @@ def _ramps_record(diagnosis: Diagnosis) -> RampsRecord | None:
 
 def _cause_record(diagnosis: Diagnosis, cause: Cause, number: int) -> CauseRecord:
     """Return a named cause; its parameters are those of the extended model."""
-    extension, unit = diagnosis.extension, diagnosis.torque_unit
+    effect, extension = cause.fit.effect, diagnosis.extension
     assert extension is not None  # there is one wherever there is a cause
-    parameters = extension_parameters(extension, cause.fit.effect.name, unit)
-    return _record(cause, parameters, f"diagnosis-{number}.svg")
+    parameters = extension_parameters(extension, effect.name, _unit(diagnosis, effect))
+    return _record(diagnosis, cause, parameters, f"diagnosis-{number}.svg")
 
 
 def _visible_record(diagnosis: Diagnosis, cause: Cause) -> CauseRecord:
     """Return a cause that is not named; its parameters are those of its own fit."""
-    record = _record(cause, fitted_parameters(cause.fit, diagnosis.torque_unit), None)
-    if cause.standing != "named":
-        return record
-    return structs.replace(
-        record, standing="visible", reason="the extended model is no better with it"
-    )
+    parameters = fitted_parameters(cause.fit, _unit(diagnosis, cause.fit.effect))
+    return _record(diagnosis, cause, parameters, None)
+
+
+def _unit(diagnosis: Diagnosis, effect: Effect) -> str:
+    """Return the unit of torque in the channel of an effect."""
+    logged = effect.channel == "load" and diagnosis.base.has_load_channel
+    return _LOAD_UNIT if logged else diagnosis.torque_unit
 
 
 def _record(
-    cause: Cause, parameters: dict[str, ParameterRecord], figure: str | None
+    diagnosis: Diagnosis, cause: Cause, parameters: dict[str, ParameterRecord], figure: str | None
 ) -> CauseRecord:
     effect = cause.fit.effect
     return CauseRecord(
@@ -175,6 +182,7 @@ def _record(
         statement=statement(effect, parameters),
         claim=effect.signature.claim,
         equation=effect.equation,
+        when=_when(diagnosis, cause),
         parameters=parameters,
         size=cause.size,
         size_ci95=_size_interval(cause),
@@ -185,6 +193,14 @@ def _record(
         figure=figure,
         experiment=effect.experiment,
     )
+
+
+def _when(diagnosis: Diagnosis, cause: Cause) -> str:
+    """Return the runs and hours in which a change was there; empty for what always is."""
+    if cause.fit.effect.moments is None:
+        return ""
+    runs = sorted({*diagnosis.runs, *filter(None, [diagnosis.held_out])})
+    return history_text(cause.fit.shape, diagnosis.base.all_runs, runs)
 
 
 def _size_interval(cause: Cause) -> tuple[float, float] | None:
@@ -211,31 +227,21 @@ def _known(interval: tuple[float, float]) -> tuple[float, float] | None:
 
 def _structure_record(structure: Structure) -> StructureRecord:
     return StructureRecord(
-        axis=structure_axes(structure.axis),
+        axis=structure.axes,
         channel=structure.channel,
         description=_description(structure),
         size=structure.size,
+        ci95=_known(structure.interval),
     )
 
 
-def structure_axes(axis: str) -> tuple[str, ...]:
-    """Return the columns of the catalogue's table along which structure shows.
-
-    Parameters
-    ----------
-    axis : str
-        One axis or two, in words.
-
-    Examples
-    --------
-    >>> structure_axes("angle and speed")
-    ('position', 'speed')
-    """
-    return tuple("position" if one == "angle" else one for one in axis.split(" and "))
-
-
 def _description(structure: Structure) -> str:
-    return f"Residuals of the {structure.channel} have structure along {structure.axis}."
+    return f"Residuals of the {structure.channel} have structure along {_along(structure)}."
+
+
+def _along(structure: Structure) -> str:
+    """Return the axes in words."""
+    return structure.axis.replace("position", "angle")
 
 
 def _unnamed_record(structure: Structure) -> CauseRecord:
@@ -250,8 +256,9 @@ def _unnamed_record(structure: Structure) -> CauseRecord:
         equation="",
         parameters={},
         size=structure.size,
+        size_ci95=_known(structure.interval),
         p_value=structure.p_value,
-        seen_in=structure.axis,
+        seen_in=_along(structure),
         figure=None,
-        experiment=f"Measure more values of {structure.axis}, in random order, on another day.",
+        experiment=f"Measure more values of {_along(structure)}, in random order, on another day.",
     )

@@ -26,13 +26,8 @@ def fitted_parameters(fit: EffectFit, unit: str) -> dict[str, ParameterRecord]:
     unit : str
         Unit of torque.
     """
-    units = {axis.name: axis.unit for axis in fit.effect.shape}
-    shapes = {
-        name: ParameterRecord(estimate=value, ci95=None, unit=units.get(name, "1"))
-        for name, value in fit.shape.items()
-    }
     errors = np.sqrt(np.maximum(np.diag(np.atleast_2d(fit.covariance)), 0.0))
-    return shapes | _coefficients(fit.effect, fit.coefficients, errors, unit)
+    return _shape(fit) | _coefficients(fit.effect, fit.coefficients, errors, unit)
 
 
 def extension_parameters(extension: Extension, name: str, unit: str) -> dict[str, ParameterRecord]:
@@ -108,13 +103,29 @@ def _coefficient(parameter: Parameter, value: float, error: float, unit: str) ->
 
 
 def _shapes(extension: Extension, number: int) -> dict[str, ParameterRecord]:
+    """Return the shape of an effect of the extended model with intervals.
+
+    The moments of a change have none: they are known to a pair.
+    """
     start = sum(len(one.effect.shape) for one in extension.effects[:number])
-    found = {}
-    for axis, error in zip(
-        extension.effects[number].effect.shape, extension.shape_errors[start:], strict=False
-    ):
-        value = extension.effects[number].shape[axis.name]
+    one = extension.effects[number]
+    found = _shape(one)
+    if one.effect.moments is not None:
+        return found
+    for axis, error in zip(one.effect.shape, extension.shape_errors[start:], strict=False):
+        value = one.shape[axis.name]
         reach = Z95 * float(error) if error > 0 else np.inf
         interval = (max(value - reach, axis.lower), min(value + reach, axis.upper))
         found[axis.name] = ParameterRecord(estimate=value, ci95=interval, unit=axis.unit)
     return found
+
+
+def _shape(fit: EffectFit) -> dict[str, ParameterRecord]:
+    """Return the shape of an effect without intervals; a change has any number of moments."""
+    units = {axis.name: axis.unit for axis in fit.effect.shape}
+    first = next(iter(units.values()), "1")
+    return {
+        # further moments of a history have the unit of the first
+        name: ParameterRecord(estimate=value, ci95=None, unit=units.get(name, first))
+        for name, value in fit.shape.items()
+    }

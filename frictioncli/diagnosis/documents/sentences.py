@@ -47,16 +47,17 @@ def finding_text(cause: CauseRecord) -> str:
     return said
 
 
-def size_text(cause: CauseRecord, unit: str) -> str:
+def size_text(cause: CauseRecord, document: DiagnosisDocument) -> str:
     """Return the size of a cause with its interval, where it shows and what the base leaves of it.
 
     Parameters
     ----------
     cause : CauseRecord
         A cause.
-    unit : str
-        Unit of torque.
+    document : DiagnosisDocument
+        The joint's diagnosis.
     """
+    unit = document.unit_of(cause.channel)
     text = f"{quantity_text(cause.size, cause.size_ci95, unit)} RMS in the {cause.channel}"
     left = cause.visible_size
     if left is None or left >= _LEFT_BY_BASE * cause.size:
@@ -95,52 +96,48 @@ def standing_text(cause: CauseRecord) -> str:
     return f"{_STANDING[cause.standing]}{': ' if cause.reason else ''}{cause.reason}"
 
 
-def margin_text(document: DiagnosisDocument, unit: str) -> str:
+def margin_text(document: DiagnosisDocument) -> str:
     """Return the smallest size worth a name; empty where the document does not say it.
 
     Parameters
     ----------
     document : DiagnosisDocument
         The joint's diagnosis.
-    unit : str
-        Unit of torque.
     """
     if document.margin is None:
         return ""
-    return f"Sizes below {number_text(document.margin, 2)} {unit} are not named (--margin)."
+    margin = f"{number_text(document.margin, 2)} {document.torque_unit}"
+    return f"Sizes below {margin} are not named (--margin)."
 
 
-def detectable_text(document: DiagnosisDocument, unit: str) -> str:
-    """Return from which size on effects would have been found.
+def detectable_text(document: DiagnosisDocument) -> str:
+    """Return from which size on effects would have been named.
 
     Parameters
     ----------
     document : DiagnosisDocument
         The joint's diagnosis.
-    unit : str
-        Unit of torque.
     """
     known = sorted((size, name) for name, size in document.detectable.items() if size is not None)
     if not known:
         return "These data can show none of the effects."
+    unit = document.torque_unit
     (least, easiest), (most, hardest) = known[0], known[-1]
     return (
-        f"Smallest sizes that would be found four times in five: {number_text(least, 2)} {unit} RMS"
+        f"Smallest sizes that would be named four times in five: {number_text(least, 2)} {unit} RMS"
         f" ({in_words(easiest)}) to {number_text(most, 2)} {unit} ({in_words(hardest)})."
     )
 
 
-def remainder_text(document: DiagnosisDocument, unit: str) -> str:
+def remainder_text(document: DiagnosisDocument) -> str:
     """Return what the extended model leaves, where and along which axis; empty if only noise is.
 
     Parameters
     ----------
     document : DiagnosisDocument
         The joint's diagnosis.
-    unit : str
-        Unit of torque.
     """
-    left = document.remainder
+    left, unit = document.remainder, document.torque_unit
     if left is None:
         return ""
     on = f"on run {document.held_out}" if left.basis == "new_run" else "on the data fitted"

@@ -33,16 +33,18 @@ def verdict_text(document: DiagnosisDocument) -> str:
         f" by {document.simulation.rmse:.3g} {unit} (RMS)"
     )
     lines = [line for cause in document.named_causes for line in _cause_lines(cause, document)]
-    lines += [line for cause in document.causes if not cause.effects for line in _left(cause, unit)]
+    lines += [
+        line for cause in document.causes if not cause.effects for line in _left(cause, document)
+    ]
     if not document.causes:
         lines.append("no cause is named" if document.visible else "no cause found")
-    lines += [_visible_line(cause, unit) for cause in document.visible]
+    lines += [_visible_line(cause, document) for cause in document.visible]
     if document.gain is not None:
         lines.append(_gain_text(document.gain, document))
     lines += [
-        remainder_text(document, unit),
-        margin_text(document, unit),
-        detectable_text(document, unit),
+        remainder_text(document),
+        margin_text(document),
+        detectable_text(document),
     ]
     return "\n  ".join([first, *(line for line in lines if line)])
 
@@ -51,26 +53,25 @@ def _cause_lines(cause: CauseRecord, document: DiagnosisDocument) -> Iterator[st
     shares = ", ".join(f"{name} {cause.probabilities.get(name, 0.0):.0%}" for name in cause.effects)
     kind = "measurement: " if cause.is_measurement else ""
     yield f"{kind}{' or '.join(cause.effects)} ({shares}): {finding_text(cause)}"
-    unit = document.torque_unit
-    yield f"  size: {size_text(cause, unit)}; chance {p_value_text(cause.p_value)}"
+    yield f"  size: {size_text(cause, document)}; chance {p_value_text(cause.p_value)}"
     if lasting := lasting_text(cause, document):
         yield f"  when: {lasting}"
     yield f"  seen: {cause.claim}"
     yield f"  next: {cause.experiment}"
 
 
-def _left(cause: CauseRecord, unit: str) -> Iterator[str]:
+def _left(cause: CauseRecord, document: DiagnosisDocument) -> Iterator[str]:
     """Return the lines on structure without a name."""
     yield (
         f"structure that no effect of the catalogue explains: {cause.claim}"
-        f" {size_text(cause, unit)}; chance {p_value_text(cause.p_value)}"
+        f" {size_text(cause, document)}; chance {p_value_text(cause.p_value)}"
     )
     yield f"  next: {cause.experiment}"
 
 
-def _visible_line(cause: CauseRecord, unit: str) -> str:
+def _visible_line(cause: CauseRecord, document: DiagnosisDocument) -> str:
     return (
-        f"not named: {' or '.join(cause.effects)}, {size_text(cause, unit)}, chance"
+        f"not named: {' or '.join(cause.effects)}, {size_text(cause, document)}, chance"
         f" {p_value_text(cause.p_value)}; {standing_text(cause)}"
     )
 
