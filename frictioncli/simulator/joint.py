@@ -33,6 +33,20 @@ class HeatEntry:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
+class SplitHeatEntry(HeatEntry):
+    """Nodes at which copper loss and friction heat enter, each at its own.
+
+    Attributes
+    ----------
+    copper_shares : mapping of str to float
+        Share of the copper loss that enters at each node; :attr:`shares` are those of the friction
+        heat. [-]
+    """
+
+    copper_shares: Mapping[str, float]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
 class SimulatedJoint:
     """True parameters of the simulated joint."""
 
@@ -51,6 +65,12 @@ class SimulatedJoint:
     def heat_shares(self) -> Array:
         """Return the share of the heat per node, in the network's order [-]."""
         return np.array([self.heat.shares.get(name, 0.0) for name in self.network.names])
+
+    def copper_shares(self) -> Array | None:
+        """Return the same of the copper loss, None where it enters with the friction heat [-]."""
+        if not isinstance(self.heat, SplitHeatEntry):
+            return None
+        return np.array([self.heat.copper_shares.get(name, 0.0) for name in self.network.names])
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -113,9 +133,14 @@ class MeanPower:
 
     def at(self, temperatures: Mapping[str, ArrayLike]) -> Array:
         """Return the same at many temperatures per node [W]."""
+        copper, friction = self.parts(temperatures)
+        return copper + friction
+
+    def parts(self, temperatures: Mapping[str, ArrayLike]) -> tuple[Array, Array]:
+        """Return copper loss and friction heat at node temperatures in °C [W]."""
         friction = friction_torque(
             self._zones, load=self._load, speed=self._speed, temperatures=temperatures
         )
         # Friction changes sign on the way back, so it is uncorrelated with the other torques.
         square = self._frictionless_square + self._moving * friction**2
-        return self._copper * square + friction * self.turning
+        return self._copper * square, friction * self.turning

@@ -9,6 +9,7 @@ from frictioncli.simulator import default_joint
 from frictioncli.simulator.cells import RoundTrips, cells_of, round_trips_of
 from frictioncli.simulator.enriched_protocol import PAYLOADS, SPEEDS, run_enriched
 from frictioncli.simulator.joint import SimulatedJoint
+from frictioncli.simulator.network_joint import network_joint
 from frictioncli.simulator.noise import SimulatedNoise, noise_of_kind
 from frictioncli.simulator.nuisances.catalogue import requested_nuisances
 from frictioncli.simulator.nuisances.changed_joint import changed_joint
@@ -238,6 +239,7 @@ def joint_of(
 ) -> SimulatedJoint:
     """Return the joint of a kind with a payload [kg] and a share of heat at the motor."""
     joint = default_joint.joint(payload=payload, motor_heat_share=motor_heat_share)
-    if kind == "plain":
-        joint = plain_joint(arm=joint.arm, servo=joint.servo, motor_heat_share=motor_heat_share)
+    if kind != "zones":
+        made = plain_joint if kind == "plain" else network_joint
+        joint = made(arm=joint.arm, servo=joint.servo, motor_heat_share=motor_heat_share)
     return changed_joint(joint, nuisances)

@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 from frictioncli.errors import OptionError
 from frictioncli.options import option
 
-JOINT_KINDS = ("zones", "plain")
+JOINT_KINDS = ("zones", "plain", "network")
 NOISE_KINDS = (
     "default",
     "white",
@@ -54,14 +54,15 @@ class SynthesisSettings:
         Factor on all noise; 0 gives the physics alone. [-]
     effects : tuple of str
         Effects to add, each ``NAME`` or ``NAME:SIZE``; SIZE is the root mean square of its torque
-        at constant speed. [N·m]
+        at constant speed. A change may be ``NAME@vanishing`` or ``NAME@recurring``. [N·m]
     nuisances : tuple of str
         What joint and log do besides, each ``NAME``, ``NAME:SIZE`` or ``all``.
     blind : bool
         Whether the truth is written beside the folder instead of into it, and not printed.
     joint_kind : str
         ``zones``: three friction zones at three temperatures; ``plain``: friction is equation (16)
-        of the true motor temperature.
+        of the true motor temperature; ``network``: of the temperature of the gear, a node of a
+        thermal network that no sensor has.
     noise_kind : str
         Kind of noise.
     protocol : str
@@ -102,7 +103,7 @@ class SynthesisSettings:
         default=(),
         metadata=option(
             "Effect to hide, repeatable; SIZE is its RMS at constant speed [N·m], 0.5 to 2 if not"
-            " given. A wrong name lists all.",
+            " given. A change may be NAME@vanishing or NAME@recurring. A wrong name lists all.",
             "--effect",
             metavar="NAME[:SIZE]",
         ),
@@ -126,7 +127,7 @@ class SynthesisSettings:
         default="zones",
         metadata=option(
             f"Friction of the joint: {', '.join(JOINT_KINDS)}; plain is equation (16) of the motor"
-            " temperature [°C]."
+            " temperature, network of the hidden gear temperature [°C]."
         ),
     )
     noise_kind: str = field(

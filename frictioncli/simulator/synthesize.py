@@ -173,6 +173,8 @@ def synthesize(folder: Path, settings: SynthesisSettings | None = None) -> Synth
 def _friction(joint: SimulatedJoint, kind: str) -> str:
     if kind == "plain":
         return "friction of equation (16) at the motor's true temperature"
+    if kind == "network":
+        return "friction of equation (16) at the temperature of the gear, which no sensor has"
     zones = ", ".join(f"{zone.name} ({zone.node})" for zone in joint.zones)
     return f"friction of three zones at three temperatures: {zones}"
 

@@ -1,7 +1,7 @@
 """Temperatures of a run, integrated over intervals of one motion."""
 
 from abc import ABC, abstractmethod
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -61,7 +61,7 @@ class History(ABC):
     def use(self, joint: SimulatedJoint, powers: dict[RoundTripMotion, MeanPower]) -> None:
         """Continue with another payload or entry of heat; ``powers`` caches dissipated powers."""
         self._joint = joint
-        self._shares = joint.heat_shares()
+        self._shares, self._copper_shares = joint.heat_shares(), joint.copper_shares()
         self._powers = powers
 
     def continue_for(self, duration: float, motion: RoundTripMotion | None = None) -> None:
@@ -75,6 +75,13 @@ class History(ABC):
     def intervals(self) -> tuple[MotionInterval, ...]:
         """Return the intervals of motion and rest, in order of time."""
         return tuple(self._intervals)
+
+    def heat_per_node(self, power: MeanPower, temperatures: Mapping[str, float]) -> Array:
+        """Return the heat that enters at each node, at node temperatures in °C [W]."""
+        if self._copper_shares is None:
+            return np.asarray(self._shares * power(temperatures))
+        copper, friction = power.parts(temperatures)
+        return np.asarray(self._copper_shares * copper + self._shares * friction)
 
     @abstractmethod
     def at(self, time: ArrayLike) -> dict[str, Array]:
@@ -165,7 +172,8 @@ class ThermalHistory(History):
         def derivative(time: float, state: Array) -> Array:
             heat = self._to_ambient * self.ambient.at(time) - self._conductance @ state
             if power is not None:
-                heat += self._shares * power(dict(zip(names, state.tolist(), strict=True)))
+                now = dict(zip(names, state.tolist(), strict=True))
+                heat += self.heat_per_node(power, now)
             return np.asarray(heat / self._capacities)
 
         return derivative

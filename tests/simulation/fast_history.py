@@ -57,7 +57,7 @@ class FastHistory(History):
         heat = self._to_ambient * float(self.ambient.at(self.time + step / 2.0))
         if power is not None:
             now = dict(zip(self._names, self.state.tolist(), strict=True))
-            heat = heat + self._shares * power(now)
+            heat = heat + self.heat_per_node(power, now)
         return np.asarray(heat / self._capacities)
 
     def _stepped(self, source: Array, step: float) -> Array:

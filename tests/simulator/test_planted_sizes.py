@@ -132,7 +132,9 @@ def test_motor_temperature_is_rebuilt_or_raw():
 @pytest.mark.parametrize(
     ("texts", "told"),
     [
-        (("gremlins",), "expected one of stribeck, .*lifting_loss"),
+        (("gremlins",), "expected one of stribeck, .*load_band"),
+        (("step_change@sometimes:1",), "expected one of lasting, vanishing, recurring"),
+        (("drift@recurring",), "expected none, as it is no change"),
         (("drift:none",), "expected N·m above 0"),
         (("drift:0",), "expected N·m above 0"),
         (("drift:nan",), "expected N·m above 0"),

@@ -40,7 +40,7 @@ def test_truth_tells_each_effect(tmp_path):
     assert drift["name"] == "drift"
     assert drift["rms"] == pytest.approx(1.5, rel=0.001)
     assert set(drift["parameters"]) == {"magnitude", "time_constant", "way"}
-    assert "exp" in drift["equation"]
+    assert "ln(1 + t / tau)" in drift["equation"]
     assert stribeck["listed"]
     assert truth["settings"]["effects"] == ["drift:1.5", "stribeck"]
     assert "drift, 1.50 N·m" in str(summary)

@@ -1,6 +1,6 @@
 """A joint with nuisances: a constant in its gravity, three friction zones, a slow sensor."""
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -9,7 +9,7 @@ from numpy.typing import ArrayLike
 from frictioncli.arrays import Array
 from frictioncli.simulator.arm import Arm
 from frictioncli.simulator.friction_zones import LAW_TEMPERATURE, LubricatedZone, Zone
-from frictioncli.simulator.joint import HeatEntry, SimulatedJoint
+from frictioncli.simulator.joint import HeatEntry, SimulatedJoint, SplitHeatEntry
 from frictioncli.simulator.nuisances.definition import Nuisances
 from frictioncli.simulator.plain_joint import JointFriction
 from frictioncli.simulator.thermal_history import MOTOR
@@ -115,13 +115,21 @@ def _with_sensor(joint: SimulatedJoint, lag: float) -> SimulatedJoint:
     )
     sensor = ThermalNode(name=MOTOR, capacity=_SENSOR_CAPACITY, to_ambient=0.0)
     contact = ThermalLink(first=MOTOR, second=inner, conductance=_SENSOR_CAPACITY / lag)
-    shares: Mapping[str, float] = {renamed(name): one for name, one in joint.heat.shares.items()}
     return replace(
         joint,
         network=ThermalNetwork(nodes=(sensor, *nodes), links=(*links, contact)),
-        heat=HeatEntry(copper_loss=joint.heat.copper_loss, shares=shares),
+        heat=_renamed_heat(joint.heat, renamed),
         zones=tuple(
             replace(zone, node=inner) if zone.node == MOTOR else zone  # type: ignore[type-var]
             for zone in joint.zones
         ),
     )
+
+
+def _renamed_heat(heat: HeatEntry, renamed: Callable[[str], str]) -> HeatEntry:
+    """Return the entry of heat with other names of the nodes."""
+    shares = {renamed(name): one for name, one in heat.shares.items()}
+    if not isinstance(heat, SplitHeatEntry):
+        return replace(heat, shares=shares)
+    copper = {renamed(name): one for name, one in heat.copper_shares.items()}
+    return replace(heat, shares=shares, copper_shares=copper)

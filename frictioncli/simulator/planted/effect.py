@@ -60,7 +60,11 @@ class EffectDefinition:
         Whether it acts on the torque of all other effects as well.
     axes : tuple of str
         For an unlisted effect, what its torque changes with: ``speed``, ``position``, ``time``,
-        ``temperature``, ``load`` or two of them. A diagnosis that locates it names these.
+        ``temperature``, ``load`` or two of them. A diagnosis that locates it names these; with a
+        single payload the load is a function of the position, which is then as right.
+    histories : tuple of str
+        For a change, when it may be there, the default first; its law takes the argument
+        ``history``.
     """
 
     name: str
@@ -73,10 +77,12 @@ class EffectDefinition:
     at_reversal: bool = False
     scales_torque: bool = False
     axes: tuple[str, ...] = ()
+    histories: tuple[str, ...] = ()
 
     def draw(self, generator: np.random.Generator) -> "PlantedEffect":
         """Return the effect with random shape parameters and magnitude 1."""
-        return PlantedEffect(self, 1.0, {one.name: one.draw(generator) for one in self.parameters})
+        parameters = {one.name: one.draw(generator) for one in self.parameters}
+        return PlantedEffect(self, 1.0, parameters, self.histories[0] if self.histories else "")
 
 
 @dataclass(frozen=True, slots=True)
@@ -91,11 +97,14 @@ class PlantedEffect:
         Factor that sets its size; the definition states its unit.
     parameters : mapping of str to float
         Values of the shape parameters.
+    history : str
+        When a change is there; empty for an effect that is no change.
     """
 
     definition: EffectDefinition
     magnitude: float = 1.0
     parameters: Mapping[str, float] = field(default_factory=dict)
+    history: str = ""
 
     @property
     def name(self) -> str:
@@ -108,7 +117,8 @@ class PlantedEffect:
 
     def torque(self, state: State) -> AddedTorque:
         """Return the torque that the effect adds at each sample [N·m]."""
-        return self.definition.law(state, magnitude=self.magnitude, **self.parameters)
+        history = {"history": self.history} if self.history else {}
+        return self.definition.law(state, magnitude=self.magnitude, **self.parameters, **history)
 
     def truth(self) -> dict[str, Any]:
         """Return name, equation and parameter values, ready for JSON."""
@@ -116,6 +126,8 @@ class PlantedEffect:
         return {
             "name": self.name,
             "listed": self.definition.listed,
+            **({"axes": list(self.definition.axes)} if self.definition.axes else {}),
+            **({"history": self.history} if self.history else {}),
             "equation": self.definition.equation,
             "parameters": {name: float(f"{value:.9g}") for name, value in values.items()},
         }

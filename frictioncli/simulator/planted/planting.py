@@ -1,7 +1,7 @@
 """Drawing planted effects from a seed and scaling them to the requested size."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -82,6 +82,8 @@ def plant(
         )
         drawn_size = float(generator.uniform(*SIZES))
         effect = EFFECTS[request.name].draw(generator)
+        if request.history:
+            effect = replace(effect, history=request.history)
         before = [other.effect for other in planted]
         size = drawn_size if request.size is None else request.size
         planted.append(scaled_to_size(effect, before, states, sign, size))

@@ -1,6 +1,7 @@
 """Planted effects that no entry of the catalogue describes.
 
-A diagnosis must report them as unexplained. The laws are assumed for this purpose.
+A diagnosis must report them as unexplained, and tell on which axes they show: those that each
+definition states. The laws are assumed for this purpose.
 """
 
 import numpy as np
@@ -34,6 +35,7 @@ SPEED_RESONANCE = EffectDefinition(
     law=_speed_resonance,
     source=ASSUMED,
     listed=False,
+    axes=("speed",),
 )
 
 
@@ -54,6 +56,7 @@ STROKE_BUMP = EffectDefinition(
     law=_stroke_bump,
     source=ASSUMED,
     listed=False,
+    axes=("position",),
 )
 
 
@@ -78,6 +81,7 @@ COOLING_FAN = EffectDefinition(
     law=_cooling_fan,
     source=ASSUMED,
     listed=False,
+    axes=("time",),
 )
 
 
@@ -100,6 +104,7 @@ POSITION_TEMPERATURE = EffectDefinition(
     law=_position_temperature,
     source=ASSUMED,
     listed=False,
+    axes=("position", "temperature"),
 )
 
 
@@ -121,6 +126,100 @@ LIFTING_LOSS = EffectDefinition(
     law=_lifting_loss,
     source=ASSUMED,
     listed=False,
+    axes=("load",),
+)
+
+
+def _temperature_band(
+    state: State, *, magnitude: float, centre: float, width: float
+) -> AddedTorque:
+    """Friction that is higher at one temperature, as where a thickener softens."""
+    distance = (state.motor - centre) / width
+    return AddedTorque(friction=magnitude / np.cosh(distance))
+
+
+TEMPERATURE_BAND = EffectDefinition(
+    name="temperature_band",
+    equation="m / cosh((Tmotor - T0) / w)",
+    magnitude="torque at the peak [N·m]",
+    parameters=(
+        Range("centre", uniform(38.0, 52.0), "°C", "temperature T0 of the peak"),
+        Range("width", uniform(1.5, 4.0), "K", "width w"),
+    ),
+    law=_temperature_band,
+    source=ASSUMED,
+    listed=False,
+    axes=("temperature",),
+)
+
+
+def _moving_resonance(
+    state: State, *, magnitude: float, centre: float, width: float, shift: float
+) -> AddedTorque:
+    """Peak of friction at a speed that grows as the lubricant thins."""
+    speed = np.maximum(state.speed, 1e-3)
+    distance = (np.log(speed / centre) - shift * (state.motor - 45.0)) / width
+    return AddedTorque(friction=magnitude / (1.0 + np.square(distance)))
+
+
+MOVING_RESONANCE = EffectDefinition(
+    name="moving_resonance",
+    equation="m / (1 + ((ln(|v| / v0) - c (Tmotor - 45)) / w)^2)",
+    magnitude="torque at the peak [N·m]",
+    parameters=(
+        Range("centre", log_uniform(30.0, 60.0), "deg/s", "speed v0 of the peak at 45 °C"),
+        Range("width", uniform(0.25, 0.5), "-", "width w in the logarithm of speed"),
+        Range("shift", uniform(0.03, 0.06), "1/K", "shift c with the temperature"),
+    ),
+    law=_moving_resonance,
+    source=ASSUMED,
+    listed=False,
+    axes=("speed", "temperature"),
+)
+
+
+def _position_speed(
+    state: State, *, magnitude: float, angle: float, crossing: float
+) -> AddedTorque:
+    """Friction by angle that turns over with speed, as of grease that is thrown about."""
+    wave = np.sin(2.0 * np.radians(state.position - angle))
+    turned = np.tanh(np.log(np.maximum(state.speed, 1e-3) / crossing))
+    return AddedTorque(friction=magnitude * wave * turned)
+
+
+POSITION_SPEED = EffectDefinition(
+    name="position_speed",
+    equation="m sin(2 (q - q0)) tanh(ln(|v| / vc))",
+    magnitude="amplitude at high speed [N·m]",
+    parameters=(
+        Range("angle", uniform(0.0, 360.0), "deg", "angle q0 without change"),
+        Range("crossing", log_uniform(25.0, 60.0), "deg/s", "speed vc without change"),
+    ),
+    law=_position_speed,
+    source=ASSUMED,
+    listed=False,
+    axes=("position", "speed"),
+)
+
+
+def _load_band(state: State, *, magnitude: float, centre: float, width: float) -> AddedTorque:
+    """Friction that is higher at one amount of load, as where a bearing's clearance closes."""
+    distance = (np.abs(state.load) - centre) / width
+    return AddedTorque(friction=magnitude * np.exp(-np.square(distance) / 2.0))
+
+
+LOAD_BAND = EffectDefinition(
+    name="load_band",
+    equation="m exp(-((|L| - L0) / w)^2 / 2)",
+    magnitude="torque at the peak [N·m]",
+    parameters=(
+        Range("centre", uniform(25.0, 60.0), "N·m", "load L0 of the peak"),
+        Range("width", uniform(5.0, 12.0), "N·m", "width w"),
+    ),
+    law=_load_band,
+    source=ASSUMED,
+    listed=False,
+    axes=("load",),
 )
 
 UNLISTED_EFFECTS = (
@@ -129,5 +228,9 @@ UNLISTED_EFFECTS = (
     COOLING_FAN,
     POSITION_TEMPERATURE,
     LIFTING_LOSS,
+    TEMPERATURE_BAND,
+    MOVING_RESONANCE,
+    POSITION_SPEED,
+    LOAD_BAND,
 )
 """Definitions in the order of :data:`frictioncli.simulator.planted.catalogue.EFFECTS`."""

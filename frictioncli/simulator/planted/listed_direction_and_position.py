@@ -1,6 +1,7 @@
-"""Planted effects of time, direction and position that have a counterpart in the catalogue.
+"""Planted effects of direction and position that have a counterpart in the catalogue.
 
-No law equals the counterpart's: time is continuous, and changes have a width.
+No law equals the counterpart's: the physics is the same, the formula another.
+``tests/simulator/test_planted_laws.py`` measures by how much they differ.
 """
 
 import numpy as np
@@ -13,91 +14,15 @@ from frictioncli.simulator.planted.effect import (
     random_sign,
     uniform,
 )
+from frictioncli.simulator.planted.history_of_change import (
+    HISTORIES,
+    HISTORY_EQUATION,
+    HISTORY_PARAMETERS,
+    LASTING,
+    change_share,
+)
 from frictioncli.simulator.planted.listed_speed_and_load import NEVMERZHITSKIY
 from frictioncli.simulator.planted.state import AddedTorque, State
-
-
-def _drift(state: State, *, magnitude: float, time_constant: float, way: float) -> AddedTorque:
-    """Slow drift of friction over the hours of operation, kept overnight."""
-    hours = state.operated / 3600.0
-    return AddedTorque(friction=-way * magnitude * np.expm1(-hours / time_constant))
-
-
-DRIFT = EffectDefinition(
-    name="drift",
-    equation="s m (1 - exp(-t / tau)), t of operation",
-    magnitude="torque gained or lost in the end [N·m]",
-    parameters=(
-        Range("time_constant", log_uniform(3.0, 40.0), "h", "time constant tau"),
-        Range("way", random_sign, "-", "+1: friction grows; -1: it falls"),
-    ),
-    law=_drift,
-    source="Ageing of grease over hours of operation, saturating",
-)
-
-
-def _run_in(state: State, *, magnitude: float, turns: float, exponent: float) -> AddedTorque:
-    """Running-in: friction that falls with travel, not with time."""
-    ratio = state.travelled / 360.0 / turns
-    return AddedTorque(friction=magnitude * np.exp(-(ratio**exponent)))
-
-
-RUN_IN = EffectDefinition(
-    name="run_in",
-    equation="m exp(-(s / s0)^c), s travel in turns",
-    magnitude="torque at the start [N·m]",
-    parameters=(
-        Range("turns", log_uniform(100.0, 900.0), "turns", "travel constant s0"),
-        Range("exponent", uniform(0.7, 1.2), "-", "c; below 1 the fall begins fast"),
-    ),
-    law=_run_in,
-    source="Running-in of lubricated contacts with the angle turned, unrecorded moves included",
-)
-
-
-def _rest_recovery(
-    state: State, *, magnitude: float, recovery: float, travel: float
-) -> AddedTorque:
-    """Friction that is higher after a rest and decays with travel."""
-    rest, since = state.operation.last_rest(state.time)
-    gained = -np.expm1(-rest / recovery)
-    return AddedTorque(friction=magnitude * gained * np.exp(-since / travel))
-
-
-REST_RECOVERY = EffectDefinition(
-    name="rest_recovery",
-    equation="m (1 - exp(-rest / tr)) exp(-s / s0), s travel since the rest",
-    magnitude="torque after a long rest [N·m]",
-    parameters=(
-        Range("recovery", log_uniform(200.0, 2400.0), "s", "time constant tr of the rest"),
-        Range("travel", log_uniform(300.0, 2500.0), "deg", "travel constant s0 of the decay"),
-    ),
-    law=_rest_recovery,
-    source="Redistribution of grease at rest",
-)
-
-
-def _step_change(
-    state: State, *, magnitude: float, moment: float, duration: float, way: float
-) -> AddedTorque:
-    """Sudden lasting change of friction."""
-    since = (state.progress - moment) * state.operation.earlier.total
-    done = 0.5 + 0.5 * np.tanh(since / duration)
-    return AddedTorque(friction=way * magnitude * done)
-
-
-STEP_CHANGE = EffectDefinition(
-    name="step_change",
-    equation="s m (1 + tanh((t - t0) / w)) / 2",
-    magnitude="torque gained or lost [N·m]",
-    parameters=(
-        Range("moment", uniform(0.2, 0.8), "-", "t0 as a share of all operation"),
-        Range("duration", log_uniform(1.0, 120.0), "s", "width w of the change"),
-        Range("way", random_sign, "-", "+1: friction grows; -1: it falls"),
-    ),
-    law=_step_change,
-    source="Step at an unknown moment, as of a seal that shifts",
-)
 
 
 def _direction_asymmetry(
@@ -111,18 +36,19 @@ def _direction_asymmetry(
 ) -> AddedTorque:
     """Friction that is higher in one direction."""
     thin = np.exp(-thinning * (state.motor - 40.0))
-    viscous = (state.speed / 50.0) ** exponent * thin
+    ratio = (state.speed / 50.0) ** exponent
+    viscous = 2.0 * ratio / (1.0 + ratio) * thin
     law = constant + (1.0 - constant) * viscous
     return AddedTorque(friction=way * magnitude * state.direction * law)
 
 
 DIRECTION_ASYMMETRY = EffectDefinition(
     name="direction_asymmetry",
-    equation="s m sign(v) (w + (1 - w) (|v| / 50)^p exp(-d (Tmotor - 40)))",
+    equation="s m sign(v) (w + (1 - w) 2 x / (1 + x) exp(-d (Tmotor - 40))), x = (|v| / 50)^p",
     magnitude="torque at 50 deg/s and 40 °C [N·m]",
     parameters=(
-        Range("constant", uniform(0.0, 1.0), "-", "share w independent of speed"),
-        Range("exponent", uniform(0.3, 0.7), "-", "exponent p of the rest"),
+        Range("constant", uniform(0.0, 0.5), "-", "share w independent of speed"),
+        Range("exponent", uniform(0.8, 1.1), "-", "exponent p of the rest"),
         Range("thinning", uniform(0.02, 0.06), "1/K", "fall of the rest with temperature"),
         Range("way", random_sign, "-", "+1: more friction forward; -1: more backward"),
     ),
@@ -158,10 +84,19 @@ TORQUE_CONSTANT = EffectDefinition(
 
 
 def _payload_change(
-    state: State, *, magnitude: float, moment: float, along: float, across: float, way: float
+    state: State,
+    *,
+    magnitude: float,
+    moment: float,
+    along: float,
+    across: float,
+    way: float,
+    stretch: float,
+    noon: float,
+    history: str = LASTING,
 ) -> AddedTorque:
-    """Mass that is put on or taken off at one moment."""
-    mass = np.where(state.progress >= moment, way * magnitude, 0.0)
+    """Mass that is put on or taken off."""
+    mass = way * magnitude * change_share(state, history, moment=moment, stretch=stretch, noon=noon)
     angle = np.radians(state.position)
     arm = along * np.cos(angle) - across * np.sin(angle)
     gravity = GRAVITY * mass * arm
@@ -179,32 +114,41 @@ def _payload_change(
 
 PAYLOAD_CHANGE = EffectDefinition(
     name="payload_change",
-    equation="from t0 on: s m (g (x cos q - y sin q) + (x^2 + y^2) dv/dt), f(L + dL) - f(L)",
+    equation=(
+        "M (g (x cos q - y sin q) + (x^2 + y^2) dv/dt), f(L + dL) - f(L), M = s m h(t),"
+        f" {HISTORY_EQUATION}"
+    ),
     magnitude="mass [kg]",
     parameters=(
         Range("moment", uniform(0.2, 0.8), "-", "t0 as a share of all operation"),
         Range("along", uniform(0.6, 1.0), "m", "distance x from the axis along the link"),
         Range("across", uniform(-0.1, 0.1), "m", "offset y square to the link"),
         Range("way", random_sign, "-", "+1: put on; -1: taken off"),
+        *HISTORY_PARAMETERS,
     ),
     law=_payload_change,
     source=f"Gravity torque of a point mass; equation (3) of {NEVMERZHITSKIY}",
+    histories=HISTORIES,
 )
 
 
-def _dress_pack(state: State, *, magnitude: float, rest: float, stiffening: float) -> AddedTorque:
-    """Stiffening spring of hoses and cables."""
+def _dress_pack(
+    state: State, *, magnitude: float, rest: float, slack: float, stiffening: float
+) -> AddedTorque:
+    """Soft spring of hoses and cables, which stiffens where they come to lie against the arm."""
     turn = (state.position - rest) / 90.0
-    return AddedTorque(load=magnitude * (turn + stiffening * turn**3))
+    beyond = np.maximum(np.abs(turn) - slack, 0.0)
+    return AddedTorque(load=magnitude * (turn + stiffening * np.sign(turn) * beyond**1.5))
 
 
 DRESS_PACK = EffectDefinition(
     name="dress_pack",
-    equation="m (x + c x^3), x = (q - q0) / 90, on the load",
+    equation="m (x + c sign(x) max(|x| - x0, 0)^1.5), x = (q - q0) / 90, on the load",
     magnitude="torque at 90 deg from rest, without stiffening [N·m]",
     parameters=(
         Range("rest", uniform(20.0, 160.0), "deg", "angle q0 without torque"),
-        Range("stiffening", uniform(0.1, 1.5), "-", "weight c of the cubic term"),
+        Range("slack", uniform(0.2, 0.5), "-", "turn x0 beyond which it stiffens"),
+        Range("stiffening", uniform(1.2, 2.4), "-", "weight c of the stiff part"),
     ),
     law=_dress_pack,
     source="Stiffening spring of hoses and cables in parallel to the joint",
@@ -219,22 +163,34 @@ def _position_ripple(
     phase: float,
     second: float,
     second_phase: float,
+    third: float,
+    modulation: float,
 ) -> AddedTorque:
-    """Ripple of friction at a fixed order of the joint angle, with one harmonic."""
+    """Ripple of friction at a fixed order of the joint angle, as of a gear that wobbles a little.
+
+    It is no sine, and its amplitude changes once per turn.
+    """
     angle = order * np.radians(state.position)
-    second_harmonic = second * np.sin(2.0 * angle + second_phase)
-    return AddedTorque(friction=magnitude * (np.sin(angle + phase) + second_harmonic))
+    wave = (
+        np.sin(angle + phase)
+        + second * np.sin(2.0 * angle + second_phase)
+        + third * np.sin(3.0 * (angle + phase))
+    )
+    wobble = 1.0 + modulation * np.cos(np.radians(state.position) + second_phase)
+    return AddedTorque(friction=magnitude * wobble * wave)
 
 
 POSITION_RIPPLE = EffectDefinition(
     name="position_ripple",
-    equation="m (sin(N q + p1) + r sin(2 N q + p2))",
+    equation=("m (1 + w cos(q + p2)) (sin(N q + p1) + r sin(2 N q + p2) + u sin(3 (N q + p1)))"),
     magnitude="amplitude of the first harmonic [N·m]",
     parameters=(
         Range("order", log_uniform(3.0, 23.0), "1/turn", "order N, not whole"),
         Range("phase", uniform(0.0, 6.2831853), "rad", "phase p1"),
         Range("second", uniform(0.0, 0.5), "-", "relative amplitude r of twice the order"),
         Range("second_phase", uniform(0.0, 6.2831853), "rad", "phase p2"),
+        Range("third", uniform(0.04, 0.08), "-", "relative amplitude u of three times the order"),
+        Range("modulation", uniform(0.02, 0.08), "-", "change w of the amplitude over a turn"),
     ),
     law=_position_ripple,
     source="Angle-periodic friction of gears and bearings",
@@ -264,30 +220,26 @@ def _reversal_transient(
 ) -> AddedTorque:
     """Presliding: friction that has not built up yet after a reversal."""
     ratio = state.since_turn / travel
-    return AddedTorque(friction=-magnitude * np.exp(-(ratio**exponent)))
+    return AddedTorque(friction=-magnitude / (1.0 + ratio) ** exponent)
 
 
 REVERSAL_TRANSIENT = EffectDefinition(
     name="reversal_transient",
-    equation="-m exp(-(s / s0)^c), s angle since the reversal",
+    equation="-m / (1 + s / s0)^c, s angle since the reversal",
     magnitude="torque that is missing right after the reversal [N·m]",
     parameters=(
-        Range("travel", log_uniform(4.0, 15.0), "deg", "angle s0 over which friction returns"),
-        Range("exponent", uniform(0.8, 1.3), "-", "exponent c"),
+        Range("travel", log_uniform(10.0, 40.0), "deg", "angle s0 over which friction returns"),
+        Range("exponent", uniform(3.0, 5.0), "-", "exponent c"),
     ),
     law=_reversal_transient,
     source=(
-        "Presliding, build-up after Dahl; survey: Armstrong-Hélouvry et al. 1994,"
-        " doi:10.1016/0005-1098(94)90209-7"
+        "Presliding, build-up by Dahl's equation with an exponent of 1 + 1/c; survey:"
+        " Armstrong-Hélouvry et al. 1994, doi:10.1016/0005-1098(94)90209-7"
     ),
     at_reversal=True,
 )
 
-TIME_AND_POSITION_EFFECTS = (
-    DRIFT,
-    RUN_IN,
-    REST_RECOVERY,
-    STEP_CHANGE,
+DIRECTION_AND_POSITION_EFFECTS = (
     DIRECTION_ASYMMETRY,
     TORQUE_CONSTANT,
     PAYLOAD_CHANGE,
