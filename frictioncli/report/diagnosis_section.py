@@ -7,7 +7,7 @@ from functools import partial
 from matplotlib.figure import Figure
 
 from frictioncli.diagnosis.documents.reload import Reloaded
-from frictioncli.diagnosis.documents.sentences import margin_text
+from frictioncli.diagnosis.documents.sentences import margin_text, remainder_text
 from frictioncli.report.diagnosis_captions import (
     cause_title,
     evidence_caption,
@@ -22,7 +22,7 @@ from frictioncli.report.diagnosis_text import (
     gain_sentence,
     unnamed_texts,
     verdict_sentence,
-    visible_table,
+    visible_texts,
     worst_table,
 )
 from frictioncli.report.evidence_figure import evidence_figure
@@ -45,10 +45,11 @@ class DiagnosisSection:
         Why there is no diagnosis; empty if there is one.
     verdict, gain : str
         The verdict and the gain by the extended model, in words.
-    causes, unnamed : tuple of CauseText
-        Causes found, and structure that no effect of the catalogue explains.
-    visible : TextTable or None
-        What was found and is not named, with the reason.
+    remainder : str
+        What the extended model leaves on a new run, in words; empty where that is noise.
+    causes, unnamed, visible : tuple of CauseText
+        Causes that are named, structure that no effect of the catalogue explains, and what was
+        found and is not named.
     margin : str
         The smallest size worth a name, in words.
     worst, detectable : TextTable or None
@@ -59,7 +60,8 @@ class DiagnosisSection:
     verdict: str = ""
     causes: tuple[CauseText, ...] = ()
     unnamed: tuple[CauseText, ...] = ()
-    visible: TextTable | None = None
+    visible: tuple[CauseText, ...] = ()
+    remainder: str = ""
     margin: str = ""
     gain: str = ""
     worst: TextTable | None = None
@@ -82,7 +84,8 @@ def diagnosis_section(results: JointResults) -> DiagnosisSection:
         verdict=verdict_sentence(document, unit),
         causes=tuple(cause_texts(document)),
         unnamed=tuple(unnamed_texts(document)),
-        visible=visible_table(document),
+        visible=tuple(visible_texts(document)),
+        remainder=remainder_text(document),
         margin=margin_text(document),
         gain=gain_sentence(document, unit),
         worst=worst if worst.rows else None,

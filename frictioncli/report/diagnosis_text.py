@@ -1,6 +1,6 @@
 """Text and tables on a diagnosis: verdict, causes, gain, detectable sizes."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from frictioncli.diagnosis.documents.document import CauseRecord, DiagnosisDocument
 from frictioncli.diagnosis.documents.extended_model import ParameterRecord
@@ -9,7 +9,6 @@ from frictioncli.diagnosis.documents.sentences import (
     finding_text,
     lasting_text,
     p_value_text,
-    remainder_text,
     size_text,
     standing_text,
 )
@@ -39,11 +38,12 @@ class CauseText:
         Effects that may be the cause, with their probabilities.
     kind : str
         What it is a property of: friction, load, or the measurement.
-    size, details : str
-        RMS of the fitted term, with its unit; the same with its interval, where it shows and what
-        the base model leaves of it.
+    size : str
+        RMS of the fitted term with its interval, where it shows and what the base model leaves.
     p_value : str
         Probability that noise alone would give as much.
+    standing : str
+        Why it is not named, if it is not.
     finding, lasting : str
         The cause in a sentence with values; whether it lasts, empty where that cannot be tested.
     claim, equation, parameters, experiment : str
@@ -54,8 +54,8 @@ class CauseText:
     effects: str
     kind: str
     size: str
-    details: str
     p_value: str
+    standing: str
     finding: str
     lasting: str
     claim: str
@@ -82,12 +82,12 @@ def verdict_sentence(document: DiagnosisDocument, unit: str) -> str:
     if document.verdict == "no_evidence":
         found = (
             "No cause is named in that; what stands out of the noise, and why it is not named,"
-            " says the table below."
+            " says the list below."
             if document.visible
             else "No cause was found in that: no effect of the catalogue and no other structure."
             " The table below says how large each effect would have to be to be found."
         )
-        return _joined(misfit, found, remainder_text(document))
+        return _joined(misfit, found)
     named, lost, measured = (
         [cause for cause in document.named_causes if wanted(cause)]
         for wanted in (
@@ -114,7 +114,7 @@ def verdict_sentence(document: DiagnosisDocument, unit: str) -> str:
     if document.verdict == "unnamed":
         start = "Beside that, structure" if sentences else "Structure"
         sentences.append(f"{start} is left that no effect of the catalogue explains.")
-    return _joined(misfit, *sentences, remainder_text(document))
+    return _joined(misfit, *sentences)
 
 
 def _joined(*sentences: str) -> str:
@@ -135,6 +135,14 @@ def unnamed_texts(document: DiagnosisDocument) -> list[CauseText]:
     return [_cause(cause, document) for cause in document.causes if not cause.effects]
 
 
+def visible_texts(document: DiagnosisDocument) -> list[CauseText]:
+    """Return what was found and is not named, with the reason."""
+    return [
+        replace(_cause(cause, document), effects=alternatives_text(cause))
+        for cause in document.visible
+    ]
+
+
 def _cause(cause: CauseRecord, document: DiagnosisDocument) -> CauseText:
     probabilities = cause.probabilities
     return CauseText(
@@ -145,9 +153,10 @@ def _cause(cause: CauseRecord, document: DiagnosisDocument) -> CauseText:
             for name in cause.effects
         ),
         kind=cause.kind or cause.channel,
-        size=f"{number_text(cause.size, 2)} {document.unit_of(cause.channel)}",
-        details=size_text(cause, document),
+        size=size_text(cause, document),
         p_value=p_value_text(cause.p_value),
+        # reasons of the search name effects as files do
+        standing=in_words(standing_text(cause)),
         finding=finding_text(cause),
         lasting=lasting_text(cause, document),
         claim=cause.claim,
@@ -159,33 +168,6 @@ def _cause(cause: CauseRecord, document: DiagnosisDocument) -> CauseText:
 
 def _parameter(name: str, stated: ParameterRecord) -> str:
     return f"{in_words(name)} {quantity_text(stated.estimate, stated.ci95, stated.unit)}"
-
-
-def visible_table(document: DiagnosisDocument) -> TextTable | None:
-    """Return what was found and is not named, with the reason; None if there is nothing.
-
-    Parameters
-    ----------
-    document : DiagnosisDocument
-        The joint's part of ``diagnosis.json``.
-    """
-    if not document.visible:
-        return None
-    return TextTable(
-        title="Seen, but not named",
-        header=("effect", "kind", "why it is not named", "size (RMS)", "chance of noise alone"),
-        rows=tuple(
-            (
-                alternatives_text(cause),
-                cause.kind or cause.channel,
-                standing_text(cause),
-                quantity_text(cause.size, cause.size_ci95, document.unit_of(cause.channel)),
-                p_value_text(cause.p_value),
-            )
-            for cause in document.visible
-        ),
-        texts=3,
-    )
 
 
 def gain_sentence(document: DiagnosisDocument, unit: str) -> str:

@@ -37,7 +37,7 @@ def test_a_change_that_did_not_last_says_when_it_was_there():
     assert "there in run day-1, not on" in lasting_text(without, document)
     kept = cause(["step_change"], holds_on_new_run=True, when="from 4.0 h on in every run")
     assert lasting_text(kept, document) == (
-        "There from 4.0 h on in every run, and on the run kept out (day-2) too."
+        "There from 4.0 h on in every run: it is there on the run kept out (day-2) too."
     )
     assert lasting_text(STEP, document) == ""
 

@@ -67,17 +67,14 @@ def test_section_says_what_was_found(diagnosed):
         "direction asymmetry 60 % or dress pack 40 %",
     ]
     first = section.causes[0]
-    assert (first.size, first.p_value) == ("1.2 N·m", "3e−09")
+    assert (first.size, first.p_value) == ("1.2 N·m RMS in the friction", "3e−09")
     assert first.parameters == "velocity 8.0 deg/s; boundary torque 3.0 N·m (2.5 to 3.5)"
     assert [one.claim for one in section.unnamed] == ["Residuals have structure along angle."]
-    assert section.visible.rows == (
-        (
-            "inertia",
-            "load",
-            "smaller than what is worth a name: the base leaves 0.05 N·m, less than 0.10 N·m",
-            "0.05 N·m (0.03 to 0.07)",
-            "below 1e−300",
-        ),
+    (seen,) = section.visible
+    assert (seen.effects, seen.kind, seen.p_value) == ("inertia", "load", "below 1e−300")
+    assert seen.size == "0.05 N·m (0.03 to 0.07) RMS in the friction"
+    assert seen.standing == (
+        "smaller than what is worth a name: the base leaves 0.05 N·m, less than 0.10 N·m"
     )
     assert section.margin == "Sizes below 0.10 N·m are not named (--margin)."
     assert "run day-2, which the diagnosis has not seen" in section.gain

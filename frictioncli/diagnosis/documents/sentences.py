@@ -79,8 +79,8 @@ def lasting_text(cause: CauseRecord, document: DiagnosisDocument) -> str:
     if cause.holds_on_new_run is None or document.held_out is None:
         return f"There {cause.when}." if cause.when else ""
     if cause.holds_on_new_run:
-        when = f"there {cause.when}, and " if cause.when else "there "
-        return f"{when[0].upper()}{when[1:]}on {held_out} too."
+        when = f"There {cause.when}: it is there" if cause.when else "It is there"
+        return f"{when} on {held_out} too."
     when = cause.when or f"in {_runs_text(document.runs)}"
     return f"A change that did not last: there {when}, not on {held_out}."
 
