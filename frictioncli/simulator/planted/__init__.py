@@ -1,5 +1,5 @@
 """Effects that are planted in simulated logs, each by a law of its own.
 
-No law is taken from the effects that the diagnosis tries: time is continuous, parameters are drawn
-off every search grid, and some effects are in no catalogue.
+No law is in the span of the effects that the diagnosis tries: formulas differ, time is continuous,
+and some effects are in no catalogue.
 """
