@@ -160,7 +160,7 @@ def diagnose_joint(
     judged = with_standing((*found.measurement, *found.causes), problem, margin, settings.alpha)
     named = [cause for cause in judged if cause.standing == "named"]
     if new:
-        named = list(judged_on_new_run(named, problem, weighted_fit, new, settings.seed))
+        named = list(judged_on_new_run(named, found.step, new))
     unnamed = _unnamed_structure(found, margin, settings)
     causes = tuple(
         cause
@@ -168,14 +168,12 @@ def diagnose_joint(
         if cause.standing == "named" and not (unnamed and _is_part(cause, unnamed))
     )
     visible = _visible(judged, named, causes, unnamed)
-    lasting = [cause for cause in causes if cause.holds_on_new_run is not False]
     extension = gain = None
     if causes:
         extension = extend(problem, weighted_fit, [cause.fit for cause in causes])
-    if lasting:
         gain = measured_gain(
             new or problem,
-            extend(problem, weighted_fit, [cause.fit for cause in lasting]),
+            _predicting(extension, causes),
             basis="new_run" if new else "within_run",
             floor=_floor(found),
             seed=settings.seed,
@@ -201,6 +199,19 @@ def diagnose_joint(
         held_out=held_out,
         ramps=evidence,
     )
+
+
+def _predicting(extension: Extension, causes: Sequence[Cause]) -> Extension:
+    """Return an extension as it predicts a new run: without properties that did not last.
+
+    The history of a change already says that it is not there; the base was fitted beside all.
+    """
+    effects = tuple(
+        fitted
+        for fitted, cause in zip(extension.effects, causes, strict=True)
+        if cause.holds_on_new_run is not False or cause.fit.effect.moments is not None
+    )
+    return replace(extension, effects=effects)
 
 
 def margin_of(problem: Problem, torque_unit: str, settings: DiagnosisSettings) -> float:

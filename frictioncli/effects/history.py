@@ -140,6 +140,31 @@ def rescaled(shape: Mapping[str, float], observed: float) -> Shape:
     )
 
 
+def since_start(shape: Mapping[str, float], share: Array) -> Shape:
+    """Return a history, or its complement, such that the change is absent at first.
+
+    The base model explains what is always there, so that the presence of a change and its absence
+    with the opposite sign are the same: what is there at first counts as the base.
+
+    Parameters
+    ----------
+    shape : mapping of str to float
+        The history.
+    share : ndarray, shape (pairs,)
+        Shares of all pairs measured before, of the pairs at hand. [-]
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> since_start({"moment": 0.0, "end": 0.25}, np.array([0.0, 0.25]))
+    {'moment': 0.25, 'end': 1.0}
+    """
+    if not present(share.min(), shape):
+        return history(stretches(shape))
+    edges = [0.0, *(edge for part in stretches(shape) for edge in part), 1.0]
+    return history(zip(edges[::2], edges[1::2], strict=True))
+
+
 def run_spans(table: EffectTable) -> list[Stretch]:
     """Return the stretch of each run, in order of time.
 

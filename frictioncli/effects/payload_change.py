@@ -70,4 +70,5 @@ EFFECT = Effect(
         " a changed mass stays, a changed torque constant goes with the heat."
     ),
     mirror="Friction must change only by what the base model gives for the new load.",
+    statement="The payload added {cosine} to gravity at 0 deg and {sine} at 90 deg.",
 )

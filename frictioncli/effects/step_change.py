@@ -54,4 +54,5 @@ EFFECT = Effect(
         " a drift none. Ask what was done to the joint at that moment."
     ),
     mirror="If the load torque jumps at the same moment, it is a change of payload.",
+    statement="Friction stepped by {change}.",
 )

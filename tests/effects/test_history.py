@@ -10,6 +10,7 @@ from frictioncli.effects.history import (
     present,
     rescaled,
     run_spans,
+    since_start,
     stretches,
     with_run,
 )
@@ -62,6 +63,18 @@ def test_a_run_s_history_is_replaced_without_touching_that_of_the_others():
 
 def test_a_lasting_change_goes_on_in_pairs_to_come_and_a_stretch_stays_where_it_is():
     assert rescaled(history([(0.2, 0.4), (0.6, 1.0)]), 0.5) == history([(0.1, 0.2), (0.3, 1.0)])
+
+
+def test_what_is_there_at_first_counts_as_the_base():
+    """Also where the first runs are not the ones at hand."""
+    share = np.arange(4) / 8
+    lasting = history([(0.25, 1.0)])
+    assert since_start(lasting, share) == lasting
+    assert since_start(history([(0.0, 0.25)]), share) == lasting
+    twice = history([(0.0, 0.125), (0.25, 0.375), (0.5, 1.0)])
+    assert stretches(since_start(twice, share)) == [(0.125, 0.25), (0.375, 0.5)]
+    assert since_start(twice, share + 0.25) == history([(0.125, 0.25), (0.375, 0.5)])
+    assert since_start(lasting, share + 0.5) == history([(0.0, 0.25)])
 
 
 def test_runs_span_all_pairs():

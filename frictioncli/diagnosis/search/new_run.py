@@ -150,9 +150,11 @@ def _test_of_change(residual: NewRunResidual, shape: Shape) -> NewRunTest:
     span = next(one for one in run_spans(table) if present(share, history([one])).all())
     absent, whole = (with_run(shape, span, parts) for parts in ([], [span]))
     tried = distinct((with_run(shape, span, [part]) for part in _parts(share, span)), share)
-    best = max(tried, key=residual.evidence, default=whole)
+    # with drift only a history with all moments right explains more than a wrong one
+    quiet = residual.without_drift()
+    best = max((shape, whole, *tried), key=quiet.evidence)
+    best = refined_history(best, table, new.rows, quiet.evidence)
     residual = residual.with_own_noise(best)
-    best = refined_history(best, table, new.rows, residual.evidence)
     simple = max((shape, whole), key=residual.evidence)
     chosen_by = _CONVINCING + float(np.log(max(len(tried), 1)))
     if residual.evidence(best) - max(residual.evidence(simple), 0.0) > chosen_by:

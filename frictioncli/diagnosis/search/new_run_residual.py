@@ -134,6 +134,11 @@ class NewRunResidual:
         friction, load = (channel.with_own_noise(self.new, there) for channel in self.channels)
         return replace(self, channels=(friction, load), inverse=_inverse(friction, load))
 
+    def without_drift(self) -> "NewRunResidual":
+        """Return the same under a noise of pairs that are independent of each other."""
+        friction, load = (channel.without_drift(self.new) for channel in self.channels)
+        return replace(self, channels=(friction, load), inverse=_inverse(friction, load))
+
     def _there(self, shape: Mapping[str, float]) -> Array:
         """Return 1 where the cause is there, shape (rows,)."""
         if self.effect.moments is None:
@@ -230,6 +235,8 @@ class ChannelResidual:
 
     def with_own_noise(self, new: Problem, there: Array) -> "ChannelResidual":
         """Return the same under the noise that suits its residual, where that is greater."""
+        if not np.any(self.torque):
+            return self
         layout = new.layout
         columns = np.column_stack([self.nuisance, self.torque * there, self.residual])
         means = layout.means(columns)
@@ -242,7 +249,14 @@ class ChannelResidual:
             point=self.noise.point,
             extra=self.extra,
         )[0][0]
-        noise = _greater(self.noise, found)
+        return self._under(new, _greater(self.noise, found))
+
+    def without_drift(self, new: Problem) -> "ChannelResidual":
+        """Return the same with the variance of the drift as noise of pairs."""
+        pair = float(np.hypot(self.noise.pair, self.noise.drift))
+        return self._under(new, replace(self.noise, pair=pair, drift=0.0))
+
+    def _under(self, new: Problem, noise: Noise) -> "ChannelResidual":
         return ChannelResidual.of(new, noise, self.extra, self.torque, self.residual, self.nuisance)
 
 

@@ -20,6 +20,7 @@ from frictioncli.diagnosis.fit.variance_components import (
     Components,
     MixedFit,
     Products,
+    Variances,
     evaluate,
     fit_variances,
 )
@@ -29,6 +30,9 @@ from frictioncli.diagnosis.search.catalogue import Catalogue
 from frictioncli.diagnosis.search.precomputed import Precomputed
 from frictioncli.diagnosis.search.screening import screened, test_of
 from frictioncli.effects.base import Effect
+from frictioncli.effects.history import since_start
+from frictioncli.effects.history_search import refined_history
+from frictioncli.effects.pair_series import measured_share
 from frictioncli.model.noise import Noise
 
 REFITTED = 6
@@ -196,29 +200,25 @@ class Step:
             The effect at a shape of the grid, or near it.
         """
         effect, axes = found.effect, found.effect.shape
-        if not axes or effect.moments is not None:
-            # the grid already has every moment worth trying
+        if not axes:
             return self._effect_fit(effect, found.shape)
+        if effect.moments is not None:
+            return self._refined_change(found)
         null = evaluate(
             self.components,
             self.products,
             self.known,
             self._fit_with(effect, found.shape).variances,
         )
+
         start = np.array([axis.share(found.shape[axis.name]) for axis in axes])
         step = np.array([0.5 / axis.points for axis in axes])
 
         def shape_at(unit: Array) -> dict[str, float]:
             return {axis.name: axis.at(float(u)) for axis, u in zip(axes, unit, strict=True)}
 
-        def cost(unit: Array) -> float:
-            alone = Catalogue.of(
-                self.precomputed, [hypothesis_of(effect, self.problem, [shape_at(unit)])]
-            )
-            return -float(screened(alone, 0, self.columns, null).gain[0])
-
         search = minimize(
-            cost,
+            lambda unit: -self._gain(effect, shape_at(unit), null),
             start,
             method="Nelder-Mead",
             bounds=[(0.0, 1.0)] * len(axes),
@@ -232,6 +232,30 @@ class Step:
             },
         )
         return self._effect_fit(effect, shape_at(search.x))
+
+    def _refined_change(self, found: EffectFit) -> EffectFit:
+        """Return a change with its moments moved to single pairs.
+
+        Where a slow drift is likely, only a history with all moments right explains more than it.
+        The moments of one that is tried first are therefore also searched under the noise before
+        anything is fitted.
+        """
+        effect = found.effect
+
+        def refined(shape: dict[str, float], variances: Variances) -> dict[str, float]:
+            null = evaluate(self.components, self.products, self.known, variances)
+            rows, table = self.problem.rows, self.problem.all_runs
+            best = refined_history(
+                shape, table, rows, lambda one: self._gain(effect, one, null) / 2
+            )
+            return since_start(best, measured_share(table)[rows])
+
+        suited = self._fit_with(effect, found.shape).variances
+        starts = [found.shape]
+        if found.shape in effect.shapes(self.problem.all_runs):
+            starts.append(refined(found.shape, self.precomputed.start))
+        fits = [self._effect_fit(effect, refined(shape, suited)) for shape in starts]
+        return max(fits, key=lambda one: one.statistic)
 
     def size(self, fit: EffectFit) -> float:
         """Return the RMS torque of an effect in the channel where it shows most [N·m].
@@ -252,6 +276,11 @@ class Step:
         beside = () if fit.effect.measurement else self.precomputed.measurement
         left = left_of(self.problem, fit.effect, basis, beside)
         return visible_size(left, fit.coefficients, fit.covariance)
+
+    def _gain(self, effect: Effect, shape: dict[str, float], null: MixedFit) -> float:
+        """Return twice the log likelihood ratio of an effect under given variance components."""
+        alone = Catalogue.of(self.precomputed, [hypothesis_of(effect, self.problem, [shape])])
+        return float(screened(alone, 0, self.columns, null).gain[0])
 
     def _effect_fit(self, effect: Effect, shape: dict[str, float]) -> EffectFit:
         """Return an effect fitted at one shape, the variance components with it."""

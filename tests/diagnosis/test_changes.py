@@ -1,0 +1,109 @@
+"""Changes that last, recur or vanish: the whole diagnosis of simulated joints that have one."""
+
+import numpy as np
+import pytest
+
+from frictioncli.diagnosis.diagnose import diagnose_joint
+from frictioncli.diagnosis.settings import DiagnosisSettings
+from frictioncli.effects.history_text import history_text
+from frictioncli.simulator.settings import SynthesisSettings
+from tests.simulation.changed_table import hours, middle, with_friction_step, with_payload
+from tests.simulation.torque_table import simulate_torques
+
+pytestmark = pytest.mark.slow
+
+
+def days(count):
+    """Return days of a joint that is equation (16) of the motor temperature."""
+    return simulate_torques(SynthesisSettings(seed=3, runs=count, joint_kind="plain"))
+
+
+def every_noon(table):
+    return middle(table)
+
+
+def first_noon(table):
+    return middle(table) & (table["run"] == "day1").to_numpy()
+
+
+def from_the_first_noon_on(table):
+    return first_noon(table) | (table["run"] != "day1").to_numpy()
+
+
+def at_hours_that_differ(table):
+    moment = table["run"].astype(str).map({"day1": 1.2, "day2": 3.1, "day3": 2.2}).to_numpy()
+    return hours(table) > moment
+
+
+def on_the_second_day(table):
+    return (table["run"] == "day2").to_numpy()
+
+
+HELD = [
+    (2, every_noon, True, "from 3.6 h on in every run"),
+    (3, every_noon, True, "from 3.6 h on in every run"),
+    (2, first_noon, False, "in run day1 from 3.7 h on"),
+    (2, from_the_first_noon_on, True, "from 3.7 h of run day1 on"),
+    (
+        3,
+        at_hours_that_differ,
+        True,
+        "in run day1 from 1.2 h on and in run day2 from 3.1 h on and in run day3 from 2.2 h on",
+    ),
+]
+"""Days, when the change is there, whether it holds on the last day, and what is said of it."""
+
+with_history = pytest.mark.parametrize(
+    ("count", "there", "holds", "text"), HELD, ids=lambda value: getattr(value, "__name__", "")
+)
+
+
+def found(table):
+    """Return the diagnosis, and the history of its only cause in words."""
+    diagnosis = diagnose_joint(table, "motor", "N·m", DiagnosisSettings())
+    (cause,) = diagnosis.causes
+    runs = (*diagnosis.runs, diagnosis.held_out)
+    return diagnosis, cause, history_text(cause.fit.shape, diagnosis.base.all_runs, runs)
+
+
+@with_history
+def test_a_payload(count, there, holds, text):
+    """10 N·m of gravity amplitude."""
+    table = days(count)
+    diagnosis, cause, when = found(with_payload(table, there(table), 10.0))
+    assert (diagnosis.verdict, cause.effects) == ("named", ("payload_change",))
+    assert cause.holds_on_new_run is holds
+    assert when == text
+    assert cause.fit.coefficients == pytest.approx([10.0, 0.0], abs=0.1)
+    assert diagnosis.gain.after < 1.25 * diagnosis.floor
+
+
+@with_history
+def test_a_step_of_friction(count, there, holds, text):
+    """2 N·m, whose moments are resolved to a pair or two."""
+    table = days(count)
+    diagnosis, cause, when = found(with_friction_step(table, there(table), 2.0))
+    assert (diagnosis.verdict, cause.effects) == ("named", ("step_change",))
+    assert cause.holds_on_new_run is holds
+    assert when == text
+    (change,) = diagnosis.extension.effects[0].coefficients
+    assert change == pytest.approx(2.0, abs=0.5)
+    assert diagnosis.gain.after < 1.4 * diagnosis.floor
+
+
+def test_a_payload_on_the_second_of_three_days():
+    table = days(3)
+    diagnosis, cause, when = found(with_payload(table, on_the_second_day(table), 10.0, 2.0))
+    assert (diagnosis.verdict, cause.effects) == ("named", ("payload_change",))
+    assert cause.holds_on_new_run is False
+    assert when == "in run day2"
+    assert cause.fit.coefficients == pytest.approx([10.0, 2.0], abs=0.1)
+    assert diagnosis.gain.after < 1.25 * diagnosis.floor
+
+
+def test_nothing_is_said_of_days_without_a_change():
+    for seed in (3, 4):
+        table = simulate_torques(SynthesisSettings(seed=seed, runs=2, joint_kind="plain"))
+        diagnosis = diagnose_joint(table, "motor", "N·m", DiagnosisSettings())
+        assert diagnosis.causes == ()
+        assert np.isfinite(diagnosis.floor)
