@@ -25,7 +25,7 @@ coverage: $(VENV)/tested
 	$(BIN)/python -m tests.studies.coverage
 
 blind: $(VENV)/tested
-	$(BIN)/python -m tests.studies.blind
+	$(BIN)/python -m tests.studies.blind --jobs 2 --write
 
 comparison: $(VENV)/studied
 	$(BIN)/python -m tests.studies.comparison

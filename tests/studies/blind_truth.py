@@ -1,4 +1,4 @@
-"""What is true of a world of the blind study, and what of it can be seen at all."""
+"""What is true of a joint of the blind study, and what of it can be seen at all."""
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
@@ -11,11 +11,22 @@ from frictioncli.arrays import Array
 from frictioncli.diagnosis.data.build_problem import build_problems
 from frictioncli.diagnosis.data.problem import Problem
 from frictioncli.diagnosis.fit.columns import base_rows
+from frictioncli.effects import MEASUREMENT_EFFECTS
+from frictioncli.effects.base import applicable
+from frictioncli.simulator.nuisances.definition import Nuisances
+from frictioncli.simulator.planted.effect import PlantedEffect
+from frictioncli.simulator.settings import SynthesisSettings
 from tests.simulation.torque_table import simulate_world
-from tests.studies.blind_worlds import World
+from tests.studies.blind_worlds import CHANGES, TWELVE, World
 
 TEMPERATURE = "motor"
 GRAVITY = 9.80665
+
+PRESENT = 0.3
+"""A change is there where its torque is more than this share of its greatest."""
+
+PAIRS = 12
+"""Least number of pairs that the program diagnoses."""
 
 COUNTERPARTS: Mapping[str, tuple[str, Callable[[Any], float]]] = {
     # planted m (sqrt(v² + r²) - r) / 100, fitted kv v: equal from twice the rounding on
@@ -36,111 +47,208 @@ COUNTERPARTS: Mapping[str, tuple[str, Callable[[Any], float]]] = {
 }
 """Coefficients of the catalogue that mean what a planted parameter means, and its value."""
 
-LEAVES_BASE = (
-    "stribeck",
-    "linear_viscous",
-    "load_linear",
-    "thermal_lag",
-    "rest_recovery",
-    "step_change",
-    "direction_asymmetry",
-    "payload_change",
-    "dress_pack",
-    "position_ripple",
-    "inertia",
-    "reversal_transient",
-)
-"""Effects beside which the base parameters keep their meaning: others count from a temperature,
-a load or a time that the catalogue sets elsewhere, which shifts tau_c, alpha, beta or gamma."""
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Hidden:
+    """One effect that is hidden in a joint.
+
+    Attributes
+    ----------
+    name : str
+        Its name.
+    raw, left : float
+        RMS of its torque in the runs seen, and of what the base and the columns of the measurement
+        leave of it. [N·m]
+    coefficient : str
+        Coefficient of the catalogue that means the same; empty without one.
+    value : float or None
+        What was planted of it.
+    stretches : tuple of (float, float)
+        Of a change: when it is there, as shares of all pairs in order of time.
+    """
+
+    name: str
+    raw: float
+    left: float
+    coefficient: str = ""
+    value: float | None = None
+    stretches: tuple[tuple[float, float], ...] = ()
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Truth:
-    """A world with what is true of it.
+    """A joint with what is true of it.
 
     Attributes
     ----------
     torques : DataFrame
-        What the diagnosis is given.
+        Its torques per angle bin.
+    hidden : tuple of Hidden
+        What is hidden in it.
+    nuisances : mapping of str to mapping
+        True values of what the catalogue calls measurement, by effect and parameter.
+    nuisance : float
+        RMS that base and columns of the measurement leave of all nuisances together on the day
+        seen, without noise. [N·m]
+    margin : float
+        Smallest size worth a name by the rule of the diagnosis. [N·m]
+    share_seen : float
+        Share of all pairs that are in the runs seen.
     before : float
-        RMS misfit of the base on the held-out run. [N·m]
+        RMS misfit of the base on the day kept out. [N·m]
     oracle : float
         The same where nothing is hidden: what is left to one who knows all that is. [N·m]
-    raw, visible : float
-        RMS of what is hidden in the run seen, and of what the base's columns leave of it; of
-        several effects those of the one of which least is left. [N·m]
-    coefficient : str
-        Coefficient of the catalogue that has a planted counterpart; empty without one.
-    value : float
-        What was planted of it.
+    floor : float
+        RMS of the noise on that day, which no model can predict. [N·m]
     """
 
     torques: pd.DataFrame
+    hidden: tuple[Hidden, ...]
+    nuisances: Mapping[str, Mapping[str, float]]
+    nuisance: float
+    margin: float
+    share_seen: float
     before: float
     oracle: float
-    raw: float
-    visible: float
-    coefficient: str
-    value: float
+    floor: float
 
 
 def truth_of(world: World) -> Truth:
-    """Simulate a world with and without what is hidden in it."""
+    """Simulate a joint with and without what is hidden in it, and without noise."""
     simulated = simulate_world(world.settings(world.names))
-    torques = simulated.torques
+    torques = _chosen(world, simulated.torques)
+    without = {name: _without(world, torques, (name,)) for name in world.names}
+    if len(world.names) > 1:
+        bare = _without(world, torques, world.names)
+    else:
+        bare = next(iter(without.values()), torques)
+    quiet = _same(torques, world, world.settings((), noise_scale=0.0))
     seen, new = problems(torques)
-    oracle, raw, visible = _rms_misfit(new), 0.0, 0.0
-    if world.names:
-        oracle = _rms_misfit(problems(_without(world, torques, world.names))[1])
-        signals = [_signal(seen, _without(world, torques, (name,))) for name in world.names]
-        raw, visible = min(
-            ((_rms(signal), _rms(_off_base(seen, signal))) for signal in signals),
-            key=lambda sizes: sizes[1],
-        )
-    coefficient, value = "", float("nan")
-    if world.kind == "single" and world.hidden in COUNTERPARTS:
-        coefficient, planted = COUNTERPARTS[world.hidden]
-        value = planted(simulated.planted.effects[0].effect)
+    judged, judged_bare = (new or seen, _judged(bare) if world.names else new or seen)
+    base = _base_and_measurement(seen)
+    quiet_seen = problems(quiet)[0]
+    nuisance = np.concatenate([quiet_seen.friction_misfit, quiet_seen.load_misfit])
+    planted = {one.effect.name: one.effect for one in simulated.planted.effects}
     return Truth(
         torques=torques,
-        before=_rms_misfit(new),
-        oracle=oracle,
-        raw=raw,
-        visible=visible,
-        coefficient=coefficient,
-        value=value,
+        hidden=tuple(
+            _hidden(world, seen, base, torques, one, planted[name]) for name, one in without.items()
+        ),
+        nuisances=_nuisances(simulated.nuisances),
+        nuisance=_rms(_off(base, nuisance)),
+        margin=max(0.1, 0.005 * float(np.mean(np.abs(seen.friction)))),
+        share_seen=_pairs(seen) / (_pairs(seen) + (0 if new is None else _pairs(new))),
+        before=_rms_misfit(judged),
+        oracle=_rms_misfit(judged_bare),
+        floor=_rms(_signal(judged_bare, quiet)),
     )
 
 
-def problems(torques: pd.DataFrame) -> tuple[Problem, Problem]:
-    """Return the problem of the runs seen, and that of the last run, as diagnosis does."""
-    seen, new = build_problems(torques, TEMPERATURE, str(max(torques["run"].unique())))
-    assert new is not None  # two runs are simulated
-    return seen, new
+def _judged(torques: pd.DataFrame) -> Problem:
+    """Return the problem of the day kept out, or of all where none is."""
+    seen, new = problems(torques)
+    return new or seen
+
+
+def _hidden(
+    world: World,
+    seen: Problem,
+    base: Array,
+    torques: pd.DataFrame,
+    without: pd.DataFrame,
+    planted: PlantedEffect,
+) -> Hidden:
+    """Return what is true of one effect, from the torques with and without it."""
+    name = planted.name
+    signal = _signal(seen, without)
+    coefficient, value = "", None
+    if name in COUNTERPARTS and not world.history:
+        coefficient, counterpart = COUNTERPARTS[name]
+        value = counterpart(planted)
+    return Hidden(
+        name=name,
+        raw=_rms(signal),
+        left=_rms(_off(base, signal)),
+        coefficient=coefficient,
+        value=value,
+        stretches=_stretches(torques, without) if name in CHANGES else (),
+    )
+
+
+def problems(torques: pd.DataFrame) -> tuple[Problem, Problem | None]:
+    """Return the problem of the runs seen, and that of the last of several, as diagnosis does."""
+    runs = sorted(torques["run"].unique())
+    return build_problems(torques, TEMPERATURE, str(runs[-1]) if len(runs) > 1 else None)
+
+
+def _chosen(world: World, torques: pd.DataFrame) -> pd.DataFrame:
+    """Return the rows that the diagnosis is given: all, or a few pairs of the first day."""
+    if world.hidden != TWELVE:
+        return torques
+    first = torques[torques["run"] == min(torques["run"].unique())]
+    pairs = first["pair"].unique()
+    kept = pairs[np.linspace(0, len(pairs) - 1, PAIRS).round().astype(int)]
+    return first[first["pair"].isin(kept)].reset_index(drop=True)
+
+
+def _nuisances(nuisances: Nuisances) -> dict[str, dict[str, float]]:
+    """Return what is true of the measurement, by effect of the catalogue and parameter.
+
+    A filter delays by its time constant, and its moments are those of filter and delay together.
+    """
+    delay, lag = nuisances.size("torque_delay"), nuisances.size("torque_filter")
+    true = {
+        "torque_delay": {"delay": delay + lag},
+        "torque_filter": {"second_moment": lag**2 + lag * delay + delay**2 / 2} if lag else {},
+        "load_offset": {"not_carried": nuisances.size("torque_offset")},
+        "backlash": {"play": nuisances.size("backlash")},
+        "sensor_lag": {"time_constant": nuisances.size("sensor_lag")},
+        "other_joint": {"torque": nuisances.size("other_joint")},
+    }
+    return {name: values for name, values in true.items() if any(values.values())}
 
 
 def _without(world: World, torques: pd.DataFrame, names: Sequence[str]) -> pd.DataFrame:
-    """Return a world's torques without some of what is hidden in it."""
+    """Return a joint's torques without some of what is hidden in it."""
     left = [name for name in world.names if name not in names]
-    found = simulate_world(world.settings(left)).torques
-    _same_but_torque(torques, found)
+    return _same(torques, world, world.settings(left))
+
+
+def _same(torques: pd.DataFrame, world: World, settings: SynthesisSettings) -> pd.DataFrame:
+    """Return the same joint simulated otherwise.
+
+    Raises
+    ------
+    ValueError
+        If the motion differs: then the difference of torques is not what was asked for.
+    """
+    found = _chosen(world, simulate_world(settings).torques)
+    motion = ["run", "pair", "time", "speed", "position", "n_forward"]
+    if not torques[motion].equals(found[motion]):
+        raise ValueError("without what is hidden, the joint moves otherwise")
     return found
 
 
-def _signal(seen: Problem, without: pd.DataFrame) -> Array:
+def _signal(problem: Problem, without: pd.DataFrame) -> Array:
     """Return what is missing from torques, friction above load, in the problem's rows. [N·m]."""
-    rows = without[without["run"].isin(seen.runs)]
+    rows = without[without["run"].isin(problem.runs)]
     rows = rows.sort_values(["run", "time", "pair", "position"])
-    friction = seen.friction - rows["friction_torque"].to_numpy(float)
-    return np.concatenate([friction, seen.load - rows["load_torque"].to_numpy(float)])
+    friction = problem.friction - rows["friction_torque"].to_numpy(float)
+    return np.concatenate([friction, problem.load - rows["load_torque"].to_numpy(float)])
 
 
-def _same_but_torque(torques: pd.DataFrame, clean: pd.DataFrame) -> None:
-    """Raise if anything but torques differs: then the difference is not what is hidden alone."""
-    torque = {"torque_forward", "torque_reverse", "friction_torque", "load_torque"}
-    others = [name for name in torques if name not in torque]
-    if not torques[others].equals(clean[others]):
-        raise ValueError("without what is hidden, the world has another motion or temperature")
+def _stretches(torques: pd.DataFrame, without: pd.DataFrame) -> tuple[tuple[float, float], ...]:
+    """Return when a change is there, as shares of all pairs."""
+    columns = ["friction_torque", "load_torque"]
+    size = np.sqrt(np.square(torques[columns] - without[columns]).sum(axis=1))
+    by_pair = size.groupby([torques["run"], torques["time"]], observed=True).mean().to_numpy()
+    there = np.concatenate([[False], by_pair > PRESENT * by_pair.max(), [False]]).astype(int)
+    edges = np.flatnonzero(np.diff(there)) / len(by_pair)
+    return tuple(zip(edges[::2].tolist(), edges[1::2].tolist(), strict=True))
+
+
+def _pairs(problem: Problem) -> int:
+    return len(np.unique(problem.layout.row_pair))
 
 
 def _rms_misfit(problem: Problem) -> float:
@@ -153,8 +261,17 @@ def _rms(both: Array) -> float:
     return float(np.sqrt(2.0 * np.mean(np.square(both))))
 
 
-def _off_base(problem: Problem, signal: Array) -> Array:
-    """Return what the base's columns leave of a signal, friction above load."""
-    base = np.vstack(base_rows(problem))
-    base = base / np.linalg.norm(base, axis=0)
-    return np.asarray(signal - base @ np.linalg.lstsq(base, signal, rcond=1e-10)[0])
+def _base_and_measurement(problem: Problem) -> Array:
+    """Return the columns of base and measurement, friction above load, each of length 1."""
+    columns = [np.vstack(base_rows(problem))]
+    for effect in applicable(MEASUREMENT_EFFECTS, problem.table):
+        shapes = effect.shapes(problem.table)
+        columns.append(np.vstack(problem.basis(effect, shapes[len(shapes) // 2])))
+    found = np.hstack(columns)
+    size = np.linalg.norm(found, axis=0)
+    return np.asarray(found[:, size > 0] / size[size > 0])
+
+
+def _off(columns: Array, signal: Array) -> Array:
+    """Return what columns leave of a signal, friction above load."""
+    return np.asarray(signal - columns @ np.linalg.lstsq(columns, signal, rcond=1e-10)[0])
