@@ -175,6 +175,26 @@ RAMPS = Table(
     ),
 )
 
+STARTS = Table(
+    "starts",
+    "sample around the start of a move",
+    (
+        _RUN,
+        _RECORDING,
+        _JOINT_COLUMN,
+        Column("move", _COUNT, "", "number of the move, unique in the table"),
+        Column("direction", _JOINT, "", "1 where position grows in the move, -1 where it falls"),
+        Column("speed", _REAL, "deg/s", "constant speed of the move, > 0"),
+        Column("since", _REAL, "s", "time since the move began, negative before"),
+        _of(q.TIME),
+        _of(q.POSITION),
+        _of(q.MOTOR_TORQUE),
+        _of(q.MOTOR_TEMPERATURE, nullable=True),
+        _of(q.HOUSING_TEMPERATURE, nullable=True),
+        _of(q.PAYLOAD, nullable=True),
+    ),
+)
+
 SCHEDULE = Table(
     "schedule",
     "pair",

@@ -1,4 +1,4 @@
-"""Rows of the tables ``pairs`` and ``ramps``, and the text about them."""
+"""Rows of the tables ``pairs``, ``ramps`` and ``starts``, and the text about them."""
 
 from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping
@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from frictioncli import schemas, tables
 from frictioncli.arrays import Numbers
+from frictioncli.pairs import starts
 from frictioncli.pairs.other_joints import OtherMotion
 from frictioncli.pairs.pairing import Pairing
 from frictioncli.pairs.partitioned_store import Columns
@@ -124,6 +125,42 @@ def ramp_rows(segments: SegmentTables, payload: pd.Series) -> Iterator[pa.Table]
                     "recording": names[ramps["recording"]],
                     "move": ramps["move"] + before,
                     "part": np.array(PARTS, dtype=object)[ramps["part"]],
+                    "payload": carried.astype(float),
+                },
+            )
+        before += segments.counts[joint]
+
+
+def start_rows(segments: SegmentTables, payload: pd.Series) -> Iterator[pa.Table]:
+    """Yield rows of :data:`frictioncli.schemas.STARTS`, ordered by run, joint and time.
+
+    Parameters
+    ----------
+    segments : SegmentTables
+        Segments and starts.
+    payload : Series
+        Payload by run and recording, missing where unknown. [kg]
+
+    Yields
+    ------
+    Table
+        Starts of one run and joint.
+    """
+    names = np.array([recording for _, recording in segments.recordings], dtype=object)
+    before = 0
+    for joint in sorted(segments.counts):
+        for (found,) in segments.store.read(joint, "starts"):
+            kept = found[starts.NUMBER] % segments.starts.stride(joint) == 0
+            if segments.other_motion.leaves_out(joint[1]):
+                kept &= ~np.isin(found["move"], found["move"][found[SHARED]])
+            rows = {name: values[kept] for name, values in found.items()}
+            carried = _of_recordings(segments, rows["recording"], payload)
+            yield _table(
+                joint,
+                {name: rows[name] for name in starts.COLUMNS}
+                | {
+                    "recording": names[rows["recording"]],
+                    "move": rows["move"] + before,
                     "payload": carried.astype(float),
                 },
             )

@@ -24,6 +24,7 @@ from frictioncli.pairs.ramps import MEANS, PreviousMove, ramp_means
 from frictioncli.pairs.settings import SteadySettings
 from frictioncli.pairs.slices import slice_means
 from frictioncli.pairs.speed_levels import SpeedCounts
+from frictioncli.pairs.starts import StartCounts
 
 Joint = tuple[str, int]
 
@@ -52,7 +53,7 @@ class SegmentTables:
         bin: segment (number within run and joint), bin (number), n (samples), torque at the bin's
         centre, load, time [s], shared (whether another joint moved meanwhile). ``ramps``: rows of
         :func:`frictioncli.pairs.ramps.ramp_means` with recording; ``move`` is the number of the
-        segment.
+        segment. ``starts``: rows of :class:`frictioncli.pairs.starts.StartCounts` likewise.
     counts : dict of (str, int) to int
         Number of segments of each run and joint that has some.
     recordings : list of tuple of str
@@ -67,6 +68,8 @@ class SegmentTables:
         Number of samples read.
     other_motion : OtherMotion
         Samples in bins during which other joints moved.
+    starts : StartCounts
+        Which starts are to be kept.
     """
 
     store: PartitionedStore[Joint]
@@ -77,6 +80,7 @@ class SegmentTables:
     speeds: dict[int, SpeedCounts]
     samples: int
     other_motion: OtherMotion
+    starts: StartCounts
 
 
 def find_segments(
@@ -151,6 +155,7 @@ class _Finder:
         default_factory=lambda: {1: SpeedCounts(), -1: SpeedCounts()}
     )
     other_motion: OtherMotion = field(default_factory=OtherMotion)
+    starts: StartCounts = field(default_factory=StartCounts)
     _last_moves: dict[int, tuple[int, int]] = field(default_factory=dict)
 
     def add(self, chunk: SampleChunk) -> None:
@@ -180,14 +185,16 @@ class _Finder:
             "segments": self._segments(channels, found),
             "bins": self._bins(channels, found, source.joint),
             "ramps": ramp_means(channels, found, chunk.period, previous),
+            "starts": self.starts.add((source.run, source.joint), channels, found, chunk.period),
         }
-        for name in ("segments", "ramps"):
+        for name in ("segments", "ramps", "starts"):
             rows = len(tables[name]["speed"])
             tables[name]["recording"] = np.full(rows, len(self.recordings) - 1)
         joint = source.run, source.joint
         before = self.counts.get(joint, 0)
         tables["bins"]["segment"] = tables["bins"]["segment"] + before
-        tables["ramps"]["move"] = tables["ramps"]["move"] + before
+        for name in ("ramps", "starts"):
+            tables[name]["move"] = tables[name]["move"] + before
         self.counts[joint] = before + len(found.start)
         self.store.add(joint, tables)
         self._last_moves[source.joint] = (
@@ -241,4 +248,5 @@ class _Finder:
             self.speeds,
             self.samples,
             self.other_motion,
+            self.starts,
         )

@@ -10,6 +10,7 @@ from frictioncli.pairs.pair_tables import (
     pairing_text,
     ramp_rows,
     read_phase_and_payload,
+    start_rows,
 )
 from frictioncli.pairs.pairing import pair_segments
 from frictioncli.pairs.partitioned_store import PartitionedStore
@@ -17,14 +18,15 @@ from frictioncli.pairs.segments import Joint, find_segments
 from frictioncli.pairs.settings import PairingSettings
 from frictioncli.provenance import Provenance, input_hashes
 from frictioncli.stages.stage import StageResult, existing, stage
-from frictioncli.workfiles import PAIRS, RAMPS, RECORDINGS, SAMPLES
+from frictioncli.workfiles import PAIRS, RAMPS, RECORDINGS, SAMPLES, STARTS
 
 
 @stage
 def pair(work: Path, settings: PairingSettings | None = None) -> StageResult:
     """Match segments of constant speed and opposite direction.
 
-    Writes ``pairs.parquet``, and ``ramps.parquet`` with the other motion.
+    Writes ``pairs.parquet``, and the other motion: ``ramps.parquet``, and ``starts.parquet`` with
+    the samples around some starts of moves.
 
     Parameters
     ----------
@@ -52,6 +54,7 @@ def pair(work: Path, settings: PairingSettings | None = None) -> StageResult:
         PartitionedStore[Joint](work) as segment_store,
         PartitionedStore[Joint](work) as pair_store,
         tables.TableWriter(work / RAMPS, schemas.RAMPS, provenance) as ramps,
+        tables.TableWriter(work / STARTS, schemas.STARTS, provenance) as starts,
         tables.TableWriter(work / PAIRS, schemas.PAIRS, provenance) as pairs,
     ):
         samples = tables.prefetch(tables.batches(source, schemas.SAMPLES))
@@ -66,9 +69,11 @@ def pair(work: Path, settings: PairingSettings | None = None) -> StageResult:
                 for joint, share in segments.other_motion.kept(pairing.joints).items()
             },
         }
-        ramps.facts = pairs.facts = facts
+        ramps.facts = starts.facts = pairs.facts = facts
         for rows in ramp_rows(segments, manifest["payload"]):
             ramps.write(rows)
+        for rows in start_rows(segments, manifest["payload"]):
+            starts.write(rows)
         for rows in counts.count(pair_rows(segments, pairing, manifest["phase"])):
             pairs.write(rows)
     text = pairing_text(counts, facts, segments.other_motion, settings.bin_width)

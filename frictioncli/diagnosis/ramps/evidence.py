@@ -33,6 +33,7 @@ from frictioncli.diagnosis.noise.significance import log_bayes_factor
 from frictioncli.diagnosis.ramps.misfit import RampMisfit, resolved
 from frictioncli.diagnosis.ramps.robust_fit import Residual, RobustFit
 from frictioncli.pairs.ramps import LAGS
+from frictioncli.workfiles import STARTS
 
 DISTANCES = np.geomspace(0.3, 20.0, 15)
 """Angles over which a friction deficit may decay. [deg]"""
@@ -65,10 +66,13 @@ class RampLog:
         Rows of :data:`frictioncli.schemas.RAMPS`.
     sign : int
         Sign convention of the log: +1 where forward torque is load plus friction, else -1.
+    starts : DataFrame or None
+        Rows of :data:`frictioncli.schemas.STARTS`; none in work folders of older versions.
     """
 
     rows: pd.DataFrame
     sign: int
+    starts: pd.DataFrame | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -141,14 +145,18 @@ def ramp_logs(path: Path, signs: Mapping[str, int]) -> dict[int, RampLog]:
     Parameters
     ----------
     path : Path
-        The table ``ramps``; work folders of older versions do not have it.
+        The table ``ramps``, beside ``starts``; work folders of older versions do not have them.
     signs : mapping of str to int
         Sign convention by joint, as stage ``separate`` writes it.
     """
     if not path.exists():
         return {}
+    near = path.with_name(STARTS)
+    starts = tables.read(near, schemas.STARTS) if near.exists() else None
     return {
-        int(joint): RampLog(rows, signs[str(joint)])
+        int(joint): RampLog(
+            rows, signs[str(joint)], None if starts is None else starts[starts["joint"] == joint]
+        )
         for joint, rows in tables.read(path, schemas.RAMPS).groupby("joint")
         if str(joint) in signs
     }

@@ -1,0 +1,205 @@
+r"""Starts of moves on one grid of samples, and what the torque consists of there.
+
+Every signal is smoothed as the acceleration is, twice by the slope of a local line: a shift between
+torque and acceleration is then no work of the smoothing. Positions are known at the samples only;
+the smoothed value of a signal *x* is the slope of its integral along a cubic spline.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+import pandas as pd
+from scipy.interpolate import CubicSpline
+from scipy.ndimage import correlate1d
+
+from frictioncli.arrays import Array, Flags
+from frictioncli.diagnosis.data.gravity import NAMES, gravity_columns, known_payload
+from frictioncli.diagnosis.data.problem import Problem
+from frictioncli.diagnosis.ramps.robust_fit import Labels
+from frictioncli.model.friction import friction_torque
+from frictioncli.model.zero_load import temperature_of
+
+LEAST_STARTS = 6
+"""Least number of starts."""
+
+MOST_STARTS = 120
+"""Starts that are used, evenly spaced, of more."""
+
+_HALF_WINDOW = 0.015
+"""Half of the time over which position and velocity are differentiated. [s]"""
+
+_ONSET = 0.04
+"""Time after the start of a move in which friction builds up as no model knows. [s]"""
+
+_SLOWEST = 0.5
+"""Speed below which the direction of friction is uncertain. [deg/s]"""
+
+_REGULAR = 0.02
+"""Tolerated difference between sampling periods, as a share."""
+
+_DISTANCES = (0.3, 3.0)
+"""Angles over which friction may still build up after that. [deg]"""
+
+_SAME_SPEED = 0.03
+"""Relative width of a speed level."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class StartWindows:
+    """Signals at the starts of moves, a row per start and a column per sample.
+
+    Attributes
+    ----------
+    period : float
+        Sampling period. [s]
+    torque : ndarray, shape (starts, samples)
+        Logged torque. [N·m]
+    since : ndarray, shape (samples,)
+        Time since the start of the move. [s]
+    moving : ndarray of bool, shape (starts, samples)
+        Samples with known neighbours while the joint moves.
+    gravity : ndarray, shape (starts, samples)
+        Torque of gravity; 0 where it is not known in the unit of the torque. [N·m]
+    friction : ndarray, shape (starts, samples)
+        Friction torque of the base model with the sign of the motion. [N·m]
+    inertial : tuple of ndarray, shape (starts, samples)
+        Columns of torque that follow the motion at once: acceleration [deg/s²], that of each
+        further payload, and gravity's where it is not known.
+    frictional : tuple of ndarray, shape (starts, samples)
+        Columns by which friction may differ from the base model.
+    conditions : ndarray of int, shape (starts,)
+        Number of the direction and speed of each start.
+    """
+
+    period: float
+    torque: Array
+    since: Array
+    moving: Flags
+    gravity: Array
+    friction: Array
+    inertial: tuple[Array, ...]
+    frictional: tuple[Array, ...]
+    conditions: Labels
+
+    @classmethod
+    def of(
+        cls, rows: pd.DataFrame, sign: int, problem: Problem, temperature: str
+    ) -> "StartWindows | None":
+        """Return the windows of a problem's starts; None where there are too few.
+
+        Parameters
+        ----------
+        rows : DataFrame
+            Rows of :data:`frictioncli.schemas.STARTS` of one joint.
+        sign : int
+            Sign convention of the log.
+        problem : Problem
+            Problem with the base model.
+        temperature : {"motor", "housing", "mean"}
+            Temperature that the friction function is given.
+        """
+        rows = rows[rows["run"].isin(problem.runs)]
+        step = rows.groupby("move", sort=False)["since"].agg(lambda since: since.diff().median())
+        period = float(step.median()) if len(step) else np.nan
+        regular = step.index[np.abs(step - period) < _REGULAR * period]
+        regular = regular[:: max(-(-len(regular) // MOST_STARTS), 1)]
+        if len(regular) < LEAST_STARTS:
+            return None
+        rows = rows[rows["move"].isin(regular)]
+        return _assembled(_Grid.of(rows, period), sign, problem, temperature)
+
+    def used(self, delay: float) -> Flags:
+        """Return the samples that the model describes, shape (starts, samples).
+
+        Parameters
+        ----------
+        delay : float
+            Time by which the torque is late: friction builds up as much later in the log. [s]
+        """
+        return self.moving & (self.since > _ONSET + max(delay, 0.0))
+
+
+@dataclass(frozen=True, slots=True)
+class _Grid:
+    """Samples of the starts at common times since each start [s], and which are known."""
+
+    first: pd.DataFrame
+    since: Array
+    position: Array
+    torque: Array
+    known: Flags
+
+    @classmethod
+    def of(cls, rows: pd.DataFrame, period: float) -> "_Grid":
+        low, high = rows["since"].min(), rows["since"].max()
+        since = period * np.arange(round(low / period), round(high / period) + 1)
+        first = rows.groupby("move", sort=False).first()
+        position, torque = (np.empty((len(first), len(since))) for _ in range(2))
+        known = np.empty((len(first), len(since)), bool)
+        for number, (_, one) in enumerate(rows.groupby("move", sort=False)):
+            time = one["since"].to_numpy(float)
+            position[number] = np.interp(since, time, one["position"].to_numpy(float))
+            torque[number] = np.interp(since, time, one["torque"].to_numpy(float))
+            known[number] = (since > time[0] - period / 2) & (since < time[-1] + period / 2)
+        return cls(first, since, position, torque, known)
+
+
+def _assembled(grid: _Grid, sign: int, problem: Problem, temperature: str) -> StartWindows:
+    """Return the windows of starts on a grid."""
+    period = float(grid.since[1] - grid.since[0])
+    half = max(round(_HALF_WINDOW / period), 1)
+    velocity = _slope(grid.position, period, half)
+
+    def smooth(values: Array, times: int) -> Array:
+        for _ in range(times):
+            integral = CubicSpline(grid.since, values, axis=1).antiderivative()(grid.since)
+            values = _slope(integral, period, half)
+        return values
+
+    direction = grid.first["direction"].to_numpy(float)[:, np.newaxis]
+    along = velocity * direction
+    moving = np.where(np.abs(velocity) > _SLOWEST, np.sign(velocity), 0.0)
+    mass = np.nan_to_num(known_payload(grid.first))
+    known_temperature = np.nan_to_num(temperature_of(grid.first, temperature).to_numpy(float))
+    gravity = _gravity(grid.position, mass, problem.gravity)
+    friction = moving * friction_torque(
+        problem.parameters,
+        load=0.0 * gravity if problem.has_load_channel else gravity,
+        speed=np.abs(velocity),
+        temperature=np.repeat(known_temperature[:, np.newaxis], len(grid.since), axis=1),
+    )
+    travelled = period * np.cumsum(np.where(grid.since > 0, np.maximum(along, 0.0), 0.0), axis=1)
+    acceleration = _slope(velocity, period, half)
+    inertial = [acceleration]
+    inertial += [acceleration * (mass == one)[:, np.newaxis] for one in np.unique(mass)[1:]]
+    if problem.has_load_channel:
+        angle = np.radians(grid.position)
+        inertial += [smooth(values, 2) for values in (np.cos(angle), np.sin(angle))]
+        gravity = np.zeros_like(gravity)
+    built_up = [moving * np.exp(-travelled / distance) for distance in _DISTANCES]
+    ends = np.cumsum(grid.known[:, ::-1], axis=1)[:, ::-1]
+    level = np.round(np.log(grid.first["speed"].to_numpy(float)) / _SAME_SPEED)
+    conditions = pd.MultiIndex.from_arrays([level, direction[:, 0]])
+    return StartWindows(
+        period=period,
+        torque=smooth(grid.torque, 2),
+        since=grid.since,
+        moving=(grid.since > 0) & (along > _SLOWEST) & (ends > 2 * half + 2),
+        gravity=smooth(gravity, 2),
+        friction=sign * smooth(friction, 1),
+        inertial=tuple(inertial),
+        frictional=tuple(smooth(one, 1) for one in (*built_up, moving * np.abs(velocity))),
+        conditions=pd.factorize(conditions)[0],
+    )
+
+
+def _gravity(position: Array, mass: Array, gravity: Array) -> Array:
+    """Return the torque of gravity, shape (starts, samples) [N·m]."""
+    payload = np.repeat(mass, position.shape[1]) if len(gravity) > len(NAMES) else None
+    return (gravity_columns(position.ravel(), payload) @ gravity).reshape(position.shape)
+
+
+def _slope(values: Array, period: float, half: int) -> Array:
+    """Return the slope of local lines along the samples, shape (starts, samples)."""
+    steps = np.arange(-half, half + 1)
+    return correlate1d(values, steps / (period * np.sum(np.square(steps))), axis=1, mode="nearest")

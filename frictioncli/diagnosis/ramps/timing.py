@@ -1,0 +1,268 @@
+r"""Delay and filter of the logged torque, from the starts of moves.
+
+In a log the torque :math:`u(t)` stands as :math:`h * u`, with the response *h* of a delay *d* and a
+filter of first order with time constant :math:`\theta`. Both shift it, by :math:`D = d + \theta` on
+average; the filter smears it too, with the variance :math:`S = \theta^2`. Where a move starts,
+
+.. math:: u = L(q) + J \ddot q + \sigma\tau(v) + \text{constant of the start}
+
+follows the motion at once but for friction, which builds up over an unknown way: what it is late by
+is a parameter of its own, and the first 0.04 s are left out. *D*, *S* and that lateness are found
+by nonlinear least squares, the linear ones within (variable projection) [1]_. Standard errors are
+robust to correlation within a start and within all starts of one direction and speed, since a servo
+repeats its misfit exactly.
+
+That the torque is neither late nor smeared, is late, filtered, or both, are four rivals, whose
+evidence is the integral of the likelihood of *D* and *S* over uniform priors of *d* and
+:math:`\theta`.
+
+References
+----------
+.. [1] G. H. Golub and V. Pereyra, "The differentiation of pseudo-inverses and nonlinear least
+   squares problems whose variables separate," SIAM J. Numer. Anal. 10(2), 1973,
+   doi:10.1137/0710036.
+"""
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+from scipy import stats
+from scipy.interpolate import CubicSpline
+from scipy.optimize import least_squares
+from scipy.signal import lfilter
+
+from frictioncli.arrays import Array, Flags
+from frictioncli.diagnosis.data.problem import Problem
+from frictioncli.diagnosis.ramps.evidence import RampEstimate, RampLog
+from frictioncli.diagnosis.ramps.robust_fit import Labels
+from frictioncli.diagnosis.ramps.start_windows import StartWindows
+from frictioncli.diagnosis.ramps.timing_rivals import (
+    DELAYS,
+    LONGEST_FILTER,
+    RIVALS,
+    TimingRivals,
+)
+
+MAX_LOG_ODDS = 12.0
+"""Greatest log odds that the starts may contribute: their model is not exact."""
+
+_LATENESS = 0.06
+"""Greatest lateness of friction, either way. [s]"""
+
+_SHIFT_TOLERANCE = 0.05
+_SMEAR_TOLERANCE = 0.5
+"""Errors of a model of samples: of the shift, and square root of that of its variance. [periods]"""
+
+_SHARE = (0.02, 0.05)
+"""Errors of shift and smear that grow with them: no drive's filter is quite of first order."""
+
+_STARTS = tuple((shift, smear) for shift in (0.0, 0.02, 0.06) for smear in (1e-6, 4e-4, 3e-3))
+_STEPS = (5e-4, 2e-5, 5e-4)
+"""Values of shift [s] and smear [s²] to start from, and steps of derivatives. [s], [s²], [s]"""
+
+_CONFIDENT = 0.975
+_NO_COLUMN = 1e-9
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class TorqueTiming:
+    """When the logged torque is that of the logged motion.
+
+    Attributes
+    ----------
+    shift : RampEstimate
+        Mean time by which the torque is late, D: delay and filter together. [s]
+    smear : RampEstimate
+        Variance of that time, S: the square of the filter's time constant. [s²]
+    delay, time_constant : RampEstimate
+        Delay and filter over all rivals, each with its probability. [s]
+    log_evidence : mapping of str to float
+        Logarithm of the evidence of each of :data:`RIVALS`, less that of the best.
+    rms : float
+        RMS misfit of the starts. [N·m]
+    starts : int
+        Number of starts.
+    """
+
+    shift: RampEstimate
+    smear: RampEstimate
+    delay: RampEstimate
+    time_constant: RampEstimate
+    log_evidence: Mapping[str, float]
+    rms: float
+    starts: int
+
+    @property
+    def best(self) -> str:
+        """The rival with the greatest evidence."""
+        return max(RIVALS, key=lambda name: self.log_evidence[name])
+
+    @property
+    def log_odds(self) -> float:
+        """Log odds of a filter, with or without a delay, against a delay alone, at most 12."""
+        filtered = np.logaddexp(self.log_evidence["torque_filter"], self.log_evidence["both"])
+        odds = float(filtered) - self.log_evidence["torque_delay"]
+        return float(np.clip(odds, -MAX_LOG_ODDS, MAX_LOG_ODDS))
+
+
+def torque_timing(ramps: RampLog, problem: Problem, temperature: str) -> TorqueTiming | None:
+    """Return delay and filter of the torque; None where the log has too few starts of moves.
+
+    Parameters
+    ----------
+    ramps : RampLog
+        Ramps of the joint, with the samples around starts of moves.
+    problem : Problem
+        One joint's measurements and base model.
+    temperature : {"motor", "housing", "mean"}
+        Temperature that the friction function is given.
+    """
+    if ramps.starts is None:
+        return None
+    windows = StartWindows.of(ramps.starts, ramps.sign, problem, temperature)
+    return None if windows is None else timing_of(windows)
+
+
+def timing_of(windows: StartWindows) -> TorqueTiming:
+    """Return delay and filter of the torque in the samples around starts of moves."""
+    used = windows.used(0.0)
+    first = min(
+        (np.array([shift, smear, 0.0]) for shift, smear in _STARTS),
+        key=lambda point: float(np.sum(np.square(_residual(windows, used, point)))),
+    )
+    found = _fitted(windows, used, first)
+    # a late onset of friction looks like a smear of up to a sample
+    smear_for_sure = max(found[1] - windows.period**2, 0.0)
+    used = windows.used(found[0] - math.sqrt(smear_for_sure))
+    found = _fitted(windows, used, found)
+    misfit = _residual(windows, used, found)
+    point, covariance, freedom = _one_step(windows, used, found)
+    reach = float(stats.t.isf(1 - _CONFIDENT, freedom))
+    shift, smear = (
+        RampEstimate(value, value - reach * error, value + reach * error)
+        for value, error in zip(point[:2], np.sqrt(np.diag(covariance)), strict=False)
+    )
+    tolerance = np.array([_SHIFT_TOLERANCE, _SMEAR_TOLERANCE**2 * windows.period])
+    tolerance = tolerance * windows.period + np.array(_SHARE) * np.abs(point[:2])
+    # the normal distribution stands for Student's with as wide an interval
+    wider = np.square(reach / stats.norm.isf(1 - _CONFIDENT))
+    rivals = TimingRivals(point[:2], wider * covariance[:2, :2] + np.diag(np.square(tolerance)))
+    evidence = rivals.log_evidence()
+    most = max(evidence.values())
+    delay, time_constant = rivals.estimates()
+    return TorqueTiming(
+        shift=shift,
+        smear=smear,
+        delay=delay,
+        time_constant=time_constant,
+        log_evidence={name: value - most for name, value in evidence.items()},
+        rms=float(np.sqrt(np.sum(np.square(misfit)) / max(used.sum(), 1))),
+        starts=len(windows.torque),
+    )
+
+
+def _fitted(windows: StartWindows, used: Flags, first: Array) -> Array:
+    """Return shift [s], smear [s²] and lateness of friction [s] with the least misfit."""
+    lowest = np.array([DELAYS[0], 0.0, -_LATENESS])
+    highest = np.array([DELAYS[1] + LONGEST_FILTER, LONGEST_FILTER**2, _LATENESS])
+    found = least_squares(
+        lambda point: _residual(windows, used, point).ravel(),
+        np.clip(first, lowest + 1e-9, highest - 1e-9),
+        bounds=(lowest, highest),
+        x_scale=[0.01, 3e-4, 0.01],
+        diff_step=1e-3,
+        max_nfev=30,
+    )
+    return np.asarray(found.x)
+
+
+def responded(values: Array, period: float, *, delay: float, time_constant: float) -> Array:
+    """Return signals behind a filter of first order and a delay.
+
+    Parameters
+    ----------
+    values : ndarray, shape (starts, samples)
+        Signals, constant before their first sample and linear between samples.
+    period : float
+        Sampling period. [s]
+    delay, time_constant : float
+        Delay and time constant of the filter; no filter at 0. [s]
+
+    Examples
+    --------
+    >>> step = np.array([[0.0, 0.0, 1.0, 1.0, 1.0, 1.0]])
+    >>> responded(step, 0.01, delay=0.01, time_constant=0.0).round(3) + 0.0
+    array([[0., 0., 0., 1., 1., 1.]])
+    """
+    if time_constant > 1e-3 * period:
+        ratio = period / time_constant
+        memory = math.exp(-ratio)
+        past, now = (1 - memory) / ratio - memory, 1 - (1 - memory) / ratio
+        steady = (past + memory) * values[:, :1]
+        values = lfilter([now, past], [1.0, -memory], values, axis=1, zi=steady)[0]
+    if delay == 0.0:
+        return values
+    time = period * np.arange(values.shape[1])
+    at = np.clip(time - delay, 0.0, time[-1])
+    return np.asarray(CubicSpline(time, values, axis=1)(at))
+
+
+def _residual(windows: StartWindows, used: Flags, point: Array) -> Array:
+    """Return the misfit of the torque, less all linear columns, shape (starts, samples) [N·m]."""
+    shift, smear, late = point
+    time_constant = math.sqrt(max(smear, 0.0))
+    delay = shift - time_constant
+
+    def logged(values: Array, extra: float = 0.0) -> Array:
+        return responded(values, windows.period, delay=delay + extra, time_constant=time_constant)
+
+    own = (np.ones_like(windows.torque), logged(windows.friction, late))
+    columns = [windows.torque - logged(windows.gravity)]
+    columns += [logged(values) for values in windows.inertial]
+    columns += [logged(values, late) for values in windows.frictional]
+    basis: list[Array] = []
+    for column in own:
+        rest = _without(column * used, basis)
+        size = np.sqrt(np.sum(np.square(rest), axis=1, keepdims=True))
+        basis.append(np.divide(rest, size, out=np.zeros_like(rest), where=size > _NO_COLUMN))
+    misfit, *common = (_without(column * used, basis) for column in columns)
+    stacked = np.column_stack([column.ravel() for column in common])
+    stacked /= np.maximum(np.linalg.norm(stacked, axis=0), _NO_COLUMN)
+    coefficients = np.linalg.lstsq(stacked, misfit.ravel(), rcond=1e-8)[0]
+    return np.asarray(misfit - (stacked @ coefficients).reshape(misfit.shape))
+
+
+def _without(column: Array, basis: list[Array]) -> Array:
+    """Return a column less its projections on a basis, start by start."""
+    for one in basis:
+        column = column - one * np.sum(one * column, axis=1, keepdims=True)
+    return column
+
+
+def _one_step(windows: StartWindows, used: Flags, point: Array) -> tuple[Array, Array, int]:
+    """Return the estimate after a step without bounds, its covariance, and degrees of freedom.
+
+    Without its bound a smear that is not there comes out negative as often as positive.
+    """
+    misfit = _residual(windows, used, point)
+    slopes = []
+    for place, step in enumerate(_STEPS):
+        moved = point.copy()
+        moved[place] += step
+        slopes.append((_residual(windows, used, moved) - misfit) / step)
+    jacobian = np.stack(slopes, axis=2)
+    scale = np.maximum(np.sqrt(np.sum(np.square(jacobian), axis=(0, 1))), _NO_COLUMN)
+    jacobian /= scale
+    inverse = np.linalg.pinv(np.einsum("ijk,ijl->kl", jacobian, jacobian), rcond=1e-10)
+    scores = np.einsum("ijk,ij->ik", jacobian, misfit)
+    clusterings: tuple[Labels, ...] = (np.arange(len(misfit)), windows.conditions)
+    covariance = np.zeros_like(inverse)
+    for labels in clusterings:
+        count = int(labels.max()) + 1
+        sums = np.column_stack([np.bincount(labels, score, count) for score in scores.T])
+        covariance += count / max(count - 1, 1) * sums.T @ sums
+    covariance = inverse @ covariance @ inverse / np.outer(scale, scale)
+    freedom = max(min(int(labels.max()) for labels in clusterings), 1)
+    return point - inverse @ scores.sum(axis=0) / scale, covariance, freedom
