@@ -19,7 +19,7 @@ from frictioncli.report.results import JointResults
 from frictioncli.report.style import FAINT, MODEL, WIDTH
 from frictioncli.wording import in_words, probability_text
 
-_AXES = {
+AXES = {
     "speed": ("speed |φ'| [deg/s]", 1.0),
     "temperature": ("temperature T [°C]", 1.0),
     "motor_temperature": ("motor temperature Tm [°C]", 1.0),
@@ -32,6 +32,7 @@ _AXES = {
     "rest": ("rest before [min]", 1 / 60.0),
     "order": ("pair after the last rest", 1.0),
 }
+"""Label and scale of each quantity against which residuals are drawn."""
 
 _DISCRETE = ("speed", "order", "position")
 """Variables with a few measured values, between which a line may be drawn."""
@@ -68,7 +69,7 @@ def evidence_figure(results: JointResults, *, diagnosis: Reloaded, index: int) -
         {
             "bin": bin_numbers(axis, getattr(table, axis)),
             "pair": table.pair,
-            "at": getattr(table, axis) * _AXES[axis][1] + (axis == "order"),
+            "at": getattr(table, axis) * AXES[axis][1] + (axis == "order"),
             "term": seen.terms[index].of(channel),
         }
     )
@@ -84,7 +85,7 @@ def evidence_figure(results: JointResults, *, diagnosis: Reloaded, index: int) -
     panels[1].plot([], [], color=FAINT, label="fitted term")
     if axis == "order" or (axis == "speed" and table.speed.max() > 8 * table.speed.min()):
         _logarithmic(panels[0], rows["at"])
-    label = _AXES[axis][0] + (f" [{results.load_unit}]" if axis == "load" else "")
+    label = AXES[axis][0] + (f" [{results.load_unit}]" if axis == "load" else "")
     panels[1].set_xlabel(label)
     unit = results.unit if channel == "friction" else results.load_unit
     panels[0].set_ylabel(f"{channel}: measured − simulated [{unit}]")

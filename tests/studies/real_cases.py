@@ -1,0 +1,117 @@
+"""Real logs, and what is known of them from elsewhere."""
+
+from dataclasses import dataclass
+from pathlib import Path
+
+MAPS = Path(__file__).parent / "real_maps"
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Case:
+    """A log or logs of one robot, each folder one run.
+
+    Attributes
+    ----------
+    name : str
+        Name of the case, and of its figures.
+    title : str
+        Robot and source.
+    folders : tuple of str
+        Folders of the logs.
+    map : str or None
+        Mapping file, where the channels cannot be found from the logs.
+    joints : tuple of int or None
+        Joints to read; all without it.
+    known : str
+        What is known of these logs from elsewhere.
+    judgement : str
+        What we think of the diagnosis, and where it is doubtful.
+    """
+
+    name: str
+    title: str
+    folders: tuple[str, ...]
+    map: str | None = None
+    joints: tuple[int, ...] | None = None
+    known: str = ""
+    judgement: str = ""
+
+
+CASES = (
+    Case(
+        name="kuka-kr3-vel",
+        title="KUKA KR3 R540, axis 3, PTP_Vel (github anjan211/kuka_controller_project)",
+        folders=("kuka-kr3/PTP_Vel",),
+        joints=(3,),
+        known="Four speeds there and back on one morning, no temperature. By another program, in"
+        " 5-degree bins: half-differences of 0.136, 0.312 and 0.387 N·m (motor side) at 46, 229 and"
+        " 320 deg/s.",
+    ),
+    Case(
+        name="kuka-kr3-combined",
+        title="KUKA KR3 R540, PTP_Combined, another day",
+        folders=("kuka-kr3/PTP_Combined",),
+        known="Axes moving alone and together; few moves at constant speed.",
+    ),
+    Case(
+        name="xarm6-j2",
+        title="UFactory xArm6, joint 2 (github TKL01/Kinova-Dashboard)",
+        folders=("xarm6-j2",),
+        map="xarm6-j2.toml",
+        known="14 recordings at 2 Hz, two speeds, friction in the current [A], the load in a"
+        " channel of its own [N·m]. Turn angles are random; the motor warms from 20 to 43 °C.",
+    ),
+    Case(
+        name="xarm6-j3",
+        title="UFactory xArm6, joint 3: without, with and again without a weight",
+        folders=("xarm6-j3/a_none", "xarm6-j3/b_weight", "xarm6-j3/c_none"),
+        map="xarm6-j3.toml",
+        known="The weight was in the hand in the second run only: the amplitude of the load is"
+        " 13.4, 23.5 and 13.4 N·m. Friction falls with temperature, in all runs without weight.",
+    ),
+    Case(
+        name="kinova-gen3-j4",
+        title="Kinova Gen3, joint 4 (github TKL01/Kinova-Dashboard)",
+        folders=("kinova-gen3-j4",),
+        joints=(4,),
+        known="One speed and one temperature. In the first 20 s joints 2 and 6 drive to"
+        " zero: what they add to joint 4 is no step of its friction. Without these seconds nothing"
+        " is left to find.",
+    ),
+    Case(
+        name="epos-drive1",
+        title="maxon EPOS drive 1 (RViMLab/TRO2021-Dynamic-Modelling, MIT)",
+        folders=("epos-drive1",),
+        known="A recorder's files without positions, one speed per file.",
+    ),
+    Case(
+        name="damiao-5",
+        title="Damiao motor 5 on a bench (github"
+        " YIZHIXIAOCANGSHU/Friction-Identification-for-Manipulators_usb2fdcan)",
+        folders=("damiao-5",),
+        map="damiao-5.toml",
+        known="A staircase of speeds without stops, held for 1 s each; positions wrap at ±12.5 rad"
+        " and advance 1.66 to 1.99 times the integral of velocity. By another program 0.0771 +"
+        " 0.00324·√v N·m.",
+    ),
+    Case(
+        name="ur10e-j1",
+        title="UR10e, joint 1 (github shamilmamedov/dynamic_calibration)",
+        folders=("ur10e-j1",),
+        map="ur10e-j1.toml",
+        known="The joint moves in sines: no constant speed at all.",
+    ),
+    Case(
+        name="ur3-cobotops",
+        title="UR3 (UCI dataset 963, CC BY 4.0)",
+        folders=("ur3-cobotops",),
+        known="Currents, temperatures and speeds at 1 Hz, no positions.",
+    ),
+    Case(
+        name="nist-ur5",
+        title="UR5 (NIST, doi 10.18434/M31962)",
+        folders=("nist-ur5",),
+        known="All joints move at once on one trajectory.",
+    ),
+)
+"""In the order of the page."""
