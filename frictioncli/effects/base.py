@@ -37,6 +37,9 @@ class Parameter:
         Spacing of the grid over a shape parameter.
     points : int
         Number of values of the grid, enough not to miss the effect.
+    of_load : bool
+        Whether the torque in its unit is one of the load though the effect shows in the friction:
+        a load channel may have another unit.
     """
 
     name: str
@@ -47,6 +50,7 @@ class Parameter:
     description: str
     search: Search = "linear"
     points: int = 10
+    of_load: bool = False
 
     def __post_init__(self) -> None:
         if not self.lower < self.upper:

@@ -36,6 +36,7 @@ EFFECT = Effect(
             lower=-30.0,
             upper=30.0,
             description="Part of the constant load torque that does not load the gear",
+            of_load=True,
         ),
     ),
     basis=basis,

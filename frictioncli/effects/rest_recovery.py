@@ -91,6 +91,7 @@ EFFECT = Effect(
             lower=-30.0,
             upper=30.0,
             description="Half of what the first move has more than the one back, as load torque",
+            of_load=True,
         ),
     ),
     basis=basis,

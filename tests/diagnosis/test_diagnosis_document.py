@@ -11,9 +11,11 @@ import pytest
 from frictioncli.diagnosis.diagnose import diagnose_joint
 from frictioncli.diagnosis.documents.document import read_diagnoses
 from frictioncli.diagnosis.documents.from_diagnosis import diagnosis_document
+from frictioncli.diagnosis.documents.parameters import TorqueUnits
 from frictioncli.diagnosis.documents.remainder import largest_structure, remainder_record
 from frictioncli.diagnosis.search.lack_of_fit import Structure
 from frictioncli.diagnosis.settings import DiagnosisSettings
+from frictioncli.effects import BY_NAME
 from frictioncli.errors import TableError
 from frictioncli.stages.diagnose import has_finding
 from tests.diagnosis.test_diagnose import days
@@ -154,3 +156,16 @@ def test_files_of_earlier_versions_are_read_or_refused_with_the_command(tmp_path
     write(path, visible=[{"effects": ["inertia"], "size": 0.05, "p_value": 0.0}])
     with pytest.raises(TableError, match="run 'frictioncli diagnose' again"):
         read_diagnoses(path)
+
+
+def test_a_load_channel_has_its_own_unit():
+    units = TorqueUnits("A", "N·m")
+    wanted = {
+        ("stribeck", 0): "A",
+        ("dress_pack", 0): "N·m/rad",
+        ("load_offset", 0): "N·m",
+        ("rest_recovery", 0): "A",
+        ("rest_recovery", 1): "N·m",
+    }
+    for (name, number), unit in wanted.items():
+        assert units.of(BY_NAME[name], BY_NAME[name].coefficients[number]) == unit

@@ -21,6 +21,7 @@ from frictioncli.diagnosis.documents.extended_model import (
 )
 from frictioncli.diagnosis.documents.parameters import (
     Z95,
+    TorqueUnits,
     extension_coefficients,
     extension_parameters,
     fitted_parameters,
@@ -30,7 +31,6 @@ from frictioncli.diagnosis.documents.remainder import remainder_record
 from frictioncli.diagnosis.search.cause import Cause
 from frictioncli.diagnosis.search.lack_of_fit import Structure
 from frictioncli.diagnosis.settings import DiagnosisSettings
-from frictioncli.effects.base import Effect
 from frictioncli.effects.history_text import history_text
 from frictioncli.model.document import PARAMETERS, FrictionModel
 from frictioncli.model.friction import FrictionParameters
@@ -115,7 +115,7 @@ def extended_document(diagnosis: Diagnosis, model: FrictionModel) -> ExtendedDoc
             equation=one.effect.equation,
             channel=one.effect.channel,
             shape=one.shape,
-            coefficients=extension_coefficients(extension, number, diagnosis.torque_unit),
+            coefficients=extension_coefficients(extension, number, _units(diagnosis)),
         )
         for number, one in enumerate(extension.effects)
     ]
@@ -151,20 +151,19 @@ def _cause_record(diagnosis: Diagnosis, cause: Cause, number: int) -> CauseRecor
     """Return a named cause; its parameters are those of the extended model."""
     effect, extension = cause.fit.effect, diagnosis.extension
     assert extension is not None  # there is one wherever there is a cause
-    parameters = extension_parameters(extension, effect.name, _unit(diagnosis, effect))
+    parameters = extension_parameters(extension, effect.name, _units(diagnosis))
     return _record(diagnosis, cause, parameters, f"diagnosis-{number}.svg")
 
 
 def _visible_record(diagnosis: Diagnosis, cause: Cause) -> CauseRecord:
     """Return a cause that is not named; its parameters are those of its own fit."""
-    parameters = fitted_parameters(cause.fit, _unit(diagnosis, cause.fit.effect))
+    parameters = fitted_parameters(cause.fit, _units(diagnosis))
     return _record(diagnosis, cause, parameters, None)
 
 
-def _unit(diagnosis: Diagnosis, effect: Effect) -> str:
-    """Return the unit of torque in the channel of an effect."""
-    logged = effect.channel == "load" and diagnosis.base.has_load_channel
-    return _LOAD_UNIT if logged else diagnosis.torque_unit
+def _units(diagnosis: Diagnosis) -> TorqueUnits:
+    unit = diagnosis.torque_unit
+    return TorqueUnits(unit, _LOAD_UNIT if diagnosis.base.has_load_channel else unit)
 
 
 def _record(

@@ -1,6 +1,7 @@
 """Parameters of a cause with their intervals, from the fit of its effect or from the extension."""
 
 from collections.abc import Mapping
+from typing import NamedTuple
 
 import numpy as np
 
@@ -16,21 +17,35 @@ Z95 = 1.96
 """Half-width of a 95 % interval in standard errors."""
 
 
-def fitted_parameters(fit: EffectFit, unit: str) -> dict[str, ParameterRecord]:
+class TorqueUnits(NamedTuple):
+    """Units of torque: that of the log, and that of the load, which may have its own channel."""
+
+    torque: str
+    load: str
+
+    def of(self, effect: Effect, parameter: Parameter) -> str:
+        """Return the unit of a coefficient."""
+        in_load = parameter.of_load or effect.channel == "load"
+        return parameter.unit.replace(TORQUE, self.load if in_load else self.torque)
+
+
+def fitted_parameters(fit: EffectFit, units: TorqueUnits) -> dict[str, ParameterRecord]:
     """Return the parameters of an effect by its own fit, the shape without intervals.
 
     Parameters
     ----------
     fit : EffectFit
         The effect, fitted beside the causes.
-    unit : str
-        Unit of torque.
+    units : TorqueUnits
+        Units of torque.
     """
     errors = np.sqrt(np.maximum(np.diag(np.atleast_2d(fit.covariance)), 0.0))
-    return _shape(fit) | _coefficients(fit.effect, fit.coefficients, errors, unit)
+    return _shape(fit) | _coefficients(fit.effect, fit.coefficients, errors, units)
 
 
-def extension_parameters(extension: Extension, name: str, unit: str) -> dict[str, ParameterRecord]:
+def extension_parameters(
+    extension: Extension, name: str, units: TorqueUnits
+) -> dict[str, ParameterRecord]:
     """Return the parameters of an effect of the extended model, all refitted together.
 
     What the data cannot tell of a shape spans its whole range.
@@ -41,15 +56,15 @@ def extension_parameters(extension: Extension, name: str, unit: str) -> dict[str
         The extended model.
     name : str
         Name of the effect.
-    unit : str
-        Unit of torque.
+    units : TorqueUnits
+        Units of torque.
     """
     number = [one.effect.name for one in extension.effects].index(name)
-    return _shapes(extension, number) | extension_coefficients(extension, number, unit)
+    return _shapes(extension, number) | extension_coefficients(extension, number, units)
 
 
 def extension_coefficients(
-    extension: Extension, number: int, unit: str
+    extension: Extension, number: int, units: TorqueUnits
 ) -> dict[str, ParameterRecord]:
     """Return the coefficients of one effect of the extended model.
 
@@ -59,14 +74,14 @@ def extension_coefficients(
         The extended model.
     number : int
         Place of the effect, from 0.
-    unit : str
-        Unit of torque.
+    units : TorqueUnits
+        Units of torque.
     """
     start = len(extension.names) + len(extension.gravity)
     start += sum(len(one.effect.coefficients) for one in extension.effects[:number])
     one = extension.effects[number]
     errors = extension.errors[start : start + len(one.coefficients)]
-    return _coefficients(one.effect, one.coefficients, errors, unit)
+    return _coefficients(one.effect, one.coefficients, errors, units)
 
 
 def statement(effect: Effect, parameters: Mapping[str, ParameterRecord]) -> str:
@@ -86,19 +101,19 @@ def statement(effect: Effect, parameters: Mapping[str, ParameterRecord]) -> str:
 
 
 def _coefficients(
-    effect: Effect, values: Array, errors: Array, unit: str
+    effect: Effect, values: Array, errors: Array, units: TorqueUnits
 ) -> dict[str, ParameterRecord]:
     return {
-        parameter.name: _coefficient(parameter, value, error, unit)
+        parameter.name: _coefficient(value, error, units.of(effect, parameter))
         for parameter, value, error in zip(effect.coefficients, values, errors, strict=True)
     }
 
 
-def _coefficient(parameter: Parameter, value: float, error: float, unit: str) -> ParameterRecord:
+def _coefficient(value: float, error: float, unit: str) -> ParameterRecord:
     return ParameterRecord(
         estimate=float(value),
         ci95=(float(value - Z95 * error), float(value + Z95 * error)),
-        unit=parameter.unit.replace(TORQUE, unit),
+        unit=unit,
     )
 
 
