@@ -10,8 +10,9 @@ from hypothesis.extra.numpy import arrays
 
 from frictioncli.diagnosis.data.gravity import carried_load
 from frictioncli.diagnosis.fit.columns import base_rows, joined, misfit_column, reduced
-from frictioncli.diagnosis.fit.hypotheses import Hypothesis, hypothesis_of
-from frictioncli.diagnosis.search.precomputed import Catalogue, Precomputed, point_noise
+from frictioncli.diagnosis.fit.hypotheses import hypothesis_of
+from frictioncli.diagnosis.search.catalogue import Catalogue
+from frictioncli.diagnosis.search.precomputed import Precomputed, point_noise
 from frictioncli.effects import BY_NAME, EFFECTS
 from frictioncli.effects.base import Basis
 from frictioncli.effects.history import present
@@ -83,47 +84,6 @@ def test_columns_are_joined_and_taken_side_by_side():
         np.testing.assert_array_equal(few.means, one.means[:, [3, 0]])
 
 
-def bounded(lower, upper):
-    count = len(lower)
-    empty = reduced(PAIRS, np.zeros((ROWS, count)), np.zeros((ROWS, count)))
-    return Hypothesis(
-        name="any",
-        shapes=({},),
-        width=count,
-        columns=empty,
-        rms=np.ones((1, count)),
-        lower=np.array(lower),
-        upper=np.array(upper),
-    )
-
-
-@pytest.mark.parametrize(
-    ("coefficients", "allowed"),
-    [
-        ([0.0, 0.0], True),
-        ([10.0, -5.0], True),
-        ([-0.19, 0.0], True),
-        ([-0.21, 0.0], False),
-        ([10.19, 5.0], True),
-        ([10.21, 5.0], False),
-        ([0.0, 5.99], True),
-        ([0.0, -6.01], False),
-    ],
-)
-def test_bounds_may_be_missed_by_two_standard_errors(coefficients, allowed):
-    """Errors of 0.1 and 0.5 about bounds of 0 to 10 and -5 to 5."""
-    hypothesis = bounded([0.0, -5.0], [10.0, 5.0])
-    covariance = np.array([[0.01, 0.04], [0.04, 0.25]])
-    assert hypothesis.allows(np.array(coefficients), covariance) is allowed
-
-
-@given(arrays(float, (2,), elements=VALUES), arrays(float, (2, 2), elements=st.floats(-3, 3)))
-@settings(max_examples=60)
-def test_what_lies_within_its_bounds_is_always_allowed(coefficients, root):
-    inside = np.clip(coefficients, [0.0, -5.0], [10.0, 5.0])
-    assert bounded([0.0, -5.0], [10.0, 5.0]).allows(inside, root @ root.T)
-
-
 @pytest.fixture(scope="module")
 def joint():
     return problem(1)
@@ -179,11 +139,14 @@ def vars_of(parameters):
     return {name: getattr(parameters, name) for name in parameters.__dataclass_fields__}
 
 
-def test_an_offset_of_the_torque_loads_no_friction(joint):
-    """Neither where friction is simulated nor in its derivative."""
-    assert carried_load(joint.load_base, np.array([0.0, 0.0, 9.0])).any() == np.False_
+def test_a_constant_of_gravity_loads_the_gear_as_the_rest_does(joint):
+    """Where friction is simulated, and in its derivative: alpha (L + c)² by hand."""
+    gravity = np.array([80.0, 10.0, 9.0])
+    angle = np.radians(joint.table.position)
+    carried = 80 * np.cos(angle) + 10 * np.sin(angle) + 9
+    np.testing.assert_allclose(carried_load(joint.load_base, gravity), carried)
     friction, load = base_rows(joint)
-    assert not friction[:, -1].any()
+    np.testing.assert_allclose(friction[:, -1], 2 * joint.parameters.alpha * joint.table.load)
     assert load[:, -1] == pytest.approx(1.0)
 
 
@@ -201,43 +164,78 @@ def test_the_misfit_is_measured_less_simulated(joint):
 
 
 @pytest.mark.parametrize("channel", ["friction", "load"])
-def test_point_noise_is_that_of_a_row_about_its_pair(joint, channel):
-    """0.3 in both channels; a ripple hides it until its columns are taken out."""
+def test_point_noise_is_pure_error_whatever_ripples(joint, channel):
+    """0.3 in both channels; what is alike in neighbouring pairs at one speed hides nothing."""
     assert point_noise(joint) == pytest.approx((0.3, 0.3), rel=0.05)
+    ripple = np.sin(9 * np.radians(joint.table.position)) * joint.table.speed / 50
+    rippled = replace(joint, **{channel: getattr(joint, channel) + 3 * ripple})
+    assert point_noise(rippled) == pytest.approx(point_noise(joint), rel=1e-9)
+
+
+def test_point_noise_of_pairs_that_are_never_alike_is_about_the_base_and_what_stands_beside(joint):
+    """Pairs that cross other bins than their neighbours have no pure error."""
+    away = joint.table.position + 0.01 * joint.table.pair
+    moved = replace(joint.table, position=away)
+    parted = replace(joint, table=moved, layout=replace(joint.layout, blocks=()))
+    assert point_noise(parted) == pytest.approx((0.3, 0.3), rel=0.05)
     ripple = np.sin(9 * np.radians(joint.table.position))
-    rippled = replace(joint, **{channel: getattr(joint, channel) + ripple})
-    before = dict(zip(("friction", "load"), point_noise(rippled), strict=True))
-    assert before.pop(channel) > 0.6
-    assert list(before.values()) == pytest.approx([0.3], rel=0.05)
-    nothing = np.zeros_like(ripple)
-    columns = (ripple, nothing) if channel == "friction" else (nothing, ripple)
-    found = Basis(*(column[:, np.newaxis] for column in columns))
+    rippled = replace(parted, friction=parted.friction + ripple)
+    assert point_noise(rippled)[0] > 0.6
+    found = Basis(ripple[:, np.newaxis], np.zeros((len(ripple), 1)))
     assert point_noise(rippled, [found]) == pytest.approx((0.3, 0.3), rel=0.05)
 
 
-def test_a_catalogue_keeps_order_and_can_do_without(joint):
+def test_a_catalogue_keeps_the_order_of_its_hypotheses(joint):
     precomputed = Precomputed.of(joint)
     effects = [BY_NAME[name] for name in ("linear_viscous", "inertia", "load_linear")]
     whole = Catalogue.of(precomputed, [hypothesis_of(effect, joint) for effect in effects])
     shapes = len(BY_NAME["inertia"].shapes(joint.all_runs))
-    assert whole.groups.width.tolist() == [1, *[2] * shapes, 1]
-    assert whole.columns.count == 2 + 2 * shapes
-    fewer = whole.without({"inertia", "stribeck"})
-    assert [one.name for one in fewer.hypotheses] == ["linear_viscous", "load_linear"]
-    assert fewer.groups.width.tolist() == [1, 1]
-    made = Catalogue.of(precomputed, fewer.hypotheses)
-    for part, expected in zip(fewer.columns.channels, made.columns.channels, strict=True):
-        np.testing.assert_array_equal(part.means, expected.means)
-        np.testing.assert_array_equal(part.within, expected.within)
-    for modes, expected in zip(fewer.modes, made.modes, strict=True):
-        np.testing.assert_allclose(np.array(modes), np.array(expected), rtol=1e-12, atol=1e-12)
-    assert whole.without(set()) is whole
+    widths = [place.stop - place.start for place in whole.places]
+    assert widths == [1, 2 * shapes, 1]
+    assert whole.part.columns.count == 2 + 2 * shapes
+    for one, place in zip(whole.hypotheses, whole.places, strict=True):
+        own = whole.part.columns.take(place)
+        for part, expected in zip(own.channels, one.columns.channels, strict=True):
+            np.testing.assert_array_equal(part.means, expected.means)
+            np.testing.assert_array_equal(part.within, expected.within)
+
+
+def test_a_catalogue_s_inner_products_are_those_of_its_columns_under_the_noise(joint):
+    """Dense: deviations over their variance, pair means by the inverse of their covariance."""
+    precomputed = Precomputed.of(joint)
+    effects = [BY_NAME[name] for name in ("linear_viscous", "inertia")]
+    catalogue = Catalogue.of(precomputed, [hypothesis_of(effect, joint) for effect in effects])
+    known = precomputed.columns
+    variances = replace(precomputed.start, noise=(9, 3), within=(0.1, 0.3), between=(0.05, 0.2))
+    for number, effect in enumerate(effects):
+        across, own = catalogue.products(number, known, variances)
+        expected = np.zeros_like(across)
+        square = np.zeros((across.shape[1], across.shape[1]))
+        for channel in (0, 1):
+            columns = catalogue.part.columns.take(catalogue.places[number]).channels[channel]
+            inverse = np.linalg.inv(
+                dense_noise.covariance(
+                    joint.layout,
+                    precomputed.noises.spectra[channel],
+                    precomputed.noises.indices[variances.noise[channel]],
+                )
+            )
+            means = np.hstack([part.columns.channels[channel].means for part in known.parts])
+            within = known.within(channel)
+            expected += within.T @ columns.within / variances.within[channel]
+            expected += means.T @ inverse @ columns.means / variances.between[channel]
+            square += columns.within.T @ columns.within / variances.within[channel]
+            square += columns.means.T @ inverse @ columns.means / variances.between[channel]
+        np.testing.assert_allclose(across, expected, rtol=1e-8, atol=1e-8 * np.abs(expected).max())
+        width = len(effect.coefficients)
+        for shape, found in enumerate(own):
+            place = slice(shape * width, (shape + 1) * width)
+            np.testing.assert_allclose(found, square[place, place], rtol=1e-8, atol=1e-9)
 
 
 def test_a_catalogue_can_be_empty(joint):
-    precomputed = Precomputed.of(joint)
-    empty = Catalogue.of(precomputed, [hypothesis_of(BY_NAME["drift"], joint)]).without({"drift"})
-    assert empty.columns.count == 0
+    empty = Catalogue.of(Precomputed.of(joint), [])
+    assert empty.part.columns.count == 0
     assert empty.hypotheses == ()
 
 

