@@ -7,14 +7,18 @@ import pytest
 
 from frictioncli.diagnosis.fit.hypotheses import EffectFit, hypothesis_of
 from frictioncli.diagnosis.search import cause_search
+from frictioncli.diagnosis.search.catalogue import Catalogue
 from frictioncli.diagnosis.search.cause_search import find_causes
-from frictioncli.diagnosis.search.precomputed import Catalogue, Precomputed
+from frictioncli.diagnosis.search.precomputed import Precomputed
 from frictioncli.diagnosis.search.step import Step
 from frictioncli.diagnosis.settings import DiagnosisSettings
 from tests.diagnosis.dense_noise import problem
 from tests.diagnosis.wave_effects import THREE, A, B, C, effect, wave
 
 SETTINGS = DiagnosisSettings()
+
+MARGIN = 0.1
+"""Smallest size worth a name. [N·m]"""
 
 
 @pytest.fixture
@@ -35,7 +39,7 @@ def names(found):
 def test_causes_are_found_one_after_another_and_the_strongest_comes_first(catalogue):
     effects = catalogue(*THREE)
     data = problem(8, friction=lambda rows: 0.5 * A(rows) + 1.0 * C(rows))
-    found = find_causes(data, effects, SETTINGS)
+    found = find_causes(data, effects, SETTINGS, MARGIN)
     assert [cause.fit.effect.name for cause in found.causes] == ["c", "a"]
     for cause, size in zip(found.causes, (1.0, 0.5), strict=True):
         assert cause.fit.coefficients[0] == pytest.approx(size, rel=0.06)
@@ -48,18 +52,15 @@ def test_causes_are_found_one_after_another_and_the_strongest_comes_first(catalo
 
 def test_nothing_is_found_in_noise(catalogue):
     effects = catalogue(*THREE)
-    found = find_causes(problem(9), effects, SETTINGS)
+    found = find_causes(problem(9), effects, SETTINGS, MARGIN)
     assert found.causes == ()
     assert set(found.rejected) == {"a", "b", "c"}
 
 
 def test_no_more_causes_than_wanted(catalogue):
-    effects = catalogue(*THREE)
+    effects = catalogue(*THREE, effect("d", [(1.0, wave(26.0))]))
     data = problem(8, friction=lambda rows: A(rows) + B(rows) + C(rows))
-    fewer = find_causes(
-        data, [*effects, effect("d", [(1.0, wave(23.0))])], replace(SETTINGS, most=2)
-    )
-    assert len(fewer.causes) == 2
+    assert len(find_causes(data, effects, replace(SETTINGS, most=2), MARGIN).causes) == 2
 
 
 def test_a_first_wrong_name_is_replaced(catalogue):
@@ -69,10 +70,10 @@ def test_a_first_wrong_name_is_replaced(catalogue):
     data = problem(10, friction=lambda rows: A(rows) + 0.6 * B(rows))
     precomputed = Precomputed.of(data)
     first = Step.of(precomputed, []).tested(
-        Catalogue.of(precomputed, [hypothesis_of(one, data) for one in effects]), 0, 0
+        Catalogue.of(precomputed, [hypothesis_of(one, data) for one in effects])
     )
     assert max(first, key=lambda name: first[name].log_bayes_factor) == "mixture"
-    found = find_causes(data, effects, SETTINGS)
+    found = find_causes(data, effects, SETTINGS, MARGIN)
     assert [cause.fit.effect.name for cause in found.causes] == ["a", "b"]
     for cause, size in zip(found.causes, (1.0, 0.6), strict=True):
         assert cause.fit.coefficients[0] == pytest.approx(size, rel=0.05)
@@ -81,7 +82,7 @@ def test_a_first_wrong_name_is_replaced(catalogue):
 def search_of(data, effects):
     precomputed = Precomputed.of(data)
     hypotheses = Catalogue.of(precomputed, [hypothesis_of(one, data) for one in effects])
-    return cause_search._Search(precomputed, hypotheses, SETTINGS, None)
+    return cause_search._Search(precomputed, hypotheses, SETTINGS, MARGIN, None)
 
 
 def effect_fit(one, *coefficients):
@@ -123,7 +124,7 @@ def test_what_was_dropped_does_not_come_back(catalogue, monkeypatch):
 
     monkeypatch.setattr(cause_search._Search, "retested", fickle)
     data = problem(18, friction=lambda rows: A(rows) + 0.5 * B(rows) + 2.0 * C(rows))
-    assert find_causes(data, effects, SETTINGS).causes == ()
+    assert find_causes(data, effects, SETTINGS, MARGIN).causes == ()
     assert tried == ["c", "a", "b"]
 
 
@@ -152,26 +153,38 @@ def test_effects_that_explain_the_same_share_a_credible_set(catalogue):
     effects = catalogue(
         effect("a", [(1.0, A)]), effect("twin", [(1.0, A), (0.01, C)]), effect("b", [(1.0, B)])
     )
-    found = find_causes(problem(14, friction=lambda rows: 0.5 * A(rows)), effects, SETTINGS)
+    found = find_causes(problem(14, friction=lambda rows: 0.5 * A(rows)), effects, SETTINGS, MARGIN)
     (cause,) = found.causes
     assert set(cause.effects) == {"a", "twin"}
     assert sum(cause.probabilities.values()) == pytest.approx(1.0, abs=2e-3)
     assert "b" not in cause.effects
 
 
-def test_form_errors_of_a_large_effect_are_no_cause_of_their_own(catalogue):
-    """0.05 beside 10 is nothing, and stands far out of the noise when alone."""
+def test_what_the_base_leaves_little_of_is_not_searched_for(catalogue):
+    """0.05 N·m stand far out of the noise, and are less than half the margin."""
     effects = catalogue(*THREE)
-    alone = find_causes(problem(15, friction=lambda rows: 0.05 * B(rows)), effects, SETTINGS)
-    assert names(alone) == ["b"]
-    beside = problem(15, friction=lambda rows: 10.0 * A(rows) + 0.05 * B(rows))
-    assert names(find_causes(beside, effects, SETTINGS)) == ["a"]
+    data = problem(15, friction=lambda rows: 0.05 * B(rows))
+    assert names(find_causes(data, effects, SETTINGS, MARGIN)) == []
+    assert names(find_causes(data, effects, SETTINGS, 0.05)) == ["b"]
+
+
+def test_smooth_structure_is_no_cause_unless_it_is_much_more_than_expected(catalogue):
+    """A wave as long as the discrepancy's: 0.2 % of the friction is no finding, 5 % is one."""
+    long = wave(2.5, 0.3)
+    effects = catalogue(effect("a", [(1.0, long)]), effect("b", [(1.0, B)]))
+    for size, expected in ((0.002, []), (0.05, ["a"])):
+        data = problem(15)
+        torque = size * np.mean(data.friction) * np.sqrt(2) * long(data.table)
+        data = replace(data, friction=data.friction + torque)
+        assert names(find_causes(data, effects, SETTINGS, 0.0)) == expected
+        without = find_causes(data, effects, SETTINGS, 0.0, discrepancy=0)
+        assert names(without) == ["a"]
 
 
 def test_bounds_forbid_a_name_in_the_search(catalogue):
     effects = catalogue(effect("a", [(1.0, A)], lower=0.0), effect("b", [(1.0, B)]))
-    assert names(find_causes(problem(16, friction=A), effects, SETTINGS)) == ["a"]
-    against = find_causes(problem(16, friction=lambda rows: -A(rows)), effects, SETTINGS)
+    assert names(find_causes(problem(16, friction=A), effects, SETTINGS, MARGIN)) == ["a"]
+    against = find_causes(problem(16, friction=lambda rows: -A(rows)), effects, SETTINGS, MARGIN)
     assert "a" not in names(against)
 
 
@@ -198,7 +211,7 @@ def test_the_search_ends_whatever_the_catalogue(catalogue, monkeypatch, seed):
 
     monkeypatch.setattr(cause_search._Search, "retested", counted)
     data = problem(seed, friction=lambda rows: sum(a * one(rows) for a, one in mixed))
-    found = find_causes(data, effects, SETTINGS)
+    found = find_causes(data, effects, SETTINGS, MARGIN)
     assert 1 <= len(found.causes) <= SETTINGS.most
     assert len(set(names(found))) == len(found.causes)
     assert set(found.rejected).isdisjoint(names(found))
@@ -206,4 +219,4 @@ def test_the_search_ends_whatever_the_catalogue(catalogue, monkeypatch, seed):
 
 def test_a_catalogue_of_one_effect_can_be_searched(catalogue):
     (only,) = catalogue(effect("a", [(1.0, A)]))
-    assert names(find_causes(problem(17, friction=A), [only], SETTINGS)) == ["a"]
+    assert names(find_causes(problem(17, friction=A), [only], SETTINGS, MARGIN)) == ["a"]
