@@ -3,6 +3,7 @@
 from collections.abc import Sequence
 
 import numpy as np
+from scipy import special
 
 from frictioncli.arrays import Array
 from frictioncli.diagnosis.data.problem import Problem
@@ -10,11 +11,18 @@ from frictioncli.diagnosis.fit.columns import RANK, base_rows, main_channel
 from frictioncli.effects.base import Basis, Effect
 from frictioncli.linear_algebra import orthonormal_basis
 
-_Z95 = 1.96
+_UPPER = 0.975
+"""Upper end of a 95 % interval."""
+
+_PRECISE = 1e4
+"""Statistics above which the root of noncentral chi squared is normal."""
 
 
 def left_of(problem: Problem, effect: Effect, basis: Basis, beside: Sequence[Basis]) -> Array:
     """Return what base and other columns leave of an effect's columns, shape (rows, width).
+
+    A coefficient of gravity shows in both channels: what one channel alone would leave to it may
+    contradict the other. So both are fitted together.
 
     Parameters
     ----------
@@ -27,7 +35,12 @@ def left_of(problem: Problem, effect: Effect, basis: Basis, beside: Sequence[Bas
     beside : sequence of Basis
         Columns beside the base, as those of measurement effects.
     """
-    return left_by(problem, main_channel(basis, effect), effect.channel, beside)
+    base = [np.vstack(base_rows(problem)), *(np.vstack(one) for one in beside)]
+    span = orthonormal_basis(np.hstack(base), tolerance=RANK)
+    left = np.vstack(basis)
+    left = left - span @ (span.T @ left)
+    friction, load = np.split(left, 2)
+    return main_channel(Basis(friction, load), effect)
 
 
 def left_by(problem: Problem, columns: Array, channel: str, beside: Sequence[Basis]) -> Array:
@@ -54,9 +67,16 @@ def visible_size(left: Array, coefficients: Array, covariance: Array) -> tuple[f
     r"""Return the RMS of a combination of columns, with its 95 % interval.
 
     With the mean inner products *R* of the columns, coefficients *c* and their covariance
-    :math:`\Sigma` the mean square is :math:`c^\mathsf{T} R c`. Errors add
-    :math:`\operatorname{tr} R \Sigma` to it on average, and give it the variance
-    :math:`2 \operatorname{tr} (R \Sigma)^2 + 4 m^\mathsf{T} R \Sigma R m` [1]_.
+    :math:`\Sigma` the mean square is :math:`c^\mathsf{T} R c`. It is about *a* times a noncentral
+    chi-squared variable [1]_ of :math:`\operatorname{tr} R \Sigma / a` degrees of freedom, with
+    the variance *a* of the combination along itself,
+
+    .. math::
+        a = \frac{c^\mathsf{T} R \Sigma R c + \operatorname{tr} (R \Sigma)^2}
+                 {c^\mathsf{T} R c + \operatorname{tr} R \Sigma} ,
+
+    and the mean square that is looked for is *a* times the noncentrality: that at which it would be
+    as small, or as great, in one of forty cases.
 
     Parameters
     ----------
@@ -87,13 +107,25 @@ def visible_size(left: Array, coefficients: Array, covariance: Array) -> tuple[f
     square = float(coefficients @ inner @ coefficients)
     product = inner @ covariance
     added = float(np.trace(product))
-    mean = max(square - added, 0.0)
-    share = np.sqrt(mean / square) if square > 0 else 0.0
-    slope = float(coefficients @ product @ inner @ coefficients) * share**2
-    error = float(np.sqrt(max(2 * np.trace(product @ product) + 4 * slope, 0.0)))
-    if len(coefficients) == 1:
-        deviation = float(np.sqrt(added))
-        size = float(np.sqrt(square))
-        return size, max(size - _Z95 * deviation, 0.0), size + _Z95 * deviation
-    low, high = max(mean - _Z95 * error, 0.0), mean + _Z95 * error
-    return float(np.sqrt(mean)), float(np.sqrt(low)), float(np.sqrt(high))
+    along = float(coefficients @ product @ inner @ coefficients) + float(
+        np.trace(product @ product)
+    )
+    if square + added <= 0 or along <= 0:
+        size = float(np.sqrt(max(square, 0.0)))
+        return size, size, size
+    unit = along / (square + added)
+    freedom, statistic = max(added / unit, 1.0), square / unit
+    size, low = (_noncentrality(statistic, freedom, one) for one in (0.5, _UPPER))
+    # errors may cancel the effect by chance: that it is nothing does not follow
+    high = _noncentrality(max(statistic, freedom), freedom, 1 - _UPPER)
+    return float(np.sqrt(unit * size)), float(np.sqrt(unit * low)), float(np.sqrt(unit * high))
+
+
+def _noncentrality(statistic: float, freedom: float, probability: float) -> float:
+    """Return the noncentrality with which a statistic is below its value so often."""
+    if special.chdtr(freedom, statistic) <= probability:
+        return 0.0
+    if statistic > _PRECISE:
+        root = np.sqrt(statistic - freedom + 1) - special.ndtri(probability)
+        return float(max(root, 0.0) ** 2)
+    return float(special.chndtrinc(statistic, freedom, probability))
