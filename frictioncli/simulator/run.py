@@ -137,6 +137,8 @@ def run_setup(settings: SynthesisSettings, number: int, seeds: np.random.SeedSeq
         return values[number % len(values)]
 
     nuisances = requested_nuisances(settings.nuisances, settings.seed)
+    if settings.joint_kind == "zones":  # has zones of its own
+        nuisances = nuisances.without("friction_zones")
     enriched = settings.protocol == "enriched"
     payloads = tuple(settings.payload + more for more in (PAYLOADS if enriched else (0.0,)))
     program = replace(default_joint.PROGRAM, lowest=settings.lowest, highest=settings.highest)

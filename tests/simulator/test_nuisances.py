@@ -109,6 +109,19 @@ def test_teeth_finer_than_a_bin_are_as_loud_in_bins(traced):
     assert fast[0] == pytest.approx(fast[1], rel=0.35)
 
 
+@pytest.mark.parametrize("kind", ["zones", "network"])
+def test_all_together_are_the_same_in_bins(traced, kind):
+    # teeth finer than a bin depend on which samples fall into it, see below
+    chosen = settings("all", "tooth_mesh:0", joint_kind=kind, seed=8)
+    world = simulate_world(chosen)
+    both = traced(chosen).merge(world.torques, on=["pair", "position"], suffixes=("", "_bins"))
+    assert len(both) >= 0.97 * len(world.torques)
+    for name, most in (*((name, 0.08) for name in CHANNELS), ("speed", 0.02)):
+        assert rms(both[name] - both[f"{name}_bins"]) < most
+    assert rms(both["motor_temperature"] - both["motor_temperature_bins"]) < 0.4
+    assert (world.nuisances.size("friction_zones") == 0.0) is (kind == "zones")
+
+
 def test_noise_along_a_move_is_the_same_in_bins(traced):
     spreads, memories = [], []
     loud = settings("move_noise:2", noise_kind="white", noise_scale=1.0)

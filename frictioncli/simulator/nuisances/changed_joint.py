@@ -29,7 +29,7 @@ _FLOOR_SHARES = (0.1, 0.1, 0.8)
 _ZONE_EXPONENTS = (-1.0, 0.0, 1.0)
 """Speed exponents of the zones less 1/2, over their spread [-]."""
 
-_ZONE_THINNING = (7.0, 0.0, -7.0)
+_ZONE_THINNING = (4.0, 0.0, -4.0)
 """Relative departure of their thinning rates, over the spread of the exponents [-]."""
 
 _ZONE_SPEED = 40.0

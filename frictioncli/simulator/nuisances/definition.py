@@ -1,7 +1,7 @@
 """Definition of a nuisance, and the nuisances of a simulated joint with their true sizes."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 from frictioncli.simulator.planted.effect import Draw, Range
@@ -95,6 +95,10 @@ class Nuisances:
     def parameter(self, name: str, parameter: str) -> float:
         """Return a parameter of a nuisance that is present."""
         return next(one.parameters[parameter] for one in self.present if one.name == name)
+
+    def without(self, name: str) -> "Nuisances":
+        """Return all but one."""
+        return replace(self, present=tuple(one for one in self.present if one.name != name))
 
     def truth(self) -> list[dict[str, Any]]:
         """Return the true values of all, ready for JSON."""
