@@ -22,8 +22,9 @@ _STREAM = 2_000_000
 _TURN = 2.0 * math.pi
 
 
-def _coarse(generator: np.random.Generator) -> float:
-    return float(generator.choice((0.1, 0.5, 1.0)))
+def _sensor_step(generator: np.random.Generator) -> float:
+    # either has a change at the half degrees, where recordings of the thermal cycle begin
+    return float(generator.choice((0.2, 1.0)))
 
 
 _OF_LOG_AND_JOINT = (
@@ -109,7 +110,7 @@ _OF_LOG_AND_JOINT = (
         unit="°C",
         lowest=0.0,
         highest=2.0,
-        draw=_coarse,
+        draw=_sensor_step,
         description="resolution of the registered motor temperature",
     ),
     Nuisance(
