@@ -32,6 +32,7 @@ def branches(run: int = 0, motor_heat_share: float | None = None) -> dict[str, d
             "start": starts,
             "motor": temperatures[MOTOR],
             "housing": temperatures[HOUSING],
+            "gear": temperatures["gear"],
             "friction": friction,
         }
     return found
@@ -89,6 +90,35 @@ def test_branches_differ_for_every_linear_mix_of_both_temperatures(run, weight):
     low, high = max(e[0] for e in ends), min(e[1] for e in ends)
     assert high > low + 5.0
     assert np.abs(gap(run, mix, np.linspace(low, high, 50))).max() > 1.0
+
+
+def left_by_refit(run, temperature) -> float:
+    """Return the RMS at L = 0 that equation (16), fitted to both branches, leaves [N·m].
+
+    At L = 0 alpha has no part. For each delta the other three parameters are linear; they have no
+    sign here, which can only lower the RMS.
+    """
+    speed = np.concatenate(
+        [np.broadcast_to(SPEEDS, p["motor"].shape).ravel() for p in run.values()]
+    )
+    warmth = np.concatenate([temperature(phase).ravel() for phase in run.values()]) - 40.0
+    friction = np.concatenate([phase["friction"].ravel() for phase in run.values()])
+    root = np.sqrt(speed)
+    left = []
+    for delta in np.geomspace(0.002, 0.4, 120):
+        design = np.column_stack([np.ones_like(root), root, root * np.exp(-delta * warmth)])
+        found, *_ = np.linalg.lstsq(design, friction, rcond=None)
+        left.append(np.sqrt(np.mean(np.square(design @ found - friction))))
+    return float(min(left))
+
+
+def test_no_mix_of_both_temperatures_explains_the_friction_but_the_gears_own_does(run):
+    left = [
+        left_by_refit(run, lambda phase, w=w: w * phase["motor"] + (1.0 - w) * phase["housing"])
+        for w in np.linspace(-0.3, 1.3, 33)
+    ]
+    assert min(left) > 2.0
+    assert left_by_refit(run, lambda phase: phase["gear"]) < min(left) / 2.0
 
 
 def test_motor_heated_joint_has_more_friction_while_heating_and_gear_heated_less():
