@@ -173,7 +173,7 @@ def diagnose_joint(
         extension = extend(problem, weighted_fit, [cause.fit for cause in causes])
         gain = measured_gain(
             new or problem,
-            _predicting(extension, causes),
+            predicting(extension, causes),
             basis="new_run" if new else "within_run",
             floor=_floor(found),
             seed=settings.seed,
@@ -201,10 +201,17 @@ def diagnose_joint(
     )
 
 
-def _predicting(extension: Extension, causes: Sequence[Cause]) -> Extension:
+def predicting(extension: Extension, causes: Sequence[Cause]) -> Extension:
     """Return an extension as it predicts a new run: without properties that did not last.
 
     The history of a change already says that it is not there; the base was fitted beside all.
+
+    Parameters
+    ----------
+    extension : Extension
+        The base with the causes, refitted.
+    causes : sequence of Cause
+        The causes, in the order of its effects.
     """
     effects = tuple(
         fitted

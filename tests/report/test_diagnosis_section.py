@@ -56,6 +56,17 @@ def test_reloaded_misfits_are_those_of_the_files(diagnosed):
     np.testing.assert_allclose(both, [11.0, 22.0, 9.0, 18.0])
 
 
+def test_what_did_not_last_is_not_predicted_on_the_new_run(diagnosed, diagnosed_work):
+    document, extended = read_documents(diagnosed_work)[2]
+    first, *others = document.causes
+    lost = structs.replace(first, holds_on_new_run=False)
+    found = reload(diagnosed.torques, structs.replace(document, causes=(lost, *others)), extended)
+    wanted = found.new.before["friction"] - SHIFT
+    np.testing.assert_allclose(found.new.after["friction"], wanted, atol=1e-9)
+    seen = diagnosed.diagnosis.seen.after["friction"]
+    np.testing.assert_allclose(found.seen.after["friction"], seen, atol=1e-9)
+
+
 def test_section_says_what_was_found(diagnosed):
     section = diagnosis_section(diagnosed)
     assert "2.10 N·m (RMS, day-1)" in section.verdict

@@ -1,7 +1,7 @@
 """What a diagnosis has seen, rebuilt from the files of a work folder: misfits and fitted terms."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
@@ -136,8 +136,20 @@ def reload(torques: pd.DataFrame, document: DiagnosisDocument, extended: Extende
     return Reloaded(
         document=document,
         seen=misfits(seen, extended),
-        new=None if new is None else misfits(new, extended),
+        new=None if new is None else _predicted(misfits(new, extended), document),
     )
+
+
+def _predicted(new: Misfits, document: DiagnosisDocument) -> Misfits:
+    """Return the misfits of a new run, on which properties that did not last are not predicted.
+
+    The history of a change already says that it is not there.
+    """
+    after = dict(new.after)
+    for term, cause in zip(new.terms, document.named_causes, strict=True):
+        if cause.holds_on_new_run is False and term.effect.moments is None:
+            after = {channel: values + term.of(channel) for channel, values in after.items()}
+    return replace(new, after=after)
 
 
 def misfits(problem: Problem, extended: ExtendedModel) -> Misfits:

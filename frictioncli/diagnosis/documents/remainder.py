@@ -17,7 +17,7 @@ import numpy as np
 
 from frictioncli.arrays import Array, Indices
 from frictioncli.diagnosis.data.problem import Problem
-from frictioncli.diagnosis.diagnose import Diagnosis
+from frictioncli.diagnosis.diagnose import Diagnosis, predicting
 from frictioncli.diagnosis.documents.document import RemainderRecord
 from frictioncli.diagnosis.fit.extension import misfits
 
@@ -68,7 +68,7 @@ def remainder_record(diagnosis: Diagnosis) -> RemainderRecord | None:
     friction, load = (
         (problem.friction_misfit, problem.load_misfit)
         if extension is None
-        else misfits(problem, extension)
+        else misfits(problem, predicting(extension, diagnosis.causes))
     )
     rmse = float(np.sqrt(np.mean(problem.squared(friction, load))))
     if rmse <= ADEQUATE * floor:
