@@ -193,7 +193,8 @@ def _gravity_in_torque(rows: pd.DataFrame, columns: Array) -> Array:
 
 def _with_friction(problem: Problem) -> Problem:
     """Return the problem of all runs with its friction simulated by its parameters."""
-    parameters, table = problem.parameters, _modelled(problem.table, problem.parameters)
+    parameters, measured_load = problem.parameters, problem.has_load_channel
+    table = _modelled(problem.table, parameters, measured_load=measured_load)
     root_speed = np.sqrt(table.speed)
     decay = np.exp(-parameters.delta * table.temperature)
     derivative = {
@@ -211,9 +212,13 @@ def _with_friction(problem: Problem) -> Problem:
     )
 
 
-def _modelled(table: EffectTable, parameters: FrictionParameters) -> EffectTable:
+def _modelled(
+    table: EffectTable, parameters: FrictionParameters, *, measured_load: bool
+) -> EffectTable:
     """Return a table with the columns that depend on the friction of the base model."""
     decay = np.exp(-parameters.delta * table.temperature)
+    # a measured load has all that changes it already
+    slope = 0.0 if measured_load else 2 * parameters.alpha
     return replace(
         table,
         friction=friction_torque(
@@ -221,5 +226,5 @@ def _modelled(table: EffectTable, parameters: FrictionParameters) -> EffectTable
         ),
         viscous=parameters.beta + parameters.gamma * decay,
         temperature_slope=-parameters.delta * parameters.gamma * decay * np.sqrt(table.speed),
-        load_slope=2 * parameters.alpha * table.load,
+        load_slope=slope * table.load,
     )

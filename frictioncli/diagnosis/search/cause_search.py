@@ -27,6 +27,7 @@ from frictioncli.diagnosis.ramps.evidence import RampEvidence, with_ramp_evidenc
 from frictioncli.diagnosis.search.catalogue import Catalogue
 from frictioncli.diagnosis.search.cause import CONVINCING, Cause
 from frictioncli.diagnosis.search.precomputed import Precomputed
+from frictioncli.diagnosis.search.standing import beyond_bounds
 from frictioncli.diagnosis.search.step import Step
 from frictioncli.diagnosis.settings import DiagnosisSettings
 from frictioncli.effects import BASE_MEASUREMENT, BY_NAME
@@ -122,6 +123,9 @@ def find_causes(
     """
     beside = applicable(BASE_MEASUREMENT, problem.table)
     precomputed = Precomputed.of(problem, beside, discrepancy)
+    while len(possible := _possible(precomputed, beside)) < len(beside):
+        beside = possible
+        precomputed = Precomputed.of(problem, beside, discrepancy)
     hypotheses = [hypothesis_of(effect, problem) for effect in applicable(effects, problem.table)]
     search = _Search(precomputed, Catalogue.of(precomputed, hypotheses), settings, margin, ramps)
     accepted: list[EffectFit] = []
@@ -139,6 +143,10 @@ def find_causes(
         if not significant or len(accepted) >= settings.most:
             break
         candidates = [*accepted, _best(step, significant)]
+        impossible = search.impossible(candidates)
+        if impossible:
+            dropped[candidates[-1].effect.name] = impossible
+            continue
         retested = search.retested(candidates)
         # an effect that another one has made superfluous must not come back again and again
         for name in _names(candidates) - _names(retested):
@@ -195,6 +203,21 @@ class _Search:
         size, _, _ = step.visible(test.effect_fit(BY_NAME[test.name]))
         return size > _LEAST_SHARE * self.margin
 
+    def impossible(self, accepted: Sequence[EffectFit]) -> str:
+        """Return why the last of some effects is impossible: the data ask for more than bounds.
+
+        Once accepted its coefficients are free, and would explain what is another's.
+        """
+        fit, newest = Step.of(self.precomputed, accepted).fit, accepted[-1]
+        free = slice(len(fit.coefficients) - len(newest.coefficients), None)
+        hypothesis = hypothesis_of(newest.effect, self.precomputed.problem, [newest.shape])
+        return beyond_bounds(
+            replace(
+                newest, coefficients=fit.coefficients[free], covariance=fit.covariance[free, free]
+            ),
+            (hypothesis.lower, hypothesis.upper),
+        )
+
     def retested(self, accepted: list[EffectFit]) -> list[EffectFit]:
         """Return the accepted effects, each tested once more beside the others.
 
@@ -244,6 +267,15 @@ def _cause(search: _Search, accepted: Sequence[EffectFit], number: int) -> Cause
         probabilities={name: value for name, value in share.items() if value >= 1e-3},
         **_sizes(step, fit),
     )
+
+
+def _possible(precomputed: Precomputed, effects: Sequence[Effect]) -> tuple[Effect, ...]:
+    """Return the effects of the measurement whose coefficients are physically possible.
+
+    One that is not explains something else, as a payload that goes with speed, and would hide it.
+    """
+    causes = _measurement(Step.of(precomputed, []), effects)
+    return tuple(cause.fit.effect for cause in causes if not beyond_bounds(cause.fit))
 
 
 def _measurement(step: Step, effects: Sequence[Effect]) -> tuple[Cause, ...]:

@@ -8,6 +8,7 @@ import numpy as np
 from frictioncli.arrays import Array
 from frictioncli.diagnosis.data.problem import Problem
 from frictioncli.diagnosis.fit.columns import main_channel
+from frictioncli.diagnosis.fit.hypotheses import EffectFit
 from frictioncli.diagnosis.search.cause import CONVINCING, Cause
 
 _Z95 = 1.96
@@ -67,20 +68,38 @@ def _judged(cause: Cause, margin: float, alpha: float) -> Cause:
     return replace(cause, standing="visible" if low > 0 else "undetermined", reason=reason)
 
 
+def beyond_bounds(fit: EffectFit, bounds: tuple[Array, Array] | None = None) -> str:
+    """Return which coefficient of an effect is physically impossible; empty if none is.
+
+    Parameters
+    ----------
+    fit : EffectFit
+        The effect.
+    bounds : (ndarray, ndarray), shape (coefficients,) each, optional
+        Bounds of its coefficients; by default those of the catalogue.
+    """
+    parameters = fit.effect.coefficients
+    lower, upper = bounds or tuple(
+        np.array([getattr(one, side) for one in parameters]) for side in ("lower", "upper")
+    )
+    reach = _Z95 * _errors(fit)
+    beyond = (fit.coefficients < lower - reach) | (fit.coefficients > upper + reach)
+    for parameter, value, outside in zip(parameters, fit.coefficients, beyond, strict=True):
+        if outside:
+            return f"{parameter.name} of {value:.3g} {parameter.unit} is physically impossible"
+    return ""
+
+
 def _impossible(cause: Cause) -> str:
     """Return why a cause is physically impossible or not determined; empty if it is not."""
-    fit = cause.fit
-    errors = np.sqrt(np.maximum(np.diag(fit.covariance), 0.0))
-    at_zero = True
-    for parameter, value, error in zip(
-        fit.effect.coefficients, fit.coefficients, errors, strict=True
-    ):
-        if value < parameter.lower - _Z95 * error or value > parameter.upper + _Z95 * error:
-            return f"{parameter.name} of {value:.3g} {parameter.unit} is physically impossible"
-        at_zero = at_zero and abs(value) <= _Z95 * error
-    if at_zero and len(errors) == 1:
+    reason, errors = beyond_bounds(cause.fit), _errors(cause.fit)
+    if not reason and len(errors) == 1 and abs(cause.fit.coefficients[0]) <= _Z95 * errors[0]:
         return "its coefficient may be zero"
-    return ""
+    return reason
+
+
+def _errors(fit: EffectFit) -> Array:
+    return np.sqrt(np.maximum(np.diag(fit.covariance), 0.0))
 
 
 def _cancel(problem: Problem, one: Cause, other: Cause) -> bool:

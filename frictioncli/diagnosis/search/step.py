@@ -254,7 +254,8 @@ class Step:
         starts = [found.shape]
         if found.shape in effect.shapes(self.problem.all_runs):
             starts.append(refined(found.shape, self.precomputed.start))
-        fits = [self._effect_fit(effect, refined(shape, suited)) for shape in starts]
+        shapes = [found.shape, *(refined(shape, suited) for shape in starts)]
+        fits = [self._effect_fit(effect, shape) for shape in shapes]
         return max(fits, key=lambda one: one.statistic)
 
     def size(self, fit: EffectFit) -> float:
