@@ -38,7 +38,7 @@ def c_header(joint: DeployedModel, remarks: Sequence[str]) -> str:
     extension = joint.extension if joint.can_correct else None
     parts = [c.HEAD]
     if joint.can_correct:
-        parts += [c.INVERSE, c.UPDATE]
+        parts += [c.INVERSE, *([c.LAGGING] if extension else []), c.UPDATE]
     if extension:
         parts += [c.GEAR, c.BEYOND]
     if joint.can_correct:
@@ -143,13 +143,18 @@ def _gear_constants(gear: GearLag | None) -> list[str]:
     times = ", ".join(repr(value) for value in (lag.time_constant, *ends))
     lines = [f"#define ${{PREFIX}}_TIME_CONSTANTS {{{times}}} /* [s], 95 % */"]
     for name, remark in (
-        ("lag_share", "share followed with delay [1]"),
+        ("lag_share", "share at a gear that follows the motor [1]"),
         ("friction_heating", "at the reference power [°C]"),
-        ("housing_share", "way from motor to housing [1]"),
+        ("housing_share", "share at the housing [1]"),
+        ("housing_lag_share", "share at a gear that follows the housing [1]"),
         ("reference_power", "torque times speed [$unit.deg/s]"),
         ("start_sd", "when the past is unknown [°C]"),
     ):
         lines.append(f"#define ${{PREFIX}}_{name.upper()} ({getattr(lag, name)!r}) /* {remark} */")
+    slow = lag.housing_time_constant or 0.0
+    lines.append(
+        f"#define ${{PREFIX}}_HOUSING_TIME_CONSTANT {slow!r} /* [s], 0 where it is measured */"
+    )
     return lines
 
 
@@ -170,6 +175,8 @@ _NO_LAG = GearLag(
     lag_share=0.0,
     friction_heating=0.0,
     housing_share=0.0,
+    housing_lag_share=0.0,
+    housing_time_constant=None,
     reference_power=1.0,
     start_sd=0.0,
 )

@@ -89,8 +89,10 @@ GEAR_FIELDS = """\
     /* state of the gear: by its time constant [0], and by the ends of the interval [1], [2] */
     double lag[3];              /* motor's temperature filtered, less itself [degC] */
     double heat[3];             /* friction power filtered [1] */
+    double housing_lag[3];      /* housing's temperature filtered, less itself [degC] */
+    double hidden_lag;          /* housing that is not measured, less the motor [degC] */
     double started_at;          /* time of the first sample [s] */
-    double housing_temperature; /* the latest; NAN if unknown [degC] */
+    double housing_temperature; /* the latest known [degC] */
 """
 
 GEAR_INITIAL_VALUES = """\
@@ -99,10 +101,12 @@ GEAR_INITIAL_VALUES = """\
         for (i = 0; i < 3; i++) {
             joint->lag[i] = 0.0;
             joint->heat[i] = 0.0;
+            joint->housing_lag[i] = 0.0;
         }
     }
+    joint->hidden_lag = 0.0;
     joint->started_at = 0.0;
-    joint->housing_temperature = NAN;
+    joint->housing_temperature = 0.0;
 """
 
 INVERSE = """\
@@ -159,43 +163,71 @@ static inline int ${prefix}_is_due(const struct $prefix *joint)
 GEAR_ARGUMENTS = ",\n    double housing_temperature, double power"
 
 GEAR_COMMENT = """
- * housing_temperature [degC], NAN if unknown; power: mean of friction torque times speed since the
- * sample before [$unit.deg/s], what warms the gear."""
+ * housing_temperature [degC], NAN if unknown: then the latest one known, or else the motor's;
+ * power: mean of friction torque times speed since the sample before [$unit.deg/s], what warms the
+ * gear."""
+
+LAGGING = """\
+
+/* A first-order filter's output less its input after the input rose linearly over a duration, by
+ * the same before and the ratio of the duration to the time constant. */
+static inline double ${prefix}_lagging(double lag, double ratio, double rise)
+{
+    return exp(-ratio) * lag - rise * (ratio > 0.0 ? -expm1(-ratio) / ratio : 1.0);
+}
+"""
 
 GEAR_STEP = """\
     static const double time_constant[3] = ${PREFIX}_TIME_CONSTANTS;
+    double duration = joint->begun && time > joint->time ? time - joint->time : 0.0;
+    double warming = joint->begun ? motor_temperature - joint->motor_temperature : 0.0;
+    double before = joint->housing_temperature;
     int i;
-    if (!joint->begun)
+    if (!joint->begun) {
         joint->started_at = time;
-    for (i = 0; joint->begun && i < 3; i++) {
-        double ratio = (time > joint->time ? time - joint->time : 0.0) / time_constant[i];
-        double closed = -expm1(-ratio);
-        double warming = motor_temperature - joint->motor_temperature;
-        joint->lag[i] = exp(-ratio) * joint->lag[i]
-                        - warming * (ratio > 0.0 ? closed / ratio : 1.0);
-        joint->heat[i] = exp(-ratio) * joint->heat[i]
-                         + power / ${PREFIX}_REFERENCE_POWER * closed;
+        before = motor_temperature;
     }
-    joint->housing_temperature = housing_temperature;
+    if (${PREFIX}_HOUSING_TIME_CONSTANT > 0.0) {
+        joint->hidden_lag = ${prefix}_lagging(
+            joint->hidden_lag, duration / ${PREFIX}_HOUSING_TIME_CONSTANT, warming);
+        housing_temperature = motor_temperature + joint->hidden_lag;
+    }
+    joint->housing_temperature = isnan(housing_temperature) ? before : housing_temperature;
+    for (i = 0; joint->begun && i < 3; i++) {
+        double ratio = duration / time_constant[i];
+        joint->lag[i] = ${prefix}_lagging(joint->lag[i], ratio, warming);
+        joint->housing_lag[i] = ${prefix}_lagging(
+            joint->housing_lag[i], ratio, joint->housing_temperature - before);
+        joint->heat[i] = exp(-ratio) * joint->heat[i]
+                         - power / ${PREFIX}_REFERENCE_POWER * expm1(-ratio);
+    }
 """
 
 GEAR = """\
 
-/* How much warmer than the motor the place of friction is [degC]. */
+/* What the filters add to the temperature of the gear [degC]. */
+static inline double ${prefix}_gear_filtered(const struct $prefix *joint, int i)
+{
+    return ${PREFIX}_LAG_SHARE * joint->lag[i]
+           + ${PREFIX}_FRICTION_HEATING * joint->heat[i]
+           + ${PREFIX}_HOUSING_LAG_SHARE * joint->housing_lag[i];
+}
+
+/* How much warmer than measured the place of friction is [degC]. */
 static inline double ${prefix}_gear_excess(const struct $prefix *joint)
 {
-    double distance = joint->housing_temperature - joint->motor_temperature;
-    return ${PREFIX}_LAG_SHARE * joint->lag[0]
-           + ${PREFIX}_FRICTION_HEATING * joint->heat[0]
-           + ${PREFIX}_HOUSING_SHARE * (isnan(distance) ? 0.0 : distance);
+    double base = $base_temperature;
+    return ${PREFIX}_LAG_SHARE * (joint->motor_temperature - base)
+           + (${PREFIX}_HOUSING_SHARE + ${PREFIX}_HOUSING_LAG_SHARE)
+                 * (joint->housing_temperature - base)
+           + ${prefix}_gear_filtered(joint, 0);
 }
 
 /* Its standard deviation [degC]: by the time constant's interval and the unknown start. */
 static inline double ${prefix}_gear_uncertainty(const struct $prefix *joint)
 {
     static const double time_constant[3] = ${PREFIX}_TIME_CONSTANTS;
-    double ends = ${PREFIX}_LAG_SHARE * (joint->lag[2] - joint->lag[1])
-                  + ${PREFIX}_FRICTION_HEATING * (joint->heat[2] - joint->heat[1]);
+    double ends = ${prefix}_gear_filtered(joint, 2) - ${prefix}_gear_filtered(joint, 1);
     double age = joint->begun ? joint->time - joint->started_at : 0.0;
     double start = ${PREFIX}_START_SD * exp(-age / time_constant[0]);
     return sqrt(ends * ends / (4.0 * 1.959963984540054 * 1.959963984540054) + start * start);
@@ -205,17 +237,17 @@ static inline double ${prefix}_gear_uncertainty(const struct $prefix *joint)
 BEYOND = """\
 
 /* Friction torque [$unit] that the extended model adds to (16) at present: its effects, and the
- * changes of the parameters that were refitted with them. */
+ * changes of the parameters that were refitted with them, at the temperature of the gear. */
 static inline double ${prefix}_beyond(
     const struct $prefix *joint, double load, double speed)
 {
-    double temperature = $base_temperature;
-    double excess = $excess;
+    double measured = $base_temperature;
+    double temperature = measured + $excess;
     double viscous = ${PREFIX}_BETA_CHANGE
                      + exp(-${PREFIX}_DELTA * temperature)
-                           * (${PREFIX}_GAMMA_CHANGE
-                              - ${PREFIX}_GAMMA * ${PREFIX}_DELTA_CHANGE * temperature
-                              - ${PREFIX}_DELTA * ${PREFIX}_GAMMA * excess);
+                           * (${PREFIX}_GAMMA + ${PREFIX}_GAMMA_CHANGE
+                              - ${PREFIX}_GAMMA * ${PREFIX}_DELTA_CHANGE * temperature)
+                     - ${PREFIX}_GAMMA * exp(-${PREFIX}_DELTA * measured);
     double torque = ${PREFIX}_TAU_C_CHANGE + ${PREFIX}_ALPHA_CHANGE * (load * load)
                     + viscous * sqrt(speed);
 $terms    return torque;

@@ -33,7 +33,7 @@ class ExtendedCorrector:
 
     def __post_init__(self) -> None:
         lag = self.extension.gear
-        self.gear = None if lag is None else GearTemperature(lag)
+        self.gear = None if lag is None else GearTemperature(lag, self.temperature)
 
     def update(
         self,
@@ -51,13 +51,17 @@ class ExtendedCorrector:
         time, motor_temperature, registered
             As for :meth:`TemperatureCorrector.update`.
         housing_temperature : float
-            Temperature of the housing; NaN where it is not known. [°C]
+            Temperature of the housing; where it is NaN, the latest one known, or else the motor's.
+            [°C]
         power : float
             Mean friction power, torque times speed, since the previous sample.
             [torque unit·deg/s]
         """
         self.base.update(time, motor_temperature, registered)
-        self._housing = housing_temperature
+        if not math.isnan(housing_temperature):
+            self._housing = housing_temperature
+        elif math.isnan(self._housing):
+            self._housing = motor_temperature
         if self.gear is not None:
             self.gear.update(time, motor_temperature, housing_temperature, power)
 

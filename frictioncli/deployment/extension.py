@@ -1,13 +1,14 @@
 r"""Deployable part of an extended model, and the friction that it adds.
 
 The extended model is linear about its base
-(:mod:`frictioncli.diagnosis.documents.extended_model`). With changes of the parameters and a gear
-that is warmer by E than the measured temperature, it adds to (16)
+(:mod:`frictioncli.diagnosis.documents.extended_model`) at the temperature of the gear, T + E. With
+changes of the parameters it adds to (16)
 
 .. math::
 
     \Delta\tau_c + \Delta\alpha L^2 + \left(\Delta\beta
-    + e^{-\delta T} (\Delta\gamma - \gamma\,\Delta\delta\,T - \delta \gamma E) \right) \sqrt{v}
+    + e^{-\delta (T + E)} (\gamma + \Delta\gamma - \gamma\,\Delta\delta\,(T + E))
+    - \gamma e^{-\delta T} \right) \sqrt{v}
 
 and the terms of effects that depend only on load, speed and temperature.
 """
@@ -23,9 +24,9 @@ from frictioncli.arrays import Array
 from frictioncli.deployment.gear_temperature import GearLag
 from frictioncli.diagnosis.data.build_problem import simulated
 from frictioncli.diagnosis.data.gravity import stated_gravity
+from frictioncli.diagnosis.data.hidden_temperature import HiddenTemperature
 from frictioncli.diagnosis.documents.extended_model import ExtendedModel, FittedEffect
 from frictioncli.effects.base import EffectTable
-from frictioncli.effects.pair_series import pair_heads
 from frictioncli.model.friction import FrictionParameters, friction_torque
 
 LAG = "thermal_lag"
@@ -102,15 +103,15 @@ class DeployedExtension:
         inputs = (load, speed, temperature, excess)
         load, speed, temperature, excess = np.broadcast_arrays(*inputs, subok=False)
         p, q = self.about, self.parameters
-        change = (q.gamma - p.gamma) - p.gamma * (q.delta - p.delta) * temperature
-        viscous = (q.beta - p.beta) + np.exp(-p.delta * temperature) * (
-            change - p.delta * p.gamma * excess
-        )
+        warm = temperature + excess
+        falling = q.gamma - p.gamma * (q.delta - p.delta) * warm
+        viscous = (q.beta - p.beta) + np.exp(-p.delta * warm) * falling
+        viscous = viscous - p.gamma * np.exp(-p.delta * temperature)
         added = (q.tau_c - p.tau_c) + (q.alpha - p.alpha) * np.square(load)
         added = added + viscous * np.sqrt(speed)
         if not self.terms:
             return np.asarray(added)
-        table = _table(p, load.ravel(), speed.ravel(), temperature.ravel())
+        table = _table(p, load.ravel(), speed.ravel(), warm.ravel())
         terms = sum(
             term.effect.evaluate(table, term.shape).friction @ term.coefficients
             for term in self.terms
@@ -166,21 +167,21 @@ def _gear_lag(
 ) -> GearLag:
     """Return the thermal lag of the gear with its usual size in the log."""
     gravity = stated_gravity(model.gravity_about)
-    _, problem = simulated(torques, model.temperature, model.about, gravity)
-    table = problem.table
-    first = pair_heads(table).first
-    columns = fitted.effect.evaluate(table, fitted.shape).friction[first, :2]
-    slope = np.where(table.temperature_slope[first] < 0, table.temperature_slope[first], -np.inf)
-    excess = columns @ fitted.coefficients[:2] / slope
-    lag_share, friction_heating, housing_share = (float(value) for value in fitted.coefficients)
+    _, problem = simulated(torques, model.temperature, model.about, gravity, model.hidden)
+    hidden = model.hidden or HiddenTemperature.of(
+        fitted.shape["time_constant"], fitted.coefficients, problem.reference_power
+    )
+    inputs = hidden.inputs(problem.table)
+    # what a filter adds to its input is what is unknown at a start
+    lagging = inputs.excess(hidden.time_constant) - inputs.inputs_themselves()
+    shares = {one.name: float(getattr(hidden, one.name)) for one in fitted.effect.coefficients}
     return GearLag(
-        time_constant=float(fitted.shape["time_constant"]),
+        time_constant=hidden.time_constant,
         time_constant_ci95=time_constant_ci95,
-        lag_share=lag_share,
-        friction_heating=friction_heating,
-        housing_share=housing_share,
-        reference_power=100.0 * float(np.mean(np.abs(table.friction))),
-        start_sd=float(np.sqrt(np.mean(np.square(excess)))),
+        housing_time_constant=hidden.housing_time_constant,
+        reference_power=hidden.reference_power,
+        start_sd=float(np.sqrt(np.mean(np.square(lagging @ hidden.coefficients)))),
+        **shares,
     )
 
 
@@ -200,12 +201,14 @@ def _table(about: FrictionParameters, load: Array, speed: Array, temperature: Ar
         load_gradient=unknown,
         load_curvature=unknown,
         temperature=temperature,
+        measured_temperature=temperature,
         motor_temperature=unknown,
         housing_temperature=unknown,
         friction=friction_torque(about, load=load, speed=speed, temperature=temperature),
         viscous=about.beta + about.gamma * decay,
         temperature_slope=-about.delta * about.gamma * decay * np.sqrt(speed),
         load_slope=2 * about.alpha * load,
+        friction_power=unknown,
         travel=unknown,
         rest=unknown,
         order=unknown,

@@ -3,11 +3,12 @@ r"""Gear temperature as a state that a controller updates from its measurements.
 As in the effect ``thermal_lag`` (:mod:`frictioncli.effects.thermal_lag`), the temperature of the
 gear lies
 
-.. math:: E = a (F(T_m) - T_m) + b F(P/P_0) + h (T_c - T_m)
+.. math:: E = a (F(T_m) - T) + b F(P/P_0) + h (T_h - T) + h_F (F(T_h) - T)
 
-above that of the motor; F is a first-order low-pass filter with time constant :math:`\theta`.
-Between samples the motor temperature is taken as linear and the friction power P as constant; for
-these the update is exact at any sampling interval.
+above the base model's temperature *T*; F is a first-order low-pass filter with time constant
+:math:`\theta`. A housing that is not measured may be a second state that follows the motor. Between
+samples temperatures are taken as linear and the friction power P as constant; for these the update
+is exact at any sampling interval, but that a hidden housing counts as linear too.
 """
 
 import math
@@ -28,15 +29,20 @@ class GearLag:
     time_constant_ci95 : (float, float) or None
         95 % interval of the time constant. [s]
     lag_share : float
-        Coefficient a: share of the motor temperature that the gear follows with lag. [1]
+        Coefficient a: share of the friction at a gear that follows the motor with lag. [1]
     friction_heating : float
-        Coefficient b: gear above motor in equilibrium at the reference power. [°C]
+        Coefficient b: gear warmer by this in equilibrium at the reference power. [°C]
     housing_share : float
-        Coefficient h: share of the way from motor to housing temperature. [1]
+        Coefficient h: share of the friction at the housing temperature. [1]
+    housing_lag_share : float
+        Coefficient hF: share of the friction at a gear that follows the housing with lag. [1]
+    housing_time_constant : float or None
+        Time constant of a housing that is not measured and follows the motor. [s]
     reference_power : float
         Reference power :math:`P_0`. [torque unit·deg/s]
     start_sd : float
-        Standard deviation of the initial state, which is unknown: the RMS of E in the log. [°C]
+        Standard deviation of the initial state, which is unknown: the RMS of what the filters add
+        in the log. [°C]
     """
 
     time_constant: float
@@ -44,24 +50,42 @@ class GearLag:
     lag_share: float
     friction_heating: float
     housing_share: float
+    housing_lag_share: float
+    housing_time_constant: float | None
     reference_power: float
     start_sd: float
 
 
+def _lagging(lag: float, ratio: float, rise: float) -> float:
+    """Return a filter's output less its input after the input rose linearly.
+
+    Parameters
+    ----------
+    lag : float
+        The same before. [°C]
+    ratio : float
+        Duration over time constant. [-]
+    rise : float
+        Rise of the input. [°C]
+    """
+    return math.exp(-ratio) * lag - rise * (-math.expm1(-ratio) / ratio if ratio > 0 else 1.0)
+
+
 @dataclass(slots=True)
-class _FirstOrderFilter:
-    """State of the filters of motor temperature [°C] and of relative friction power [1]."""
+class _Filters:
+    """Filters of motor and housing, less their inputs [°C], and of relative friction power [1]."""
 
     time_constant: float
-    lag: float = 0.0
+    motor: float = 0.0
     heat: float = 0.0
+    housing: float = 0.0
 
-    def step(self, duration: float, warming: float, power: float) -> None:
-        """Advance by a duration [s] with a rise of motor temperature [°C] and a power [1]."""
+    def step(self, duration: float, warming: float, power: float, housing_warming: float) -> None:
+        """Advance by a duration [s] with rises of both temperatures [°C] and a power [1]."""
         ratio = max(duration, 0.0) / self.time_constant
-        decay, closed = math.exp(-ratio), -math.expm1(-ratio)
-        self.lag = decay * self.lag - warming * (closed / ratio if ratio > 0 else 1.0)
-        self.heat = decay * self.heat + power * closed
+        self.motor = _lagging(self.motor, ratio, warming)
+        self.housing = _lagging(self.housing, ratio, housing_warming)
+        self.heat = math.exp(-ratio) * self.heat - power * math.expm1(-ratio)
 
 
 @dataclass(slots=True)
@@ -75,6 +99,8 @@ class GearTemperature:
     ----------
     parameters : GearLag
         Parameters of the gear temperature.
+    temperature : {"motor", "housing", "mean"}
+        Temperature of the base model.
 
     Examples
     --------
@@ -85,6 +111,8 @@ class GearTemperature:
     ...         lag_share=0.8,
     ...         friction_heating=6.0,
     ...         housing_share=0.0,
+    ...         housing_lag_share=0.0,
+    ...         housing_time_constant=None,
     ...         reference_power=5000.0,
     ...         start_sd=3.0,
     ...     )
@@ -96,16 +124,18 @@ class GearTemperature:
     """
 
     parameters: GearLag
-    _filters: list[_FirstOrderFilter] = field(init=False)
+    temperature: str = "motor"
+    _filters: list[_Filters] = field(init=False)
     _start_time: float = field(default=math.nan, init=False)
     _time: float = field(default=math.nan, init=False)
     _motor: float = field(default=math.nan, init=False)
-    _housing_difference: float = field(default=0.0, init=False)
+    _housing: float = field(default=math.nan, init=False)
+    _hidden_lag: float = field(default=0.0, init=False)
 
     def __post_init__(self) -> None:
         estimate = self.parameters.time_constant
         ends = self.parameters.time_constant_ci95 or (estimate, estimate)
-        self._filters = [_FirstOrderFilter(value) for value in (estimate, *ends)]
+        self._filters = [_Filters(value) for value in (estimate, *ends)]
 
     def update(
         self,
@@ -123,28 +153,47 @@ class GearTemperature:
         motor_temperature : float
             Motor temperature. [°C]
         housing_temperature : float
-            Housing temperature; where it is NaN, that of the motor is taken. [°C]
+            Housing temperature; where it is NaN, the latest one known, or else the motor's. [°C]
         power : float
             Mean friction power, torque times speed, since the previous sample.
             [torque unit·deg/s]
         """
-        if math.isnan(self._time):
-            self._start_time = time
-        else:
-            warming = motor_temperature - self._motor
+        first = math.isnan(self._time)
+        if first:
+            self._start_time = self._time = time
+            self._motor = motor_temperature
+        duration, warming = time - self._time, motor_temperature - self._motor
+        housing = self._housing_after(duration, motor_temperature, housing_temperature)
+        rise = 0.0 if first else housing - self._housing
+        if not first:
             relative_power = power / self.parameters.reference_power
             for one in self._filters:
-                one.step(time - self._time, warming, relative_power)
-        self._time, self._motor = time, motor_temperature
-        difference = housing_temperature - motor_temperature
-        self._housing_difference = 0.0 if math.isnan(difference) else difference
+                one.step(duration, warming, relative_power, rise)
+        self._time, self._motor, self._housing = time, motor_temperature, housing
+
+    def _housing_after(self, duration: float, motor: float, measured: float) -> float:
+        """Return the temperature of the housing after a duration: measured or hidden [°C]."""
+        slow = self.parameters.housing_time_constant
+        if slow is not None:
+            ratio = max(duration, 0.0) / slow
+            self._hidden_lag = _lagging(self._hidden_lag, ratio, motor - self._motor)
+            return motor + self._hidden_lag
+        if not math.isnan(measured):
+            return measured
+        return motor if math.isnan(self._housing) else self._housing
 
     @property
     def excess(self) -> float:
-        """Gear temperature above the motor temperature, E [°C]."""
+        """Gear temperature above that of the base model, E [°C]."""
+        if math.isnan(self._time):
+            return 0.0
+        p, motor, housing = self.parameters, self._motor, self._housing
+        mean = (motor + housing) / 2
+        base = {"motor": motor, "housing": housing, "mean": mean}[self.temperature]
         return (
-            self._filtered_excess(self._filters[0])
-            + self.parameters.housing_share * self._housing_difference
+            p.lag_share * (motor - base)
+            + (p.housing_share + p.housing_lag_share) * (housing - base)
+            + self._filtered_excess(self._filters[0])
         )
 
     @property
@@ -153,13 +202,17 @@ class GearTemperature:
 
         It includes the interval of the time constant, from the difference that its ends make, and
         the unknown initial state, which decays with the time constant; not the uncertainty of the
-        three coefficients.
+        coefficients.
         """
         _, low, high = (self._filtered_excess(one) for one in self._filters)
         age = 0.0 if math.isnan(self._time) else self._time - self._start_time
         start = self.parameters.start_sd * math.exp(-age / self.parameters.time_constant)
         return math.hypot((high - low) / (2 * _SIGMAS), start)
 
-    def _filtered_excess(self, state: _FirstOrderFilter) -> float:
+    def _filtered_excess(self, state: _Filters) -> float:
         p = self.parameters
-        return p.lag_share * state.lag + p.friction_heating * state.heat
+        return (
+            p.lag_share * state.motor
+            + p.friction_heating * state.heat
+            + p.housing_lag_share * state.housing
+        )

@@ -14,6 +14,7 @@ import pandas as pd
 
 from frictioncli.diagnosis.data.build_problem import build_problems
 from frictioncli.diagnosis.data.problem import Misfit, Problem
+from frictioncli.diagnosis.data.worst_misfits import worst_misfits
 from frictioncli.diagnosis.fit.extension import Extension, Gain, extend, measured_gain
 from frictioncli.diagnosis.ramps.evidence import RampEvidence, RampLog, ramp_evidence
 from frictioncli.diagnosis.search.cause import Cause
@@ -22,6 +23,8 @@ from frictioncli.diagnosis.search.cause_selection import judged_on_new_run
 from frictioncli.diagnosis.search.lack_of_fit import Structure, structures
 from frictioncli.diagnosis.search.standing import with_standing
 from frictioncli.diagnosis.settings import DiagnosisSettings
+from frictioncli.diagnosis.thermal.estimate import ThermalEstimate
+from frictioncli.diagnosis.thermal.refine import LAG, search_with_lag, settled
 from frictioncli.effects import EFFECTS
 from frictioncli.effects.base import Effect
 from frictioncli.errors import NotEnoughData
@@ -34,9 +37,6 @@ LEAST_MARGIN = 0.1
 
 LEAST_PAIRS = 12
 """With fewer pairs noise cannot be distinguished from structure."""
-
-_WORST = 5
-"""Number of places with the greatest misfit that are listed."""
 
 _UNNAMED_P_VALUE = 1e-3
 """Greatest p-value of structure that no effect explains."""
@@ -89,6 +89,8 @@ class Diagnosis:
         Runs of the diagnosis, and the hold-out run on which the gain is measured.
     ramps : RampEvidence or None
         Evidence of the ramps of the moves, where the log has them.
+    thermal : ThermalEstimate or None
+        Temperature of the gear, where a lag of it is a cause.
     """
 
     joint: int
@@ -109,6 +111,7 @@ class Diagnosis:
     runs: tuple[str, ...]
     held_out: str | None
     ramps: RampEvidence | None
+    thermal: ThermalEstimate | None = None
 
 
 def diagnose_joint(
@@ -155,7 +158,14 @@ def diagnose_joint(
     problem, new = build_problems(torques, temperature, held_out)
     margin = margin_of(problem, torque_unit, settings)
     evidence = ramp_evidence(ramps, problem, temperature) if ramps else None
-    found = find_causes(problem, effects, settings, margin, evidence)
+
+    def search(rows: Problem, tried: Sequence[Effect]) -> SearchResult:
+        return find_causes(rows, tried, settings, margin, evidence)
+
+    base, base_new = problem, new
+    found, lag = search_with_lag(problem, new, effects, search)
+    if lag is not None:
+        problem, new = lag.problem, lag.new
     weighted_fit = found.step.weighted_fit()
     judged = with_standing((*found.measurement, *found.causes), problem, margin, settings.alpha)
     named = [cause for cause in judged if cause.standing == "named"]
@@ -169,16 +179,24 @@ def diagnose_joint(
     )
     visible = _visible(judged, named, causes, unnamed)
     extension = gain = None
+    if lag is not None and not any(cause.fit.effect.name == LAG for cause in causes):
+        # what is not named does not move the temperature of the extended model
+        problem, new, lag = base, base_new, None
     if causes:
-        extension = extend(problem, weighted_fit, [cause.fit for cause in causes])
+        fits = [cause.fit for cause in causes]
+        extension = extend(problem, weighted_fit, fits)
+        if lag is not None:
+            lag, extension = settled(lag, fits, lambda rows: extend(rows, weighted_fit, fits))
+            problem, new = lag.problem, lag.new
         gain = measured_gain(
             new or problem,
             predicting(extension, causes),
+            base=base_new or base,
             basis="new_run" if new else "within_run",
             floor=_floor(found),
             seed=settings.seed,
         )
-    squared = problem.squared(problem.friction_misfit, problem.load_misfit)
+    squared = base.squared(base.friction_misfit, base.load_misfit)
     return Diagnosis(
         joint=joint,
         torque_unit=torque_unit,
@@ -194,10 +212,11 @@ def diagnose_joint(
         detectable=found.detectable_sizes(effects, settings.alpha, margin),
         margin=margin,
         rmse=float(np.sqrt(np.mean(squared))),
-        worst=worst_misfits(problem),
+        worst=worst_misfits(base),
         runs=problem.runs,
         held_out=held_out,
         ramps=evidence,
+        thermal=None if lag is None else lag.estimate,
     )
 
 
@@ -292,22 +311,3 @@ def _floor(found: SearchResult) -> float:
     """Return the RMS of point and pair noise of the channels that are simulated."""
     channels = found.step.noise()[: 1 if found.step.problem.has_load_channel else 2]
     return float(np.sqrt(sum(noise.point**2 + noise.pair**2 for noise in channels)))
-
-
-def worst_misfits(problem: Problem) -> tuple[Misfit, ...]:
-    """Return the greatest mean misfits over temperature or angle, at each speed."""
-    table = problem.table
-    axes = {"temperature": table.temperature, "angle": table.position}
-    cells = []
-    for channel, values in (("friction", problem.friction_misfit), ("load", problem.load_misfit)):
-        for axis, along in axes.items():
-            edges = np.unique(np.quantile(along, np.linspace(0, 1, 7)))
-            if len(edges) < 2:
-                continue
-            cell = np.clip(np.searchsorted(edges, along, side="right") - 1, 0, len(edges) - 2)
-            frame = pd.DataFrame({"cell": cell, "speed": table.speed, "misfit": values})
-            means = frame.groupby(["cell", "speed"])["misfit"].agg(["mean", "size"])
-            for (number, speed), row in means[means["size"] >= 10].iterrows():
-                low, high = float(edges[number]), float(edges[number + 1])
-                cells.append(Misfit(channel, axis, low, high, float(speed), float(row["mean"])))
-    return tuple(sorted(cells, key=lambda cell: -abs(cell.misfit))[:_WORST])

@@ -113,29 +113,27 @@ class EffectTable:
         Speed of the pair and centre of the angle bin. [deg/s], [deg]
     load : ndarray, shape (rows,)
         Load torque of the base model at that angle. [N·m]
-    load_gradient : ndarray, shape (rows,)
-        Derivative of the fitted gravity by the angle; with the opposite sign where the log counts
-        torque the other way than motion. [N·m/deg]
-    load_curvature : ndarray, shape (rows,)
-        Second derivative of the fitted gravity by the angle. [N·m/deg²]
-    temperature : ndarray, shape (rows,)
-        Temperature input of the base model. [°C]
+    load_gradient, load_curvature : ndarray, shape (rows,)
+        First and second derivative of the fitted gravity by the angle; the first with the opposite
+        sign where the log counts torque the other way than motion. [N·m/deg], [N·m/deg²]
+    temperature, measured_temperature : ndarray, shape (rows,)
+        Temperature input of the base model, perhaps the hidden one of the gear; as measured. [°C]
     motor_temperature, housing_temperature : ndarray, shape (rows,)
         As measured; NaN where unknown. [°C]
     friction : ndarray, shape (rows,)
-        Friction torque of the base model. [N·m]
+        Friction of the base model. [N·m]
     viscous : ndarray, shape (rows,)
         Its viscous coefficient beta + gamma exp(-delta T). [N·m/(deg/s)^0.5]
     temperature_slope : ndarray, shape (rows,)
         Its derivative by temperature at fixed speed, <= 0. [N·m/°C]
     load_slope : ndarray, shape (rows,)
         Its derivative by load torque. [1]
+    friction_power : ndarray, shape (rows,)
+        Measured friction torque times speed, relative to a reference power. [-]
     travel : ndarray, shape (rows,)
         Distance travelled in the run before the pair; that of unrecorded moves is estimated. [deg]
-    rest : ndarray, shape (rows,)
-        Rest before the measuring series of the pair. [s]
-    order : ndarray, shape (rows,)
-        Number of the pair in its measuring series, from 0.
+    rest, order : ndarray, shape (rows,)
+        Rest before the measuring series of the pair [s], and its number in that from 0. [-]
     """
 
     run: Indices
@@ -148,12 +146,14 @@ class EffectTable:
     load_gradient: Array
     load_curvature: Array
     temperature: Array
+    measured_temperature: Array
     motor_temperature: Array
     housing_temperature: Array
     friction: Array
     viscous: Array
     temperature_slope: Array
     load_slope: Array
+    friction_power: Array
     travel: Array
     rest: Array
     order: Array

@@ -1,6 +1,6 @@
 """Functions shared by effects: values per pair, first-order lags over time, ends of the stroke."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 
 import numpy as np
 
@@ -8,7 +8,10 @@ from frictioncli.arrays import Array, Flags, Indices
 from frictioncli.effects.base import EffectTable
 
 _HALF_WINDOW = 300.0
-"""Half the window over which friction power and warming of the motor are averaged. [s]"""
+"""Half the window in which the warming of the motor is seen. [s]"""
+
+_FASTEST = 0.95
+"""Least share of a run's highest speed that counts as the highest."""
 
 _FEW_SERIES = 5
 """With fewer series a change is tried before every pair."""
@@ -50,6 +53,20 @@ class PairHeads:
     def maximum(self, per_row: Array) -> Array:
         """Return the greatest value of each pair."""
         return np.asarray(np.maximum.reduceat(per_row, self.first))
+
+
+def rows_of(table: EffectTable, chosen: Flags | Indices) -> EffectTable:
+    """Return some rows of a table.
+
+    Parameters
+    ----------
+    table : EffectTable
+        Pairs and angle bins.
+    chosen : ndarray of bool or int
+        The rows.
+    """
+    columns = {one.name: getattr(table, one.name)[chosen] for one in fields(EffectTable)}
+    return EffectTable(**columns)
 
 
 def pair_heads(table: EffectTable) -> PairHeads:
@@ -172,39 +189,33 @@ def friction_power(table: EffectTable, heads: PairHeads) -> Array:
     Returns
     -------
     ndarray, shape (pairs - 1,)
-        Mean power, relative to that at 100 deg/s and the mean friction of the table. [-]
+        Mean power, relative to the reference of the table's friction power. [-]
 
     Notes
     -----
-    During motion the power is friction times speed, averaged over the pairs of ten minutes. Motion
-    between pairs is often not recorded: the joint is assumed to move all the time while the motor
-    warms, and otherwise only over the recorded distance.
+    A recorded move dissipates its measured friction times its speed. Motion between pairs is often
+    not recorded: while the motor warms, the joint is assumed to move all the time at the highest
+    recorded speed, as in a heating programme; and to stand otherwise.
     """
     run, time = table.run[heads.first], table.time[heads.first]
-    friction, speed = heads.mean(table.friction), table.speed[heads.first]
-    motor, travel = table.motor_temperature[heads.first], table.travel[heads.first]
+    moved, speed = heads.mean(table.friction_power), table.speed[heads.first]
+    motor = table.motor_temperature[heads.first]
+    stroke = 2 * (heads.maximum(table.position) - heads.minimum(table.position))
     level = np.zeros(max(len(time) - 1, 0))
     begins = np.flatnonzero(starts(run))
     for begin, end in zip(begins, np.append(begins[1:], len(time)), strict=True):
-        t = time[begin:end]
+        t, own = time[begin:end], moved[begin:end]
         middle, duration = (t[1:] + t[:-1]) / 2, np.diff(t)
-        power = _mean_around(t, (friction * speed)[begin:end])
-        moving = np.diff(travel[begin:end]) / speed[begin : end - 1]
-        duty = np.clip(np.divide(moving, duration, where=duration > 0, out=0 * moving), 0.0, 1.0)
+        fastest = speed[begin:end] > _FASTEST * speed[begin:end].max()
+        fast = np.interp(middle, t[fastest], own[fastest])
+        recorded = stroke[begin:end] / speed[begin:end]
+        recorded = np.clip((recorded[1:] + recorded[:-1]) / 2, 0.0, duration)
         later = np.interp(middle + _HALF_WINDOW, t, motor[begin:end])
         earlier = np.interp(middle - _HALF_WINDOW, t, motor[begin:end])
-        duty[later > earlier] = 1.0
-        level[begin : end - 1] = duty * (power[1:] + power[:-1]) / 2
-    typical = 100.0 * float(np.mean(np.abs(friction)))
-    return level / typical if typical > 0 else level
-
-
-def _mean_around(time: Array, value: Array) -> Array:
-    """Return the mean of the values within half a window before and after each time."""
-    total = np.concatenate([[0.0], np.cumsum(value)])
-    low = np.searchsorted(time, time - _HALF_WINDOW, side="left")
-    high = np.searchsorted(time, time + _HALF_WINDOW, side="right")
-    return (total[high] - total[low]) / (high - low)
+        unrecorded = np.where(later > earlier, duration - recorded, 0.0)
+        total = recorded * (own[1:] + own[:-1]) / 2 + unrecorded * fast
+        level[begin : end - 1] = np.divide(total, duration, where=duration > 0, out=0 * duration)
+    return level
 
 
 def measured_share(table: EffectTable) -> Array:

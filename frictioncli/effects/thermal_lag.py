@@ -1,24 +1,33 @@
 r"""The gear, where friction arises, has another temperature than the motor sensor.
 
-The gear follows the motor, loses heat to surroundings at :math:`T_a` and is warmed by its own
-friction power :math:`P`:
+Gear, motor, housing and surroundings are nodes of a thermal network. The gear exchanges heat with
+the others and is warmed by the friction power :math:`P` that the log tells:
 
-.. math:: \theta \dot T_g = a T_m + (1 - a) T_a - T_g + b\,P/P_0
+.. math:: \theta \dot T_g = a T_m + h T_h + (1 - a - h) T_a - T_g + b\,P/P_0
 
-To first order friction differs by :math:`\partial\tau/\partial T\,(T_g - T_m)`, and at fixed
-:math:`\theta` the lag is a sum of known columns: a first-order lag of the motor temperature, the
-filtered friction power, and the difference of housing and motor temperature. The remainder,
-:math:`(1 - a)(T_a - T_m)`, depends on the motor temperature alone and is absorbed by delta of the
-base model.
+with shares *a*, *h* and *a + h* from 0 to 1 and :math:`b \ge 0`. With the first-order low-pass
+filter *F* of time constant :math:`\theta`, the temperature of friction lies
+
+.. math:: E = a (F(T_m) - T) + h (T_h - T) + h_F (F(T_h) - T) + b\,F(P/P_0)
+
+above the measured temperature *T* of the base model, usually that of the motor. The term without
+filter is the part of the friction that sits at the housing itself. The remainder, a loss to
+surroundings of constant temperature, depends on the motor temperature alone and is absorbed by
+gamma and delta of the base model. The losses of the winding warm the motor, whose temperature is
+measured. To first order friction differs by :math:`\partial\tau/\partial T` times that excess: at
+fixed :math:`\theta` a sum of known columns; :mod:`frictioncli.diagnosis.thermal` estimates the
+temperature itself.
 
 With a lag alone friction is higher while heating than while cooling. The hysteresis loop has the
-opposite sense where the gear is warmer: by its friction power, or, with a negative share, because
-it leads and the motor follows (a lag at small :math:`\theta` is :math:`-\theta \dot T_m`). At the
-start of each run the gear is assumed to have the temperature of the motor.
+opposite sense where friction warms the gear more than the motor. At the start of each run the gear
+is assumed to be in balance: as warm as the motor and the housing, by their shares, and not heated.
 """
+
+from dataclasses import dataclass, replace
 
 import numpy as np
 
+from frictioncli.arrays import Array, Flags
 from frictioncli.effects.base import Basis, Effect, EffectTable, Parameter, Signature, friction_only
 from frictioncli.effects.pair_series import (
     first_order_lag,
@@ -29,11 +38,101 @@ from frictioncli.effects.pair_series import (
 )
 
 
-def basis(table: EffectTable, *, time_constant: float) -> Basis:
-    """Return the change of friction by lag, by friction heat and by the housing temperature.
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ThermalInputs:
+    """What drives the temperature of the gear, pair by pair.
 
-    The first and the last column are torques [N·m], the second is torque per degree [N·m/°C]. The
-    last is zero where the housing temperature is not known.
+    Attributes
+    ----------
+    time : ndarray, shape (pairs,)
+        Time of each pair since its run's first sample. [s]
+    restart : ndarray of bool, shape (pairs,)
+        Where a run begins.
+    base : ndarray, shape (pairs,)
+        The measured temperature that the base model is given. [°C]
+    motor : ndarray, shape (pairs,)
+        Temperature of the motor. [°C]
+    housing : ndarray or None, shape (pairs,)
+        Temperature of the housing; none unless it is known in every pair. [°C]
+    power : ndarray, shape (pairs - 1,)
+        Mean friction power from each pair to the next, relative to the reference power. [-]
+    """
+
+    time: Array
+    restart: Flags
+    base: Array
+    motor: Array
+    housing: Array | None
+    power: Array
+
+    @classmethod
+    def of(cls, table: EffectTable) -> "ThermalInputs":
+        """Return the inputs of the pairs of a table."""
+        heads = pair_heads(table)
+        housing = table.housing_temperature[heads.first]
+        return cls(
+            time=table.time[heads.first],
+            restart=starts(table.run[heads.first]),
+            base=table.measured_temperature[heads.first],
+            motor=table.motor_temperature[heads.first],
+            housing=housing if np.isfinite(housing).all() else None,
+            power=friction_power(table, heads),
+        )
+
+    def excess(self, time_constant: float) -> Array:
+        """Return by how much each part of the network moves the temperature of friction.
+
+        Parameters
+        ----------
+        time_constant : float
+            Time constant of the gear. [s]
+
+        Returns
+        -------
+        ndarray, shape (pairs, 4)
+            Excess over the base temperature per unit of each coefficient: the filtered motor
+            temperature, the filtered friction power, the housing, and the filtered housing
+            [°C, -, °C, °C]. The last two are zero where the housing is not known.
+        """
+        motor = self.motor - self.base + self._lag(self.motor, time_constant)
+        heat = first_order_response(
+            time=self.time, level=self.power, restart=self.restart, time_constant=time_constant
+        )
+        if self.housing is None:
+            return np.column_stack([motor, heat, np.zeros_like(heat), np.zeros_like(heat)])
+        housing = self.housing - self.base
+        return np.column_stack(
+            [motor, heat, housing, housing + self._lag(self.housing, time_constant)]
+        )
+
+    def inputs_themselves(self) -> Array:
+        """Return what the filtered parts follow, shape (pairs, 4); 0 for the power. [°C]."""
+        nothing = np.zeros_like(self.motor)
+        housing = nothing if self.housing is None else self.housing - self.base
+        return np.column_stack([self.motor - self.base, nothing, housing, housing])
+
+    def with_hidden_housing(self, time_constant: float) -> "ThermalInputs":
+        """Return the inputs with a housing that follows the motor, where it is not measured.
+
+        Parameters
+        ----------
+        time_constant : float
+            Time constant of the housing. [s]
+        """
+        if self.housing is not None:
+            return self
+        return replace(self, housing=self.motor + self._lag(self.motor, time_constant))
+
+    def _lag(self, value: Array, time_constant: float) -> Array:
+        return first_order_lag(
+            time=self.time, value=value, restart=self.restart, time_constant=time_constant
+        )
+
+
+def basis(table: EffectTable, *, time_constant: float) -> Basis:
+    """Return the change of friction by lag, friction heat, housing and filtered housing.
+
+    All columns are torques [N·m], but the second: torque per degree [N·m/°C].
 
     Parameters
     ----------
@@ -42,27 +141,17 @@ def basis(table: EffectTable, *, time_constant: float) -> Basis:
     time_constant : float
         Time constant of the gear. [s]
     """
-    heads = pair_heads(table)
-    time, motor = table.time[heads.first], table.motor_temperature[heads.first]
-    restart = starts(table.run[heads.first])
-    lag = first_order_lag(time=time, value=motor, restart=restart, time_constant=time_constant)
-    heat = first_order_response(
-        time=time,
-        level=friction_power(table, heads),
-        restart=restart,
-        time_constant=time_constant,
-    )
-    housing = np.nan_to_num(table.housing_temperature - table.motor_temperature)
-    slope = table.temperature_slope
-    return friction_only(slope * heads.spread(lag), slope * heads.spread(heat), slope * housing)
+    excess = ThermalInputs.of(table).excess(time_constant)[pair_heads(table).of_row]
+    return friction_only(*(table.temperature_slope * column for column in excess.T))
 
 
 EFFECT = Effect(
     name="thermal_lag",
     summary="The gear warms and cools at another pace than the sensor.",
     equation=(
-        "dtau = dtau/dT*(a*(F(Tm) - Tm) + b*F(P/P0) + h*(Tc - Tm)),"
-        " F: first-order filter with theta*dF(u)/dt = u - F(u), P0 = mean friction times 100 deg/s"
+        "dtau = tau(T + E) - tau(T), E = a*(F(Tm) - T) + b*F(P/P0) + h*(Tc - T)"
+        " + hF*(F(Tc) - T), F: first-order filter with theta*dF(u)/dt = u - F(u),"
+        " P0 = mean friction times 100 deg/s"
     ),
     source=(
         "Lumped heat balance of motor and gear; the loop is figures 5 and 6 of Nevmerzhitskiy"
@@ -86,36 +175,38 @@ EFFECT = Effect(
             name="lag_share",
             symbol="a",
             unit="1",
-            lower=-5.0,
-            upper=2.0,
-            description=(
-                "Share of the motor's course that the gear follows with delay; negative where the"
-                " gear leads the motor, by |a|*theta"
-            ),
+            lower=0.0,
+            upper=1.0,
+            description="Share of the friction at a gear that follows the motor with delay",
         ),
         Parameter(
             name="friction_heating",
             symbol="b",
             unit="°C",
-            lower=-60.0,
+            lower=0.0,
             upper=60.0,
-            description=(
-                "Gear above motor after long motion at 100 deg/s and mean friction; negative where"
-                " the motion warms the motor more than the gear"
-            ),
+            description="Gear warmer by this after long motion at 100 deg/s and mean friction",
         ),
         Parameter(
             name="housing_share",
             symbol="h",
             unit="1",
-            lower=-5.0,
-            upper=5.0,
-            description="How far the temperature of friction lies from motor towards housing",
+            lower=0.0,
+            upper=1.0,
+            description="Share of the friction at the temperature of the housing",
+        ),
+        Parameter(
+            name="housing_lag_share",
+            symbol="hF",
+            unit="1",
+            lower=0.0,
+            upper=1.0,
+            description="Share of the friction at a gear that follows the housing with delay",
         ),
     ),
     basis=basis,
     needs=("time", "motor_temperature", "temperature_slope"),
-    uses=("friction", "speed", "travel", "housing_temperature"),
+    uses=("measured_temperature", "friction_power", "speed", "position", "housing_temperature"),
     signature=Signature(
         axis="motor_temperature",
         claim=(

@@ -31,9 +31,11 @@ RANGE = InputRange(
 LAG = GearLag(
     time_constant=1500.0,
     time_constant_ci95=(900.0, 2600.0),
-    lag_share=0.8,
+    lag_share=0.5,
     friction_heating=6.0,
-    housing_share=0.4,
+    housing_share=0.1,
+    housing_lag_share=0.3,
+    housing_time_constant=None,
     reference_power=5000.0,
     start_sd=3.0,
 )

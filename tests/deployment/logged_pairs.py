@@ -22,7 +22,8 @@ def pairs_of(rows, added):
 
 def powers(rows, model, extension):
     """Mean friction power from the pair before to each pair, as the batch sees it."""
-    _, problem = simulated(rows, "motor", model.about, stated_gravity(model.gravity_about))
+    gravity = stated_gravity(model.gravity_about)
+    _, problem = simulated(rows, "motor", model.about, gravity, model.hidden)
     heads = pair_heads(problem.table)
     level = friction_power(problem.table, heads) * extension.gear.reference_power
     return np.concatenate([[0.0], level])

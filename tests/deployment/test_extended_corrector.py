@@ -17,7 +17,9 @@ from frictioncli.correction.settings import CorrectionSettings, ScheduleSettings
 from frictioncli.deployment.extended_corrector import ExtendedCorrector
 from frictioncli.deployment.extension import MEMORYLESS, deployable_extension
 from frictioncli.deployment.gear_temperature import GearLag, GearTemperature
-from frictioncli.diagnosis.data.gravity import GravityCoefficients
+from frictioncli.diagnosis.data.build_problem import simulated
+from frictioncli.diagnosis.data.gravity import GravityCoefficients, stated_gravity
+from frictioncli.diagnosis.data.hidden_temperature import HiddenTemperature
 from frictioncli.diagnosis.documents.apply_extension import (
     friction_beyond,
     with_effects,
@@ -26,6 +28,7 @@ from frictioncli.diagnosis.documents.apply_extension import (
 from frictioncli.diagnosis.documents.extended_model import ExtendedModel, FittedEffect
 from frictioncli.documents import decode, to_json
 from frictioncli.effects import BY_NAME
+from frictioncli.effects.pair_series import friction_power, pair_heads
 from frictioncli.model.friction import PUBLISHED
 from tests.correction.models import published_model
 from tests.deployment.joints import LAG, effect
@@ -36,12 +39,13 @@ GRAVITY = GravityCoefficients(cosine=95.0, sine=0.0, offset=0.0)
 LAGGING = FittedEffect(
     effect=BY_NAME["thermal_lag"],
     shape={"time_constant": 1500.0},
-    coefficients=np.array([0.8, 6.0, 0.4]),
+    coefficients=np.array([0.5, 6.0, 0.1, 0.3]),
 )
+HIDDEN = HiddenTemperature.of(1500.0, LAGGING.coefficients, 5000.0)
 CHANGED = replace(PUBLISHED, tau_c=9.9, alpha=0.0015, beta=3.0, gamma=20.0, delta=0.07)
 
 
-def model_with(*effects):
+def model_with(*effects, hidden=HIDDEN):
     return ExtendedModel(
         temperature="motor",
         parameters=CHANGED,
@@ -49,6 +53,7 @@ def model_with(*effects):
         gravity=GRAVITY,
         gravity_about=GRAVITY,
         effects=effects,
+        hidden=hidden if LAGGING in effects else None,
     )
 
 
@@ -142,42 +147,58 @@ def test_every_effect_is_carried_or_has_a_reason():
 
 
 def test_the_state_refers_to_what_the_log_had():
-    """Reference power and the start's spread, by another route."""
+    """Reference power from the model, and the start's spread by another route."""
     rows = two_days()
     gear = deployable_extension(rows, model_with(LAGGING), (900.0, 2600.0)).gear
-    friction = (
-        10.57
-        + 0.0014 * rows["load_torque"] ** 2
-        + np.sqrt(67.5) * (3.48 + 15.66 * np.exp(-0.056 * rows["motor_temperature"]))
-    )
-    assert gear.reference_power == pytest.approx(100 * friction.mean())
+    assert gear.reference_power == 5000.0
     assert gear.time_constant_ci95 == (900.0, 2600.0)
-    # the whole effect in °C, without the housing's part, whose own column it is
-    alone = replace(LAGGING, coefficients=np.array([0.8, 6.0, 0.0]))
-    same = replace(model_with(alone), parameters=PUBLISHED)
-    added, _ = friction_beyond(rows, published_model(), same)
-    slope = -0.056 * 15.66 * np.exp(-0.056 * rows["motor_temperature"]) * np.sqrt(67.5)
-    assert gear.start_sd == pytest.approx(np.sqrt(np.mean((added / slope) ** 2)))
+    _, problem = simulated(rows, "motor", PUBLISHED, stated_gravity(GRAVITY), HIDDEN)
+    table = problem.table
+    heads = pair_heads(table)
+    power = np.append(0.0, friction_power(table, heads)) * 5000.0
+    spread = []
+    for run in np.unique(table.run):
+        here = table.run[heads.first] == run
+        time, motor, housing = (
+            column[heads.first][here]
+            for column in (table.time, table.motor_temperature, table.housing_temperature)
+        )
+        for end in range(1, int(here.sum()) + 1):
+            lag = replace(LAG, lag_share=0.5, housing_share=0.1, housing_lag_share=0.3)
+            follower = GearTemperature(lag)
+            if end % 10 and end != here.sum():
+                continue
+            for at in zip(time[:end], motor, housing, power[here], strict=False):
+                follower.update(*map(float, at))
+            at_once = 0.4 * (housing[end - 1] - motor[end - 1])
+            spread.append(follower.excess - at_once)
+    assert gear.start_sd == pytest.approx(np.sqrt(np.mean(np.square(spread))), rel=0.1)
 
 
-def integrated(time, motor, power):
-    """The gear's two filters by a solver of differential equations; motor linear, power steps."""
+def integrated(time, motor, housing, power):
+    """The gear's filters by a solver of differential equations; power in steps, the rest linear."""
 
     def slope(t, state):
         place = min(np.searchsorted(time, t, side="left"), len(time) - 1)
-        follower, heat = state
-        warm = np.interp(t, time, motor)
-        return [
-            (warm - follower) / LAG.time_constant,
-            (power[place] / LAG.reference_power - heat) / LAG.time_constant,
-        ]
+        inputs = np.array(
+            [
+                np.interp(t, time, motor),
+                np.interp(t, time, housing),
+                power[place] / LAG.reference_power,
+            ]
+        )
+        return (inputs - state) / LAG.time_constant
 
-    state = [motor[0], 0.0]
+    state = np.array([motor[0], housing[0], 0.0])
     for begin, end in pairwise(time):
         inside = (begin + 1e-9, end)
         state = solve_ivp(slope, inside, state, rtol=1e-10, atol=1e-10).y[:, -1]
-    follower, heat = state
-    return LAG.lag_share * (follower - motor[-1]) + LAG.friction_heating * heat
+    return (
+        LAG.lag_share * (state[0] - motor[-1])
+        + LAG.housing_lag_share * (state[1] - motor[-1])
+        + LAG.housing_share * (housing[-1] - motor[-1])
+        + LAG.friction_heating * state[2]
+    )
 
 
 def test_uneven_samples_are_stepped_exactly():
@@ -185,11 +206,23 @@ def test_uneven_samples_are_stepped_exactly():
     generator = np.random.default_rng(4)
     time = np.cumsum(generator.uniform(1, 900, 40))
     motor = 30 + np.cumsum(generator.normal(0, 1, 40))
+    housing = 27 + np.cumsum(generator.normal(0, 1, 40))
     power = generator.uniform(0, 8000, 40)
     gear = GearTemperature(LAG)
-    for at in zip(time, motor, [math.nan] * 40, power, strict=True):
+    for at in zip(time, motor, housing, power, strict=True):
         gear.update(*map(float, at))
-    assert gear.excess == pytest.approx(integrated(time, motor, power), abs=1e-6)
+    assert gear.excess == pytest.approx(integrated(time, motor, housing, power), abs=1e-6)
+
+
+def test_a_hidden_housing_follows_the_motor():
+    """40 °C after 20 °C for one time constant: it has closed 63 % of the distance."""
+    hidden = replace(
+        LAG, lag_share=0.0, friction_heating=0.0, housing_share=1.0, housing_lag_share=0.0
+    )
+    gear = GearTemperature(replace(hidden, housing_time_constant=3000.0))
+    for time, motor in ((0.0, 20.0), (1e-6, 40.0), (3000.0, 40.0)):
+        gear.update(time, motor)
+    assert gear.excess == pytest.approx(-20.0 * math.exp(-1), rel=1e-6)
 
 
 @settings(max_examples=50)
@@ -222,8 +255,9 @@ def test_while_the_motor_warms_the_interval_of_the_time_constant_shows():
     gear = GearTemperature(replace(LAG, friction_heating=0.0))
     for time in np.arange(0.0, 40_000.0, 100.0):
         gear.update(time, 20 + time / 1000, 20 + time / 1000)
-    assert gear.excess == pytest.approx(0.8 * -1.5, abs=1e-6)
-    assert gear.uncertainty == pytest.approx(0.8 * (2.6 - 0.9) / (2 * 1.96), rel=1e-3)
+    shares = LAG.lag_share + LAG.housing_lag_share
+    assert gear.excess == pytest.approx(shares * -1.5, abs=1e-6)
+    assert gear.uncertainty == pytest.approx(shares * (2.6 - 0.9) / (2 * 1.96), rel=1e-3)
 
 
 def test_the_uncertainty_holds_the_truth():
@@ -250,12 +284,15 @@ def test_the_uncertainty_holds_the_truth():
     )
 
 
-def test_an_unknown_housing_counts_as_as_warm_as_the_motor():
-    gear = GearTemperature(LAG)
+def test_an_unknown_housing_counts_as_the_latest_known_or_as_the_motor():
+    gear = GearTemperature(replace(LAG, time_constant=1e9, time_constant_ci95=None))
     gear.update(0.0, 40.0)
     assert gear.excess == 0.0
-    gear.update(0.0, 40.0, 30.0)
-    assert gear.excess == pytest.approx(0.4 * -10.0)
+    gear.update(1.0, 40.0, 30.0)
+    assert gear.excess == pytest.approx(0.1 * -10.0, abs=1e-6)
+    gear.update(2.0, 42.0)
+    behind = 0.5 * -2.0 + 0.3 * -2.0
+    assert gear.excess == pytest.approx(0.1 * -12.0 + behind, abs=1e-6)
 
 
 def test_the_lag_goes_through_json():

@@ -38,6 +38,7 @@ def two_days(*, bins: int = 13, series: int = 12) -> EffectTable:
                         "clock": time + 86_400.0 * run,
                         "speed": speed,
                         "temperature": motor,
+                        "measured_temperature": motor,
                         "motor_temperature": motor,
                         "housing_temperature": 23.0 + 0.6 * (motor - 23.0),
                         "travel": travel,
@@ -67,6 +68,7 @@ def two_days(*, bins: int = 13, series: int = 12) -> EffectTable:
         viscous=viscous,
         temperature_slope=slope,
         load_slope=2 * PUBLISHED.alpha * load,
+        friction_power=friction * rows["speed"] / (100.0 * np.mean(friction)),
     )
 
 

@@ -83,9 +83,14 @@ def test_load_temperature_fades_by_its_bend(bend):
     np.testing.assert_allclose(found, summed, atol=1e-6)
 
 
+def warmed(**columns):
+    """Return a table whose base model is given the motor temperature."""
+    return small(measured_temperature=columns["motor_temperature"], **columns)
+
+
 def test_thermal_lag_follows_a_step():
     """After a step of 10 °C the gear lags by 10 exp(-t/theta); friction changes by -2 per °C."""
-    table = small(
+    table = warmed(
         time=[0.0, 0.0, 600.0, 1200.0],
         motor_temperature=[20.0, 30.0, 30.0, 30.0],
         temperature_slope=-2.0,
@@ -98,18 +103,16 @@ def test_thermal_lag_follows_a_step():
 def test_thermal_lag_behind_a_ramp_settles_at_rate_times_time_constant():
     """0.01 °C/s for 20 time constants of 300 s: the gear is 3 °C behind."""
     time = np.arange(0.0, 6001.0, 60.0)
-    table = small(time=time, motor_temperature=20.0 + 0.01 * time, temperature_slope=-1.0)
+    table = warmed(time=time, motor_temperature=20.0 + 0.01 * time, temperature_slope=-1.0)
     found = np.array(friction("thermal_lag", table, time_constant=300.0))
     assert found[-1, 0] == pytest.approx(3.0, rel=1e-6)
 
 
 def test_friction_heats_the_gear_while_the_motor_warms_and_not_while_it_cools():
-    """Friction of 40 at 50 deg/s is 0.5 of the power at 100 deg/s; warming ends after 3600 s."""
+    """Half the reference power while the motor warms, which ends after 3600 s."""
     time = np.arange(0.0, 9001.0, 60.0)
     motor = 60.0 - np.abs(time - 3600.0) / 100.0
-    table = small(
-        time=time, motor_temperature=motor, temperature_slope=-1.0, friction=40.0, speed=50.0
-    )
+    table = warmed(time=time, motor_temperature=motor, temperature_slope=-1.0, friction_power=0.5)
     heat = -np.array(friction("thermal_lag", table, time_constant=600.0))[:, 1]
     warming = time <= 3600.0
     np.testing.assert_allclose(heat[warming], 0.5 * -np.expm1(-time[warming] / 600.0), rtol=1e-9)
@@ -117,27 +120,55 @@ def test_friction_heats_the_gear_while_the_motor_warms_and_not_while_it_cools():
     assert fall == pytest.approx(np.exp(-3000.0 / 600.0), rel=1e-9)
 
 
-def test_recorded_way_heats_the_gear_even_while_the_motor_cools():
-    """1500 deg of each 60 s at 50 deg/s are half of the time: a quarter of the power."""
-    time = np.arange(0.0, 12_001.0, 60.0)
-    table = small(
+def test_recorded_moves_heat_the_gear_even_while_the_motor_cools():
+    """750 deg there and back at 50 deg/s are half of each 60 s: a quarter of the power."""
+    time = np.repeat(np.arange(0.0, 12_001.0, 60.0), 2)
+    table = warmed(
         time=time,
+        pair=np.arange(len(time)) // 2,
+        position=np.tile([0.0, 750.0], len(time) // 2),
         motor_temperature=60.0 - time / 1000.0,
         temperature_slope=-1.0,
-        friction=40.0,
+        friction_power=0.5,
         speed=50.0,
-        travel=1500.0 * np.arange(len(time)),
     )
     heat = -np.array(friction("thermal_lag", table, time_constant=300.0))[:, 1]
     assert heat[-1] == pytest.approx(0.25, rel=1e-6)
 
 
+def test_moves_that_are_not_recorded_heat_as_the_fastest_recorded_ones():
+    """Slow and fast moves by turns, of no recorded way: all heat is that of the fast ones."""
+    time = np.arange(0.0, 12_001.0, 60.0)
+    fast = np.arange(len(time)) % 2 == 1
+    table = warmed(
+        time=time,
+        motor_temperature=20.0 + time / 1000.0,
+        temperature_slope=-1.0,
+        friction_power=np.where(fast, 0.8, 0.1),
+        speed=np.where(fast, 100.0, 10.0),
+    )
+    heat = -np.array(friction("thermal_lag", table, time_constant=300.0))[:, 1]
+    assert heat[-1] == pytest.approx(0.8, rel=1e-6)
+
+
 @pytest.mark.parametrize(("housing", "expected"), [(35.0, 10.0), (np.nan, 0.0)])
 def test_housing_moves_the_temperature_of_friction_where_it_is_known(housing, expected):
-    table = small(
+    table = warmed(
         time=[0.0], motor_temperature=40.0, housing_temperature=housing, temperature_slope=-2.0
     )
-    assert friction("thermal_lag", table, time_constant=600.0)[0][2] == expected
+    assert friction("thermal_lag", table, time_constant=600.0)[0][2:] == [expected, expected]
+
+
+def test_a_gear_that_follows_the_housing_starts_as_warm_as_it():
+    """The housing is 5 °C colder and rises by 10 °C at once: 5 °C above after, less what lags."""
+    table = warmed(
+        time=[0.0, 0.0, 600.0],
+        motor_temperature=40.0,
+        housing_temperature=[35.0, 45.0, 45.0],
+        temperature_slope=-1.0,
+    )
+    found = np.array(friction("thermal_lag", table, time_constant=600.0))[:, 3]
+    np.testing.assert_allclose(found, [5.0, 5.0, -5.0 + 10.0 * np.exp(-1)], rtol=1e-12)
 
 
 def test_drift_counts_hours_over_all_runs():

@@ -15,10 +15,12 @@ from frictioncli.diagnosis.data.gravity import (
     differs,
     known_payload,
 )
+from frictioncli.diagnosis.data.hidden_temperature import HiddenTemperature
 from frictioncli.diagnosis.data.motion_history import clock_of, series, travel_of
 from frictioncli.diagnosis.data.pair_layout import PairLayout
 from frictioncli.diagnosis.data.problem import Problem
 from frictioncli.effects.base import EffectTable
+from frictioncli.effects.pair_series import rows_of
 from frictioncli.model.document import PARAMETERS
 from frictioncli.model.friction import FrictionParameters, friction_torque
 from frictioncli.model.zero_load import PAIR_KEY, temperature_of
@@ -75,7 +77,11 @@ def _typical_misfit(problem: Problem, chosen: Flags) -> float:
 
 
 def simulated(
-    torques: pd.DataFrame, temperature: str, parameters: FrictionParameters, gravity: Array
+    torques: pd.DataFrame,
+    temperature: str,
+    parameters: FrictionParameters,
+    gravity: Array,
+    hidden: HiddenTemperature | None = None,
 ) -> tuple[pd.Index, Problem]:
     """Return the problem of rows simulated with a given base model, and its order of the rows.
 
@@ -90,6 +96,8 @@ def simulated(
     gravity : ndarray, shape (3,) or (5,)
         Coefficients of cos q, sin q and 1, and of the first two per mass of the payload. [N·m],
         [N·m/kg]
+    hidden : HiddenTemperature, optional
+        Temperature of the gear at which friction is simulated; by default the measured one.
 
     Returns
     -------
@@ -101,7 +109,14 @@ def simulated(
     smooth = rows["load"].isna().all()
     load = carried_load(columns, gravity) if smooth else rows["load_torque"].to_numpy(float)
     problem = _assembled(
-        rows.reset_index(drop=True), temperature, load, columns, gravity, parameters, PARAMETERS
+        rows.reset_index(drop=True),
+        temperature,
+        load,
+        columns,
+        gravity,
+        parameters,
+        PARAMETERS,
+        hidden,
     )
     return rows.index, problem
 
@@ -114,6 +129,7 @@ def _assembled(
     gravity: Array,
     parameters: FrictionParameters,
     names: tuple[str, ...],
+    hidden: HiddenTemperature | None = None,
 ) -> Problem:
     """Return the problem of all rows, with friction simulated by the base model."""
     pair = rows.groupby(PAIR_KEY, sort=False, observed=True).ngroup().to_numpy()
@@ -130,6 +146,10 @@ def _assembled(
         position=position,
     ).with_noise_from(rows[["friction_torque", "load_torque"]].to_numpy(float), position)
     motor = rows["motor_temperature"].to_numpy(float)
+    friction = rows["friction_torque"].to_numpy(float)
+    reference_power = 100.0 * max(float(np.mean(np.abs(friction))), 1e-12)
+    if hidden is not None:
+        reference_power = hidden.reference_power
     rest, order = series(layout, motor[heads])
     in_torque = gravity if rows["load"].isna().all() else _gravity_in_torque(rows, columns)
     table = EffectTable(
@@ -143,12 +163,14 @@ def _assembled(
         load_gradient=_counted(rows) * (by_angle(columns) @ in_torque),
         load_curvature=by_angle(by_angle(columns)) @ in_torque,
         temperature=known_temperature,
+        measured_temperature=known_temperature,
         motor_temperature=motor,
         housing_temperature=rows["housing_temperature"].to_numpy(float),
         friction=np.zeros_like(speed),
         viscous=np.zeros_like(speed),
         temperature_slope=np.zeros_like(speed),
         load_slope=np.zeros_like(speed),
+        friction_power=friction * speed / reference_power,
         travel=travel_of(rows, layout, motor[heads])[pair],
         rest=rest[pair],
         order=order[pair],
@@ -160,18 +182,19 @@ def _assembled(
         all_runs=table,
         rows=np.arange(len(run)),
         layout=layout,
-        friction=rows["friction_torque"].to_numpy(float),
+        friction=friction,
         load=rows["load_torque"].to_numpy(float),
         friction_base=np.empty((len(run), 0)),
         load_base=columns,
         names=names,
         parameters=parameters,
         gravity=gravity,
+        reference_power=reference_power,
         has_load_channel=bool(rows["load"].notna().any()),
         temperature_error=_RECONSTRUCTED if reconstructed else _REGISTERED,
         runs=tuple(str(name) for name in run_names),
     )
-    return _with_friction(without_friction)
+    return at_temperature(without_friction, parameters, hidden)
 
 
 def _counted(rows: pd.DataFrame) -> float:
@@ -191,10 +214,26 @@ def _gravity_in_torque(rows: pd.DataFrame, columns: Array) -> Array:
     return np.asarray(np.linalg.lstsq(columns[known], mean[known], rcond=None)[0])
 
 
-def _with_friction(problem: Problem) -> Problem:
-    """Return the problem of all runs with its friction simulated by its parameters."""
-    parameters, measured_load = problem.parameters, problem.has_load_channel
-    table = _modelled(problem.table, parameters, measured_load=measured_load)
+def at_temperature(
+    problem: Problem, parameters: FrictionParameters, hidden: HiddenTemperature | None
+) -> Problem:
+    """Return a problem with another base model, linear about a hidden temperature.
+
+    Parameters
+    ----------
+    problem : Problem
+        The rows.
+    parameters : FrictionParameters
+        Parameters of friction at that temperature.
+    hidden : HiddenTemperature or None
+        Temperature of the gear; none for the measured one.
+    """
+    all_runs, reference = problem.all_runs, problem.reference_power
+    if hidden is not None:
+        power = all_runs.friction_power * (reference / hidden.reference_power)
+        all_runs, reference = replace(all_runs, friction_power=power), hidden.reference_power
+    all_runs = _modelled(all_runs, parameters, hidden, measured_load=problem.has_load_channel)
+    table = rows_of(all_runs, problem.rows)
     root_speed = np.sqrt(table.speed)
     decay = np.exp(-parameters.delta * table.temperature)
     derivative = {
@@ -207,22 +246,33 @@ def _with_friction(problem: Problem) -> Problem:
     return replace(
         problem,
         table=table,
-        all_runs=table,
+        all_runs=all_runs,
+        parameters=parameters,
+        reference_power=reference,
+        hidden=hidden,
         friction_base=np.column_stack([derivative[name] for name in problem.names]),
     )
 
 
 def _modelled(
-    table: EffectTable, parameters: FrictionParameters, *, measured_load: bool
+    table: EffectTable,
+    parameters: FrictionParameters,
+    hidden: HiddenTemperature | None,
+    *,
+    measured_load: bool,
 ) -> EffectTable:
-    """Return a table with the columns that depend on the friction of the base model."""
-    decay = np.exp(-parameters.delta * table.temperature)
+    """Return a table of all runs with the columns that depend on the friction of the base model."""
+    table = replace(table, temperature=table.measured_temperature)
+    if hidden is not None:
+        table = hidden.applied(table)
+    temperature = table.temperature
+    decay = np.exp(-parameters.delta * temperature)
     # a measured load has all that changes it already
     slope = 0.0 if measured_load else 2 * parameters.alpha
     return replace(
         table,
         friction=friction_torque(
-            parameters, load=table.load, speed=table.speed, temperature=table.temperature
+            parameters, load=table.load, speed=table.speed, temperature=temperature
         ),
         viscous=parameters.beta + parameters.gamma * decay,
         temperature_slope=-parameters.delta * parameters.gamma * decay * np.sqrt(table.speed),

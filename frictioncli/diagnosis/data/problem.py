@@ -8,16 +8,24 @@ The simulated torque along the measured motion is the fitted friction (16) plus 
 with the direction :math:`\sigma` of the motion. Its misfit has an even part in the direction, the
 friction channel, and an odd part, the load channel. The base model takes the fitted gravity as its
 load, so that a disturbance of the load channel cannot enter :math:`\alpha L^2`.
+
+Once a hidden temperature :math:`T + E` of the gear has been estimated, friction and its derivatives
+are those at that temperature, and the simulation without effects is carried back along the slope,
+:math:`\tau(T + E) - E\,\partial\tau/\partial T`. Coefficients of the effect ``thermal_lag`` then
+still count from the measured temperature *T*, and a model linear in them is exact to first order
+about the hidden one.
 """
 
 from collections.abc import Mapping
-from dataclasses import dataclass, fields, replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from frictioncli.arrays import Array, Flags, Indices
+from frictioncli.diagnosis.data.hidden_temperature import HiddenTemperature
 from frictioncli.diagnosis.data.pair_layout import PairLayout
 from frictioncli.effects.base import Basis, Effect, EffectTable
+from frictioncli.effects.pair_series import rows_of
 from frictioncli.model.friction import FrictionParameters
 
 
@@ -73,12 +81,16 @@ class Problem:
     gravity : ndarray, shape (3,) or (5,)
         Coefficients of cos q, sin q and 1, and of the first two per mass of the payload where two
         payloads are known: those of the columns of ``load_base``. [N·m], [N·m/kg]
+    reference_power : float
+        Power to which the friction power of the table is referred. [N·m·deg/s]
     has_load_channel : bool
         Whether the log has a load channel; the base model takes the load from it.
     temperature_error : float
         Standard error of the motor temperature. [°C]
     runs : tuple of str
         Names of the runs, in order.
+    hidden : HiddenTemperature or None
+        Temperature of the gear about which friction is linear; none where that is the measured one.
     """
 
     table: EffectTable
@@ -92,9 +104,11 @@ class Problem:
     names: tuple[str, ...]
     parameters: FrictionParameters
     gravity: Array
+    reference_power: float
     has_load_channel: bool
     temperature_error: float
     runs: tuple[str, ...]
+    hidden: HiddenTemperature | None = None
 
     def basis(self, effect: Effect, shape: Mapping[str, float]) -> Basis:
         """Return an effect's columns at these rows, evaluated on all runs."""
@@ -135,8 +149,9 @@ class Problem:
 
     @property
     def friction_misfit(self) -> Array:
-        """Measured minus simulated friction torque, shape (rows,) [N·m]."""
-        return self.friction - self.table.friction
+        """Measured minus simulated friction torque without effects, shape (rows,) [N·m]."""
+        excess = self.table.temperature - self.table.measured_temperature
+        return self.friction - self.table.friction + self.table.temperature_slope * excess
 
     @property
     def load_misfit(self) -> Array:
@@ -151,9 +166,7 @@ class Problem:
         chosen : ndarray of bool, shape (rows,)
             Rows of these runs.
         """
-        table = EffectTable(
-            **{field.name: getattr(self.table, field.name)[chosen] for field in fields(EffectTable)}
-        )
+        table = rows_of(self.table, chosen)
         pairs = np.unique(self.layout.row_pair[chosen])
         row_pair = np.searchsorted(pairs, self.layout.row_pair[chosen])
         layout = PairLayout.of(
@@ -167,7 +180,7 @@ class Problem:
         return replace(
             self,
             table=table,
-            rows=np.flatnonzero(chosen),
+            rows=self.rows[chosen],
             layout=layout,
             friction=self.friction[chosen],
             load=self.load[chosen],

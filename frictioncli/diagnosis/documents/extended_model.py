@@ -1,7 +1,7 @@
 """The extended model as ``extended-model.json`` holds it: read once, evaluated in one place."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import msgspec
@@ -10,13 +10,15 @@ from msgspec import UNSET, UnsetType
 
 from frictioncli import documents
 from frictioncli.arrays import Array
+from frictioncli.diagnosis.data.build_problem import at_temperature
 from frictioncli.diagnosis.data.gravity import GravityCoefficients, stated_gravity
+from frictioncli.diagnosis.data.hidden_temperature import HiddenTemperature
 from frictioncli.diagnosis.data.problem import Problem
-from frictioncli.effects import BY_NAME
+from frictioncli.effects import BY_NAME, thermal_lag
 from frictioncli.effects.base import Effect
 from frictioncli.errors import TableError
 from frictioncli.model.document import FrictionModel
-from frictioncli.model.friction import FrictionParameters
+from frictioncli.model.friction import FrictionParameters, friction_torque
 
 _NO_GRAVITY = GravityCoefficients(cosine=0.0, sine=0.0, offset=0.0)
 
@@ -137,12 +139,16 @@ class ExtendedDocument(FrictionModel):
         Parameters of the base about which the extended model is linear.
     gravity_about, gravity : GravityCoefficients
         Gravity of the base, and as refitted.
+    hidden_temperature : HiddenTemperature
+        Temperature of the gear at which friction is evaluated; absent where that is the measured
+        one.
     """
 
     effects: tuple[EffectRecord, ...]
     linear_about: FrictionParameters | UnsetType = UNSET
     gravity_about: GravityCoefficients | UnsetType = UNSET
     gravity: GravityCoefficients | UnsetType = UNSET
+    hidden_temperature: HiddenTemperature | UnsetType = UNSET
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -170,6 +176,8 @@ class ExtendedModel:
         Gravity as refitted, and the base's; not used without effects.
     effects : tuple of FittedEffect
         The effects, in the order of the causes; without any it adds nothing to its base.
+    hidden : HiddenTemperature or None
+        Temperature of the gear about which it is linear; none for the measured one.
     """
 
     temperature: str
@@ -178,6 +186,7 @@ class ExtendedModel:
     gravity: GravityCoefficients
     gravity_about: GravityCoefficients
     effects: tuple[FittedEffect, ...]
+    hidden: HiddenTemperature | None = None
 
     def beyond(self, problem: Problem) -> Beyond:
         """Return what it adds to the simulated torque of a problem's rows.
@@ -190,18 +199,42 @@ class ExtendedModel:
         friction, load = np.zeros_like(problem.friction), np.zeros_like(problem.load)
         if not self.effects:
             return Beyond(friction=friction, load=load, terms=())
-        terms = tuple(effect.at(problem) for effect in self.effects)
+        # about the base that the extension started from, at the temperature of the gear
+        base = problem
+        if self.hidden is not None:
+            base = at_temperature(problem, self.about, self.hidden)
+        terms = tuple(self._term(effect, base) for effect in self.effects)
         changes = [
-            getattr(self.parameters, name) - getattr(problem.parameters, name)
-            for name in problem.names
+            getattr(self.parameters, name) - getattr(base.parameters, name) for name in base.names
         ]
-        gravity = stated_gravity(self.gravity, len(problem.gravity)) - problem.gravity
-        friction = problem.friction_base @ np.array(changes) + problem.friction_by_gravity @ gravity
+        gravity = stated_gravity(self.gravity, len(base.gravity)) - base.gravity
+        friction = base.friction_base @ np.array(changes) + base.friction_by_gravity @ gravity
+        friction = friction + _at_measured(base) - _at_measured(problem)
         return Beyond(
             friction=sum((term.friction for term in terms), friction),
-            load=sum((term.load for term in terms), problem.load_base @ gravity),
+            load=sum((term.load for term in terms), base.load_base @ gravity),
             terms=terms,
         )
+
+    def _term(self, effect: FittedEffect, base: Problem) -> Term:
+        """Return what an effect adds; a lag of the gear beyond the measured temperature."""
+        term = effect.at(base)
+        if self.hidden is None or effect.effect is not thermal_lag.EFFECT:
+            return term
+        table = base.table
+        carried = table.temperature_slope * (table.temperature - table.measured_temperature)
+        return replace(term, friction=term.friction - carried + table.friction - _at_measured(base))
+
+
+def _at_measured(problem: Problem) -> Array:
+    """Return friction of a problem's parameters at the measured temperature, shape (rows,)."""
+    table = problem.table
+    return friction_torque(
+        problem.parameters,
+        load=table.load,
+        speed=table.speed,
+        temperature=table.measured_temperature,
+    )
 
 
 def read_extended(path: Path) -> dict[int, ExtendedModel]:
@@ -244,4 +277,5 @@ def extended_model(document: ExtendedDocument) -> ExtendedModel:
         gravity=document.gravity,
         gravity_about=document.gravity_about,
         effects=tuple(one.fitted() for one in document.effects),
+        hidden=document.hidden_temperature or None,
     )

@@ -3,6 +3,7 @@
 from dataclasses import fields, replace
 
 import numpy as np
+from msgspec import UNSET
 
 from frictioncli.diagnosis.data.gravity import gravity_document
 from frictioncli.diagnosis.diagnose import Diagnosis
@@ -28,9 +29,11 @@ from frictioncli.diagnosis.documents.parameters import (
     statement,
 )
 from frictioncli.diagnosis.documents.remainder import remainder_record
+from frictioncli.diagnosis.documents.thermal_record import record_of_lag
 from frictioncli.diagnosis.search.cause import Cause
 from frictioncli.diagnosis.search.lack_of_fit import Structure
 from frictioncli.diagnosis.settings import DiagnosisSettings
+from frictioncli.diagnosis.thermal.refine import LAG
 from frictioncli.effects.history_text import history_text
 from frictioncli.model.document import PARAMETERS, FrictionModel
 from frictioncli.model.friction import FrictionParameters
@@ -127,6 +130,7 @@ def extended_document(diagnosis: Diagnosis, model: FrictionModel) -> ExtendedDoc
         ),
         gravity_about=gravity_document(diagnosis.base.gravity),
         gravity=gravity_document(extension.gravity),
+        hidden_temperature=diagnosis.base.hidden or UNSET,
     )
 
 
@@ -152,7 +156,10 @@ def _cause_record(diagnosis: Diagnosis, cause: Cause, number: int) -> CauseRecor
     effect, extension = cause.fit.effect, diagnosis.extension
     assert extension is not None  # there is one wherever there is a cause
     parameters = extension_parameters(extension, effect.name, _units(diagnosis))
-    return _record(diagnosis, cause, parameters, f"diagnosis-{number}.svg")
+    record = _record(diagnosis, cause, parameters, f"diagnosis-{number}.svg")
+    if diagnosis.thermal is None or effect.name != LAG:
+        return record
+    return record_of_lag(record, diagnosis.thermal, diagnosis.torque_unit)
 
 
 def _visible_record(diagnosis: Diagnosis, cause: Cause) -> CauseRecord:

@@ -193,7 +193,13 @@ def misfits(problem: Problem, fitted: Refit) -> tuple[Array, Array]:
 
 
 def measured_gain(
-    problem: Problem, extension: Extension, *, basis: str, floor: float, seed: int
+    problem: Problem,
+    extension: Extension,
+    *,
+    base: Problem,
+    basis: str,
+    floor: float,
+    seed: int,
 ) -> Gain:
     """Return by how much an extension reduces the misfit of the simulated torque.
 
@@ -203,6 +209,8 @@ def measured_gain(
         Rows to be predicted, with the base model of the extension's own problem.
     extension : Extension
         The extension.
+    base : Problem
+        The same rows with the base model at the measured temperature.
     basis : {"new_run", "within_run"}
         Whether these rows were new to it.
     floor : float
@@ -210,7 +218,7 @@ def measured_gain(
     seed : int
         Seed of the block bootstrap.
     """
-    before = problem.squared(problem.friction_misfit, problem.load_misfit)
+    before = base.squared(base.friction_misfit, base.load_misfit)
     after = problem.squared(*misfits(problem, extension))
     low, high = reduction_interval(problem, before, after, seed)
     rms_before, rms_after = float(np.sqrt(np.mean(before))), float(np.sqrt(np.mean(after)))

@@ -1,0 +1,1 @@
+"""The hidden temperature of the gear: estimated nonlinearly, against simpler rivals."""

@@ -1,0 +1,254 @@
+"""A problem made linear about the hidden temperature, once a lag of the gear has been accepted."""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+from functools import partial
+
+import numpy as np
+
+from frictioncli.arrays import Array
+from frictioncli.diagnosis.data.build_problem import at_temperature
+from frictioncli.diagnosis.data.hidden_temperature import HiddenTemperature
+from frictioncli.diagnosis.data.problem import Problem
+from frictioncli.diagnosis.fit.extension import Extension
+from frictioncli.diagnosis.fit.hypotheses import EffectFit
+from frictioncli.diagnosis.search.cause_search import SearchResult
+from frictioncli.diagnosis.thermal.estimate import MEASURED, ThermalEstimate, estimate_temperature
+from frictioncli.effects.base import (
+    Basis,
+    Effect,
+    EffectTable,
+    friction_only,
+    missing_columns,
+)
+from frictioncli.effects.thermal_lag import EFFECT
+
+LAG = EFFECT.name
+"""Name of the effect that a hidden temperature describes."""
+
+_ROUNDS = 2
+"""Estimates in turn with the columns of other effects, which depend on the temperature."""
+
+_MOST = 0.7
+"""A hidden temperature that leaves less than this share of the RMS misfit explains most of it."""
+
+_MOST_STEPS = 6
+"""Greatest number of steps of the extension towards the temperature about which it is linear."""
+
+_SETTLED = 1e-6
+"""Changes of the coefficients, as a share of their size, at which it is reached."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class RefinedLag:
+    """A lag of the gear, estimated as a temperature.
+
+    Attributes
+    ----------
+    problem, new : Problem, Problem or None
+        The rows and those of the hold-out run, linear about the temperature of the gear.
+    estimate : ThermalEstimate
+        The temperature, and its rivals.
+    fit : EffectFit
+        The effect ``thermal_lag`` with the parts of the network that were found.
+    """
+
+    problem: Problem
+    new: Problem | None
+    estimate: ThermalEstimate
+    fit: EffectFit
+
+
+def refine_thermal(
+    problem: Problem, new: Problem | None, accepted: Sequence[EffectFit] = ()
+) -> RefinedLag | None:
+    """Return a problem linear about the hidden temperature that explains a lag of the gear.
+
+    Parameters
+    ----------
+    problem : Problem
+        The rows, linear about the measured temperature.
+    new : Problem or None
+        Rows of the hold-out run.
+    accepted : sequence of EffectFit, optional
+        Effects that were accepted, the lag perhaps among them.
+
+    Returns
+    -------
+    RefinedLag or None
+        None if the measured temperature explains friction as well, or if the data do not tell how
+        friction falls with temperature.
+    """
+    if missing_columns(EFFECT, problem.table) or not {"gamma", "delta"} <= set(problem.names):
+        return None
+    others = [one for one in accepted if one.effect.name != LAG]
+    linear = problem
+    for _ in range(_ROUNDS if others else 1):
+        beside = [linear.basis(one.effect, one.shape) for one in others]
+        estimate = estimate_temperature(problem, beside)
+        if estimate.hidden is None:
+            return None
+        linear = at_temperature(problem, estimate.parameters, estimate.hidden)
+    return RefinedLag(
+        problem=linear,
+        new=new and at_temperature(new, estimate.parameters, estimate.hidden),
+        estimate=estimate,
+        fit=lag_fit(estimate),
+    )
+
+
+def search_with_lag(
+    problem: Problem,
+    new: Problem | None,
+    effects: Sequence[Effect],
+    search: Callable[[Problem, Sequence[Effect]], SearchResult],
+) -> tuple[SearchResult, RefinedLag | None]:
+    """Search for causes; where a lag of the gear is one, about the temperature of the gear.
+
+    Where a hidden temperature explains most of the misfit, friction is linear about it from the
+    start: about the measured one, a lag of many degrees would look like other effects as well. Else
+    it is estimated beside the causes once the lag is one of them, and the search repeated. Where
+    the measured temperature then explains friction as well, the lag is left out.
+
+    Parameters
+    ----------
+    problem : Problem
+        The rows, linear about the measured temperature.
+    new : Problem or None
+        Rows of the hold-out run.
+    effects : sequence of Effect
+        The catalogue.
+    search : callable
+        Searches a problem for causes among some effects.
+
+    Returns
+    -------
+    SearchResult, RefinedLag or None
+        The causes, and the lag where it is one of them.
+    """
+    if LAG not in {one.name for one in effects}:
+        return search(problem, effects), None
+    first = refine_thermal(problem, new)
+    if first is not None and _explains_most(first.estimate):
+        found = search(first.problem, effects)
+        if _has_lag(found) and len(found.causes) == 1:
+            return _as_refined(found, first), first
+        if not _has_lag(found):
+            found = search(problem, effects)
+    else:
+        found = search(problem, effects)
+    if not _has_lag(found):
+        return found, None
+    refined = refine_thermal(problem, new, [cause.fit for cause in found.causes])
+    if refined is not None:
+        again = search(refined.problem, effects)
+        if _has_lag(again):
+            return _as_refined(again, refined), refined
+    without = search(problem, [one for one in effects if one.name != LAG])
+    dropped = without.dropped | {LAG: "the measured temperature explains friction as well"}
+    return replace(without, dropped=dropped), None
+
+
+def _explains_most(estimate: ThermalEstimate) -> bool:
+    """Return whether a hidden temperature explains most of the misfit of the pair means."""
+    measured = next(one for one in estimate.rivals if one.structure is MEASURED)
+    return estimate.chosen.left < _MOST * measured.left
+
+
+def _has_lag(found: SearchResult) -> bool:
+    return any(cause.fit.effect.name == LAG for cause in found.causes)
+
+
+def _as_refined(found: SearchResult, refined: RefinedLag) -> SearchResult:
+    """Return a result whose lag has the parts of the network that were found."""
+    causes = [
+        replace(cause, fit=replace(refined.fit, statistic=cause.fit.statistic))
+        if cause.fit.effect.name == LAG
+        else cause
+        for cause in found.causes
+    ]
+    return replace(found, causes=tuple(causes))
+
+
+def lag_fit(estimate: ThermalEstimate) -> EffectFit:
+    """Return the effect ``thermal_lag`` with the parts of the network that were found.
+
+    Columns of other parts are zero, so that a fit of the effect leaves them out.
+    """
+    fit = estimate.chosen.fit
+    parts = np.flatnonzero(fit.coefficients).tolist()
+    errors = np.zeros(len(EFFECT.coefficients))
+    for number, one in enumerate(EFFECT.coefficients):
+        if one.name in estimate.estimates:
+            stated = estimate.estimates[one.name]
+            errors[number] = (stated.high - stated.low) / (2 * 1.96)
+    return EffectFit(
+        effect=restricted(parts),
+        shape={"time_constant": fit.time_constant},
+        coefficients=fit.coefficients,
+        covariance=np.diag(np.square(errors)),
+        statistic=0.0,
+    )
+
+
+def restricted(parts: Sequence[int]) -> Effect:
+    """Return the effect ``thermal_lag`` with zeros in the columns of all but some parts."""
+    return replace(EFFECT, basis=partial(_restricted_basis, tuple(parts)))
+
+
+def _restricted_basis(parts: tuple[int, ...], table: EffectTable, **shape: float) -> Basis:
+    friction = EFFECT.evaluate(table, shape).friction
+    kept = np.isin(np.arange(friction.shape[1]), parts)
+    return friction_only(*(friction * kept).T)
+
+
+def settled(
+    refined: RefinedLag, effects: Sequence[EffectFit], extend: Callable[[Problem], Extension]
+) -> tuple[RefinedLag, Extension]:
+    """Return an extension, and the problems linear about the very temperature that it has.
+
+    The extension refits the network's coefficients with all others; the problem is made linear
+    about them in turn (Gauss-Newton steps) until both agree.
+
+    Parameters
+    ----------
+    refined : RefinedLag
+        The problems at the estimated temperature.
+    effects : sequence of EffectFit
+        Effects of the extension, the lag among them.
+    extend : callable
+        Returns the extension of a problem by these effects.
+    """
+    place = [one.effect.name for one in effects].index(LAG)
+    bounds = np.array([(one.lower, one.upper) for one in EFFECT.coefficients]).T
+    for _ in range(_MOST_STEPS):
+        extension = extend(refined.problem)
+        found = np.clip(extension.effects[place].coefficients, *bounds)
+        before = refined.fit.coefficients
+        refined = _moved(refined, extension, found)
+        if np.all(np.abs(found - before) <= _SETTLED * np.maximum(np.abs(found), 1.0)):
+            break
+    fitted = list(extension.effects)
+    fitted[place] = replace(fitted[place], coefficients=found)
+    unchanged = np.zeros_like(extension.changes)
+    return refined, replace(extension, changes=unchanged, effects=tuple(fitted))
+
+
+def _moved(refined: RefinedLag, extension: Extension, coefficients: Array) -> RefinedLag:
+    """Return the problems at the parameters of an extension and the coefficients of its lag."""
+    problem, new, hidden = refined.problem, refined.new, refined.problem.hidden
+    assert hidden is not None
+    about = {
+        name: getattr(problem.parameters, name) + float(change)
+        for name, change in zip(extension.names, extension.changes, strict=True)
+    }
+    parameters = replace(problem.parameters, **about)
+    moved = HiddenTemperature.of(
+        hidden.time_constant, coefficients, hidden.reference_power, hidden.housing_time_constant
+    )
+    return replace(
+        refined,
+        problem=at_temperature(problem, parameters, moved),
+        new=new and at_temperature(new, parameters, moved),
+        fit=replace(refined.fit, coefficients=coefficients),
+    )

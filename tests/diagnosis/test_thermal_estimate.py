@@ -1,0 +1,162 @@
+"""The temperature of friction, estimated in joints that are thermal networks.
+
+The networks are integrated by a solver of differential equations (tests.diagnosis.thermal_joint);
+the last day is kept out.
+"""
+
+import functools
+
+import numpy as np
+import pandas as pd
+import pytest
+
+from frictioncli.diagnosis.data.build_problem import at_temperature, build_problems
+from frictioncli.diagnosis.data.hidden_temperature import HiddenTemperature
+from frictioncli.diagnosis.data.problem import Problem
+from frictioncli.diagnosis.thermal.estimate import ThermalEstimate, estimate_temperature
+from frictioncli.diagnosis.thermal.refine import refine_thermal
+from frictioncli.diagnosis.thermal.statement import temperature_statement
+from frictioncli.effects.base import Basis
+from frictioncli.model.friction import FrictionParameters
+from tests.diagnosis.thermal_joint import BINS, DELTA, Network, friction, torques
+
+NOISE = 0.25
+FLOOR = NOISE * np.sqrt(1 + 1 / 4)
+"""Standard deviation of a bin: its own noise, and half as much that its pair shares. [N·m]"""
+
+NETWORKS = {
+    "conduction": Network(motor_heat=1.0),
+    "heated": Network(motor_heat=0.3),
+    "housing": Network(node="housing", gear_housing=6.0, housing_ambient=0.8),
+    "motor": Network(node="motor"),
+}
+
+
+@functools.cache
+def logged(name: str) -> tuple[pd.DataFrame, np.ndarray]:
+    """Two days of a joint, and the temperature of its gear in each pair."""
+    return torques(NETWORKS[name])
+
+
+@functools.cache
+def days(name: str, housing: bool = True) -> tuple[Problem, Problem]:
+    rows, _ = logged(name)
+    rows = rows if housing else rows.assign(housing_temperature=np.nan)
+    problem, new = build_problems(rows, "motor", "day1")
+    assert new is not None
+    return problem, new
+
+
+@functools.cache
+def estimated(name: str, housing: bool = True) -> ThermalEstimate:
+    return estimate_temperature(days(name, housing)[0])
+
+
+def left(problem: Problem, estimate: ThermalEstimate) -> float:
+    """Return the RMS that equation (16) at the estimated temperature misses of friction."""
+    warm = at_temperature(problem, estimate.parameters, estimate.hidden)
+    return float(np.sqrt(np.mean(np.square(warm.friction - warm.table.friction))))
+
+
+@pytest.mark.parametrize("name", ["conduction", "heated"])
+def test_a_hidden_gear_predicts_the_day_kept_out(name):
+    """Within 1.25 of the noise where the measured temperature misses many times as much."""
+    estimate, (_, new) = estimated(name), days(name)
+    assert estimate.chosen.structure.name == "one_node"
+    assert left(new, estimate) < 1.25 * FLOOR
+    assert np.sqrt(np.mean(np.square(new.friction_misfit))) > 2 * FLOOR
+
+
+@pytest.mark.parametrize(("name", "most"), [("conduction", 2.0), ("heated", 1.25)])
+def test_so_does_one_without_a_measured_housing(name, most):
+    """Where the gear is heated through the motor, the other day's ambient shows: it is 2 °C off."""
+    estimate, (_, new) = estimated(name, housing=False), days(name, housing=False)
+    assert estimate.chosen.structure.name in ("one_node", "two_nodes")
+    assert left(new, estimate) < most * FLOOR
+
+
+@pytest.mark.parametrize("name", ["conduction", "heated"])
+def test_time_constant_and_shares_are_those_of_the_network(name):
+    """The gear of 7500 J/K at 3 W/K to the motor and 1.5 W/K to the housing."""
+    found = estimated(name).estimates
+    for parameter, truth in (
+        ("time_constant", 7500 / 4.5),
+        ("lag_share", 3 / 4.5),
+        ("housing_lag_share", 1.5 / 4.5),
+    ):
+        assert found[parameter].low < truth < found[parameter].high, parameter
+    assert found["time_constant"].high < 2 * found["time_constant"].low
+    assert estimated(name).parameters.delta == pytest.approx(DELTA, rel=0.1)
+
+
+def test_the_temperature_of_the_gear_is_that_of_the_network():
+    """In the motor's temperature alone it would be off by many degrees."""
+    table, gear = logged("conduction")
+    found = estimated("conduction").temperature
+    assert np.sqrt(np.mean(np.square(found - gear))) < 1.0
+    motor = table.groupby(["run", "pair"])["motor_temperature"].first().to_numpy()
+    assert np.sqrt(np.mean(np.square(motor - gear))) > 5.0
+
+
+def test_friction_at_the_housing_is_told_as_an_option():
+    estimate, (_, new) = estimated("housing"), days("housing")
+    assert estimate.chosen.structure.name == "housing"
+    assert left(new, estimate) < 1.25 * FLOOR
+    assert "use --temperature housing" in temperature_statement(estimate, "N·m")
+
+
+@pytest.mark.parametrize("housing", [True, False])
+def test_friction_at_the_motor_needs_no_hidden_temperature(housing):
+    assert estimated("motor", housing).hidden is None
+    problem, new = days("motor", housing)
+    assert refine_thermal(problem, new) is None
+
+
+@pytest.mark.parametrize("name", ["stribeck", "linear_viscous", "drift", "step", "coulomb"])
+def test_other_effects_at_the_motor_are_no_hidden_temperature(name):
+    """1 N·m RMS and more of another cause, whose column stands beside the base."""
+    problem, _ = days("motor")
+    table = problem.table
+    column = {
+        "stribeck": 5.0 * np.exp(-((table.speed / 25.0) ** 2)),
+        "linear_viscous": 0.05 * table.speed,
+        "drift": 4.0 * table.time / table.time.max(),
+        "step": 3.0 * (table.time > 0.4 * table.time.max()),
+        "coulomb": -1.0 * (table.motor_temperature - 25.0) / 10.0,
+    }[name]
+    changed = logged("motor")[0].copy()
+    rows = changed.sort_values(["run", "time", "pair", "position"]).index
+    first = np.flatnonzero((changed["run"] == "day0").to_numpy()[rows])
+    more = np.zeros(len(changed))
+    more[rows[first]] = column
+    changed["friction_torque"] += more
+    other, _ = build_problems(changed, "motor", "day1")
+    basis = Basis((column / column.max())[:, np.newaxis], np.zeros((len(column), 1)))
+    assert estimate_temperature(other, [basis]).hidden is None
+
+
+def test_a_statement_gives_time_shares_and_what_a_mix_would_leave():
+    text = temperature_statement(estimated("heated"), "N·m")
+    assert text.startswith("The gear follows the motor (")
+    assert "the housing (" in text
+    assert " min (" in text
+
+
+def test_friction_is_simulated_at_the_hidden_temperature():
+    """By hand: equation (16) at T + E, carried back along the slope to the measured T."""
+    problem, _ = days("heated")
+    parameters = FrictionParameters(tau_c=10.6, alpha=0.0014, beta=3.5, gamma=15.7, delta=0.056)
+    half = HiddenTemperature.of(600.0, np.array([0.0, 0.0, 0.5, 0.0]), problem.reference_power)
+    warm = at_temperature(problem, parameters, half)
+    table = problem.table
+    between = (table.motor_temperature + table.housing_temperature) / 2
+    np.testing.assert_allclose(warm.table.temperature, between)
+    expected = friction(table.speed, between, table.load)
+    np.testing.assert_allclose(warm.table.friction, expected, rtol=1e-12)
+    slope = -0.056 * 15.7 * np.exp(-0.056 * between) * np.sqrt(table.speed)
+    back = expected - slope * (between - table.motor_temperature)
+    np.testing.assert_allclose(warm.friction_misfit, warm.friction - back, rtol=1e-9, atol=1e-9)
+    np.testing.assert_array_equal(
+        at_temperature(warm, parameters, None).table.temperature, table.motor_temperature
+    )
+    assert len(BINS) * len(problem.layout.bins) == len(table.time)
