@@ -79,18 +79,33 @@ def hypothesis_of(
         np.hstack([basis.friction for basis in bases]),
         np.hstack([basis.load for basis in bases]),
     )
-    width = len(effect.coefficients)
-    factor = max(float(np.mean(np.abs(problem.friction))) / _USUAL_FRICTION, 1.0)
-    factors = np.array([factor if TORQUE in one.unit else 1.0 for one in effect.coefficients])
+    lower, upper = physical_bounds(effect, problem)
     return Hypothesis(
         name=effect.name,
         shapes=tuple(tried),
-        width=width,
+        width=len(effect.coefficients),
         columns=columns,
         rms=np.array(rms),
-        lower=np.array([parameter.lower for parameter in effect.coefficients]) * factors,
-        upper=np.array([parameter.upper for parameter in effect.coefficients]) * factors,
+        lower=lower,
+        upper=upper,
     )
+
+
+def physical_bounds(effect: Effect, problem: Problem) -> tuple[Array, Array]:
+    """Return the bounds of an effect's coefficients on a joint, shape (coefficients,) each.
+
+    Parameters
+    ----------
+    effect : Effect
+        Entry of the catalogue.
+    problem : Problem
+        The joint's rows: bounds in units of torque grow with its friction.
+    """
+    factor = max(float(np.mean(np.abs(problem.friction))) / _USUAL_FRICTION, 1.0)
+    factors = np.array([factor if TORQUE in one.unit else 1.0 for one in effect.coefficients])
+    lower = np.array([parameter.lower for parameter in effect.coefficients])
+    upper = np.array([parameter.upper for parameter in effect.coefficients])
+    return lower * factors, upper * factors
 
 
 def _informative_shapes(effect: Effect, problem: Problem) -> list[dict[str, float]]:

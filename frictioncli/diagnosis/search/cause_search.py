@@ -210,13 +210,10 @@ class _Search:
         """
         fit, newest = Step.of(self.precomputed, accepted).fit, accepted[-1]
         free = slice(len(fit.coefficients) - len(newest.coefficients), None)
-        hypothesis = hypothesis_of(newest.effect, self.precomputed.problem, [newest.shape])
-        return beyond_bounds(
-            replace(
-                newest, coefficients=fit.coefficients[free], covariance=fit.covariance[free, free]
-            ),
-            (hypothesis.lower, hypothesis.upper),
+        unbounded = replace(
+            newest, coefficients=fit.coefficients[free], covariance=fit.covariance[free, free]
         )
+        return beyond_bounds(unbounded, self.precomputed.problem)
 
     def retested(self, accepted: list[EffectFit]) -> list[EffectFit]:
         """Return the accepted effects, each tested once more beside the others.
@@ -275,7 +272,7 @@ def _possible(precomputed: Precomputed, effects: Sequence[Effect]) -> tuple[Effe
     One that is not explains something else, as a payload that goes with speed, and would hide it.
     """
     causes = _measurement(Step.of(precomputed, []), effects)
-    return tuple(cause.fit.effect for cause in causes if not beyond_bounds(cause.fit))
+    return tuple(cause.fit.effect for cause in causes if not beyond_bounds(cause.fit, precomputed.problem))
 
 
 def _measurement(step: Step, effects: Sequence[Effect]) -> tuple[Cause, ...]:

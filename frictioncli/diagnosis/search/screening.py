@@ -119,9 +119,11 @@ def _noise_freedom(catalogue: Catalogue, number: int, shape: int, variances: Var
     """
     components = catalogue.precomputed.components
     parts = np.array(catalogue.lengths(number, shape, variances))
-    share = parts / max(float(parts.sum()), 1e-300)
     free = [
         components.within[0],
         max(components.pairs - components.base, 1),
     ]
+    if parts.sum() == 0:
+        return float(free[1])
+    share = parts / parts.sum()
     return float(1 / np.sum(np.square(share) / np.array(free)))

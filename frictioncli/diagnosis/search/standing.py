@@ -8,7 +8,7 @@ import numpy as np
 from frictioncli.arrays import Array
 from frictioncli.diagnosis.data.problem import Problem
 from frictioncli.diagnosis.fit.columns import main_channel
-from frictioncli.diagnosis.fit.hypotheses import EffectFit
+from frictioncli.diagnosis.fit.hypotheses import EffectFit, physical_bounds
 from frictioncli.diagnosis.search.cause import CONVINCING, Cause
 
 _Z95 = 1.96
@@ -38,7 +38,7 @@ def with_standing(
     alpha : float
         Significance level.
     """
-    judged = [_judged(cause, margin, alpha) for cause in causes]
+    judged = [_judged(cause, problem, margin, alpha) for cause in causes]
     for weaker in sorted(range(len(judged)), key=lambda i: judged[i].test.statistic):
         for other in range(len(judged)):
             both = judged[weaker], judged[other]
@@ -52,11 +52,11 @@ def with_standing(
     return tuple(judged)
 
 
-def _judged(cause: Cause, margin: float, alpha: float) -> Cause:
+def _judged(cause: Cause, problem: Problem, margin: float, alpha: float) -> Cause:
     low, high = cause.visible_interval
     if not (cause.test.p_value < alpha and cause.test.log_bayes_factor > CONVINCING):
         return replace(cause, standing="undetermined", reason="noise may be the reason")
-    impossible = _impossible(cause)
+    impossible = _impossible(cause, problem)
     if impossible:
         return replace(cause, standing="undetermined", reason=impossible)
     if low > margin:
@@ -68,34 +68,36 @@ def _judged(cause: Cause, margin: float, alpha: float) -> Cause:
     return replace(cause, standing="visible" if low > 0 else "undetermined", reason=reason)
 
 
-def beyond_bounds(fit: EffectFit, bounds: tuple[Array, Array] | None = None) -> str:
+def beyond_bounds(fit: EffectFit, problem: Problem) -> str:
     """Return which coefficient of an effect is physically impossible; empty if none is.
 
     Parameters
     ----------
     fit : EffectFit
         The effect.
-    bounds : (ndarray, ndarray), shape (coefficients,) each, optional
-        Bounds of its coefficients; by default those of the catalogue.
+    problem : Problem
+        The joint's rows, with whose friction bounds in units of torque grow.
     """
-    parameters = fit.effect.coefficients
-    lower, upper = bounds or tuple(
-        np.array([getattr(one, side) for one in parameters]) for side in ("lower", "upper")
-    )
+    lower, upper = physical_bounds(fit.effect, problem)
     reach = _Z95 * _errors(fit)
     beyond = (fit.coefficients < lower - reach) | (fit.coefficients > upper + reach)
+    parameters = fit.effect.coefficients
     for parameter, value, outside in zip(parameters, fit.coefficients, beyond, strict=True):
         if outside:
             return f"{parameter.name} of {value:.3g} {parameter.unit} is physically impossible"
     return ""
 
 
-def _impossible(cause: Cause) -> str:
+def _impossible(cause: Cause, problem: Problem) -> str:
     """Return why a cause is physically impossible or not determined; empty if it is not."""
-    reason, errors = beyond_bounds(cause.fit), _errors(cause.fit)
-    if not reason and len(errors) == 1 and abs(cause.fit.coefficients[0]) <= _Z95 * errors[0]:
+    reason, errors = beyond_bounds(cause.fit, problem), _errors(cause.fit)
+    if reason:
+        return reason
+    if not errors.any():
+        return "its coefficients lie on the bounds of what is physically possible"
+    if len(errors) == 1 and abs(cause.fit.coefficients[0]) <= _Z95 * errors[0]:
         return "its coefficient may be zero"
-    return reason
+    return ""
 
 
 def _errors(fit: EffectFit) -> Array:

@@ -1,0 +1,138 @@
+"""What may be said of a cause: one rule after the other, on causes made by hand."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from frictioncli.diagnosis.fit.hypotheses import EffectFit, HypothesisTest, physical_bounds
+from frictioncli.diagnosis.noise.significance import NullDistribution
+from frictioncli.diagnosis.search.cause import Cause
+from frictioncli.diagnosis.search.standing import with_standing
+from frictioncli.effects import BY_NAME
+from tests.diagnosis.dense_noise import problem
+from tests.diagnosis.wave_effects import A, B, effect
+
+MARGIN, ALPHA = 0.2, 0.05
+WAVE = effect("a", [(1.0, A)], lower=0.0)
+
+
+@pytest.fixture(scope="module")
+def joint():
+    return problem(1)
+
+
+def cause(one=WAVE, coefficients=(1.0,), errors=(0.1,), interval=(0.5, 0.9), shape=None, **test):
+    """Return a cause with an interval of its visible size. [N·m]"""
+    values, covariance = np.array(coefficients, float), np.diag(np.square(errors))
+    told = {"p_value": 1e-9, "log_bayes_factor": 20.0, "statistic": 50.0} | test
+    return Cause(
+        fit=EffectFit(one, shape or {}, values, covariance, told["statistic"]),
+        test=HypothesisTest(
+            name=one.name,
+            shape=shape or {},
+            coefficients=values,
+            covariance=covariance,
+            freedom=len(values),
+            null=NullDistribution(coefficients=len(values), freedom=100.0),
+            size_scale=0.1,
+            **told,
+        ),
+        effects=(one.name,),
+        probabilities={one.name: 1.0},
+        size=0.7,
+        visible=0.7,
+        visible_interval=interval,
+    )
+
+
+def standing(joint, *causes):
+    return [(one.standing, one.reason) for one in with_standing(causes, joint, MARGIN, ALPHA)]
+
+
+@pytest.mark.parametrize(
+    ("interval", "expected"),
+    [
+        ((0.21, 0.9), "named"),
+        ((0.19, 0.9), "visible"),
+        ((0.0, 0.9), "undetermined"),
+        ((0.05, 0.19), "negligible"),
+        ((0.0, 0.1), "negligible"),
+    ],
+)
+def test_a_name_needs_a_lower_bound_above_the_margin(joint, interval, expected):
+    ((found, reason),) = standing(joint, cause(interval=interval))
+    assert found == expected
+    assert ("0.2" in reason) == (found != "named")
+
+
+@pytest.mark.parametrize("test", [{"p_value": 0.06}, {"log_bayes_factor": 2.9}])
+def test_what_noise_may_explain_is_undetermined_whatever_its_size(joint, test):
+    ((found, reason),) = standing(joint, cause(interval=(5.0, 6.0), **test))
+    assert (found, "noise" in reason) == ("undetermined", True)
+
+
+def test_what_physics_forbids_is_not_named(joint):
+    """Below 0, by more than its error; on a bound alone; a coefficient that may be nothing."""
+    for coefficient, error, word in (
+        (-0.5, 0.1, "impossible"),
+        (0.0, 0.0, "bounds"),
+        (0.1, 0.1, "zero"),
+    ):
+        ((found, reason),) = standing(joint, cause(coefficients=(coefficient,), errors=(error,)))
+        assert found == "undetermined"
+        assert word in reason
+    ((found, _),) = standing(joint, cause(coefficients=(-0.1,), errors=(0.2,)))
+    assert found == "undetermined"
+
+
+def test_bounds_in_torque_grow_with_the_friction_of_the_joint(joint):
+    """A joint of 30 N·m may drift one and a half times as fast as one of 20 N·m or less."""
+    drift = BY_NAME["drift"]
+    share = np.mean(joint.friction) / 20.0
+    assert share > 1.2
+    lower, upper = physical_bounds(drift, joint)
+    (parameter,) = drift.coefficients
+    assert (lower[0], upper[0]) == pytest.approx((parameter.lower * share, parameter.upper * share))
+    weak = replace(joint, friction=joint.friction / 10)
+    assert physical_bounds(drift, weak)[1][0] == parameter.upper
+    # units without torque stay
+    lag = BY_NAME["thermal_lag"]
+    for one, high in zip(lag.coefficients, physical_bounds(lag, joint)[1], strict=True):
+        assert high == pytest.approx(one.upper * (share if "torque" in one.unit else 1.0))
+    shape = {axis.name: axis.at(0.5) for axis in drift.shape}
+    for factor, expected in ((1.1, "named"), (1.1 * share, "undetermined")):
+        one = cause(drift, (factor * parameter.upper,), (0.01,), shape=shape)
+        ((found, _),) = standing(joint, one)
+        assert found == expected
+
+
+def test_two_causes_that_cancel_are_not_both_named(joint):
+    """One is the other's negative, but for a little: the weaker has no name."""
+    against = effect("against", [(-1.0, A), (0.3, B)])
+    strong = cause(statistic=90.0)
+    weak = cause(against, statistic=40.0)
+    other = cause(effect("other", [(1.0, B)]), statistic=30.0)
+    found = standing(joint, weak, strong, other)
+    assert [one[0] for one in found] == ["undetermined", "named", "named"]
+    assert "cancel" in found[0][1]
+    assert strong.fit.effect.name in found[0][1]
+
+
+def test_causes_that_only_overlap_in_part_keep_their_names(joint):
+    half = effect("half", [(-1.0, A), (1.5, B)])
+    assert [one[0] for one in standing(joint, cause(), cause(half))] == ["named", "named"]
+
+
+def test_causes_of_two_channels_cannot_cancel(joint):
+    """Friction and load of one amount, of opposite sign."""
+    payload = BY_NAME["dress_pack"]
+    shape = {axis.name: axis.at(0.5) for axis in payload.shape}
+    found = standing(joint, cause(), cause(payload, (-1.0,), (0.01,), shape=shape))
+    assert found[0][0] == "named"
+
+
+def test_what_is_not_named_cancels_nothing(joint):
+    against = effect("against", [(-1.0, A)])
+    found = standing(joint, cause(), cause(against, interval=(0.0, 0.1), statistic=99.0))
+    assert [one[0] for one in found] == ["named", "negligible"]
