@@ -5,7 +5,9 @@ import pandas as pd
 import pytest
 
 from frictioncli.diagnosis.data.build_problem import build_problems
+from frictioncli.diagnosis.diagnose import margin_of
 from frictioncli.diagnosis.search.cause_search import find_causes
+from frictioncli.diagnosis.search.standing import with_standing
 from frictioncli.diagnosis.settings import DiagnosisSettings
 from frictioncli.effects import EFFECTS
 from tests.equation_16 import TRUTH, torques
@@ -47,7 +49,11 @@ def test_growth_hides_beta_from_the_fit_and_not_from_the_diagnosis():
 
 @pytest.mark.parametrize("seed", [1, 2, 4])
 def test_no_second_cause_is_named_for_what_the_first_one_hid(seed):
-    (cause,) = find_causes(grown_while_warmed(seed), EFFECTS, DiagnosisSettings()).causes
+    problem, settings = grown_while_warmed(seed), DiagnosisSettings()
+    margin = margin_of(problem, "N·m", settings)
+    found = find_causes(problem, EFFECTS, settings, margin).causes
+    (cause,) = with_standing(found, problem, margin, settings.alpha)
     assert cause.effects == ("drift",)
+    assert cause.standing == "named"
     rate, hours = cause.fit.coefficients[0], cause.fit.shape["time_constant"]
     assert rate * hours * -np.expm1(-1.2 / hours) == pytest.approx(RATE * 1.2, rel=0.25)

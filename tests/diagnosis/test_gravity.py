@@ -28,7 +28,10 @@ GRAVITY = [P, Q, C, PER_KG, ASIDE]
 
 
 def carried(payloads=(0.0, 3.0, 5.0), *, noise=0.0, undeclared=0.0):
-    """Two days, payloads in turn from pair to pair; a mass that nobody tells on the second half."""
+    """Two days, payloads in turn from pair to pair; a mass that nobody tells on the second half.
+
+    The gear carries the constant of gravity, as it does the rest.
+    """
     temperature, time, phase = (values[::4] for values in cycle_temperatures())
     rows = pd.concat(
         [
@@ -41,10 +44,9 @@ def carried(payloads=(0.0, 3.0, 5.0), *, noise=0.0, undeclared=0.0):
     late = (rows["run"] == "day2") | (rows["pair"] > rows["pair"].max() / 2)
     angle = np.radians(rows["position"])
     mass = payload + undeclared * late
-    load = (P + PER_KG * mass) * np.cos(angle) + (Q + ASIDE * mass) * np.sin(angle)
+    load = (P + PER_KG * mass) * np.cos(angle) + (Q + ASIDE * mass) * np.sin(angle) + C
     friction = rows["friction_torque"] + 0.0014 * (np.square(load) - np.square(rows["load_torque"]))
-    # the sensor's offset weighs nothing: friction does not feel it
-    noisy = load + C + noise * np.random.default_rng(3).normal(size=len(rows))
+    noisy = load + noise * np.random.default_rng(3).normal(size=len(rows))
     return rows.assign(load=np.nan, load_torque=noisy, friction_torque=friction, payload=payload)
 
 
@@ -61,7 +63,7 @@ def test_the_load_that_effects_see_goes_with_the_payload():
     rows = carried()
     seen, _ = build_problems(rows, "motor", "day2")
     ordered = rows[rows["run"] == "day1"].sort_values(["time", "pair", "position"])
-    np.testing.assert_allclose(seen.table.load, ordered["load_torque"] - C, atol=1e-6)
+    np.testing.assert_allclose(seen.table.load, ordered["load_torque"], atol=1e-6)
     np.testing.assert_allclose(seen.all_runs.load[seen.rows], seen.table.load)
 
 
@@ -102,10 +104,10 @@ def test_rows_are_simulated_with_as_many_coefficients_as_are_given():
     rows = carried().sample(frac=1.0, random_state=1)
     seen, _ = build_problems(rows, "motor", None)
     order, problem = simulated(rows, "motor", seen.parameters, np.array(GRAVITY))
-    np.testing.assert_allclose(problem.table.load, rows.loc[order, "load_torque"] - C, atol=1e-6)
+    np.testing.assert_allclose(problem.table.load, rows.loc[order, "load_torque"], atol=1e-6)
     _, plain = simulated(rows, "motor", seen.parameters, np.array([P, Q, C]))
     angle = np.radians(plain.table.position)
-    np.testing.assert_allclose(plain.table.load, P * np.cos(angle) + Q * np.sin(angle))
+    np.testing.assert_allclose(plain.table.load, P * np.cos(angle) + Q * np.sin(angle) + C)
 
 
 def test_columns_are_per_degree_and_kilogram():

@@ -272,7 +272,9 @@ def _possible(precomputed: Precomputed, effects: Sequence[Effect]) -> tuple[Effe
     One that is not explains something else, as a payload that goes with speed, and would hide it.
     """
     causes = _measurement(Step.of(precomputed, []), effects)
-    return tuple(cause.fit.effect for cause in causes if not beyond_bounds(cause.fit, precomputed.problem))
+    return tuple(
+        cause.fit.effect for cause in causes if not beyond_bounds(cause.fit, precomputed.problem)
+    )
 
 
 def _measurement(step: Step, effects: Sequence[Effect]) -> tuple[Cause, ...]:
