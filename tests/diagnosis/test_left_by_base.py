@@ -1,12 +1,10 @@
 """What the base leaves of an effect, and the interval of its size, beside dense projections."""
 
-from dataclasses import replace
-
 import numpy as np
 import pytest
 
 from frictioncli.diagnosis.fit.columns import base_rows
-from frictioncli.diagnosis.fit.left_by_base import left_by, left_of, visible_size
+from frictioncli.diagnosis.fit.left_by_base import left_by, span_of, visible_size
 from frictioncli.effects import BY_NAME
 from frictioncli.effects.base import Basis
 from tests.diagnosis.dense_noise import problem
@@ -24,10 +22,8 @@ def test_what_is_left_is_the_residual_of_both_channels_together(joint, name):
     base, columns = np.vstack(base_rows(joint)), np.vstack(basis)
     fitted = np.linalg.lstsq(base / np.linalg.norm(base, axis=0), columns, rcond=1e-9)[0]
     residual = columns - (base / np.linalg.norm(base, axis=0)) @ fitted
-    friction, load = np.split(residual, 2)
-    expected = friction if effect.channel == "friction" else load
-    found = left_of(joint, effect, basis, ())
-    np.testing.assert_allclose(found, expected, atol=1e-7 * np.abs(columns).max())
+    found = left_by(span_of(joint), basis)
+    np.testing.assert_allclose(found, residual, atol=1e-7 * np.abs(columns).max())
 
 
 def test_a_constant_that_loads_no_gear_is_not_taken_by_a_constant_that_does(joint):
@@ -35,19 +31,18 @@ def test_a_constant_that_loads_no_gear_is_not_taken_by_a_constant_that_does(join
     effect = BY_NAME["load_offset"]
     basis = joint.basis(effect, {})
     size = np.sqrt(np.mean(np.square(basis.friction)))
-    alone = left_by(joint, basis.friction, "friction", ())
+    base = base_rows(joint)[0]
+    scaled = base / np.maximum(np.linalg.norm(base, axis=0), 1e-300)
+    alone = basis.friction - scaled @ np.linalg.lstsq(scaled, basis.friction, rcond=1e-9)[0]
     assert np.sqrt(np.mean(np.square(alone))) < 1e-6 * size
-    both = left_of(joint, effect, basis, ())
+    both = np.split(left_by(span_of(joint), basis), 2)[0]
     assert np.sqrt(np.mean(np.square(both))) > 0.8 * size
 
 
 def test_what_stands_beside_the_base_leaves_nothing_of_itself(joint):
     basis = joint.basis(BY_NAME["load_linear"], {})
-    again = left_of(joint, BY_NAME["load_linear"], basis, [Basis(*basis)])
+    again = left_by(span_of(joint, [Basis(*basis)]), basis)
     assert np.abs(again).max() < 1e-9
-    own = replace(joint, has_load_channel=True)
-    found = left_of(own, BY_NAME["load_linear"], basis, ())
-    np.testing.assert_allclose(found, left_by(own, basis.friction, "friction", ()), atol=1e-9)
 
 
 CASES = {
@@ -74,7 +69,7 @@ def test_intervals_of_a_size_hold_the_true_one(name):
     left = generator.normal(size=(300, len(truth))) @ np.diag(np.linspace(0.5, 2.0, len(truth)))
     size = np.sqrt(np.mean(np.square(left @ truth)))
     drawn = generator.multivariate_normal(truth, covariance, size=2000)
-    found = np.array([visible_size(left, one, covariance) for one in drawn])
+    found = np.array([visible_size(np.vstack([left, 0 * left]), one, covariance) for one in drawn])
     held = (found[:, 1] <= size) & (size <= found[:, 2])
     assert 0.92 < np.mean(held) < 0.985
     # what is named rests on the lower bound
@@ -89,16 +84,20 @@ def test_intervals_of_an_effect_that_is_not_there_begin_at_zero():
     generator = np.random.default_rng(5)
     left, covariance = generator.normal(size=(200, 3)), 0.01 * np.eye(3)
     drawn = generator.multivariate_normal(np.zeros(3), covariance, size=3000)
-    found = np.array([visible_size(left, one, covariance) for one in drawn])
+    found = np.array([visible_size(np.vstack([left, 0 * left]), one, covariance) for one in drawn])
     assert np.mean(found[:, 1] > 0) < 0.035
     assert found[:, 2].min() > 0.1
 
 
 def test_a_single_coefficient_has_the_interval_of_its_errors():
-    size, low, high = visible_size(np.full((9, 1), 2.0), np.array([-3.0]), np.array([[0.01]]))
+    size, low, high = visible_size(
+        np.repeat([[2.0], [0.0]], 9, axis=0), np.array([-3.0]), np.array([[0.01]])
+    )
     assert (size, low, high) == pytest.approx((6.0, 6.0 - 1.96 * 0.2, 6.0 + 1.96 * 0.2), rel=1e-3)
 
 
 def test_nothing_is_left_of_nothing():
     assert visible_size(np.zeros((5, 2)), np.ones(2), np.eye(2)) == (0.0, 0.0, 0.0)
-    assert visible_size(np.ones((5, 1)), np.array([2.0]), np.zeros((1, 1))) == (2.0, 2.0, 2.0)
+    assert visible_size(
+        np.repeat([[1.0], [0.0]], 5, axis=0), np.array([2.0]), np.zeros((1, 1))
+    ) == (2.0, 2.0, 2.0)

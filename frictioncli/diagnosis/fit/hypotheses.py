@@ -10,6 +10,7 @@ from scipy.optimize import brentq
 from frictioncli.arrays import Array
 from frictioncli.diagnosis.data.problem import Problem
 from frictioncli.diagnosis.fit.columns import ModelColumns, main_channel, reduced
+from frictioncli.diagnosis.fit.variance_components import Variances
 from frictioncli.diagnosis.noise.significance import NullDistribution
 from frictioncli.effects.base import Effect
 from frictioncli.effects.history import distinct
@@ -23,7 +24,9 @@ joint with more friction grow in proportion. [N·m]"""
 _POWER = 0.8
 """Probability with which an effect of the smallest detectable size is found."""
 
-_ABOVE = 1.96 + 0.84
+_Z95 = 1.96
+
+_ABOVE = _Z95 + 0.84
 """Standard errors by which a size must exceed the margin for its lower bound to do so four times in
 five."""
 
@@ -133,6 +136,9 @@ class EffectFit:
         Their covariance for this shape.
     statistic : float
         Twice the log likelihood ratio to the base alone.
+    variances : Variances or None
+        Variances of noise and discrepancy with the effect in place; None where they were not
+        estimated.
     """
 
     effect: Effect
@@ -140,6 +146,7 @@ class EffectFit:
     coefficients: Array
     covariance: Array
     statistic: float
+    variances: Variances | None = None
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -169,6 +176,8 @@ class HypothesisTest:
         RMS in its channel per unit of whitened length. [N·m]
     left_share : float
         Share of its RMS that the base leaves.
+    variances : Variances or None
+        Variances of noise and discrepancy with the hypothesis in place.
     """
 
     name: str
@@ -182,10 +191,18 @@ class HypothesisTest:
     null: NullDistribution
     size_scale: float
     left_share: float = 1.0
+    variances: Variances | None = None
 
     def effect_fit(self, effect: Effect) -> EffectFit:
         """Return the fit of an effect that the hypothesis stands for."""
-        return EffectFit(effect, self.shape, self.coefficients, self.covariance, self.statistic)
+        return EffectFit(
+            effect,
+            self.shape,
+            self.coefficients,
+            self.covariance,
+            self.statistic,
+            self.variances,
+        )
 
     def refined_log_bayes_factor(self, fit: EffectFit) -> float:
         """Return the log Bayes factor after the shape has been refined off the grid.
@@ -197,7 +214,9 @@ class HypothesisTest:
         """
         return self.log_bayes_factor + max(fit.statistic - self.statistic, 0.0) / 2
 
-    def detectable_size(self, level: float, margin: float = 0.0) -> float | None:
+    def detectable_size(
+        self, level: float, margin: float = 0.0, smooth: float = 0.0
+    ) -> float | None:
         r"""Return the RMS size that would be named four times in five [N·m].
 
         Under the alternative hypothesis the statistic is noncentral chi-squared. The noncentrality
@@ -211,6 +230,8 @@ class HypothesisTest:
             Significance level of this one test.
         margin : float, optional
             Smallest size worth a name. [N·m]
+        smooth : float, optional
+            Standard deviation of the discrepancy along the effect. [N·m]
 
         Returns
         -------
@@ -228,5 +249,6 @@ class HypothesisTest:
             1e5,
         )
         # a size of one standard error has a whitened length of 1
-        above = margin / max(self.left_share, 1e-3) + _ABOVE * self.size_scale
+        error = self.size_scale * self.left_share
+        above = (margin + np.hypot(_Z95 * smooth, _ABOVE * error)) / max(self.left_share, 1e-3)
         return float(max(np.sqrt(needed) * self.size_scale, above if margin > 0 else 0.0))

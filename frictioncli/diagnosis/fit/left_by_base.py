@@ -7,8 +7,8 @@ from scipy import special
 
 from frictioncli.arrays import Array
 from frictioncli.diagnosis.data.problem import Problem
-from frictioncli.diagnosis.fit.columns import RANK, base_rows, main_channel
-from frictioncli.effects.base import Basis, Effect
+from frictioncli.diagnosis.fit.columns import RANK, base_rows
+from frictioncli.effects.base import Basis
 from frictioncli.linear_algebra import orthonormal_basis
 
 _UPPER = 0.975
@@ -17,49 +17,40 @@ _UPPER = 0.975
 _PRECISE = 1e4
 """Statistics above which the root of noncentral chi squared is normal."""
 
+Z95 = 1.96
+"""Standard errors on either side of an estimate in its 95 % interval."""
 
-def left_of(problem: Problem, effect: Effect, basis: Basis, beside: Sequence[Basis]) -> Array:
-    """Return what base and other columns leave of an effect's columns, shape (rows, width).
 
-    A coefficient of gravity shows in both channels: what one channel alone would leave to it may
-    contradict the other. So both are fitted together.
+def span_of(problem: Problem, beside: Sequence[Basis] = ()) -> Array:
+    """Return an orthonormal basis of base and further columns, friction above load.
 
     Parameters
     ----------
     problem : Problem
         The rows with their base.
-    effect : Effect
-        The effect; the channel in which it shows most counts.
-    basis : Basis
-        Its columns.
     beside : sequence of Basis
         Columns beside the base, as those of measurement effects.
+
+    Returns
+    -------
+    ndarray, shape (2 * rows, rank)
+        The basis.
     """
-    base = [np.vstack(base_rows(problem)), *(np.vstack(one) for one in beside)]
-    span = orthonormal_basis(np.hstack(base), tolerance=RANK)
-    left = np.vstack(basis)
-    left = left - span @ (span.T @ left)
-    friction, load = np.split(left, 2)
-    return main_channel(Basis(friction, load), effect)
+    columns = [np.vstack(base_rows(problem)), *(np.vstack(one) for one in beside)]
+    return orthonormal_basis(np.hstack(columns), tolerance=RANK)
 
 
-def left_by(problem: Problem, columns: Array, channel: str, beside: Sequence[Basis]) -> Array:
-    """Return what base and other columns leave of columns in one channel, of the same shape.
+def left_by(span: Array, basis: Basis) -> Array:
+    """Return what a span leaves of columns, friction above load, shape (2 * rows, width).
 
     Parameters
     ----------
-    problem : Problem
-        The rows with their base.
-    columns : ndarray, shape (rows, width)
-        Columns in the channel.
-    channel : {"friction", "load"}
-        The channel.
-    beside : sequence of Basis
-        Columns beside the base.
+    span : ndarray, shape (2 * rows, rank)
+        As of :func:`span_of`.
+    basis : Basis
+        The columns in both channels.
     """
-    number = ("friction", "load").index(channel)
-    base = np.hstack([base_rows(problem)[number], *(one[number] for one in beside)])
-    span = orthonormal_basis(base, tolerance=RANK)
+    columns = np.vstack(basis)
     return np.asarray(columns - span @ (span.T @ columns))
 
 
@@ -80,8 +71,8 @@ def visible_size(left: Array, coefficients: Array, covariance: Array) -> tuple[f
 
     Parameters
     ----------
-    left : ndarray, shape (rows, width)
-        What the base leaves of the columns. [N·m per unit of the coefficient]
+    left : ndarray, shape (2 * rows, width)
+        What the base leaves of the columns, friction above load. [N·m per unit of the coefficient]
     coefficients : ndarray, shape (width,)
         Coefficients.
     covariance : ndarray, shape (width, width)
@@ -99,11 +90,12 @@ def visible_size(left: Array, coefficients: Array, covariance: Array) -> tuple[f
     Examples
     --------
     >>> import numpy as np
-    >>> size = visible_size(np.ones((4, 1)), np.array([2.0]), np.array([[0.01]]))
+    >>> left = np.vstack([np.ones((4, 1)), np.zeros((4, 1))])
+    >>> size = visible_size(left, np.array([2.0]), np.array([[0.01]]))
     >>> print(np.round(size, 2))
     [2.  1.8 2.2]
     """
-    inner = left.T @ left / len(left)
+    inner = left.T @ left / (len(left) / 2)
     square = float(coefficients @ inner @ coefficients)
     product = inner @ covariance
     added = float(np.trace(product))

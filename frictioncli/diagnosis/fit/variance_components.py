@@ -270,6 +270,8 @@ def _updated(components: Components, products: Products, fit: MixedFit) -> Varia
         slope = square - freedom - prior
         curvature = 2 * max(square, 0.5 * freedom, 1e-3) + 1 / components.spread**2
         amplitude[number] += np.clip(slope / curvature, -_LONGEST_STEP, _LONGEST_STEP)
+    # a rival may not shrink the discrepancy below what is expected of any model
+    amplitude = np.maximum(amplitude, components.prior)
     return replace(
         variances,
         within=(within[0], within[1]),

@@ -2,14 +2,15 @@ r"""Smooth discrepancy: what every model of a joint gets wrong a little, as rand
 
 No equation is exactly true. Beside the noise of the measurement, the torque has a discrepancy: the
 sum of random functions of angle, speed and temperature and of their products, in friction and in
-load [1]_. Each function is a series of cosines
+load, and of errors in the form of the friction model [1]_. Each function is a series of cosines
 
 .. math:: f(u) = \omega \sum_k s_k \gamma_k \cos \pi k u, \quad \gamma_k \sim N(0, 1)
 
 over the range of its quantity, with :math:`s_k` falling with *k*, so that it is smooth. The
 coefficients of the base model are free, so that only the part of a function that is orthogonal to
-the base counts [2]_. The amplitude :math:`\omega` of each function has a lognormal prior about
-1 % of the mean friction, shared among the functions, and is estimated with each rival in place.
+the base counts [2]_; it is this part that has the amplitude. The amplitude :math:`\omega` of
+each function is at least its share of 1 % of the mean friction; above that it has a lognormal
+prior, and is estimated with each rival in place.
 
 References
 ----------
@@ -20,14 +21,14 @@ References
 """
 
 from dataclasses import dataclass
-from typing import Literal
 
 import numpy as np
 
 from frictioncli.arrays import Array
 from frictioncli.diagnosis.data.problem import Problem
 from frictioncli.diagnosis.fit.columns import ModelColumns, reduced
-from frictioncli.effects.base import EffectTable
+from frictioncli.effects.base import Channel, EffectTable
+from frictioncli.linear_algebra import orthonormal_basis
 
 SHARE = 0.01
 """RMS of the whole discrepancy that is expected beforehand, relative to the mean friction."""
@@ -35,8 +36,22 @@ SHARE = 0.01
 SPREAD = 0.7
 """Standard deviation of the natural logarithm of each function's amplitude beforehand."""
 
+_FORM_WEIGHT = 3.0
+"""Amplitude of errors in the form of the friction model, relative to that of the other functions:
+its exponents are fitted to one joint, and differ from joint to joint."""
+
+_MINOR_WEIGHT = 0.6
+"""The same of functions of two quantities and of those in the load channel: main effects are larger
+than interactions, and gravity is better known than friction."""
+
 _HALF = 4.0
 """Order from which on the cosines of a function of the angle become weaker."""
+
+_RANK = 1e-6
+"""Singular values of unit columns below this share of the greatest count as zero."""
+
+_LEAST_LEFT = 1e-4
+"""Least share of the mean square of a function that the base leaves."""
 
 _ANGLE, _ANGLE_IN_PRODUCT, _SPEED, _TEMPERATURE = 16, 6, 6, 5
 """Greatest orders of the cosines."""
@@ -57,7 +72,7 @@ class Component:
     """
 
     axes: tuple[str, ...]
-    channel: Literal["friction", "load"]
+    channel: Channel
     columns: slice
 
 
@@ -69,8 +84,9 @@ class Discrepancy:
     ----------
     components : tuple of Component
         The functions.
-    friction, load : ndarray, shape (rows, columns)
-        Their columns in both channels: of each function the squares sum to 1 on average.
+    rows : ndarray, shape (2 * rows, columns)
+        Their columns, friction above load, orthogonal to the base: of each function the squares sum
+        to 1 on average.
     columns : ModelColumns
         The same, reduced.
     amplitude : float
@@ -78,8 +94,7 @@ class Discrepancy:
     """
 
     components: tuple[Component, ...]
-    friction: Array
-    load: Array
+    rows: Array
     columns: ModelColumns
     amplitude: float
 
@@ -88,39 +103,73 @@ class Discrepancy:
         """Number of columns of each function, shape (components,)."""
         return np.array([one.columns.stop - one.columns.start for one in self.components], float)
 
+    def along(self, torque: Array, amplitude: Array) -> float:
+        """Return the standard deviation of the discrepancy along a torque, as its RMS [N·m].
 
-def discrepancy_of(problem: Problem, share: float = SHARE) -> Discrepancy:
+        Parameters
+        ----------
+        torque : ndarray, shape (2 * rows,)
+            A torque, friction above load. [N·m]
+        amplitude : ndarray, shape (components,)
+            Logarithm of the amplitude of each function.
+        """
+        length = float(np.linalg.norm(torque))
+        if length == 0:
+            return 0.0
+        scale = np.repeat(np.exp(amplitude), self.widths.astype(int))
+        return float(
+            np.linalg.norm(scale * (torque @ self.rows)) / length / np.sqrt(len(torque) / 2)
+        )
+
+
+def discrepancy_of(problem: Problem, span: Array, share: float = SHARE) -> Discrepancy:
     """Return the discrepancy over the rows of a problem.
 
     Parameters
     ----------
     problem : Problem
         One joint's rows.
+    span : ndarray, shape (2 * rows, rank)
+        Orthonormal basis of the base's columns, friction above load; the discrepancy is orthogonal
+        to it.
     share : float, optional
         RMS of the whole discrepancy relative to the mean friction; 0 for none.
     """
-    friction = _functions(problem.table, _FRICTION)
-    load = [] if problem.has_load_channel else _functions(problem.table, _LOAD)
-    if share == 0:
-        friction, load = [], []
-    parts = [("friction", *one) for one in friction] + [("load", *one) for one in load]
-    count, rows = sum(one[2].shape[1] for one in parts), len(problem.friction)
-    columns = {channel: np.zeros((rows, count)) for channel in ("friction", "load")}
-    components, first = [], 0
+    rows = len(problem.friction)
+    parts: list[tuple[Channel, tuple[str, ...], Array]] = []
+    if share > 0:
+        parts.append(("friction", _FORM, _form(problem.table)))
+        parts += [("friction", *one) for one in _functions(problem.table, _FRICTION)]
+    if share > 0 and not problem.has_load_channel:
+        parts += [("load", *one) for one in _functions(problem.table, _LOAD)]
+    components, blocks, first = [], [np.zeros((2 * rows, 0))], 0
     for channel, axes, values in parts:
-        place = slice(first, first + values.shape[1])
-        columns[channel][:, place] = values
-        components.append(Component(axes, channel, place))  # type: ignore[arg-type]
-        first = place.stop
+        zeros = np.zeros_like(values)
+        columns = np.vstack([values, zeros] if channel == "friction" else [zeros, values])
+        whole = float(np.sum(np.square(columns)))
+        columns = columns - span @ (span.T @ columns)
+        if float(np.sum(np.square(columns))) < _LEAST_LEFT * whole:
+            continue
+        weight = _MINOR_WEIGHT if channel == "load" or len(axes) > 1 else 1.0
+        if axes == _FORM:
+            columns = orthonormal_basis(columns, tolerance=_RANK)
+            weight = _FORM_WEIGHT
+        square = float(np.sum(np.square(columns))) / rows
+        blocks.append(weight * columns / np.sqrt(square))
+        components.append(Component(axes, channel, slice(first, first + columns.shape[1])))
+        first += columns.shape[1]
+    together = np.hstack(blocks)
+    friction, load = np.split(together, 2)
     mean = float(np.mean(np.abs(problem.friction)))
     return Discrepancy(
         components=tuple(components),
-        friction=columns["friction"],
-        load=columns["load"],
-        columns=reduced(problem.layout, columns["friction"], columns["load"]),
+        rows=together,
+        columns=reduced(problem.layout, friction, load),
         amplitude=share * mean / np.sqrt(max(len(components), 1)),
     )
 
+
+_FORM = ("speed", "temperature", "form")
 
 _FRICTION = (
     ("position",),
@@ -159,10 +208,21 @@ def _functions(
         for axis, one in zip(axes[1:], values[1:], strict=True):
             second = _cosines(axis, one, alone=False)
             columns = np.einsum("ij,ik->ijk", columns, second).reshape(len(one), -1)
-        square = float(np.sum(np.mean(np.square(columns), axis=0)))
-        if square > 0:
-            found.append((axes, columns / np.sqrt(square)))
+        found.append((axes, columns))
     return found
+
+
+def _form(table: EffectTable) -> Array:
+    """Return what small errors in the form of equation (16) add to friction, shape (rows, 3).
+
+    Of the exponent of the speed, of the way in which grease thins with temperature, and of a
+    Coulomb friction that does not depend on temperature.
+    """
+    viscous = table.viscous * np.sqrt(table.speed)
+    away = table.temperature - np.mean(table.temperature)
+    return np.column_stack(
+        [viscous * np.log(np.maximum(table.speed, 1e-9)), viscous * np.square(away), away]
+    )
 
 
 def _unit(values: Array) -> Array:

@@ -10,27 +10,26 @@ explains its part nearly as well joins its credible set.
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import Any
 
 import numpy as np
-from scipy import stats
 
 from frictioncli.diagnosis.data.problem import Problem
 from frictioncli.diagnosis.fit.hypotheses import EffectFit, HypothesisTest, hypothesis_of
 from frictioncli.diagnosis.noise.discrepancy import SHARE
 from frictioncli.diagnosis.noise.significance import (
-    NullDistribution,
     credible_set,
     posterior_probabilities,
 )
 from frictioncli.diagnosis.ramps.evidence import RampEvidence, with_ramp_evidence
 from frictioncli.diagnosis.search.catalogue import Catalogue
 from frictioncli.diagnosis.search.cause import CONVINCING, Cause
+from frictioncli.diagnosis.search.effect_size import left_size, random_part, sizes_of
+from frictioncli.diagnosis.search.measurement import measurement_causes, possible_effects
 from frictioncli.diagnosis.search.precomputed import Precomputed
 from frictioncli.diagnosis.search.standing import beyond_bounds
-from frictioncli.diagnosis.search.step import Step
+from frictioncli.diagnosis.search.step import Step, free_coefficients
 from frictioncli.diagnosis.settings import DiagnosisSettings
-from frictioncli.effects import BASE_MEASUREMENT, BY_NAME
+from frictioncli.effects import BASE_MEASUREMENT, BY_NAME, sensor_lag
 from frictioncli.effects.base import Effect, applicable
 
 _LEAST_SHARE = 0.5
@@ -88,12 +87,14 @@ class SearchResult:
         """
         count = max(len(self.rejected) + len(self.causes), 1)
         tests = self.rejected | {cause.fit.effect.name: cause.test for cause in self.causes}
-        return {
-            effect.name: tests[effect.name].detectable_size(alpha / count, margin)
-            if effect.name in tests
-            else None
-            for effect in effects
-        }
+        found: dict[str, float | None] = dict.fromkeys(effect.name for effect in effects)
+        for effect in effects:
+            if effect.name in tests:
+                expected = replace(tests[effect.name].effect_fit(effect), variances=None)
+                smooth = random_part(self.step.precomputed, expected)
+                size = tests[effect.name].detectable_size(alpha / count, margin, smooth)
+                found[effect.name] = size
+        return found
 
 
 def find_causes(
@@ -123,10 +124,11 @@ def find_causes(
     """
     beside = applicable(BASE_MEASUREMENT, problem.table)
     precomputed = Precomputed.of(problem, beside, discrepancy)
-    while len(possible := _possible(precomputed, beside)) < len(beside):
+    while len(possible := possible_effects(precomputed, beside)) < len(beside):
         beside = possible
         precomputed = Precomputed.of(problem, beside, discrepancy)
-    hypotheses = [hypothesis_of(effect, problem) for effect in applicable(effects, problem.table)]
+    tried = applicable((*effects, sensor_lag.EFFECT), problem.table)
+    hypotheses = [hypothesis_of(effect, problem) for effect in tried]
     search = _Search(precomputed, Catalogue.of(precomputed, hypotheses), settings, margin, ramps)
     accepted: list[EffectFit] = []
     dropped: dict[str, str] = {}
@@ -155,7 +157,7 @@ def find_causes(
     causes = [_cause(search, accepted, i) for i in range(len(accepted))]
     return SearchResult(
         causes=tuple(sorted(causes, key=lambda cause: -cause.size)),
-        measurement=_measurement(step, beside),
+        measurement=measurement_causes(step, beside),
         rejected=tests,
         dropped={name: why for name, why in dropped.items() if name not in _names(accepted)},
         step=step,
@@ -200,19 +202,22 @@ class _Search:
 
     def matters(self, step: Step, test: HypothesisTest) -> bool:
         """Return whether the base leaves enough of an effect for the search to go on with it."""
-        size, _, _ = step.visible(test.effect_fit(BY_NAME[test.name]))
+        size, _, _ = left_size(step.precomputed, test.effect_fit(BY_NAME[test.name]))
         return size > _LEAST_SHARE * self.margin
 
     def impossible(self, accepted: Sequence[EffectFit]) -> str:
         """Return why the last of some effects is impossible: the data ask for more than bounds.
 
-        Once accepted its coefficients are free, and would explain what is another's.
+        Once accepted its coefficients that lie on no bound are free, and would explain what is
+        another's.
         """
         fit, newest = Step.of(self.precomputed, accepted).fit, accepted[-1]
-        free = slice(len(fit.coefficients) - len(newest.coefficients), None)
-        unbounded = replace(
-            newest, coefficients=fit.coefficients[free], covariance=fit.covariance[free, free]
-        )
+        free = free_coefficients(newest)
+        place = len(fit.coefficients) - len(free) + np.arange(len(free))
+        coefficients, covariance = newest.coefficients.copy(), newest.covariance.copy()
+        coefficients[free] = fit.coefficients[place]
+        covariance[np.ix_(free, free)] = fit.covariance[np.ix_(place, place)]
+        unbounded = replace(newest, coefficients=coefficients, covariance=covariance)
         return beyond_bounds(unbounded, self.precomputed.problem)
 
     def retested(self, accepted: list[EffectFit]) -> list[EffectFit]:
@@ -262,57 +267,5 @@ def _cause(search: _Search, accepted: Sequence[EffectFit], number: int) -> Cause
         test=own,
         effects=credible_set(share),
         probabilities={name: value for name, value in share.items() if value >= 1e-3},
-        **_sizes(step, fit),
+        **sizes_of(step.precomputed, fit),
     )
-
-
-def _possible(precomputed: Precomputed, effects: Sequence[Effect]) -> tuple[Effect, ...]:
-    """Return the effects of the measurement whose coefficients are physically possible.
-
-    One that is not explains something else, as a payload that goes with speed, and would hide it.
-    """
-    causes = _measurement(Step.of(precomputed, []), effects)
-    return tuple(
-        cause.fit.effect for cause in causes if not beyond_bounds(cause.fit, precomputed.problem)
-    )
-
-
-def _measurement(step: Step, effects: Sequence[Effect]) -> tuple[Cause, ...]:
-    """Return the effects of the measurement beside the base as causes, with their tests."""
-    fit, first = step.fit, step.components.base - sum(len(one.coefficients) for one in effects)
-    found = []
-    for effect in effects:
-        place = slice(first, first + len(effect.coefficients))
-        first = place.stop
-        coefficients, covariance = fit.coefficients[place], fit.covariance[place, place]
-        statistic = float(coefficients @ np.linalg.pinv(covariance, hermitian=True) @ coefficients)
-        own = EffectFit(effect, {}, coefficients, covariance, statistic)
-        null = NullDistribution(coefficients=len(coefficients), freedom=step.components.pairs)
-        test = HypothesisTest(
-            name=effect.name,
-            shape={},
-            coefficients=coefficients,
-            covariance=covariance,
-            statistic=statistic,
-            p_value=min(1.0, len(effects) * float(stats.chi2.sf(statistic, len(coefficients)))),
-            log_bayes_factor=statistic / 2,
-            freedom=len(coefficients),
-            null=null,
-            size_scale=0.0,
-        )
-        found.append(
-            Cause(
-                fit=own,
-                test=test,
-                effects=(effect.name,),
-                probabilities={effect.name: 1.0},
-                **_sizes(step, own),
-            )
-        )
-    return tuple(found)
-
-
-def _sizes(step: Step, fit: EffectFit) -> dict[str, Any]:
-    """Return the sizes of a cause by the names of its fields."""
-    visible, low, high = step.visible(fit)
-    return {"size": step.size(fit), "visible": visible, "visible_interval": (low, high)}

@@ -13,9 +13,10 @@ from frictioncli.arrays import Array, Indices
 from frictioncli.diagnosis.data.problem import Problem
 from frictioncli.diagnosis.fit.columns import reduced
 from frictioncli.diagnosis.fit.hypotheses import Hypothesis
-from frictioncli.diagnosis.fit.left_by_base import left_by, visible_size
+from frictioncli.diagnosis.fit.left_by_base import left_by, span_of, visible_size
 from frictioncli.diagnosis.search.catalogue import Catalogue
 from frictioncli.diagnosis.search.step import Step
+from frictioncli.effects.base import Basis
 from frictioncli.linear_algebra import orthonormal_basis
 
 _HARMONICS = 12
@@ -88,11 +89,13 @@ def structures(step: Step) -> list[Structure]:
     catalogue = Catalogue.of(precomputed, hypotheses)
     tests = step.tested_against_expected(catalogue)
     accepted = [problem.basis(one.effect, one.shape) for one in step.accepted]
-    beside = [*precomputed.measurement, *accepted]
+    span = span_of(problem, [*precomputed.measurement, *accepted])
     found = []
     for (names, channel), columns in axes.items():
         one = tests[_name(names, channel)]
-        left = left_by(problem, columns, channel, beside)
+        zeros = np.zeros_like(columns)
+        basis = Basis(columns, zeros) if channel == "friction" else Basis(zeros, columns)
+        left = left_by(span, basis)
         size, low, high = visible_size(left, one.coefficients, one.covariance)
         found.append(
             Structure(

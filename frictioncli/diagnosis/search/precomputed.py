@@ -5,6 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from frictioncli.arrays import Array
 from frictioncli.diagnosis.data.problem import Problem
 from frictioncli.diagnosis.fit.columns import (
     RANK,
@@ -15,6 +16,7 @@ from frictioncli.diagnosis.fit.columns import (
     misfit_column,
     residual_of_base,
 )
+from frictioncli.diagnosis.fit.left_by_base import span_of
 from frictioncli.diagnosis.fit.transformed_columns import NoiseModels, Part, TransformedColumns
 from frictioncli.diagnosis.fit.variance_components import (
     LEAST_VARIANCE,
@@ -41,6 +43,8 @@ class Precomputed:
         The rows with the base model.
     measurement : tuple of Basis
         Columns of the measurement effects that stand beside the base.
+    span, span_of_base : ndarray, shape (2 * rows, rank)
+        Orthonormal basis of the base with these columns, and of the base alone.
     base : ModelColumns
         Columns of the base model and of these.
     discrepancy : Discrepancy
@@ -59,6 +63,8 @@ class Precomputed:
 
     problem: Problem
     measurement: tuple[Basis, ...]
+    span: Array
+    span_of_base: Array
     base: ModelColumns
     discrepancy: Discrepancy
     columns: TransformedColumns
@@ -88,7 +94,8 @@ class Precomputed:
         misfit = misfit_column(problem)
         point = point_noise(problem, bases)
         noises = _noise_models(problem, base, misfit, point)
-        smooth = discrepancy_of(problem, discrepancy)
+        span = span_of(problem, bases)
+        smooth = discrepancy_of(problem, span_of(problem), discrepancy)
         prior = float(np.log(max(smooth.amplitude, _LEAST_NOISE)))
         columns = TransformedColumns(
             (Part(joined([base, smooth.columns]), noises), Part(misfit, noises))
@@ -100,6 +107,8 @@ class Precomputed:
         return cls(
             problem=problem,
             measurement=tuple(bases),
+            span=span,
+            span_of_base=span_of(problem),
             base=base,
             discrepancy=smooth,
             columns=columns,

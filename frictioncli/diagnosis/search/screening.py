@@ -107,6 +107,7 @@ def test_of(
         size_scale=float(
             np.linalg.norm(hypothesis.rms[best]) / max(float(np.linalg.norm(length)), 1e-300)
         ),
+        variances=variances,
         left_share=float(np.linalg.norm(length) / np.sqrt(max(found.whole[best].sum(), 1e-300))),
     )
 

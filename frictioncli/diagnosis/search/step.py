@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from scipy.optimize import minimize
 
-from frictioncli.arrays import Array
+from frictioncli.arrays import Array, Indices
 from frictioncli.diagnosis.data.problem import Problem
 from frictioncli.diagnosis.fit.columns import basis_columns
 from frictioncli.diagnosis.fit.hypotheses import (
@@ -14,7 +14,6 @@ from frictioncli.diagnosis.fit.hypotheses import (
     HypothesisTest,
     hypothesis_of,
 )
-from frictioncli.diagnosis.fit.left_by_base import left_of, visible_size
 from frictioncli.diagnosis.fit.transformed_columns import Part, TransformedColumns
 from frictioncli.diagnosis.fit.variance_components import (
     Components,
@@ -71,7 +70,12 @@ class Step:
         """Return the step with these effects accepted."""
         problem = precomputed.problem
         own = [
-            Part(basis_columns(problem, problem.basis(one.effect, one.shape)), precomputed.noises)
+            Part(
+                basis_columns(problem, problem.basis(one.effect, one.shape)).take(
+                    free_coefficients(one)
+                ),
+                precomputed.noises,
+            )
             for one in accepted
         ]
         before, misfit = precomputed.columns.parts
@@ -96,11 +100,6 @@ class Step:
     def known(self) -> int:
         """Number of columns of base, discrepancy and accepted effects."""
         return self.columns.count - 1
-
-    @property
-    def accepted_columns(self) -> slice:
-        """Columns of the accepted effects."""
-        return slice(self.components.base + int(self.components.widths.sum()), self.known)
 
     def tested(
         self, catalogue: Catalogue, skip: Collection[str] = (), refitted: int = REFITTED
@@ -258,26 +257,6 @@ class Step:
         fits = [self._effect_fit(effect, shape) for shape in shapes]
         return max(fits, key=lambda one: one.statistic)
 
-    def size(self, fit: EffectFit) -> float:
-        """Return the RMS torque of an effect in the channel where it shows most [N·m].
-
-        Several columns of an effect may cancel each other and leave the rest to the base; so only
-        the residual of the base counts, unless the effect has a single column.
-        """
-        if len(fit.coefficients) > 1:
-            return self.visible(fit)[0]
-        basis = self.problem.basis(fit.effect, fit.shape)
-        torque = basis.friction if fit.effect.channel == "friction" else basis.load
-        return float(np.sqrt(np.mean(np.square(torque @ fit.coefficients))))
-
-    def visible(self, fit: EffectFit) -> tuple[float, float, float]:
-        """Return the RMS that the base leaves of an effect, and its 95 % interval [N·m]."""
-        basis = self.problem.basis(fit.effect, fit.shape)
-        # what is an effect of the measurement is not shared among them: base alone counts
-        beside = () if fit.effect.measurement else self.precomputed.measurement
-        left = left_of(self.problem, fit.effect, basis, beside)
-        return visible_size(left, fit.coefficients, fit.covariance)
-
     def _gain(self, effect: Effect, shape: dict[str, float], null: MixedFit) -> float:
         """Return twice the log likelihood ratio of an effect under given variance components."""
         alone = Catalogue.of(self.precomputed, [hypothesis_of(effect, self.problem, [shape])])
@@ -296,6 +275,7 @@ class Step:
             found.coefficients[0],
             found.covariance[0],
             max(statistic, 0.0),
+            variances,
         )
 
     def _fit_with(self, effect: Effect, shape: dict[str, float]) -> MixedFit:
@@ -311,3 +291,9 @@ class Step:
         )
         products = self.columns.bordered(self.products, [own])
         return fit_variances(self.components, products, self.known, self.fit.variances)
+
+
+def free_coefficients(fit: EffectFit) -> Indices:
+    """Return which coefficients of an effect are estimated: those that no bound sets to zero."""
+    free = np.flatnonzero(fit.coefficients)
+    return free if len(free) else np.arange(len(fit.coefficients))

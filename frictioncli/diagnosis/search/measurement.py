@@ -1,0 +1,61 @@
+"""Effects of the measurement that stand beside the base: which are possible, and their tests."""
+
+from collections.abc import Sequence
+
+import numpy as np
+from scipy import stats
+
+from frictioncli.diagnosis.fit.hypotheses import EffectFit, HypothesisTest
+from frictioncli.diagnosis.noise.significance import NullDistribution
+from frictioncli.diagnosis.search.cause import Cause
+from frictioncli.diagnosis.search.effect_size import sizes_of
+from frictioncli.diagnosis.search.precomputed import Precomputed
+from frictioncli.diagnosis.search.standing import beyond_bounds
+from frictioncli.diagnosis.search.step import Step
+from frictioncli.effects.base import Effect
+
+
+def possible_effects(precomputed: Precomputed, effects: Sequence[Effect]) -> tuple[Effect, ...]:
+    """Return the effects of the measurement whose coefficients are physically possible.
+
+    One that is not explains something else, as a payload that goes with speed, and would hide it.
+    """
+    causes = measurement_causes(Step.of(precomputed, []), effects)
+    return tuple(
+        cause.fit.effect for cause in causes if not beyond_bounds(cause.fit, precomputed.problem)
+    )
+
+
+def measurement_causes(step: Step, effects: Sequence[Effect]) -> tuple[Cause, ...]:
+    """Return the effects of the measurement beside the base as causes, with their tests."""
+    fit, first = step.fit, step.components.base - sum(len(one.coefficients) for one in effects)
+    found = []
+    for effect in effects:
+        place = slice(first, first + len(effect.coefficients))
+        first = place.stop
+        coefficients, covariance = fit.coefficients[place], fit.covariance[place, place]
+        statistic = float(coefficients @ np.linalg.pinv(covariance, hermitian=True) @ coefficients)
+        own = EffectFit(effect, {}, coefficients, covariance, statistic)
+        null = NullDistribution(coefficients=len(coefficients), freedom=step.components.pairs)
+        test = HypothesisTest(
+            name=effect.name,
+            shape={},
+            coefficients=coefficients,
+            covariance=covariance,
+            statistic=statistic,
+            p_value=min(1.0, len(effects) * float(stats.chi2.sf(statistic, len(coefficients)))),
+            log_bayes_factor=statistic / 2,
+            freedom=len(coefficients),
+            null=null,
+            size_scale=0.0,
+        )
+        found.append(
+            Cause(
+                fit=own,
+                test=test,
+                effects=(effect.name,),
+                probabilities={effect.name: 1.0},
+                **sizes_of(step.precomputed, own),
+            )
+        )
+    return tuple(found)
