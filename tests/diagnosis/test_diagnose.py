@@ -72,16 +72,19 @@ def test_a_spring_shows_in_the_load_and_is_named():
     rows = days(6)
     # gravity takes most of a spring: half a newton metre is left
     spring = 6.0 * np.radians(rows["position"] - 70)
-    diagnosis = diagnosed(rows.assign(load_torque=rows["load_torque"] + spring))
+    # the gear carries it: friction goes with the square of the whole load
+    gravity = 95.0 * np.cos(np.radians(rows["position"]))
+    friction = rows["friction_torque"] + 0.0014 * ((gravity + spring) ** 2 - gravity**2)
+    diagnosis = diagnosed(
+        rows.assign(load_torque=rows["load_torque"] + spring, friction_torque=friction)
+    )
     assert [cause.effects for cause in diagnosis.causes] == [("dress_pack",)]
-    (stiffness,) = diagnosis.causes[0].fit.coefficients
-    assert stiffness == pytest.approx(6.0, rel=0.1)
-    left = np.array(spring)
+    # beside gravity a stiffening spring looks like one that is stiffer: what is left tells
     angle = np.radians(rows["position"])
-    gravity = np.column_stack([np.cos(angle), np.sin(angle), np.ones_like(angle)])
-    left -= gravity @ np.linalg.lstsq(gravity, left, rcond=None)[0]
-    # effects of the measurement take a part of it too
-    assert diagnosis.margin < diagnosis.causes[0].visible < np.sqrt(np.mean(left**2))
+    columns = np.column_stack([np.cos(angle), np.sin(angle), np.ones_like(angle)])
+    left = spring - columns @ np.linalg.lstsq(columns, spring, rcond=None)[0]
+    low, high = diagnosis.causes[0].visible_interval
+    assert low < np.sqrt(np.mean(left**2)) < high
 
 
 def test_a_spring_of_which_the_base_leaves_less_than_the_margin_is_not_named():
@@ -164,7 +167,7 @@ def test_detectable_sizes_cover_the_catalogue():
     # a name needs more than the margin, whatever the noise
     assert all(size > diagnosis.margin for size in known)
     # of a ripple the base leaves nearly all
-    assert diagnosis.detectable["position_ripple"] < 1.5 * diagnosis.margin
+    assert diagnosis.detectable["position_ripple"] < 2 * diagnosis.margin
     settings = DiagnosisSettings(margin=0.0)
     whatever = diagnose_joint(rows, "motor", "N·m", settings).detectable
     # a ripple is averaged over 160 pairs of 34 bins of 0.3 N·m: about 0.3 * sqrt(2 * 25 / 5440),

@@ -5,6 +5,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from frictioncli.diagnosis.fit.columns import base_rows
+from frictioncli.diagnosis.fit.left_by_base import span_of
 from frictioncli.diagnosis.fit.variance_components import Products, evaluate, weights_of
 from frictioncli.diagnosis.noise.discrepancy import discrepancy_of
 from frictioncli.diagnosis.search.precomputed import Precomputed
@@ -17,80 +19,115 @@ def joint():
     return problem(1)
 
 
-def drawn(smooth, seed):
-    """Return functions with standard normal coefficients, friction and load."""
-    gamma = np.random.default_rng(seed).normal(size=smooth.friction.shape[1])
-    return smooth.friction @ gamma, smooth.load @ gamma
+def smooth_of(joint, share=0.01):
+    return discrepancy_of(joint, span_of(joint), share)
 
 
-def test_each_function_has_a_mean_square_of_one(joint):
-    smooth = discrepancy_of(joint)
+def parts(smooth, one):
+    """Return a function's columns in its own channel and in the other."""
+    friction, load = np.split(smooth.rows[:, one.columns], 2)
+    return (friction, load) if one.channel == "friction" else (load, friction)
+
+
+def weight(one):
+    """Return the expected size of a function relative to a main effect of friction."""
+    if "form" in one.axes:
+        return 3.0
+    return 0.6 if one.channel == "load" or len(one.axes) > 1 else 1.0
+
+
+def test_what_the_base_leaves_of_each_function_has_its_size(joint):
+    smooth = smooth_of(joint)
     for one in smooth.components:
-        columns = getattr(smooth, one.channel)[:, one.columns]
-        other = smooth.load if one.channel == "friction" else smooth.friction
-        assert np.sum(np.mean(columns**2, axis=0)) == pytest.approx(1.0)
-        assert not other[:, one.columns].any()
+        square = sum(np.sum(np.mean(part**2, axis=0)) for part in parts(smooth, one))
+        assert square == pytest.approx(weight(one) ** 2)
     ends = [one.columns.stop for one in smooth.components]
     assert [one.columns.start for one in smooth.components] == [0, *ends[:-1]]
-    assert ends[-1] == smooth.friction.shape[1] == smooth.columns.count
-    assert smooth.widths.sum() == ends[-1]
+    assert ends[-1] == smooth.rows.shape[1] == smooth.columns.count == smooth.widths.sum()
+    base = np.vstack(base_rows(joint))
+    across = base.T @ smooth.rows / np.linalg.norm(base, axis=0)[:, None]
+    assert np.abs(across / np.linalg.norm(smooth.rows, axis=0)).max() < 1e-6
 
 
-def test_all_together_are_one_per_cent_of_the_friction_beforehand(joint):
+def test_all_together_are_about_one_per_cent_of_the_friction_beforehand(joint):
     """The RMS over rows of 300 draws with the expected amplitudes, both channels."""
-    smooth = discrepancy_of(joint)
-    squares = [
-        np.mean(np.square(friction)) + np.mean(np.square(load))
-        for friction, load in (drawn(smooth, seed) for seed in range(300))
-    ]
-    found = smooth.amplitude * np.sqrt(np.mean(squares))
-    assert found == pytest.approx(0.01 * np.mean(joint.friction), rel=0.1)
-    assert discrepancy_of(joint, 0.03).amplitude == pytest.approx(3 * smooth.amplitude)
+    smooth = smooth_of(joint)
+    gamma = np.random.default_rng(0).normal(size=(smooth.rows.shape[1], 300))
+    square = 2 * np.mean(np.square(smooth.rows @ gamma))
+    found = smooth.amplitude * np.sqrt(square)
+    assert 0.008 < found / np.mean(joint.friction) < 0.013
+    assert smooth_of(joint, 0.03).amplitude == pytest.approx(3 * smooth.amplitude)
 
 
-def test_functions_depend_on_their_axes_alone(joint):
-    smooth = discrepancy_of(joint)
-    table = joint.table
+def test_functions_depend_on_their_axes_and_on_the_base_alone(joint):
+    """Less their means over rows that are alike along the axes they are the base's columns."""
+    smooth = smooth_of(joint)
+    base = np.vstack(base_rows(joint))
+    base = base / np.linalg.norm(base, axis=0)
+    half = len(base) // 2
     for one in smooth.components:
-        keys = np.column_stack([getattr(table, axis) for axis in one.axes])
-        _, first, place = np.unique(keys, axis=0, return_index=True, return_inverse=True)
-        columns = getattr(smooth, one.channel)[:, one.columns]
-        np.testing.assert_allclose(columns, columns[first][place.ravel()], atol=1e-12)
+        if "form" in one.axes:
+            continue
+        keys = np.column_stack([getattr(joint.table, axis) for axis in one.axes])
+        place = np.unique(keys, axis=0, return_inverse=True)[1].ravel()
+        own = slice(0, half) if one.channel == "friction" else slice(half, None)
+
+        def within(columns, place=place, own=own):
+            left = columns.copy()
+            count = np.bincount(place)
+            for i in range(columns.shape[1]):
+                left[own, i] -= (np.bincount(place, columns[own, i]) / count)[place]
+            return left
+
+        columns, known = within(smooth.rows[:, one.columns]), within(base)
+        fitted = known @ np.linalg.lstsq(known, columns, rcond=1e-12)[0]
+        np.testing.assert_allclose(columns, fitted, atol=1e-5)
+
+
+def test_errors_of_form_are_those_of_the_exponents_and_of_coulomb_friction(joint):
+    """Differences of equation (16) with another exponent of the speed, and with warmer friction."""
+    smooth = smooth_of(joint)
+    (one,) = (one for one in smooth.components if "form" in one.axes)
+    table, p = joint.table, joint.parameters
+    decay = p.beta + p.gamma * np.exp(-p.delta * table.temperature)
+    bent = decay * (table.speed**0.5001 - table.speed**0.4999) / 2e-4
+    span, own = span_of(joint), smooth.rows[:, one.columns]
+    for torque in (bent, 0.1 * (table.temperature - 40.0)):
+        column = np.concatenate([torque, 0 * torque])
+        column -= span @ (span.T @ column)
+        left = column - own @ np.linalg.lstsq(own, column, rcond=None)[0]
+        assert np.linalg.norm(left) < 1e-3 * np.linalg.norm(column)
 
 
 def test_what_does_not_vary_has_no_function(joint):
     """One speed, and one temperature: only the angle is left."""
     one = np.ones_like(joint.table.speed)
     still = replace(joint, table=replace(joint.table, speed=50 * one, temperature=30 * one))
-    smooth = discrepancy_of(still)
-    assert {axes for component in smooth.components for axes in component.axes} == {"position"}
-    assert {component.channel for component in smooth.components} == {"friction", "load"}
+    smooth = smooth_of(still)
+    axes = {axis for component in smooth.components for axis in component.axes}
+    assert axes - {"form", "speed", "temperature"} == {"position"}
+    assert {one.axes for one in smooth.components if "form" not in one.axes} == {("position",)}
     # the same sum for fewer functions
-    assert smooth.amplitude > discrepancy_of(joint).amplitude
+    assert smooth.amplitude > smooth_of(joint).amplitude
 
 
 def test_a_load_channel_of_its_own_has_no_discrepancy(joint):
-    smooth = discrepancy_of(replace(joint, has_load_channel=True))
+    smooth = smooth_of(replace(joint, has_load_channel=True))
     assert {component.channel for component in smooth.components} == {"friction"}
-    assert discrepancy_of(joint, 0.0).components == ()
+    assert smooth_of(joint, 0.0).components == ()
 
 
 def test_functions_are_smooth(joint):
     """From bin to bin of 5 degrees a function of the angle changes by less than its RMS."""
-    smooth = discrepancy_of(joint)
+    smooth = smooth_of(joint)
     bins = np.argsort(joint.table.position[:34])
-    (place,) = (
-        one.columns
-        for one in smooth.components
-        if (one.axes, one.channel) == (("position",), "friction")
+    (one,) = (
+        one for one in smooth.components if (one.axes, one.channel) == (("position",), "friction")
     )
-    changes, sizes = [], []
-    for seed in range(200):
-        gamma = np.random.default_rng(seed).normal(size=place.stop - place.start)
-        values = (smooth.friction[:34, place] @ gamma)[bins]
-        changes.append(np.mean(np.diff(values) ** 2))
-        sizes.append(np.mean(values**2))
-    assert np.sqrt(np.mean(changes) / np.mean(sizes)) < 0.7
+    values = parts(smooth, one)[0][:34][bins]
+    # the mean square over the function's random coefficients is the sum over its columns
+    change, size = np.sum(np.diff(values, axis=0) ** 2), np.sum(values**2)
+    assert np.sqrt(change / size) < 0.7
 
 
 def test_only_the_part_that_the_base_leaves_counts(joint):
@@ -124,10 +161,10 @@ def test_only_the_part_that_the_base_leaves_counts(joint):
 
 def test_the_amplitude_follows_what_is_there(joint):
     """A smooth error of 1 N·m over the angle: its function takes it, the others stay."""
-    size = np.sqrt(2) * np.cos(2.2 * np.radians(joint.table.position) + 0.3)
+    size = np.sqrt(2) * np.cos(4.2 * np.radians(joint.table.position) + 0.3)
     rough = replace(joint, friction=joint.friction + size)
     plain, found = (Step.of(Precomputed.of(one), []).fit.variances for one in (joint, rough))
-    components = discrepancy_of(joint).components
+    components = smooth_of(joint).components
     places = {(one.axes, one.channel): i for i, one in enumerate(components)}
     grown = np.exp(found.amplitude - plain.amplitude)
     assert grown[places[("position",), "friction"]] > 3
