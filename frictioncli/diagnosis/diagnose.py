@@ -38,6 +38,9 @@ LEAST_MARGIN = 0.1
 LEAST_PAIRS = 12
 """With fewer pairs noise cannot be distinguished from structure."""
 
+_NO_DOUBT = 1e-12
+"""P-value below which there is no doubt that structure is there."""
+
 _UNNAMED_P_VALUE = 1e-3
 """Greatest p-value of structure that no effect explains."""
 
@@ -261,10 +264,14 @@ def margin_of(problem: Problem, torque_unit: str, settings: DiagnosisSettings) -
 def _unnamed_structure(
     found: SearchResult, margin: float, settings: DiagnosisSettings
 ) -> Structure | None:
-    """Return the most significant structure beside the causes that is surely above the margin."""
+    """Return the most significant structure beside the causes that is above the margin.
+
+    Surely above it, or most probably where there is no doubt that it is there.
+    """
     for one in structures(found.step):
         significant = one.p_value < min(_UNNAMED_P_VALUE, settings.alpha)
-        if significant and one.interval[0] > margin:
+        least = one.size if one.p_value < _NO_DOUBT else one.interval[0]
+        if significant and least > margin:
             return one
     return None
 

@@ -37,6 +37,9 @@ from frictioncli.model.noise import Noise
 REFITTED = 6
 """Number of hypotheses for which the variance components are estimated anew."""
 
+_PINNED = 1e-3
+"""Spread of the amplitudes where they stay as they are expected."""
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Step:
@@ -151,19 +154,26 @@ class Step:
     def tested_against_expected(self, catalogue: Catalogue) -> dict[str, HypothesisTest]:
         """Return the test of every hypothesis with the discrepancy that is expected beforehand.
 
+        The noise is estimated with each hypothesis in place, so that a drift does not stand for it.
+
         Parameters
         ----------
         catalogue : Catalogue
             Hypotheses.
         """
-        variances = replace(self.fit.variances, amplitude=self.precomputed.start.amplitude)
-        null = evaluate(self.components, self.products, self.known, variances)
-        return {
-            one.name: test_of(
-                catalogue, number, screened(catalogue, number, self.columns, null), 0.0, variances
-            )
-            for number, one in enumerate(catalogue.hypotheses)
-        }
+        expected = replace(self.components, spread=_PINNED)
+        start = replace(self.fit.variances, amplitude=self.precomputed.start.amplitude)
+        null = fit_variances(expected, self.products, self.known, start)
+        found = {}
+        for number, one in enumerate(catalogue.hypotheses):
+            own = Part(catalogue.part.columns.take(catalogue.places[number]), catalogue.part.noises)
+            products = self.columns.bordered(self.products, [own])
+            variances = fit_variances(expected, products, self.known, null.variances).variances
+            beside = evaluate(expected, self.products, self.known, variances)
+            offset = min(null.objective - beside.objective, 0.0)
+            tested = screened(catalogue, number, self.columns, beside)
+            found[one.name] = test_of(catalogue, number, tested, offset, variances)
+        return found
 
     def noise(self) -> tuple[Noise, Noise]:
         """Return the noise of friction and load that suits base and accepted effects best."""
