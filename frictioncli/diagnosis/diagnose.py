@@ -166,7 +166,7 @@ def diagnose_joint(
         return find_causes(rows, tried, settings, margin, evidence)
 
     base, base_new = problem, new
-    found, lag = search_with_lag(problem, new, effects, search)
+    found, lag = search_with_lag(problem, new, effects, search, margin)
     if lag is not None:
         problem, new = lag.problem, lag.new
     weighted_fit = found.step.weighted_fit()

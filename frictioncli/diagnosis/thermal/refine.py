@@ -102,6 +102,7 @@ def search_with_lag(
     new: Problem | None,
     effects: Sequence[Effect],
     search: Callable[[Problem, Sequence[Effect]], SearchResult],
+    margin: float = 0.0,
 ) -> tuple[SearchResult, RefinedLag | None]:
     """Search for causes; where a lag of the gear is one, about the temperature of the gear.
 
@@ -120,6 +121,8 @@ def search_with_lag(
         The catalogue.
     search : callable
         Searches a problem for causes among some effects.
+    margin : float, optional
+        Smallest size worth a name: a lag that may be smaller is left linear. [N·m]
 
     Returns
     -------
@@ -137,7 +140,7 @@ def search_with_lag(
             found = search(problem, effects)
     else:
         found = search(problem, effects)
-    if not _has_lag(found):
+    if not _has_lag(found) or _left_of_lag(found) <= margin:
         return found, None
     refined = refine_thermal(problem, new, [cause.fit for cause in found.causes])
     if refined is not None:
@@ -157,6 +160,11 @@ def _explains_most(estimate: ThermalEstimate) -> bool:
 
 def _has_lag(found: SearchResult) -> bool:
     return any(cause.fit.effect.name == LAG for cause in found.causes)
+
+
+def _left_of_lag(found: SearchResult) -> float:
+    """Return the lower bound of what the base leaves of the lag [N·m]."""
+    return next(cause.visible_interval[0] for cause in found.causes if cause.fit.effect.name == LAG)
 
 
 def _as_refined(found: SearchResult, refined: RefinedLag) -> SearchResult:
