@@ -9,7 +9,7 @@ from scipy import integrate, stats
 from frictioncli.diagnosis.noise.significance import (
     NullDistribution,
     credible_set,
-    independent_directions,
+    effective_shapes,
     log_bayes_factor,
     posterior_probabilities,
 )
@@ -80,26 +80,26 @@ def test_the_greatest_of_several_shapes_passes_about_as_often_as_its_p_value_say
     """20,000 draws of white noise."""
     columns, width = SEARCHES[name]
     columns = columns - columns.mean(axis=0)
-    count = independent_directions(columns.T @ columns, width)
+    count = effective_shapes(columns.T @ columns, width)
     noise = np.random.default_rng(1).normal(size=(120, 20_000))
     greatest = np.zeros(20_000)
     for first in range(0, columns.shape[1], width):
         span = np.linalg.qr(columns[:, first : first + width])[0]
         greatest = np.maximum(greatest, np.sum(np.square(span.T @ noise), axis=0))
     null = NullDistribution(coefficients=width, freedom=1e9, shapes=count)
-    for level, most in ((0.05, 2.0), (0.01, 2.5)):
+    for level, most in ((0.05, 1.2), (0.01, 1.2)):
         share = np.mean(greatest > null.critical_value(level))
         # the farther the tail, the less the shapes are alike there
-        assert 0.7 * level < share < most * level
+        assert 0.55 * level < share < most * level
 
 
 def test_directions_of_two_columns_each_count_once():
     """Planes that are orthogonal are as many tries; a plane and itself are one."""
     planes = np.eye(6)
-    assert independent_directions(planes, 2) == pytest.approx(3.0)
-    assert independent_directions(np.kron(np.ones((3, 3)), np.eye(2)), 2) == pytest.approx(1.0)
-    assert independent_directions(np.diag([4.0, 9.0, 0.0]), 1) == pytest.approx(2.0)
-    assert independent_directions(np.zeros((3, 3)), 1) == 1.0
+    assert effective_shapes(planes, 2) == pytest.approx(3.0, abs=0.03)
+    assert effective_shapes(np.kron(np.ones((3, 3)), np.eye(2)), 2) == pytest.approx(1.0)
+    assert effective_shapes(np.diag([4.0, 9.0, 0.0]), 1) == pytest.approx(2.0, abs=0.02)
+    assert effective_shapes(np.zeros((3, 3)), 1) == 1.0
 
 
 def test_a_coefficient_that_no_data_determine_is_never_significant():

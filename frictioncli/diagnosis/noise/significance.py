@@ -3,8 +3,7 @@ r"""P-values, Bayes factors, posterior probabilities and credible sets of candid
 The test statistic is twice the log likelihood ratio of a candidate to the null hypothesis. At one
 shape, with *k* coefficients and :math:`\nu` degrees of freedom of the noise whose scale is
 estimated, :math:`F = \frac{\nu}{k} (e^{\Lambda/\nu} - 1)` has an F distribution under the null
-hypothesis. A search over shapes tries as many as there are independent directions among their
-columns; the p-value is corrected for their number (Bonferroni).
+hypothesis. A search over shapes is corrected for their effective number (Bonferroni).
 
 With a normal prior on a coefficient of *g* times its sampling variance the Bayes factor of a
 statistic :math:`\Lambda` with *k* coefficients is [1]_
@@ -18,21 +17,31 @@ References
 .. [2] G. Wang, A. Sarkar, P. Carbonetto and M. Stephens, "A simple new approach to variable
    selection in regression, with application to genetic fine mapping," J. R. Stat. Soc. B 82(5),
    2020, doi:10.1111/rssb.12388 (credible sets).
-.. [3] J. Li and L. Ji, "Adjusting multiple testing in multilocus analyses using the eigenvalues of
-   a correlation matrix," Heredity 95, 2005, doi:10.1038/sj.hdy.6800717 (there the fractions of
-   greater eigenvalues count too, which makes the number jump where one is whole).
+.. [3] R. M. Karp, M. Luby and N. Madras, "Monte-Carlo approximation algorithms for enumeration
+   problems," J. Algorithms 10(3), 1989, doi:10.1016/0196-6774(89)90038-2 (probability of a union).
 """
 
 from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
-from scipy import stats
+from scipy import special, stats
 
 from frictioncli.arrays import Array
+from frictioncli.linear_algebra import orthonormal_basis
 
 _PRIOR_VARIANCE = 100.0
 """Prior variance g of a coefficient, in units of its sampling variance."""
+
+_LEVEL = 1e-4
+"""Significance level of a single shape at which shapes are counted: 5 % shared among the effects of
+a catalogue and some shapes of each."""
+
+_DRAWS = 2000
+"""Draws of white noise by which they are counted."""
+
+_SHORT = 1e-9
+"""Share of the longest column's length below which one counts as nothing."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -77,8 +86,13 @@ class NullDistribution:
         return float(self.freedom * np.log1p(ratio * self.coefficients / self.freedom))
 
 
-def independent_directions(inner: Array, width: int) -> float:
-    """Return the effective number of independent shapes among columns.
+def effective_shapes(inner: Array, width: int) -> float:
+    r"""Return the effective number of independent shapes that a search tries.
+
+    By how much oftener any of all shapes is significant in white noise than a single one, at a
+    level such as a search of a whole catalogue needs. In noise in which one shape is significant,
+    *n* of all are; that any is has the probability of a single one times :math:`\sum_i
+    \operatorname{E} 1/n` over the shapes [3]_. The mean is taken over draws.
 
     Parameters
     ----------
@@ -90,22 +104,37 @@ def independent_directions(inner: Array, width: int) -> float:
     Returns
     -------
     float
-        From 1, where all shapes are alike, to their number, where they are orthogonal: the sum of
-        the eigenvalues of the columns' correlation, of which each counts as one at most [3]_.
+        From 1, where all shapes are alike, to their number.
 
     Examples
     --------
     >>> import numpy as np
-    >>> independent_directions(np.ones((3, 3)), 1), independent_directions(np.eye(3), 1)
+    >>> effective_shapes(np.ones((3, 3)), 1), round(effective_shapes(np.eye(3), 1), 1)
     (1.0, 3.0)
     """
     size = np.sqrt(np.maximum(np.diagonal(inner), 0.0))
-    present = size > 1e-9 * size.max(initial=0.0)
-    if not present.any():
+    size = np.where(size > _SHORT * size.max(initial=0.0), size, np.inf)
+    values, vectors = np.linalg.eigh(inner / np.outer(size, size))
+    kept = values > _SHORT
+    columns = np.sqrt(values[kept])[:, np.newaxis] * vectors[:, kept].T
+    groups = np.split(columns, len(inner) // width, axis=1)
+    spans = [orthonormal_basis(np.asfortranarray(one), tolerance=1e-4) for one in groups]
+    spans = [one for one in spans if one.shape[1]]
+    if not spans:
         return 1.0
-    unit = inner[np.ix_(present, present)] / np.outer(size[present], size[present])
-    count = float(np.sum(np.clip(np.linalg.eigvalsh(unit), 0.0, 1.0)))
-    return max(count / width, 1.0)
+    generator = np.random.default_rng(0)
+    noise = generator.standard_normal((len(spans), max(_DRAWS // len(spans), 2), len(columns)))
+    for own, span in zip(noise, spans, strict=True):
+        along = own @ span
+        # the length along this shape is drawn from the tail beyond its critical value
+        tail = special.chdtri(span.shape[1], _LEVEL * generator.random((len(own), 1)))
+        wanted = along * np.sqrt(tail / np.sum(np.square(along), axis=1, keepdims=True))
+        own += (wanted - along) @ span.T
+    number = np.zeros(noise.shape[:2])
+    for span in spans:
+        critical = float(special.chdtri(span.shape[1], _LEVEL))
+        number += np.sum(np.square(noise @ span), axis=-1) > critical * (1 - 1e-9)
+    return float(np.sum(np.mean(1 / number, axis=1)))
 
 
 def log_bayes_factor(grid: Array, freedom: int) -> float:

@@ -11,7 +11,7 @@ from frictioncli.diagnosis.fit.columns import RANK, joined
 from frictioncli.diagnosis.fit.hypotheses import Hypothesis
 from frictioncli.diagnosis.fit.transformed_columns import Part, TransformedColumns
 from frictioncli.diagnosis.fit.variance_components import Variances
-from frictioncli.diagnosis.noise.significance import independent_directions
+from frictioncli.diagnosis.noise.significance import effective_shapes
 from frictioncli.diagnosis.search.precomputed import Precomputed
 from frictioncli.linear_algebra import orthonormal_basis
 
@@ -135,7 +135,7 @@ class Catalogue:
         stacked = np.vstack(columns)
         span = orthonormal_basis(np.vstack(beside), tolerance=RANK)
         left = stacked - span @ (span.T @ stacked)
-        return independent_directions(left.T @ left, self.hypotheses[number].width)
+        return effective_shapes(left.T @ left, self.hypotheses[number].width)
 
     def _across_within(self, channel: int, known: TransformedColumns) -> Array:
         """Return inner products of deviations with those of known columns."""
