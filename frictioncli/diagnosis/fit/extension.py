@@ -140,7 +140,9 @@ def extend(problem: Problem, weighted_fit: WeightedFit, effects: Sequence[Effect
         np.column_stack([columns[channel], *(one[channel] for one in derivatives)])
         for channel in (0, 1)
     )
-    errors = np.sqrt(np.maximum(np.diag(weighted_fit.error_covariance(friction, load)), 0.0))
+    errors = np.sqrt(
+        np.maximum(np.diag(weighted_fit.error_covariance(friction, load, whole=True)), 0.0)
+    )
     count = columns[0].shape[1]
     return Extension(
         names=fitted.names,

@@ -89,10 +89,14 @@ class WeightedFit:
     ----------
     friction, load : Weights
         Weights of both channels.
+    discrepancy : (ndarray, ndarray), shape (rows, functions), or None
+        Columns of the discrepancy in both channels, with coefficients of variance 1; None for none.
+        [N·m]
     """
 
     friction: Weights
     load: Weights
+    discrepancy: tuple[Array, Array] | None = None
 
     def coefficients(self, friction: Array, load: Array, targets: tuple[Array, Array]) -> Array:
         """Return least-squares coefficients of columns, shape (columns,).
@@ -109,17 +113,24 @@ class WeightedFit:
         right += second.T @ self.load.weighted(targets[1][:, np.newaxis])
         return (_inverse(first, second) @ right)[:, 0]
 
-    def error_covariance(self, friction: Array, load: Array) -> Array:
+    def error_covariance(self, friction: Array, load: Array, *, whole: bool = False) -> Array:
         """Return the covariance of such coefficients, shape (columns, columns).
 
         Parameters
         ----------
         friction, load : ndarray, shape (rows, columns)
             Columns in both channels. [N·m]
+        whole : bool, optional
+            Whether what the discrepancy adds counts: it is the same on every run, so that it
+            matters for what the coefficients mean, and not for what they predict.
         """
         first, second = self.friction.weighted(friction), self.load.weighted(load)
         bread = _inverse(first, second)
         meat = first.T @ self.friction.correlated(first) + second.T @ self.load.correlated(second)
+        if whole and self.discrepancy is not None:
+            smooth = first.T @ self.friction.weighted(self.discrepancy[0])
+            smooth += second.T @ self.load.weighted(self.discrepancy[1])
+            meat = meat + smooth @ smooth.T
         return np.asarray(bread @ meat @ bread)
 
 

@@ -28,7 +28,6 @@ from frictioncli.arrays import Array
 from frictioncli.diagnosis.data.problem import Problem
 from frictioncli.diagnosis.fit.columns import ModelColumns, reduced
 from frictioncli.effects.base import Channel, EffectTable
-from frictioncli.linear_algebra import orthonormal_basis
 
 SHARE = 0.01
 """RMS of the whole discrepancy that is expected beforehand, relative to the mean friction."""
@@ -47,7 +46,7 @@ than interactions, and gravity is better known than friction."""
 _HALF = 4.0
 """Order from which on the cosines of a function of the angle become weaker."""
 
-_RANK = 1e-6
+_RANK = 1e-3
 """Singular values of unit columns below this share of the greatest count as zero."""
 
 _LEAST_LEFT = 1e-4
@@ -87,14 +86,17 @@ class Discrepancy:
     rows : ndarray, shape (2 * rows, columns)
         Their columns, friction above load, orthogonal to the base: of each function the squares sum
         to 1 on average.
+    whole : ndarray, shape (2 * rows, columns)
+        The same before the base is taken out: errors of the base's parameters follow from it.
     columns : ModelColumns
-        The same, reduced.
+        The former, reduced.
     amplitude : float
         RMS of each function that is expected beforehand. [N·m]
     """
 
     components: tuple[Component, ...]
     rows: Array
+    whole: Array
     columns: ModelColumns
     amplitude: float
 
@@ -102,6 +104,16 @@ class Discrepancy:
     def widths(self) -> Array:
         """Number of columns of each function, shape (components,)."""
         return np.array([one.columns.stop - one.columns.start for one in self.components], float)
+
+    def deviations(self, amplitude: Array) -> Array:
+        """Return the standard deviation of each column's coefficient, shape (columns,) [N·m].
+
+        Parameters
+        ----------
+        amplitude : ndarray, shape (components,)
+            Logarithm of the amplitude of each function.
+        """
+        return np.repeat(np.exp(amplitude), self.widths.astype(int))
 
     def along(self, torque: Array, amplitude: Array) -> float:
         """Return the standard deviation of the discrepancy along a torque, as its RMS [N·m].
@@ -142,31 +154,42 @@ def discrepancy_of(problem: Problem, span: Array, share: float = SHARE) -> Discr
         parts += [("friction", *one) for one in _functions(problem.table, _FRICTION)]
     if share > 0 and not problem.has_load_channel:
         parts += [("load", *one) for one in _functions(problem.table, _LOAD)]
-    components, blocks, first = [], [np.zeros((2 * rows, 0))], 0
+    components: list[Component] = []
+    left, whole, first = [np.zeros((2 * rows, 0))], [np.zeros((2 * rows, 0))], 0
     for channel, axes, values in parts:
         zeros = np.zeros_like(values)
         columns = np.vstack([values, zeros] if channel == "friction" else [zeros, values])
-        whole = float(np.sum(np.square(columns)))
-        columns = columns - span @ (span.T @ columns)
-        if float(np.sum(np.square(columns))) < _LEAST_LEFT * whole:
+        orthogonal = columns - span @ (span.T @ columns)
+        if np.sum(np.square(orthogonal)) < _LEAST_LEFT * np.sum(np.square(columns)):
             continue
         weight = _MINOR_WEIGHT if channel == "load" or len(axes) > 1 else 1.0
         if axes == _FORM:
-            columns = orthonormal_basis(columns, tolerance=_RANK)
+            combination = _orthonormal_combination(orthogonal)
+            columns, orthogonal = columns @ combination, orthogonal @ combination
             weight = _FORM_WEIGHT
-        square = float(np.sum(np.square(columns))) / rows
-        blocks.append(weight * columns / np.sqrt(square))
+        scale = weight * np.sqrt(rows / float(np.sum(np.square(orthogonal))))
+        left.append(scale * orthogonal)
+        whole.append(scale * columns)
         components.append(Component(axes, channel, slice(first, first + columns.shape[1])))
         first += columns.shape[1]
-    together = np.hstack(blocks)
+    together = np.hstack(left)
     friction, load = np.split(together, 2)
     mean = float(np.mean(np.abs(problem.friction)))
     return Discrepancy(
         components=tuple(components),
         rows=together,
+        whole=np.hstack(whole),
         columns=reduced(problem.layout, friction, load),
         amplitude=share * mean / np.sqrt(max(len(components), 1)),
     )
+
+
+def _orthonormal_combination(columns: Array) -> Array:
+    """Return the combinations of columns that are orthonormal, shape (columns, rank)."""
+    size = np.linalg.norm(columns, axis=0)
+    _, strength, right = np.linalg.svd(columns / size, full_matrices=False)
+    kept = strength > _RANK * strength[0]
+    return np.asarray((right[kept] / strength[kept, np.newaxis]).T / size[:, np.newaxis])
 
 
 _FORM = ("speed", "temperature", "form")

@@ -196,8 +196,12 @@ class Step:
         """Return the weighted least squares by which predictions are made under this noise."""
         layout, extra = self.problem.layout, self.problem.temperature_variance
         friction, load = self.noise()
+        known = self.precomputed.discrepancy
+        smooth = np.split(known.whole * known.deviations(self.fit.variances.amplitude), 2)
         return WeightedFit(
-            Weights.of(layout, friction, extra), Weights.of(layout, load, np.zeros_like(extra))
+            Weights.of(layout, friction, extra),
+            Weights.of(layout, load, np.zeros_like(extra)),
+            (smooth[0], smooth[1]),
         )
 
     def refined(self, found: EffectFit) -> EffectFit:
