@@ -2,8 +2,9 @@
 
 The simulator's formulas are its own: other functional details than the catalogue's, parameters
 drawn at random. Each case is one seed, two days by the paper's programme or the enriched one; the
-last day is kept out. Sizes are RMS torque over both days, of which the base model takes its
-share; slow changes need more to stand out of a drifting noise. docs/blind.md has the same at size.
+last day is kept out. Sizes are RMS torque over both days, such that the base model leaves about
+0.9 N·m, 2 % of the friction. docs/blind.md has the same at size, with everything else that joints
+and logs do.
 """
 
 import functools
@@ -17,14 +18,38 @@ from frictioncli.simulator.settings import SynthesisSettings
 from tests.simulation.torque_table import simulate_torques
 
 SIZES = {
-    "linear_viscous": 2.0,
-    "coulomb_temperature": 2.0,
-    "drift": 6.0,
-    "run_in": 3.0,
-    "step_change": 4.0,
-    "payload_change": 2.0,
+    "stribeck": 2.1,
+    "velocity_exponent": 7.8,
+    "linear_viscous": 9.5,
+    "quadratic_drag": 4.1,
+    "coulomb_temperature": 3.4,
+    "load_linear": 8.2,
+    "load_velocity": 4.2,
+    "load_temperature": 1.4,
+    "thermal_lag": 1.2,
+    "drift": 2.8,
+    "rest_recovery": 1.2,
+    "step_change": 2.4,
+    "direction_asymmetry": 1.9,
+    "torque_constant": 2.4,
+    "payload_change": 2.4,
+    "dress_pack": 5.7,
+    "inertia": 2.3,
+    "reversal_transient": 4.9,
 }
 """RMS of what is hidden where it is not 1 N·m. [N·m]"""
+
+SMOOTH = (
+    "velocity_exponent",
+    "linear_viscous",
+    "quadratic_drag",
+    "coulomb_temperature",
+    "load_linear",
+    "run_in",
+    "dress_pack",
+)
+"""Effects that at four speeds, or along one stroke, look like a smooth error of 2 % of the base:
+what is said of them must be right, and it may be that nothing is."""
 
 DAYS = {"drift": 3, "run_in": 3}
 """Days simulated where it is not two: one run alone cannot tell a slow change from slow noise."""
@@ -33,18 +58,12 @@ SEEDS = {"payload_change": 72}
 """71, or the next one with which the change falls on the first day, which alone is seen."""
 
 
-BESIDE_A_LAG = ("coulomb_temperature", "payload_change", "position_ripple")
+BESIDE_A_LAG = ("torque_constant", "payload_change", "position_ripple")
 """One effect of each channel, and one of the stroke; docs/blind.md has them all."""
 
 
-QUICK = (
-    "thermal_lag",
-    "stribeck",
-    "coulomb_temperature",
-    "load_linear",
-    "payload_change",
-)
-"""One effect of each kind: lag, speed, temperature, load, and change in time."""
+QUICK = ("thermal_lag", "load_temperature", "payload_change", "position_ripple")
+"""One effect of each kind: lag, load, change in time, and the stroke."""
 
 
 @functools.cache
@@ -72,7 +91,8 @@ def hidden(name: str) -> tuple[str, int]:
 
 
 def sets(diagnosis: Diagnosis) -> list[tuple[str, ...]]:
-    return [cause.effects for cause in diagnosis.causes]
+    """Return the credible sets of the properties of the joint that are named."""
+    return [cause.effects for cause in diagnosis.causes if not cause.fit.effect.measurement]
 
 
 @pytest.mark.parametrize(
@@ -85,9 +105,9 @@ def sets(diagnosis: Diagnosis) -> list[tuple[str, ...]]:
 def test_a_hidden_effect_is_in_a_set_of_few(name):
     effect, seed = hidden(name)
     diagnosis = diagnosed((effect,), seed, days=DAYS.get(name, 2))
-    holding = [one for one in sets(diagnosis) if name in one]
-    assert holding, sets(diagnosis)
-    assert len(holding[0]) <= 3
+    assert all(name in one for one in sets(diagnosis)), sets(diagnosis)
+    assert sets(diagnosis) or name in SMOOTH
+    assert all(len(one) <= 3 for one in sets(diagnosis))
 
 
 @pytest.mark.slow
@@ -116,19 +136,20 @@ def test_nothing_is_found_in_a_clean_joint(noise, protocol):
     assert sets(diagnosis) == []
 
 
-@pytest.mark.parametrize("name", ["position_temperature"])
-def test_what_the_catalogue_does_not_list_gets_no_name(name):
-    diagnosis = diagnosed((f"{name}:1",), 71)
+@pytest.mark.parametrize("seed", [73, pytest.param(74, marks=pytest.mark.slow)])
+def test_what_the_catalogue_does_not_list_gets_no_name(seed):
+    """Unless its angle of greatest friction is that of the greatest load."""
+    diagnosis = diagnosed(("position_temperature:1",), seed)
     assert diagnosis.verdict == "unnamed"
     assert diagnosis.structure is not None
+    assert set(diagnosis.structure.axes) == {"position", "temperature"}
 
 
 @pytest.mark.slow
 def test_the_experiment_of_the_catalogue_resolves_what_four_speeds_cannot():
-    """Four speeds leave a viscous term and a drag undecided; ten in random order decide."""
-    before = diagnosed(("linear_viscous:2",), 73)
-    assert before.verdict == "ambiguous"
-    assert set(sets(before)[0]) >= {"linear_viscous", "quadratic_drag"}
+    """Four speeds leave a viscous term undecided; ten in random order decide."""
+    before = diagnosed(("linear_viscous:9.5",), 73)
+    assert ("linear_viscous",) not in sets(before)
     assert "ten or more speeds" in BY_NAME["linear_viscous"].experiment
-    after = diagnosed(("linear_viscous:2",), 73, "enriched")
+    after = diagnosed(("linear_viscous:9.5",), 73, "enriched")
     assert sets(after) == [("linear_viscous",)]
