@@ -72,6 +72,15 @@ def test_noise_has_no_structure_beyond_chance():
     assert np.sum(np.array(least) < 0.05) <= 1
 
 
+@pytest.mark.parametrize("every", [20, 32, 40])
+def test_few_pairs_of_noise_have_no_structure(every):
+    """16 to 32 pairs: indicators of speed and temperature are as many, and would fit them all."""
+    for seed in range(6):
+        data = problem(seed, every=every)
+        found = structures(Step.of(Precomputed.of(data), []))
+        assert min((one.p_value for one in found), default=1.0) > 1e-3
+
+
 def test_structure_is_found_along_its_axes_with_its_size():
     """A ripple that grows with temperature is none of speed, and its mean over all is nothing."""
     data = problem(3)

@@ -187,6 +187,7 @@ def discrepancy_of(problem: Problem, span: Array, share: float = SHARE) -> Discr
 def _orthonormal_combination(columns: Array) -> Array:
     """Return the combinations of columns that are orthonormal, shape (columns, rank)."""
     size = np.linalg.norm(columns, axis=0)
+    size = np.where(size > 0, size, np.inf)
     _, strength, right = np.linalg.svd(columns / size, full_matrices=False)
     kept = strength > _RANK * strength[0]
     return np.asarray((right[kept] / strength[kept, np.newaxis]).T / size[:, np.newaxis])

@@ -31,6 +31,9 @@ _LEVELS = 8
 _SLOW_HARMONICS = 4
 """Harmonics of the angle in products with another quantity."""
 
+_MOST_OF_PAIRS = 0.5
+"""Greatest number of columns that differ from pair to pair, as a share of the pairs."""
+
 _MOST_LEVELS = 16
 """Speed levels with a column of their own."""
 
@@ -84,7 +87,11 @@ def structures(step: Step) -> list[Structure]:
         Base and accepted effects.
     """
     problem, precomputed = step.problem, step.precomputed
-    axes = {place: _orthogonal(columns) for place, columns in _axes(problem).items()}
+    axes = {
+        place: _orthogonal(columns)
+        for place, columns in _axes(problem).items()
+        if _can_be_judged(problem, columns)
+    }
     hypotheses = [_hypothesis(problem, *place, columns) for place, columns in axes.items()]
     catalogue = Catalogue.of(precomputed, hypotheses)
     tests = step.tested_against_expected(catalogue)
@@ -109,6 +116,13 @@ def structures(step: Step) -> list[Structure]:
             )
         )
     return sorted(found, key=lambda structure: structure.p_value)
+
+
+def _can_be_judged(problem: Problem, columns: Array) -> bool:
+    """Return whether columns leave enough pairs to know the noise of the pair means by."""
+    means = problem.layout.means(columns)
+    rank = orthonormal_basis(means, tolerance=1e-7).shape[1]
+    return rank <= _MOST_OF_PAIRS * len(means)
 
 
 def _name(axes: tuple[str, ...], channel: str) -> str:
