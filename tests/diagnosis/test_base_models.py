@@ -47,7 +47,9 @@ def test_growth_hides_beta_from_the_fit_and_not_from_the_diagnosis():
     np.testing.assert_array_equal(derivative, np.sqrt(problem.table.speed))
 
 
-@pytest.mark.parametrize("seed", [1, 2, 4])
+@pytest.mark.parametrize(
+    "seed", [2, *(pytest.param(seed, marks=pytest.mark.slow) for seed in (1, 4))]
+)
 def test_no_second_cause_is_named_for_what_the_first_one_hid(seed):
     problem, settings = grown_while_warmed(seed), DiagnosisSettings()
     margin = margin_of(problem, "N·m", settings)

@@ -17,6 +17,8 @@ WORLDS = {
     "offset and constant, late": {"offset": -4.0, "constant": 3.0, "delay": 0.012},
 }
 
+QUICK = ("one sample late", "all three")
+
 
 def diagnosed(seed, **world):
     return diagnose_joint(clean_days(seed, **world), "motor", "N·m", DiagnosisSettings())
@@ -34,7 +36,10 @@ def measured(diagnosis):
     }
 
 
-@pytest.mark.parametrize("name", WORLDS)
+@pytest.mark.parametrize(
+    "name",
+    [one if one in QUICK else pytest.param(one, marks=pytest.mark.slow) for one in WORLDS],
+)
 def test_no_cause_of_friction_or_load_is_named(name):
     diagnosis = diagnosed(5, **WORLDS[name])
     named = [cause.effects for cause in diagnosis.causes if not cause.fit.effect.measurement]

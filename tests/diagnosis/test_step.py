@@ -129,6 +129,7 @@ def test_a_test_can_do_without_some_hypotheses():
     assert set(step.tested(catalogue, skip={"inertia"})) == {"load_linear"}
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("name", "channel"), [("load_linear", "friction"), ("dress_pack", "load")])
 def test_a_size_is_the_torque_of_its_white_length(name, channel):
     """Planted with an RMS of ten white lengths the statistic is 100, and 1 by chance.
@@ -193,6 +194,7 @@ def test_what_physics_forbids_explains_nothing(name):
         assert forbidden.log_bayes_factor <= 0
 
 
+@pytest.mark.slow
 def test_the_noise_of_a_step_is_that_of_the_data():
     """Rows 0.3, pair means of 0.25 and 0.2 in friction, 0.1 in load: medians of 9 problems."""
     noise = [Step.of(Precomputed.of(problem(seed)), []).noise() for seed in range(9)]

@@ -62,8 +62,8 @@ BESIDE_A_LAG = ("torque_constant", "payload_change", "position_ripple")
 """One effect of each channel, and one of the stroke; docs/blind.md has them all."""
 
 
-QUICK = ("thermal_lag", "load_temperature", "payload_change", "position_ripple")
-"""One effect of each kind: lag, load, change in time, and the stroke."""
+QUICK = ("thermal_lag", "position_ripple")
+"""One effect that goes with temperature, and one of the stroke."""
 
 
 @functools.cache

@@ -37,6 +37,7 @@ def experiment(seed, share=0.7, time=0.25, pairs=60):
     return layout, rows.ravel()[:, np.newaxis], np.tile(POSITION, pairs)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("share", "time"), [(0.75, 0.12), (0.5, 0.25), (0.9, 0.5)])
 def test_correlation_is_that_of_the_noise(share, time):
     """Twenty experiments of 60 pairs; neighbours of a fast move tell most."""
