@@ -54,24 +54,32 @@ print(f"{len(events)} corrections, at", ", ".join(f"{time / 60:.0f}" for time in
 # %% The extended model knows the gear's temperature: no correction at all
 # What warms the gear is friction torque times speed; a controller knows it at every moment. This
 # log has no record of the moves that heat the joint up between the pairs. As in the fit, they are
-# taken to be like the latest pairs, as long as the motor warms. The state begins with the day.
+# taken to be like the fastest pairs, as long as the motor warms. The state begins with the day.
 joint = deployed(work, ExportSettings(to="json", extended=True))
 corrector = joint.corrector()
 missed["extended, not corrected"] = errors = []
-powers, warm = [], np.inf
+stroke = 2 * np.ptp(torques["position"])
+load_part = joint.base.alpha * np.mean(np.square(torques["load_torque"]))
+fastest, before, friction, fast = pairs["speed"].max(), None, 0.0, 0.0
 for pair in pairs.itertuples():
-    moving = pair.motor_temperature > warm
+    power = 0.0
+    if before is not None:
+        passed = pair.time - before.time
+        recorded = min(stroke / before.speed / passed, 1.0)
+        warming = pair.motor_temperature > before.motor_temperature
+        power = recorded * friction * before.speed + (1 - recorded) * warming * fast
     corrector.update(
         pair.time,
         pair.motor_temperature,
         housing_temperature=pair.housing_temperature,
-        power=float(np.mean(powers[-8:])) if moving else 0.0,
+        power=power,
     )
     predicted = corrector.friction(0.0, pair.speed)
     if pair.phase != "sweep":
         errors.append(pair.friction_torque - predicted)
-    powers.append(predicted * pair.speed)
-    warm = pair.motor_temperature
+    before, friction = pair, predicted + load_part
+    if pair.speed > 0.9 * fastest:
+        fast = friction * pair.speed
 
 # %% What each of them misses
 for name, errors in missed.items():

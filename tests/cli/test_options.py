@@ -155,6 +155,7 @@ COMMANDS = {
             "--alpha": ("0.01", "diagnose.settings.alpha", 0.01),
             "--seed": ("9", "diagnose.settings.seed", 9),
             "--most": ("2", "diagnose.settings.most", 2),
+            "--margin": ("0.3", "diagnose.settings.margin", 0.3),
             "--fail-on": ("named", "has_finding.named_only", True),
         },
     ),
