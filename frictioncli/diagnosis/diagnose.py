@@ -17,11 +17,14 @@ from frictioncli.diagnosis.data.problem import Misfit, Problem
 from frictioncli.diagnosis.data.worst_misfits import worst_misfits
 from frictioncli.diagnosis.fit.extension import Extension, Gain, extend, measured_gain
 from frictioncli.diagnosis.ramps.evidence import RampEvidence, RampLog, ramp_evidence
+from frictioncli.diagnosis.ramps.timing import torque_timing
+from frictioncli.diagnosis.ramps.timing_rivals import TimingRivals
 from frictioncli.diagnosis.search.cause import Cause
 from frictioncli.diagnosis.search.cause_search import SearchResult, find_causes
 from frictioncli.diagnosis.search.cause_selection import judged_on_new_run
 from frictioncli.diagnosis.search.lack_of_fit import Structure, structures
 from frictioncli.diagnosis.search.standing import with_standing
+from frictioncli.diagnosis.search.timing_causes import judged_by_timing
 from frictioncli.diagnosis.settings import DiagnosisSettings
 from frictioncli.diagnosis.thermal.estimate import ThermalEstimate
 from frictioncli.diagnosis.thermal.refine import LAG, search_with_lag, settled
@@ -94,6 +97,8 @@ class Diagnosis:
         Evidence of the ramps of the moves, where the log has them.
     thermal : ThermalEstimate or None
         Temperature of the gear, where a lag of it is a cause.
+    timing : TimingRivals or None
+        By how much the torque is late, and whether by a delay or a filter.
     """
 
     joint: int
@@ -115,6 +120,7 @@ class Diagnosis:
     held_out: str | None
     ramps: RampEvidence | None
     thermal: ThermalEstimate | None = None
+    timing: TimingRivals | None = None
 
 
 def diagnose_joint(
@@ -171,6 +177,8 @@ def diagnose_joint(
         problem, new = lag.problem, lag.new
     weighted_fit = found.step.weighted_fit()
     judged = with_standing((*found.measurement, *found.causes), problem, margin, settings.alpha)
+    starts = torque_timing(ramps, problem, temperature) if ramps else None
+    judged, timing = judged_by_timing(judged, starts)
     named = [cause for cause in judged if cause.standing == "named"]
     if new:
         named = list(judged_on_new_run(named, found.step, new))
@@ -220,6 +228,7 @@ def diagnose_joint(
         held_out=held_out,
         ramps=evidence,
         thermal=None if lag is None else lag.estimate,
+        timing=timing,
     )
 
 

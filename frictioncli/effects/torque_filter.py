@@ -21,6 +21,11 @@ import numpy as np
 
 from frictioncli.effects.base import Basis, Effect, EffectTable, Parameter, Signature
 
+BY_TIME_CONSTANT = (
+    "The torque in these logs is smoothed by a filter with a time constant of {time_constant}."
+)
+"""What is said of a filter whose time constant is known."""
+
 _RADIANS = np.pi / 180
 
 

@@ -30,10 +30,13 @@ from frictioncli.diagnosis.documents.parameters import (
 )
 from frictioncli.diagnosis.documents.remainder import remainder_record
 from frictioncli.diagnosis.documents.thermal_record import record_of_lag
+from frictioncli.diagnosis.ramps.timing_rivals import TimingRivals
 from frictioncli.diagnosis.search.cause import Cause
 from frictioncli.diagnosis.search.lack_of_fit import Structure
+from frictioncli.diagnosis.search.timing_causes import DELAY, FILTER
 from frictioncli.diagnosis.settings import DiagnosisSettings
 from frictioncli.diagnosis.thermal.refine import LAG
+from frictioncli.effects import torque_filter
 from frictioncli.effects.history_text import history_text
 from frictioncli.model.document import PARAMETERS, FrictionModel
 from frictioncli.model.friction import FrictionParameters
@@ -177,6 +180,11 @@ def _record(
     diagnosis: Diagnosis, cause: Cause, parameters: dict[str, ParameterRecord], figure: str | None
 ) -> CauseRecord:
     effect = cause.fit.effect
+    said = statement(effect, parameters)
+    if cause.effects == (FILTER,) and effect.name == DELAY and diagnosis.timing is not None:
+        effect = torque_filter.EFFECT
+        parameters = {"time_constant": _time_constant(diagnosis.timing)}
+        said = statement(effect, parameters, torque_filter.BY_TIME_CONSTANT)
     return CauseRecord(
         kind=effect.kind,
         standing=cause.standing,
@@ -184,8 +192,8 @@ def _record(
         reason=cause.reason,
         effects=cause.effects,
         probabilities=cause.probabilities,
-        channel=effect.channel,
-        statement=statement(effect, parameters),
+        channel=cause.fit.effect.channel,
+        statement=said,
         claim=effect.signature.claim,
         equation=effect.equation,
         when=_when(diagnosis, cause),
@@ -199,6 +207,12 @@ def _record(
         figure=figure,
         experiment=effect.experiment,
     )
+
+
+def _time_constant(timing: TimingRivals) -> ParameterRecord:
+    """Return the time constant of the filter of the logged torque."""
+    found = timing.estimates()[1]
+    return ParameterRecord(estimate=found.value, ci95=(found.low, found.high), unit="s")
 
 
 def _when(diagnosis: Diagnosis, cause: Cause) -> str:

@@ -84,7 +84,9 @@ def extension_coefficients(
     return _coefficients(one.effect, one.coefficients, errors, units)
 
 
-def statement(effect: Effect, parameters: Mapping[str, ParameterRecord]) -> str:
+def statement(
+    effect: Effect, parameters: Mapping[str, ParameterRecord], words: str | None = None
+) -> str:
     """Return what is said of an effect that was found, with the values of its parameters.
 
     Parameters
@@ -93,11 +95,13 @@ def statement(effect: Effect, parameters: Mapping[str, ParameterRecord]) -> str:
         The effect.
     parameters : mapping of str to ParameterRecord
         Its parameters.
+    words : str, optional
+        The sentence, if it is not that of the effect.
     """
     values = {
         name: quantity_text(one.estimate, one.ci95, one.unit) for name, one in parameters.items()
     }
-    return (effect.statement or effect.summary).format_map(values)
+    return (words or effect.statement or effect.summary).format_map(values)
 
 
 def _coefficients(

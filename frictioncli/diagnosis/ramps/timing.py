@@ -24,7 +24,6 @@ References
 """
 
 import math
-from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -41,7 +40,6 @@ from frictioncli.diagnosis.ramps.start_windows import StartWindows
 from frictioncli.diagnosis.ramps.timing_rivals import (
     DELAYS,
     LONGEST_FILTER,
-    RIVALS,
     TimingRivals,
 )
 
@@ -76,10 +74,8 @@ class TorqueTiming:
         Mean time by which the torque is late, D: delay and filter together. [s]
     smear : RampEstimate
         Variance of that time, S: the square of the filter's time constant. [s²]
-    delay, time_constant : RampEstimate
-        Delay and filter over all rivals, each with its probability. [s]
-    log_evidence : mapping of str to float
-        Logarithm of the evidence of each of :data:`RIVALS`, less that of the best.
+    rivals : TimingRivals
+        What may be the reason: nothing, a delay, a filter, or both.
     rms : float
         RMS misfit of the starts. [N·m]
     starts : int
@@ -88,23 +84,29 @@ class TorqueTiming:
 
     shift: RampEstimate
     smear: RampEstimate
-    delay: RampEstimate
-    time_constant: RampEstimate
-    log_evidence: Mapping[str, float]
+    rivals: TimingRivals
     rms: float
     starts: int
 
     @property
     def best(self) -> str:
         """The rival with the greatest evidence."""
-        return max(RIVALS, key=lambda name: self.log_evidence[name])
+        return self.rivals.best
+
+    @property
+    def delay(self) -> RampEstimate:
+        """Delay over all rivals, each with its probability [s]."""
+        return self.rivals.estimates()[0]
+
+    @property
+    def time_constant(self) -> RampEstimate:
+        """Time constant of the filter likewise [s]."""
+        return self.rivals.estimates()[1]
 
     @property
     def log_odds(self) -> float:
         """Log odds of a filter, with or without a delay, against a delay alone, at most 12."""
-        filtered = np.logaddexp(self.log_evidence["torque_filter"], self.log_evidence["both"])
-        odds = float(filtered) - self.log_evidence["torque_delay"]
-        return float(np.clip(odds, -MAX_LOG_ODDS, MAX_LOG_ODDS))
+        return float(np.clip(self.rivals.log_odds, -MAX_LOG_ODDS, MAX_LOG_ODDS))
 
 
 def torque_timing(ramps: RampLog, problem: Problem, temperature: str) -> TorqueTiming | None:
@@ -149,15 +151,10 @@ def timing_of(windows: StartWindows) -> TorqueTiming:
     # the normal distribution stands for Student's with as wide an interval
     wider = np.square(reach / stats.norm.isf(1 - _CONFIDENT))
     rivals = TimingRivals(point[:2], wider * covariance[:2, :2] + np.diag(np.square(tolerance)))
-    evidence = rivals.log_evidence()
-    most = max(evidence.values())
-    delay, time_constant = rivals.estimates()
     return TorqueTiming(
         shift=shift,
         smear=smear,
-        delay=delay,
-        time_constant=time_constant,
-        log_evidence={name: value - most for name, value in evidence.items()},
+        rivals=rivals,
         rms=float(np.sqrt(np.sum(np.square(misfit)) / max(used.sum(), 1))),
         starts=len(windows.torque),
     )

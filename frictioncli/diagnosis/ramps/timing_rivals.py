@@ -55,6 +55,26 @@ class TimingRivals:
             "both": float(both) + prior_of_delay - math.log(LONGEST_FILTER),
         }
 
+    @property
+    def best(self) -> str:
+        """The rival with the greatest evidence."""
+        evidence = self.log_evidence()
+        return max(RIVALS, key=lambda name: evidence[name])
+
+    @property
+    def log_odds(self) -> float:
+        """Log odds of a filter, with or without a delay, against a delay alone."""
+        evidence = self.log_evidence()
+        filtered = np.logaddexp(evidence["torque_filter"], evidence["both"])
+        return float(filtered - evidence["torque_delay"])
+
+    def combined(self, other: "TimingRivals") -> "TimingRivals":
+        """Return the rivals by two estimates that are independent of each other."""
+        weights = [np.linalg.inv(one.covariance) for one in (self, other)]
+        covariance = np.linalg.inv(weights[0] + weights[1])
+        point = covariance @ (weights[0] @ self.point + weights[1] @ other.point)
+        return TimingRivals(point, covariance)
+
     def estimates(self) -> tuple[RampEstimate, RampEstimate]:
         """Return delay and time constant [s] over all rivals, each with its probability."""
         evidence = self.log_evidence()

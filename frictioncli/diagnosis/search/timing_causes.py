@@ -1,0 +1,76 @@
+r"""Whether torque that is late was delayed or filtered.
+
+At constant velocity a delay and a filter look alike to first order: the effect ``torque_delay``
+finds the mean time *D* by which the torque is late, whatever the reason. What tells them apart is
+the variance *S* of that time: to second order at constant velocity, :math:`S = 2 s_2 - D^2` with
+the second moment of ``torque_filter``, and much better where moves start
+(:mod:`frictioncli.diagnosis.ramps.timing`).
+"""
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from frictioncli.diagnosis.noise.significance import credible_set, posterior_probabilities
+from frictioncli.diagnosis.ramps.timing import TorqueTiming
+from frictioncli.diagnosis.ramps.timing_rivals import TimingRivals
+from frictioncli.diagnosis.search.cause import CONVINCING, Cause
+
+DELAY, FILTER = "torque_delay", "torque_filter"
+
+_TOLERANCE = (0.001, 2e-4)
+_SHARE = (0.05, 0.25)
+"""Errors of *D* and *S* by other structure in the pairs: at least [s], [s²], and as a share."""
+
+
+def judged_by_timing(
+    causes: Sequence[Cause], starts: TorqueTiming | None
+) -> tuple[tuple[Cause, ...], TimingRivals | None]:
+    """Return causes in which late torque has the name of its reason, and its rivals.
+
+    Without starts of moves the delay keeps its name unless the pairs speak clearly for a filter.
+
+    Parameters
+    ----------
+    causes : sequence of Cause
+        Causes with their standing, effects of the measurement among them.
+    starts : TorqueTiming or None
+        Delay and filter by the starts of moves.
+
+    Returns
+    -------
+    tuple of Cause, TimingRivals or None
+        None where nothing is known about the delay.
+    """
+    by_name = {cause.fit.effect.name: cause for cause in causes}
+    late, smeared = by_name.get(DELAY), by_name.get(FILTER)
+    known = [] if late is None or smeared is None else [_of_pairs(late, smeared)]
+    known += [] if starts is None else [starts.rivals]
+    if late is None or not known:
+        return tuple(causes), None
+    rivals = known[0].combined(known[1]) if len(known) > 1 else known[0]
+    if starts is None and rivals.log_odds < CONVINCING:
+        return tuple(causes), rivals
+    evidence = rivals.log_evidence()
+    if rivals.best in ("none", "both"):
+        return tuple(causes), rivals
+    filtered = float(np.logaddexp(evidence[FILTER], evidence["both"]))
+    share = posterior_probabilities({DELAY: evidence[DELAY], FILTER: filtered})
+    names = credible_set(share)
+    renamed = replace(late, effects=names, probabilities=share)
+    # what is late by a filter is not listed as a filter twice
+    twice = names == (FILTER,) and smeared is not None and smeared.standing != "named"
+    return tuple(
+        renamed if cause is late else cause for cause in causes if not (twice and cause is smeared)
+    ), rivals
+
+
+def _of_pairs(late: Cause, smeared: Cause) -> TimingRivals:
+    """Return the rivals by the pairs alone."""
+    shift, second = float(late.fit.coefficients[0]), float(smeared.fit.coefficients[0])
+    variance, of_second = float(late.fit.covariance[0, 0]), float(smeared.fit.covariance[0, 0])
+    point = np.array([shift, 2 * second - shift**2])
+    tolerance = np.array(_TOLERANCE) + np.array(_SHARE) * np.abs(point)
+    errors = np.array([variance, 4 * of_second + 4 * shift**2 * variance])
+    return TimingRivals(point, np.diag(np.maximum(errors, 0.0) + np.square(tolerance)))

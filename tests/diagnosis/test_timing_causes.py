@@ -1,0 +1,87 @@
+"""Late torque gets the name of its reason, where that can be told."""
+
+from dataclasses import replace
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+from frictioncli.diagnosis.fit.hypotheses import EffectFit
+from frictioncli.diagnosis.ramps.timing_rivals import TimingRivals
+from frictioncli.diagnosis.search.cause import Cause
+from frictioncli.diagnosis.search.timing_causes import judged_by_timing
+from frictioncli.effects import BY_NAME
+
+
+def cause(name, coefficients, errors, **fields):
+    fit = EffectFit(BY_NAME[name], {}, np.array(coefficients), np.diag(np.square(errors)), 100.0)
+    return (
+        Cause(fit=fit, test=None, effects=(name,), probabilities={name: 1.0}, size=1.0, visible=0.5)
+        if not fields
+        else replace(cause(name, coefficients, errors), **fields)
+    )
+
+
+def causes(shift, second, *, shift_error=0.001, second_error=1e-4, standing="negligible"):
+    """What pairs show of late torque, and a friction effect beside it."""
+    return (
+        cause("torque_delay", [shift], [shift_error]),
+        cause("torque_filter", [second, 0.0], [second_error, 1e-6], standing=standing),
+        cause("drift", [0.1], [0.01]),
+    )
+
+
+def starts(shift, smear, *, error=0.0005, smear_error=3e-5):
+    rivals = TimingRivals(np.array([shift, smear]), np.diag(np.square([error, smear_error])))
+    return SimpleNamespace(rivals=rivals)
+
+
+def names(judged):
+    return [one.effects for one in judged]
+
+
+def test_a_delay_keeps_its_name():
+    found, rivals = judged_by_timing(causes(0.012, 7.2e-5), starts(0.012, 0.0))
+    assert names(found) == [("torque_delay",), ("torque_filter",), ("drift",)]
+    delay, time_constant = rivals.estimates()
+    assert delay.low < 0.012 < delay.high
+    assert time_constant.value < 0.002
+
+
+def test_a_filter_gives_its_name_to_what_is_late_and_is_listed_once():
+    found, rivals = judged_by_timing(causes(0.0385, 0.0014), starts(0.0402, 0.00163))
+    assert names(found) == [("torque_filter",), ("drift",)]
+    assert found[0].fit.effect.name == "torque_delay"
+    assert found[0].probabilities["torque_filter"] > 0.95
+    time_constant = rivals.estimates()[1]
+    assert time_constant.low < 0.04 < time_constant.high
+
+
+def test_a_filter_that_is_named_for_itself_stays():
+    judged, _ = judged_by_timing(causes(0.04, 0.0016, standing="named"), starts(0.04, 0.0016))
+    assert names(judged) == [("torque_filter",), ("torque_filter",), ("drift",)]
+
+
+def test_a_delay_and_a_filter_are_two():
+    found, rivals = judged_by_timing(causes(0.035, 0.00076), starts(0.0355, 0.00032))
+    assert rivals.best == "both"
+    assert names(found) == [("torque_delay",), ("torque_filter",), ("drift",)]
+
+
+def test_what_cannot_be_told_apart_is_a_set():
+    vague = starts(0.011, 6e-5, smear_error=1e-4)
+    (first, *_), _ = judged_by_timing(causes(0.011, 9e-5), vague)
+    assert set(first.effects) == {"torque_delay", "torque_filter"}
+    assert sum(first.probabilities.values()) == pytest.approx(1.0)
+
+
+def test_pairs_alone_name_a_filter_only_where_it_is_clear():
+    found, _ = judged_by_timing(causes(0.012, 1e-4), None)
+    assert names(found)[0] == ("torque_delay",)
+    found, _ = judged_by_timing(causes(0.06, 0.0036, shift_error=5e-4, second_error=5e-5), None)
+    assert names(found)[0] == ("torque_filter",)
+
+
+def test_without_the_measurement_s_effects_nothing_changes():
+    (_, _, drift) = causes(0.0, 0.0)
+    assert judged_by_timing([drift], starts(0.04, 0.0016)) == ((drift,), None)
