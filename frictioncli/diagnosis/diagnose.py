@@ -20,9 +20,13 @@ from frictioncli.diagnosis.ramps.evidence import RampEvidence, RampLog, ramp_evi
 from frictioncli.diagnosis.ramps.timing import torque_timing
 from frictioncli.diagnosis.ramps.timing_rivals import TimingRivals
 from frictioncli.diagnosis.search.cause import Cause
-from frictioncli.diagnosis.search.cause_search import SearchResult, find_causes
+from frictioncli.diagnosis.search.cause_search import (
+    SearchResult,
+    find_causes,
+    given_up_causes,
+)
 from frictioncli.diagnosis.search.cause_selection import judged_on_new_run
-from frictioncli.diagnosis.search.lack_of_fit import Structure, structures
+from frictioncli.diagnosis.search.lack_of_fit import Structure, unnamed_structure
 from frictioncli.diagnosis.search.standing import with_standing
 from frictioncli.diagnosis.search.timing_causes import judged_by_timing
 from frictioncli.diagnosis.settings import DiagnosisSettings
@@ -40,12 +44,6 @@ LEAST_MARGIN = 0.1
 
 LEAST_PAIRS = 12
 """With fewer pairs noise cannot be distinguished from structure."""
-
-_NO_DOUBT = 1e-12
-"""P-value below which there is no doubt that structure is there."""
-
-_UNNAMED_P_VALUE = 1e-3
-"""Greatest p-value of structure that no effect explains."""
 
 _MOST_LEFT = 0.5
 """Structure without a name that is greater than this share of a cause in its channel says that the
@@ -182,13 +180,14 @@ def diagnose_joint(
     named = [cause for cause in judged if cause.standing == "named"]
     if new:
         named = list(judged_on_new_run(named, found.step, new))
-    unnamed = _unnamed_structure(found, margin, settings)
+    unnamed = unnamed_structure(found.step, margin, settings.alpha)
     causes = tuple(
         cause
         for cause in named
         if cause.standing == "named" and not (unnamed and _is_part(cause, unnamed))
     )
-    visible = _visible(judged, named, causes, unnamed)
+    given_up = given_up_causes(found, settings.alpha)
+    visible = _visible((*judged, *given_up), named, causes, unnamed)
     extension = gain = None
     if lag is not None and not any(cause.fit.effect.name == LAG for cause in causes):
         # what is not named does not move the temperature of the extended model
@@ -268,21 +267,6 @@ def margin_of(problem: Problem, torque_unit: str, settings: DiagnosisSettings) -
         return settings.margin
     share = MARGIN_SHARE * float(np.mean(np.abs(problem.friction)))
     return max(share, LEAST_MARGIN) if torque_unit == "N·m" else share
-
-
-def _unnamed_structure(
-    found: SearchResult, margin: float, settings: DiagnosisSettings
-) -> Structure | None:
-    """Return the most significant structure beside the causes that is above the margin.
-
-    Surely above it, or most probably where there is no doubt that it is there.
-    """
-    for one in structures(found.step):
-        significant = one.p_value < min(_UNNAMED_P_VALUE, settings.alpha)
-        least = one.size if one.p_value < _NO_DOUBT else one.interval[0]
-        if significant and least > margin:
-            return one
-    return None
 
 
 def _is_part(cause: Cause, unnamed: Structure) -> bool:

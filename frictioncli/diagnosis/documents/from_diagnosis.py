@@ -30,7 +30,7 @@ from frictioncli.diagnosis.documents.parameters import (
 )
 from frictioncli.diagnosis.documents.remainder import remainder_record
 from frictioncli.diagnosis.documents.thermal_record import record_of_lag
-from frictioncli.diagnosis.ramps.timing_rivals import TimingRivals
+from frictioncli.diagnosis.ramps.evidence import RampEstimate
 from frictioncli.diagnosis.search.cause import Cause
 from frictioncli.diagnosis.search.lack_of_fit import Structure
 from frictioncli.diagnosis.search.timing_causes import DELAY, FILTER
@@ -181,9 +181,12 @@ def _record(
 ) -> CauseRecord:
     effect = cause.fit.effect
     said = statement(effect, parameters)
-    if cause.effects == (FILTER,) and effect.name == DELAY and diagnosis.timing is not None:
+    if cause.effects == (DELAY,) and diagnosis.timing is not None:
+        parameters = {"delay": _seconds(diagnosis.timing.estimates()[0])}
+        said = statement(effect, parameters)
+    elif cause.effects == (FILTER,) and effect.name == DELAY and diagnosis.timing is not None:
         effect = torque_filter.EFFECT
-        parameters = {"time_constant": _time_constant(diagnosis.timing)}
+        parameters = {"time_constant": _seconds(diagnosis.timing.estimates()[1])}
         said = statement(effect, parameters, torque_filter.BY_TIME_CONSTANT)
     return CauseRecord(
         kind=effect.kind,
@@ -209,9 +212,8 @@ def _record(
     )
 
 
-def _time_constant(timing: TimingRivals) -> ParameterRecord:
-    """Return the time constant of the filter of the logged torque."""
-    found = timing.estimates()[1]
+def _seconds(found: RampEstimate) -> ParameterRecord:
+    """Return a time that starts of moves and pairs together tell."""
     return ParameterRecord(estimate=found.value, ci95=(found.low, found.high), unit="s")
 
 

@@ -269,3 +269,33 @@ def _cause(search: _Search, accepted: Sequence[EffectFit], number: int) -> Cause
         probabilities={name: value for name, value in share.items() if value >= 1e-3},
         **sizes_of(step.precomputed, fit),
     )
+
+
+def given_up_causes(found: SearchResult, alpha: float) -> tuple[Cause, ...]:
+    """Return effects that were accepted and given up again, and still stand out of the noise.
+
+    Parameters
+    ----------
+    found : SearchResult
+        Result of a search.
+    alpha : float
+        Significance level.
+    """
+    causes = []
+    for name, reason in found.dropped.items():
+        test = found.rejected.get(name)
+        if test is None or test.p_value >= alpha:
+            continue
+        fit = test.effect_fit(BY_NAME[name])
+        causes.append(
+            Cause(
+                fit=fit,
+                test=test,
+                effects=(name,),
+                probabilities={name: 1.0},
+                **sizes_of(found.step.precomputed, fit),
+                standing="undetermined",
+                reason=reason,
+            )
+        )
+    return tuple(causes)

@@ -38,6 +38,13 @@ _MOST_LEVELS = 16
 """Speed levels with a column of their own."""
 
 
+_SIGNIFICANT = 1e-3
+"""Greatest p-value of structure that no effect explains."""
+
+_NO_DOUBT = 1e-12
+"""P-value below which there is no doubt that structure is there."""
+
+
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Structure:
     """Lack of fit along one axis of the experiment.
@@ -73,6 +80,27 @@ class Structure:
     def axis(self) -> str:
         """The axes in words."""
         return " and ".join(self.axes)
+
+
+def unnamed_structure(step: Step, margin: float, alpha: float) -> Structure | None:
+    """Return the most significant structure beside the causes that is above the margin.
+
+    Surely above it, or most probably where there is no doubt that it is there.
+
+    Parameters
+    ----------
+    step : Step
+        Base and accepted effects.
+    margin : float
+        Smallest size worth a name. [N·m]
+    alpha : float
+        Significance level.
+    """
+    for one in structures(step):
+        least = one.size if one.p_value < _NO_DOUBT else one.interval[0]
+        if one.p_value < min(_SIGNIFICANT, alpha) and least > margin:
+            return one
+    return None
 
 
 def structures(step: Step) -> list[Structure]:

@@ -10,6 +10,7 @@ from frictioncli.diagnosis.data.problem import Problem
 from frictioncli.diagnosis.fit.columns import main_channel
 from frictioncli.diagnosis.fit.hypotheses import EffectFit, physical_bounds
 from frictioncli.diagnosis.search.cause import CONVINCING, Cause
+from frictioncli.effects import BASE_MEASUREMENT
 
 _Z95 = 1.96
 
@@ -25,7 +26,8 @@ def with_standing(
     *Named* needs significance, a lower bound of what the base leaves above the margin, and a
     physically possible result; else a cause is *negligible* if the upper bound is below the margin,
     *undetermined* if the interval holds both the margin and next to nothing, and *visible*
-    otherwise.
+    otherwise. Of an effect of the measurement its whole torque counts: what the base takes of it
+    makes the base wrong.
 
     Parameters
     ----------
@@ -54,6 +56,10 @@ def with_standing(
 
 def _judged(cause: Cause, problem: Problem, margin: float, alpha: float) -> Cause:
     low, high = cause.visible_interval
+    left = "the base leaves"
+    if cause.fit.effect in BASE_MEASUREMENT and cause.visible > 0:
+        low, high = (cause.size / cause.visible * bound for bound in (low, high))
+        left = "there is"
     if not (cause.test.p_value < alpha and cause.test.log_bayes_factor > CONVINCING):
         return replace(cause, standing="undetermined", reason="noise may be the reason")
     impossible = _impossible(cause, problem)
@@ -62,9 +68,10 @@ def _judged(cause: Cause, problem: Problem, margin: float, alpha: float) -> Caus
     if low > margin:
         return replace(cause, standing="named", reason="")
     if high < margin:
-        reason = f"the base leaves less of it than the margin of {margin:.2g}"
+        reason = f"{left} less of it than the margin of {margin:.2g}"
         return replace(cause, standing="negligible", reason=reason)
-    reason = f"the base may leave less of it than the margin of {margin:.2g}"
+    reason = f"{left.replace('leaves', 'may leave').replace('is', 'may be')} less of it than"
+    reason += f" the margin of {margin:.2g}"
     return replace(cause, standing="visible" if low > 0 else "undetermined", reason=reason)
 
 
