@@ -10,9 +10,12 @@ from typing import Any
 import pandas as pd
 
 from frictioncli import documents
-from frictioncli.diagnosis.diagnose import diagnose_joint
+from frictioncli.diagnosis.data.build_problem import build_problems
+from frictioncli.diagnosis.diagnose import diagnose_joint, margin_of
 from frictioncli.diagnosis.documents.from_diagnosis import diagnosis_document, extended_document
+from frictioncli.diagnosis.search.cause_search import find_causes
 from frictioncli.diagnosis.settings import DiagnosisSettings
+from frictioncli.effects import EFFECTS
 from frictioncli.model.fitting import fit_joint
 from frictioncli.model.settings import FitSettings
 from frictioncli.simulator.synthesize import synthesize
@@ -79,7 +82,11 @@ def said_of_logs(world: World) -> Said:
 
 def sizes_without_discrepancy(torques: pd.DataFrame) -> dict[str, float | None]:
     """Return the sizes that would be found if the base were exactly true but for the causes."""
-    return {}
+    runs = sorted(torques["run"].unique())
+    problem, _ = build_problems(torques, TEMPERATURE, str(runs[-1]))
+    margin = margin_of(problem, "N·m", SETTINGS)
+    found = find_causes(problem, EFFECTS, SETTINGS, margin, discrepancy=0.0)
+    return found.detectable_sizes(EFFECTS, SETTINGS.alpha, margin)
 
 
 def _plain(document: object) -> dict[str, Any]:

@@ -33,7 +33,7 @@ DOCUMENTS = (
 """Columns that hold JSON."""
 
 NUMBERS = (
-    *("margin", "share_seen", "nuisance", "before", "after", "floor", "floor_said", "oracle"),
+    *("margin", "share_seen", "nuisance", "before", "after", "floor", "floor_said"),
     *("diagnosed", "seconds"),
 )
 """Columns that hold a number."""
@@ -87,7 +87,6 @@ def _true(truth: Truth) -> dict[str, object]:
         "share_seen": f"{truth.share_seen:.5g}",
         "nuisance": f"{truth.nuisance:.4g}",
         "before": f"{truth.before:.5g}",
-        "oracle": f"{truth.oracle:.5g}",
         "floor": f"{truth.floor:.5g}",
     }
 

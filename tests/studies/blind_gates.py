@@ -146,7 +146,7 @@ def measurement_intervals(
     """Return whether intervals of what is found of the measurement hold the truth."""
     found = []
     for joint in joints:
-        for cause in (*joint.causes, *joint.visible):
+        for cause in joint.causes:
             for name in set(cause["effects"]) & set(names):
                 truth = joint.nuisances.get(name, {})
                 for parameter, value in truth.items():

@@ -14,8 +14,8 @@ AXES: Mapping[str, frozenset[str]] = {one.name: frozenset(one.axes) for one in U
 SAME_HISTORY = 0.9
 """A history is right if it says of as many of the pairs whether the change was there."""
 
-HOLDS: Mapping[str, bool] = {"recurring": True, "lasting": True, "vanishing": False}
-"""Whether a change is there on the day kept out, by its history."""
+LEAST_OVERLAP = 0.05
+"""A change is on the day kept out where it is in as great a share of all pairs there."""
 
 
 def located(joint: Joint) -> bool:
@@ -31,15 +31,19 @@ def unnamed_and_located(joint: Joint) -> bool:
 
 
 def said_as_such(joint: Joint) -> bool:
-    """Return whether a change is named, with its history, and whether it holds on the new day."""
-    name = joint.world.hidden
-    for cause in joint.causes:
-        if name in cause["effects"]:
-            holds = cause.get("holds_on_new_run") is HOLDS[joint.world.history]
-            seen = joint.numbers["share_seen"]
-            truth, said = joint.hidden[0]["stretches"], stretches(cause.get("parameters", {}))
-            return holds and same_history(truth, said, seen)
-    return False
+    """Return whether a change is named, with when it was there, and whether it was on the new day.
+
+    The history counts on the day seen; of the day kept out only whether the change was there.
+    """
+    name, seen = joint.world.hidden, joint.numbers["share_seen"]
+    truth = joint.hidden[0]["stretches"]
+    there = sum(max(0.0, end - max(begin, seen)) for begin, end in truth) >= LEAST_OVERLAP
+    return any(
+        name in cause["effects"]
+        and cause.get("holds_on_new_run") is there
+        and same_history(truth, stretches(cause.get("parameters", {})), seen)
+        for cause in joint.causes
+    )
 
 
 def stretches(parameters: Mapping[str, Sequence[float | None]]) -> list[tuple[float, float]]:

@@ -22,6 +22,8 @@ from tests.studies.blind_worlds import CHANGES, TWELVE, World
 TEMPERATURE = "motor"
 GRAVITY = 9.80665
 
+TORQUE = ["friction_torque", "load_torque"]
+
 PRESENT = 0.3
 """A change is there where its torque is more than this share of its greatest."""
 
@@ -96,8 +98,6 @@ class Truth:
         Share of all pairs that are in the runs seen.
     before : float
         RMS misfit of the base on the day kept out. [N·m]
-    oracle : float
-        The same where nothing is hidden: what is left to one who knows all that is. [N·m]
     floor : float
         RMS of the noise on that day, which no model can predict. [N·m]
     """
@@ -109,7 +109,6 @@ class Truth:
     margin: float
     share_seen: float
     before: float
-    oracle: float
     floor: float
 
 
@@ -124,10 +123,9 @@ def truth_of(world: World) -> Truth:
         bare = next(iter(without.values()), torques)
     quiet = _same(torques, world, world.settings((), noise_scale=0.0))
     seen, new = problems(torques)
-    judged, judged_bare = (new or seen, _judged(bare) if world.names else new or seen)
+    judged = new or seen
     base = _base_and_measurement(seen)
-    quiet_seen = problems(quiet)[0]
-    nuisance = np.concatenate([quiet_seen.friction_misfit, quiet_seen.load_misfit])
+    simulated_base = np.concatenate([seen.table.friction, seen.load_base @ seen.gravity])
     planted = {one.effect.name: one.effect for one in simulated.planted.effects}
     return Truth(
         torques=torques,
@@ -135,19 +133,12 @@ def truth_of(world: World) -> Truth:
             _hidden(world, seen, base, torques, one, planted[name]) for name, one in without.items()
         ),
         nuisances=_nuisances(simulated.nuisances),
-        nuisance=_rms(_off(base, nuisance)),
+        nuisance=_rms(_off(base, _torque(seen, quiet) - simulated_base)),
         margin=max(0.1, 0.005 * float(np.mean(np.abs(seen.friction)))),
         share_seen=_pairs(seen) / (_pairs(seen) + (0 if new is None else _pairs(new))),
         before=_rms_misfit(judged),
-        oracle=_rms_misfit(judged_bare),
-        floor=_rms(_signal(judged_bare, quiet)),
+        floor=_rms(_torque(judged, bare) - _torque(judged, quiet)),
     )
-
-
-def _judged(torques: pd.DataFrame) -> Problem:
-    """Return the problem of the day kept out, or of all where none is."""
-    seen, new = problems(torques)
-    return new or seen
 
 
 def _hidden(
@@ -229,18 +220,21 @@ def _same(torques: pd.DataFrame, world: World, settings: SynthesisSettings) -> p
     return found
 
 
-def _signal(problem: Problem, without: pd.DataFrame) -> Array:
+def _signal(seen: Problem, without: pd.DataFrame) -> Array:
     """Return what is missing from torques, friction above load, in the problem's rows. [N·m]."""
-    rows = without[without["run"].isin(problem.runs)]
+    return np.concatenate([seen.friction, seen.load]) - _torque(seen, without)
+
+
+def _torque(problem: Problem, torques: pd.DataFrame) -> Array:
+    """Return torques, friction above load, in the problem's rows. [N·m]."""
+    rows = torques[torques["run"].isin(problem.runs)]
     rows = rows.sort_values(["run", "time", "pair", "position"])
-    friction = problem.friction - rows["friction_torque"].to_numpy(float)
-    return np.concatenate([friction, problem.load - rows["load_torque"].to_numpy(float)])
+    return np.concatenate([rows[name].to_numpy(float) for name in TORQUE])
 
 
 def _stretches(torques: pd.DataFrame, without: pd.DataFrame) -> tuple[tuple[float, float], ...]:
     """Return when a change is there, as shares of all pairs."""
-    columns = ["friction_torque", "load_torque"]
-    size = np.sqrt(np.square(torques[columns] - without[columns]).sum(axis=1))
+    size = np.sqrt(np.square(torques[TORQUE] - without[TORQUE]).sum(axis=1))
     by_pair = size.groupby([torques["run"], torques["time"]], observed=True).mean().to_numpy()
     there = np.concatenate([[False], by_pair > PRESENT * by_pair.max(), [False]]).astype(int)
     edges = np.flatnonzero(np.diff(there)) / len(by_pair)
