@@ -196,7 +196,9 @@ def diagnose_joint(
         fits = [cause.fit for cause in causes]
         extension = extend(problem, weighted_fit, fits)
         if lag is not None:
-            lag, extension = settled(lag, fits, lambda rows: extend(rows, weighted_fit, fits))
+            lag, extension = settled(
+                lag, fits, lambda rows, among: extend(rows, weighted_fit, among)
+            )
             problem, new = lag.problem, lag.new
         gain = measured_gain(
             new or problem,

@@ -6,9 +6,7 @@ from functools import partial
 
 import numpy as np
 
-from frictioncli.arrays import Array
 from frictioncli.diagnosis.data.build_problem import at_temperature
-from frictioncli.diagnosis.data.hidden_temperature import HiddenTemperature
 from frictioncli.diagnosis.data.problem import Problem
 from frictioncli.diagnosis.fit.extension import Extension
 from frictioncli.diagnosis.fit.hypotheses import EffectFit
@@ -33,10 +31,13 @@ _MOST = 0.7
 """A hidden temperature that leaves less than this share of the RMS misfit explains most of it."""
 
 _MOST_STEPS = 6
-"""Greatest number of steps of the extension towards the temperature about which it is linear."""
+"""Greatest number of Gauss-Newton steps."""
 
 _SETTLED = 1e-6
-"""Changes of the coefficients, as a share of their size, at which it is reached."""
+"""Changes of the parameters, as a share of their standard errors, at which they end."""
+
+_LEAST_ERROR = 1e-9
+"""Least standard error that counts."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -211,12 +212,16 @@ def _restricted_basis(parts: tuple[int, ...], table: EffectTable, **shape: float
 
 
 def settled(
-    refined: RefinedLag, effects: Sequence[EffectFit], extend: Callable[[Problem], Extension]
+    refined: RefinedLag,
+    effects: Sequence[EffectFit],
+    extend: Callable[[Problem, Sequence[EffectFit]], Extension],
 ) -> tuple[RefinedLag, Extension]:
-    """Return an extension, and the problems linear about the very temperature that it has.
+    """Return an extension at the estimated temperature, and the problems linear about it.
 
-    The extension refits the network's coefficients with all others; the problem is made linear
-    about them in turn (Gauss-Newton steps) until both agree.
+    The network keeps the coefficients that were estimated within their bounds: one run hardly tells
+    some of their combinations apart, and free ones would leave the range in which friction is
+    linear. All other parameters are refitted beside it, the problem made linear about them in turn
+    (Gauss-Newton steps). The errors are those with all parameters free.
 
     Parameters
     ----------
@@ -225,38 +230,42 @@ def settled(
     effects : sequence of EffectFit
         Effects of the extension, the lag among them.
     extend : callable
-        Returns the extension of a problem by these effects.
+        Returns the extension of a problem by effects.
     """
     place = [one.effect.name for one in effects].index(LAG)
-    bounds = np.array([(one.lower, one.upper) for one in EFFECT.coefficients]).T
+    others = [one for one in effects if one.effect.name != LAG]
+    free = extend(refined.problem, effects)
+    limit = _SETTLED * np.maximum(free.errors[: len(free.changes)], _LEAST_ERROR)
     for _ in range(_MOST_STEPS):
-        extension = extend(refined.problem)
-        found = np.clip(extension.effects[place].coefficients, *bounds)
-        before = refined.fit.coefficients
-        refined = _moved(refined, extension, found)
-        if np.all(np.abs(found - before) <= _SETTLED * np.maximum(np.abs(found), 1.0)):
+        held = extend(_with_lag_taken_off(refined.problem), others)
+        refined = _moved(refined, held)
+        if np.all(np.abs(held.changes) <= limit):
             break
-    fitted = list(extension.effects)
-    fitted[place] = replace(fitted[place], coefficients=found)
-    unchanged = np.zeros_like(extension.changes)
-    return refined, replace(extension, changes=unchanged, effects=tuple(fitted))
+    return refined, replace(
+        free,
+        changes=np.zeros_like(free.changes),
+        gravity=held.gravity,
+        effects=(*held.effects[:place], refined.fit, *held.effects[place:]),
+    )
 
 
-def _moved(refined: RefinedLag, extension: Extension, coefficients: Array) -> RefinedLag:
-    """Return the problems at the parameters of an extension and the coefficients of its lag."""
-    problem, new, hidden = refined.problem, refined.new, refined.problem.hidden
-    assert hidden is not None
+def _with_lag_taken_off(problem: Problem) -> Problem:
+    """Return a problem whose measured friction has the torque of the lag taken off."""
+    table = problem.table
+    torque = table.temperature_slope * (table.temperature - table.measured_temperature)
+    return replace(problem, friction=problem.friction - torque)
+
+
+def _moved(refined: RefinedLag, extension: Extension) -> RefinedLag:
+    """Return the problems at the parameters of an extension, at the same temperature."""
+    problem, new = refined.problem, refined.new
     about = {
         name: getattr(problem.parameters, name) + float(change)
         for name, change in zip(extension.names, extension.changes, strict=True)
     }
     parameters = replace(problem.parameters, **about)
-    moved = HiddenTemperature.of(
-        hidden.time_constant, coefficients, hidden.reference_power, hidden.housing_time_constant
-    )
     return replace(
         refined,
-        problem=at_temperature(problem, parameters, moved),
-        new=new and at_temperature(new, parameters, moved),
-        fit=replace(refined.fit, coefficients=coefficients),
+        problem=at_temperature(problem, parameters, problem.hidden),
+        new=new and at_temperature(new, parameters, problem.hidden),
     )
