@@ -10,6 +10,9 @@ from frictioncli.effects.base import EffectTable
 _HALF_WINDOW = 300.0
 """Half the window in which the warming of the motor is seen. [s]"""
 
+_TURNING = 10.0
+"""Between moves that follow each other within this time no other move is made. [s]"""
+
 _FASTEST = 0.95
 """Least share of a run's highest speed that counts as the highest."""
 
@@ -195,7 +198,8 @@ def friction_power(table: EffectTable, heads: PairHeads) -> Array:
     -----
     A recorded move dissipates its measured friction times its speed. Motion between pairs is often
     not recorded: while the motor warms, the joint is assumed to move all the time at the highest
-    recorded speed, as in a heating programme; and to stand otherwise.
+    recorded speed, as in a heating programme; and to stand otherwise, as between the moves of a
+    series.
     """
     run, time = table.run[heads.first], table.time[heads.first]
     moved, speed = heads.mean(table.friction_power), table.speed[heads.first]
@@ -212,7 +216,8 @@ def friction_power(table: EffectTable, heads: PairHeads) -> Array:
         recorded = np.clip((recorded[1:] + recorded[:-1]) / 2, 0.0, duration)
         later = np.interp(middle + _HALF_WINDOW, t, motor[begin:end])
         earlier = np.interp(middle - _HALF_WINDOW, t, motor[begin:end])
-        unrecorded = np.where(later > earlier, duration - recorded, 0.0)
+        idle = duration - recorded
+        unrecorded = np.where((later > earlier) & (idle > _TURNING), idle, 0.0)
         total = recorded * (own[1:] + own[:-1]) / 2 + unrecorded * fast
         level[begin : end - 1] = np.divide(total, duration, where=duration > 0, out=0 * duration)
     return level

@@ -48,6 +48,10 @@ _CONVINCING = 10.0
 """Difference of the criterion by which a rival must be better than a simpler one: very strong
 evidence."""
 
+_THAN_WHOLE = 20.0
+"""Difference by which it must be better than a gear that has all the friction: with a part of the
+friction elsewhere, a network imitates errors of the power, and predicts a new day worse."""
+
 _THAN_MIX = 4.0
 """Difference by which it must be better than a mix: a mix has no physics of its own, and imitates a
 network on one run."""
@@ -153,7 +157,7 @@ class ThermalEstimate:
 def estimate_temperature(
     problem: Problem, beside: Sequence[Basis] = (), known: Array | float = 0.0
 ) -> ThermalEstimate:
-    """ThermalParameter the temperature of friction.
+    """Estimate the temperature of friction.
 
     Parameters
     ----------
@@ -168,7 +172,8 @@ def estimate_temperature(
     -------
     ThermalEstimate
         The simplest rival that is as good as the best one: within 10 of its information criterion,
-        a mix within 4, a measured temperature also where it leaves hardly more.
+        a gear with all the friction within 20, a mix within 4, a measured temperature also where it
+        leaves hardly more.
     """
     residual = residual_of_base(problem, problem.friction_misfit - known, "friction", beside)
     point = max(problem.layout.point_deviation(residual), 1e-9)
@@ -190,7 +195,7 @@ def _is_as_good(one: FittedNetwork, best: FittedNetwork, alike: float) -> bool:
     worse = one.criterion - best.criterion
     if one.structure.name == "mix":
         return worse < _THAN_MIX
-    if worse < _CONVINCING:
+    if worse < (_THAN_WHOLE if one.structure.whole else _CONVINCING):
         return True
     more = np.sqrt(max(one.left**2 - best.left**2, 0.0))
     return one.structure.name in ("measured", "housing") and bool(more < alike)
