@@ -37,7 +37,7 @@ class Worlds:
         write_warm_up(self.logs / "day", levels=levels, seed=1)
         assert finished("run", self.logs, "-w", self.old).returncode == 0
         shutil.rmtree(self.logs)
-        write_warm_up(self.logs / "day", levels=levels, seed=2)
+        write_warm_up(self.logs / "day", levels=levels, seed=4)
         begin = time.monotonic()
         assert finished("run", self.logs, "-w", folder / "new").returncode == 0
         self.duration = time.monotonic() - begin
