@@ -5,6 +5,7 @@ per axis. Delimiters and decimal signs may differ from row to row.
 """
 
 import re
+from collections import Counter
 from collections.abc import Collection, Iterator
 from dataclasses import dataclass
 from datetime import UTC, datetime
@@ -39,19 +40,18 @@ def read_struct_cells(path: Path, head: bytes, hints: CsvHints) -> "StructCells 
     rows = (
         line for line in lines[header + 1 :] if _STRUCT.search(line) and _PLACEHOLDER not in line
     )
-    first = next(map(_cells, rows), None)
-    if first is None:
+    # a single row, the first one too, may be damaged: the commonest form is that of the log
+    forms = Counter(_members(_cells(row)) for row in rows)
+    if not forms:
         return None
+    members = forms.most_common(1)[0][0]
     names = [name.strip().strip('"') for name in _split(lines[header])]
-    if len(names) != len(first):
+    if len(names) != len(members):
         return Refusal(
             "wrong_field_count",
-            f"the header names {len(names)} columns but the rows have {len(first)} fields, each"
+            f"the header names {len(names)} columns but the rows have {len(members)} fields, each"
             " structure counted as one; expected as many",
         )
-    members = tuple(
-        tuple(member for member, _ in cell) if isinstance(cell, list) else None for cell in first
-    )
     return StructCells(path, encoding, header + 2, tuple(names), members)
 
 
@@ -162,6 +162,13 @@ def _cells(text: str) -> list[str | list[tuple[str, str]]]:
         next(next_structure) if _PLACEHOLDER in cell else cell.strip().strip('"').strip()
         for cell in _split(_STRUCT.sub(_PLACEHOLDER, text))
     ]
+
+
+def _members(cells: list[str | list[tuple[str, str]]]) -> tuple[tuple[str, ...] | None, ...]:
+    """Return the names of the members of each field's structure; None for a plain number."""
+    return tuple(
+        tuple(member for member, _ in cell) if isinstance(cell, list) else None for cell in cells
+    )
 
 
 def _number(cell: str) -> float:

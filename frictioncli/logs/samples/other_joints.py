@@ -75,6 +75,7 @@ def mean_speed(time: Array, position: Array) -> Array:
     >>> mean_speed(np.array([0.0, 0.5, 1.0, 1.5]), np.array([0.0, 0.1, 2.1, 2.1]))
     array([0., 0., 4., 0.])
     """
+    position = np.where(np.isfinite(position), position, np.nan)
     earlier = np.maximum(np.searchsorted(time, time - WINDOW, side="right") - 1, 0)
     turned = np.abs((position - position[earlier] + _TURN / 2) % _TURN - _TURN / 2)
     speed = np.nan_to_num(turned / np.maximum(time - time[earlier], WINDOW))
