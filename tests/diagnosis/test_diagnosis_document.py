@@ -82,7 +82,6 @@ def test_structure_is_stated_by_columns_and_stands_among_the_causes(found):
         channel="load",
         p_value=1e-9,
         statistic=90,
-        freedom=8,
         size=0.7,
         interval=(0.5, 0.9),
     )

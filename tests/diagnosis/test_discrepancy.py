@@ -7,7 +7,7 @@ import pytest
 
 from frictioncli.diagnosis.fit.columns import base_rows
 from frictioncli.diagnosis.fit.left_by_base import span_of
-from frictioncli.diagnosis.fit.variance_components import Products, evaluate, weights_of
+from frictioncli.diagnosis.fit.mixed_model import Products, evaluate, weights_of
 from frictioncli.diagnosis.noise.discrepancy import discrepancy_of
 from frictioncli.diagnosis.search.precomputed import Precomputed
 from frictioncli.diagnosis.search.step import Step

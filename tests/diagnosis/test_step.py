@@ -97,6 +97,29 @@ def test_structure_is_found_along_its_axes_with_its_size():
     assert found.interval[0] < rms < found.interval[1]
 
 
+@pytest.mark.parametrize(("drift", "found"), [(0.1, False), (3.0, True)])
+def test_drift_beyond_what_any_joint_has_is_structure_along_the_time(drift, found):
+    data = problem(5, drift=drift)
+    structure = structures(Step.of(Precomputed.of(data), []))[0]
+    named = structure.p_value < 1e-3 and structure.axes == ("time",)
+    assert named is found
+    if found:
+        assert structure.channel == "friction"
+        # of drift that is long compared with the run a part looks like a constant
+        assert 0.3 * drift < structure.size < 1.5 * drift
+        assert structure.interval[0] < structure.size < structure.interval[1]
+
+
+def test_a_peak_at_one_load_is_structure_along_the_load():
+    """A function of the load, which the angle gives, needs fewer columns than one of the angle."""
+    data = problem(4)
+    peak = 1.5 * np.exp(-np.square((data.table.load - 20.0) / 8.0))
+    data = replace(data, friction=data.friction + peak)
+    first = structures(Step.of(Precomputed.of(data), []))[0]
+    assert (first.axes, first.channel) == (("load",), "friction")
+    assert first.p_value < 1e-6
+
+
 def test_a_p_value_is_that_of_the_statistic_times_the_hypotheses():
     data = problem(2, friction=lambda rows: 0.1 * A(rows))
     _, many = run_tests(data, ["inertia", "load_linear", "drift"])

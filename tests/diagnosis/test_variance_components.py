@@ -14,13 +14,9 @@ from scipy.linalg import block_diag
 from scipy.optimize import minimize
 
 from frictioncli.diagnosis.fit.columns import ChannelColumns, ModelColumns
+from frictioncli.diagnosis.fit.mixed_model import Components, Variances, evaluate
 from frictioncli.diagnosis.fit.transformed_columns import NoiseModels, Part, TransformedColumns
-from frictioncli.diagnosis.fit.variance_components import (
-    Components,
-    Variances,
-    evaluate,
-    fit_variances,
-)
+from frictioncli.diagnosis.fit.variance_components import fit_variances
 from frictioncli.diagnosis.noise.spectra import STRENGTHS, spectra_of
 from tests.diagnosis.dense_noise import alike, covariance, layout, settings
 
@@ -64,11 +60,13 @@ class World:
             base=BASE,
             functions=self.functions,
             widths=np.array(WIDTHS, float),
-            prior=float(PRIOR),
-            spread=SPREAD,
+            prior=np.full(len(WIDTHS), PRIOR),
+            spread=np.full(len(WIDTHS), SPREAD),
+            least=np.full(len(WIDTHS), PRIOR),
             within=(DEVIATIONS, DEVIATIONS),
             pairs=COUNT,
             determinants=(self.noises.determinants(0), self.noises.determinants(1)),
+            drifts=(self.noises.drifts(0), self.noises.drifts(1)),
         )
         known = self._part(self.columns)
         data = self._part([(one[0][:, None], one[1][:, None]) for one in self.misfit])
@@ -246,3 +244,59 @@ def test_strengths_begin_with_no_drift():
     assert STRENGTHS[0] == 0.0
     world = World(0)
     assert sum(strength == 0 for _, strength in world.noises.indices) == 1
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_no_more_drift_is_chosen_than_is_allowed(seed):
+    """The mean square of a drift about its mean over a run, of draws from its dense covariance."""
+    world = World(seed, drift=3.0)
+    first = variances(world, np.random.default_rng(seed))
+    free = fit_variances(world.components, world.products, BASE + sum(WIDTHS), first)
+    number = free.variances.noise[0]
+    drift = world.components.drifts[0][number] * free.variances.between[0]
+    time, strength = world.noises.indices[number]
+    whole = alike(PAIRS, world.noises.spectra[0].spectra[time].time)
+    roots = np.linalg.cholesky(whole + 1e-9 * np.eye(COUNT))
+    draws = roots @ np.random.default_rng(9).normal(size=(COUNT, 4000))
+    within = []
+    for run in np.unique(PAIRS.run):
+        own = draws[run == PAIRS.run]
+        within.append(len(own) * np.mean(np.square(own - own.mean(axis=0))))
+    square = sum(within) / COUNT * STRENGTHS[strength] * free.variances.between[0]
+    assert drift == pytest.approx(square, rel=0.05)
+    capped = replace(world.components, most_drift=(drift / 4, np.inf))
+    # a start that has more of it is no way around
+    fit = fit_variances(capped, world.products, BASE + sum(WIDTHS), first, free.variances)
+    chosen = world.components.drifts[0][fit.variances.noise[0]] * fit.variances.between[0]
+    assert chosen < drift / 2
+    assert fit.objective > free.objective
+
+
+def test_of_several_starts_the_best_counts():
+    world = World(1, drift=3.0)
+    known = BASE + sum(WIDTHS)
+    starts = [variances(world, np.random.default_rng(seed)) for seed in range(4)]
+    alone = [
+        fit_variances(world.components, world.products, known, one).objective for one in starts
+    ]
+    together = fit_variances(world.components, world.products, known, *starts)
+    assert together.objective == min(alone)
+
+
+def test_a_random_function_that_explains_nothing_changes_nothing():
+    """Its amplitude goes towards 0, where the likelihood is that without it."""
+    world = World(2)
+    generator = np.random.default_rng(7)
+    own = [
+        (0.001 * generator.normal(size=(DEVIATIONS, 3)), 0.001 * generator.normal(size=(COUNT, 3)))
+        for _ in range(2)
+    ]
+    parts = world.transformed.parts
+    products = TransformedColumns((parts[0], world._part(own), parts[1])).products()
+    known = BASE + sum(WIDTHS)
+    start = variances(world, np.random.default_rng(2))
+    without = fit_variances(world.components, world.products, known, start)
+    beside = world.components.beside_function(slice(known, known + 3), PRIOR)
+    first = replace(without.variances, amplitude=np.append(without.variances.amplitude, PRIOR))
+    fit = fit_variances(beside, products, known + 3, first)
+    assert fit.objective == pytest.approx(without.objective, abs=0.05)

@@ -10,7 +10,7 @@ from scipy.optimize import brentq
 from frictioncli.arrays import Array
 from frictioncli.diagnosis.data.problem import Problem
 from frictioncli.diagnosis.fit.columns import ModelColumns, main_channel, reduced
-from frictioncli.diagnosis.fit.variance_components import Variances
+from frictioncli.diagnosis.fit.mixed_model import Variances
 from frictioncli.diagnosis.noise.significance import NullDistribution
 from frictioncli.effects.base import Effect
 from frictioncli.effects.history import distinct

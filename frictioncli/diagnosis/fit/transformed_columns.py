@@ -7,7 +7,7 @@ import numpy as np
 
 from frictioncli.arrays import Array
 from frictioncli.diagnosis.fit.columns import ModelColumns
-from frictioncli.diagnosis.fit.variance_components import Products
+from frictioncli.diagnosis.fit.mixed_model import Products
 from frictioncli.diagnosis.noise.spectra import STRENGTHS, NoiseIndex, Spectra
 
 
@@ -55,6 +55,11 @@ class NoiseModels:
         return np.array(
             [np.sum(np.log(self.variance(channel, i))) for i in range(len(self.indices))]
         )
+
+    def drifts(self, channel: int) -> Array:
+        """Return the variance of the drift within the runs at scale 1, shape (noise models,)."""
+        within = [spectrum.within for spectrum in self.spectra[channel].spectra]
+        return np.array([STRENGTHS[strength] * within[time] for time, strength in self.indices])
 
 
 @dataclass(frozen=True, slots=True)

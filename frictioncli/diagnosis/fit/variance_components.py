@@ -1,33 +1,22 @@
-r"""Mixed linear model of both channels, with its variance components by restricted likelihood.
+"""Variance components of a mixed model that are most probable, by iteration from several starts.
 
-The misfit *y* of the simulated torque is
-
-.. math:: y = X \beta + \sum_j \omega_j Z_j \gamma_j + \varepsilon
-
-with free coefficients :math:`\beta` of the base and of effects, random functions :math:`Z_j` of the
-discrepancy and noise :math:`\varepsilon` in four parts: deviations within pairs, with variance
-:math:`s_c`, and pair means, with covariance :math:`a_c V_c`, of each channel *c*. From inner
-products of all columns alone follow the coefficients, and the variance components that maximise the
-restricted likelihood times their prior [1]_, [2]_:
-
-.. math::
-    -2 \ell = \sum_c (n_c \ln s_c + m_c \ln a_c + \ln |V_c|) + y^\mathsf{T} P y
-    + \ln |H| + \sum_j r_j \ln \omega_j^2 + \sum_j (\ln \omega_j - \mu)^2 / \varsigma^2 .
-
-References
-----------
-.. [1] H. D. Patterson and R. Thompson, "Recovery of inter-block information when block sizes are
-   unequal," Biometrika 58(3), 1971, doi:10.1093/biomet/58.3.545.
-.. [2] D. A. Harville, "Maximum likelihood approaches to variance component estimation and to
-   related problems," J. Am. Stat. Assoc. 72(358), 1977, doi:10.1080/01621459.1977.10480998.
+The noise model of the pair means of each channel is chosen from a grid; variances and amplitudes
+follow from fixed-point and Newton steps on the restricted likelihood of
+:mod:`frictioncli.diagnosis.fit.mixed_model`.
 """
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
-from scipy.linalg import lapack
 
-from frictioncli.arrays import Array
+from frictioncli.diagnosis.fit.mixed_model import (
+    LEAST_VARIANCE,
+    Components,
+    MixedFit,
+    Products,
+    Variances,
+    evaluate,
+)
 
 _ROUNDS = 2
 """Rounds in which the noise models are chosen anew."""
@@ -38,191 +27,36 @@ _ITERATIONS = 8
 _CONVERGED = 0.02
 """Change of minus twice the log likelihood below which the iteration ends."""
 
-_RIDGE = 1e-10
-"""Added to the diagonal of columns of unit length: what no data determine stays finite."""
-
 _LONGEST_STEP = 1.5
 """Longest step of the logarithm of an amplitude in one iteration."""
 
-LEAST_VARIANCE = 1e-18
-"""Least variance, so that torques without noise can be weighted. [(N·m)²]"""
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Components:
-    """What the variance components of a model belong to.
-
-    Attributes
-    ----------
-    base : int
-        Number of columns of the base, which come first.
-    functions : tuple of slice
-        Columns of each random function.
-    widths : ndarray, shape (functions,)
-        Numbers of their columns.
-    prior : float
-        Logarithm of the amplitude that is expected of each.
-    spread : float
-        Standard deviation of that logarithm.
-    within : (int, int)
-        Degrees of freedom of the deviations within pairs of friction and load.
-    pairs : int
-        Number of pairs.
-    determinants : (ndarray, ndarray)
-        Logarithm of the determinant of V of each noise model, of friction and load.
-    """
-
-    base: int
-    functions: tuple[slice, ...]
-    widths: Array
-    prior: float
-    spread: float
-    within: tuple[int, int]
-    pairs: int
-    determinants: tuple[Array, Array]
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Products:
-    """Inner products of all columns of a model, the misfit last.
-
-    Attributes
-    ----------
-    within : (ndarray, ndarray), shape (columns, columns)
-        Of the deviations within pairs in friction and load.
-    between : (ndarray, ndarray), shape (noise models, columns, columns)
-        Of the pair means under each noise model.
-    """
-
-    within: tuple[Array, Array]
-    between: tuple[Array, Array]
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Variances:
-    """Variance components.
-
-    Attributes
-    ----------
-    noise : (int, int)
-        Number of the noise model of the pair means of friction and load.
-    within, between : (float, float)
-        Variance of the deviations, and the scale of the noise of the pair means. [(N·m)²]
-    amplitude : ndarray, shape (functions,)
-        Logarithm of the amplitude of each random function.
-    """
-
-    noise: tuple[int, int]
-    within: tuple[float, float]
-    between: tuple[float, float]
-    amplitude: Array
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class MixedFit:
-    """Coefficients and likelihood of a model under given variance components.
-
-    Attributes
-    ----------
-    variances : Variances
-        The variance components.
-    objective : float
-        Minus twice the logarithm of the restricted likelihood times the prior.
-    coefficients : ndarray, shape (columns,)
-        Of the columns in order; those of the random functions are predictions.
-    covariance : ndarray, shape (columns, columns)
-        Their covariance.
-    """
-
-    variances: Variances
-    objective: float
-    coefficients: Array
-    covariance: Array
-
-
-def weights_of(components: Components, variances: Variances, count: int) -> Array:
-    """Return the prior precision of each column, shape (count,); 0 where it is free."""
-    ridge = np.zeros(count)
-    for place, amplitude in zip(components.functions, variances.amplitude, strict=True):
-        ridge[place] = np.exp(-2 * amplitude)
-    return ridge
-
-
-def total(products: Products, variances: Variances) -> Array:
-    """Return inner products of both channels together, shape (columns, columns)."""
-    found = products.within[0] / variances.within[0] + products.within[1] / variances.within[1]
-    for part, number, scale in zip(
-        products.between, variances.noise, variances.between, strict=True
-    ):
-        found = found + part[number] / scale
-    return np.asarray(found)
-
-
-def evaluate(
-    components: Components, products: Products, known: int, variances: Variances
-) -> MixedFit:
-    """Return the fit of a model under given variance components.
-
-    Parameters
-    ----------
-    components : Components
-        What they belong to.
-    products : Products
-        Inner products of all columns.
-    known : int
-        Number of columns of the null hypothesis, which come first: its restricted likelihood is
-        that of the candidate's too.
-    variances : Variances
-        The variance components.
-    """
-    gram = total(products, variances)
-    count = len(gram) - 1
-    ridge = weights_of(components, variances, count)
-    penalised = gram[:count, :count] + np.diag(ridge)
-    size = np.sqrt(np.diagonal(penalised))
-    size = np.where(size > 0, size, 1.0)
-    scaled = penalised / np.outer(size, size)
-    scaled[np.diag_indices(count)] = 1.0 + _RIDGE
-    factor, fault = lapack.dpotrf(scaled, lower=True)
-    if fault:
-        scaled[np.diag_indices(count)] = 1.0 + 1e-6
-        factor, _ = lapack.dpotrf(scaled, lower=True)
-    inverse, _ = lapack.dpotri(factor, lower=True)
-    inverse = np.tril(inverse) + np.tril(inverse, -1).T
-    covariance = inverse / np.outer(size, size)
-    right = gram[:count, count]
-    coefficients = covariance @ right
-    square = max(float(gram[count, count] - coefficients @ right), 1e-300)
-    logarithms = np.log(np.diagonal(factor)) + np.log(size)
-    objective = square + 2 * float(np.sum(logarithms[:known]))
-    for channel in (0, 1):
-        objective += components.within[channel] * np.log(variances.within[channel])
-        objective += components.pairs * np.log(variances.between[channel])
-        objective += float(components.determinants[channel][variances.noise[channel]])
-    amplitude = variances.amplitude
-    objective += 2 * float(components.widths @ amplitude)
-    objective += float(np.sum(np.square((amplitude - components.prior) / components.spread)))
-    return MixedFit(
-        variances=variances,
-        objective=float(objective),
-        coefficients=coefficients,
-        covariance=covariance,
-    )
-
 
 def fit_variances(
-    components: Components, products: Products, known: int, start: Variances
+    components: Components, products: Products, known: int, *starts: Variances
 ) -> MixedFit:
     """Return the fit with the variance components that are most probable; see :func:`evaluate`.
+
+    What changes slowly may be drift, or a column that explains it: each is a maximum of its own,
+    and only a start near it reaches it.
 
     Parameters
     ----------
     components, products, known
         As of :func:`evaluate`.
-    start : Variances
+    *starts : Variances
         Where to start.
     """
+    fits = [_fitted_from(components, products, known, start) for start in starts]
+    return min(fits, key=lambda one: one.objective)
+
+
+def _fitted_from(
+    components: Components, products: Products, known: int, start: Variances
+) -> MixedFit:
+    """Return the most probable fit that is reached from one start."""
     best = evaluate(components, products, known, start)
+    if not _is_allowed(components, start):
+        best = replace(best, objective=np.inf)
     for _ in range(_ROUNDS):
         variances = _with_likeliest_noise(components, products, best)
         before = np.inf
@@ -238,6 +72,13 @@ def fit_variances(
             break
         start = best.variances
     return best
+
+
+def _is_allowed(components: Components, variances: Variances) -> bool:
+    """Return whether there is no more drift than is allowed."""
+    parts = zip(components.drifts, variances.noise, variances.between, strict=True)
+    drifts = [float(drift[number]) * scale for drift, number, scale in parts]
+    return all(one <= most for one, most in zip(drifts, components.most_drift, strict=True))
 
 
 def _updated(components: Components, products: Products, fit: MixedFit) -> Variances:
@@ -266,12 +107,12 @@ def _updated(components: Components, products: Products, fit: MixedFit) -> Varia
         precision = np.exp(-2 * amplitude[number])
         square = float(np.sum(np.square(fit.coefficients[place]))) * precision
         freedom = components.widths[number] - precision * float(np.trace(covariance[place, place]))
-        prior = (amplitude[number] - components.prior) / components.spread**2
+        spread = components.spread[number] ** 2
+        prior = (amplitude[number] - components.prior[number]) / spread
         slope = square - freedom - prior
-        curvature = 2 * max(square, 0.5 * freedom, 1e-3) + 1 / components.spread**2
+        curvature = 2 * max(square, 0.5 * freedom, 1e-3) + 1 / spread
         amplitude[number] += np.clip(slope / curvature, -_LONGEST_STEP, _LONGEST_STEP)
-    # a rival may not shrink the discrepancy below what is expected of any model
-    amplitude = np.maximum(amplitude, components.prior)
+    amplitude = np.maximum(amplitude, components.least)
     return replace(
         variances,
         within=(within[0], within[1]),
@@ -307,7 +148,8 @@ def _with_likeliest_noise(components: Components, products: Products, fit: Mixed
         determinant = np.sum(np.where(kept, np.log(np.where(kept, values, 1.0)), 0.0), axis=1)
         determinant = determinant + 2 * np.sum(np.log(finite), axis=1)
         cost = freedom * np.log(square) + components.determinants[channel] + determinant
-        best = int(np.argmin(cost))
+        drift = components.drifts[channel] * square / freedom
+        best = int(np.argmin(np.where(drift > components.most_drift[channel], np.inf, cost)))
         noise.append(best)
         scales.append(max(float(square[best]) / freedom, LEAST_VARIANCE))
     return replace(fit.variances, noise=(noise[0], noise[1]), between=(scales[0], scales[1]))

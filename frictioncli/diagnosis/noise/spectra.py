@@ -47,11 +47,14 @@ class Spectrum:
         Eigenvalues, run after run.
     vectors : tuple of ndarray
         Eigenvectors of each run, shape (pairs of the run, pairs of the run).
+    within : float
+        Mean square of the drift about its mean over a run, as a share of its variance.
     """
 
     time: float
     values: Array
     vectors: tuple[Array, ...]
+    within: float
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -151,7 +154,7 @@ def spectra_of(layout: PairLayout, point: float, extra: Array, residual: Array) 
 def _spectrum(
     time: Array, correlation_time: float, profile: Array, runs: tuple[slice, ...]
 ) -> Spectrum:
-    values, vectors = [], []
+    values, vectors, squares = [], [], 0.0
     for part in runs:
         lag = np.abs(time[part, np.newaxis] - time[np.newaxis, part])
         root = np.sqrt(profile[part])
@@ -162,7 +165,10 @@ def _spectrum(
         eigenvalues, eigenvectors = np.linalg.eigh(correlation / np.outer(root, root))
         values.append(np.maximum(eigenvalues, 0.0))
         vectors.append(eigenvectors)
-    return Spectrum(correlation_time, np.concatenate(values), tuple(vectors))
+        squares += len(root) * (1 - float(np.mean(correlation)))
+    return Spectrum(
+        correlation_time, np.concatenate(values), tuple(vectors), squares / len(profile)
+    )
 
 
 def _difference_variance(layout: PairLayout, residual: Array) -> float:

@@ -9,8 +9,8 @@ import numpy as np
 from frictioncli.arrays import Array
 from frictioncli.diagnosis.fit.columns import RANK, joined
 from frictioncli.diagnosis.fit.hypotheses import Hypothesis
+from frictioncli.diagnosis.fit.mixed_model import Variances
 from frictioncli.diagnosis.fit.transformed_columns import Part, TransformedColumns
-from frictioncli.diagnosis.fit.variance_components import Variances
 from frictioncli.diagnosis.noise.significance import effective_shapes
 from frictioncli.diagnosis.search.precomputed import Precomputed
 from frictioncli.linear_algebra import orthonormal_basis

@@ -1,42 +1,49 @@
-"""Lack-of-fit tests along every axis of the experiment, whatever the cause.
+r"""Lack of fit along every axis of the experiment, whatever the cause.
 
-General-purpose columns, harmonics of the angle, levels of speed and temperature, slow functions of
-time and products of these, are tested against base and accepted effects. They name no cause; they
-show that the model is wrong where no effect of the catalogue explains how.
+Along each axis, or two of them, the torque gets one more random function *f* beside base, accepted
+effects, noise and the discrepancy that any model has,
+
+.. math:: f = \omega \sum_k s_k \gamma_k c_k , \quad \gamma_k \sim N(0, 1) ,
+
+with columns :math:`c_k` of that axis: harmonics of the angle, levels of speed, cosines of
+temperature, load and time, and products. Twice the logarithm of the restricted likelihood that the
+best amplitude :math:`\omega` gains is half the time 0, else a chi-squared variable of one degree
+of freedom, where nothing is there [1]_. Along the time the drift itself is such a function: it is
+structure where there is more of it than any joint has. These functions name no cause; they show
+that the model is wrong where no effect of the catalogue explains how.
+
+References
+----------
+.. [1] S. G. Self and K.-Y. Liang, "Asymptotic properties of maximum likelihood estimators and
+   likelihood ratio tests under nonstandard conditions," J. Am. Stat. Assoc. 82(398), 1987,
+   doi:10.1080/01621459.1987.10478472.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
+from scipy import stats
 
-from frictioncli.arrays import Array, Indices
+from frictioncli.arrays import Array
 from frictioncli.diagnosis.data.problem import Problem
 from frictioncli.diagnosis.fit.columns import reduced
-from frictioncli.diagnosis.fit.hypotheses import Hypothesis
-from frictioncli.diagnosis.fit.left_by_base import left_by, span_of, visible_size
-from frictioncli.diagnosis.search.catalogue import Catalogue
+from frictioncli.diagnosis.fit.left_by_base import Z95, left_by, span_of
+from frictioncli.diagnosis.fit.mixed_model import Components, MixedFit, Variances
+from frictioncli.diagnosis.fit.transformed_columns import Part
+from frictioncli.diagnosis.fit.variance_components import fit_variances
+from frictioncli.diagnosis.search.axis_columns import axis_columns
 from frictioncli.diagnosis.search.step import Step
-from frictioncli.effects.base import Basis
+from frictioncli.effects.base import Basis, Channel
 from frictioncli.linear_algebra import orthonormal_basis
-
-_HARMONICS = 12
-"""Harmonics of the joint angle."""
-
-_WAVES = 6
-"""Cosines over the time of the experiment."""
-
-_LEVELS = 8
-"""Quantile bins of a continuous quantity."""
-
-_SLOW_HARMONICS = 4
-"""Harmonics of the angle in products with another quantity."""
 
 _MOST_OF_PAIRS = 0.5
 """Greatest number of columns that differ from pair to pair, as a share of the pairs."""
 
-_MOST_LEVELS = 16
-"""Speed levels with a column of their own."""
+_DRIFT = 0.015
+"""Greatest RMS of a drift that is no structure, relative to the mean friction."""
 
+_PINNED = 1e-3
+"""Spread of the amplitudes of the discrepancy: they stay as they are expected."""
 
 _SIGNIFICANT = 1e-3
 """Greatest p-value of structure that no effect explains."""
@@ -60,19 +67,16 @@ class Structure:
         Probability that noise explains as much, corrected for the number of axes (Bonferroni).
     statistic : float
         Twice the log likelihood ratio to base and accepted effects.
-    freedom : int
-        Number of coefficients that the data determine.
     size : float
-        RMS of what base and effects leave of the structure, less what noise contributes. [N·m]
+        RMS of what base and effects leave of it. [N·m]
     interval : (float, float)
         95 % interval of that. [N·m]
     """
 
     axes: tuple[str, ...]
-    channel: str
+    channel: Channel
     p_value: float
     statistic: float
-    freedom: int
     size: float
     interval: tuple[float, float]
 
@@ -104,7 +108,7 @@ def unnamed_structure(step: Step, margin: float, alpha: float) -> Structure | No
 
 
 def structures(step: Step) -> list[Structure]:
-    """Return the lack of fit along every axis, ordered by p-value.
+    """Return the lack of fit along every axis, most likely first.
 
     The discrepancy counts with the amplitude that is expected of it, so that what is larger than
     any model's small errors stands out.
@@ -114,36 +118,117 @@ def structures(step: Step) -> list[Structure]:
     step : Step
         Base and accepted effects.
     """
-    problem, precomputed = step.problem, step.precomputed
+    problem = step.problem
     axes = {
-        place: _orthogonal(columns)
-        for place, columns in _axes(problem).items()
+        place: columns
+        for place, columns in axis_columns(problem).items()
         if _can_be_judged(problem, columns)
     }
-    hypotheses = [_hypothesis(problem, *place, columns) for place, columns in axes.items()]
-    catalogue = Catalogue.of(precomputed, hypotheses)
-    tests = step.tested_against_expected(catalogue)
+    expected = _expected(step)
+    known = step.precomputed.start
+    starts = replace(step.fit.variances, amplitude=known.amplitude), known
+    null = fit_variances(expected, step.products, step.known, *starts)
     accepted = [problem.basis(one.effect, one.shape) for one in step.accepted]
-    span = span_of(problem, [*precomputed.measurement, *accepted])
+    span = span_of(problem, [*step.precomputed.measurement, *accepted])
     found = []
     for (names, channel), columns in axes.items():
-        one = tests[_name(names, channel)]
         zeros = np.zeros_like(columns)
         basis = Basis(columns, zeros) if channel == "friction" else Basis(zeros, columns)
         left = left_by(span, basis)
-        size, low, high = visible_size(left, one.coefficients, one.covariance)
-        found.append(
+        squares = float(np.sum(np.square(left)))
+        if squares <= 0:
+            continue
+        scale = float(np.sqrt(len(columns) / squares))
+        fit = _beside_function(step, expected, basis, scale, (null.variances, *starts))
+        place = slice(step.known, step.known + columns.shape[1])
+        size, interval = _realised(
+            scale * left, fit.coefficients[place], fit.covariance[place, place]
+        )
+        found.append((names, channel, null.objective - fit.objective, size, interval))
+    found += [_drift(step, expected, null, number) for number in range(2)]
+    return sorted(
+        (
             Structure(
                 axes=names,
                 channel=channel,
-                p_value=one.p_value,
-                statistic=one.statistic,
-                freedom=one.freedom,
+                p_value=min(1.0, len(found) * float(stats.chi2.sf(max(statistic, 0.0), 1)) / 2),
+                statistic=max(statistic, 0.0),
                 size=size,
-                interval=(low, high),
+                interval=interval,
             )
-        )
-    return sorted(found, key=lambda structure: structure.p_value)
+            for names, channel, statistic, size, interval in found
+        ),
+        key=lambda one: -one.statistic,
+    )
+
+
+_Found = tuple[tuple[str, ...], Channel, float, float, tuple[float, float]]
+
+
+def _expected(step: Step) -> Components:
+    """Return the variance components with the discrepancy and the drift that any joint has."""
+    components = step.components
+    most = _DRIFT * float(np.mean(np.abs(step.problem.friction)))
+    return replace(
+        components, spread=np.full_like(components.spread, _PINNED), most_drift=(most**2, most**2)
+    )
+
+
+def _beside_function(
+    step: Step,
+    expected: Components,
+    basis: Basis,
+    scale: float,
+    starts: tuple[Variances, ...],
+) -> MixedFit:
+    """Return the fit with one more random function, with the noise that suits it best."""
+    layout = step.problem.layout
+    columns = reduced(layout, scale * basis.friction, scale * basis.load)
+    own = Part(columns, step.precomputed.noises)
+    products = step.columns.bordered(step.products, [own])
+    place = slice(step.known, step.known + columns.count)
+    amplitude = float(expected.prior[0]) if len(expected.prior) else _unit_amplitude(step)
+    components = expected.beside_function(place, amplitude)
+    starts = tuple(replace(one, amplitude=np.append(one.amplitude, amplitude)) for one in starts)
+    return fit_variances(components, products, place.stop, *starts)
+
+
+def _unit_amplitude(step: Step) -> float:
+    """Return the logarithm of the noise of a pair, where no discrepancy is expected."""
+    return float(np.log(step.precomputed.start.between[0]) / 2)
+
+
+def _realised(columns: Array, mean: Array, covariance: Array) -> tuple[float, tuple[float, float]]:
+    """Return the RMS of a function whose coefficients have a normal distribution, with interval.
+
+    From mean and variance of its mean square.
+    """
+    inner = columns.T @ columns / (len(columns) / 2)
+    product = inner @ covariance
+    square = float(mean @ inner @ mean) + float(np.trace(product))
+    variance = 2 * float(np.trace(product @ product)) + 4 * float(mean @ product @ inner @ mean)
+    reach = Z95 * np.sqrt(max(variance, 0.0))
+    low, high = max(square - reach, 0.0), square + reach
+    return float(np.sqrt(square)), (float(np.sqrt(low)), float(np.sqrt(high)))
+
+
+def _drift(step: Step, expected: Components, null: MixedFit, number: int) -> _Found:
+    """Return what the drift in one channel explains beyond what any joint has."""
+    most = np.where(np.arange(2) == number, np.inf, expected.most_drift)
+    freer = replace(expected, most_drift=(float(most[0]), float(most[1])))
+    fit = fit_variances(freer, step.products, step.known, null.variances, step.fit.variances)
+    variances = fit.variances
+    model = variances.noise[number]
+    square = variances.between[number] * float(expected.drifts[number][model])
+    spectra = step.precomputed.noises.spectra[number]
+    time = spectra.spectra[step.precomputed.noises.indices[model][0]].time
+    duration = sum(float(np.ptp(step.problem.layout.time[part])) for part in spectra.runs)
+    # the mean square of such a drift is known as that of so many independent values
+    freedom = max(duration / time, 1.0)
+    low, high = (freedom * square / stats.chi2.isf(share, freedom) for share in (0.025, 0.975))
+    channel: Channel = "load" if number else "friction"
+    interval = float(np.sqrt(low)), float(np.sqrt(high))
+    return ("time",), channel, null.objective - fit.objective, float(np.sqrt(square)), interval
 
 
 def _can_be_judged(problem: Problem, columns: Array) -> bool:
@@ -151,98 +236,3 @@ def _can_be_judged(problem: Problem, columns: Array) -> bool:
     means = problem.layout.means(columns)
     rank = orthonormal_basis(means, tolerance=1e-7).shape[1]
     return rank <= _MOST_OF_PAIRS * len(means)
-
-
-def _name(axes: tuple[str, ...], channel: str) -> str:
-    return f"{' and '.join(axes)}, {channel}"
-
-
-def _orthogonal(columns: Array) -> Array:
-    """Return orthogonal columns of RMS 1 and the same span; harmonics overlap on part of a turn."""
-    return orthonormal_basis(columns, tolerance=1e-7) * np.sqrt(len(columns))
-
-
-def _hypothesis(
-    problem: Problem, axes: tuple[str, ...], channel: str, columns: Array
-) -> Hypothesis:
-    """Return the hypothesis of free coefficients of columns in one channel."""
-    zeros = np.zeros_like(columns)
-    friction, load = (columns, zeros) if channel == "friction" else (zeros, columns)
-    return Hypothesis(
-        name=_name(axes, channel),
-        shapes=({},),
-        width=columns.shape[1],
-        columns=reduced(problem.layout, friction, load),
-        rms=np.sqrt(np.mean(np.square(columns), axis=0))[np.newaxis],
-        lower=np.full(columns.shape[1], -np.inf),
-        upper=np.full(columns.shape[1], np.inf),
-    )
-
-
-def _axes(problem: Problem) -> dict[tuple[tuple[str, ...], str], Array]:
-    """Return columns by axis and channel, shape (rows, columns) each."""
-    table = problem.table
-    angle = np.radians(table.position)
-    harmonics = np.column_stack(
-        [wave(n * angle) for n in range(1, _HARMONICS + 1) for wave in (np.sin, np.cos)]
-    )
-    speed = _indicators(problem.layout.level)[problem.layout.row_pair]
-    temperature = _levels(table.temperature)
-    unit = (table.clock - table.clock.min()) / max(float(np.ptp(table.clock)), 1e-9)
-    time = np.column_stack([np.cos(np.pi * n * unit) for n in range(1, _WAVES + 1)])
-    rising = _rising(problem)[:, np.newaxis]
-    squared = np.square(table.load)[:, np.newaxis] / max(float(np.max(np.square(table.load))), 1e-9)
-    waves = harmonics[:, : 2 * _SLOW_HARMONICS]
-    relative_temperature = ((table.temperature - table.temperature.mean()) / 10.0)[:, np.newaxis]
-    relative_speed = (table.speed / table.speed.mean())[:, np.newaxis]
-    return {
-        (("speed",), "friction"): speed,
-        (("temperature",), "friction"): np.hstack(
-            [temperature * rising, temperature * (1 - rising)]
-        ),
-        (("position",), "friction"): harmonics,
-        (("position",), "load"): harmonics,
-        (("time",), "friction"): time,
-        (("time",), "load"): np.hstack([time, time * np.cos(angle)[:, np.newaxis]]),
-        (("load", "speed"), "friction"): squared * speed,
-        (("load", "temperature"), "friction"): squared * temperature,
-        (("speed", "temperature"), "friction"): _products(_levels(table.speed), temperature),
-        (("position", "temperature"), "friction"): waves * relative_temperature,
-        (("position", "speed"), "friction"): waves * relative_speed,
-        (("position", "time"), "friction"): _products(waves, time[:, :2]),
-        (("position", "speed"), "load"): waves * relative_speed,
-        (("speed",), "load"): speed,
-        (("temperature",), "load"): np.hstack(
-            [temperature, temperature * np.cos(angle)[:, np.newaxis]]
-        ),
-    }
-
-
-def _levels(values: Array) -> Array:
-    """Return an indicator column per level of a quantity, at most eight, equally filled."""
-    edges = np.unique(np.quantile(values, np.linspace(0, 1, _LEVELS + 1)[1:-1]))
-    return np.eye(len(edges) + 1)[np.searchsorted(edges, values, side="left")]
-
-
-def _indicators(level: Indices) -> Array:
-    """Return an indicator column per level, the rarest ones together beyond sixteen."""
-    names, place, count = np.unique(level, return_inverse=True, return_counts=True)
-    common = np.argsort(-count)[:_MOST_LEVELS]
-    column = np.full(len(names), len(common))
-    column[common] = np.arange(len(common))
-    return np.eye(len(common) + 1)[column[place]]
-
-
-def _products(first: Array, second: Array) -> Array:
-    """Return the product of each column of one array with each of another, shape (rows, -1)."""
-    return np.einsum("ij,ik->ijk", first, second).reshape(len(first), -1)
-
-
-def _rising(problem: Problem) -> Array:
-    """Return 1 where the temperature rises over nine neighbouring pairs, else 0, shape (rows,)."""
-    layout = problem.layout
-    temperature = layout.means(problem.table.temperature[:, np.newaxis])[:, 0]
-    trend = np.gradient(
-        np.convolve(np.pad(temperature, 4, mode="edge"), np.full(9, 1 / 9), "valid")
-    )
-    return (trend > 0).astype(float)[layout.row_pair]

@@ -17,13 +17,8 @@ from frictioncli.diagnosis.fit.columns import (
     residual_of_base,
 )
 from frictioncli.diagnosis.fit.left_by_base import span_of
+from frictioncli.diagnosis.fit.mixed_model import LEAST_VARIANCE, Components, Products, Variances
 from frictioncli.diagnosis.fit.transformed_columns import NoiseModels, Part, TransformedColumns
-from frictioncli.diagnosis.fit.variance_components import (
-    LEAST_VARIANCE,
-    Components,
-    Products,
-    Variances,
-)
 from frictioncli.diagnosis.noise.discrepancy import SHARE, SPREAD, Discrepancy, discrepancy_of
 from frictioncli.diagnosis.noise.spectra import STRENGTHS, spectra_of
 from frictioncli.effects.base import Basis, Effect
@@ -96,7 +91,7 @@ class Precomputed:
         noises = _noise_models(problem, base, misfit, point)
         span = span_of(problem, bases)
         smooth = discrepancy_of(problem, span_of(problem), discrepancy)
-        prior = float(np.log(max(smooth.amplitude, _LEAST_NOISE)))
+        expected = np.full(len(smooth.components), np.log(max(smooth.amplitude, _LEAST_NOISE)))
         columns = TransformedColumns(
             (Part(joined([base, smooth.columns]), noises), Part(misfit, noises))
         )
@@ -118,7 +113,7 @@ class Precomputed:
                 noise=(0, 0),
                 within=(point[0] ** 2, point[1] ** 2),
                 between=(quiet[0], quiet[1]),
-                amplitude=np.full(len(smooth.components), prior),
+                amplitude=expected,
             ),
             components=Components(
                 base=base.count,
@@ -127,11 +122,13 @@ class Precomputed:
                     for one in smooth.components
                 ),
                 widths=smooth.widths,
-                prior=prior,
-                spread=SPREAD,
+                prior=expected,
+                spread=np.full(len(expected), SPREAD),
+                least=expected,
                 within=(layout.within_freedom,) * 2,
                 pairs=len(layout.time),
                 determinants=(noises.determinants(0), noises.determinants(1)),
+                drifts=(noises.drifts(0), noises.drifts(1)),
             ),
         )
 

@@ -7,8 +7,8 @@ import numpy as np
 from frictioncli.arrays import Array, Flags
 from frictioncli.diagnosis.fit.bounded import bounded_coefficients, pseudo_inverse
 from frictioncli.diagnosis.fit.hypotheses import HypothesisTest
+from frictioncli.diagnosis.fit.mixed_model import MixedFit, Variances
 from frictioncli.diagnosis.fit.transformed_columns import TransformedColumns
-from frictioncli.diagnosis.fit.variance_components import MixedFit, Variances
 from frictioncli.diagnosis.noise.significance import NullDistribution, log_bayes_factor
 from frictioncli.diagnosis.search.catalogue import Catalogue
 

@@ -1,7 +1,7 @@
 """One step of the search: every hypothesis tested against base and accepted effects."""
 
 from collections.abc import Collection, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 from scipy.optimize import minimize
@@ -14,15 +14,15 @@ from frictioncli.diagnosis.fit.hypotheses import (
     HypothesisTest,
     hypothesis_of,
 )
-from frictioncli.diagnosis.fit.transformed_columns import Part, TransformedColumns
-from frictioncli.diagnosis.fit.variance_components import (
+from frictioncli.diagnosis.fit.mixed_model import (
     Components,
     MixedFit,
     Products,
     Variances,
     evaluate,
-    fit_variances,
 )
+from frictioncli.diagnosis.fit.transformed_columns import Part, TransformedColumns
+from frictioncli.diagnosis.fit.variance_components import fit_variances
 from frictioncli.diagnosis.fit.weighted_fit import WeightedFit, Weights
 from frictioncli.diagnosis.noise.spectra import STRENGTHS
 from frictioncli.diagnosis.search.catalogue import Catalogue
@@ -34,11 +34,8 @@ from frictioncli.effects.history_search import refined_history
 from frictioncli.effects.pair_series import measured_share
 from frictioncli.model.noise import Noise
 
-REFITTED = 6
+REFITTED = 8
 """Number of hypotheses for which the variance components are estimated anew."""
-
-_PINNED = 1e-3
-"""Spread of the amplitudes where they stay as they are expected."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -150,30 +147,6 @@ class Step:
                 best_fit, offset, variances = found[number], 0.0, self.fit.variances
             tests[hypothesis.name] = test_of(catalogue, number, best_fit, offset, variances)
         return tests
-
-    def tested_against_expected(self, catalogue: Catalogue) -> dict[str, HypothesisTest]:
-        """Return the test of every hypothesis with the discrepancy that is expected beforehand.
-
-        The noise is estimated with each hypothesis in place, so that a drift does not stand for it.
-
-        Parameters
-        ----------
-        catalogue : Catalogue
-            Hypotheses.
-        """
-        expected = replace(self.components, spread=_PINNED)
-        start = replace(self.fit.variances, amplitude=self.precomputed.start.amplitude)
-        null = fit_variances(expected, self.products, self.known, start)
-        found = {}
-        for number, one in enumerate(catalogue.hypotheses):
-            own = Part(catalogue.part.columns.take(catalogue.places[number]), catalogue.part.noises)
-            products = self.columns.bordered(self.products, [own])
-            variances = fit_variances(expected, products, self.known, null.variances).variances
-            beside = evaluate(expected, self.products, self.known, variances)
-            offset = min(null.objective - beside.objective, 0.0)
-            tested = screened(catalogue, number, self.columns, beside)
-            found[one.name] = test_of(catalogue, number, tested, offset, variances)
-        return found
 
     def noise(self) -> tuple[Noise, Noise]:
         """Return the noise of friction and load that suits base and accepted effects best."""
@@ -304,7 +277,8 @@ class Step:
             catalogue.part.columns.take(slice(first, first + width)), self.precomputed.noises
         )
         products = self.columns.bordered(self.products, [own])
-        return fit_variances(self.components, products, self.known, self.fit.variances)
+        starts = self.fit.variances, self.precomputed.start
+        return fit_variances(self.components, products, self.known, *starts)
 
 
 def free_coefficients(fit: EffectFit) -> Indices:

@@ -1,0 +1,230 @@
+r"""Mixed linear model of both channels, with its variance components by restricted likelihood.
+
+The misfit *y* of the simulated torque is
+
+.. math:: y = X \beta + \sum_j \omega_j Z_j \gamma_j + \varepsilon
+
+with free coefficients :math:`\beta` of the base and of effects, random functions :math:`Z_j` of the
+discrepancy and noise :math:`\varepsilon` in four parts: deviations within pairs, with variance
+:math:`s_c`, and pair means, with covariance :math:`a_c V_c`, of each channel *c*. From inner
+products of all columns alone follow the coefficients, and the variance components that maximise the
+restricted likelihood times their prior [1]_, [2]_:
+
+.. math::
+    -2 \ell = \sum_c (n_c \ln s_c + m_c \ln a_c + \ln |V_c|) + y^\mathsf{T} P y
+    + \ln |H| + \sum_j r_j \ln \omega_j^2 + \sum_j (\ln \omega_j - \mu)^2 / \varsigma^2 .
+
+References
+----------
+.. [1] H. D. Patterson and R. Thompson, "Recovery of inter-block information when block sizes are
+   unequal," Biometrika 58(3), 1971, doi:10.1093/biomet/58.3.545.
+.. [2] D. A. Harville, "Maximum likelihood approaches to variance component estimation and to
+   related problems," J. Am. Stat. Assoc. 72(358), 1977, doi:10.1080/01621459.1977.10480998.
+"""
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+from scipy.linalg import lapack
+
+from frictioncli.arrays import Array
+
+_RIDGE = 1e-10
+"""Added to the diagonal of columns of unit length: what no data determine stays finite."""
+
+_VANISHING = 6.0
+"""Difference of the logarithms of amplitudes beyond which a function is as good as none."""
+
+LEAST_VARIANCE = 1e-18
+"""Least variance, so that torques without noise can be weighted. [(N·m)²]"""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Components:
+    """What the variance components of a model belong to.
+
+    Attributes
+    ----------
+    base : int
+        Number of columns of the base, which come first.
+    functions : tuple of slice
+        Columns of each random function.
+    widths : ndarray, shape (functions,)
+        Numbers of their columns.
+    prior : ndarray, shape (functions,)
+        Logarithm of the amplitude that is expected of each.
+    spread : ndarray, shape (functions,)
+        Standard deviation of that logarithm.
+    least : ndarray, shape (functions,)
+        Least logarithm of the amplitude: a rival may not shrink the discrepancy below what is
+        expected of any model.
+    within : (int, int)
+        Degrees of freedom of the deviations within pairs of friction and load.
+    pairs : int
+        Number of pairs.
+    determinants : (ndarray, ndarray)
+        Logarithm of the determinant of V of each noise model, of friction and load.
+    drifts : (ndarray, ndarray)
+        Variance of the drift within the runs of each noise model at scale 1.
+    most_drift : (float, float)
+        Greatest variance of it that is allowed, of friction and load. [(N·m)²]
+    """
+
+    base: int
+    functions: tuple[slice, ...]
+    widths: Array
+    prior: Array
+    spread: Array
+    least: Array
+    within: tuple[int, int]
+    pairs: int
+    determinants: tuple[Array, Array]
+    drifts: tuple[Array, Array]
+    most_drift: tuple[float, float] = (np.inf, np.inf)
+
+    def beside_function(self, place: slice, amplitude: float) -> "Components":
+        """Return the components with one more random function, of any amplitude.
+
+        Parameters
+        ----------
+        place : slice
+            Its columns.
+        amplitude : float
+            Logarithm of an amplitude as great as those of the others.
+        """
+        return replace(
+            self,
+            functions=(*self.functions, place),
+            widths=np.append(self.widths, place.stop - place.start),
+            prior=np.append(self.prior, amplitude),
+            spread=np.append(self.spread, np.inf),
+            least=np.append(self.least, amplitude - _VANISHING),
+        )
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Products:
+    """Inner products of all columns of a model, the misfit last.
+
+    Attributes
+    ----------
+    within : (ndarray, ndarray), shape (columns, columns)
+        Of the deviations within pairs in friction and load.
+    between : (ndarray, ndarray), shape (noise models, columns, columns)
+        Of the pair means under each noise model.
+    """
+
+    within: tuple[Array, Array]
+    between: tuple[Array, Array]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Variances:
+    """Variance components.
+
+    Attributes
+    ----------
+    noise : (int, int)
+        Number of the noise model of the pair means of friction and load.
+    within, between : (float, float)
+        Variance of the deviations, and the scale of the noise of the pair means. [(N·m)²]
+    amplitude : ndarray, shape (functions,)
+        Logarithm of the amplitude of each random function.
+    """
+
+    noise: tuple[int, int]
+    within: tuple[float, float]
+    between: tuple[float, float]
+    amplitude: Array
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class MixedFit:
+    """Coefficients and likelihood of a model under given variance components.
+
+    Attributes
+    ----------
+    variances : Variances
+        The variance components.
+    objective : float
+        Minus twice the logarithm of the restricted likelihood times the prior.
+    coefficients : ndarray, shape (columns,)
+        Of the columns in order; those of the random functions are predictions.
+    covariance : ndarray, shape (columns, columns)
+        Their covariance.
+    """
+
+    variances: Variances
+    objective: float
+    coefficients: Array
+    covariance: Array
+
+
+def weights_of(components: Components, variances: Variances, count: int) -> Array:
+    """Return the prior precision of each column, shape (count,); 0 where it is free."""
+    ridge = np.zeros(count)
+    for place, amplitude in zip(components.functions, variances.amplitude, strict=True):
+        ridge[place] = np.exp(-2 * amplitude)
+    return ridge
+
+
+def total(products: Products, variances: Variances) -> Array:
+    """Return inner products of both channels together, shape (columns, columns)."""
+    found = products.within[0] / variances.within[0] + products.within[1] / variances.within[1]
+    for part, number, scale in zip(
+        products.between, variances.noise, variances.between, strict=True
+    ):
+        found = found + part[number] / scale
+    return np.asarray(found)
+
+
+def evaluate(
+    components: Components, products: Products, known: int, variances: Variances
+) -> MixedFit:
+    """Return the fit of a model under given variance components.
+
+    Parameters
+    ----------
+    components : Components
+        What they belong to.
+    products : Products
+        Inner products of all columns.
+    known : int
+        Number of columns of the null hypothesis, which come first: its restricted likelihood is
+        that of the candidate's too.
+    variances : Variances
+        The variance components.
+    """
+    gram = total(products, variances)
+    count = len(gram) - 1
+    ridge = weights_of(components, variances, count)
+    penalised = gram[:count, :count] + np.diag(ridge)
+    size = np.sqrt(np.diagonal(penalised))
+    size = np.where(size > 0, size, 1.0)
+    scaled = penalised / np.outer(size, size)
+    scaled[np.diag_indices(count)] = 1.0 + _RIDGE
+    factor, fault = lapack.dpotrf(scaled, lower=True)
+    if fault:
+        scaled[np.diag_indices(count)] = 1.0 + 1e-6
+        factor, _ = lapack.dpotrf(scaled, lower=True)
+    inverse, _ = lapack.dpotri(factor, lower=True)
+    inverse = np.tril(inverse) + np.tril(inverse, -1).T
+    covariance = inverse / np.outer(size, size)
+    right = gram[:count, count]
+    coefficients = covariance @ right
+    square = max(float(gram[count, count] - coefficients @ right), 1e-300)
+    logarithms = np.log(np.diagonal(factor)) + np.log(size)
+    objective = square + 2 * float(np.sum(logarithms[:known]))
+    for channel in (0, 1):
+        objective += components.within[channel] * np.log(variances.within[channel])
+        objective += components.pairs * np.log(variances.between[channel])
+        objective += float(components.determinants[channel][variances.noise[channel]])
+    amplitude = variances.amplitude
+    objective += 2 * float(components.widths @ amplitude)
+    objective += float(np.sum(np.square((amplitude - components.prior) / components.spread)))
+    return MixedFit(
+        variances=variances,
+        objective=float(objective),
+        coefficients=coefficients,
+        covariance=covariance,
+    )
