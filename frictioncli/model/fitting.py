@@ -111,12 +111,14 @@ def _estimates(
             )
             continue
         low, high = estimate.interval(name)
+        has_interval = bool(np.isfinite(low) and np.isfinite(high))
+        without = None if has_interval else "the data give it no interval"
         found[name] = ParameterEstimate(
             estimate=getattr(estimate.parameters, name),
-            ci95=(max(low, 0.0), high),
+            ci95=(max(low, 0.0), high) if has_interval else None,
             unit=units[name],
-            determined=name not in bounds,
-            reason=bounds.get(name, determination.merged.get(name)),
+            determined=has_interval and name not in bounds,
+            reason=bounds.get(name) or without or determination.merged.get(name),
         )
     return found
 
@@ -136,8 +138,10 @@ def _units(facts: dict[str, Any]) -> dict[str, str]:
 
 
 def _correlations(estimate: Estimate) -> dict[str, dict[str, float]]:
-    deviation = np.sqrt(np.maximum(np.diag(estimate.covariance), 1e-300))
-    correlation = estimate.covariance / np.outer(deviation, deviation)
+    # what no data tell is correlated with nothing
+    covariance = np.where(np.isfinite(estimate.covariance), estimate.covariance, 0.0)
+    deviation = np.sqrt(np.maximum(np.diag(covariance), 1e-300))
+    correlation = covariance / np.outer(deviation, deviation)
     return {
         name: {other: round(float(correlation[i, j]), 4) for j, other in enumerate(estimate.names)}
         for i, name in enumerate(estimate.names)

@@ -96,9 +96,14 @@ def at_bound(estimate: Estimate) -> dict[str, str]:
         if name != "delta" and getattr(estimate.parameters, name) <= 0
     }
     if "delta" in estimate.names:
+        if "gamma" in flags:
+            flags["delta"] = "without meaning, as gamma is 0"
+            return flags
         for bound in DELTA_BOUNDS:
             if abs(estimate.parameters.delta / bound - 1) < 1e-3:
                 flags["delta"] = f"at the bound {bound:g} of its search range"
+        if "delta" not in flags and estimate.interval("delta")[0] <= 0:
+            flags["delta"] = "the data do not show that friction falls with temperature"
     return flags
 
 
@@ -140,6 +145,15 @@ def _by_interval(
 ) -> Determination:
     """Return a determination with a term less if the data do not determine it, else the same."""
     friction = float(np.mean(np.abs(observed.friction)))
+    if "gamma" in chosen.terms and estimate.parameters.gamma <= 0:
+        # with gamma 0 the derivative by delta is 0 too, and nothing tells delta
+        return chosen.without(
+            "gamma",
+            "at its lower bound 0: friction does not fall with temperature in these data; left"
+            " out (0)",
+            None,
+            "",
+        )
     half_width = {
         name: (high - low) / 2 for name in estimate.names for low, high in [estimate.interval(name)]
     }

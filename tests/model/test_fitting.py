@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from frictioncli import documents
 from frictioncli.errors import NotEnoughData, OptionError
 from frictioncli.model.fitting import fit_joint
 from frictioncli.model.settings import FitSettings
@@ -133,3 +134,17 @@ def test_currents_carry_their_unit():
 def test_unknown_methods_are_refused():
     with pytest.raises(OptionError, match="joint, paper"):
         FitSettings(method="magic")
+
+
+@pytest.mark.parametrize("method", ["joint", pytest.param("paper", marks=pytest.mark.slow)])
+@pytest.mark.parametrize("seed", range(3))
+def test_friction_that_rises_with_temperature_leaves_no_nan_in_the_document(method, seed):
+    """Gamma then lies on its bound 0, where delta has no meaning and no interval."""
+    model = fitted(torques(seed, truth=TRUTH | {"gamma": -3.0, "beta": 12.0}), method=method)
+    assert "NaN" not in documents.to_json(model)
+    for name in ("gamma", "delta"):
+        entry = model.parameters[name]
+        assert not entry.determined
+        assert entry.reason
+    # 12 - 3 exp(-0.056 T): 11.3 at 30 °C, 11.9 at 60 °C
+    assert 11.0 < model.friction.beta < 12.5
