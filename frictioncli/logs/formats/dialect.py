@@ -15,6 +15,8 @@ _COMMA = re.compile(r"\s*[+-]?(\d+,?\d*|,\d+)([eE][+-]?\d+)?\s*")
 _DATE = re.compile(r"\s*\d{4}-\d\d-\d\d([T ]\d\d:\d\d.*)?\s*")
 _UNIT_CELL = re.compile(r"\s*[\[(]?[^\s\d\[\]()]{0,6}(/s\^?[2²]?)?[\])]?\s*")
 _SAMPLE_LINES = 60
+_LEAST_NUMBERS = 0.3
+"""Least share of cells that are numbers in the lines of a table."""
 NOT_NUMBERS = ("nan", "NaN", "NAN", "-nan", "NA", "N/A", "n/a", "null", "NULL", "None", "none", "-")
 
 
@@ -107,11 +109,13 @@ def detect(lines: Sequence[str], hints: CsvHints) -> Dialect | Refusal:
     filled = [line for line in lines if line.strip()]
     if len(filled) < 2:
         return _refuse_too_short(filled)
-    sample = filled[1:][-_SAMPLE_LINES:]
-    allowed = _DELIMITERS if hints.delimiter is None else (hints.delimiter,)
-    candidates = [_candidate(sample, delimiter, hints.decimal) for delimiter in allowed]
-    best = max(candidates, key=lambda candidate: (round(candidate.share, 2), candidate.width))
-    if best.share < 0.3:
+    best = _best_candidate(filled[1:][-_SAMPLE_LINES:], hints)
+    if best.share < _LEAST_NUMBERS:
+        # the last lines may be text behind good rows: look at all lines, part by part
+        parts = range(1, len(filled), _SAMPLE_LINES)
+        found = [_best_candidate(filled[part : part + _SAMPLE_LINES], hints) for part in parts]
+        best = max(found, key=lambda candidate: candidate.share)
+    if best.share < _LEAST_NUMBERS:
         return _refuse_no_table(filled, hints)
     start, first = _first_row(lines, best)
     header = _header(lines[:start], best)
@@ -126,6 +130,12 @@ def detect(lines: Sequence[str], hints: CsvHints) -> Dialect | Refusal:
         columns = tuple(f"column {i + 1}" for i in range(best.width))
     dates = frozenset(i for i, cell in enumerate(first) if _DATE.fullmatch(cell))
     return Dialect(best.delimiter, best.decimal, columns, data_line, dates)
+
+
+def _best_candidate(sample: Sequence[str], hints: CsvHints) -> _Candidate:
+    allowed = _DELIMITERS if hints.delimiter is None else (hints.delimiter,)
+    candidates = [_candidate(sample, delimiter, hints.decimal) for delimiter in allowed]
+    return max(candidates, key=lambda candidate: (round(candidate.share, 2), candidate.width))
 
 
 def _candidate(sample: Sequence[str], delimiter: str, decimal: str | None) -> _Candidate:
@@ -152,7 +162,7 @@ def _first_row(lines: Sequence[str], form: _Candidate) -> tuple[int, list[str]]:
         fields = split(line, form.delimiter) if line.strip() else []
         filled = [cell for cell in fields if cell.strip()]
         hits = sum(bool(pattern.fullmatch(cell) or _DATE.fullmatch(cell)) for cell in filled)
-        if len(fields) == form.width and hits and hits >= 0.3 * len(filled):
+        if len(fields) == form.width and hits and hits >= _LEAST_NUMBERS * len(filled):
             return index, fields
     return len(lines), []
 
