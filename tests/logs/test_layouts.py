@@ -151,7 +151,7 @@ def test_a_long_rest_before_the_motion(tmp_path):
     time = np.arange(30_000 + len(TIME)) * 0.012
     columns = {
         "t [s]": time,
-        "q_2 [deg]": np.concatenate((rest + np.radians(POSITION[0]), np.radians(POSITION))),
+        "q_2": np.concatenate((rest + np.radians(POSITION[0]), np.radians(POSITION))),
         "torque_2 [Nm]": np.concatenate((rest, TORQUE)),
     }
     summary = ingest([write(tmp_path / "log.csv", columns, digits=12)], tmp_path / "work")

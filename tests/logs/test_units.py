@@ -5,7 +5,7 @@ import pytest
 
 from frictioncli import schemas, tables
 from frictioncli.errors import LogError, OptionError
-from frictioncli.logs.channels import unit_evidence, units
+from frictioncli.logs.channels import position_units, unit_evidence, units
 from frictioncli.logs.ingest import IngestSettings, ingest
 
 from .logs import back_and_forth, kuka_columns, write
@@ -71,12 +71,12 @@ def test_rest_and_noise_have_no_motion_ratio():
 def test_lever_arm_of_half_a_metre():
     angle = np.linspace(-1, 1, 400)  # [rad]
     tool = 500 * np.stack([np.cos(angle), np.sin(angle), 0 * angle], axis=1)
-    assert unit_evidence.tool_path_per_angle(tool, angle[:, None]) == pytest.approx(500, rel=1e-4)
-    in_rad = unit_evidence.possible_position_units(
+    assert position_units.tool_path_per_angle(tool, angle[:, None]) == pytest.approx(500, rel=1e-4)
+    in_rad = position_units.possible_position_units(
         largest=1, span=2, on_motor=False, path_per_angle=500
     )
     assert in_rad[0] == {"rad"}
-    in_degrees = unit_evidence.possible_position_units(
+    in_degrees = position_units.possible_position_units(
         largest=5, span=4, on_motor=False, path_per_angle=500 * np.pi / 180
     )
     assert in_degrees[0] == {"deg"}
@@ -93,24 +93,60 @@ def test_radians_under_a_degree_header(tmp_path):
     assert any("read as rad; force with --position-unit deg" in note for note in summary.notes)
 
 
-def test_radians_found_without_velocity(tmp_path):
+def test_radians_without_unit_and_velocity(tmp_path):
     columns = kuka_columns()
     del columns["AxisVel_Act2[°/s]"]
-    columns["AxisPos_Act2[°]"] = np.radians(columns["AxisPos_Act2[°]"])
+    columns["AxisPos_Act2"] = np.radians(columns.pop("AxisPos_Act2[°]"))
     ingest([write(tmp_path / "log.csv", columns, digits=12)], tmp_path / "work")
     position = samples(tmp_path / "work")["position"]
     np.testing.assert_allclose(position, kuka_columns()["AxisPos_Act2[°]"], atol=1e-8)
 
 
+def test_small_positions_under_a_degree_header_stay_degrees(tmp_path):
+    """A joint that moves within ±6.3 deg; velocity agrees with the header."""
+    columns = kuka_columns(speed=4.0, start=-6.0)
+    ingest([write(tmp_path / "log.csv", columns)], tmp_path / "work")
+    np.testing.assert_allclose(
+        samples(tmp_path / "work")["position"], columns["AxisPos_Act2[°]"], atol=1e-8
+    )
+
+
+def test_small_positions_that_nothing_tells_are_asked_for(tmp_path):
+    columns = kuka_columns(speed=4.0, start=-6.0)
+    del columns["AxisVel_Act2[°/s]"]
+    log = write(tmp_path / "log.csv", columns)
+    with pytest.raises(LogError, match=r"AxisPos_Act2\[°\] says °, but .*--position-unit"):
+        ingest([log], tmp_path / "work")
+    for unit, factor in (("deg", 1.0), ("rad", 180 / np.pi)):
+        ingest([log], tmp_path / "work", IngestSettings(position_unit=unit))
+        np.testing.assert_allclose(
+            samples(tmp_path / "work")["position"], factor * columns["AxisPos_Act2[°]"], rtol=1e-9
+        )
+
+
+def test_a_motor_that_turns_twice_in_radians(tmp_path):
+    """Positions beyond ±6.9 under a header of rad; velocity in rad/s agrees."""
+    truth = kuka_columns(seconds=30.0, speed=60.0)
+    columns = {
+        "time [s]": truth["Zeit[sec]"],
+        "position [rad]": np.radians(truth["AxisPos_Act2[°]"]),
+        "velocity [rad/s]": np.radians(truth["AxisVel_Act2[°/s]"]),
+        "torque [Nm]": truth["GearTorq_Act2[Nm]"],
+    }
+    assert columns["position [rad]"].max() > 6.9
+    ingest([write(tmp_path / "log.csv", columns, digits=12)], tmp_path / "work")
+    position = samples(tmp_path / "work")["position"]
+    np.testing.assert_allclose(position, truth["AxisPos_Act2[°]"], atol=1e-8)
+
+
 def test_a_forced_unit_wins_with_a_warning(tmp_path):
     columns = kuka_columns()
     del columns["AxisVel_Act2[°/s]"]
-    columns["AxisPos_Act2[°]"] /= 40
     log = write(tmp_path / "log.csv", columns)
-    summary = ingest([log], tmp_path / "work", IngestSettings(position_unit="deg"))
+    summary = ingest([log], tmp_path / "work", IngestSettings(position_unit="rad"))
     position = samples(tmp_path / "work")["position"]
-    np.testing.assert_allclose(position, columns["AxisPos_Act2[°]"], atol=1e-8)
-    assert any("as told, but values span" in text for text in summary.warnings)
+    np.testing.assert_allclose(position, np.degrees(columns["AxisPos_Act2[°]"]), atol=1e-6)
+    assert any("as told, but values reach" in text for text in summary.warnings)
 
 
 def test_later_positions_that_contradict_radians_stop(tmp_path):

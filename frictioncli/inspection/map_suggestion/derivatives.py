@@ -8,7 +8,7 @@ import numpy as np
 from frictioncli.arrays import Array
 from frictioncli.inspection.map_suggestion.log_head import LogHead
 from frictioncli.logs.channels import channel_names as names
-from frictioncli.logs.channels import unit_evidence
+from frictioncli.logs.channels import position_units, unit_evidence
 from frictioncli.logs.channels.unit_evidence import MotionUnits
 from frictioncli.logs.channels.units import FACTORS
 
@@ -102,16 +102,15 @@ def _normalised_rows(rows: Array) -> Array:
 
 def _fitting_units(position: Array, ratio: float, time_units: Sequence[str]) -> MotionUnits | None:
     """Return units that agree with the ratio of change to integral; None where none do."""
-    possible, _ = unit_evidence.possible_position_units(
-        largest=float(np.max(np.abs(position))),
-        span=float(np.ptp(position)),
-        on_motor=False,
-        path_per_angle=None,
+    largest, span = float(np.max(np.abs(position))), float(np.ptp(position))
+    usual = position_units.usual_position_unit(largest=largest, span=span, on_motor=False)
+    possible, _ = position_units.possible_position_units(
+        largest=largest, span=span, on_motor=False, path_per_angle=None
     )
     for time_unit in time_units:
         scaled = ratio / FACTORS[names.TIME][time_unit]
         found = unit_evidence.motion_units(
-            declared=("s", None, None), possible=possible, ratio=scaled
+            declared=("s", None, None), possible=possible, ratio=scaled, usual=usual
         )
         if found.velocity is not None and found.time == "s":
             return MotionUnits(

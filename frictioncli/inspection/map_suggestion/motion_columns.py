@@ -18,7 +18,7 @@ from frictioncli.inspection.map_suggestion.derivatives import Derivative
 from frictioncli.inspection.map_suggestion.measured_or_commanded import measured_first, same_motion
 from frictioncli.inspection.map_suggestion.time_columns import TimeColumn, possible_time_units
 from frictioncli.logs.channels import channel_names as names
-from frictioncli.logs.channels import unit_evidence, units
+from frictioncli.logs.channels import position_units, units
 
 _SURE_COSINE = 0.999
 _MAX_UNEVENNESS = 0.05
@@ -143,13 +143,12 @@ def _without_velocity(
         max(named, key=lambda c: float(np.ptp(columns.head.values[c]))) if named else candidates[0]
     )
     values = columns.head.values[column]
-    possible, unit_reason = unit_evidence.possible_position_units(
-        largest=float(np.max(np.abs(values))),
-        span=float(np.ptp(values)),
-        on_motor=False,
-        path_per_angle=None,
+    largest, span = float(np.max(np.abs(values))), float(np.ptp(values))
+    possible, unit_reason = position_units.possible_position_units(
+        largest=largest, span=span, on_motor=False, path_per_angle=None
     )
-    unit = sorted(possible)[0]
+    usual = position_units.usual_position_unit(largest=largest, span=span, on_motor=False)
+    unit = usual if usual in possible else min(possible)
     time_unit = possible_time_units(time)[-1]
     degrees = values * units.FACTORS[names.POSITION][unit]
     seconds = columns.head.values[time.column] * units.FACTORS[names.TIME][time_unit]

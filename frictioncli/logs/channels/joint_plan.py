@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from frictioncli.logs.channels import channel_names as names
-from frictioncli.logs.channels import unit_evidence, units
+from frictioncli.logs.channels import position_units, units
 from frictioncli.logs.channels.joint_channels import JointChannels
 from frictioncli.logs.channels.motion_units import JointMotion, Remarks, joint_motion
 from frictioncli.logs.channels.recognition import LogChannel
@@ -68,8 +68,8 @@ def plan_joint(
     Returns
     -------
     JointPlan or Refusal
-        Refused as ``no_torque_channel`` (an empty or all-zero column), ``torque_in_percent`` or
-        ``no_gear_ratio``.
+        Refused as ``no_torque_channel`` (an empty or all-zero column), ``torque_in_percent``,
+        ``unclear_position_unit`` or ``no_gear_ratio``.
     """
     remarks = Remarks(notes=list(channels.notes))
     torque_values = survey.pooled(channels.torque)
@@ -85,6 +85,8 @@ def plan_joint(
         return torque_unit
     channels = _without_zero_velocity(channels, survey, remarks)
     motion = joint_motion(channels, survey, forced, remarks)
+    if motion.doubt:
+        return Refusal("unclear_position_unit", motion.doubt)
     gear = find_transmission(channels, survey, motion, gear_ratio, remarks)
     if gear is None:
         without_gear = _without_gear(channels, motion, remarks)
@@ -115,12 +117,12 @@ def plan_joint(
     limited = (
         found.position == "rad"
         and at_joint
-        and motion.largest_position <= unit_evidence.RADIAN_LIMIT
+        and motion.largest_position <= position_units.RADIAN_LIMIT
     )
     return JointPlan(
         channels=channels,
         conversions=conversions,
-        position_limit=unit_evidence.RADIAN_LIMIT if limited else None,
+        position_limit=position_units.RADIAN_LIMIT if limited else None,
         torque_unit="A" if torque_unit in ("A", "mA") else "N·m",
         torque_side=side,
         notes=tuple(remarks.notes),

@@ -6,7 +6,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from frictioncli.logs.channels import channel_names as names
-from frictioncli.logs.channels import unit_evidence, units
+from frictioncli.logs.channels import position_units, unit_evidence, units
 from frictioncli.logs.channels.joint_channels import JointChannels
 from frictioncli.logs.channels.recognition import LogChannel
 from frictioncli.logs.channels.survey import Survey
@@ -33,11 +33,14 @@ class JointMotion:
         Largest absolute position. [raw]
     other_position_unit : str or None
         Unit of the position on the other side of the gear; None where there is none.
+    doubt : str
+        Why the unit of the position has to be asked for; "" where it is known.
     """
 
     units: MotionUnits
     largest_position: float
     other_position_unit: str | None
+    doubt: str = ""
 
 
 @dataclass(frozen=True, slots=True)
@@ -73,13 +76,13 @@ def joint_motion(
     other_position = channels.other_position
     same_side = velocity is None or velocity.meaning.side == position.meaning.side
     axis = _Axis(time, position, velocity if same_side else None, "; force with --position-unit {}")
-    found, largest_position = _axis_units(axis, survey, forced, remarks)
+    found, largest_position, doubt = _axis_units(axis, survey, forced, remarks)
     other_unit = None
     if other_position is not None:
         # a forced position unit applies to the other channel
         other_forced = {name: unit for name, unit in forced.items() if name != names.POSITION}
         axis = _Axis(time, other_position, None if same_side else velocity, "")
-        other_units, _ = _axis_units(axis, survey, other_forced, remarks)
+        other_units, _, _ = _axis_units(axis, survey, other_forced, remarks)
         other_unit = other_units.position
         if not same_side:
             found = replace(other_units, position=found.position)
@@ -87,21 +90,26 @@ def joint_motion(
         remarks.notes.append("no velocity channel: differentiated from position")
     if found.time != (units.canonical(time.unit, names.TIME) or "s") and names.TIME not in forced:
         remarks.notes.append(f"{time.name} is read as {found.time}")
-    return JointMotion(found, largest_position, other_unit)
+    return JointMotion(found, largest_position, other_unit, doubt)
 
 
 def _axis_units(
     axis: _Axis, survey: Survey, forced: Mapping[str, str], remarks: Remarks
-) -> tuple[MotionUnits, float]:
-    """Return the units of time, position and velocity, and the largest absolute raw position."""
+) -> tuple[MotionUnits, float, str]:
+    """Return units, the largest absolute raw position, and why the position's unit is open.
+
+    The reason is "" where the unit is known.
+    """
     position = axis.position
     family = survey.family(position)
     motions = [motion for member in family for motion in _motions(survey, axis.time, member, None)]
-    largest, span = unit_evidence.position_range(motions)
-    possible, why = unit_evidence.possible_position_units(
+    largest, span = position_units.position_range(motions)
+    on_motor = position.meaning.side == names.MOTOR_SIDE
+    usual = position_units.usual_position_unit(largest=largest, span=span, on_motor=on_motor)
+    possible, why = position_units.possible_position_units(
         largest=largest,
         span=span,
-        on_motor=position.meaning.side == names.MOTOR_SIDE,
+        on_motor=on_motor,
         path_per_angle=_tool_path_per_angle(survey, family),
     )
     allowed = possible
@@ -121,6 +129,11 @@ def _axis_units(
         written = units.canonical(axis.velocity.unit, names.VELOCITY)
         declared_velocity = declared_velocity or written
         ratio = unit_evidence.motion_ratio(_motions(survey, axis.time, position, axis.velocity))
+    headers = {declared_position, declared_velocity}
+    says_radians = headers != {None} and headers <= {None, "rad", "rad/s"}
+    if says_radians and ratio is not None and possible == {"deg"} and names.POSITION not in forced:
+        # a motor or an endless axis may turn further than a joint: velocity decides
+        allowed = frozenset({"deg", "rad"})
     time_is_known = written_time is not None or names.TIME in forced or declared_time != "s"
     found = unit_evidence.motion_units(
         declared=(
@@ -130,12 +143,25 @@ def _axis_units(
         ),
         possible=allowed,
         ratio=ratio,
+        usual=usual,
     )
+    velocity_tells = bool(found.evidence) and found.velocity is not None
+    is_open = len(allowed) > 1 and usual == "rad" and not velocity_tells
+    doubt = _doubt(axis.position, why) if is_open and declared_position == "deg" else ""
     found = _with_forced_units(found, forced, remarks)
     _remark_position(axis, found, why, forced, remarks)
     if axis.velocity is not None:
         _remark_velocity(axis.velocity, found, forced, remarks)
-    return found, largest
+    return found, largest, doubt
+
+
+def _doubt(position: LogChannel, why: str) -> str:
+    """Return why the user has to be asked for the unit of a position."""
+    return (
+        f"{position.name} says {position.unit}, but {why}, as angles in rad do, and neither a"
+        " velocity nor the tool's path tells which it is; say it with --position-unit deg or rad,"
+        " or with [units] position in --map"
+    )
 
 
 def _with_forced_units(
@@ -217,7 +243,7 @@ def _tool_path_per_angle(survey: Survey, family: list[LogChannel]) -> float | No
         points = scale * np.stack([head[c.column] for c in tool], axis=1)
         axes = np.stack([head[c.column] for c in family], axis=1)
         good = np.isfinite(points).all(axis=1) & np.isfinite(axes).all(axis=1)
-        ratio = unit_evidence.tool_path_per_angle(points[good], axes[good])
+        ratio = position_units.tool_path_per_angle(points[good], axes[good])
         if ratio is not None:
             found.append(ratio)
     return float(np.median(found)) if found else None

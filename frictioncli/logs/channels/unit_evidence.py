@@ -1,8 +1,4 @@
-"""Evidence in the values of a log for the units of its time, position and velocity.
-
-The change of position is compared with the integral of velocity, and positions with the range of
-motion of a joint and with the path of the tool.
-"""
+"""Units of time, position and velocity: the change of position against the integral of velocity."""
 
 from dataclasses import dataclass
 
@@ -11,17 +7,10 @@ import numpy as np
 from frictioncli.arrays import Array
 from frictioncli.logs.channels.units import FACTORS
 
-_DEGREES_PER_RADIAN = 180.0 / np.pi
-_LIMIT = 2 * np.pi
-_MARGIN = 1.1
-RADIAN_LIMIT = _LIMIT * _MARGIN
-"""Largest absolute position of a joint with end stops. [rad]"""
 _UNSCALED_COST = 0.5
 """Cost of velocity in mdeg/s, that is without scale; velocity in deg/s with time in ms is
 preferred."""
-_LEVER_ARM = (0.02, 5.0)
-"""Range of the tool's distance from an axis. [m]"""
-_OUTLIER_FACTOR = 1e6
+OUTLIER_FACTOR = 1e6
 """A value so many times larger than the 95 % quantile of absolute values is damaged."""
 
 
@@ -81,7 +70,7 @@ def _window_ratios(motion: RawMotion) -> Array:
         return np.empty(0)
     # a single damaged value must not raise the threshold of motion for all others
     speed = np.abs(motion.velocity)
-    usual = speed <= _OUTLIER_FACTOR * (float(np.quantile(speed, 0.95)) or np.inf)
+    usual = speed <= OUTLIER_FACTOR * (float(np.quantile(speed, 0.95)) or np.inf)
     if not usual.all():
         motion = RawMotion(motion.time[usual], motion.position[usual], motion.velocity[usual])
     steps = np.diff(motion.time)
@@ -97,121 +86,6 @@ def _window_ratios(motion: RawMotion) -> Array:
     without_gap = (elapsed > 0) & (elapsed < 2 * width * period)
     moving = np.abs(by_velocity) > 0.3 * np.max(np.abs(by_velocity), initial=0.0)
     return by_position[without_gap & moving] / by_velocity[without_gap & moving]
-
-
-def position_range(motions: list[RawMotion]) -> tuple[float, float]:
-    """Return the largest absolute position and the largest position range within a file.
-
-    The extreme thousandth of the samples on either side is left out, as it may be damaged. So are
-    values a million times larger than most; the reference is the largest 95 % quantile of all
-    files, as that of an axis at rest at zero would be zero.
-
-    Parameters
-    ----------
-    motions : list of RawMotion
-        The axis in each file.
-
-    Returns
-    -------
-    largest, span : float
-        Both 0 where there are no samples. [raw]
-
-    Examples
-    --------
-    >>> position_range([RawMotion(np.arange(3.0), np.array([-10.0, 5.0, 20.0]), np.empty(0))])
-    (20.0, 30.0)
-    """
-    largest = span = 0.0
-    filled = [motion for motion in motions if len(motion.position)]
-    usual = (float(np.quantile(np.abs(motion.position), 0.95)) for motion in filled)
-    reference = max(usual, default=0.0) or np.inf
-    for motion in filled:
-        position = motion.position[np.abs(motion.position) <= _OUTLIER_FACTOR * reference]
-        n = len(position)
-        if not n:
-            continue
-        trimmed = int(np.ceil(n / 1000)) if n >= 50 else 0
-        ordered = np.sort(position)[trimmed : n - trimmed]
-        largest = max(largest, float(np.max(np.abs(ordered))))
-        span = max(span, float(ordered[-1] - ordered[0]))
-    return largest, span
-
-
-def tool_path_per_angle(tool: Array, axes: Array) -> float | None:
-    """Return the median path of the tool per angle of the fastest axis: its lever arm.
-
-    Parameters
-    ----------
-    tool : ndarray, shape (n, 3)
-        Tool position. [mm]
-    axes : ndarray, shape (n, axes)
-        Axis positions. [raw]
-
-    Returns
-    -------
-    float or None
-        None where nothing moves; the lever arm in mm if positions are in rad. [mm/raw]
-
-    Examples
-    --------
-    >>> angle = np.linspace(0, 1, 50)
-    >>> tool = 400 * np.column_stack([np.cos(angle), np.sin(angle), 0 * angle])
-    >>> round(tool_path_per_angle(tool, angle[:, None]), 1)
-    400.0
-    """
-    if len(tool) < 10:
-        return None
-    path = np.linalg.norm(np.diff(tool, axis=0), axis=1)
-    angle = np.max(np.abs(np.diff(axes, axis=0)), axis=1)
-    moving = angle > 0.2 * np.quantile(angle, 0.98)
-    if not np.any(moving & (angle > 0)):
-        return None
-    return float(np.median(path[moving] / angle[moving]))
-
-
-def possible_position_units(
-    *, largest: float, span: float, on_motor: bool, path_per_angle: float | None
-) -> tuple[frozenset[str], str]:
-    """Return the units that positions can be in, and why.
-
-    Parameters
-    ----------
-    largest, span : float
-        Largest absolute position and position range. [raw]
-    on_motor : bool
-        Whether it is the position of the motor, which turns without limit.
-    path_per_angle : float or None
-        Result of :func:`tool_path_per_angle`. [mm/raw]
-
-    Examples
-    --------
-    >>> units, why = possible_position_units(
-    ...     largest=170, span=300, on_motor=False, path_per_angle=None
-    ... )
-    >>> sorted(units), why
-    (['deg'], 'values reach ±170, beyond a turn in rad')
-    """
-    if largest > 1e6 or (largest > 1e5 and not on_motor):
-        return frozenset({"udeg"}), f"values reach {largest:.3g}"
-    if on_motor:
-        return frozenset({"deg", "rad"}), ""
-    if largest > RADIAN_LIMIT:
-        return frozenset({"deg"}), f"values reach ±{largest:.4g}, beyond a turn in rad"
-    if path_per_angle is not None:
-        lever_arms = {
-            "rad": path_per_angle / 1000,
-            "deg": path_per_angle / 1000 * _DEGREES_PER_RADIAN,
-        }
-        fitting = [u for u, arm in lever_arms.items() if _LEVER_ARM[0] <= arm <= _LEVER_ARM[1]]
-        if len(fitting) == 1:
-            (unit,) = fitting
-            return (
-                frozenset(fitting),
-                f"the tool then moves on a lever of {lever_arms[unit]:.2g} m",
-            )
-    if span > 0.01:
-        return frozenset({"rad"}), f"values span {span:.2g} and stay within ±6.3"
-    return frozenset({"deg", "rad"}), "it does not move"
 
 
 @dataclass(frozen=True, slots=True)
@@ -242,6 +116,7 @@ def motion_units(
     declared: tuple[str | None, str | None, str | None],
     possible: frozenset[str],
     ratio: float | None,
+    usual: str = "deg",
 ) -> MotionUnits:
     """Choose the units that agree with the values and differ least from the header.
 
@@ -253,6 +128,8 @@ def motion_units(
         Position units that the values allow.
     ratio : float or None
         Result of :func:`motion_ratio`.
+    usual : str, optional
+        Position unit that is preferred where neither the header nor the values tell it.
 
     Examples
     --------
@@ -263,7 +140,7 @@ def motion_units(
     'rad/s'
     """
     time, position, velocity = declared
-    positions = sorted(possible, key=lambda unit: (unit != position, unit))
+    positions = sorted(possible, key=lambda unit: (unit != position, unit != usual, unit))
     if ratio is None:
         assumed = velocity or ("rad/s" if positions[0] == "rad" else "deg/s")
         return MotionUnits(time or "s", positions[0], assumed, False, "")
@@ -280,7 +157,7 @@ def motion_units(
                     continue
                 cost = (
                     2.0 * _cost(time_unit, time, "s")
-                    + _cost(position_unit, position, "deg")
+                    + _cost(position_unit, position, usual)
                     + _cost(velocity_unit, velocity, "deg/s")
                     + _UNSCALED_COST * (velocity_unit == "mdeg/s" and velocity != "mdeg/s")
                 )

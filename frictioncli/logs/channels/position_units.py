@@ -1,0 +1,152 @@
+"""Units of positions by their values: the range of motion of a joint, and the path of the tool."""
+
+import numpy as np
+
+from frictioncli.arrays import Array
+from frictioncli.logs.channels.unit_evidence import OUTLIER_FACTOR, RawMotion
+
+_DEGREES_PER_RADIAN = 180.0 / np.pi
+_LIMIT = 2 * np.pi
+_MARGIN = 1.1
+RADIAN_LIMIT = _LIMIT * _MARGIN
+"""Largest absolute position of a joint with end stops. [rad]"""
+_LEAST_SPAN = 0.01
+"""Range of positions above which an axis moves. [raw]"""
+_LEVER_ARM = (0.02, 5.0)
+"""Range of the tool's distance from an axis. [m]"""
+
+
+def position_range(motions: list[RawMotion]) -> tuple[float, float]:
+    """Return the largest absolute position and the largest position range within a file.
+
+    The extreme thousandth of the samples on either side is left out, as it may be damaged. So are
+    values a million times larger than most; the reference is the largest 95 % quantile of all
+    files, as that of an axis at rest at zero would be zero.
+
+    Parameters
+    ----------
+    motions : list of RawMotion
+        The axis in each file.
+
+    Returns
+    -------
+    largest, span : float
+        Both 0 where there are no samples. [raw]
+
+    Examples
+    --------
+    >>> position_range([RawMotion(np.arange(3.0), np.array([-10.0, 5.0, 20.0]), np.empty(0))])
+    (20.0, 30.0)
+    """
+    largest = span = 0.0
+    filled = [motion for motion in motions if len(motion.position)]
+    usual = (float(np.quantile(np.abs(motion.position), 0.95)) for motion in filled)
+    reference = max(usual, default=0.0) or np.inf
+    for motion in filled:
+        position = motion.position[np.abs(motion.position) <= OUTLIER_FACTOR * reference]
+        n = len(position)
+        if not n:
+            continue
+        trimmed = int(np.ceil(n / 1000)) if n >= 50 else 0
+        ordered = np.sort(position)[trimmed : n - trimmed]
+        largest = max(largest, float(np.max(np.abs(ordered))))
+        span = max(span, float(ordered[-1] - ordered[0]))
+    return largest, span
+
+
+def tool_path_per_angle(tool: Array, axes: Array) -> float | None:
+    """Return the median path of the tool per angle of the fastest axis: its lever arm.
+
+    Parameters
+    ----------
+    tool : ndarray, shape (n, 3)
+        Tool position. [mm]
+    axes : ndarray, shape (n, axes)
+        Axis positions. [raw]
+
+    Returns
+    -------
+    float or None
+        None where nothing moves; the lever arm in mm if positions are in rad. [mm/raw]
+
+    Examples
+    --------
+    >>> angle = np.linspace(0, 1, 50)
+    >>> tool = 400 * np.column_stack([np.cos(angle), np.sin(angle), 0 * angle])
+    >>> round(tool_path_per_angle(tool, angle[:, None]), 1)
+    400.0
+    """
+    if len(tool) < 10:
+        return None
+    path = np.linalg.norm(np.diff(tool, axis=0), axis=1)
+    angle = np.max(np.abs(np.diff(axes, axis=0)), axis=1)
+    moving = angle > 0.2 * np.quantile(angle, 0.98)
+    if not np.any(moving & (angle > 0)):
+        return None
+    return float(np.median(path[moving] / angle[moving]))
+
+
+def possible_position_units(
+    *, largest: float, span: float, on_motor: bool, path_per_angle: float | None
+) -> tuple[frozenset[str], str]:
+    """Return the units that positions can be in, and why.
+
+    Parameters
+    ----------
+    largest, span : float
+        Largest absolute position and position range. [raw]
+    on_motor : bool
+        Whether it is the position of the motor, which turns without limit.
+    path_per_angle : float or None
+        Result of :func:`tool_path_per_angle`. [mm/raw]
+
+    Examples
+    --------
+    >>> units, why = possible_position_units(
+    ...     largest=170, span=300, on_motor=False, path_per_angle=None
+    ... )
+    >>> sorted(units), why
+    (['deg'], 'values reach ±170, beyond a turn in rad')
+    """
+    if largest > 1e6 or (largest > 1e5 and not on_motor):
+        return frozenset({"udeg"}), f"values reach {largest:.3g}"
+    if on_motor:
+        return frozenset({"deg", "rad"}), ""
+    if largest > RADIAN_LIMIT:
+        return frozenset({"deg"}), f"values reach ±{largest:.4g}, beyond a turn in rad"
+    if path_per_angle is not None:
+        lever_arms = {
+            "rad": path_per_angle / 1000,
+            "deg": path_per_angle / 1000 * _DEGREES_PER_RADIAN,
+        }
+        fitting = [u for u, arm in lever_arms.items() if _LEVER_ARM[0] <= arm <= _LEVER_ARM[1]]
+        if len(fitting) == 1:
+            (unit,) = fitting
+            return (
+                frozenset(fitting),
+                f"the tool then moves on a lever of {lever_arms[unit]:.2g} m",
+            )
+    if span > _LEAST_SPAN:
+        return frozenset({"deg", "rad"}), f"values span {span:.2g} and stay within ±6.3"
+    return frozenset({"deg", "rad"}), "it does not move"
+
+
+def usual_position_unit(*, largest: float, span: float, on_motor: bool) -> str:
+    """Return the unit of positions of which nothing else is known.
+
+    A joint that moves within ±6.9 is logged in rad more often than it turns by a few degrees only.
+
+    Parameters
+    ----------
+    largest, span : float
+        Largest absolute position and position range. [raw]
+    on_motor : bool
+        Whether it is the position of the motor.
+
+    Examples
+    --------
+    >>> usual_position_unit(largest=3.1, span=4.0, on_motor=False)
+    'rad'
+    """
+    in_turn = not on_motor and largest <= RADIAN_LIMIT
+    return "rad" if in_turn and span > _LEAST_SPAN else "deg"
