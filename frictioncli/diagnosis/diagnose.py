@@ -27,6 +27,7 @@ from frictioncli.diagnosis.search.cause_search import (
 )
 from frictioncli.diagnosis.search.cause_selection import judged_on_new_run
 from frictioncli.diagnosis.search.lack_of_fit import Structure, unnamed_structure
+from frictioncli.diagnosis.search.measurement import beside_the_rest
 from frictioncli.diagnosis.search.standing import with_standing
 from frictioncli.diagnosis.search.timing_causes import judged_by_timing
 from frictioncli.diagnosis.settings import DiagnosisSettings
@@ -194,6 +195,7 @@ def diagnose_joint(
         problem, new, lag = base, base_new, None
     if causes:
         fits = [cause.fit for cause in causes]
+        weighted_fit = beside_the_rest(problem, weighted_fit, found.measurement, causes)
         extension = extend(problem, weighted_fit, fits)
         if lag is not None:
             lag, extension = settled(

@@ -111,6 +111,54 @@ def test_what_does_not_vary_has_no_function(joint):
     assert smooth.amplitude > smooth_of(joint).amplitude
 
 
+def test_what_no_data_show_of_a_function_has_the_size_expected_of_the_whole(joint):
+    """Its mean square, over amplitudes of the lognormal distribution, by 10^5 draws of them."""
+    smooth = smooth_of(joint)
+    amplitude = np.log(smooth.amplitude) + 0.1 * np.arange(len(smooth.components))
+    unseen = smooth.unseen(amplitude)
+    drawn = np.exp(0.7 * np.random.default_rng(1).normal(size=100_000))
+    first = 0
+    for number, one in enumerate(smooth.components):
+        own = unseen[:, first : first + smooth.whole[number].shape[1]]
+        first += own.shape[1]
+        square = np.sum(np.square(own)) / len(joint.friction)
+        expected = np.mean(np.square(np.exp(amplitude[number]) * weight(one) * drawn))
+        assert square == pytest.approx(expected, rel=0.05)
+        # what the base leaves of it is spanned by the columns that data show
+        span = np.hstack([smooth.rows[:, one.columns], np.vstack(base_rows(joint))])
+        size = np.linalg.norm(span, axis=0)
+        fitted = span / size @ np.linalg.lstsq(span / size, own, rcond=1e-12)[0]
+        np.testing.assert_allclose(own, fitted, atol=1e-6)
+    assert first == unseen.shape[1]
+
+
+def test_an_asymmetry_of_the_stroke_is_as_large_as_its_lowest_orders_say(joint):
+    """Friction that is higher on one side: half a cosine over the range has most of its square."""
+    smooth = smooth_of(joint)
+    (own,) = (
+        columns
+        for columns, one in zip(smooth.whole, smooth.components, strict=True)
+        if (one.axes, one.channel) == (("position",), "friction")
+    )
+    squares = np.sum(np.square(own), axis=0)
+    assert 0.85 < squares[0] / squares.sum() < 0.97
+    angle = joint.table.position
+    side = np.tanh((angle - np.mean(angle)) / (np.ptp(angle) / 5))
+    likeness = own[: len(angle), 0] @ side / np.linalg.norm(own[:, 0]) / np.linalg.norm(side)
+    assert abs(likeness) > 0.9
+
+
+def test_the_unit_of_speed_does_not_matter_for_errors_of_form(joint):
+    """An error of the exponent turns friction about the middle speed, so that its mean stays."""
+    smooth = smooth_of(joint)
+    place = next(i for i, one in enumerate(smooth.components) if "form" in one.axes)
+    table = joint.table
+    ratio = smooth.whole[place][: len(table.speed), 0] / (table.viscous * np.sqrt(table.speed))
+    slope, level = np.polyfit(np.log(table.speed), ratio, 1)
+    middle = np.exp(-level / slope)
+    assert middle == pytest.approx(np.exp(np.mean(np.log(table.speed))))
+
+
 def test_a_load_channel_of_its_own_has_no_discrepancy(joint):
     smooth = smooth_of(replace(joint, has_load_channel=True))
     assert {component.channel for component in smooth.components} == {"friction"}

@@ -154,6 +154,33 @@ def extend(problem: Problem, weighted_fit: WeightedFit, effects: Sequence[Effect
     )
 
 
+def beside_unfitted(
+    problem: Problem, weighted_fit: WeightedFit, effects: Sequence[EffectFit]
+) -> WeightedFit:
+    r"""Return a weighted fit that allows for effects that are not fitted.
+
+    An effect of the measurement that is not named may be there all the same, and then is an error
+    of what is fitted. Its coefficients *c*, estimated beside the base with the covariance
+    :math:`\Sigma`, have the second moments :math:`c c^\mathsf{T} + \Sigma`.
+
+    Parameters
+    ----------
+    problem : Problem
+        The rows.
+    weighted_fit : WeightedFit
+        Weights of both channels.
+    effects : sequence of EffectFit
+        The effects.
+    """
+    for one in effects:
+        friction, load = problem.basis(one.effect, one.shape)
+        moments = np.outer(one.coefficients, one.coefficients) + one.covariance
+        squares, axes = np.linalg.eigh(moments)
+        root = axes * np.sqrt(np.maximum(squares, 0.0))
+        weighted_fit = weighted_fit.beside(friction @ root, load @ root)
+    return weighted_fit
+
+
 def _columns(problem: Problem, effects: Sequence[EffectFit]) -> tuple[Array, Array]:
     """Return the columns of base and effects in friction and load, shape (rows, columns) each."""
     bases = [base_rows(problem), *(problem.basis(one.effect, one.shape) for one in effects)]

@@ -10,7 +10,7 @@ with the weighted columns *X* and the correlation matrix *C* of the weighted noi
 covariance).
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -90,13 +90,26 @@ class WeightedFit:
     friction, load : Weights
         Weights of both channels.
     discrepancy : (ndarray, ndarray), shape (rows, functions), or None
-        Columns of the discrepancy in both channels, with coefficients of variance 1; None for none.
-        [N·m]
+        Columns of the discrepancy, and of all else that is not fitted, in both channels, with
+        coefficients of variance 1; None for none. [N·m]
     """
 
     friction: Weights
     load: Weights
     discrepancy: tuple[Array, Array] | None = None
+
+    def beside(self, friction: Array, load: Array) -> "WeightedFit":
+        """Return the fit with further torque that is there or not, and is not fitted.
+
+        Parameters
+        ----------
+        friction, load : ndarray, shape (rows, columns)
+            Its columns in both channels, with coefficients of variance 1. [N·m]
+        """
+        before = self.discrepancy
+        if before is not None:
+            friction, load = np.hstack([before[0], friction]), np.hstack([before[1], load])
+        return replace(self, discrepancy=(friction, load))
 
     def coefficients(self, friction: Array, load: Array, targets: tuple[Array, Array]) -> Array:
         """Return least-squares coefficients of columns, shape (columns,).
@@ -121,8 +134,9 @@ class WeightedFit:
         friction, load : ndarray, shape (rows, columns)
             Columns in both channels. [N·m]
         whole : bool, optional
-            Whether what the discrepancy adds counts: it is the same on every run, so that it
-            matters for what the coefficients mean, and not for what they predict.
+            Whether what the discrepancy adds counts, and what is not fitted: it is the same on
+            every run, so that it matters for what the coefficients mean, and not for what they
+            predict.
         """
         first, second = self.friction.weighted(friction), self.load.weighted(load)
         bread = _inverse(first, second)

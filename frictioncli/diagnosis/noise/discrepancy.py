@@ -12,6 +12,10 @@ the base counts [2]_; it is this part that has the amplitude. The amplitude :mat
 each function is at least its share of 1 % of the mean friction; above that it has a lognormal
 prior, and is estimated with each rival in place.
 
+Errors of the base's parameters are what a function adds along the base's columns, where no data
+show it. There its amplitude is known as well as beforehand only: its mean square under the
+lognormal distribution is :math:`\omega^2 e^{2 \varsigma^2}`, and it is that of the whole function.
+
 References
 ----------
 .. [1] M. C. Kennedy and A. O'Hagan, "Bayesian calibration of computer models," J. R. Stat. Soc. B
@@ -45,6 +49,9 @@ than interactions, and gravity is better known than friction."""
 
 _HALF = 4.0
 """Order from which on the cosines of a function of the angle become weaker."""
+
+_UNSEEN = float(np.exp(SPREAD**2))
+"""Root mean square of an amplitude that no data show, relative to its median."""
 
 _RANK = 1e-3
 """Singular values of unit columns below this share of the greatest count as zero."""
@@ -86,8 +93,9 @@ class Discrepancy:
     rows : ndarray, shape (2 * rows, columns)
         Their columns, friction above load, orthogonal to the base: of each function the squares sum
         to 1 on average.
-    whole : ndarray, shape (2 * rows, columns)
-        The same before the base is taken out: errors of the base's parameters follow from it.
+    whole : tuple of ndarray, shape (2 * rows, columns)
+        Columns of each function before the base is taken out: of a function as a whole the squares
+        sum to 1 on average, and its lowest orders weigh more.
     columns : ModelColumns
         The former, reduced.
     amplitude : float
@@ -96,7 +104,7 @@ class Discrepancy:
 
     components: tuple[Component, ...]
     rows: Array
-    whole: Array
+    whole: tuple[Array, ...]
     columns: ModelColumns
     amplitude: float
 
@@ -105,15 +113,21 @@ class Discrepancy:
         """Number of columns of each function, shape (components,)."""
         return np.array([one.columns.stop - one.columns.start for one in self.components], float)
 
-    def deviations(self, amplitude: Array) -> Array:
-        """Return the standard deviation of each column's coefficient, shape (columns,) [N·m].
+    def unseen(self, amplitude: Array) -> Array:
+        """Return all columns with coefficients of variance 1, shape (2 * rows, columns) [N·m].
+
+        What they add along the base's columns is an error of its parameters.
 
         Parameters
         ----------
         amplitude : ndarray, shape (components,)
             Logarithm of the amplitude of each function.
         """
-        return np.repeat(np.exp(amplitude), self.widths.astype(int))
+        size = _UNSEEN * np.exp(amplitude)
+        return np.hstack(
+            [np.zeros((len(self.rows), 0))]
+            + [scale * one for scale, one in zip(size, self.whole, strict=True)]
+        )
 
     def along(self, torque: Array, amplitude: Array) -> float:
         """Return the standard deviation of the discrepancy along a torque, as its RMS [N·m].
@@ -155,33 +169,49 @@ def discrepancy_of(problem: Problem, span: Array, share: float = SHARE) -> Discr
     if share > 0 and not problem.has_load_channel:
         parts += [("load", *one) for one in _functions(problem.table, _LOAD)]
     components: list[Component] = []
-    left, whole, first = [np.zeros((2 * rows, 0))], [np.zeros((2 * rows, 0))], 0
+    left, whole, first = [np.zeros((2 * rows, 0))], [], 0
     for channel, axes, values in parts:
         zeros = np.zeros_like(values)
         columns = np.vstack([values, zeros] if channel == "friction" else [zeros, values])
         orthogonal = columns - span @ (span.T @ columns)
-        if np.sum(np.square(orthogonal)) < _LEAST_LEFT * np.sum(np.square(columns)):
+        if np.sum(np.square(orthogonal)) <= _LEAST_LEFT * np.sum(np.square(columns)):
             continue
         weight = _MINOR_WEIGHT if channel == "load" or len(axes) > 1 else 1.0
         if axes == _FORM:
-            combination = _orthonormal_combination(orthogonal)
-            columns, orthogonal = columns @ combination, orthogonal @ combination
+            orthogonal = orthogonal @ _orthonormal_combination(orthogonal)
             weight = _FORM_WEIGHT
         scale = weight * np.sqrt(rows / float(np.sum(np.square(orthogonal))))
         left.append(scale * orthogonal)
-        whole.append(scale * columns)
-        components.append(Component(axes, channel, slice(first, first + columns.shape[1])))
-        first += columns.shape[1]
+        whole.append(weight * _of_errors(axes, columns))
+        components.append(Component(axes, channel, slice(first, first + orthogonal.shape[1])))
+        first += orthogonal.shape[1]
     together = np.hstack(left)
     friction, load = np.split(together, 2)
     mean = float(np.mean(np.abs(problem.friction)))
     return Discrepancy(
         components=tuple(components),
         rows=together,
-        whole=np.hstack(whole),
+        whole=tuple(whole),
         columns=reduced(problem.layout, friction, load),
         amplitude=share * mean / np.sqrt(max(len(components), 1)),
     )
+
+
+def _of_errors(axes: tuple[str, ...], columns: Array) -> Array:
+    """Return columns of a function as a whole, whose squares sum to the number of rows.
+
+    Errors of form have equal shares. The cosines of a function of the angle fall with the square of
+    their order, as those of any function without a jump: the lowest ones, which look like gravity,
+    matter for errors.
+    """
+    order = np.arange(1, columns.shape[1] + 1)
+    if axes == ("position",):
+        columns = columns * (1 + np.square(order / _HALF)) / np.square(order)
+    if axes == _FORM:
+        size = np.linalg.norm(columns, axis=0)
+        columns = columns / np.where(size > 0, size, np.inf)
+    squares = float(np.sum(np.square(columns)))
+    return np.asarray(columns * np.sqrt(len(columns) / 2 / squares))
 
 
 def _orthonormal_combination(columns: Array) -> Array:
@@ -243,10 +273,11 @@ def _form(table: EffectTable) -> Array:
     Coulomb friction that does not depend on temperature.
     """
     viscous = table.viscous * np.sqrt(table.speed)
+    speed = np.log(np.maximum(table.speed, 1e-9))
+    speed = speed if np.ptp(speed) else np.zeros_like(speed)
     away = table.temperature - np.mean(table.temperature)
-    return np.column_stack(
-        [viscous * np.log(np.maximum(table.speed, 1e-9)), viscous * np.square(away), away]
-    )
+    # about the mean: the unit of speed must not matter
+    return np.column_stack([viscous * (speed - np.mean(speed)), viscous * np.square(away), away])
 
 
 def _unit(values: Array) -> Array:

@@ -5,7 +5,10 @@ from collections.abc import Sequence
 import numpy as np
 from scipy import stats
 
+from frictioncli.diagnosis.data.problem import Problem
+from frictioncli.diagnosis.fit.extension import beside_unfitted
 from frictioncli.diagnosis.fit.hypotheses import EffectFit, HypothesisTest
+from frictioncli.diagnosis.fit.weighted_fit import WeightedFit
 from frictioncli.diagnosis.noise.significance import NullDistribution
 from frictioncli.diagnosis.search.cause import Cause
 from frictioncli.diagnosis.search.effect_size import sizes_of
@@ -59,3 +62,27 @@ def measurement_causes(step: Step, effects: Sequence[Effect]) -> tuple[Cause, ..
             )
         )
     return tuple(found)
+
+
+def beside_the_rest(
+    problem: Problem,
+    weighted_fit: WeightedFit,
+    measurement: Sequence[Cause],
+    causes: Sequence[Cause],
+) -> WeightedFit:
+    """Return a weighted fit that allows for effects of the measurement that are not fitted.
+
+    Parameters
+    ----------
+    problem : Problem
+        The rows.
+    weighted_fit : WeightedFit
+        Weights of both channels.
+    measurement : sequence of Cause
+        All effects of the measurement beside the base.
+    causes : sequence of Cause
+        The causes that extend the model.
+    """
+    fitted = {cause.fit.effect.name for cause in causes}
+    rest = [cause.fit for cause in measurement if cause.fit.effect.name not in fitted]
+    return beside_unfitted(problem, weighted_fit, rest)

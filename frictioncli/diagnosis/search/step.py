@@ -170,7 +170,7 @@ class Step:
         layout, extra = self.problem.layout, self.problem.temperature_variance
         friction, load = self.noise()
         known = self.precomputed.discrepancy
-        smooth = np.split(known.whole * known.deviations(self.fit.variances.amplitude), 2)
+        smooth = np.split(known.unseen(self.fit.variances.amplitude), 2)
         return WeightedFit(
             Weights.of(layout, friction, extra),
             Weights.of(layout, load, np.zeros_like(extra)),
