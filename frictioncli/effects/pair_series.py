@@ -7,15 +7,6 @@ import numpy as np
 from frictioncli.arrays import Array, Flags, Indices
 from frictioncli.effects.base import EffectTable
 
-_HALF_WINDOW = 300.0
-"""Half the window in which the warming of the motor is seen. [s]"""
-
-_TURNING = 10.0
-"""Between moves that follow each other within this time no other move is made. [s]"""
-
-_FASTEST = 0.95
-"""Least share of a run's highest speed that counts as the highest."""
-
 _FEW_SERIES = 5
 """With fewer series a change is tried before every pair."""
 
@@ -179,50 +170,6 @@ def _accumulated(decay: Array, gain: Array, restart: Flags) -> Array:
     return np.array(states)
 
 
-def friction_power(table: EffectTable, heads: PairHeads) -> Array:
-    """Return the mean friction power from each pair to the next.
-
-    Parameters
-    ----------
-    table : EffectTable
-        Pairs and angle bins.
-    heads : PairHeads
-        Positions of its pairs.
-
-    Returns
-    -------
-    ndarray, shape (pairs - 1,)
-        Mean power, relative to the reference of the table's friction power. [-]
-
-    Notes
-    -----
-    A recorded move dissipates its measured friction times its speed. Motion between pairs is often
-    not recorded: while the motor warms, the joint is assumed to move all the time at the highest
-    recorded speed, as in a heating programme; and to stand otherwise, as between the moves of a
-    series.
-    """
-    run, time = table.run[heads.first], table.time[heads.first]
-    moved, speed = heads.mean(table.friction_power), table.speed[heads.first]
-    motor = table.motor_temperature[heads.first]
-    stroke = 2 * (heads.maximum(table.position) - heads.minimum(table.position))
-    level = np.zeros(max(len(time) - 1, 0))
-    begins = np.flatnonzero(starts(run))
-    for begin, end in zip(begins, np.append(begins[1:], len(time)), strict=True):
-        t, own = time[begin:end], moved[begin:end]
-        middle, duration = (t[1:] + t[:-1]) / 2, np.diff(t)
-        fastest = speed[begin:end] > _FASTEST * speed[begin:end].max()
-        fast = np.interp(middle, t[fastest], own[fastest])
-        recorded = stroke[begin:end] / speed[begin:end]
-        recorded = np.clip((recorded[1:] + recorded[:-1]) / 2, 0.0, duration)
-        later = np.interp(middle + _HALF_WINDOW, t, motor[begin:end])
-        earlier = np.interp(middle - _HALF_WINDOW, t, motor[begin:end])
-        idle = duration - recorded
-        unrecorded = np.where((later > earlier) & (idle > _TURNING), idle, 0.0)
-        total = recorded * (own[1:] + own[:-1]) / 2 + unrecorded * fast
-        level[begin : end - 1] = np.divide(total, duration, where=duration > 0, out=0 * duration)
-    return level
-
-
 def measured_share(table: EffectTable) -> Array:
     """Return the share of all pairs that were measured before each row's pair, by the clock."""
     heads = pair_heads(table)
@@ -285,6 +232,24 @@ def turning_points(table: EffectTable, *, distance: float) -> tuple[Array, Array
         1 at the reversal. [-]
     """
     heads = pair_heads(table)
+    return _decays(table, heads, reversals(table, heads), distance)
+
+
+def reversals(table: EffectTable, heads: PairHeads) -> tuple[Array, Array]:
+    """Return the angles between which the joint turns, as :func:`turning_points` takes them.
+
+    Parameters
+    ----------
+    table : EffectTable
+        Pairs and angle bins.
+    heads : PairHeads
+        Positions of its pairs.
+
+    Returns
+    -------
+    lowest, highest : ndarray, shape (pairs,)
+        Angles of the reversals. [deg]
+    """
     lowest, highest = heads.minimum(table.position), heads.maximum(table.position)
     run = table.run[heads.first]
     for number in np.unique(run):
@@ -293,7 +258,7 @@ def turning_points(table: EffectTable, *, distance: float) -> tuple[Array, Array
         cut_low, cut_high = lowest - least, most - highest
         same = chosen & (np.abs(cut_low - cut_high) < _CUT_ALIKE)
         lowest[same], highest[same] = least, most
-    return _decays(table, heads, (lowest, highest), distance)
+    return lowest, highest
 
 
 def _decays(

@@ -29,10 +29,10 @@ import numpy as np
 
 from frictioncli.arrays import Array, Flags
 from frictioncli.effects.base import Basis, Effect, EffectTable, Parameter, Signature, friction_only
+from frictioncli.effects.friction_heat import friction_power
 from frictioncli.effects.pair_series import (
     first_order_lag,
     first_order_response,
-    friction_power,
     pair_heads,
     starts,
 )

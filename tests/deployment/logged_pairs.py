@@ -4,7 +4,8 @@ import numpy as np
 
 from frictioncli.diagnosis.data.build_problem import simulated
 from frictioncli.diagnosis.data.gravity import stated_gravity
-from frictioncli.effects.pair_series import friction_power, pair_heads
+from frictioncli.effects.friction_heat import friction_power
+from frictioncli.effects.pair_series import pair_heads
 
 
 def pairs_of(rows, added):

@@ -28,7 +28,8 @@ from frictioncli.diagnosis.documents.apply_extension import (
 from frictioncli.diagnosis.documents.extended_model import ExtendedModel, FittedEffect
 from frictioncli.documents import decode, to_json
 from frictioncli.effects import BY_NAME
-from frictioncli.effects.pair_series import friction_power, pair_heads
+from frictioncli.effects.friction_heat import friction_power
+from frictioncli.effects.pair_series import pair_heads
 from frictioncli.model.friction import PUBLISHED
 from tests.correction.models import published_model
 from tests.deployment.joints import LAG, effect
