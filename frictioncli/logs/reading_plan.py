@@ -7,6 +7,7 @@ from frictioncli.errors import OptionError
 from frictioncli.logs.channels.channel_map import ChannelMap
 from frictioncli.logs.channels.joint_plan import JointPlan, plan_joint
 from frictioncli.logs.channels.survey import survey
+from frictioncli.logs.channels.torque_choice import choose_torques
 from frictioncli.logs.log_source import Refusal
 from frictioncli.logs.runs.opening import OpenedLog, RefusedLog
 from frictioncli.logs.samples.chunks import PlannedLog, plan_log
@@ -74,7 +75,8 @@ def _plans_of_layout(
             f"gear ratio {ratio:g} is given, but {first.file.path} has joints {joints};"
             " expected one joint: choose it with --joint"
         )
-    found = [plan_joint(joint, surveyed, forced=forced, gear_ratio=ratio) for joint in first.joints]
+    chosen = choose_torques(first.joints, surveyed)
+    found = [plan_joint(joint, surveyed, forced=forced, gear_ratio=ratio) for joint in chosen]
     plans = [plan for plan in found if isinstance(plan, JointPlan)]
     refusals = [plan for plan in found if isinstance(plan, Refusal)]
     if not plans:

@@ -33,6 +33,8 @@ class JointChannels:
         Position on the other side of the gear; the two positions determine the gear ratio.
     motor_temperature, housing_temperature, load : LogChannel or None
         Further columns.
+    other_torques : tuple of LogChannel
+        Further torques and motor currents.
     notes : tuple of str
         Columns and joints that are not used.
     """
@@ -46,6 +48,7 @@ class JointChannels:
     motor_temperature: LogChannel | None = None
     housing_temperature: LogChannel | None = None
     load: LogChannel | None = None
+    other_torques: tuple[LogChannel, ...] = ()
     notes: tuple[str, ...] = ()
 
 
@@ -135,6 +138,7 @@ def _joint_channels(
         motor_temperature=_first(_by_preference(usable, MOTOR_TEMPERATURE)),
         housing_temperature=_first(_by_preference(usable, HOUSING_TEMPERATURE)),
         load=_first(_by_preference(of_joint, LOAD)),
+        other_torques=tuple(torques[1:]),
         notes=tuple(notes),
     )
 
