@@ -21,6 +21,7 @@ from frictioncli.pairs.slices import (
     slice_offsets,
     true_runs,
 )
+from frictioncli.pairs.speed_steps import flat_parts, is_step, parts_left, window_samples
 
 REASONS = ("standing", "accelerating", "settling", "constant speed too short")
 """Reasons why samples are in no constant-speed segment."""
@@ -110,25 +111,56 @@ def constant_speed_segments(
     start, stop, move = _between_dips(velocity, move_start, move_stop, settings)
     speed = _smoothed_speed(time, total, move_start, move_stop, width)
     begin, end, candidate = _plateaus(speed, start, stop, settings)
+    window = window_samples(time, move_start, move_stop)[move]
+    begin, end, candidate = _with_steps(
+        speed, start, stop, window, (begin, end, candidate), settings
+    )
     # from samples of moves end to end to samples of the recording
     shift = (move_start - slice_offsets(length))[move]
     low, high = _bounds(start + shift, stop + shift, move, move_start, move_stop)
     begin, end, move = begin + shift[candidate], end + shift[candidate], move[candidate]
+    # the steps of a staircase have no ramps from rest and to rest
+    several = np.bincount(candidate, minlength=len(start))[candidate] > 1
+    low = np.where(several, begin, low[candidate])
+    high = np.where(several, end, high[candidate])
     settled, margin = _trimmed(time, begin, end, width[move], settings)
     long_enough = margin - settled >= settings.min_samples
     held = int(np.sum(end - begin))
     too_short = int(np.sum((end - begin)[~long_enough]))
-    settled, margin, candidate = (x[long_enough] for x in (settled, margin, candidate))
+    settled, margin, low, high = (x[long_enough] for x in (settled, margin, low, high))
     steady = int(np.sum(margin - settled))
     lost = (0, int(length.sum()) - held, held - too_short - steady, too_short)
     return ConstantSpeedSegments(
         start=settled,
         stop=margin,
         speed=slice_means(velocity, settled, margin),
-        move_start=low[candidate],
-        move_stop=high[candidate],
+        move_start=low,
+        move_stop=high,
         dropped=dict(zip(REASONS, lost, strict=True)),
     )
+
+
+def _with_steps(
+    speed: Array,
+    start: Numbers,
+    stop: Numbers,
+    window: Numbers,
+    plateaus: tuple[Numbers, Numbers, Numbers],
+    settings: SteadySettings,
+) -> tuple[Numbers, Numbers, Numbers]:
+    """Return the plateaus with those that are left in candidates of several speeds, in order."""
+    first, last, owner = parts_left(start, stop, *plateaus)
+    flat_start, flat_stop, part = flat_parts(speed, first, last, window[owner], settings)
+    if not len(flat_start):
+        return plateaus
+    begin, end, which = _plateaus(speed, flat_start, flat_stop, settings)
+    candidate = owner[part[which]]
+    kept = end - begin >= 2 * window[candidate]
+    kept &= is_step(speed, begin, end, start[candidate], stop[candidate], settings)
+    found = (begin[kept], end[kept], candidate[kept])
+    together = [np.concatenate(both) for both in zip(plateaus, found, strict=True)]
+    order = np.argsort(together[0], kind="stable")
+    return together[0][order], together[1][order], together[2][order]
 
 
 def _smoothed_speed(

@@ -23,6 +23,9 @@ BEFORE, AFTER = 0.25, 0.6
 MOST = 128
 """Starts of a run and joint that are kept, at most."""
 
+_FROM_REST = 0.25
+"""A move that begins above this share of its speed does not start there."""
+
 SLOWEST_SAMPLING = 0.03
 """Sampling period above which a start shows nothing of a delay. [s]"""
 
@@ -90,7 +93,9 @@ class StartCounts:
         before = self.counts.get(joint, 0)
         self.counts[joint] = before + len(segments.start)
         number = np.arange(before, self.counts[joint])
-        chosen = np.flatnonzero(number % self.stride(joint) == 0)
+        at_rest = np.abs(channels["velocity"][segments.move_start])
+        from_rest = at_rest <= _FROM_REST * np.abs(segments.speed)
+        chosen = np.flatnonzero((number % self.stride(joint) == 0) & from_rest)
         start, stop = segments.move_start[chosen], segments.move_stop[chosen]
         low = np.maximum(start - samples_in(BEFORE, period), 0)
         high = np.minimum(start + samples_in(AFTER, period), stop)
