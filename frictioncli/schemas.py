@@ -1,6 +1,6 @@
 """Schemas of the tables that the stages exchange: rows, columns, types and units."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import pyarrow as pa
 
@@ -134,12 +134,22 @@ _PAIR_COLUMNS = (
     _of(q.PAYLOAD, nullable=True),
 )
 
+_ONE_DIRECTION = ("torque_forward", "torque_reverse")
+
 PAIRS = Table("pairs", "pair and angle bin", _PAIR_COLUMNS)
 
 TORQUES = Table(
     "torques",
     "pair and angle bin",
-    (*_PAIR_COLUMNS, _of(q.FRICTION_TORQUE), _of(q.LOAD_TORQUE)),
+    (
+        *(
+            # a regression also uses bins that the joint passes in one direction only
+            replace(column, nullable=True) if column.name in _ONE_DIRECTION else column
+            for column in _PAIR_COLUMNS
+        ),
+        _of(q.FRICTION_TORQUE),
+        _of(q.LOAD_TORQUE),
+    ),
 )
 
 RAMPS = Table(

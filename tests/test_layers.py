@@ -17,7 +17,7 @@ LAYERS = [
     {"workfolder"},
     {"report"},
     {"inspection", "design", "deployment", "comparison"},
-    {"correction", "diagnosis"},
+    {"correction", "diagnosis", "regression"},
     {"model", "effects"},
     {"pairs", "logs", "simulator"},
     {"tables", "documents"},

@@ -1,0 +1,293 @@
+"""Which parameters the motion determines, which it does not, and when it tells nothing at all."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from frictioncli.arrays import Array
+from frictioncli.errors import NotEnoughData
+from frictioncli.regression.dissipation import friction_sign
+from frictioncli.regression.equation import (
+    EquationTerms,
+    JointEquations,
+    friction_columns,
+    load_torque,
+)
+from frictioncli.regression.estimate import RegressionEstimate
+from frictioncli.regression.identification import identify
+from frictioncli.regression.preparation import PreparedJoint
+
+LEAST_ROWS = 100
+"""Least rows for a regression: 5 s of motion, at the usual width of the filter."""
+
+_LEAST_TEMPERATURE_SPAN = 10.0
+"""Least span of temperature from which gamma and delta are told, as in the fit. [°C]"""
+
+_LEAST_SPEED_RATIO = 1.5
+"""Least ratio of the 95 % to the 5 % quantile of speed that tells viscous friction."""
+
+_LEAST_ANGLE_SPAN = 20.0
+"""Angles that span less do not tell gravity's amplitude, but its torque there. [deg]"""
+
+_SIGNIFICANT = 3.0
+"""Standard deviations from 0 from which a delay is believed."""
+
+_VAGUE = 0.5
+"""Friction whose half interval exceeds this share of it is not determined."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class JointRegression:
+    """A regression of one joint, with what it determines.
+
+    Attributes
+    ----------
+    prepared : PreparedJoint
+        Its rows.
+    estimate : RegressionEstimate
+        Its parameters, friction terms with the sign of the log.
+    sign : int
+        +1 where the log holds load plus friction while moving forward, -1 where the difference.
+    undetermined : dict of str to str
+        Parameters that were not fitted or are not told, with the reason.
+    friction : dict of float to (float, float, float)
+        Friction without load, with its 95 % interval, by speed in deg/s. [torque unit]
+    temperature : float or None
+        Temperature of that friction. [°C]
+    """
+
+    prepared: PreparedJoint
+    estimate: RegressionEstimate
+    sign: int
+    undetermined: dict[str, str]
+    friction: dict[float, tuple[float, float, float]]
+    temperature: float | None
+
+    @property
+    def equations(self) -> JointEquations:
+        """The rows."""
+        return self.prepared.equations
+
+    def load(self) -> Array:
+        """Return gravity, measured load and offset at each row."""
+        one = self.estimate
+        return load_torque(self.equations, one.terms, one.load_coefficients, one.delay)
+
+    def modelled_friction(self) -> Array:
+        """Return the friction of the model at each row, positive against the motion."""
+        one = self.estimate
+        columns = friction_columns(
+            self.equations, one.terms, one.squared_load, one.parameters.get("delta", 0.0), one.delay
+        )
+        coefficients = np.array([one.parameters[name] for name in one.terms.friction])
+        return np.asarray(self.sign * self.equations.direction * (columns @ coefficients))
+
+
+def regress(prepared: PreparedJoint, joint: int, sign: int | None = None) -> JointRegression:
+    """Fit the parameters that the motion of a joint determines.
+
+    Parameters
+    ----------
+    prepared : PreparedJoint
+        Rows of the joint.
+    joint : int
+        Its number, for messages.
+    sign : {+1, -1}, optional
+        Sign convention of the log; found from the data where not given.
+
+    Returns
+    -------
+    JointRegression
+        The fit.
+
+    Raises
+    ------
+    NotEnoughData
+        If there is too little motion, the torque holds no friction, or friction is not told from
+        load and inertia.
+    """
+    equations = prepared.equations
+    if len(equations.rows) < LEAST_ROWS:
+        dropped = ", ".join(f"{reason}: {n}" for reason, n in prepared.dropped.items() if n)
+        raise NotEnoughData(
+            f"joint {joint}: {len(equations.rows)} stretches of motion of"
+            f" {_row_time(equations):.2g} s for a regression ({dropped}), expected at least"
+            f" {LEAST_ROWS}; log longer moves"
+        )
+    terms, undetermined = _by_excitation(prepared)
+    estimate = identify(equations, terms)
+    if "delay" in estimate.parameters and not _told(estimate, "delay"):
+        terms = _without_delay(terms)
+        estimate = identify(equations, terms)
+    if "alpha" in terms.friction:
+        # a load that hardly varies would let it hold anything
+        fewer = _without_vague_load(estimate, 0, undetermined)
+        estimate = estimate if fewer is None else identify(equations, fewer)
+    direction = friction_sign(equations, estimate, joint, sign)
+    while True:
+        fewer = _by_interval(equations, estimate, direction, undetermined)
+        if fewer is None:
+            break
+        estimate = identify(equations, fewer)
+    found = JointRegression(
+        prepared=prepared,
+        estimate=estimate,
+        sign=direction,
+        undetermined=undetermined,
+        friction=_friction_at(equations, estimate, direction),
+        temperature=_temperature(equations, terms),
+    )
+    _refuse(found, joint)
+    return found
+
+
+def _row_time(equations: JointEquations) -> float:
+    rows = equations.rows
+    return 2 * float(np.sqrt(3 * rows.variance[0])) if len(rows) else 0.05
+
+
+def _by_excitation(prepared: PreparedJoint) -> tuple[EquationTerms, dict[str, str]]:
+    """Return the terms that spans of temperature, speed and angle excite."""
+    equations, terms = prepared.equations, prepared.terms
+    undetermined: dict[str, str] = {}
+    if "gamma" not in terms.friction:
+        reason = "the log has no motor temperature; merged with beta"
+        undetermined |= {"gamma": reason, "delta": reason}
+    elif (span := float(np.ptp(equations.temperature))) < _LEAST_TEMPERATURE_SPAN:
+        reason = f"temperature spans {span:.1f} °C, at least 10 °C are needed; merged with beta"
+        undetermined |= {"gamma": reason, "delta": reason}
+        terms = terms.without("gamma")
+    low, high = np.quantile(np.abs(equations.velocity), [0.05, 0.95]).tolist()
+    if high < _LEAST_SPEED_RATIO * low:
+        reason = f"speeds of {low:.3g} to {high:.3g} deg/s do not tell viscous friction"
+        undetermined["beta"] = f"{reason}; merged into tau_c"
+        terms = terms.without("beta")
+    if not terms.offset:
+        reason = "motion in one direction only; what is constant counts as friction"
+        undetermined["offset"] = reason
+    span = float(np.ptp(equations.rows.position))
+    if span < _LEAST_ANGLE_SPAN:
+        undetermined["gravity"] = f"angle spans {span:.1f} deg; its torque there is still told"
+    return terms, undetermined
+
+
+def _without_delay(terms: EquationTerms) -> EquationTerms:
+    return EquationTerms(
+        friction=terms.friction,
+        offset=terms.offset,
+        gravity=terms.gravity,
+        load_channel=terms.load_channel,
+        delay=False,
+        payloads=terms.payloads,
+    )
+
+
+def _told(estimate: RegressionEstimate, name: str) -> bool:
+    return abs(estimate.parameters[name]) > _SIGNIFICANT * estimate.deviation(name)
+
+
+def _without_vague_load(
+    estimate: RegressionEstimate, sign: int, undetermined: dict[str, str]
+) -> EquationTerms | None:
+    """Return the terms without that of the load, if it may be zero or negative; else none."""
+    low, high = sorted((sign or 1) * bound for bound in estimate.interval("alpha"))
+    if low > 0 or (not sign and high < 0):
+        return None
+    load = np.sqrt(estimate.squared_load)
+    undetermined["alpha"] = (
+        f"load spans {load.min():.3g} to {load.max():.3g}, too little to show in the"
+        f" friction ({low:.2g} to {high:.2g}); left out (0)"
+    )
+    return estimate.terms.without("alpha")
+
+
+def _by_interval(
+    equations: JointEquations,
+    estimate: RegressionEstimate,
+    sign: int,
+    undetermined: dict[str, str],
+) -> EquationTerms | None:
+    """Return the terms without one that the data do not determine; none if all are."""
+    terms = estimate.terms
+    if "alpha" in terms.friction:
+        fewer = _without_vague_load(estimate, sign, undetermined)
+        if fewer is not None:
+            return fewer
+    if "delta" in estimate.parameters:
+        half = estimate.quantile() * estimate.deviation("delta")
+        if half >= estimate.parameters["delta"] or estimate.parameters["gamma"] * sign <= 0:
+            if "beta" in terms.friction and estimate.parameters["gamma"] * sign > 0:
+                undetermined["beta"] = (
+                    "the fall with temperature is too little curved to tell beta from gamma;"
+                    " fixed at 0"
+                )
+                return terms.without("beta")
+            reason = "the data do not show that friction falls with temperature; left out (0)"
+            undetermined |= {"gamma": reason, "delta": reason}
+            restored = tuple(n for n in ("tau_c", "alpha", "beta") if n in terms.friction)
+            if "beta" not in restored and "beta" in undetermined:
+                undetermined.pop("beta")
+                restored = (*restored, "beta")
+            order = [n for n in ("tau_c", "alpha", "beta") if n in restored]
+            return EquationTerms(
+                friction=tuple(order),
+                offset=terms.offset,
+                gravity=terms.gravity,
+                load_channel=terms.load_channel,
+                delay=terms.delay,
+                payloads=terms.payloads,
+            )
+    return None
+
+
+def _temperature(equations: JointEquations, terms: EquationTerms) -> float | None:
+    known = "gamma" in terms.friction or bool(np.any(equations.temperature))
+    return float(np.median(equations.temperature)) if known else None
+
+
+def _friction_at(
+    equations: JointEquations, estimate: RegressionEstimate, sign: int
+) -> dict[float, tuple[float, float, float]]:
+    """Return friction without load at three speeds of the log, with its interval."""
+    found = {}
+    delta = estimate.parameters.get("delta", 0.0)
+    cold = float(np.exp(-delta * np.median(equations.temperature)))
+    temperature = float(np.median(equations.temperature))
+    for speed in np.quantile(np.abs(equations.velocity), [0.1, 0.5, 0.9]).tolist():
+        root = float(np.sqrt(speed))
+        gamma = estimate.parameters.get("gamma", 0.0)
+        slopes = {
+            "tau_c": 1.0,
+            "beta": root,
+            "gamma": root * cold,
+            "delta": -temperature * gamma * root * cold,
+        }
+        gradient = np.array([slopes.get(name, 0.0) for name in estimate.names])
+        value = sign * sum(
+            estimate.parameters[name] * slopes[name]
+            for name in ("tau_c", "beta", "gamma")
+            if name in estimate.parameters
+        )
+        variance = float(gradient @ estimate.covariance @ gradient)
+        half = estimate.quantile() * float(np.sqrt(max(variance, 0.0)))
+        found[speed] = (value, value - half, value + half)
+    return found
+
+
+def _refuse(found: JointRegression, joint: int) -> None:
+    """Refuse friction that is not told from load and inertia, or that predicts nothing."""
+    speed, (value, low, _) = list(found.friction.items())[1]
+    if value - low > _VAGUE * abs(value):
+        raise NotEnoughData(
+            f"joint {joint}: friction is not told from load and inertia"
+            f" ({value:.3g} ± {value - low:.2g} at {speed:.3g} deg/s, condition number"
+            f" {found.estimate.condition:.3g}); log motion in both directions over the same angles"
+        )
+    modelled = found.modelled_friction()
+    spread = float(np.sqrt(np.mean(np.square(modelled))))
+    if found.estimate.held_out > 2 * spread:
+        raise NotEnoughData(
+            f"joint {joint}: torque predicted for stretches that were left out errs by"
+            f" {found.estimate.held_out:.3g} RMS, more than the friction of {spread:.3g}: the log"
+            " holds other torques than inertia, gravity and friction of this joint"
+        )

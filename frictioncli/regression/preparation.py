@@ -1,0 +1,227 @@
+"""Rows that may enter the regression of a joint, and those that may not, counted by reason."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+import pandas as pd
+
+from frictioncli.arrays import Array, Flags, Numbers
+from frictioncli.pairs.other_joints import OTHER_MOVES
+from frictioncli.pairs.settings import SteadySettings
+from frictioncli.regression.equation import EquationTerms, JointEquations
+from frictioncli.regression.filters import STEP_TIMES, matched_filters
+from frictioncli.regression.motion_rows import MotionLog, MotionRows
+
+SLOW = "slower than friction's law holds"
+AFTER_REVERSAL = "just after a start or reversal"
+NO_TEMPERATURE = "no motor temperature"
+NO_LOAD = "no measured load"
+
+_SLOWEST_SHARE = 0.01
+"""Rows slower than this share of the highest speed are left out: the joint may stick."""
+
+_PRESLIDING = 0.5
+"""Way after a reversal within which friction builds up. [deg]"""
+
+_MOST_WITH_OTHERS = 0.5
+"""Share of rows during motion of other joints above which they are kept, as by pairing."""
+
+_CONSISTENT = 0.02
+"""Share by which logged velocity and slope of the position may differ."""
+
+_NOISY = 2e-4
+"""Share of noise in the variance of the acceleration above which a wider filter is taken."""
+
+_KNOWN = 0.9
+"""A load channel with values in this share of rows is used."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class PreparedJoint:
+    """Equations of a joint, and what was left out and noticed on the way.
+
+    Attributes
+    ----------
+    equations : JointEquations
+        The rows that remain.
+    terms : EquationTerms
+        The terms that the log can have at all.
+    dropped : dict of str to int
+        Samples that are in no row, by reason.
+    notes : tuple of str
+        What a user should know.
+    other_share : float
+        Share of the rows during motion of other joints, where they were kept; else 0.
+    """
+
+    equations: JointEquations
+    terms: EquationTerms
+    dropped: dict[str, int]
+    notes: tuple[str, ...] = ()
+    other_share: float = 0.0
+
+
+def prepare(motion: MotionLog, payload: pd.Series | None = None) -> PreparedJoint:
+    """Choose the rows and the source of the acceleration.
+
+    Parameters
+    ----------
+    motion : MotionLog
+        Rows of the joint.
+    payload : Series, optional
+        Payload by run and recording, missing where unknown. [kg]
+
+    Returns
+    -------
+    PreparedJoint
+        Equations for the regression; there may be none left.
+    """
+    rows = motion.rows()
+    dropped, notes = dict(motion.dropped), []
+    from_position, consistent = _source(motion, rows)
+    if not consistent:
+        notes.append(
+            "position and velocity of the log contradict each other: speed and acceleration are"
+            " taken from the velocity, and gravity is not to be trusted"
+        )
+    carried = np.full(len(motion.recordings), np.nan)
+    if payload is not None:
+        keys = pd.MultiIndex.from_tuples(motion.recordings, names=["run", "recording"])
+        carried = payload.reindex(keys).to_numpy(float)
+
+    def leave_out(reason: str, unfit: Flags) -> None:
+        nonlocal rows
+        if unfit.any():
+            dropped[reason] = dropped.get(reason, 0) + int(rows.samples[unfit].sum())
+            rows = rows.where(~unfit)
+
+    shared = np.nan_to_num(rows.other_speed) > 0
+    share = float(shared.mean()) if len(rows) else 0.0
+    if 0 < share <= _MOST_WITH_OTHERS:
+        leave_out(OTHER_MOVES, shared)
+        share = 0.0
+    elif share:
+        notes.append(
+            f"other joints move in {share:.0%} of the motion; friction holds what they add"
+        )
+    speed = np.abs(_velocity(rows, from_position))
+    fastest = float(np.quantile(speed, 0.99)) if len(rows) else 0.0
+    slowest = max(SteadySettings().min_speed, _SLOWEST_SHARE * fastest)
+    leave_out(SLOW, speed < slowest)
+    leave_out(AFTER_REVERSAL, rows.travel < _PRESLIDING)
+    known = np.isfinite(rows.motor_temperature)
+    if known.any():
+        leave_out(NO_TEMPERATURE, ~known)
+    measured = np.isfinite(rows.load)
+    has_load = bool(len(rows)) and float(measured.mean()) >= _KNOWN
+    if has_load:
+        leave_out(NO_LOAD, ~measured)
+    payloads, number = _payload_numbers(carried[rows.recording.astype(np.int64)])
+    equations = JointEquations(
+        rows=rows,
+        speed_from_position=from_position,
+        temperature=np.nan_to_num(rows.motor_temperature),
+        payload=number,
+    )
+    terms = EquationTerms(
+        offset=len(np.unique(equations.direction)) > 1,
+        gravity=bool(len(rows)) and float(np.ptp(rows.position)) > 1.0,
+        load_channel=has_load,
+        payloads=payloads,
+    )
+    if not known.any():
+        terms = terms.without("gamma")
+    return PreparedJoint(
+        equations=equations, terms=terms, dropped=dropped, notes=tuple(notes), other_share=share
+    )
+
+
+def with_wide_enough_filter(
+    read: Callable[[float], dict[int, MotionLog]],
+) -> dict[int, MotionLog]:
+    """Return the rows of each joint with the narrowest filter whose acceleration has little noise.
+
+    Noise of the acceleration would make the inertia too small, and leave inertial torque to the
+    friction.
+
+    Parameters
+    ----------
+    read : callable
+        Reads the log and makes rows with filters of a given width [s].
+
+    Returns
+    -------
+    dict of int to MotionLog
+        Motion by joint.
+    """
+    found: dict[int, MotionLog] = {}
+    for step_time in STEP_TIMES:
+        for joint, motion in read(step_time).items():
+            if joint not in found or noise_share(found[joint]) > _NOISY:
+                found[joint] = motion
+        if all(noise_share(motion) <= _NOISY for motion in found.values()):
+            break
+    return found
+
+
+def noise_share(motion: MotionLog) -> float:
+    """Return the share of noise in the variance of the acceleration of a joint.
+
+    Parameters
+    ----------
+    motion : MotionLog
+        Its rows.
+    """
+    rows = motion.rows()
+    from_position, _ = _source(motion, rows)
+    return _noise_shares(motion, rows)[0 if from_position else 1]
+
+
+def _noise_shares(motion: MotionLog, rows: MotionRows) -> tuple[float, float]:
+    """Return the share of noise in accelerations from positions and from velocities."""
+    if len(rows) < 2:
+        return 0.0, 0.0
+    of_position, of_velocity = (
+        noise**2 / max(float(np.var(acceleration)), 1e-300)
+        for noise, acceleration in zip(
+            _acceleration_noise(motion), (rows.acceleration, rows.velocity_slope), strict=True
+        )
+    )
+    return of_position, of_velocity
+
+
+def _acceleration_noise(motion: MotionLog) -> tuple[float, float]:
+    """Return the noise of the acceleration from positions and from velocities [deg/s²]."""
+    filters = matched_filters(max(motion.step, 1), motion.period or 1.0)
+    position, velocity = motion.noise
+    return (
+        position * float(np.linalg.norm(filters.curvature)),
+        velocity * float(np.linalg.norm(filters.slope)),
+    )
+
+
+def _source(motion: MotionLog, rows: MotionRows) -> tuple[bool, bool]:
+    """Return whether acceleration is that of positions, and whether both channels agree."""
+    square = float(rows.position_slope @ rows.position_slope)
+    if square <= 0:
+        return False, True
+    ratio = float(rows.velocity @ rows.position_slope) / square
+    if abs(ratio - 1) > _CONSISTENT:
+        return False, False
+    # a velocity that is itself smoothed or late is second choice
+    of_position, of_velocity = _noise_shares(motion, rows)
+    return of_position <= max(of_velocity, _NOISY), True
+
+
+def _velocity(rows: MotionRows, from_position: bool) -> Array:
+    return rows.position_slope if from_position else rows.velocity
+
+
+def _payload_numbers(payload: Array) -> tuple[tuple[float, ...], Numbers]:
+    """Return the payloads that occur, unknown last, and the number of each row's."""
+    known = np.isfinite(payload)
+    values = np.unique(payload[known])
+    number = np.where(known, np.searchsorted(values, payload), len(values))
+    listed = [*values.tolist(), *([] if known.all() and len(values) else [float("nan")])]
+    return tuple(listed), np.asarray(number, dtype=np.int64)

@@ -1,0 +1,181 @@
+"""Friction and load torque of joints by regression: rows of the table ``torques`` from samples."""
+
+from collections.abc import Callable, Collection, Iterable, Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import pandas as pd
+import pyarrow as pa
+
+from frictioncli.errors import NotEnoughData
+from frictioncli.pairs.other_joints import OTHER_MOVES
+from frictioncli.regression.cells import torque_cells
+from frictioncli.regression.determination import regress
+from frictioncli.regression.motion_rows import MotionLog, motion_rows
+from frictioncli.regression.preparation import PreparedJoint, prepare, with_wide_enough_filter
+from frictioncli.regression.text import regression_facts, regression_text
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class RegressedTorques:
+    """Torques of joints by regression.
+
+    Attributes
+    ----------
+    table : DataFrame
+        Rows of :data:`frictioncli.schemas.TORQUES`, by joint, run, pair and angle.
+    signs : dict of int to int
+        Sign convention of each joint.
+    facts : dict of int to dict
+        What each regression found.
+    texts : tuple of str
+        Text per joint, also on those that were refused.
+    samples : int
+        Samples read, of all joints that were regressed.
+    dropped : dict of str to int
+        Samples in no row of the table, by reason.
+    """
+
+    table: pd.DataFrame
+    signs: dict[int, int]
+    facts: dict[int, Mapping[str, Any]]
+    texts: tuple[str, ...]
+    samples: int
+    dropped: dict[str, int]
+
+
+def torques_by_regression(
+    read: Callable[[], Iterable[pa.RecordBatch]],
+    *,
+    bin_width: float = 5.0,
+    sign: int | None = None,
+    joints: Collection[int] | None = None,
+    manifest: pd.DataFrame | None = None,
+    units: tuple[str, str] = ("N·m", "N·m"),
+    with_other_joints: bool = True,
+) -> RegressedTorques:
+    r"""Return friction and load torque of any motion by regression of all samples.
+
+    Parameters
+    ----------
+    read : callable
+        Returns the batches of a table of samples from its start; called once or a few times.
+    bin_width : float
+        Width of the angle bins. [deg]
+    sign : {+1, -1}, optional
+        Sign convention of the logs; found per joint where not given.
+    joints : collection of int, optional
+        Joints to regress; all where not given.
+    manifest : DataFrame, optional
+        Phase and payload by run and recording.
+    units : (str, str)
+        Units of torque and of a measured load, for the texts.
+    with_other_joints : bool
+        Whether a joint is regressed that moves mostly while others move.
+
+    Returns
+    -------
+    RegressedTorques
+        The torques, and what was found on the way.
+
+    Raises
+    ------
+    NotEnoughData
+        If no joint can be regressed, with the reason of each.
+
+    Notes
+    -----
+    With friction of equation (16) of [1]_ the regression is of
+
+    .. math::
+
+        u = J \ddot\varphi + a \cos\varphi + b \sin\varphi + c \pm
+        \operatorname{sign}(\dot\varphi) \tau(\dot\varphi, L, T)
+
+    by variable projection [2]_. Its inertia, and where the opposite direction is missing its
+    gravity, are subtracted from the torque [3]_; what remains is friction as it was measured, and
+    keeps what equation (16) does not explain.
+
+    References
+    ----------
+    .. [1] M. N. Nevmerzhitskiy, B. S. Notkin, A. V. Vara, and K. V. Zmeu, "Friction model of
+       industrial robot joint with temperature correction by example of KUKA KR10," J. Robotics,
+       2019, doi:10.1155/2019/6931563.
+    .. [2] G. H. Golub and V. Pereyra, "The differentiation of pseudo-inverses and nonlinear least
+       squares problems whose variables separate," SIAM J. Numer. Anal. 10(2), 1973,
+       doi:10.1137/0710036.
+    .. [3] J. Swevers, W. Verdonck, and J. De Schutter, "Dynamic model identification for industrial
+       robots," IEEE Control Systems 27(5), 2007, doi:10.1109/MCS.2007.904659.
+
+    Examples
+    --------
+    A joint that swings at 0.3 Hz, with 5 + 2 sqrt(v) N·m of friction and 3 kg·m² of inertia:
+
+    >>> import numpy as np
+    >>> import pyarrow as pa
+    >>> time = np.arange(0, 120, 0.01)
+    >>> phase = 2 * np.pi * 0.3 * time
+    >>> velocity = 40 * 0.6 * np.pi * np.cos(phase)
+    >>> friction = np.sign(velocity) * (5 + 2 * np.sqrt(np.abs(velocity)))
+    >>> inertial = -3 * np.radians(40 * (0.6 * np.pi) ** 2 * np.sin(phase))
+    >>> samples = pa.table({
+    ...     "run": np.repeat("day", len(time)), "recording": np.repeat("log", len(time)),
+    ...     "joint": np.ones(len(time), int), "time": time, "position": 40 * np.sin(phase),
+    ...     "velocity": velocity, "torque": friction + inertial})
+    >>> found = torques_by_regression(samples.to_batches)
+    >>> row = found.table[found.table["speed"] > 60].iloc[0]
+    >>> abs(row["friction_torque"] - 5 - 2 * np.sqrt(row["speed"])) < 0.1
+    np.True_
+    """
+    motions = with_wide_enough_filter(lambda width: motion_rows(read(), step_time=width))
+    payload = None if manifest is None else manifest["payload"]
+    phase = None if manifest is None else manifest["phase"]
+    tables, texts, faults = [], [], []
+    signs: dict[int, int] = {}
+    facts: dict[int, Mapping[str, Any]] = {}
+    dropped: dict[str, int] = {}
+    samples = 0
+    for joint, motion in motions.items():
+        if joints is not None and joint not in joints:
+            continue
+        try:
+            prepared = _prepared(joint, motion, payload, with_other_joints=with_other_joints)
+            found = regress(prepared, joint, sign)
+        except NotEnoughData as fault:
+            faults.append(str(fault))
+            continue
+        cells = torque_cells(found, motion, joint, bin_width, phase)
+        if cells.table.empty:
+            faults.append(f"joint {joint}: no speed and angle is passed often enough")
+            continue
+        samples += motion.samples
+        for reason, count in [*prepared.dropped.items(), *cells.dropped.items()]:
+            dropped[reason] = dropped.get(reason, 0) + count
+        tables.append(cells.table)
+        signs[joint] = found.sign
+        facts[joint] = regression_facts(found, cells, *units)
+        texts.append(regression_text(joint, found, cells, *units))
+    if not tables:
+        raise NotEnoughData("; ".join(faults) or "no samples of a joint that moves")
+    return RegressedTorques(
+        table=pd.concat(tables, ignore_index=True),
+        signs=signs,
+        facts=facts,
+        texts=(*texts, *faults),
+        samples=samples,
+        dropped=dropped,
+    )
+
+
+def _prepared(
+    joint: int, motion: MotionLog, payload: pd.Series | None, *, with_other_joints: bool
+) -> PreparedJoint:
+    """Return the rows of a joint; refuse one that moves with others, unless that is allowed."""
+    prepared = prepare(motion, payload)
+    if prepared.other_share and not with_other_joints:
+        raise NotEnoughData(
+            f"joint {joint}: {OTHER_MOVES} in {prepared.other_share:.0%} of its motion, and the"
+            " weight and inertia of the others act on it; log it alone, or try"
+            " 'frictioncli separate --by regression', whose friction then holds what they add"
+        )
+    return prepared
