@@ -215,9 +215,23 @@ def sign_conventions(batches: Iterable[pa.RecordBatch], sign: int | None = None)
     NotEnoughData
         If the runs of a joint contradict each other in sign.
     """
+    return signs_of(half_differences(batches), sign)
+
+
+def signs_of(
+    found: Mapping[int, Mapping[str, HalfDifferences]], sign: int | None = None
+) -> dict[int, int]:
+    """Return the same from half differences, as :func:`half_differences` gives them.
+
+    Parameters
+    ----------
+    found : mapping of int to mapping of str to HalfDifferences
+        Half differences by joint and run.
+    sign : {+1, -1}, optional
+        As of :func:`sign_conventions`, with its errors.
+    """
     if sign not in (None, 1, -1):
         raise OptionError(f"sign {sign}: expected +1 or -1")
-    found = half_differences(batches)
     return {joint: sign or inferred_sign(joint, found[joint]) for joint in sorted(found)}
 
 

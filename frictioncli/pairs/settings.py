@@ -101,17 +101,32 @@ def sign_number(text: str) -> int | None:
     return _SIGNS[text]
 
 
+WAYS = ("auto", "pairs", "regression")
+"""How friction torque may be separated from load torque."""
+
+
 @dataclass(frozen=True, slots=True, kw_only=True)
 class SeparationSettings:
     """How friction torque is separated from load torque.
 
     Attributes
     ----------
+    by : {"auto", "pairs", "regression"}
+        ``pairs``: by equation (8) in pairs of moves at constant speed. ``regression``: by
+        regression of all samples in motion. ``auto``: the former, and the latter for a joint of
+        which too few pairs were found.
     sign : {1, -1} or None
         Sign of friction in forward motion. 1: torque is load + friction; -1: load - friction;
         None: found from the data.
     """
 
+    by: str = field(
+        default="auto",
+        metadata=option(
+            "How: pairs of moves at constant speed, regression of all motion, or auto: regression"
+            " where pairs are too few."
+        ),
+    )
     sign: int | None = field(
         default=None,
         metadata=option(
@@ -121,3 +136,7 @@ class SeparationSettings:
             convert=sign_number,
         ),
     )
+
+    def __post_init__(self) -> None:
+        if self.by not in WAYS:
+            raise OptionError(f"--by {self.by}: expected {', '.join(WAYS)}")

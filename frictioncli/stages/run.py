@@ -15,7 +15,7 @@ from frictioncli.stages.separate import separate
 from frictioncli.stages.settings import RunSettings
 from frictioncli.stages.simulate import simulate
 from frictioncli.stages.stage import StageResult
-from frictioncli.workfiles import DIAGNOSIS, EVALUATION, EXTENDED, SCHEDULE
+from frictioncli.workfiles import DIAGNOSIS, EVALUATION, EXTENDED, PAIRS, RAMPS, SCHEDULE, STARTS
 from frictioncli.workfolder import locked
 
 Progress = Callable[[str, StageResult], None]
@@ -86,8 +86,7 @@ def analyse(
         for name in (DIAGNOSIS, EXTENDED):
             (work / name).unlink(missing_ok=True)
         progress("ingest", ingest(logs, work, settings.ingest))
-        progress("pair", pair(work, settings.pairing))
-        progress("separate", separate(work, settings.separation))
+        _separate(work, settings, progress)
         progress("fit", fit(work, settings.fit))
         for stage, output, call in _optional_stages(work, settings):
             try:
@@ -96,6 +95,26 @@ def analyse(
                 (work / output).unlink(missing_ok=True)
                 result = StageResult(work / output, f"left out: {fault}")
             progress(stage, result)
+
+
+def _separate(work: Path, settings: RunSettings, progress: Progress) -> None:
+    """Pair moves and separate friction; without pairs by regression of all motion."""
+    separation, width = settings.separation, settings.pairing.bin_width
+    try:
+        progress("pair", pair(work, settings.pairing))
+    except NotEnoughData as fault:
+        if separation.by == "pairs":
+            raise
+        for name in (PAIRS, RAMPS, STARTS):
+            (work / name).unlink(missing_ok=True)
+        progress("pair", StageResult(work / PAIRS, f"left out: {fault}"))
+        try:
+            result = separate(work, separation, bin_width=width)
+        except NotEnoughData as other:
+            raise NotEnoughData(f"{fault}; by regression neither: {other}") from None
+    else:
+        result = separate(work, separation, bin_width=width)
+    progress("separate", result)
 
 
 def _optional_stages(

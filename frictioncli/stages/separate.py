@@ -1,48 +1,163 @@
 """Separation of friction and load: ``separate``."""
 
+from collections.abc import Collection, Iterator, Mapping
 from dataclasses import asdict
 from pathlib import Path
 
+import pyarrow as pa
+import pyarrow.compute as pc
+
 from frictioncli import schemas, tables
-from frictioncli.pairs.separation import TorqueRanges, separation_text, sign_conventions
+from frictioncli.errors import NotEnoughData
+from frictioncli.model.fitting import LEAST_PAIRS
+from frictioncli.pairs.pair_tables import read_phase_and_payload
+from frictioncli.pairs.separation import (
+    HalfDifferences,
+    TorqueRanges,
+    half_differences,
+    separation_text,
+    signs_of,
+)
 from frictioncli.pairs.separation import separate as separate_pairs
-from frictioncli.pairs.settings import SeparationSettings
+from frictioncli.pairs.settings import PairingSettings, SeparationSettings
 from frictioncli.provenance import Provenance, input_hashes
-from frictioncli.stages.stage import StageResult, stage
-from frictioncli.workfiles import PAIRS, TORQUES
+from frictioncli.regression.separation import RegressedTorques, torques_by_regression
+from frictioncli.stages.stage import StageResult, existing, stage
+from frictioncli.wording import count_text
+from frictioncli.workfiles import PAIRS, RECORDINGS, SAMPLES, TORQUES
+
+PAIRED, REGRESSED = "pairs", "regression"
 
 
 @stage
-def separate(work: Path, settings: SeparationSettings | None = None) -> StageResult:
-    """Separate friction torque from load torque by equation (8): ``torques.parquet``.
+def separate(
+    work: Path, settings: SeparationSettings | None = None, *, bin_width: float | None = None
+) -> StageResult:
+    """Separate friction torque from load torque: ``torques.parquet``.
+
+    By equation (8) where a joint has pairs of moves, else by regression of all its motion; the fact
+    ``separated_by`` of the table says which.
 
     Parameters
     ----------
     work : Path
-        Work folder with ``pairs.parquet``.
+        Work folder with ``pairs.parquet``, or ``samples.parquet``, or both.
     settings : SeparationSettings, optional
-        Sign of friction.
+        Way of the separation, and sign of friction.
+    bin_width : float, optional
+        Width of the regression's angle bins; that of the pairs where not given. [deg]
 
     Raises
     ------
     NotEnoughData
-        If runs of a joint contradict each other in the sign of friction.
+        If runs of a joint contradict each other in the sign of friction, or motion does not
+        suffice for a regression.
     TableError
         If a table is missing or damaged.
     """
     settings = settings or SeparationSettings()
+    pairs = work / PAIRS
+    alone = settings.by == REGRESSED or (
+        settings.by == "auto" and not pairs.exists() and (work / SAMPLES).exists()
+    )
+    if alone:
+        return _write(work, settings, {}, _regressed(work, settings, bin_width), [])
+    found = half_differences(tables.batches(pairs, schemas.PAIRS))
+    few = {} if settings.by == PAIRED else _with_few_pairs(work, found)
+    regressed, texts = None, []
+    if few:
+        counts = ", ".join(f"{count_text(n, 'pair')} of joint {joint}" for joint, n in few.items())
+        try:
+            regressed = _regressed(work, settings, bin_width, joints=few)
+            texts.append(f"too few pairs ({counts}): by regression")
+        except NotEnoughData as fault:
+            texts.append(f"too few pairs ({counts}), and no regression: {fault}")
+    others = {
+        joint: values
+        for joint, values in found.items()
+        if regressed is None or joint not in regressed.signs
+    }
+    return _write(work, settings, others, regressed, texts)
+
+
+def _with_few_pairs(
+    work: Path, found: Mapping[int, Mapping[str, HalfDifferences]]
+) -> dict[int, int]:
+    """Return the joints with too few pairs for a fit, and their numbers, if there are samples."""
+    if not (work / SAMPLES).exists():
+        return {}
+    counts = {joint: sum(one.count for one in runs.values()) for joint, runs in found.items()}
+    return {joint: count for joint, count in counts.items() if count < LEAST_PAIRS}
+
+
+def _regressed(
+    work: Path,
+    settings: SeparationSettings,
+    bin_width: float | None,
+    joints: Collection[int] | None = None,
+) -> RegressedTorques:
+    """Return the torques of joints by regression of all samples of the work folder."""
+    source, pairs = work / SAMPLES, work / PAIRS
+    if bin_width is None:
+        known = tables.facts(pairs).get("bin_width") if pairs.exists() else None
+        bin_width = float(known or PairingSettings().bin_width)
+    return torques_by_regression(
+        lambda: tables.prefetch(tables.batches(source, schemas.SAMPLES)),
+        bin_width=bin_width,
+        sign=settings.sign,
+        joints=joints,
+        manifest=read_phase_and_payload(work / RECORDINGS),
+        units=(str(tables.facts(source).get("torque_unit", "N·m")), "N·m"),
+        with_other_joints=settings.by == REGRESSED,
+    )
+
+
+def _write(
+    work: Path,
+    settings: SeparationSettings,
+    paired: Mapping[int, Mapping[str, HalfDifferences]],
+    regressed: RegressedTorques | None,
+    texts: list[str],
+) -> StageResult:
+    """Write the table of torques from pairs of some joints and regressions of others."""
     source = work / PAIRS
-    facts = tables.facts(source)
-    signs = sign_conventions(tables.batches(source, schemas.PAIRS), settings.sign)
+    signs = signs_of(paired, settings.sign)
+    by_pairs = dict(signs)
+    facts = tables.facts(source if paired else work / SAMPLES)
+    inputs = existing(*([source] if paired else []))
+    if regressed is not None:
+        signs |= regressed.signs
+        inputs += existing(work / SAMPLES, work / RECORDINGS)
+        facts["regression"] = {str(joint): one for joint, one in regressed.facts.items()}
+        if not paired:
+            facts |= {"samples": regressed.samples, "dropped": regressed.dropped}
+        texts += regressed.texts
     facts["sign"] = {str(joint): value for joint, value in signs.items()}
-    provenance = Provenance("separate", asdict(settings), input_hashes([source]))
+    facts["separated_by"] = {
+        str(joint): PAIRED if joint in by_pairs else REGRESSED for joint in signs
+    }
+    provenance = Provenance("separate", asdict(settings), input_hashes(inputs))
     ranges = TorqueRanges()
     with tables.TableWriter(work / TORQUES, schemas.TORQUES, provenance) as torques:
-        pairs = tables.prefetch(tables.batches(source, schemas.PAIRS))
-        for rows in ranges.update(separate_pairs(batch, signs) for batch in pairs):
+        for rows in ranges.update(_rows(source, by_pairs, regressed)):
             torques.write(rows)
         facts |= {"load_unit": "N·m"} if ranges.load_is_measured else {}
         torques.facts = facts
-    return StageResult(
-        work / TORQUES, separation_text(ranges, signs, facts, given=settings.sign is not None)
-    )
+    text = separation_text(ranges, by_pairs, facts, given=settings.sign is not None)
+    return StageResult(work / TORQUES, "\n".join([*([text] if text else []), *texts]))
+
+
+def _rows(
+    source: Path, by_pairs: Mapping[int, int], regressed: RegressedTorques | None
+) -> Iterator[pa.RecordBatch]:
+    """Yield the rows of pairs, then those of regressions."""
+    if by_pairs:
+        for batch in tables.prefetch(tables.batches(source, schemas.PAIRS)):
+            own = batch
+            if regressed is not None:
+                numbers = pa.array(list(by_pairs), type=pa.int16())
+                own = batch.filter(pc.is_in(batch.column("joint"), numbers))
+            if own.num_rows:
+                yield separate_pairs(own, by_pairs)
+    if regressed is not None:
+        yield from pa.Table.from_pandas(regressed.table, preserve_index=False).to_batches()
