@@ -12,7 +12,7 @@ from frictioncli.report.page_tables import TextTable
 from frictioncli.report.quality_ratings import IngestCounts
 from frictioncli.report.results import JointResults, WorkFolderResults
 from frictioncli.wording import count_text, in_words, thousands_text
-from frictioncli.workfiles import PAIRS
+from frictioncli.workfiles import PAIRS, TORQUES
 
 _MOST_INPUTS = 200
 
@@ -111,7 +111,9 @@ def data_section(results: WorkFolderResults) -> DataSection:
 
 
 def _pairing_facts(results: WorkFolderResults) -> Mapping[str, Any]:
-    return dict(results.metadata.get(PAIRS, {}).get("facts", {}))
+    """Return the facts of the pairs, or of the torques where they come from no pairs."""
+    source = PAIRS if PAIRS in results.metadata else TORQUES
+    return dict(results.metadata.get(source, {}).get("facts", {}))
 
 
 def _unusable_files(rejected: pd.DataFrame) -> int:
