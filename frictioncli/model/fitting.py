@@ -11,10 +11,9 @@ from frictioncli.model.identifiability import Determination, at_bound, determine
 from frictioncli.model.identification import Estimate
 from frictioncli.model.observations import observations
 from frictioncli.model.paper_method import consecutive_fit
-from frictioncli.model.settings import FitSettings
+from frictioncli.model.settings import LEAST_PAIRS, FitSettings
 
-LEAST_PAIRS = 3
-"""Least number of pairs for a fit."""
+__all__ = ["LEAST_PAIRS", "fit_joint"]
 
 
 def fit_joint(torques: pd.DataFrame, facts: dict[str, Any], settings: FitSettings) -> FrictionModel:

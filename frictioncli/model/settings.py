@@ -8,6 +8,9 @@ from frictioncli.options import option
 METHODS = ("joint", "paper")
 TEMPERATURES = ("motor", "housing", "mean")
 
+LEAST_PAIRS = 3
+"""Least number of pairs for a fit."""
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class FitSettings:

@@ -52,7 +52,7 @@ def torques_by_regression(
     joints: Collection[int] | None = None,
     manifest: pd.DataFrame | None = None,
     units: tuple[str, str] = ("N·m", "N·m"),
-    with_other_joints: bool = True,
+    doubtful: bool = True,
 ) -> RegressedTorques:
     r"""Return friction and load torque of any motion by regression of all samples.
 
@@ -70,8 +70,9 @@ def torques_by_regression(
         Phase and payload by run and recording.
     units : (str, str)
         Units of torque and of a measured load, for the texts.
-    with_other_joints : bool
-        Whether a joint is regressed that moves mostly while others move.
+    doubtful : bool
+        Whether a joint is regressed that moves mostly while others move, or in one direction only;
+        its friction then holds what the others add, or the offset of the torque.
 
     Returns
     -------
@@ -139,7 +140,7 @@ def torques_by_regression(
         if joints is not None and joint not in joints:
             continue
         try:
-            prepared = _prepared(joint, motion, payload, with_other_joints=with_other_joints)
+            prepared = _prepared(joint, motion, payload, doubtful=doubtful)
             found = regress(prepared, joint, sign)
         except NotEnoughData as fault:
             faults.append(str(fault))
@@ -168,14 +169,19 @@ def torques_by_regression(
 
 
 def _prepared(
-    joint: int, motion: MotionLog, payload: pd.Series | None, *, with_other_joints: bool
+    joint: int, motion: MotionLog, payload: pd.Series | None, *, doubtful: bool
 ) -> PreparedJoint:
-    """Return the rows of a joint; refuse one that moves with others, unless that is allowed."""
+    """Return the rows of a joint; refuse those that are doubtful, unless that is allowed."""
     prepared = prepare(motion, payload)
-    if prepared.other_share and not with_other_joints:
+    if prepared.other_share and not doubtful:
         raise NotEnoughData(
             f"joint {joint}: {OTHER_MOVES} in {prepared.other_share:.0%} of its motion, and the"
             " weight and inertia of the others act on it; log it alone, or try"
             " 'frictioncli separate --by regression', whose friction then holds what they add"
+        )
+    if len(prepared.equations.rows) and not prepared.terms.offset and not doubtful:
+        raise NotEnoughData(
+            f"joint {joint}: motion in one direction only, in which an offset of the torque counts"
+            " as friction; log both directions, or try 'frictioncli separate --by regression'"
         )
     return prepared

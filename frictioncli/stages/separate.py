@@ -3,13 +3,14 @@
 from collections.abc import Collection, Iterator, Mapping
 from dataclasses import asdict
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import pyarrow as pa
 import pyarrow.compute as pc
 
 from frictioncli import schemas, tables
 from frictioncli.errors import NotEnoughData
-from frictioncli.model.fitting import LEAST_PAIRS
+from frictioncli.model.settings import LEAST_PAIRS
 from frictioncli.pairs.pair_tables import read_phase_and_payload
 from frictioncli.pairs.separation import (
     HalfDifferences,
@@ -21,10 +22,12 @@ from frictioncli.pairs.separation import (
 from frictioncli.pairs.separation import separate as separate_pairs
 from frictioncli.pairs.settings import PairingSettings, SeparationSettings
 from frictioncli.provenance import Provenance, input_hashes
-from frictioncli.regression.separation import RegressedTorques, torques_by_regression
 from frictioncli.stages.stage import StageResult, existing, stage
 from frictioncli.wording import count_text
 from frictioncli.workfiles import PAIRS, RECORDINGS, SAMPLES, TORQUES
+
+if TYPE_CHECKING:
+    from frictioncli.regression.separation import RegressedTorques
 
 PAIRED, REGRESSED = "pairs", "regression"
 
@@ -95,8 +98,11 @@ def _regressed(
     settings: SeparationSettings,
     bin_width: float | None,
     joints: Collection[int] | None = None,
-) -> RegressedTorques:
+) -> "RegressedTorques":
     """Return the torques of joints by regression of all samples of the work folder."""
+    # it imports scipy, which a separation of pairs does not need
+    from frictioncli.regression.separation import torques_by_regression
+
     source, pairs = work / SAMPLES, work / PAIRS
     if bin_width is None:
         known = tables.facts(pairs).get("bin_width") if pairs.exists() else None
@@ -108,7 +114,7 @@ def _regressed(
         joints=joints,
         manifest=read_phase_and_payload(work / RECORDINGS),
         units=(str(tables.facts(source).get("torque_unit", "N·m")), "N·m"),
-        with_other_joints=settings.by == REGRESSED,
+        doubtful=settings.by == REGRESSED,
     )
 
 
@@ -116,7 +122,7 @@ def _write(
     work: Path,
     settings: SeparationSettings,
     paired: Mapping[int, Mapping[str, HalfDifferences]],
-    regressed: RegressedTorques | None,
+    regressed: "RegressedTorques | None",
     texts: list[str],
 ) -> StageResult:
     """Write the table of torques from pairs of some joints and regressions of others."""
@@ -148,7 +154,7 @@ def _write(
 
 
 def _rows(
-    source: Path, by_pairs: Mapping[int, int], regressed: RegressedTorques | None
+    source: Path, by_pairs: Mapping[int, int], regressed: "RegressedTorques | None"
 ) -> Iterator[pa.RecordBatch]:
     """Yield the rows of pairs, then those of regressions."""
     if by_pairs:

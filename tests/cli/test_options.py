@@ -72,7 +72,10 @@ def pairing(place):
 
 
 def separation(place):
-    return {"--sign": ("-1", f"{place}.sign", -1)}
+    return {
+        "--by": ("regression", f"{place}.by", "regression"),
+        "--sign": ("-1", f"{place}.sign", -1),
+    }
 
 
 def identification(place):

@@ -164,6 +164,24 @@ def test_a_joint_that_moves_with_others_is_regressed_only_when_told(tmp_path):
     assert "friction holds what they add" in str(separate(work, REGRESSION))
 
 
+def test_one_direction_is_regressed_only_when_told(tmp_path):
+    generator = np.random.default_rng(26)
+    time = np.arange(0, 60, 0.01)
+    rate = 2 * np.pi * 0.1
+    motion = (
+        time,
+        50 * time + 30 / rate * np.sin(rate * time),
+        50 + 30 * np.cos(rate * time),
+        -30 * rate * np.sin(rate * time),
+    )
+    torque = programmes.torque(motion) + generator.normal(0, 0.3, len(time))
+    work = tmp_path / "work"
+    write_samples(work, programmes.samples(motion, torque))
+    with pytest.raises(NotEnoughData, match="motion in one direction only"):
+        separate(work)
+    assert "not determined: offset: motion in one direction only" in str(separate(work, REGRESSION))
+
+
 @pytest.mark.slow
 def test_both_ways_agree_on_a_simulated_joint(tmp_path):
     """Logs of the simulator, with noise from pair to pair: the same friction by both ways."""
