@@ -67,16 +67,10 @@ MEASUREMENT_EFFECTS: tuple[Effect, ...] = (
     backlash.EFFECT,
     sensor_lag.EFFECT,
 )
-"""Effects of kind ``measurement``, in the order of reports."""
+"""Effects of kind ``measurement``, in the order of reports.
 
-BASE_MEASUREMENT: tuple[Effect, ...] = (
-    load_offset.EFFECT,
-    torque_delay.EFFECT,
-    torque_filter.EFFECT,
-    backlash.EFFECT,
-)
-"""Those that stand beside the base model from the start. A lag of the sensor does not: it is told
-from a lag of the gear only by its sign."""
+They stand beside the base model from the start, so that no other effect explains what they do. A
+lag of the sensor has the opposite sign of a lag of the gear, and takes nothing of it."""
 
 BY_NAME: Mapping[str, Effect] = MappingProxyType(
     {effect.name: effect for effect in (*EFFECTS, *MEASUREMENT_EFFECTS)}

@@ -7,7 +7,7 @@ import pytest
 
 from frictioncli.diagnosis.diagnose import diagnose_joint
 from frictioncli.diagnosis.settings import DiagnosisSettings
-from frictioncli.effects import BASE_MEASUREMENT, BY_NAME
+from frictioncli.effects import BY_NAME
 from frictioncli.quantities import TORQUE
 from frictioncli.simulator.settings import SynthesisSettings
 from tests.simulation.torque_table import simulate_torques
@@ -67,7 +67,7 @@ def keeps_the_rules(diagnosis):
         assert cause.test.p_value < 0.05
         assert low <= cause.visible <= high
         # of the measurement the whole torque counts, of other causes what the base leaves
-        whole = cause.size / cause.visible if fit.effect in BASE_MEASUREMENT else 1.0
+        whole = cause.size / cause.visible if fit.effect.measurement else 1.0
         assert diagnosis.margin < whole * low
         assert within_its_bounds(problem, fit), fit
         assert np.diag(fit.covariance).any()
@@ -88,7 +88,7 @@ def keeps_the_rules(diagnosis):
         assert cause.standing in ("visible", "negligible", "undetermined")
         assert cause.reason
         if cause.standing == "negligible":
-            whole = cause.size / cause.visible if cause.fit.effect in BASE_MEASUREMENT else 1.0
+            whole = cause.size / cause.visible if cause.fit.effect.measurement else 1.0
             assert whole * cause.visible_interval[1] < diagnosis.margin
     names = [cause.fit.effect.name for cause in (*diagnosis.causes, *diagnosis.visible)]
     assert len(set(names)) == len(names)

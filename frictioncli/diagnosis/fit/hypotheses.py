@@ -231,7 +231,7 @@ class HypothesisTest:
         margin : float, optional
             Smallest size worth a name. [N·m]
         smooth : float, optional
-            Standard deviation of the discrepancy along the effect. [N·m]
+            Standard deviation of discrepancy that the covariance does not contain. [N·m]
 
         Returns
         -------

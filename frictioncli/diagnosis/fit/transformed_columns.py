@@ -31,25 +31,6 @@ class NoiseModels:
         time, strength = self.indices[number]
         return np.asarray(1 + STRENGTHS[strength] * self.spectra[channel].spectra[time].values)
 
-    def drift_along(self, channel: int, number: int, scale: float, sums: Array) -> float:
-        """Return the standard deviation of the drift's inner product with a torque [(N·m)²].
-
-        Parameters
-        ----------
-        channel, number : int
-            Channel and noise model.
-        scale : float
-            Scale of the noise model. [(N·m)²]
-        sums : ndarray, shape (pairs,)
-            Sums of the torque over each pair. [N·m]
-        """
-        time, strength = self.indices[number]
-        spectra = self.spectra[channel]
-        spectrum = spectra.spectra[time]
-        modes = spectra.modes(spectrum, sums * np.sqrt(spectra.profile))
-        variance = scale * STRENGTHS[strength]
-        return float(np.sqrt(variance * np.sum(spectrum.values * np.square(modes))))
-
     def determinants(self, channel: int) -> Array:
         """Return the logarithm of the determinant of each noise model, shape (noise models,)."""
         return np.array(

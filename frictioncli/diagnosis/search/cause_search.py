@@ -23,13 +23,14 @@ from frictioncli.diagnosis.noise.significance import (
 from frictioncli.diagnosis.ramps.evidence import RampEvidence, with_ramp_evidence
 from frictioncli.diagnosis.search.catalogue import Catalogue
 from frictioncli.diagnosis.search.cause import CONVINCING, Cause
-from frictioncli.diagnosis.search.effect_size import left_size, random_part, sizes_of
+from frictioncli.diagnosis.search.effect_size import left_size, other_form, sizes_of
 from frictioncli.diagnosis.search.measurement import measurement_causes, possible_effects
 from frictioncli.diagnosis.search.precomputed import Precomputed
+from frictioncli.diagnosis.search.rivals import rival_log_bayes_factors
 from frictioncli.diagnosis.search.standing import beyond_bounds
 from frictioncli.diagnosis.search.step import Step, free_coefficients
 from frictioncli.diagnosis.settings import DiagnosisSettings
-from frictioncli.effects import BASE_MEASUREMENT, BY_NAME, sensor_lag
+from frictioncli.effects import BY_NAME, MEASUREMENT_EFFECTS
 from frictioncli.effects.base import Effect, applicable
 
 _LEAST_SHARE = 0.5
@@ -91,7 +92,7 @@ class SearchResult:
         for effect in effects:
             if effect.name in tests:
                 expected = replace(tests[effect.name].effect_fit(effect), variances=None)
-                smooth = random_part(self.step.precomputed, expected)
+                smooth = other_form(self.step.precomputed, expected)
                 size = tests[effect.name].detectable_size(alpha / count, margin, smooth)
                 found[effect.name] = size
         return found
@@ -122,12 +123,12 @@ def find_causes(
     discrepancy : float, optional
         RMS of the discrepancy that is expected, relative to the mean friction; 0 for none.
     """
-    beside = applicable(BASE_MEASUREMENT, problem.table)
+    beside = applicable(MEASUREMENT_EFFECTS, problem.table)
     precomputed = Precomputed.of(problem, beside, discrepancy)
     while len(possible := possible_effects(precomputed, beside)) < len(beside):
         beside = possible
         precomputed = Precomputed.of(problem, beside, discrepancy)
-    tried = applicable((*effects, sensor_lag.EFFECT), problem.table)
+    tried = applicable(effects, problem.table)
     hypotheses = [hypothesis_of(effect, problem) for effect in tried]
     search = _Search(precomputed, Catalogue.of(precomputed, hypotheses), settings, margin, ramps)
     accepted: list[EffectFit] = []
@@ -259,9 +260,8 @@ def _cause(search: _Search, accepted: Sequence[EffectFit], number: int) -> Cause
     step, tests = search.tested(others)
     fit = step.refined(one)
     own = tests[one.effect.name]
-    factors = {name: test.log_bayes_factor for name, test in tests.items()}
-    factors[own.name] = own.refined_log_bayes_factor(fit)
-    share = posterior_probabilities(factors)
+    factor = own.refined_log_bayes_factor(fit)
+    share = posterior_probabilities(rival_log_bayes_factors(step, fit, factor, tests))
     return Cause(
         fit=fit,
         test=own,

@@ -8,7 +8,9 @@ from frictioncli.arrays import Array
 from frictioncli.diagnosis.fit.hypotheses import EffectFit
 from frictioncli.diagnosis.fit.left_by_base import Z95, left_by, visible_size
 from frictioncli.diagnosis.search.precomputed import Precomputed
-from frictioncli.effects import BASE_MEASUREMENT
+
+_OTHER_FORM = 0.5
+"""Share of the discrepancy along an effect that the assumed covariance does not account for."""
 
 
 def sizes_of(known: Precomputed, fit: EffectFit) -> dict[str, Any]:
@@ -33,38 +35,28 @@ def rms_size(known: Precomputed, fit: EffectFit) -> float:
 def left_size(known: Precomputed, fit: EffectFit) -> tuple[float, float, float]:
     """Return the RMS that the base leaves of an effect, and its 95 % interval [N·m].
 
-    The interval contains what discrepancy and drift of the same form would contribute.
+    Noise and discrepancy count with the covariance that is assumed of them, and so do not count
+    where the effect stands out of them by its form. Real discrepancy has not exactly the assumed
+    form; so a part of what it would contribute with the form of the effect counts besides.
     """
     left = _left(known, fit)
     size, low, high = visible_size(left, fit.coefficients, fit.covariance)
-    if fit.effect in BASE_MEASUREMENT:
+    if fit.effect.measurement:
         return size, low, high
-    below, above = np.hypot([size - low, high - size], Z95 * random_part(known, fit))
+    beyond = Z95 * other_form(known, fit)
+    below, above = np.hypot([size - low, high - size], beyond)
     return size, max(float(size - below), 0.0), float(size + above)
 
 
-def random_part(known: Precomputed, fit: EffectFit) -> float:
-    """Return the standard deviation of discrepancy and drift along an effect [N·m].
+def other_form(known: Precomputed, fit: EffectFit) -> float:
+    """Return the standard deviation of discrepancy of another form than assumed [N·m].
 
-    It is the RMS that a part of them with the form of the effect would have: what the base leaves
-    of the effect cannot be known better than that.
+    Along an effect, as the RMS of what the base leaves of it.
     """
     left = _left(known, fit)
     torque = left @ fit.coefficients if fit.coefficients.any() else left.sum(axis=1)
     variances = known.start if fit.variances is None else fit.variances
-    row_pair = known.problem.layout.row_pair
-    drift = [
-        known.noises.drift_along(
-            channel,
-            variances.noise[channel],
-            variances.between[channel],
-            np.bincount(row_pair, weights=values).astype(float),
-        )
-        for channel, values in enumerate(np.split(torque, 2))
-    ]
-    length = max(float(np.linalg.norm(torque)), 1e-300)
-    drifting = float(np.hypot(drift[0], drift[1])) / length / float(np.sqrt(len(torque) / 2))
-    return float(np.hypot(known.discrepancy.along(torque, variances.amplitude), drifting))
+    return _OTHER_FORM * known.discrepancy.along(torque, variances.amplitude)
 
 
 def _left(known: Precomputed, fit: EffectFit) -> Array:
@@ -73,5 +65,5 @@ def _left(known: Precomputed, fit: EffectFit) -> Array:
     Of an effect of the measurement that stands beside the base, what the base alone leaves.
     """
     basis = known.problem.basis(fit.effect, fit.shape)
-    span = known.span_of_base if fit.effect in BASE_MEASUREMENT else known.span
+    span = known.span_of_base if fit.effect.measurement else known.span
     return left_by(span, basis)

@@ -10,7 +10,6 @@ from frictioncli.diagnosis.data.problem import Problem
 from frictioncli.diagnosis.fit.columns import main_channel
 from frictioncli.diagnosis.fit.hypotheses import EffectFit, physical_bounds
 from frictioncli.diagnosis.search.cause import CONVINCING, Cause
-from frictioncli.effects import BASE_MEASUREMENT
 
 _Z95 = 1.96
 
@@ -57,7 +56,7 @@ def with_standing(
 def _judged(cause: Cause, problem: Problem, margin: float, alpha: float) -> Cause:
     low, high = cause.visible_interval
     left = "the base leaves"
-    if cause.fit.effect in BASE_MEASUREMENT and cause.visible > 0:
+    if cause.fit.effect.measurement and cause.visible > 0:
         low, high = (cause.size / cause.visible * bound for bound in (low, high))
         left = "there is"
     if not (cause.test.p_value < alpha and cause.test.log_bayes_factor > CONVINCING):

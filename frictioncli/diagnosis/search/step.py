@@ -187,7 +187,7 @@ class Step:
         """
         effect, axes = found.effect, found.effect.shape
         if not axes:
-            return self._effect_fit(effect, found.shape)
+            return self.fitted(effect, found.shape)
         if effect.moments is not None:
             return self._refined_change(found)
         null = evaluate(
@@ -217,7 +217,7 @@ class Step:
                 "fatol": 5e-2,
             },
         )
-        return self._effect_fit(effect, shape_at(search.x))
+        return self.fitted(effect, shape_at(search.x))
 
     def _refined_change(self, found: EffectFit) -> EffectFit:
         """Return a change with its moments moved to single pairs.
@@ -241,7 +241,7 @@ class Step:
         if found.shape in effect.shapes(self.problem.all_runs):
             starts.append(refined(found.shape, self.precomputed.start))
         shapes = [found.shape, *(refined(shape, suited) for shape in starts)]
-        fits = [self._effect_fit(effect, shape) for shape in shapes]
+        fits = [self.fitted(effect, shape) for shape in shapes]
         return max(fits, key=lambda one: one.statistic)
 
     def _gain(self, effect: Effect, shape: dict[str, float], null: MixedFit) -> float:
@@ -249,7 +249,7 @@ class Step:
         alone = Catalogue.of(self.precomputed, [hypothesis_of(effect, self.problem, [shape])])
         return float(screened(alone, 0, self.columns, null).gain[0])
 
-    def _effect_fit(self, effect: Effect, shape: dict[str, float]) -> EffectFit:
+    def fitted(self, effect: Effect, shape: dict[str, float]) -> EffectFit:
         """Return an effect fitted at one shape, the variance components with it."""
         variances = self._fit_with(effect, shape).variances
         null = evaluate(self.components, self.products, self.known, variances)

@@ -1,0 +1,47 @@
+"""Rivals of a cause: effects that explain what it explains."""
+
+from collections.abc import Mapping
+
+from frictioncli.diagnosis.fit.hypotheses import EffectFit, HypothesisTest
+from frictioncli.diagnosis.search.step import Step
+from frictioncli.effects import BY_NAME
+
+_NEARLY = 5.0
+"""Log Bayes factor below that of a cause at which another effect is too improbable to matter."""
+
+_KEPT = 0.5
+"""Share of its test statistic that a cause keeps beside an effect that explains something else."""
+
+
+def rival_log_bayes_factors(
+    step: Step, own: EffectFit, factor: float, tests: Mapping[str, HypothesisTest]
+) -> dict[str, float]:
+    """Return the log Bayes factors of a cause and of the effects that may stand for it, by name.
+
+    Another effect that is as certain is no rival if the cause is needed beside it, too: it explains
+    something else.
+
+    Parameters
+    ----------
+    step : Step
+        Base and the other causes.
+    own : EffectFit
+        The cause, fitted there.
+    factor : float
+        Its log Bayes factor.
+    tests : mapping of str to HypothesisTest
+        Tests of all effects there.
+    """
+    return {own.effect.name: factor} | {
+        name: one.log_bayes_factor
+        for name, one in tests.items()
+        if name != own.effect.name
+        and (one.log_bayes_factor < factor - _NEARLY or _explains(step, own, one))
+    }
+
+
+def _explains(step: Step, own: EffectFit, rival: HypothesisTest) -> bool:
+    """Return whether a cause is hardly needed beside a rival."""
+    instead = step.refined(rival.effect_fit(BY_NAME[rival.name]))
+    beside = Step.of(step.precomputed, [*step.accepted, instead])
+    return beside.fitted(own.effect, own.shape).statistic < _KEPT * own.statistic
