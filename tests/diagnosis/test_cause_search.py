@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from frictioncli.diagnosis.fit.hypotheses import EffectFit, hypothesis_of
-from frictioncli.diagnosis.search import cause_search
+from frictioncli.diagnosis.search import cause_search, rivals
 from frictioncli.diagnosis.search.catalogue import Catalogue
 from frictioncli.diagnosis.search.cause_search import find_causes
 from frictioncli.diagnosis.search.precomputed import Precomputed
@@ -20,16 +20,14 @@ SETTINGS = DiagnosisSettings()
 MARGIN = 0.1
 """Smallest size worth a name. [N·m]"""
 
-ALWAYS = {"sensor_lag"}
-"""Effects that are tested whatever the catalogue."""
-
 
 @pytest.fixture
 def catalogue(monkeypatch):
     """Make the search know other effects than those of the catalogue."""
 
     def known(*effects):
-        monkeypatch.setattr(cause_search, "BY_NAME", {one.name: one for one in effects})
+        for module in (cause_search, rivals):
+            monkeypatch.setattr(module, "BY_NAME", {one.name: one for one in effects})
         return effects
 
     return known
@@ -49,7 +47,7 @@ def test_causes_are_found_one_after_another_and_the_strongest_comes_first(catalo
         assert cause.size == pytest.approx(size / np.sqrt(2), rel=0.06)
         assert cause.effects == (cause.fit.effect.name,)
         assert cause.test.p_value < 1e-6
-    assert set(found.rejected) - ALWAYS == {"b"}
+    assert set(found.rejected) == {"b"}
     assert [fit.effect.name for fit in found.step.accepted] == ["c", "a"]
 
 
@@ -57,7 +55,7 @@ def test_nothing_is_found_in_noise(catalogue):
     effects = catalogue(*THREE)
     found = find_causes(problem(9), effects, SETTINGS, MARGIN)
     assert found.causes == ()
-    assert set(found.rejected) - ALWAYS == {"a", "b", "c"}
+    assert set(found.rejected) == {"a", "b", "c"}
 
 
 def test_no_more_causes_than_wanted(catalogue):
@@ -149,6 +147,23 @@ def test_a_single_effect_is_not_tested_again(catalogue):
     search = search_of(problem(13), catalogue(only, other))
     fits = [effect_fit(only, 7.0)]
     assert search.retested(fits) == fits
+
+
+def test_what_explains_something_else_is_no_rival_however_certain_it_is(catalogue):
+    """Two waves that are orthogonal, and a twin of the first."""
+    twin = effect("twin", [(1.0, A), (0.01, C)])
+    effects = catalogue(*THREE, twin)
+    data = problem(6, friction=lambda rows: 0.3 * A(rows) + 0.6 * B(rows))
+    precomputed = Precomputed.of(data)
+    step = Step.of(precomputed, [])
+    tests = step.tested(Catalogue.of(precomputed, [hypothesis_of(one, data) for one in effects]))
+    own = step.refined(tests["a"].effect_fit(THREE[0]))
+    factor = tests["a"].log_bayes_factor
+    assert tests["b"].log_bayes_factor > factor
+    found = rivals.rival_log_bayes_factors(step, own, factor, tests)
+    assert found["a"] == factor
+    assert "b" not in found
+    assert found.get("twin") == tests["twin"].log_bayes_factor
 
 
 def test_effects_that_explain_the_same_share_a_credible_set(catalogue):

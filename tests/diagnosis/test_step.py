@@ -8,14 +8,12 @@ from scipy import stats
 
 from frictioncli.diagnosis.fit.columns import base_rows, residual_of_base
 from frictioncli.diagnosis.fit.hypotheses import EffectFit, hypothesis_of
-from frictioncli.diagnosis.noise.spectra import STRENGTHS
 from frictioncli.diagnosis.search.catalogue import Catalogue
 from frictioncli.diagnosis.search.effect_size import left_size, rms_size
 from frictioncli.diagnosis.search.lack_of_fit import structures
 from frictioncli.diagnosis.search.precomputed import Precomputed
 from frictioncli.diagnosis.search.step import Step
 from frictioncli.effects import BY_NAME
-from tests.diagnosis import dense_noise
 from tests.diagnosis.dense_noise import problem
 from tests.diagnosis.wave_effects import A, B, C, effect, wave
 
@@ -257,8 +255,8 @@ def test_a_size_is_visible_as_far_as_the_base_cannot_take_it():
     assert (low, high) == pytest.approx((size * (1 - 0.098), size * (1 + 0.098)), rel=0.02)
 
 
-def test_what_discrepancy_and_drift_have_of_an_effect_s_form_is_in_its_interval():
-    """By 2,000 draws of the discrepancy and of a drift, as far as they are along the effect."""
+def test_half_of_what_discrepancy_has_of_an_effect_s_form_is_in_its_interval():
+    """By 2,000 draws of the discrepancy, as far as they are along the effect."""
     only = effect("any", [(1.0, wave(2.0, 0.3))])
     data = problem(6)
     precomputed = Precomputed.of(data)
@@ -274,16 +272,7 @@ def test_what_discrepancy_and_drift_have_of_an_effect_s_form_is_in_its_interval(
     smooth = precomputed.discrepancy
     amplitude = np.repeat(np.exp(start.amplitude), smooth.widths.astype(int))
     functions = smooth.rows @ (amplitude[:, None] * generator.normal(size=(len(amplitude), 2000)))
-    index = precomputed.noises.indices[20]
-    spectra = precomputed.noises.spectra[0]
-    root = np.linalg.cholesky(
-        start.between[0]
-        * STRENGTHS[index[1]]
-        * dense_noise.alike(data.layout, spectra.spectra[index[0]].time)
-        + 1e-12 * np.eye(len(data.layout.time))
-    )
-    drift = (root @ generator.normal(size=(len(root), 2000)))[data.layout.row_pair]
-    random = unit @ functions + unit[: len(drift)] @ drift
+    random = 0.5 * unit @ functions
     expected = np.std(random) / np.sqrt(len(torque) / 2)
     assert (high - low) / (2 * 1.96) == pytest.approx(expected, rel=0.06)
     assert (high + low) / 2 == pytest.approx(size, rel=0.01)

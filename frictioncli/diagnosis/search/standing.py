@@ -13,6 +13,9 @@ from frictioncli.diagnosis.search.cause import CONVINCING, Cause
 
 _Z95 = 1.96
 
+_BEYOND = 0.25
+"""How far a share may be below 0 or above 1."""
+
 _CANCELLING = 0.5
 """Two causes cancel each other if their sum has less than this share of the smaller one's RMS."""
 
@@ -77,6 +80,9 @@ def _judged(cause: Cause, problem: Problem, margin: float, alpha: float) -> Caus
 def beyond_bounds(fit: EffectFit, problem: Problem) -> str:
     """Return which coefficient of an effect is physically impossible; empty if none is.
 
+    It may be beyond its bounds by its error; a share of 0 to 1 by a quarter besides, since no form
+    is exactly true.
+
     Parameters
     ----------
     fit : EffectFit
@@ -85,7 +91,8 @@ def beyond_bounds(fit: EffectFit, problem: Problem) -> str:
         The joint's rows, with whose friction bounds in units of torque grow.
     """
     lower, upper = physical_bounds(fit.effect, problem)
-    reach = _Z95 * _errors(fit)
+    is_share = (lower == 0.0) & (upper == 1.0)
+    reach = _Z95 * _errors(fit) + np.where(is_share, _BEYOND, 0.0)
     beyond = (fit.coefficients < lower - reach) | (fit.coefficients > upper + reach)
     parameters = fit.effect.coefficients
     for parameter, value, outside in zip(parameters, fit.coefficients, beyond, strict=True):
