@@ -1,5 +1,6 @@
 """Suggested mapping files, also for columns without meaningful names, in random order and units."""
 
+import re
 import tomllib
 
 import numpy as np
@@ -172,6 +173,82 @@ def test_a_table_without_motion_is_refused(tmp_path):
         suggested_map([write(table, tmp_path / "log.csv")])
 
 
+def test_german_names_of_one_joint(tmp_path):
+    """Names that are known but for ``ist``, with a commanded position beside the measured one."""
+    log = clean_log()
+    table = pd.DataFrame(
+        {
+            "t": log[TIME],
+            "q_ist_A3": log[POSITION],
+            "dq_ist_A3": log[VELOCITY],
+            "Moment_A3": log[TORQUE],
+            "q_soll_A3": np.roll(log[POSITION], -2),
+        }
+    )
+    text = suggested_map([write(table, tmp_path / "log.csv")])
+    mapping = tomllib.loads(text)
+    assert mapping["channels"] == {
+        "time": "t",
+        "position": "q_ist_A3",
+        "velocity": "dq_ist_A3",
+        "torque": "Moment_A3",
+    }
+    assert mapping["joint"] == {"number": 3}
+    assert re.search(r"Checked: with it \d+ pairs", text)
+
+
+def test_names_go_before_accidents_of_the_values(tmp_path):
+    """In the first file nothing but noise; there a velocity may be taken for a position."""
+    log = clean_log()
+    rng = np.random.default_rng(5)
+    still = np.cumsum(rng.normal(0, 1e-3, len(log)))
+    table = pd.DataFrame({"s": log[TIME], "Velocity_3 x": still, "Torq 3 x": log[TORQUE]})
+    table["Pos_3 x"] = np.gradient(still, 0.01)
+    moving = table.assign(**{"Pos_3 x": log[POSITION], "Velocity_3 x": log[VELOCITY]})
+    names = ["uhr", "velocity_3", "drehm_3", "pos_3"]
+    write(table.set_axis(names, axis=1), tmp_path / "run" / "a.csv")
+    write(moving.set_axis(names, axis=1), tmp_path / "run" / "b.csv")
+    mapping = tomllib.loads(suggested_map([tmp_path / "run"]))
+    assert mapping["channels"]["position"] == "pos_3"
+    assert mapping["channels"]["velocity"] == "velocity_3"
+    assert mapping["channels"]["torque"] == "drehm_3"
+
+
+def test_a_command_is_no_position_where_one_is_measured(tmp_path):
+    """The measured position does not agree with the measured velocity, the commanded ones do."""
+    log = clean_log()
+    table = pd.DataFrame(
+        {
+            "time": log[TIME],
+            "position": 1.8 * log[POSITION],
+            "velocity": log[VELOCITY],
+            "torque_feedback": log[TORQUE],
+            "velocity_cmd": log[VELOCITY],
+            "acceleration_cmd": np.gradient(log[VELOCITY], 0.01),
+            "position_cmd": log[POSITION],
+        }
+    )
+    mapping = tomllib.loads(suggested_map([write(table, tmp_path / "log.csv")]))
+    assert mapping["channels"] == {
+        "time": "time",
+        "position": "position",
+        "velocity": "velocity",
+        "torque": "torque_feedback",
+    }
+
+
+def test_what_pairs_nothing_is_not_called_sure(tmp_path):
+    """A sine: no constant speed, so nothing confirms the columns."""
+    rng = np.random.default_rng(1)
+    seconds = np.arange(0, 40, 0.01)
+    angle, rate = 30 * np.sin(0.6 * seconds), 18 * np.cos(0.6 * seconds)
+    table = pd.DataFrame({"b": seconds, "c": angle, "d": rate})
+    table["a"] = 5 * np.sign(rate) + 9 * np.cos(np.radians(3 * angle)) + rng.normal(0, 1, 4000)
+    text = suggested_map([write(table, tmp_path / "log.csv")])
+    assert "Checked: with it no move at constant speed has a counterpart" in text
+    assert "# sure" not in text
+
+
 @given(shift=st.floats(-6, 6), seed=st.integers(0, 100))
 @settings(max_examples=40)
 def test_lag_between_two_columns(shift, seed):
@@ -183,6 +260,20 @@ def test_lag_between_two_columns(shift, seed):
         return np.sin(t / 40 + phase) + 0.5 * np.sin(t / 17)
 
     assert lag(wave(rows), wave(rows - shift)) == pytest.approx(shift, abs=0.05)
+
+
+@pytest.mark.skipif(not REAL.is_dir(), reason=f"no real logs beside the project: {REAL}")
+@pytest.mark.parametrize(
+    ("folder", "expected"),
+    [
+        ("xarm6-j3", ("Pos_2", "Velocity_2", "Current_2", "Torque_2")),
+        ("damiao-5", ("position", "velocity", "torque_feedback", None)),
+    ],
+)
+def test_real_logs_without_a_hint(folder, expected):
+    mapping = tomllib.loads(suggested_map([REAL / folder]))["channels"]
+    found = tuple(mapping.get(name) for name in ("position", "velocity", "torque", "load"))
+    assert found == expected
 
 
 @pytest.mark.skipif(not REAL.is_dir(), reason=f"no real logs beside the project: {REAL}")

@@ -17,6 +17,9 @@ MAX_ALTERNATIVES = 4
 """Most alternatives that are named for a quantity."""
 
 _TORQUE_LIKE = (names.TORQUE, names.LOAD)
+_NAMED_JOINT = re.compile(
+    r"(?:^|[_\W])(?:A|J|ax|axis|joint|achse|gelenk)_?(\d{1,2})(?:$|[_\W])", re.I
+)
 _LAST_NUMBER = re.compile(r"^(.*?)(\d{1,2})(\D*)$")
 
 
@@ -75,6 +78,11 @@ class LogColumns:
         """Return whether a column's name is a known name of a quantity."""
         channel = self.recognised.get(column)
         return channel is not None and channel.quantity == quantity
+
+    def may_be(self, column: int, quantity: str) -> bool:
+        """Return whether a column's name does not say that it is another quantity."""
+        channel = self.recognised.get(column)
+        return channel is None or channel.quantity == quantity
 
     def no_torque(self) -> frozenset[int]:
         """Return the columns that are no torque by name or unit."""
@@ -135,8 +143,14 @@ def joints_by_number(column_names: Sequence[str], time: int) -> dict[int, int]:
         if parts:
             families[parts[1], parts[3]][column] = int(parts[2])
     counting = [family for family in families.values() if len(family) > 1 and time not in family]
-    base = 0 if any(0 in family.values() for family in counting) else 1
-    return {c: number + 1 - base for family in counting for c, number in family.items()}
+    named = {
+        column: int(found[1])
+        for column, name in enumerate(column_names)
+        if (found := _NAMED_JOINT.search(name)) and column != time
+    }
+    counted = {c: number for family in counting for c, number in family.items()} | named
+    base = 0 if 0 in counted.values() else 1
+    return {c: number + 1 - base for c, number in counted.items()}
 
 
 def _has_other_unit(name: str) -> bool:

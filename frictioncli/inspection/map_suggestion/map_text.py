@@ -10,7 +10,7 @@ _MAX_COMMENT = 180
 """Longest text in a comment. [characters]"""
 
 
-def map_text(suggestion: Suggestion, head: LogHead, source: str) -> str:
+def map_text(suggestion: Suggestion, head: LogHead, source: str, check: str = "") -> str:
     """Return the text of the mapping file (TOML).
 
     Parameters
@@ -21,10 +21,13 @@ def map_text(suggestion: Suggestion, head: LogHead, source: str) -> str:
         The beginning of the log.
     source : str
         The name of the log.
+    check : str, optional
+        What came of pairing moves with it.
     """
     columns = len(head.values) + len(head.constants)
     lines = [
         f"# Suggested from {_comment(source)}: {head.rows} rows, {columns} columns of numbers.",
+        *([f"# {_comment(check)}"] if check else []),
         "# Check every line, then:",
         "# frictioncli inspect LOGS --map THIS_FILE",
         "",

@@ -1,5 +1,6 @@
 """Choose the columns of a joint's position and velocity."""
 
+import re
 from collections.abc import Collection, Sequence
 from dataclasses import dataclass
 
@@ -15,11 +16,19 @@ from frictioncli.inspection.map_suggestion.columns import (
     LogColumns,
 )
 from frictioncli.inspection.map_suggestion.derivatives import Derivative
-from frictioncli.inspection.map_suggestion.measured_or_commanded import measured_first, same_motion
+from frictioncli.inspection.map_suggestion.measured_or_commanded import (
+    is_command,
+    measured_first,
+    same_motion,
+)
 from frictioncli.inspection.map_suggestion.time_columns import TimeColumn, possible_time_units
 from frictioncli.logs.channels import channel_names as names
 from frictioncli.logs.channels import position_units, units
+from frictioncli.logs.channels.recognition import split_unit
 
+_MIT_RANGE = 12.5
+"""Range of positions in the CAN protocol of many motors for legged robots. [rad]"""
+_ACCELERATION = re.compile(r"acc|beschl", re.I)
 _SURE_COSINE = 0.999
 _MAX_UNEVENNESS = 0.05
 """Largest unevenness of a position that no velocity confirms."""
@@ -77,10 +86,12 @@ def find_motion(
     NotEnoughData
         If no column resembles a position.
     """
-    of_joint = [pair for pair in derivatives if columns.is_of(pair.position, joint)]
-    of_joint = of_joint or list(derivatives)
-    if not of_joint:
-        return _without_velocity(columns, time, excluded, joint)
+    plausible = [pair for pair in derivatives if _may_be_motion(columns, pair)]
+    of_joint = [pair for pair in plausible if columns.is_of(pair.position, joint)]
+    of_joint = of_joint or plausible
+    measured = [pair for pair in of_joint if not is_command(columns.head.names[pair.position])]
+    if not measured and (not of_joint or _named_motion(columns, names.POSITION, joint)):
+        return _by_position(columns, time, excluded, joint)
     consistent = [pair for pair in of_joint if not _has_two_joints(columns, pair)] or of_joint
     largest = max(consistent, key=lambda pair: pair.travel * _degrees_per_unit(pair))
     position, *other_positions = _same_motion(
@@ -119,16 +130,31 @@ def find_motion(
     )
 
 
-def _without_velocity(
-    columns: LogColumns, time: TimeColumn, excluded: Collection[int], joint: int | None
-) -> MotionColumns:
-    """Choose a position by its name, else the smoothest column."""
+def _may_be_motion(columns: LogColumns, pair: Derivative) -> bool:
+    """Return whether the names of a pair allow it to be a position and its velocity."""
+    name = columns.head.names[pair.velocity]
+    return (
+        columns.may_be(pair.position, names.POSITION)
+        and columns.may_be(pair.velocity, names.VELOCITY)
+        and not _ACCELERATION.search(name)
+    )
+
+
+def _named_motion(columns: LogColumns, quantity: str, joint: int | None) -> list[int]:
+    """Return the changing columns whose names are known names of a quantity, of a joint if any."""
     named = [
         column
         for column, channel in columns.recognised.items()
-        if channel.quantity == names.POSITION and column in columns.head.values
+        if channel.quantity == quantity and column in columns.head.values
     ]
-    named = [column for column in named if columns.is_of(column, joint)] or named
+    return [column for column in named if columns.is_of(column, joint)] or named
+
+
+def _by_position(
+    columns: LogColumns, time: TimeColumn, excluded: Collection[int], joint: int | None
+) -> MotionColumns:
+    """Choose a position by its name, else the smoothest column; and a velocity by its name."""
+    named = _named_motion(columns, names.POSITION, joint)
     smooth = sorted(
         (column for column in columns.head.values if column not in excluded),
         key=lambda column: _unevenness(columns.head.values[column]),
@@ -139,9 +165,7 @@ def _without_velocity(
             " named so, and none goes there and back smoothly; a friction test needs positions"
         )
     candidates = named or smooth
-    column = (
-        max(named, key=lambda c: float(np.ptp(columns.head.values[c]))) if named else candidates[0]
-    )
+    column = max(named, key=lambda c: _travel(columns.head.values[c])) if named else candidates[0]
     values = columns.head.values[column]
     largest, span = float(np.max(np.abs(values))), float(np.ptp(values))
     possible, unit_reason = position_units.possible_position_units(
@@ -149,12 +173,26 @@ def _without_velocity(
     )
     usual = position_units.usual_position_unit(largest=largest, span=span, on_motor=False)
     unit = usual if usual in possible else min(possible)
+    if _wraps_as_of_mit_protocol(values):
+        unit, unit_reason = "rad", "wraps at ±12.5, as motors of the MIT protocol log rad"
     time_unit = possible_time_units(time)[-1]
     degrees = values * units.FACTORS[names.POSITION][unit]
     seconds = columns.head.values[time.column] * units.FACTORS[names.TIME][time_unit]
     reason = "its name says so" if named else "the smoothest column that goes there and back"
     number = columns.joints.get(column, 1)
     others = [c for c in candidates if c != column and not columns.is_of_another(c, number)]
+    velocity, rate = None, np.gradient(degrees, seconds)
+    rates = [
+        c
+        for c in _named_motion(columns, names.VELOCITY, joint)
+        if named and columns.joints.get(c) == columns.joints.get(column)
+    ]
+    if rates:
+        rate_unit = units.canonical(split_unit(columns.head.names[rates[0]])[1], names.VELOCITY)
+        rate_unit = rate_unit or f"{unit}/s"
+        rate = columns.head.values[rates[0]] * units.FACTORS[names.VELOCITY][rate_unit]
+        doubt = "its name says so, though its integral is not the position's change"
+        velocity = ColumnGuess(rates[0], doubt, GUESS, rate_unit)
     return MotionColumns(
         position=ColumnGuess(
             column,
@@ -163,11 +201,23 @@ def _without_velocity(
             unit,
             columns.alternatives(others, "is the next candidate"),
         ),
-        velocity=None,
+        velocity=velocity,
         time_unit=time_unit,
         degrees=degrees,
-        degrees_per_second=np.gradient(degrees, seconds),
+        degrees_per_second=rate,
     )
+
+
+def _travel(values: Array) -> float:
+    """Return the travel of a position, but for jumps from one end of its range to the other."""
+    steps = np.abs(np.diff(values))
+    return float(np.sum(steps[steps < 0.8 * np.ptp(values)]))
+
+
+def _wraps_as_of_mit_protocol(values: Array) -> bool:
+    """Return whether a position jumps between the ends of the range ±12.5 of that protocol."""
+    reaches = _MIT_RANGE - 0.1 < float(np.max(np.abs(values))) <= _MIT_RANGE + 0.01
+    return reaches and float(np.max(np.abs(np.diff(values)))) > 1.8 * _MIT_RANGE
 
 
 def _has_two_joints(columns: LogColumns, pair: Derivative) -> bool:

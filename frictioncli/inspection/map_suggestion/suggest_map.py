@@ -3,10 +3,13 @@
 from collections.abc import Sequence
 from pathlib import Path
 
+import numpy as np
+
 from frictioncli.errors import LogError, NotEnoughData
-from frictioncli.inspection.map_suggestion.log_head import read_log_head
+from frictioncli.inspection.map_suggestion.check import check_by_pairing
+from frictioncli.inspection.map_suggestion.log_head import LogHead, read_log_head
 from frictioncli.inspection.map_suggestion.map_text import map_text
-from frictioncli.inspection.map_suggestion.suggestion import suggest_columns
+from frictioncli.inspection.map_suggestion.suggestion import Suggestion, suggest_columns
 from frictioncli.logs.channels.channel_map import ChannelMap, read_map
 from frictioncli.logs.formats import open_log
 from frictioncli.logs.log_source import LogSource, Refusal
@@ -14,11 +17,15 @@ from frictioncli.logs.runs.discovery import discover
 from frictioncli.logs.runs.opening import open_run
 from frictioncli.logs.settings import IngestSettings
 
+_MOST_FILES = 8
+"""Logs that are looked at."""
+
 
 def suggested_map(logs: Sequence[Path], settings: IngestSettings | None = None) -> str:
     """Return the text of a suggested mapping file.
 
-    It is made from the first log whose columns are not recognised, else from the first log.
+    It is made from the log that shows most, of those whose columns are not recognised if there are
+    some. What it says is checked by pairing the moves of the logs with it.
 
     Parameters
     ----------
@@ -49,33 +56,48 @@ def suggested_map(logs: Sequence[Path], settings: IngestSettings | None = None) 
     """
     settings = settings or IngestSettings()
     channel_map = read_map(settings.map_file) if settings.map_file is not None else ChannelMap()
-    source = _choose_log(logs, settings, channel_map)
     joint = settings.joints[0] if settings.joints else None
-    head = read_log_head(source)
-    try:
-        return map_text(suggest_columns(head, joint), head, source.path.name)
-    except NotEnoughData as error:
-        raise LogError(f"{source.path}: {error}") from None
+    best: tuple[Suggestion, LogHead, str] | None = None
+    reasons = []
+    for source in _sources(logs, settings, channel_map):
+        head = read_log_head(source)
+        try:
+            found = suggest_columns(head, joint)
+        except NotEnoughData as error:
+            reasons.append(f"{source.path}: {error}")
+            continue
+        if best is None or found.worth > best[0].worth:
+            best = found, head, source.path.name
+    if best is None:
+        raise LogError(reasons[0])
+    suggestion, head, name = best
+    check = check_by_pairing(map_text(suggestion, head, name), logs, settings)
+    return map_text(
+        suggestion.doubted() if check.is_doubtful else suggestion, head, name, check.text
+    )
 
 
-def _choose_log(
+def _sources(
     logs: Sequence[Path], settings: IngestSettings, channel_map: ChannelMap
-) -> LogSource:
-    """Return the first log whose columns are not recognised, else the first that can be opened."""
-    first: LogSource | None = None
-    refusals = []
+) -> list[LogSource]:
+    """Return logs whose columns are not recognised, else those that can be opened.
+
+    Of many, some evenly spaced ones are returned, the first among them.
+    """
+    unrecognised, recognised, refusals = [], [], []
     for run in discover(logs):
         opened, refused = open_run(run, settings, channel_map)
+        recognised += [log.file.path for log in opened]
         for log in refused:
-            source = open_log(log.file.path, channel_map.hints)
-            if isinstance(source, Refusal):
-                refusals.append(f"{log.file.path}: {source.text}")
-            elif log.refusal.reason.startswith("no_"):
-                return source
-        if first is None and opened:
-            # not merged with others: with a mapping file, the files of a trace stay separate
-            unmerged = open_log(opened[0].file.path, channel_map.hints)
-            first = None if isinstance(unmerged, Refusal) else unmerged
-    if first is None:
+            if log.refusal.reason.startswith("no_"):
+                unrecognised.append(log.file.path)
+            else:
+                refusals.append(f"{log.file.path}: {log.refusal.text}")
+    paths = unrecognised or recognised
+    spaced = sorted({round(i) for i in np.linspace(0, max(len(paths) - 1, 0), _MOST_FILES)})
+    # not merged with others: with a mapping file, the files of a trace stay separate
+    sources = [open_log(paths[i], channel_map.hints) for i in spaced] if paths else []
+    usable = [source for source in sources if not isinstance(source, Refusal)]
+    if not usable:
         raise LogError("no log can be opened; " + "; ".join(refusals[:4]))
-    return first
+    return usable

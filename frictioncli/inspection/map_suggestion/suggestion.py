@@ -1,7 +1,9 @@
 """Suggest the columns of time, motion, torque, load and temperature from the head of a log."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+
+import numpy as np
 
 from frictioncli.errors import NotEnoughData
 from frictioncli.inspection.map_suggestion.columns import (
@@ -38,10 +40,28 @@ class Suggestion:
         Column by quantity.
     joint : int
         Number of the joint, from 1.
+    travel : float
+        Travel of the joint in both directions. [deg]
     """
 
     guesses: Mapping[str, ColumnGuess]
     joint: int
+    travel: float = 0.0
+
+    @property
+    def worth(self) -> tuple[int, float]:
+        """What a log tells: how certain its torque and velocity are, then how far it moves."""
+        certain = {SURE: 2, LIKELY: 1}
+        known = [self.guesses.get(name) for name in (names.TORQUE, names.VELOCITY)]
+        return sum(1 + certain.get(g.confidence, 0) for g in known if g is not None), self.travel
+
+    def doubted(self) -> "Suggestion":
+        """Return the suggestion with nothing in it that is called sure."""
+        guesses = {
+            name: replace(guess, confidence=LIKELY) if guess.confidence == SURE else guess
+            for name, guess in self.guesses.items()
+        }
+        return replace(self, guesses=guesses)
 
 
 def suggest_columns(head: LogHead, joint: int | None) -> Suggestion:
@@ -86,7 +106,8 @@ def suggest_columns(head: LogHead, joint: int | None) -> Suggestion:
         guesses[names.LOAD] = guess_load(columns, dependences, number, torque.column)
     chosen = {guess.column for guess in guesses.values() if guess is not None}
     guesses[names.MOTOR_TEMPERATURE] = guess_temperature(columns, number, excluded | chosen)
-    return Suggestion({name: g for name, g in guesses.items() if g is not None}, number)
+    travel = float(np.abs(np.diff(motion.degrees)).sum())
+    return Suggestion({name: g for name, g in guesses.items() if g is not None}, number, travel)
 
 
 def _time_with_derivatives(

@@ -177,17 +177,25 @@ def guess_load(
     torque : int
         The column chosen as torque.
     """
+    chosen = next((one for one in dependences if one.column == torque), None)
+    beside_current = _torque_unit(columns, torque) in ("A", "mA")
     for one in dependences:
+        # beside a current, a torque that the controller has freed of most friction
+        freed = (
+            beside_current
+            and chosen is not None
+            and (one.by_angle > _LEAST_GRAVITY and one.explained < chosen.explained)
+        )
         is_named = any(columns.is_named(one.column, name) for name in (names.TORQUE, names.LOAD))
         commanded = is_command(columns.head.names[one.column])
-        if one.column == torque or not is_named or commanded or not one.is_load:
+        if one.column == torque or not is_named or commanded or not (one.is_load or freed):
             continue
         if (
             not columns.is_of_another(one.column, joint)
             and _torque_unit(columns, one.column) == "N·m"
         ):
             reason = (
-                f"goes with the angle ({100 * one.by_angle:.0f} %), not with the direction: a"
+                f"goes with the angle ({100 * one.by_angle:.0f} %), hardly with the direction: a"
                 " load freed of friction"
             )
             return ColumnGuess(one.column, reason, LIKELY, "N·m")

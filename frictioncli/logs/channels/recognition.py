@@ -18,6 +18,9 @@ _JOINT_LAST = re.compile(
 _JOINT_FIRST = re.compile(
     r"^(?:joint|axis|axle|achse|gelenk|[aj])[ _.]?(?P<joint>\d{1,2})[ _.\-]+(?P<name>.+)$", re.I
 )
+_MEASURED = re.compile(
+    r"(?:^|(?<=[ _.\-]))(?:feedback|fbk|fb|actual|act|measured|meas|ist|value)(?=$|[ _.\-])", re.I
+)
 _JOINT_IN_BRACKETS = re.compile(r"^[AaJj]?\d{1,2}$")
 _JOINT_IN_FILE_NAME = re.compile(
     r"NextGenDrive#(\d{1,2})|(?:^|[_\s-])(?:A|J|axis|joint|achse)(\d)$", re.I
@@ -119,7 +122,16 @@ def recognise_channels(
 
 def _recognised(index: int, column: str) -> LogChannel | None:
     name, unit = split_unit(column)
-    for text in _candidate_names(name):
+    texts = _candidate_names(name)
+    # words that only say that a value was measured, where the name is not known with them
+    plain = [" ".join(_MEASURED.sub("", text).replace("_", " ").split()) for text in texts]
+    known = _of_names(index, column, texts, unit)
+    return known or _of_names(index, column, [text for text in plain if text], unit)
+
+
+def _of_names(index: int, column: str, texts: Sequence[str], unit: str) -> LogChannel | None:
+    """Return the channel that the first known one of several spellings of a name stands for."""
+    for text in texts:
         meaning = MEANINGS.get(_key(text))
         if meaning is not None:
             return LogChannel(index, column, meaning, None, unit, _key(text))
