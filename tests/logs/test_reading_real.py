@@ -108,3 +108,11 @@ def test_nist_velocity_is_in_rad_per_second(tmp_path):
     moving = table["velocity"].abs() > 5
     assert np.median(change[moving] / table["velocity"][moving]) == pytest.approx(1, abs=0.01)
     assert summary.rows_kept == 7906
+
+
+def test_damiao_is_in_radians_by_its_range(tmp_path):
+    """Speeds are commanded up to 8 rad/s; without units, positions wrap at ±12.5."""
+    summary = ingest([REAL / "damiao-5"], tmp_path)
+    speed = samples(tmp_path)["velocity"].abs().max()
+    assert np.radians(speed) == pytest.approx(8.0, abs=0.2)
+    assert any("wraps at ±12.5" in note and "read as rad" in note for note in summary.notes)

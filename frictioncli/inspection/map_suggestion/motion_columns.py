@@ -26,8 +26,6 @@ from frictioncli.logs.channels import channel_names as names
 from frictioncli.logs.channels import position_units, units
 from frictioncli.logs.channels.recognition import split_unit
 
-_MIT_RANGE = 12.5
-"""Range of positions in the CAN protocol of many motors for legged robots. [rad]"""
 _ACCELERATION = re.compile(r"acc|beschl", re.I)
 _SURE_COSINE = 0.999
 _MAX_UNEVENNESS = 0.05
@@ -173,7 +171,7 @@ def _by_position(
     )
     usual = position_units.usual_position_unit(largest=largest, span=span, on_motor=False)
     unit = usual if usual in possible else min(possible)
-    if _wraps_as_of_mit_protocol(values):
+    if position_units.wraps_as_of_mit_protocol([values]):
         unit, unit_reason = "rad", "wraps at ±12.5, as motors of the MIT protocol log rad"
     time_unit = possible_time_units(time)[-1]
     degrees = values * units.FACTORS[names.POSITION][unit]
@@ -212,12 +210,6 @@ def _travel(values: Array) -> float:
     """Return the travel of a position, but for jumps from one end of its range to the other."""
     steps = np.abs(np.diff(values))
     return float(np.sum(steps[steps < 0.8 * np.ptp(values)]))
-
-
-def _wraps_as_of_mit_protocol(values: Array) -> bool:
-    """Return whether a position jumps between the ends of the range ±12.5 of that protocol."""
-    reaches = _MIT_RANGE - 0.1 < float(np.max(np.abs(values))) <= _MIT_RANGE + 0.01
-    return reaches and float(np.max(np.abs(np.diff(values)))) > 1.8 * _MIT_RANGE
 
 
 def _has_two_joints(columns: LogColumns, pair: Derivative) -> bool:

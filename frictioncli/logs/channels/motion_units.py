@@ -8,6 +8,7 @@ import numpy as np
 from frictioncli.logs.channels import channel_names as names
 from frictioncli.logs.channels import position_units, unit_evidence, units
 from frictioncli.logs.channels.joint_channels import JointChannels
+from frictioncli.logs.channels.position_units import wraps_as_of_mit_protocol
 from frictioncli.logs.channels.recognition import LogChannel
 from frictioncli.logs.channels.survey import Survey
 from frictioncli.logs.channels.unit_evidence import MotionUnits, RawMotion
@@ -145,6 +146,11 @@ def _axis_units(
         ratio=ratio,
         usual=usual,
     )
+    if (declared_position, declared_velocity) == (None, None) and wraps_as_of_mit_protocol(
+        [motion.position for motion in motions]
+    ):
+        found = _mit_units(axis, found, remarks)
+        why = "it wraps at ±12.5, as positions of the MIT motor protocol do"
     velocity_tells = bool(found.evidence) and found.velocity is not None
     is_open = len(allowed) > 1 and usual == "rad" and not velocity_tells
     doubt = _doubt(axis.position, why) if is_open and declared_position == "deg" else ""
@@ -153,6 +159,16 @@ def _axis_units(
     if axis.velocity is not None:
         _remark_velocity(axis.velocity, found, forced, remarks)
     return found, largest, doubt
+
+
+def _mit_units(axis: _Axis, found: MotionUnits, remarks: Remarks) -> MotionUnits:
+    """Return the units of the MIT motor protocol, with a warning where they do not agree."""
+    if axis.velocity is not None and found.velocity is None:
+        remarks.warnings.append(
+            f"{axis.velocity.name} is read as rad/s, although {found.evidence}:"
+            f" compare {axis.position.name} with a known angle"
+        )
+    return replace(found, position="rad", velocity="rad/s", evidence="")
 
 
 def _doubt(position: LogChannel, why: str) -> str:

@@ -1,5 +1,7 @@
 """Units of positions by their values: the range of motion of a joint, and the path of the tool."""
 
+from collections.abc import Sequence
+
 import numpy as np
 
 from frictioncli.arrays import Array
@@ -8,6 +10,8 @@ from frictioncli.logs.channels.unit_evidence import OUTLIER_FACTOR, RawMotion
 _DEGREES_PER_RADIAN = 180.0 / np.pi
 _LIMIT = 2 * np.pi
 _MARGIN = 1.1
+_MIT_RANGE = 12.5
+"""Range of positions in the CAN protocol of the MIT Mini Cheetah and of many motors since. [rad]"""
 RADIAN_LIMIT = _LIMIT * _MARGIN
 """Largest absolute position of a joint with end stops. [rad]"""
 _LEAST_SPAN = 0.01
@@ -150,3 +154,22 @@ def usual_position_unit(*, largest: float, span: float, on_motor: bool) -> str:
     """
     in_turn = not on_motor and largest <= RADIAN_LIMIT
     return "rad" if in_turn and span > _LEAST_SPAN else "deg"
+
+
+def wraps_as_of_mit_protocol(positions: Sequence[Array]) -> bool:
+    """Return whether a position jumps between the ends of ±12.5, the range of the MIT protocol.
+
+    Parameters
+    ----------
+    positions : sequence of ndarray, shape (n,)
+        Positions of each log. [raw]
+
+    Examples
+    --------
+    >>> turned = (np.linspace(0, 100, 500) + 12.5) % 25 - 12.5
+    >>> wraps_as_of_mit_protocol([turned]), wraps_as_of_mit_protocol([np.linspace(-12.5, 12.5, 9)])
+    (True, False)
+    """
+    largest = max((float(np.max(np.abs(one), initial=0.0)) for one in positions), default=0.0)
+    jump = max((float(np.max(np.abs(np.diff(one)), initial=0.0)) for one in positions), default=0.0)
+    return _MIT_RANGE - 0.2 < largest <= _MIT_RANGE + 0.01 and jump > 1.8 * _MIT_RANGE
