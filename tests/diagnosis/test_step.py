@@ -251,8 +251,32 @@ def test_a_size_is_visible_as_far_as_the_base_cannot_take_it():
     assert rms_size(precomputed, fit) == pytest.approx(np.sqrt(2.0 + 36.0), rel=0.02)
     size, low, high = left_size(precomputed, fit)
     assert size == pytest.approx(np.sqrt(2.0), rel=0.1)
-    # an error of 0.1 in a coefficient of 2, and next to nothing of a discrepancy so rough
-    assert (low, high) == pytest.approx((size * (1 - 0.098), size * (1 + 0.098)), rel=0.02)
+    # an error of 0.1 in a coefficient of 2, next to nothing of a discrepancy so rough, and a form
+    # that is known to a twentieth
+    away = 1.96 * np.hypot(0.05, 0.05)
+    assert (low, high) == pytest.approx((size * (1 - away), size * (1 + away)), rel=0.02)
+
+
+@pytest.mark.parametrize("seed", [11, 12, 13, 14])
+def test_the_size_of_an_effect_of_another_form_is_in_its_interval(seed):
+    """A ripple that is higher on one side by a fifth, and has three times the order, too."""
+    generator = np.random.default_rng(seed)
+    order, phase, more, bent = generator.uniform([7, 0, 0.1, 0.02], [12, 6.28, 0.3, 0.05])
+
+    def real(rows):
+        angle = np.radians(rows.position)
+        pure = np.sin(order * angle + phase)
+        return (1 + more * np.cos(angle)) * (pure + bent * np.sin(3 * order * angle + 1.0))
+
+    data = problem(seed, friction=real)
+    step, found = run_tests(data, ["position_ripple"])
+    fit = step.refined(found["position_ripple"].effect_fit(BY_NAME["position_ripple"]))
+    _, low, high = left_size(step.precomputed, fit)
+    torque = real(data.table)
+    both, base = np.concatenate([torque, 0 * torque]), np.vstack(base_rows(data))
+    both = both - base @ np.linalg.lstsq(base, both, rcond=1e-12)[0]
+    assert low < np.sqrt(np.mean(np.square(both)) * 2) < high
+    assert high - low < 0.5 * high
 
 
 def test_half_of_what_discrepancy_has_of_an_effect_s_form_is_in_its_interval():
@@ -274,7 +298,7 @@ def test_half_of_what_discrepancy_has_of_an_effect_s_form_is_in_its_interval():
     functions = smooth.rows @ (amplitude[:, None] * generator.normal(size=(len(amplitude), 2000)))
     random = 0.5 * unit @ functions
     expected = np.std(random) / np.sqrt(len(torque) / 2)
-    assert (high - low) / (2 * 1.96) == pytest.approx(expected, rel=0.06)
+    assert (high - low) / (2 * 1.96) == pytest.approx(np.hypot(expected, 0.05 * size), rel=0.06)
     assert (high + low) / 2 == pytest.approx(size, rel=0.01)
 
 

@@ -12,6 +12,10 @@ from frictioncli.diagnosis.search.precomputed import Precomputed
 _OTHER_FORM = 0.5
 """Share of the discrepancy along an effect that the assumed covariance does not account for."""
 
+_FORM = 0.05
+"""Standard deviation of what the form of an effect misses, relative to its size: no joint follows
+the equation of an entry exactly, nor does the base take as much of it as of that."""
+
 
 def sizes_of(known: Precomputed, fit: EffectFit) -> dict[str, Any]:
     """Return the sizes of an effect by the names of the fields of a cause."""
@@ -38,12 +42,13 @@ def left_size(known: Precomputed, fit: EffectFit) -> tuple[float, float, float]:
     Noise and discrepancy count with the covariance that is assumed of them, and so do not count
     where the effect stands out of them by its form. Real discrepancy has not exactly the assumed
     form; so a part of what it would contribute with the form of the effect counts besides.
+    So does what the form of its entry misses of an effect.
     """
     left = _left(known, fit)
     size, low, high = visible_size(left, fit.coefficients, fit.covariance)
     if fit.effect.measurement:
         return size, low, high
-    beyond = Z95 * other_form(known, fit)
+    beyond = Z95 * float(np.hypot(other_form(known, fit), _FORM * size))
     below, above = np.hypot([size - low, high - size], beyond)
     return size, max(float(size - below), 0.0), float(size + above)
 
