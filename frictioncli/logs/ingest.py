@@ -13,7 +13,7 @@ from typing import Any, Self
 from frictioncli import schemas
 from frictioncli.errors import FrictionError, LogError, MappingError
 from frictioncli.files import atomic_write
-from frictioncli.logs.channels.channel_map import ChannelMap, read_map
+from frictioncli.logs.channels.channel_map import ChannelMap, is_inline, read_map
 from frictioncli.logs.log_source import Refusal
 from frictioncli.logs.run_logs import RunLogs, plan_run
 from frictioncli.logs.runs.discovery import LogRun, Logs, discover
@@ -241,7 +241,9 @@ def _input_hashes(
         for recording in ingested.recordings
         for file in recording.log.source.files
     }
-    return inputs if map_file is None else inputs | {map_file.name: sha256(map_file)}
+    if map_file is None or is_inline(map_file):
+        return inputs
+    return inputs | {map_file.name: sha256(map_file)}
 
 
 def _no_usable_log(refused: Sequence[RefusedLog]) -> FrictionError:

@@ -33,7 +33,8 @@ class IngestSettings:
         metadata=option("Joint to read, from 1; repeatable. All with torque.", "--joint"),
     )
     map_file: Path | None = field(
-        default=None, metadata=option("TOML file that names channels and units.", "--map")
+        default=None,
+        metadata=option("TOML file that names channels and units, or time=1,...", "--map"),
     )
     gear_ratio: float | None = field(
         default=None, metadata=option("Motor turns per joint turn, for motor-side channels.")
@@ -97,9 +98,12 @@ class IngestSettings:
 
     def as_dict(self) -> dict[str, object]:
         """Return plain values for the provenance of a table."""
+        map_name = "" if self.map_file is None else str(self.map_file)
+        # a map in one line is its own text
+        map_name = map_name if "=" in map_name else map_name.replace("\\", "/").rpartition("/")[2]
         return {
             "joints": None if self.joints is None else list(self.joints),
-            "map_file": None if self.map_file is None else self.map_file.name,
+            "map_file": map_name or None,
             "gear_ratio": self.gear_ratio,
             "units": self.forced_units(),
         }

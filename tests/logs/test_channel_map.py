@@ -1,5 +1,7 @@
 """The mapping file names columns, units and the joint where detection fails."""
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 
@@ -62,7 +64,7 @@ def test_a_mapped_column_that_is_missing(tmp_path):
         ("[channels\n", "cannot be read as a mapping file"),
         ("[chanels]\n", "unknown section: chanels.*did you mean channels"),
         ('[channels]\npositon = "a"\n', "unknown name in .channels.: positon.*position"),
-        ("[channels]\nposition = 3\n", "expected a column name"),
+        ("[channels]\nposition = 0\n", "expected a column name"),
         ('[units]\nposition = "furlong"\n', "'furlong'; expected one of deg, rad, udeg"),
         ('[units]\ntorque = "%"\n', "expected one of N·m"),
         ('[csv]\ndelimiter = "x"\n', "delimiter = 'x'"),
@@ -82,3 +84,75 @@ def test_a_bad_map_says_where_and_what(tmp_path, text, message):
 def test_a_missing_map(tmp_path):
     with pytest.raises(MappingError, match=r"nothing\.toml"):
         read_map(tmp_path / "nothing.toml")
+
+
+def motor_log(tmp_path, ratio):
+    """Write a log whose position and velocity are of the motor, in columns with plain names."""
+    columns = kuka_columns()
+    names = ["t [s]", "position [deg]", "velocity [deg/s]", "torque [Nm]"]
+    values = dict(zip(names, columns.values(), strict=True))
+    values["position [deg]"] = ratio * values["position [deg]"]
+    values["velocity [deg/s]"] = ratio * values["velocity [deg/s]"]
+    return write(tmp_path / "log.csv", values), columns
+
+
+@pytest.mark.parametrize("names_columns", [True, False])
+@pytest.mark.parametrize("torque_side", ["joint", "motor"])
+def test_a_map_says_which_channels_are_at_the_motor(names_columns, torque_side, tmp_path):
+    log, columns = motor_log(tmp_path, -80.0)
+    text = f'[side]\nposition = "motor"\nvelocity = "motor"\ntorque = "{torque_side}"\n'
+    text += "[joint]\ngear_ratio = -80\n"
+    if names_columns:
+        text += '[channels]\nposition = "position"\nvelocity = "velocity"\ntorque = "torque"\n'
+    path = tmp_path / "channels.toml"
+    path.write_text(text, encoding="utf-8")
+    summary = ingest([log], tmp_path / "work", IngestSettings(map_file=path))
+    table = tables.read(tmp_path / "work" / "samples.parquet", schemas.SAMPLES)
+    np.testing.assert_allclose(table["position"], columns["AxisPos_Act2[°]"], atol=1e-7)
+    np.testing.assert_allclose(table["velocity"], columns["AxisVel_Act2[°/s]"], atol=1e-7)
+    factor = -80.0 if torque_side == "motor" else 1.0
+    np.testing.assert_allclose(table["torque"], factor * columns["GearTorq_Act2[Nm]"], atol=1e-6)
+    assert not any("has no use" in text for text in summary.warnings)
+
+
+def test_a_gear_ratio_without_use_is_warned_of(tmp_path):
+    log, _ = motor_log(tmp_path, 80.0)
+    summary = ingest([log], tmp_path / "work", IngestSettings(gear_ratio=80.0))
+    assert any("gear ratio 80 of joint 1 has no use" in text for text in summary.warnings)
+
+
+def test_a_side_that_is_none(tmp_path):
+    path = tmp_path / "channels.toml"
+    path.write_text('[side]\nposition = "rotor"\n', encoding="utf-8")
+    with pytest.raises(MappingError, match="expected joint or motor"):
+        read_map(path)
+
+
+@pytest.mark.parametrize("header", [True, False])
+def test_a_map_in_one_line_names_columns_by_number(header, tmp_path):
+    time, position, velocity, torque = back_and_forth()
+    rows = np.stack([np.ones_like(time), time, np.radians(position), torque, velocity], axis=1)
+    lines = [" ".join(f"{x:.12f}" for x in row) for row in rows]
+    path = tmp_path / "log.txt"
+    path.write_text("\n".join((["a b c d e"] if header else []) + lines), encoding="utf-8")
+    text = "time=2,position=3:rad,torque=4:A,velocity=5:deg/s,joint=6"
+    summary = ingest([path], tmp_path / "work", IngestSettings(map_file=Path(text)))
+    assert (list(summary.samples), summary.torque_unit) == ([6], "A")
+    table = tables.read(tmp_path / "work" / "samples.parquet", schemas.SAMPLES)
+    np.testing.assert_allclose(table["position"], position, atol=1e-9)
+    np.testing.assert_allclose(table["velocity"], velocity, atol=1e-9)
+    np.testing.assert_allclose(table["torque"], torque, atol=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        ("time=1,position", "expected name=column"),
+        ("time=1,postion=2", "did you mean position"),
+        ("time=1,position=2:furlong", "expected one of deg"),
+        ("time=1,joint=zero", "expected a joint number"),
+    ],
+)
+def test_a_bad_map_in_one_line(text, message):
+    with pytest.raises(MappingError, match=message):
+        read_map(Path(text))

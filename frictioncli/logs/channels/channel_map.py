@@ -3,9 +3,10 @@
 import codecs
 import difflib
 import math
+import re
 import tomllib
 from collections.abc import Collection, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
@@ -14,17 +15,21 @@ from frictioncli.logs.channels import units
 from frictioncli.logs.channels.channel_names import (
     CHANNELS,
     JOINT_SIDE,
+    MOTOR_SIDE,
     POSITION,
     TIME,
     TORQUE,
+    VELOCITY,
     Meaning,
 )
 from frictioncli.logs.channels.recognition import LogChannel, recognise_channels, split_unit
 from frictioncli.logs.log_source import CsvHints, Refusal
 
-_SECTIONS = ("channels", "units", "csv", "joint")
+_SECTIONS = ("channels", "units", "side", "csv", "joint")
+_SIDED = (POSITION, VELOCITY, TORQUE)
 _CSV_KEYS = ("delimiter", "decimal", "encoding")
 _JOINT_KEYS = ("number", "gear_ratio")
+_INLINE = re.compile(rf"\s*({'|'.join((*CHANNELS, 'joint'))})\s*=")
 _DELIMITERS = {";": ";", ",": ",", "\t": "\t", " ": " ", "tab": "\t", "space": " ", "blank": " "}
 
 
@@ -38,6 +43,8 @@ class ChannelMap:
         Column name by quantity.
     units : dict of str to str
         Unit by quantity, a key of :data:`frictioncli.logs.channels.units.FACTORS`.
+    sides : dict of str to str
+        Side of the gear, ``joint`` or ``motor``, of position, velocity and torque.
     hints : CsvHints
         Form of the text.
     joint : int or None
@@ -48,13 +55,14 @@ class ChannelMap:
 
     channels: dict[str, str] = field(default_factory=dict)
     units: dict[str, str] = field(default_factory=dict)
+    sides: dict[str, str] = field(default_factory=dict)
     hints: CsvHints = field(default_factory=CsvHints)
     joint: int | None = None
     gear_ratio: float | None = None
 
 
 def read_map(path: Path) -> ChannelMap:
-    r"""Read a mapping file.
+    r"""Read a mapping file, or a map in one line such as ``time=1,position=2:rad,torque=5:A``.
 
     Raises
     ------
@@ -71,6 +79,8 @@ def read_map(path: Path) -> ChannelMap:
     >>> channel_map.channels, channel_map.units
     ({'torque': 'M2'}, {'torque': 'mN·m'})
     """
+    if is_inline(path):
+        return _inline_map(str(path))
     try:
         text = path.read_text(encoding="utf-8-sig")
         document = tomllib.loads(text)
@@ -87,18 +97,60 @@ def read_map(path: Path) -> ChannelMap:
     channels, channel_units = sections["channels"], sections["units"]
     _check_keys(path, "name in [channels]", channels, CHANNELS)
     _check_keys(path, "name in [units]", channel_units, CHANNELS)
+    _check_keys(path, "name in [side]", sections["side"], _SIDED)
     _check_keys(path, "key in [csv]", sections["csv"], _CSV_KEYS)
     _check_keys(path, "key in [joint]", sections["joint"], _JOINT_KEYS)
     for name, column in channels.items():
-        if not isinstance(column, str) or not column.strip():
-            raise MappingError(f"{path}: [channels] {name} = {column!r}; expected a column name")
+        is_number = isinstance(column, int) and column is not True and column >= 1
+        if not is_number and not (isinstance(column, str) and column.strip()):
+            raise MappingError(
+                f"{path}: [channels] {name} = {column!r}; expected a column name, or its number"
+                " from 1"
+            )
+    for name, side in sections["side"].items():
+        if side not in (JOINT_SIDE, MOTOR_SIDE):
+            raise MappingError(f"{path}: [side] {name} = {side!r}; expected joint or motor")
     return ChannelMap(
-        channels=dict(channels),
+        channels={name: str(column) for name, column in channels.items()},
+        sides=dict(sections["side"]),
         units={name: _unit(path, name, text) for name, text in channel_units.items()},
         hints=_hints(path, sections["csv"]),
         joint=_joint(path, sections["joint"].get("number")),
         gear_ratio=_gear_ratio(path, sections["joint"].get("gear_ratio")),
     )
+
+
+def is_inline(path: Path) -> bool:
+    """Return whether the text given in place of a mapping file is a map in one line.
+
+    Examples
+    --------
+    >>> is_inline(Path("time=1,position=2:rad")), is_inline(Path("channels.toml"))
+    (True, False)
+    """
+    return _INLINE.match(str(path)) is not None and not path.exists()
+
+
+def _inline_map(text: str) -> ChannelMap:
+    """Return the map of a line of ``name=column`` or ``name=column:unit``, between commas."""
+    where = Path("--map")
+    channels: dict[str, str] = {}
+    channel_units: dict[str, str] = {}
+    joint: int | None = None
+    for entry in text.split(","):
+        name, equals, value = entry.partition("=")
+        name, value = name.strip(), value.strip()
+        if not equals or not value:
+            raise MappingError(f"--map: {entry!r}; expected name=column or name=column:unit")
+        if name == "joint":
+            joint = _joint(where, int(value) if value.isdigit() else value)
+            continue
+        _check_keys(where, "name", [name], (*CHANNELS, "joint"))
+        column, colon, unit = value.rpartition(":")
+        channels[name] = column.strip() if colon else value
+        if colon:
+            channel_units[name] = _unit(where, name, unit)
+    return ChannelMap(channels=channels, units=channel_units, joint=joint)
 
 
 def mapped_channels(
@@ -124,7 +176,9 @@ def mapped_channels(
     """
     recognised = recognise_channels(columns)
     if TORQUE not in channel_map.channels and POSITION not in channel_map.channels:
-        kept = [c for c in recognised if c.quantity not in channel_map.channels]
+        kept = [
+            with_side(c, channel_map) for c in recognised if c.quantity not in channel_map.channels
+        ]
     else:
         kept = [c for c in recognised if c.quantity == TIME and TIME not in channel_map.channels]
     for quantity, wanted in channel_map.channels.items():
@@ -142,6 +196,7 @@ def mapped_channels(
         if known is not None and known.quantity != quantity:
             known = None
         side = known.side if known is not None and quantity != TORQUE else JOINT_SIDE
+        side = channel_map.sides.get(quantity, side)
         unit = split_unit(columns[index])[1]
         if not unit and known is not None:
             unit = known.unit
@@ -153,12 +208,33 @@ def mapped_channels(
     return tuple(kept)
 
 
+def with_side(channel: LogChannel, channel_map: ChannelMap) -> LogChannel:
+    """Return a channel with the side of the gear that the map gives its quantity.
+
+    Parameters
+    ----------
+    channel : LogChannel
+        A recognised channel.
+    channel_map : ChannelMap
+        The map.
+    """
+    side = channel_map.sides.get(channel.quantity)
+    if side is None:
+        return channel
+    return replace(channel, meaning=replace(channel.meaning, side=side))
+
+
 def _find(columns: Sequence[str], wanted: str) -> int | None:
-    """Return the index of a column by its name, which may lack blanks around it or its unit."""
+    """Return the index of a column by its name, or by its number from 1.
+
+    The name may lack blanks around it or its unit.
+    """
     for normal in (str, str.strip, lambda name: split_unit(name)[0]):
         matches = [i for i, column in enumerate(columns) if normal(column) == normal(wanted)]
         if matches:
             return matches[0]
+    if wanted.isdigit() and 1 <= int(wanted) <= len(columns):
+        return int(wanted) - 1
     return None
 
 

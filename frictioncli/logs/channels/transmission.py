@@ -63,6 +63,13 @@ def find_transmission(
         None where the ratio is neither given nor found.
     """
     position, other_position = channels.position, channels.other_position
+    at_motor = [c.meaning.side for c in (position, channels.velocity, channels.torque) if c]
+    if given_ratio is not None and other_position is None and names.MOTOR_SIDE not in at_motor:
+        remarks.warnings.append(
+            f"gear ratio {given_ratio:g} of joint {channels.joint} has no use: no channel is known"
+            " to be at the motor; name those that are in --map, for example [side] position ="
+            ' "motor"'
+        )
     if other_position is None or motion.other_position_unit is None:
         return None if given_ratio is None else Transmission(given_ratio, 0.0, True)
     joint = (position, units.FACTORS[names.POSITION][motion.units.position])

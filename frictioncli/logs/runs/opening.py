@@ -5,7 +5,7 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
-from frictioncli.logs.channels.channel_map import ChannelMap, mapped_channels
+from frictioncli.logs.channels.channel_map import ChannelMap, mapped_channels, with_side
 from frictioncli.logs.channels.joint_channels import JointChannels, assign_channels
 from frictioncli.logs.channels.recognition import LogChannel, joint_in_name, recognise_channels
 from frictioncli.logs.formats import open_logs
@@ -241,4 +241,4 @@ def _channels(
 ) -> tuple[LogChannel, ...] | Refusal:
     if channel_map.channels:
         return mapped_channels(channel_map, columns, joint)
-    return recognise_channels(columns)
+    return tuple(with_side(channel, channel_map) for channel in recognise_channels(columns))
