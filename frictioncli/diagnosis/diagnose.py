@@ -26,10 +26,11 @@ from frictioncli.diagnosis.search.cause_search import (
     given_up_causes,
 )
 from frictioncli.diagnosis.search.cause_selection import judged_on_new_run
-from frictioncli.diagnosis.search.lack_of_fit import Structure, unnamed_structure
+from frictioncli.diagnosis.search.lack_of_fit import Structure
 from frictioncli.diagnosis.search.measurement import beside_the_rest
 from frictioncli.diagnosis.search.standing import with_standing
 from frictioncli.diagnosis.search.timing_causes import judged_by_timing
+from frictioncli.diagnosis.search.understood import understood
 from frictioncli.diagnosis.settings import DiagnosisSettings
 from frictioncli.diagnosis.thermal.estimate import ThermalEstimate
 from frictioncli.diagnosis.thermal.refine import LAG, search_with_lag, settled
@@ -45,10 +46,6 @@ LEAST_MARGIN = 0.1
 
 LEAST_PAIRS = 12
 """With fewer pairs noise cannot be distinguished from structure."""
-
-_MOST_LEFT = 0.5
-"""Structure without a name that is greater than this share of a cause in its channel says that the
-cause is not understood."""
 
 _CLEAR = 1e-3
 """Greatest p-value of an effect of the measurement that is listed though it is not named."""
@@ -181,12 +178,7 @@ def diagnose_joint(
     named = [cause for cause in judged if cause.standing == "named"]
     if new:
         named = list(judged_on_new_run(named, found.step, new))
-    unnamed = unnamed_structure(found.step, margin, settings.alpha)
-    causes = tuple(
-        cause
-        for cause in named
-        if cause.standing == "named" and not (unnamed and _is_part(cause, unnamed))
-    )
+    causes, unnamed = understood(found.step, named, margin, settings.alpha)
     given_up = given_up_causes(found, settings.alpha)
     visible = _visible((*judged, *given_up), named, causes, unnamed)
     extension = gain = None
@@ -271,16 +263,6 @@ def margin_of(problem: Problem, torque_unit: str, settings: DiagnosisSettings) -
         return settings.margin
     share = MARGIN_SHARE * float(np.mean(np.abs(problem.friction)))
     return max(share, LEAST_MARGIN) if torque_unit == "N·m" else share
-
-
-def _is_part(cause: Cause, unnamed: Structure) -> bool:
-    """Return whether a cause may be a part of structure without a name along its axis."""
-    effect = cause.fit.effect
-    return (
-        not effect.measurement
-        and effect.channel == unnamed.channel
-        and unnamed.size > _MOST_LEFT * cause.visible
-    )
 
 
 def _visible(

@@ -29,6 +29,9 @@ class Cause:
         RMS of its residual after a fit of the base model. [N·m]
     visible_interval : (float, float)
         95 % interval of that. [N·m]
+    shown : float
+        What the residuals show of it at face value, by least squares beside base and other causes:
+        1 for all, less where something else would have to cancel the rest.
     standing : {"named", "visible", "negligible", "undetermined"}
         What may be said of it: it is named; it stands out of the noise but is not named; it is
         smaller than the margin; its size is not known well enough.
@@ -45,6 +48,7 @@ class Cause:
     size: float
     visible: float
     visible_interval: tuple[float, float] = (0.0, float("inf"))
+    shown: float = 1.0
     standing: str = "named"
     reason: str = ""
     holds_on_new_run: bool | None = None

@@ -23,7 +23,7 @@ from frictioncli.diagnosis.noise.significance import (
 from frictioncli.diagnosis.ramps.evidence import RampEvidence, with_ramp_evidence
 from frictioncli.diagnosis.search.catalogue import Catalogue
 from frictioncli.diagnosis.search.cause import CONVINCING, Cause
-from frictioncli.diagnosis.search.effect_size import left_size, other_form, sizes_of
+from frictioncli.diagnosis.search.effect_size import left_size, other_form, shown_share, sizes_of
 from frictioncli.diagnosis.search.measurement import measurement_causes, possible_effects
 from frictioncli.diagnosis.search.precomputed import Precomputed
 from frictioncli.diagnosis.search.rivals import rival_log_bayes_factors
@@ -267,6 +267,7 @@ def _cause(search: _Search, accepted: Sequence[EffectFit], number: int) -> Cause
         test=own,
         effects=credible_set(share),
         probabilities={name: value for name, value in share.items() if value >= 1e-3},
+        shown=shown_share(step.precomputed, fit, others),
         **sizes_of(step.precomputed, fit),
     )
 

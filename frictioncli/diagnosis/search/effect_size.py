@@ -1,12 +1,13 @@
 """Sizes of fitted effects: their torque, and what the base leaves of it, with intervals."""
 
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
 
 from frictioncli.arrays import Array
 from frictioncli.diagnosis.fit.hypotheses import EffectFit
-from frictioncli.diagnosis.fit.left_by_base import Z95, left_by, visible_size
+from frictioncli.diagnosis.fit.left_by_base import Z95, left_by, span_of, visible_size
 from frictioncli.diagnosis.search.precomputed import Precomputed
 
 _OTHER_FORM = 0.5
@@ -51,6 +52,30 @@ def left_size(known: Precomputed, fit: EffectFit) -> tuple[float, float, float]:
     beyond = Z95 * float(np.hypot(other_form(known, fit), _FORM * size))
     below, above = np.hypot([size - low, high - size], beyond)
     return size, max(float(size - below), 0.0), float(size + above)
+
+
+def shown_share(known: Precomputed, fit: EffectFit, others: Sequence[EffectFit]) -> float:
+    """Return what the residuals show of an effect at face value, as a share of it.
+
+    The coefficient of its torque by least squares beside base, measurement and other effects:
+    about 1, or less where discrepancy is to cancel the rest.
+
+    Parameters
+    ----------
+    known : Precomputed
+        The data.
+    fit : EffectFit
+        The effect.
+    others : sequence of EffectFit
+        The other effects.
+    """
+    problem = known.problem
+    bases = [problem.basis(one.effect, one.shape) for one in others]
+    span = span_of(problem, [*known.measurement, *bases])
+    torque = left_by(span, problem.basis(fit.effect, fit.shape)) @ fit.coefficients
+    misfit = np.concatenate([problem.friction_misfit, problem.load_misfit])
+    length = float(torque @ torque)
+    return float(misfit @ torque) / length if length > 0 else 1.0
 
 
 def other_form(known: Precomputed, fit: EffectFit) -> float:

@@ -16,6 +16,9 @@ _Z95 = 1.96
 _BEYOND = 0.25
 """How far a share may be below 0 or above 1."""
 
+_SHOWN = 0.5
+"""Least share of a cause that the residuals show at face value."""
+
 _CANCELLING = 0.5
 """Two causes cancel each other if their sum has less than this share of the smaller one's RMS."""
 
@@ -106,6 +109,8 @@ def _impossible(cause: Cause, problem: Problem) -> str:
     reason, errors = beyond_bounds(cause.fit, problem), _errors(cause.fit)
     if reason:
         return reason
+    if cause.shown < _SHOWN:
+        return "the residuals do not show it at face value: something else would have to cancel it"
     if not errors.any():
         return "its coefficients lie on the bounds of what is physically possible"
     if len(errors) == 1 and abs(cause.fit.coefficients[0]) <= _Z95 * errors[0]:

@@ -1,0 +1,64 @@
+"""Which causes are understood: those that are no part of structure without a name."""
+
+from collections.abc import Sequence
+
+from frictioncli.diagnosis.search.cause import Cause
+from frictioncli.diagnosis.search.lack_of_fit import Structure, unnamed_structure
+from frictioncli.diagnosis.search.step import Step
+
+_MOST_LEFT = 1 / 3
+"""Structure without a name that is greater than this share of a cause along the same axis says that
+the cause is not understood."""
+
+_AXES = {
+    "clock": "time",
+    "order": "time",
+    "travel": "time",
+    "motor_temperature": "temperature",
+    "load": "position",
+}
+"""Axes of structure along which an effect shows that needs these columns. With one payload the
+angle tells the load."""
+
+
+def understood(
+    step: Step, causes: Sequence[Cause], margin: float, alpha: float
+) -> tuple[tuple[Cause, ...], Structure | None]:
+    """Return the causes that are named, and the structure without a name that is left.
+
+    A cause loses its name to structure along its own axis that is nearly as large: both may be one
+    thing that no effect explains. The structure is then what is left without it.
+
+    Parameters
+    ----------
+    step : Step
+        Base and all accepted effects.
+    causes : sequence of Cause
+        Causes, of which those whose standing is ``named`` count.
+    margin : float
+        Smallest size worth a name. [N·m]
+    alpha : float
+        Significance level.
+    """
+    named = tuple(one for one in causes if one.standing == "named")
+    structure = unnamed_structure(step, margin, alpha)
+    if structure is None:
+        return named, None
+    kept = tuple(one for one in named if not _is_part(one, structure))
+    if len(kept) < len(named):
+        lost = {one.fit.effect.name for one in named} - {one.fit.effect.name for one in kept}
+        rest = [one for one in step.accepted if one.effect.name not in lost]
+        structure = unnamed_structure(Step.of(step.precomputed, rest), margin, alpha) or structure
+    return kept, structure
+
+
+def _is_part(cause: Cause, unnamed: Structure) -> bool:
+    """Return whether a cause may be a part of structure without a name along its axis."""
+    effect = cause.fit.effect
+    along = {_AXES.get(one, one) for one in effect.needs}
+    return (
+        not effect.measurement
+        and effect.channel == unnamed.channel
+        and not along.isdisjoint(_AXES.get(one, one) for one in unnamed.axes)
+        and unnamed.size > _MOST_LEFT * cause.visible
+    )
