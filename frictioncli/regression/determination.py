@@ -1,6 +1,6 @@
 """Which parameters the motion determines, which it does not, and when it tells nothing at all."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -14,7 +14,7 @@ from frictioncli.regression.equation import (
     load_torque,
 )
 from frictioncli.regression.estimate import RegressionEstimate
-from frictioncli.regression.identification import identify
+from frictioncli.regression.identification import identify, some_equations
 from frictioncli.regression.preparation import PreparedJoint
 
 LEAST_ROWS = 100
@@ -115,10 +115,11 @@ def regress(prepared: PreparedJoint, joint: int, sign: int | None = None) -> Joi
             f" {LEAST_ROWS}; log longer moves"
         )
     terms, undetermined = _by_excitation(prepared)
-    estimate = identify(equations, terms)
-    if "delay" in estimate.parameters and not _told(estimate, "delay"):
-        terms = _without_delay(terms)
-        estimate = identify(equations, terms)
+    some = some_equations(equations)
+    estimate = identify(some, terms)
+    late = _told(estimate, "delay")
+    if not late or some is not equations:
+        estimate = identify(equations, terms if late else replace(terms, delay=False))
     if "alpha" in terms.friction:
         # a load that hardly varies would let it hold anything
         fewer = _without_vague_load(estimate, 0, undetermined)
@@ -171,17 +172,6 @@ def _by_excitation(prepared: PreparedJoint) -> tuple[EquationTerms, dict[str, st
     return terms, undetermined
 
 
-def _without_delay(terms: EquationTerms) -> EquationTerms:
-    return EquationTerms(
-        friction=terms.friction,
-        offset=terms.offset,
-        gravity=terms.gravity,
-        load_channel=terms.load_channel,
-        delay=False,
-        payloads=terms.payloads,
-    )
-
-
 def _told(estimate: RegressionEstimate, name: str) -> bool:
     return abs(estimate.parameters[name]) > _SIGNIFICANT * estimate.deviation(name)
 
@@ -229,14 +219,7 @@ def _by_interval(
                 undetermined.pop("beta")
                 restored = (*restored, "beta")
             order = [n for n in ("tau_c", "alpha", "beta") if n in restored]
-            return EquationTerms(
-                friction=tuple(order),
-                offset=terms.offset,
-                gravity=terms.gravity,
-                load_channel=terms.load_channel,
-                delay=terms.delay,
-                payloads=terms.payloads,
-            )
+            return replace(terms, friction=tuple(order))
     return None
 
 

@@ -19,7 +19,7 @@ References
 
 import numpy as np
 
-from frictioncli.arrays import Array, Flags
+from frictioncli.arrays import Array
 from frictioncli.linear_algebra import scaled_gram_inverse
 from frictioncli.regression.blocks import block_numbers
 from frictioncli.regression.equation import (
@@ -52,6 +52,9 @@ _HUBER = 2.0
 _STEPS = 12
 """Most Gauss-Newton steps."""
 
+_CONVERGED = 1e-7
+"""Share of the sum of squares by which the last step made it smaller."""
+
 _ROUNDS = 3
 """Rounds of whitening and of the load in the friction."""
 
@@ -72,12 +75,15 @@ def identify(equations: JointEquations, terms: EquationTerms) -> RegressionEstim
         Parameters with their covariance.
     """
     fit = _RowFit(equations, terms)
-    searched = _searched(equations)
-    part = fit if searched is None else _RowFit(equations.where(searched), terms)
-    part.search()
-    fit.take(part)
-    for _ in range(_ROUNDS):
-        fit.refine()
+    part = some_equations(equations)
+    if part is equations:
+        fit.search()
+    else:
+        first = _RowFit(part, terms)
+        first.search()
+        fit.take(first)
+    fit.refine()
+    fit.refine()
     return fit.result()
 
 
@@ -129,7 +135,7 @@ class _RowFit:
             else:
                 self.delta, self.delay, self.linear = before
                 break
-            done = error - new <= 1e-9 * error
+            done = error - new <= _CONVERGED * error
             error = new
             if done:
                 break
@@ -257,11 +263,17 @@ class _RowFit:
         return full
 
 
-def _searched(equations: JointEquations) -> Flags | None:
-    """Return which rows are searched, in stretches that follow each other; none: all."""
+def some_equations(equations: JointEquations) -> JointEquations:
+    """Return the equations of some rows of a long log, in stretches that follow each other.
+
+    Parameters
+    ----------
+    equations : JointEquations
+        All rows; returned as they are if they are few.
+    """
     rows = len(equations.rows)
     if rows <= _SEARCHED:
-        return None
+        return equations
     stretch = np.arange(rows) // _STRETCH
     every = -(-rows // _SEARCHED)
-    return np.asarray(stretch % every == 0)
+    return equations.where(stretch % every == 0)

@@ -153,9 +153,11 @@ class MotionLog:
         """Return all rows, in the order of runs, recordings and time."""
         names = [one.name for one in fields(MotionRows)]
         parts = self.parts or [{name: np.empty(0) for name in names}]
-        columns: dict[str, Any] = {
-            name: np.concatenate([part[name] for part in parts]) for name in names
-        }
+        if len(parts) > 1:
+            # one column after the other, so that hardly more than one is held twice
+            whole = {name: np.concatenate([part.pop(name) for part in parts]) for name in names}
+            parts = self.parts = [whole]
+        columns: dict[str, Any] = parts[0]
         return MotionRows(**columns)
 
 

@@ -53,15 +53,18 @@ class Whitening:
         place : ndarray of int, shape (rows,)
             Number of rows before, without a gap; the first ones use smaller orders.
         """
+        order = np.minimum(place, self.order)
+        shape = (-1, *([1] * (values.ndim - 1)))
         white = values.copy()
-        scale = np.empty(len(values))
-        for order, predictor in enumerate(self.predictors):
-            here = place >= order if order == self.order else place == order
-            rows = np.flatnonzero(here)
-            scale[rows] = self.deviations[order]
-            for lag, coefficient in enumerate(predictor.tolist(), start=1):
-                white[rows] -= coefficient * values[rows - lag]
-        return np.asarray((white.T / scale).T)
+        for lag in range(1, self.order + 1):
+            of_order = [
+                predictor[lag - 1] if lag <= len(predictor) else 0.0
+                for predictor in self.predictors
+            ]
+            coefficient = np.array(of_order)[order[lag:]]
+            white[lag:] -= coefficient.reshape(shape) * values[:-lag]
+        white /= np.array(self.deviations)[order].reshape(shape)
+        return np.asarray(white)
 
 
 def places(move: Numbers, number: Numbers) -> Numbers:
