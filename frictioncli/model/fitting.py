@@ -62,7 +62,7 @@ def fit_joint(torques: pd.DataFrame, facts: dict[str, Any], settings: FitSetting
         torque_unit=facts.get("torque_unit", "N·m"),
         torque_side=facts.get("torque_side", "joint"),
         sign=int(facts.get("sign", {}).get(str(joint), 1)),
-        parameters=_estimates(estimate, determination, facts),
+        parameters=_estimates(estimate, determination, facts, joint),
         rmse=estimate.rmse,
         n_pairs=n_pairs,
         noise=estimate.noise,
@@ -94,7 +94,7 @@ def _with_temperature(
 
 
 def _estimates(
-    estimate: Estimate, determination: Determination, facts: dict[str, Any]
+    estimate: Estimate, determination: Determination, facts: dict[str, Any], joint: int
 ) -> dict[str, ParameterEstimate]:
     units = _units(facts)
     bounds = at_bound(estimate)
@@ -109,7 +109,7 @@ def _estimates(
                 reason=determination.dropped.get(name),
             )
             continue
-        low, high = estimate.interval(name)
+        low, high = _with_shared_error(estimate.interval(name), facts, joint, name)
         has_interval = bool(np.isfinite(low) and np.isfinite(high))
         without = None if has_interval else "the data give it no interval"
         found[name] = ParameterEstimate(
@@ -120,6 +120,22 @@ def _estimates(
             reason=bounds.get(name) or without or determination.merged.get(name),
         )
     return found
+
+
+def _with_shared_error(
+    interval: tuple[float, float], facts: dict[str, Any], joint: int, name: str
+) -> tuple[float, float]:
+    """Return an interval widened by that of the regression from which the torques come, if any.
+
+    Inertia, gravity and offset of a regression err in all of its torques alike, which their scatter
+    does not show.
+    """
+    regression = facts.get("regression", {}).get(str(joint), {}).get("parameters", {})
+    if name not in regression:
+        return interval
+    low, high = regression[name]["ci95"]
+    centre, half = sum(interval) / 2, float(np.hypot(high - low, interval[1] - interval[0]) / 2)
+    return centre - half, centre + half
 
 
 def _units(facts: dict[str, Any]) -> dict[str, str]:

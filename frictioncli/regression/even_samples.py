@@ -7,6 +7,7 @@ import numpy as np
 
 from frictioncli.arrays import Array, Flags, Indices, Numbers
 from frictioncli.pairs.chunks import SampleChunk
+from frictioncli.pairs.moves import SMOOTHING, samples_in
 from frictioncli.pairs.slices import slice_indices
 
 _UNEVEN = 0.02
@@ -88,7 +89,9 @@ def row_centres(grid: EvenSamples, half: int, spacing: int) -> tuple[Indices, Nu
     half, spacing : int
         Neighbours that a row needs in its move, and distance of rows. [samples]
     """
-    first, last = grid.start + half, grid.stop - half
+    # the moving mean of the velocity, which makes the moves, starts before the joint does
+    margin = half + samples_in(SMOOTHING, grid.period)
+    first, last = grid.start + margin, grid.stop - margin
     # the first multiple of the spacing in each move
     begin = first + (-grid.number[np.minimum(first, len(grid.number) - 1)]) % spacing
     count = np.maximum(-((begin - last) // spacing), 0)

@@ -132,12 +132,16 @@ def torques_by_regression(
     payload = None if manifest is None else manifest["payload"]
     phase = None if manifest is None else manifest["phase"]
     tables, texts, faults = [], [], []
+    standing: list[str] = []
     signs: dict[int, int] = {}
     facts: dict[int, Mapping[str, Any]] = {}
     dropped: dict[str, int] = {}
     samples = 0
     for joint, motion in motions.items():
         if joints is not None and joint not in joints:
+            continue
+        if not motion.moves:
+            standing.append(str(joint))
             continue
         try:
             prepared = _prepared(joint, motion, payload, doubtful=doubtful)
@@ -157,7 +161,9 @@ def torques_by_regression(
         facts[joint] = regression_facts(found, cells, *units)
         texts.append(regression_text(joint, found, cells, *units))
     if not tables:
-        raise NotEnoughData("; ".join(faults) or "no samples of a joint that moves")
+        if standing:
+            faults.append(f"joint {', '.join(standing)}: at rest throughout")
+        raise NotEnoughData("; ".join(faults) or "no samples")
     return RegressedTorques(
         table=pd.concat(tables, ignore_index=True),
         signs=signs,

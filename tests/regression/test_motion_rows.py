@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from frictioncli.regression.motion_rows import JUMP, motion_rows
+from tests.moves import move_sequence
 from tests.regression import programmes
 
 
@@ -75,3 +76,11 @@ def test_any_rate_has_rows(period):
     _, table = log(period=period)
     motion, rows = rows_of(table)
     assert rows.samples.sum() > 0.7 * motion.samples
+
+
+def test_no_row_holds_samples_of_a_rest():
+    """Moves with rests between: friction is zero there, and would be averaged with motion."""
+    motion = move_sequence([0, 60, 0, 60], [90.0, 30.0, 60.0], period=0.01)
+    parts = tuple(motion[name].to_numpy() for name in motion)
+    _, rows = rows_of(programmes.samples(parts, np.abs(parts[2]) > 0))
+    np.testing.assert_allclose(rows.torque, 1.0)

@@ -63,9 +63,12 @@ def test_a_log_without_pairs_goes_through_the_whole_chain(swung):
     assert not (work / "pairs.parquet").exists()
     assert (work / "report" / "index.html").exists()
     (model,) = read_models(work / "model.json")
+    known = tables.facts(work / TORQUES)["regression"]["2"]["parameters"]
     for name, value in (("tau_c", 8.0), ("alpha", 0.002), ("beta", 2.0)):
         low, high = model.parameters[name].ci95
         assert low - (high - low) / 2 <= value <= high + (high - low) / 2, name
+        # what errs in all torques alike is in the interval
+        assert high - low > known[name]["ci95"][1] - known[name]["ci95"][0], name
 
 
 def test_the_table_says_where_its_rows_come_from(swung):
