@@ -75,8 +75,13 @@ def _plans_of_layout(
             f"gear ratio {ratio:g} is given, but {first.file.path} has joints {joints};"
             " expected one joint: choose it with --joint"
         )
+    rated = settings.rated_torque
+    rated = channel_map.rated_torque if rated is None else rated
     chosen = choose_torques(first.joints, surveyed)
-    found = [plan_joint(joint, surveyed, forced=forced, gear_ratio=ratio) for joint in chosen]
+    found = [
+        plan_joint(joint, surveyed, forced=forced, gear_ratio=ratio, rated_torque=rated)
+        for joint in chosen
+    ]
     plans = [plan for plan in found if isinstance(plan, JointPlan)]
     refusals = [plan for plan in found if isinstance(plan, Refusal)]
     if not plans:

@@ -21,9 +21,11 @@ class IngestSettings:
         Mapping file, see :mod:`frictioncli.logs.channels.channel_map`.
     gear_ratio : float or None
         Motor turns per joint turn, negative if motor and joint turn in opposite directions. [-]
+    rated_torque : float or None
+        Torque that 100 % stands for, where torques are in percent. [N·m]
     time_unit, position_unit, velocity_unit, torque_unit, temperature_unit : str or None
         Unit of that quantity in the logs, whatever their headers say: s, ms, us; deg, rad, udeg;
-        deg/s, rad/s, rpm, mdeg/s; N·m, mN·m, A, mA; °C, K, °F, m°C, mK.
+        deg/s, rad/s, rpm, mdeg/s; N·m, mN·m, A, mA, %; °C, K, °F, m°C, mK.
     batch_bytes : int
         Size of the part of a log that is held in memory at once. [byte]
     """
@@ -39,6 +41,9 @@ class IngestSettings:
     gear_ratio: float | None = field(
         default=None, metadata=option("Motor turns per joint turn, for motor-side channels.")
     )
+    rated_torque: float | None = field(
+        default=None, metadata=option("Torque that 100 % stands for, for torques in % [N·m].")
+    )
     time_unit: str | None = field(default=None, metadata=option("Force the unit: s, ms, us."))
     position_unit: str | None = field(
         default=None, metadata=option("Force the unit: deg, rad, udeg.")
@@ -47,7 +52,7 @@ class IngestSettings:
         default=None, metadata=option("Force the unit: deg/s, rad/s, rpm.")
     )
     torque_unit: str | None = field(
-        default=None, metadata=option("Force the unit: N·m (or Nm), mNm, A, mA.")
+        default=None, metadata=option("Force the unit: N·m (or Nm), mNm, A, mA, %.")
     )
     temperature_unit: str | None = field(
         default=None, metadata=option("Force the unit: degC, K, degF.")
@@ -63,6 +68,8 @@ class IngestSettings:
             raise OptionError(
                 f"gear ratio {self.gear_ratio}: expected motor turns per joint turn, not 0"
             )
+        if self.rated_torque is not None and not 0 < self.rated_torque < math.inf:
+            raise OptionError(f"rated torque {self.rated_torque}: expected N·m, > 0")
         if self.batch_bytes < 1:
             raise OptionError(f"batch size {self.batch_bytes}: expected at least 1 byte")
         self.forced_units()
@@ -105,5 +112,6 @@ class IngestSettings:
             "joints": None if self.joints is None else list(self.joints),
             "map_file": map_name or None,
             "gear_ratio": self.gear_ratio,
+            "rated_torque": self.rated_torque,
             "units": self.forced_units(),
         }

@@ -6,6 +6,8 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from frictioncli.errors import LogError
+from frictioncli.logs.channels.channel_names import INTEGRATED
+from frictioncli.logs.channels.joint_plan import JointPlan
 from frictioncli.logs.runs.opening import RefusedLog
 from frictioncli.logs.samples.quantized_temperature import Knots
 from frictioncli.logs.samples.recording import RecordingSummary
@@ -128,7 +130,7 @@ class IngestedLogs:
         Raises
         ------
         LogError
-            If the logs differ in unit or side of the torque.
+            If the logs differ in unit or side of the torque, or in whether they have positions.
         """
         recordings = self.recordings
         plans = [
@@ -143,6 +145,7 @@ class IngestedLogs:
             "torque_side": _common(
                 "side of the torque", ((n, plan.torque_side) for n, plan in plans)
             ),
+            "position": _common("position", ((n, _position_kind(plan)) for n, plan in plans)),
             "notes": [*_grouped_by_remark(notes, len(recordings)), *self.notes],
             "warnings": [*_grouped_by_remark(warnings, len(recordings)), *self.warnings],
             "time_known": all(timeline.known for timeline in self.timelines.values()),
@@ -179,6 +182,11 @@ class IngestedLogs:
             notes=tuple(facts["notes"]),
             warnings=tuple(facts["warnings"]),
         )
+
+
+def _position_kind(plan: JointPlan) -> str:
+    """Return whether a log has its position or it was integrated from velocity."""
+    return "integrated" if plan.channels.position.name == INTEGRATED else "measured"
 
 
 def _common(what: str, values: Iterable[tuple[str, str]]) -> str:

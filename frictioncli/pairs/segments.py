@@ -83,6 +83,19 @@ class SegmentTables:
     starts: StartCounts
 
 
+def without_angle(batch: pa.RecordBatch) -> pa.RecordBatch:
+    """Return samples with position 0, so that moves are paired by speed alone.
+
+    Parameters
+    ----------
+    batch : RecordBatch
+        Rows of :data:`frictioncli.schemas.SAMPLES` whose position was integrated from velocity.
+    """
+    index = batch.schema.get_field_index("position")
+    zeros = pa.array(np.zeros(batch.num_rows))
+    return batch.set_column(index, batch.schema.field(index), zeros)
+
+
 def find_segments(
     batches: Iterable[pa.RecordBatch],
     settings: SteadySettings,

@@ -14,7 +14,7 @@ from frictioncli.pairs.pair_tables import (
 )
 from frictioncli.pairs.pairing import pair_segments
 from frictioncli.pairs.partitioned_store import PartitionedStore
-from frictioncli.pairs.segments import Joint, find_segments
+from frictioncli.pairs.segments import Joint, find_segments, without_angle
 from frictioncli.pairs.settings import PairingSettings
 from frictioncli.provenance import Provenance, input_hashes
 from frictioncli.stages.stage import StageResult, existing, stage
@@ -58,6 +58,8 @@ def pair(work: Path, settings: PairingSettings | None = None) -> StageResult:
         tables.TableWriter(work / PAIRS, schemas.PAIRS, provenance) as pairs,
     ):
         samples = tables.prefetch(tables.batches(source, schemas.SAMPLES))
+        if facts.get("position") == "integrated":
+            samples = map(without_angle, samples)
         segments = find_segments(samples, settings.steady, settings.bin_width, segment_store)
         pairing = pair_segments(segments, settings, pair_store, manifest["payload"])
         facts |= {

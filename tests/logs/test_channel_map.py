@@ -66,7 +66,7 @@ def test_a_mapped_column_that_is_missing(tmp_path):
         ('[channels]\npositon = "a"\n', "unknown name in .channels.: positon.*position"),
         ("[channels]\nposition = 0\n", "expected a column name"),
         ('[units]\nposition = "furlong"\n', "'furlong'; expected one of deg, rad, udeg"),
-        ('[units]\ntorque = "%"\n', "expected one of N·m"),
+        ('[units]\ntorque = "bar"\n', "expected one of N·m"),
         ('[csv]\ndelimiter = "x"\n', "delimiter = 'x'"),
         ('[csv]\ndecimal = "."\nencodng = "utf-8"\n', "encodng.*did you mean encoding"),
         ('[csv]\nencoding = "klingon"\n', "'klingon'"),

@@ -196,12 +196,17 @@ def test_implausible_temperatures_are_left_out(tmp_path, value):
     assert any("holds no temperature" in note for note in summary.notes)
 
 
-def test_percent_is_refused(tmp_path):
+def test_percent_stays_percent_unless_the_rated_torque_is_known(tmp_path):
     columns = kuka_columns()
     columns["Drehmoment_A2[%]"] = columns.pop("GearTorq_Act2[Nm]")
     log = write(tmp_path / "log.csv", columns)
-    with pytest.raises(LogError, match=r"Drehmoment_A2\[%\] is in percent"):
-        ingest([log], tmp_path / "work")
+    summary = ingest([log], tmp_path / "work")
+    assert summary.torque_unit == "%"
+    assert any("with --rated-torque they are in N·m" in note for note in summary.notes)
+    summary = ingest([log], tmp_path / "work", IngestSettings(rated_torque=0.5))
+    assert summary.torque_unit == "N·m"
+    torque = samples(tmp_path / "work")["torque"]
+    np.testing.assert_allclose(torque, 0.005 * columns["Drehmoment_A2[%]"], atol=1e-9)
     summary = ingest([log], tmp_path / "work", IngestSettings(torque_unit="A"))
     assert summary.torque_unit == "A"
 
@@ -255,7 +260,8 @@ def test_gear_ratio_found_from_both_positions(tmp_path):
     "option",
     [
         {"position_unit": "furlong"},
-        {"torque_unit": "%"},
+        {"torque_unit": "bar"},
+        {"rated_torque": 0.0},
         {"joints": ()},
         {"joints": (0,)},
         {"gear_ratio": 0.0},

@@ -14,6 +14,7 @@ from frictioncli.logs.ingest import ingest
 from frictioncli.logs.runs.discovery import discover
 from frictioncli.logs.settings import IngestSettings
 from frictioncli.pairs.pair_tables import read_phase_and_payload
+from frictioncli.pairs.segments import without_angle
 from frictioncli.pairs.settings import PairingSettings
 from frictioncli.wording import count_text
 from frictioncli.workfiles import RECORDINGS, SAMPLES
@@ -61,6 +62,8 @@ def check_by_pairing(text: str, logs: Sequence[Path], settings: IngestSettings) 
             ingest(_first_files(logs), folder, replace(settings, joints=None, map_file=map_file))
             manifest = read_phase_and_payload(folder / RECORDINGS)
             samples = tables.batches(folder / SAMPLES, schemas.SAMPLES)
+            if tables.facts(folder / SAMPLES).get("position") == "integrated":
+                samples = map(without_angle, samples)
             _, pairs, _ = segments_and_pairs(samples, lambda: manifest, PairingSettings(), folder)
         except FrictionError as error:
             return Check(f"Checked: logs cannot be used with it: {error}", is_doubtful=True)

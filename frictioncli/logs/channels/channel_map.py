@@ -28,7 +28,7 @@ from frictioncli.logs.log_source import CsvHints, Refusal
 _SECTIONS = ("channels", "units", "side", "csv", "joint")
 _SIDED = (POSITION, VELOCITY, TORQUE)
 _CSV_KEYS = ("delimiter", "decimal", "encoding")
-_JOINT_KEYS = ("number", "gear_ratio")
+_JOINT_KEYS = ("number", "gear_ratio", "rated_torque")
 _INLINE = re.compile(rf"\s*({'|'.join((*CHANNELS, 'joint'))})\s*=")
 _DELIMITERS = {";": ";", ",": ",", "\t": "\t", " ": " ", "tab": "\t", "space": " ", "blank": " "}
 
@@ -51,6 +51,8 @@ class ChannelMap:
         Number of the joint, from 1.
     gear_ratio : float or None
         Motor turns per joint turn, negative where they turn in opposite directions. [-]
+    rated_torque : float or None
+        Torque that 100 % stands for, where torque is in percent. [N·m]
     """
 
     channels: dict[str, str] = field(default_factory=dict)
@@ -59,6 +61,7 @@ class ChannelMap:
     hints: CsvHints = field(default_factory=CsvHints)
     joint: int | None = None
     gear_ratio: float | None = None
+    rated_torque: float | None = None
 
 
 def read_map(path: Path) -> ChannelMap:
@@ -116,7 +119,8 @@ def read_map(path: Path) -> ChannelMap:
         units={name: _unit(path, name, text) for name, text in channel_units.items()},
         hints=_hints(path, sections["csv"]),
         joint=_joint(path, sections["joint"].get("number")),
-        gear_ratio=_gear_ratio(path, sections["joint"].get("gear_ratio")),
+        gear_ratio=_number(path, "gear_ratio", sections["joint"].get("gear_ratio")),
+        rated_torque=_number(path, "rated_torque", sections["joint"].get("rated_torque")),
     )
 
 
@@ -271,14 +275,13 @@ def _joint(path: Path, number: Any) -> int | None:
     raise MappingError(f"{path}: [joint] number = {number!r}; expected a joint number from 1")
 
 
-def _gear_ratio(path: Path, ratio: Any) -> float | None:
-    if ratio is None:
+def _number(path: Path, key: str, value: Any) -> float | None:
+    if value is None:
         return None
-    if isinstance(ratio, int | float) and math.isfinite(ratio) and ratio not in (0, True):
-        return float(ratio)
-    raise MappingError(
-        f"{path}: [joint] gear_ratio = {ratio!r}; expected motor turns per joint turn, not 0"
-    )
+    if isinstance(value, int | float) and math.isfinite(value) and value not in (0, True):
+        return float(value)
+    meaning = "motor turns per joint turn, not 0" if key == "gear_ratio" else "N·m at 100 %, not 0"
+    raise MappingError(f"{path}: [joint] {key} = {value!r}; expected {meaning}")
 
 
 def _check_keys(path: Path, what: str, given: Collection[str], allowed: Sequence[str]) -> None:

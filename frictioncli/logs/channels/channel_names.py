@@ -12,6 +12,9 @@ LOAD = "load"
 OTHER_SPEED = "other_speed"
 """Not a channel of a log: the speed of the fastest other joint, from its position."""
 
+INTEGRATED = "integral of velocity"
+"""Name of the position that is made where a log has none."""
+
 TOOL = "tool"
 CHANNELS = (TIME, POSITION, VELOCITY, TORQUE, MOTOR_TEMPERATURE, HOUSING_TEMPERATURE, LOAD)
 

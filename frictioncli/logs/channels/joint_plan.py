@@ -29,7 +29,7 @@ class JointPlan:
     position_limit : float or None
         Largest absolute position that is plausible in radians; None where no limit applies. [rad]
     torque_unit : str
-        ``N·m`` or ``A``.
+        ``N·m``, ``A`` or ``%``.
     torque_side : str
         Side of the gear, ``joint`` or ``motor``.
     notes, warnings : tuple of str
@@ -51,6 +51,7 @@ def plan_joint(
     *,
     forced: Mapping[str, str],
     gear_ratio: float | None,
+    rated_torque: float | None = None,
 ) -> JointPlan | Refusal:
     """Decide which channels of a joint are used, in which unit, and on which side of the gear.
 
@@ -64,11 +65,13 @@ def plan_joint(
         Unit by quantity, given by the user.
     gear_ratio : float or None
         Motor turns per joint turn, given by the user. [-]
+    rated_torque : float, optional
+        Torque that 100 % stands for. [N·m]
 
     Returns
     -------
     JointPlan or Refusal
-        Refused as ``no_torque_channel`` (an empty or all-zero column), ``torque_in_percent``,
+        Refused as ``no_torque_channel`` (an empty or all-zero column),
         ``unclear_position_unit`` or ``no_gear_ratio``.
     """
     remarks = Remarks(notes=list(channels.notes))
@@ -81,8 +84,11 @@ def plan_joint(
             " column with --map",
         )
     torque_unit = _torque_unit(channels.torque, forced, remarks)
-    if isinstance(torque_unit, Refusal):
-        return torque_unit
+    if channels.position.name == names.INTEGRATED:
+        remarks.notes.append(
+            "no position: it is the integral of velocity, from 0 in each log; moves are paired by"
+            " speed alone, and terms of angle and gravity are off"
+        )
     channels = _without_zero_velocity(channels, survey, remarks)
     motion = joint_motion(channels, survey, forced, remarks)
     if motion.doubt:
@@ -105,7 +111,13 @@ def plan_joint(
     if channels.velocity is not None and found.velocity is not None:
         velocity = _joint_conversion(found.velocity, channels.velocity, gear)
         conversions[names.VELOCITY] = _scaled(velocity, -1.0 if found.reversed_velocity else 1.0)
+    if torque_unit == "%" and rated_torque is not None:
+        torque_unit, rated = "N·m", rated_torque / 100
+        remarks.notes[:] = [note for note in remarks.notes if "--rated-torque" not in note]
+    else:
+        rated = 1.0
     side, factor = _torque_side(channels, torque_unit, gear, remarks)
+    factor *= rated
     conversions[names.TORQUE] = _scaled(units.conversion_from(torque_unit, names.TORQUE), factor)
     _add_temperatures(channels, survey, forced, conversions, remarks)
     if channels.load is not None:
@@ -123,7 +135,7 @@ def plan_joint(
         channels=channels,
         conversions=conversions,
         position_limit=position_units.RADIAN_LIMIT if limited else None,
-        torque_unit="A" if torque_unit in ("A", "mA") else "N·m",
+        torque_unit={"A": "A", "mA": "A", "%": "%"}.get(torque_unit, "N·m"),
         torque_side=side,
         notes=tuple(remarks.notes),
         warnings=tuple(remarks.warnings),
@@ -147,16 +159,15 @@ def _scaled(conversion: UnitConversion, factor: float) -> UnitConversion:
     )
 
 
-def _torque_unit(channel: LogChannel, forced: Mapping[str, str], remarks: Remarks) -> str | Refusal:
+def _torque_unit(channel: LogChannel, forced: Mapping[str, str], remarks: Remarks) -> str:
     if names.TORQUE in forced:
         return forced[names.TORQUE]
     written = channel.unit or channel.meaning.unit
     unit = units.canonical(written, names.TORQUE) if written else None
     if unit == "%":
-        return Refusal(
-            "torque_in_percent",
-            f"{channel.name} is in percent of something; expected N·m or A: give the unit it"
-            " holds with [units] torque in --map or --torque-unit",
+        remarks.notes.append(
+            f"{channel.name} is in percent, and so is every torque-like result; with"
+            " --rated-torque they are in N·m"
         )
     if unit is None:
         unit = "N·m"
@@ -207,7 +218,7 @@ def _torque_side(
 ) -> tuple[str, float]:
     """Return the side of the gear on which the torque is used, and the factor to that side."""
     name, side = channels.torque.name, channels.torque.meaning.side
-    if unit in ("A", "mA"):
+    if unit in ("A", "mA", "%"):
         return names.MOTOR_SIDE, 1.0
     if not side:
         of_drive = channels.other_position is not None

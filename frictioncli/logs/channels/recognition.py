@@ -19,7 +19,9 @@ _JOINT_FIRST = re.compile(
     r"^(?:joint|axis|axle|achse|gelenk|[aj])[ _.]?(?P<joint>\d{1,2})[ _.\-]+(?P<name>.+)$", re.I
 )
 _MEASURED = re.compile(
-    r"(?:^|(?<=[ _.\-]))(?:feedback|fbk|fb|actual|act|measured|meas|ist|value)(?=$|[ _.\-])", re.I
+    r"(?:^|(?<=[ _.\-]))(?:feedback|fbk|fb|actual|act|measured|meas|ist|value|averaged|average|avg)"
+    r"(?=$|[ _.\-])",
+    re.I,
 )
 _JOINT_IN_BRACKETS = re.compile(r"^[AaJj]?\d{1,2}$")
 _JOINT_IN_FILE_NAME = re.compile(

@@ -24,7 +24,7 @@ FACTORS: Mapping[str, Mapping[str, float]] = MappingProxyType(
         "time": {"s": 1.0, "ms": 1e-3, "us": 1e-6, "ns": 1e-9, "min": 60.0},
         "position": {"deg": 1.0, "rad": _DEGREES_PER_RADIAN, "udeg": 1e-6},
         "velocity": {"deg/s": 1.0, "rad/s": _DEGREES_PER_RADIAN, "rpm": 6.0, "mdeg/s": 1e-3},
-        "torque": {"N·m": 1.0, "mN·m": 1e-3, "A": 1.0, "mA": 1e-3},
+        "torque": {"N·m": 1.0, "mN·m": 1e-3, "A": 1.0, "mA": 1e-3, "%": 1.0},
         "motor_temperature": _TEMPERATURE_FACTORS,
         "housing_temperature": _TEMPERATURE_FACTORS,
         "load": {"N·m": 1.0, "mN·m": 1e-3},
@@ -107,7 +107,7 @@ def canonical(text: str, quantity: str) -> str | None:
     tries = (bare, re.sub(r"[^\x00-\x7f]+|\?+", "°", bare), re.sub(r"[^\x00-\x7f]+", "", bare))
     for spelling in tries:
         unit = _CANONICAL.get(spelling)
-        if unit in FACTORS[quantity] or (unit == "%" and quantity == "torque"):
+        if unit in FACTORS[quantity]:
             return unit
     return None
 

@@ -196,6 +196,9 @@ def _header(above: Sequence[str], form: _Candidate) -> tuple[list[str], int] | R
     if below is None or len(units) > len(names) or not _are_units(units):
         return names, header + 2
     padded = units + [""] * (len(names) - len(units))
+    # the first column of a recorder may have a unit and no name
+    if not names[0] and padded[0].strip("[]()").lower() in ("s", "ms", "us"):
+        names = ["time", *names[1:]]
     paired = zip(names, padded, strict=True)
     return [f"{name} [{unit.strip('[]()')}]" if unit else name for name, unit in paired], below + 2
 
@@ -220,7 +223,30 @@ def _refuse_unequal(names: int, width: int) -> Refusal:
 
 
 def _are_units(names: Sequence[str]) -> bool:
-    marks = ("s", "ms", "deg", "rad", "nm", "n·m", "a", "°c", "k", "°", "deg/s", "rad/s", "°/s")
+    marks = (
+        "s",
+        "ms",
+        "deg",
+        "rad",
+        "nm",
+        "n·m",
+        "a",
+        "°c",
+        "k",
+        "°",
+        "deg/s",
+        "rad/s",
+        "°/s",
+        "rpm",
+        "1/min",
+        "u/min",
+        "%",
+        "ma",
+        "mnm",
+        "v",
+        "inc",
+        "us",
+    )
     known = sum(name.strip("[]()").lower() in marks for name in names)
     return known >= 2 and all(_UNIT_CELL.fullmatch(name) for name in names)
 

@@ -11,8 +11,14 @@ from frictioncli.logs.channels.recognition import LogChannel, joint_in_name, rec
 from frictioncli.logs.formats import open_logs
 from frictioncli.logs.log_source import LogSource, Refusal
 from frictioncli.logs.runs.discovery import LogFile, LogRun
+from frictioncli.logs.runs.integrated_position import (
+    IntegratedPosition,
+    integrable,
+    scale_to_degrees,
+    with_position,
+)
 from frictioncli.logs.runs.native_scale import scale_raw_export
-from frictioncli.logs.runs.sidecar import Sidecar, read_sidecar
+from frictioncli.logs.runs.sidecar import Sidecar, read_sidecar, recorder_start
 from frictioncli.logs.runs.trace_files import duplicates_of_native, merge_trace
 from frictioncli.logs.runs.trace_names import is_module, is_program, trace_of
 from frictioncli.logs.settings import IngestSettings
@@ -111,7 +117,9 @@ def open_run(
             source=choice.source,
             channels=choice.channels,
             joints=choice.joints,
-            sidecar=read_sidecar(file.path, names[file.path.parent]),
+            sidecar=_with_own_start(
+                read_sidecar(file.path, names[file.path.parent]), choice.source
+            ),
         )
         for file, choice in usable.items()
     ]
@@ -159,10 +167,44 @@ def _choices(
                     source, channels, settings.joints, file_joint=joint
                 )
             choice = choices_by_header[key]
+            if isinstance(choice, Refusal) and choice.reason == "no_position_channel":
+                choices[file] = _without_position(source, choice, settings, channel_map, joint)
+                continue
             choices[file] = (
                 choice if isinstance(choice, Refusal) else replace(choice, source=source)
             )
     return choices
+
+
+def _without_position(
+    source: LogSource,
+    refusal: Refusal,
+    settings: IngestSettings,
+    channel_map: ChannelMap,
+    joint: int,
+) -> _Choice | Refusal:
+    """Return what is read of a log without position: that of one axis is integrated."""
+    channels = _channels(source.columns, channel_map, joint)
+    found = None if isinstance(channels, Refusal) else integrable(channels)
+    if found is None or isinstance(channels, Refusal):
+        return refusal
+    time, velocity = found
+    forced = {**channel_map.units, **settings.forced_units()}
+    scale = scale_to_degrees(time, velocity, forced)
+    integrated = IntegratedPosition(source, time.column, velocity.column, scale)
+    known = with_position(channels, velocity, len(source.columns))
+    return _choose(integrated, known, settings.joints, file_joint=joint)
+
+
+def _with_own_start(sidecar: Sidecar, source: LogSource) -> Sidecar:
+    """Return the sidecar with the start that the log's own text tells, where no other is known."""
+    start = recorder_start(getattr(source, "preamble", b""))
+    inner = getattr(source, "source", None)
+    if start is None and inner is not None:
+        start = recorder_start(getattr(inner, "preamble", b""))
+    if start is None or sidecar.started_at is not None:
+        return sidecar
+    return replace(sidecar, started_at=start, notes=(*sidecar.notes, "started as its head tells"))
 
 
 def _choose(

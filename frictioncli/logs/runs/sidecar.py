@@ -2,7 +2,7 @@
 
 from collections.abc import Collection
 from dataclasses import dataclass
-from datetime import datetime
+from datetime import UTC, datetime
 from pathlib import Path
 
 from frictioncli.logs.formats.diadem_header import read_header
@@ -10,6 +10,7 @@ from frictioncli.logs.log_source import UnreadableLog
 from frictioncli.logs.runs.program_file import read_program
 from frictioncli.logs.runs.trace_names import PROGRAM, trace_of
 
+_EPOS_DATE = b"Date:;"
 _PROGRAM_ENDINGS = (".TXT", ".txt")
 
 
@@ -69,3 +70,25 @@ def _start_by_header(header: Path) -> datetime | None:
     except UnreadableLog:
         return None
     return None if found is None else found.started_at
+
+
+def recorder_start(head: bytes) -> datetime | None:
+    r"""Return the start in the head of a recording by EPOS Studio, taken as UTC; None without one.
+
+    Parameters
+    ----------
+    head : bytes
+        The lines above the header.
+
+    Examples
+    --------
+    >>> recorder_start(b"Date:;2020-07-08 21:24:28\r\nFirmware Version:;0x0120").isoformat()
+    '2020-07-08T21:24:28+00:00'
+    """
+    if not head.startswith(_EPOS_DATE):
+        return None
+    text = head[len(_EPOS_DATE) :].split(b"\n", 1)[0].decode("ascii", "replace").strip()
+    try:
+        return datetime.fromisoformat(text).replace(tzinfo=UTC)
+    except ValueError:
+        return None
