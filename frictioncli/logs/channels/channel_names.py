@@ -59,7 +59,7 @@ _ALIASES: tuple[tuple[Meaning, str], ...] = (
         "axisposact axispos axisact axisactmeas position positions pos jointposition jointpositions"
         " actualposition actualjointposition positionact actpos posact q actualq aipos mp stateq"
         " robotactualjointpositions angle jointangle winkel achswinkel gelenkwinkel istwinkel"
-        " axisangle axisposition achsposition jointpos qact",
+        " axisangle axisposition achsposition jointpos qact observationstate observationqpos",
     ),
     (
         Meaning(POSITION, MOTOR_SIDE),
@@ -70,7 +70,7 @@ _ALIASES: tuple[tuple[Meaning, str], ...] = (
         "axisvelact axisvel velocity velocities vel jointvelocity jointvelocities actualvelocity"
         " velocityact velact qd dq qdot actualqd statedq robotactualjointvelocities speed"
         " geschwindigkeit achsgeschwindigkeit gelenkgeschwindigkeit axisvelocity jointvel"
-        " axisspeed jointspeed",
+        " axisspeed jointspeed observationvelocity observationqvel",
     ),
     (
         Meaning(VELOCITY, MOTOR_SIDE),
@@ -82,13 +82,13 @@ _ALIASES: tuple[tuple[Meaning, str], ...] = (
         Meaning(TORQUE, JOINT_SIDE, 1),
         "torque torques jointtorque jointtorques axistorque drehmoment moment tau effort"
         " torqueaxisact actualtorque torqueact mt statetauj tauj measuredtorque achsmoment"
-        " gelenkmoment torqact axistorqact",
+        " gelenkmoment torqact axistorqact observationeffort observationtorque",
     ),
     (Meaning(TORQUE, JOINT_SIDE, 2), "geartorqact geartorque geartorq getriebemoment"),
     (
         Meaning(TORQUE, MOTOR_SIDE, 3, "A"),
         "iststrom strom current currents motorcurrent motorstrom actualcurrent actualjointcurrent"
-        " robotactualjointcurrent currentact actcurrent curr jointcurrent macur",
+        " robotactualjointcurrent currentact actcurrent curr jointcurrent macur observationcurrent",
     ),
     (Meaning(TORQUE, MOTOR_SIDE, 3, "%"), "curract"),
     (

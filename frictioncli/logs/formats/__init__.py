@@ -7,6 +7,7 @@ from collections.abc import Iterable
 from pathlib import Path
 from typing import Protocol
 
+from frictioncli.logs.formats.array_files import read_array_file
 from frictioncli.logs.formats.arrow_tables import read_arrow
 from frictioncli.logs.formats.delimited import DelimitedText, read_delimited
 from frictioncli.logs.formats.diadem import read_diadem
@@ -32,6 +33,7 @@ class Reader(Protocol):
 READERS: tuple[Reader, ...] = (
     read_diadem,
     read_arrow,
+    read_array_file,
     read_hdf5,
     read_mdf,
     read_ros,

@@ -1,5 +1,6 @@
 """Files that are not read: known formats without a reader, and files that are not logs."""
 
+import zipfile
 from pathlib import Path
 
 from frictioncli.logs.formats.encoding import detect_encoding
@@ -10,7 +11,6 @@ _NOT_A_LOG = "not_a_log"
 # beginning of the file, reason, description
 _MAGIC: tuple[tuple[bytes, str, str], ...] = (
     (b"TDSm", _NOT_READ, "TDMS measurement; export the log as CSV"),
-    (b"PK\x03\x04", _NOT_READ, "Excel workbook or zip archive; save the log as CSV"),
     (b"\xd0\xcf\x11\xe0", _NOT_READ, "old Excel workbook; save the log as CSV"),
     (b"\x89PNG", _NOT_A_LOG, "PNG picture"),
     (b"\xff\xd8\xff", _NOT_A_LOG, "JPEG picture"),
@@ -23,10 +23,27 @@ _MAGIC: tuple[tuple[bytes, str, str], ...] = (
 )
 
 
+_ZIP = b"PK\x03\x04"
+
+
+def _zip_content(path: Path) -> str:
+    """Return what a zip archive is: a workbook, or an archive whose files can be unpacked."""
+    try:
+        with zipfile.ZipFile(path) as archive:
+            names = archive.namelist()
+    except (OSError, zipfile.BadZipFile):
+        return "damaged zip archive"
+    if "xl/workbook.xml" in names:
+        return "Excel workbook; save the log as CSV"
+    return f"zip archive of {', '.join(names[:3])}{', ...' * (len(names) > 3)}; unpack it"
+
+
 def refuse_unsupported(path: Path, head: bytes, hints: CsvHints) -> Refusal | None:
     """Return why a file cannot be read as a log, or None when it may be a text log."""
     if not head:
         return Refusal("empty_file", "empty file; expected a header line and rows of numbers")
+    if head.startswith(_ZIP):
+        return Refusal(_NOT_READ, _zip_content(path))
     start = head.removeprefix(b"\xef\xbb\xbf").lstrip(b" \t\r\n")
     for magic, reason, what in _MAGIC:
         if start.startswith(magic):
