@@ -96,7 +96,7 @@ def _columns(content: Mapping[str, Any]) -> dict[str, NDArray]:
     """Return arrays as columns; vectors that lie on their side are turned."""
     found: dict[str, NDArray] = {}
     lengths = Counter(
-        max(v.shape) for v in content.values() if isinstance(v, np.ndarray) and v.size
+        max(v.shape) for v in content.values() if isinstance(v, np.ndarray) and v.ndim and v.size
     )
     usual = max(lengths, key=lambda n: (lengths[n], n), default=0)
     for name, value in content.items():
