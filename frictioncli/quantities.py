@@ -41,6 +41,12 @@ OTHER_SPEED = Quantity(
     "deg/s",
     "mean speed of the fastest other joint of the recording over half a second; 0 below 0.5 deg/s",
 )
+OTHER_JOINTS = Quantity(
+    "other_joints",
+    "",
+    "",
+    "other joints of the recording that move, as the sum of 2^(joint - 1)",
+)
 LOAD = Quantity("load", "L", "N·m", "load torque from a channel of its own")
 PAYLOAD = Quantity("payload", "m", "kg", "payload given by the manifest")
 FRICTION_TORQUE = Quantity("friction_torque", "τ", TORQUE, "friction torque, opposes the motion")

@@ -79,6 +79,7 @@ SAMPLES = Table(
         _of(q.MOTOR_TEMPERATURE_READING, nullable=True),
         _of(q.LOAD, nullable=True),
         _of(q.OTHER_SPEED, nullable=True),
+        Column(q.OTHER_JOINTS.name, _COUNT, "", q.OTHER_JOINTS.description, nullable=True),
     ),
 )
 

@@ -128,7 +128,7 @@ def open_questions_of(
         Settled causes, questions and noise.
     """
     precomputed = Precomputed.of(problem)
-    named = document.named_causes
+    named = document.modelled_causes
     fits = [
         EffectFit(one.effect, dict(one.shape), one.coefficients, np.zeros((0, 0)), 0.0)
         for one in extended.effects

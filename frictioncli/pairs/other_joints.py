@@ -7,6 +7,7 @@ than half of what there is, or no pair would be left.
 
 from collections.abc import Iterable
 from dataclasses import dataclass, field
+from typing import Any
 
 import numpy as np
 
@@ -32,18 +33,44 @@ class OtherMotion:
     ----------
     samples, shared : dict of int to int
         Samples in angle bins by joint, and those in bins during which another joint moved.
+    seconds : dict of int to float
+        Time that the latter took. [s]
+    moves : dict of int to int
+        Moves of the joint that hold some of them.
+    others : dict of int to int
+        The other joints that moved, as the sum of 2^(joint - 1).
     needed : set of int
         Joints of which no pair is left without such samples.
     """
 
     samples: dict[int, int] = field(default_factory=dict)
     shared: dict[int, int] = field(default_factory=dict)
+    seconds: dict[int, float] = field(default_factory=dict)
+    moves: dict[int, int] = field(default_factory=dict)
+    others: dict[int, int] = field(default_factory=dict)
     needed: set[int] = field(default_factory=set)
 
-    def add(self, joint: int, count: Numbers, moves: Flags) -> None:
-        """Add bins of a joint: their samples, and whether another joint moved meanwhile."""
+    def add(
+        self, joint: int, count: Numbers, segment: Numbers, shared: Flags, period: float
+    ) -> None:
+        """Add bins of a joint: their samples and moves, and whether another joint moved meanwhile.
+
+        Parameters
+        ----------
+        joint : int
+            The joint.
+        count, segment : ndarray of int, shape (bins,)
+            Samples and number of the move of each bin; a move is added at once.
+        shared : ndarray of bool, shape (bins,)
+            Whether another joint moved meanwhile.
+        period : float
+            Sampling period. [s]
+        """
         self.samples[joint] = self.samples.get(joint, 0) + int(count.sum())
-        self.shared[joint] = self.shared.get(joint, 0) + int(count[moves].sum())
+        found = int(count[shared].sum())
+        self.shared[joint] = self.shared.get(joint, 0) + found
+        self.seconds[joint] = self.seconds.get(joint, 0.0) + found * period
+        self.moves[joint] = self.moves.get(joint, 0) + len(np.unique(segment[shared]))
 
     def share(self, joint: int) -> float:
         """Return the share of a joint's samples at constant speed while another one moved."""
@@ -52,6 +79,18 @@ class OtherMotion:
     def leaves_out(self, joint: int) -> bool:
         """Return whether such samples of a joint are left out."""
         return joint not in self.needed and 0 < self.share(joint) <= _MOST
+
+    def facts(self, joint: int) -> dict[str, Any]:
+        """Return what is known of such samples of a joint, as the tables of pairs state it."""
+        others = self.others.get(joint, 0)
+        return {
+            "samples": self.shared[joint],
+            "share": self.share(joint),
+            "seconds": self.seconds[joint],
+            "moves": self.moves[joint],
+            "joints": [number + 1 for number in range(others.bit_length()) if others >> number & 1],
+            "left_out": self.leaves_out(joint),
+        }
 
     def kept(self, joints: Iterable[int]) -> dict[int, float]:
         """Return the share of such samples of those of some joints of which they are kept."""
@@ -111,3 +150,23 @@ def bins_with_other_motion(
     span = max(int(crossed.max()), int(number.max(initial=0))) - lowest + 1
     found: Flags = np.isin(segment * span + number - lowest, owner * span + crossed - lowest)
     return found
+
+
+def joints_that_move(other_joints: Array, start: Numbers, stop: Numbers) -> int:
+    """Return which other joints moved during segments, as the sum of 2^(joint - 1).
+
+    Parameters
+    ----------
+    other_joints : ndarray, shape (samples,)
+        The same for each sample; NaN where not known.
+    start, stop : ndarray of int, shape (segments,)
+        First and past-the-end sample of each segment.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> joints_that_move(np.array([0.0, 5.0, 4.0, 2.0]), np.array([0]), np.array([3]))
+    5
+    """
+    sets = np.unique(np.nan_to_num(other_joints[slice_indices(start, stop)])).astype(np.int64)
+    return int(np.bitwise_or.reduce(sets)) if len(sets) else 0

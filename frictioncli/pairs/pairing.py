@@ -9,8 +9,10 @@ import pandas as pd
 
 from frictioncli.arrays import Array, Flags, Numbers
 from frictioncli.errors import NotEnoughData
+from frictioncli.pairs.added_torque import AddedByOthers
 from frictioncli.pairs.matching import Matches, SegmentArrays, match_bins
 from frictioncli.pairs.matching_groups import MatchingGroup, matching_groups
+from frictioncli.pairs.no_pairs_text import directions_text, dropped_text
 from frictioncli.pairs.other_joints import OTHER_MOVES, OtherMotion
 from frictioncli.pairs.partitioned_store import Columns, PartitionedStore
 from frictioncli.pairs.segments import TEMPERATURES, Joint, SegmentTables
@@ -45,12 +47,15 @@ class Pairing:
         Median speed of the pairs, by joint and level. [deg/s]
     dropped : dict of str to int
         Samples by reason; with the samples of the pairs they are all samples.
+    added : dict of int to AddedByOthers
+        What other joints add to the torque of joints while they move, by joint.
     """
 
     store: PartitionedStore[Joint]
     speeds: dict[Level, float]
     medians: dict[Level, float]
     dropped: dict[str, int]
+    added: dict[int, AddedByOthers] = field(default_factory=dict)
 
     @property
     def joints(self) -> list[int]:
@@ -102,7 +107,7 @@ def pair_segments(
     if not segments.counts:
         raise NotEnoughData(
             f"no constant-velocity motion in {segments.samples} samples"
-            f" ({_dropped_text(segments.dropped)}); expected moves that hold a speed above"
+            f" ({dropped_text(segments.dropped)}); expected moves that hold a speed above"
             f" {settings.steady.min_speed:g} deg/s; look at the velocity, or loosen --min-speed,"
             " --speed-tolerance, --settling"
         )
@@ -118,6 +123,9 @@ def pair_segments(
     paired = {joint for joint, _ in pairer.speeds}
     motion.needed |= {joint for joint in motion.shared if motion.leaves_out(joint)} - paired
     if motion.needed:
+        pairer.added = {
+            joint: found for joint, found in pairer.added.items() if joint not in motion.needed
+        }
         again = [joint for joint in sorted(segments.counts) if joint[1] in motion.needed]
         pairer.add_all(segments, again)
     dropped = pairer.total()
@@ -126,13 +134,13 @@ def pair_segments(
             f", {reason}" for reason in (_OTHER_PAYLOAD, OTHER_MOVES) if dropped[reason]
         )
         raise NotEnoughData(
-            f"no pair of counter-directed moves: {_directions_text(segments)}{mixed}; expected"
+            f"no pair of counter-directed moves: {directions_text(segments)}{mixed}; expected"
             " motion there and back over the same angles at the same speed; log both directions,"
             " or loosen --same-speed, --same-temperature, --longest-pause"
         )
     medians = {level: counts.median for level, counts in pairer.speeds.items()}
     speeds = _common_speeds(store, medians)
-    return Pairing(store, speeds, medians, segments.dropped | dropped)
+    return Pairing(store, speeds, medians, segments.dropped | dropped, pairer.added)
 
 
 @dataclass(slots=True)
@@ -146,6 +154,7 @@ class _Pairer:
     other_motion: OtherMotion
     dropped: dict[Joint, dict[str, int]] = field(default_factory=dict)
     speeds: dict[Level, SpeedCounts] = field(default_factory=dict)
+    added: dict[int, AddedByOthers] = field(default_factory=dict)
 
     def add_all(self, segments: SegmentTables, joints: Sequence[Joint]) -> None:
         """Pair the segments of runs and joints; one of which no pair was found may come again."""
@@ -162,13 +171,22 @@ class _Pairer:
     def add(self, joint: Joint, group: MatchingGroup, count: int) -> int:
         """Pair the segments of a group, numbered from ``count``; return the number of pairs."""
         segments, bins = group.segments, group.bins
+        steps, levels = self.steps_and_levels
+        level = levels[np.searchsorted(steps, steps_of(segments["speed"]))]
+        payload = self.payloads[segments["recording"]]
+        if bins["shared"].any() or joint[1] in self.added:
+            of_bins = (
+                values[bins["segment"]]
+                for values in (segments["direction"], level, np.nan_to_num(payload, nan=-1.0))
+            )
+            self.added.setdefault(joint[1], AddedByOthers()).add(
+                (bins["bin"], *of_bins),
+                **{name: bins[name] for name in ("time", "torque", "segment", "shared")},
+            )
         if self.other_motion.leaves_out(joint[1]):
             shared = bins["shared"]
             self.dropped[joint][OTHER_MOVES] += int(bins["n"][shared].sum())
             bins = {name: values[~shared] for name, values in bins.items()}
-        steps, levels = self.steps_and_levels
-        level = levels[np.searchsorted(steps, steps_of(segments["speed"]))]
-        payload = self.payloads[segments["recording"]]
         arrays = _arrays(segments, bins)
         matches = match_bins(arrays, _groups(segments["start"], level, payload), self.settings)
         matched = matches.bin_match >= 0
@@ -299,18 +317,3 @@ def _common_speeds(
                 sums[level].append(math.fsum(same))
                 counts[level] += len(same)
     return {level: math.fsum(sums[level]) / max(counts[level], 1) for level in medians}
-
-
-def _dropped_text(dropped: dict[str, int]) -> str:
-    return ", ".join(f"{reason}: {count}" for reason, count in dropped.items() if count)
-
-
-def _directions_text(segments: SegmentTables) -> str:
-    texts = []
-    for name, sign in (("forward", 1), ("reverse", -1)):
-        counts = segments.speeds[sign]
-        speeds = (
-            f" at {counts.speeds[0]:.3g} to {counts.speeds[-1]:.3g} deg/s" if counts.total else ""
-        )
-        texts.append(f"{counts.total} constant-velocity parts {name}{speeds}")
-    return ", ".join(texts)

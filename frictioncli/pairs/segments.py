@@ -18,7 +18,11 @@ from frictioncli.pairs.constant_speed import (
     ConstantSpeedSegments,
     constant_speed_segments,
 )
-from frictioncli.pairs.other_joints import OtherMotion, bins_with_other_motion
+from frictioncli.pairs.other_joints import (
+    OtherMotion,
+    bins_with_other_motion,
+    joints_that_move,
+)
 from frictioncli.pairs.partitioned_store import Columns, PartitionedStore
 from frictioncli.pairs.ramps import MEANS, PreviousMove, ramp_means
 from frictioncli.pairs.settings import SteadySettings
@@ -29,7 +33,7 @@ from frictioncli.pairs.starts import StartCounts
 Joint = tuple[str, int]
 
 TEMPERATURES = ("motor_temperature", "housing_temperature", "motor_temperature_reading")
-_CHANNELS = (*MEANS, "motor_temperature_reading", "other_speed")
+_CHANNELS = (*MEANS, "motor_temperature_reading", "other_speed", "other_joints")
 
 _FIRST_ROWS = 1 << 17
 """Samples from which it is found whether the angle bins must be wider."""
@@ -196,7 +200,7 @@ class _Finder:
         previous = PreviousMove(direction, stop - chunk.offset)
         tables = {
             "segments": self._segments(channels, found),
-            "bins": self._bins(channels, found, source.joint),
+            "bins": self._bins(channels, found, source.joint, chunk.period),
             "ramps": ramp_means(channels, found, chunk.period, previous),
             "starts": self.starts.add((source.run, source.joint), channels, found, chunk.period),
         }
@@ -224,7 +228,7 @@ class _Finder:
         } | {name: slice_means(channels[name], found.start, found.stop) for name in TEMPERATURES}
 
     def _bins(
-        self, channels: dict[str, Array], found: ConstantSpeedSegments, joint: int
+        self, channels: dict[str, Array], found: ConstantSpeedSegments, joint: int, period: float
     ) -> Columns:
         time, start, stop = channels["time"], found.start, found.stop
         means = bin_means(
@@ -248,7 +252,10 @@ class _Finder:
         shared = bins_with_other_motion(
             channels["other_speed"], position, start, stop, self.width, bins["segment"], bins["bin"]
         )
-        self.other_motion.add(joint, bins["n"], shared)
+        self.other_motion.add(joint, bins["n"], bins["segment"], shared, period)
+        if shared.any():
+            others = joints_that_move(channels["other_joints"], start, stop)
+            self.other_motion.others[joint] = self.other_motion.others.get(joint, 0) | others
         return bins | {"shared": shared}
 
     def result(self) -> SegmentTables:

@@ -6,9 +6,10 @@ from frictioncli.diagnosis.documents.document import CauseRecord, DiagnosisDocum
 from frictioncli.diagnosis.documents.extended_model import ParameterRecord
 from frictioncli.diagnosis.documents.sentences import (
     alternatives_text,
+    chance_text,
     finding_text,
     lasting_text,
-    p_value_text,
+    note_text,
     size_text,
     standing_text,
 )
@@ -44,8 +45,9 @@ class CauseText:
         Probability that noise alone would give as much.
     standing : str
         Why it is not named, if it is not.
-    finding, lasting : str
-        The cause in a sentence with values; whether it lasts, empty where that cannot be tested.
+    finding, lasting, note : str
+        The cause in a sentence with values; whether it lasts, empty where that cannot be tested;
+        what is said of it though it is not named, empty for most.
     claim, equation, parameters, experiment : str
         What was seen, the term and its fitted parameters, and what to measure next. The equation
         is empty if no effect explains the structure.
@@ -58,6 +60,7 @@ class CauseText:
     standing: str
     finding: str
     lasting: str
+    note: str
     claim: str
     equation: str
     parameters: str
@@ -154,11 +157,12 @@ def _cause(cause: CauseRecord, document: DiagnosisDocument) -> CauseText:
         ),
         kind=cause.kind or cause.channel,
         size=size_text(cause, document),
-        p_value=p_value_text(cause.p_value),
+        p_value=chance_text(cause),
         # reasons of the search name effects as files do
         standing=in_words(standing_text(cause)),
         finding=finding_text(cause),
         lasting=lasting_text(cause, document),
+        note=note_text(cause),
         claim=cause.claim,
         equation=cause.equation,
         parameters="; ".join(_parameter(name, stated) for name, stated in cause.parameters.items()),

@@ -272,7 +272,7 @@ def model_rating(results: JointResults, diagnosis: DiagnosisDocument | None) -> 
         if left
         else ""
     )
-    if diagnosis.verdict == "no_evidence":
+    if diagnosis.verdict != "unnamed" and not diagnosis.modelled_causes:
         return QualityRating(
             level=FAIR if left else GOOD,
             name="Model",
@@ -288,8 +288,8 @@ def model_rating(results: JointResults, diagnosis: DiagnosisDocument | None) -> 
     lacking, measured = (
         list_text(names) if names else ""
         for names in (
-            [alternatives_text(one) for one in diagnosis.named_causes if not one.is_measurement],
-            [alternatives_text(one) for one in diagnosis.named_causes if one.is_measurement],
+            [alternatives_text(one) for one in diagnosis.modelled_causes if not one.is_measurement],
+            [alternatives_text(one) for one in diagnosis.modelled_causes if one.is_measurement],
         )
     )
     lacks = f"lacks {lacking}" if lacking else ""

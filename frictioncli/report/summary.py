@@ -260,7 +260,7 @@ def _error(schedule: pd.DataFrame) -> float:
 def _diagnosis_sentence(results: JointResults, diagnosis: DiagnosisDocument | None) -> str:
     if diagnosis is None:
         return ""
-    causes = diagnosis.named_causes
+    causes = diagnosis.modelled_causes
     lacking = [alternatives_text(cause) for cause in causes if not cause.is_measurement]
     measured = [alternatives_text(cause) for cause in causes if cause.is_measurement]
     if diagnosis.verdict == "no_evidence":

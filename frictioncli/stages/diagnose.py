@@ -7,6 +7,7 @@ from frictioncli import schemas, tables
 from frictioncli.diagnosis.diagnose import diagnose_joint
 from frictioncli.diagnosis.documents.document import read_diagnoses
 from frictioncli.diagnosis.documents.from_diagnosis import diagnosis_document, extended_document
+from frictioncli.diagnosis.documents.other_joint import with_other_joint
 from frictioncli.diagnosis.documents.text import verdict_text
 from frictioncli.diagnosis.ramps.evidence import ramp_logs
 from frictioncli.diagnosis.settings import DiagnosisSettings
@@ -52,7 +53,9 @@ def diagnose(work: Path, settings: DiagnosisSettings | None = None) -> StageResu
         except NotEnoughData as fault:
             faults.append(str(fault))
         else:
-            diagnoses[model.joint] = diagnosis_document(diagnosis, settings)
+            found = diagnosis_document(diagnosis, settings)
+            moving = facts.get("other_motion", {}).get(str(model.joint))
+            diagnoses[model.joint] = with_other_joint(found, moving)
             extended[model.joint] = extended_document(diagnosis, model)
     if not diagnoses:
         raise NotEnoughData("; ".join(faults))

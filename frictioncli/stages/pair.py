@@ -2,8 +2,10 @@
 
 from dataclasses import asdict
 from pathlib import Path
+from typing import Any
 
 from frictioncli import schemas, tables
+from frictioncli.pairs.added_torque import AddedByOthers
 from frictioncli.pairs.pair_tables import (
     PairCounts,
     pair_rows,
@@ -70,6 +72,11 @@ def pair(work: Path, settings: PairingSettings | None = None) -> StageResult:
                 str(joint): share
                 for joint, share in segments.other_motion.kept(pairing.joints).items()
             },
+            "other_motion": {
+                str(joint): segments.other_motion.facts(joint) | _added(pairing.added.get(joint))
+                for joint in pairing.joints
+                if segments.other_motion.share(joint)
+            },
         }
         ramps.facts = starts.facts = pairs.facts = facts
         for rows in ramp_rows(segments, manifest["payload"]):
@@ -80,3 +87,11 @@ def pair(work: Path, settings: PairingSettings | None = None) -> StageResult:
             pairs.write(rows)
     text = pairing_text(counts, facts, segments.other_motion, settings.bin_width)
     return StageResult(work / PAIRS, text)
+
+
+def _added(found: AddedByOthers | None) -> dict[str, Any]:
+    """Return the torque that other joints add, as the tables of pairs state it."""
+    size = None if found is None else found.size()
+    if size is None:
+        return {}
+    return {"torque": size.value, "ci95": [size.low, size.high], "p_value": size.p_value}

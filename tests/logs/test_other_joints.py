@@ -47,7 +47,13 @@ def test_the_speed_of_the_fastest_other_joint_stands_beside_each():
 def test_joints_that_are_not_read_count_and_their_columns_end_there():
     log = rows(q4=np.zeros(len(TIME)), q6=20 * np.clip(TIME - 2, 0, 4))
     (block,) = with_other_speed([log], [4])
-    assert set(block.columns) == {(4, "position"), (4, "other_speed")}
+    assert set(block.columns) == {
+        (4, "position"),
+        (4, "other_speed"),
+        (4, "other_joints"),
+    }
+    # joint 6 alone moves, from 2 s on
+    np.testing.assert_array_equal(block.columns[4, "other_joints"][[100, 300]], [0, 2**5])
     assert block.columns[4, "other_speed"][300] == pytest.approx(20)
 
 

@@ -26,7 +26,7 @@ def findings(found: Reloaded) -> list[Finding]:
     document = found.document
     named = [
         (" or ".join(cause.effects), cause.seen_in, cause.channel)
-        for cause in document.named_causes
+        for cause in document.modelled_causes
     ]
     if document.structure is not None:
         axis = document.structure.axis[0]

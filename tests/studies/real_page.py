@@ -8,11 +8,12 @@ import pandas as pd
 from frictioncli.diagnosis.documents.document import CauseRecord, DiagnosisDocument
 from frictioncli.diagnosis.documents.reload import Reloaded
 from frictioncli.diagnosis.documents.sentences import (
+    chance_text,
     detectable_text,
     finding_text,
     lasting_text,
     margin_text,
-    p_value_text,
+    note_text,
     remainder_text,
     size_text,
     standing_text,
@@ -70,14 +71,15 @@ def joint_text(case: Case, found: Reloaded, rows: pd.DataFrame, figure: str) -> 
 
 
 def _bullet(cause: CauseRecord, document: DiagnosisDocument) -> str:
-    size = f"{size_text(cause, document)}, chance of noise alone {p_value_text(cause.p_value)}"
+    size = f"{size_text(cause, document)}, chance of noise alone {chance_text(cause)}"
     if not cause.effects:
         return f"- structure without a name: {cause.claim} {size}."
     names = " or ".join(f"`{name}`" for name in cause.effects)
     if cause.standing == "named":
         when = lasting_text(cause, document)
         return f"- **{names}**: {finding_text(cause)} {size}.{' ' if when else ''}{when}"
-    return f"- not named: {names}, {size}; {standing_text(cause)}."
+    note = note_text(cause)
+    return f"- not named: {names}, {size}; {standing_text(cause)}.{' ' if note else ''}{note}"
 
 
 def _measured(rows: pd.DataFrame) -> str:

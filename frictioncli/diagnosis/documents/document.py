@@ -21,6 +21,10 @@ Standing = Annotated[str, msgspec.Meta(pattern="^(named|visible|negligible|undet
 """What may be said of a cause."""
 
 
+OTHER_JOINT = "other_joint"
+"""Name of the motion of other joints: of the measurement, without a term in the extended model."""
+
+
 class CauseRecord(msgspec.Struct, frozen=True, kw_only=True):
     """A cause of what the simulated torque misses.
 
@@ -52,8 +56,9 @@ class CauseRecord(msgspec.Struct, frozen=True, kw_only=True):
         The runs and hours in which it was there; empty where it always is.
     parameters : mapping of str to ParameterRecord
         Its shape parameters and coefficients.
-    size : float
-        RMS in these data. [torque unit]
+    size : float or None
+        RMS in these data; of the motion of other joints, RMS while they move, None where that is
+        not known. [torque unit]
     size_ci95 : (float, float) or None
         95 % interval of that. [torque unit]
     visible_size : float or None
@@ -83,7 +88,7 @@ class CauseRecord(msgspec.Struct, frozen=True, kw_only=True):
     equation: str
     when: str = ""
     parameters: Mapping[str, ParameterRecord]
-    size: float
+    size: float | None
     size_ci95: tuple[float, float] | None = None
     visible_size: float | None = None
     visible_ci95: tuple[float, float] | None = None
@@ -275,8 +280,13 @@ class DiagnosisDocument(msgspec.Struct, frozen=True, kw_only=True):
 
     @property
     def named_causes(self) -> tuple[CauseRecord, ...]:
-        """The causes that effects of the catalogue explain, in the order of the extended model."""
+        """The causes that have a name, or several that may be meant."""
         return tuple(cause for cause in self.causes if cause.effects)
+
+    @property
+    def modelled_causes(self) -> tuple[CauseRecord, ...]:
+        """The causes that the extended model has a term for, in the order of its terms."""
+        return tuple(cause for cause in self.named_causes if OTHER_JOINT not in cause.effects)
 
     def unit_of(self, channel: str) -> str:
         """Return the unit of sizes in a channel.

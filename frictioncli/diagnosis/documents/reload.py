@@ -86,7 +86,7 @@ class Reloaded:
     @property
     def causes(self) -> tuple[CauseRecord, ...]:
         """Causes that effects of the catalogue stand for, in the order of the terms."""
-        return self.document.named_causes
+        return self.document.modelled_causes
 
 
 def read_documents(work: Path) -> dict[int, tuple[DiagnosisDocument, ExtendedModel]]:
@@ -104,7 +104,7 @@ def read_documents(work: Path) -> dict[int, tuple[DiagnosisDocument, ExtendedMod
     diagnoses = read_diagnoses(work / DIAGNOSIS)
     models = read_extended(work / EXTENDED)
     for joint, document in diagnoses.items():
-        named = len(document.named_causes)
+        named = len(document.modelled_causes)
         effects = models[joint].effects if joint in models else ()
         if joint not in models or len(effects) != named:
             raise TableError(
@@ -146,7 +146,7 @@ def _predicted(new: Misfits, document: DiagnosisDocument) -> Misfits:
     The history of a change already says that it is not there.
     """
     after = dict(new.after)
-    for term, cause in zip(new.terms, document.named_causes, strict=True):
+    for term, cause in zip(new.terms, document.modelled_causes, strict=True):
         if cause.holds_on_new_run is False and term.effect.moments is None:
             after = {channel: values + term.of(channel) for channel, values in after.items()}
     return replace(new, after=after)

@@ -1,6 +1,6 @@
 """What a diagnosis found, sentence by sentence, as terminal and page say it."""
 
-from frictioncli.diagnosis.documents.document import CauseRecord, DiagnosisDocument
+from frictioncli.diagnosis.documents.document import OTHER_JOINT, CauseRecord, DiagnosisDocument
 from frictioncli.wording import in_words, list_text, number_text, quantity_text
 
 _STANDING = {
@@ -42,7 +42,7 @@ def finding_text(cause: CauseRecord) -> str:
         A cause.
     """
     said = cause.statement or cause.claim
-    if cause.is_measurement and cause.standing == "named":
+    if cause.is_measurement and cause.standing == "named" and OTHER_JOINT not in cause.effects:
         return f"{said.removesuffix('.')}; corrected."
     return said
 
@@ -58,6 +58,10 @@ def size_text(cause: CauseRecord, document: DiagnosisDocument) -> str:
         The joint's diagnosis.
     """
     unit = document.unit_of(cause.channel)
+    if cause.size is None:
+        return "of unknown size"
+    if OTHER_JOINT in cause.effects:
+        return f"{quantity_text(cause.size, cause.size_ci95, unit)} RMS while they move"
     text = f"{quantity_text(cause.size, cause.size_ci95, unit)} RMS in the {cause.channel}"
     left = cause.visible_size
     if left is None or left >= _LEFT_BY_BASE * cause.size:
@@ -94,6 +98,19 @@ def standing_text(cause: CauseRecord) -> str:
         A cause.
     """
     return f"{_STANDING[cause.standing]}{': ' if cause.reason else ''}{cause.reason}"
+
+
+def note_text(cause: CauseRecord) -> str:
+    """Return what is worth saying of a cause though it is not named; empty for most.
+
+    What was left out of the log is said, whatever it would have added.
+
+    Parameters
+    ----------
+    cause : CauseRecord
+        A cause.
+    """
+    return cause.statement if OTHER_JOINT in cause.effects else ""
 
 
 def margin_text(document: DiagnosisDocument) -> str:
@@ -141,7 +158,7 @@ def remainder_text(document: DiagnosisDocument) -> str:
     if left is None:
         return ""
     on = f"on run {document.held_out}" if left.basis == "new_run" else "on the data fitted"
-    model = "extended" if document.named_causes else "base"
+    model = "extended" if document.modelled_causes else "base"
     most = ", most of it" if left.axis_size**2 >= 0.5 * left.size**2 else ", mostly"
     return (
         f"Something is left: {on} the {model} model misses the torque by"
@@ -150,6 +167,17 @@ def remainder_text(document: DiagnosisDocument) -> str:
         f" {unit}{most} along {_AXES.get(left.axis, left.axis)}, in the {left.channel}"
         f" ({number_text(left.axis_size, 2)} {unit})."
     )
+
+
+def chance_text(cause: CauseRecord) -> str:
+    """Return the p-value of a cause as text; of what could not be measured it is not known.
+
+    Parameters
+    ----------
+    cause : CauseRecord
+        A cause.
+    """
+    return "not known" if cause.size is None else p_value_text(cause.p_value)
 
 
 def p_value_text(p_value: float) -> str:

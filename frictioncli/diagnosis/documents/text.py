@@ -8,11 +8,12 @@ from frictioncli.diagnosis.documents.document import (
     GainRecord,
 )
 from frictioncli.diagnosis.documents.sentences import (
+    chance_text,
     detectable_text,
     finding_text,
     lasting_text,
     margin_text,
-    p_value_text,
+    note_text,
     remainder_text,
     size_text,
     standing_text,
@@ -38,7 +39,7 @@ def verdict_text(document: DiagnosisDocument) -> str:
     ]
     if not document.causes:
         lines.append("no cause is named" if document.visible else "no cause found")
-    lines += [_visible_line(cause, document) for cause in document.visible]
+    lines += [line for cause in document.visible for line in _visible_lines(cause, document)]
     if document.gain is not None:
         lines.append(_gain_text(document.gain, document))
     lines += [
@@ -53,7 +54,7 @@ def _cause_lines(cause: CauseRecord, document: DiagnosisDocument) -> Iterator[st
     shares = ", ".join(f"{name} {cause.probabilities.get(name, 0.0):.0%}" for name in cause.effects)
     kind = "measurement: " if cause.is_measurement else ""
     yield f"{kind}{' or '.join(cause.effects)} ({shares}): {finding_text(cause)}"
-    yield f"  size: {size_text(cause, document)}; chance {p_value_text(cause.p_value)}"
+    yield f"  size: {size_text(cause, document)}; chance {chance_text(cause)}"
     if lasting := lasting_text(cause, document):
         yield f"  when: {lasting}"
     yield f"  seen: {cause.claim}"
@@ -64,16 +65,18 @@ def _left(cause: CauseRecord, document: DiagnosisDocument) -> Iterator[str]:
     """Return the lines on structure without a name."""
     yield (
         f"structure that no effect of the catalogue explains: {cause.claim}"
-        f" {size_text(cause, document)}; chance {p_value_text(cause.p_value)}"
+        f" {size_text(cause, document)}; chance {chance_text(cause)}"
     )
     yield f"  next: {cause.experiment}"
 
 
-def _visible_line(cause: CauseRecord, document: DiagnosisDocument) -> str:
-    return (
+def _visible_lines(cause: CauseRecord, document: DiagnosisDocument) -> Iterator[str]:
+    yield (
         f"not named: {' or '.join(cause.effects)}, {size_text(cause, document)}, chance"
-        f" {p_value_text(cause.p_value)}; {standing_text(cause)}"
+        f" {chance_text(cause)}; {standing_text(cause)}"
     )
+    if note := note_text(cause):
+        yield f"  found: {note}"
 
 
 def _gain_text(gain: GainRecord, document: DiagnosisDocument) -> str:

@@ -18,15 +18,18 @@ WINDOW = 0.5
 LEAST_SPEED = 0.5
 """Mean speed over it below which a joint stands. [deg/s]"""
 
+_MOST_JOINTS = 53
+"""Joints with a greater number are in no set: a sum of more powers of two is not exact."""
+
 _TURN = 360.0
 """A position may jump by this where it wraps. [deg]"""
 
 
 def with_other_speed(blocks: Iterable[LogRows], joints: Sequence[int]) -> Iterator[LogRows]:
-    """Yield rows with the speed of the fastest other joint beside each joint's channels.
+    """Yield rows with the motion of the other joints beside each joint's channels.
 
-    Columns of joints that are not read are left out. Where the log has the position of one joint
-    only, rows stay as they are.
+    It is the speed of the fastest of them, and which of them move. Columns of joints that are not
+    read are left out. Where the log has the position of one joint only, rows stay as they are.
 
     Parameters
     ----------
@@ -49,8 +52,9 @@ def with_other_speed(blocks: Iterable[LogRows], joints: Sequence[int]) -> Iterat
         before = tail.take(_last(tail.time))
         columns = {key: values for key, values in block.columns.items() if key[0] in joints}
         for joint in joints:
-            others = [speed for other, speed in speeds.items() if other != joint]
-            columns[joint, names.OTHER_SPEED] = np.max(others, axis=0)
+            others = {other: speed for other, speed in speeds.items() if other != joint}
+            columns[joint, names.OTHER_SPEED] = np.max(list(others.values()), axis=0)
+            columns[joint, names.OTHER_JOINTS] = joint_set(others)
         yield LogRows(block.lines, block.time, columns)
 
 
@@ -80,6 +84,32 @@ def mean_speed(time: Array, position: Array) -> Array:
     turned = np.abs((position - position[earlier] + _TURN / 2) % _TURN - _TURN / 2)
     speed = np.nan_to_num(turned / np.maximum(time - time[earlier], WINDOW))
     return np.where(speed < LEAST_SPEED, 0.0, speed)
+
+
+def joint_set(speeds: Mapping[int, Array]) -> Array:
+    """Return which joints move, as the sum of 2^(joint - 1).
+
+    Parameters
+    ----------
+    speeds : mapping of int to ndarray, shape (rows,)
+        Speed by joint, 0 where it stands. [deg/s]
+
+    Returns
+    -------
+    ndarray, shape (rows,)
+        Whole numbers.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> joint_set({1: np.array([0.0, 2.0]), 3: np.array([0.0, 5.0])})
+    array([0., 5.])
+    """
+    found = np.zeros(len(next(iter(speeds.values()))))
+    for joint, speed in speeds.items():
+        if joint <= _MOST_JOINTS:
+            found += 2.0 ** (joint - 1) * (speed > 0)
+    return found
 
 
 def _positions(rows: LogRows) -> dict[int, tuple[int, str]]:

@@ -37,6 +37,7 @@ _COPIED_CHANNELS = (
     names.HOUSING_TEMPERATURE,
     names.LOAD,
     names.OTHER_SPEED,
+    names.OTHER_JOINTS,
 )
 
 RunKnots = Mapping[tuple[str, int], Sequence[Knots | None]]
