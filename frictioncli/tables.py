@@ -22,6 +22,7 @@ from frictioncli.files import atomic_write
 from frictioncli.provenance import Provenance
 from frictioncli.quantities import TORQUE
 from frictioncli.schemas import Table
+from frictioncli.workfiles import missing_text
 
 if TYPE_CHECKING:
     # importing it takes longer than reading most logs
@@ -291,6 +292,8 @@ def facts(path: Path) -> dict[str, Any]:
 
 def metadata(path: Path) -> dict[str, Any]:
     """Return the provenance and facts of a table; empty for a file that another program wrote."""
+    if not path.exists():
+        raise TableError(missing_text(path))
     if path.is_dir():
         path = next(iter(sorted(path.glob("*.parquet"))), path)
     try:
@@ -303,7 +306,7 @@ def metadata(path: Path) -> dict[str, Any]:
 @contextmanager
 def _opened(path: Path, table: Table) -> Iterator[pq.ParquetFile]:
     if not path.exists():
-        raise TableError(f"{path} is missing; run the stage that makes {table.name} first")
+        raise TableError(missing_text(path))
     try:
         # otherwise the bytes of a whole row group would be held beside its values
         file = pq.ParquetFile(path, pre_buffer=False, buffer_size=_READ_BYTES)
@@ -312,8 +315,6 @@ def _opened(path: Path, table: Table) -> Iterator[pq.ParquetFile]:
     with file:
         missing = [name for name in table.required if name not in file.schema_arrow.names]
         if missing:
-            raise TableError(
-                f"{path}: columns {', '.join(missing)} are missing, expected"
-                f" {', '.join(table.required)}"
-            )
+            lacking, expected = (", ".join(names) for names in (missing, table.required))
+            raise TableError(f"{path}: columns {lacking} are missing, expected {expected}")
         yield file

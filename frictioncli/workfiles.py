@@ -1,4 +1,6 @@
-"""Names of the files of a work folder."""
+"""Names of the files of a work folder, and the commands that make them."""
+
+from pathlib import Path
 
 SAMPLES = "samples.parquet"
 RECORDINGS = "recordings.parquet"
@@ -13,3 +15,27 @@ DIAGNOSIS = "diagnosis.json"
 EXTENDED = "extended-model.json"
 PLAN = "plan.json"
 COMPARISON = "comparison.json"
+
+_MADE_BY = {
+    "samples": "ingest LOGS",
+    "recordings": "ingest LOGS",
+    "rejected": "ingest LOGS",
+    "pairs": "pair",
+    "ramps": "pair",
+    "starts": "pair",
+    "torques": "separate",
+    "schedule": "simulate",
+    "evaluation": "evaluate",
+}
+
+
+def missing_text(path: Path) -> str:
+    """Return the text that a table is missing, with the command that makes it.
+
+    Examples
+    --------
+    >>> missing_text(Path("run/pairs.parquet"))
+    "run/pairs.parquet is missing; make it with 'frictioncli pair -w run'"
+    """
+    command = _MADE_BY.get(path.stem, path.stem)
+    return f"{path} is missing; make it with 'frictioncli {command} -w {path.parent}'"

@@ -34,7 +34,7 @@ from frictioncli.workfiles import SAMPLES
 __all__ = ["IngestSettings", "IngestSummary", "ingest"]
 
 _FILES_NAMED = 4
-"""Files named in the error that no log is usable."""
+"""Reasons named in the error that no log is usable."""
 
 _MISSING_CHANNEL = "mapped_column_missing"
 
@@ -252,9 +252,16 @@ def _no_usable_log(refused: Sequence[RefusedLog]) -> FrictionError:
     ordered = sorted(
         refused, key=lambda log: log.refusal.reason in ("not_a_log", "format_not_read")
     )
-    lines = [f"{log.file.path}: {log.refusal.text}" for log in ordered[:_FILES_NAMED]]
-    if len(ordered) > _FILES_NAMED:
-        lines.append(f"and {len(ordered) - _FILES_NAMED} more files")
+    alike: dict[str, list[RefusedLog]] = {}
+    for log in ordered:
+        alike.setdefault(log.refusal.text, []).append(log)
+    lines = []
+    for text, logs in list(alike.items())[:_FILES_NAMED]:
+        others = f" and {len(logs) - 1} more" if len(logs) > 1 else ""
+        lines.append(f"{logs[0].file.path}{others}: {text}")
+    unnamed = sum(len(logs) for logs in list(alike.values())[_FILES_NAMED:])
+    if unnamed:
+        lines.append(f"and {unnamed} more files")
     kind = (
         MappingError if any(log.refusal.reason == _MISSING_CHANNEL for log in refused) else LogError
     )

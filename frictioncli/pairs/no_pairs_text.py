@@ -1,5 +1,8 @@
 """What is said of segments of which no two make a pair."""
 
+import numpy as np
+
+from frictioncli.pairs.partitioned_store import Columns
 from frictioncli.pairs.segments import SegmentTables
 
 
@@ -9,12 +12,17 @@ def dropped_text(dropped: dict[str, int]) -> str:
 
 
 def directions_text(segments: SegmentTables) -> str:
-    """Return how many segments there are in each direction, and their speeds, as text."""
+    """Return numbers and speeds of the segments of each joint by direction, as text."""
+    speeds: dict[int, list[Columns]] = {}
+    for joint in sorted(segments.counts):
+        of_joint = speeds.setdefault(joint[1], [])
+        of_joint += [columns for (columns,) in segments.store.read(joint, "segments")]
     texts = []
-    for name, sign in (("forward", 1), ("reverse", -1)):
-        counts = segments.speeds[sign]
-        speeds = (
-            f" at {counts.speeds[0]:.3g} to {counts.speeds[-1]:.3g} deg/s" if counts.total else ""
-        )
-        texts.append(f"{counts.total} constant-velocity parts {name}{speeds}")
-    return ", ".join(texts)
+    for number, tables in sorted(speeds.items()):
+        parts = []
+        for name, sign in (("forward", 1), ("reverse", -1)):
+            found = np.concatenate([one["speed"][one["direction"] == sign] for one in tables])
+            at = f" at {found.min():.3g} to {found.max():.3g} deg/s" if len(found) else ""
+            parts.append(f"{len(found)} constant-velocity parts {name}{at}")
+        texts.append(f"joint {number}: {', '.join(parts)}")
+    return "; ".join(texts)

@@ -108,8 +108,8 @@ def pair_segments(
         raise NotEnoughData(
             f"no constant-velocity motion in {segments.samples} samples"
             f" ({dropped_text(segments.dropped)}); expected moves that hold a speed above"
-            f" {settings.steady.min_speed:g} deg/s; look at the velocity, or loosen --min-speed,"
-            " --speed-tolerance, --settling"
+            f" {settings.steady.min_speed:g} deg/s (look at the velocity); other motion, as sines,"
+            " is for 'frictioncli separate --by regression'"
         )
     pairer = _Pairer(
         settings,
@@ -135,8 +135,9 @@ def pair_segments(
         )
         raise NotEnoughData(
             f"no pair of counter-directed moves: {directions_text(segments)}{mixed}; expected"
-            " motion there and back over the same angles at the same speed; log both directions,"
-            " or loosen --same-speed, --same-temperature, --longest-pause"
+            " motion of a joint there and back over the same angles at the same speed; log both"
+            " directions, or loosen --same-speed, --same-temperature, --longest-pause; other"
+            " motion is for 'frictioncli separate --by regression'"
         )
     medians = {level: counts.median for level, counts in pairer.speeds.items()}
     speeds = _common_speeds(store, medians)

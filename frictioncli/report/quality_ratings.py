@@ -174,7 +174,8 @@ def pairs_rating(results: JointResults) -> QualityRating:
 
 def speeds_rating(results: JointResults) -> QualityRating:
     """Rate whether the speeds can separate Coulomb from viscous friction."""
-    speeds = sorted(results.styles)
+    # as the text of ``pair`` counts them
+    speeds = sorted({round(speed, 1) for speed in results.styles})
     level = _worst(
         _at_least(len(speeds), _SPEEDS), _at_least(speeds[-1] / speeds[0], _SPEED_RATIOS)
     )

@@ -76,7 +76,8 @@ def measurement_text(results: JointResults) -> str:
     results : JointResults
         One joint's results.
     """
-    speeds = sorted(results.styles)
+    # as the text of ``pair`` counts them
+    speeds = sorted({round(speed, 1) for speed in results.styles})
     at = (
         f"at {speed_text(speeds[0])}"
         if len(speeds) == 1

@@ -80,7 +80,10 @@ def deployed(work: Path, settings: ExportSettings | None = None) -> DeployedMode
 
 def _chosen(source: Path, joint: int | None) -> FrictionModel:
     """Return the model of the chosen joint, or the only one."""
-    models = {model.joint: model for model in read_models(source)}
+    models = {
+        model.joint: model
+        for model in read_models(source, "diagnose" if source.name == EXTENDED else "fit")
+    }
     if joint is None and len(models) == 1:
         return next(iter(models.values()))
     if joint not in models:

@@ -90,6 +90,12 @@ def assign_channels(
     torques = _by_preference(channels, TORQUE)
     with_torque = {file_joint if c.joint is None else c.joint for c in torques}
     wanted = sorted(with_torque if joints is None else with_torque & set(joints))
+    if not wanted and joints is not None and with_torque:
+        return Refusal(
+            "no_torque_channel",
+            f"no joint {', '.join(map(str, joints))}; torque channels are there of joint"
+            f" {', '.join(map(str, sorted(with_torque)))}",
+        )
     if not wanted:
         which = "" if joints is None else f" of joint {', '.join(map(str, joints))}"
         return _missing("torque", which, channels, columns)

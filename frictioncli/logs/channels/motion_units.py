@@ -187,9 +187,12 @@ def _with_forced_units(
     time = forced.get(names.TIME, found.time)
     velocity = forced.get(names.VELOCITY, found.velocity)
     if time != found.time or (velocity != found.velocity and found.evidence):
+        would_fit = (
+            "" if found.velocity is None else f": {found.time} and {found.velocity} would fit"
+        )
         remarks.warnings.append(
-            f"time and velocity are read as {time} and {velocity} as told, but {found.evidence}:"
-            f" {found.time} and {found.velocity} would fit"
+            f"time and velocity are read as {time} and {velocity} as told, but"
+            f" {found.evidence}{would_fit}"
         )
     return MotionUnits(time, found.position, velocity, found.reversed_velocity, found.evidence)
 
