@@ -1,6 +1,7 @@
 """Settings of segmentation, pairing and separation."""
 
 from dataclasses import dataclass, field
+from pathlib import Path
 
 from frictioncli.errors import OptionError
 from frictioncli.options import option
@@ -115,6 +116,8 @@ class SeparationSettings:
         ``pairs``: by equation (8) in pairs of moves at constant speed. ``regression``: by
         regression of all samples in motion. ``auto``: the former, and the latter for a joint of
         which too few pairs were found.
+    urdf : Path or None
+        Kinematics of the arm, for a regression of joints that move together.
     sign : {1, -1} or None
         Sign of friction in forward motion. 1: torque is load + friction; -1: load - friction;
         None: found from the data.
@@ -126,6 +129,10 @@ class SeparationSettings:
             "How: pairs of moves at constant speed, regression of all motion, or auto: regression"
             " where pairs are too few."
         ),
+    )
+    urdf: Path | None = field(
+        default=None,
+        metadata=option("Kinematics of the arm, for a regression of joints that move together."),
     )
     sign: int | None = field(
         default=None,

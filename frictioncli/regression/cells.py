@@ -169,14 +169,8 @@ def _parts(coarse: Numbers, move: Numbers, direction: Array, wanted: int) -> Num
 def _frictionless_motion(found: JointRegression, group: Numbers, centre: Array) -> Array:
     """Return torque less inertia and load, with friction at a pair's speed and bin's centre."""
     estimate, equations = found.estimate, found.equations
-    inertia = load_columns(equations, estimate.terms, estimate.delay) @ np.array(
-        [
-            value if name.startswith("inertia") else 0.0
-            for name, value in zip(
-                estimate.terms.load_names, estimate.load_coefficients.tolist(), strict=True
-            )
-        ]
-    )
+    coefficients = estimate.load_coefficients
+    frictionless = load_columns(equations, estimate.terms, estimate.delay) @ coefficients
     root = root_speed(equations, estimate.delay)
     fitted = estimate.parameters
     decay = np.exp(-fitted.get("delta", 0.0) * equations.temperature)
@@ -188,7 +182,7 @@ def _frictionless_motion(found: JointRegression, group: Numbers, centre: Array) 
     if "alpha" in fitted and _has_one_gravity(found):
         at_centre = np.square(_gravity_at(found, centre))
         carried += found.sign * fitted["alpha"] * (at_centre - estimate.squared_load)
-    motion = equations.rows.torque - inertia - found.load()
+    motion = equations.rows.torque - frictionless
     return np.asarray(motion + found.sign * equations.direction * carried)
 
 
@@ -232,7 +226,7 @@ def _cells(data: pd.DataFrame, found: JointRegression, bin_width: float) -> pd.D
 def _has_one_gravity(found: JointRegression) -> bool:
     """Return whether the load is a function of the angle alone."""
     terms = found.estimate.terms
-    return not terms.load_channel and len(terms.payloads) == 1
+    return not terms.load_channel and not terms.base_parameters and len(terms.payloads) == 1
 
 
 def _gravity_at(found: JointRegression, position: Array) -> Array:

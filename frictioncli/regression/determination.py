@@ -117,9 +117,9 @@ def regress(prepared: PreparedJoint, joint: int, sign: int | None = None) -> Joi
     terms, undetermined = _by_excitation(prepared)
     some = some_equations(equations)
     estimate = identify(some, terms)
-    late = _told(estimate, "delay")
-    if not late or some is not equations:
-        estimate = identify(equations, terms if late else replace(terms, delay=False))
+    chosen = replace(terms, delay=terms.delay and _told(estimate, "delay"))
+    if chosen != terms or some is not equations:
+        estimate = identify(equations, chosen)
     if "alpha" in terms.friction:
         # a load that hardly varies would let it hold anything
         fewer = _without_vague_load(estimate, 0, undetermined)

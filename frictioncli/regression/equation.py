@@ -16,6 +16,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from frictioncli.arrays import Array, Flags, Numbers
+from frictioncli.regression.arm_dynamics import ArmColumns
 from frictioncli.regression.motion_rows import MotionRows
 
 FRICTION_TERMS = ("tau_c", "alpha", "beta", "gamma")
@@ -38,6 +39,9 @@ class EquationTerms:
         Whether a measured load stands in the torque.
     delay : bool
         Whether the torque may lag behind the position.
+    base_parameters : int
+        Number of base parameters of the whole arm, in place of inertia and gravity of one joint; 0
+        without its kinematics.
     payloads : tuple of float
         Payloads, each with an inertia and a gravity of its own; NaN where unknown. [kg]
     """
@@ -47,6 +51,7 @@ class EquationTerms:
     gravity: bool = True
     load_channel: bool = False
     delay: bool = True
+    base_parameters: int = 0
     payloads: tuple[float, ...] = (float("nan"),)
 
     def without(self, *names: str) -> "EquationTerms":
@@ -56,8 +61,8 @@ class EquationTerms:
     @property
     def load_names(self) -> tuple[str, ...]:
         """Names of the linear parameters that are not of friction."""
-        names = []
-        for number in range(len(self.payloads)):
+        names = [f"base_{number + 1}" for number in range(self.base_parameters)]
+        for number in range(len(self.payloads) if not names else 0):
             suffix = f"_{number + 1}" if number else ""
             names.append(f"inertia{suffix}")
             if self.gravity:
@@ -89,12 +94,15 @@ class JointEquations:
         Temperature of equation (16), zero where there is none. [°C]
     payload : ndarray of int, shape (rows,)
         Number of the payload among those of the terms.
+    arm : ArmColumns or None
+        Columns of the base parameters of the whole arm.
     """
 
     rows: MotionRows
     speed_from_position: bool
     temperature: Array
     payload: Numbers
+    arm: ArmColumns | None = None
 
     @property
     def velocity(self) -> Array:
@@ -129,6 +137,7 @@ class JointEquations:
             speed_from_position=self.speed_from_position,
             temperature=self.temperature[kept],
             payload=self.payload[kept],
+            arm=None if self.arm is None else self.arm.where(kept),
         )
 
 
@@ -152,10 +161,10 @@ def load_columns(equations: JointEquations, terms: EquationTerms, delay: float) 
     rows, velocity, acceleration = equations.rows, equations.velocity, equations.acceleration
     angle = np.radians(rows.position - delay * velocity + delay**2 / 2 * acceleration)
     acceleration = np.radians(acceleration - delay * equations.jerk)
-    columns = []
+    columns = [] if equations.arm is None else [*equations.arm.torque.T]
     # the average of a cosine over the filter's weights is smaller than that of the mean angle
     shrink = np.exp(-np.square(np.radians(velocity)) * rows.variance / 2)
-    for number in range(len(terms.payloads)):
+    for number in range(len(terms.payloads) if equations.arm is None else 0):
         here = (equations.payload == number).astype(float)
         columns.append(here * acceleration)
         if terms.gravity:
@@ -228,6 +237,32 @@ def friction_columns(
     return np.asarray(equations.direction[:, np.newaxis] * stacked)
 
 
+def load_derivatives(equations: JointEquations, terms: EquationTerms, delay: float) -> Array:
+    """Return what a unit of each coefficient of :func:`load_columns` adds to the load at rest.
+
+    Parameters
+    ----------
+    equations : JointEquations
+        The rows.
+    terms : EquationTerms
+        The terms.
+    delay : float
+        Delay of the torque. [s]
+
+    Returns
+    -------
+    ndarray, shape (rows, columns)
+        The columns; zeros where they are of inertia.
+    """
+    columns = load_columns(equations, terms, delay)
+    if equations.arm is not None:
+        columns[:, : terms.base_parameters] = equations.arm.gravity
+    for index, name in enumerate(terms.load_names):
+        if name.startswith("inertia"):
+            columns[:, index] = 0.0
+    return columns
+
+
 def load_torque(
     equations: JointEquations, terms: EquationTerms, coefficients: Array, delay: float
 ) -> Array:
@@ -244,8 +279,4 @@ def load_torque(
     delay : float
         Delay of the torque. [s]
     """
-    weights = np.array(coefficients, dtype=float)
-    for index, name in enumerate(terms.load_names):
-        if name.startswith("inertia"):
-            weights[index] = 0.0
-    return np.asarray(load_columns(equations, terms, delay) @ weights)
+    return np.asarray(load_derivatives(equations, terms, delay) @ coefficients)

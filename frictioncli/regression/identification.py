@@ -27,6 +27,7 @@ from frictioncli.regression.equation import (
     JointEquations,
     friction_columns,
     load_columns,
+    load_derivatives,
     load_torque,
 )
 from frictioncli.regression.estimate import TOLERANCE, RegressionEstimate, left_out_changes
@@ -254,12 +255,10 @@ class _RowFit:
             return jacobian
         full = jacobian.copy()
         alpha = self.linear[self.terms.linear.index("alpha")]
-        coefficients = self.linear[: len(self.terms.load_names)]
-        load = load_torque(self.equations, self.terms, coefficients, self.delay)
-        slope = 2 * alpha * load * self.equations.direction
-        for index, name in enumerate(self.terms.load_names):
-            if not name.startswith("inertia"):
-                full[:, index] += slope * jacobian[:, index]
+        own = len(self.terms.load_names)
+        derivatives = load_derivatives(self.equations, self.terms, self.delay)
+        slope = 2 * alpha * (derivatives @ self.linear[:own]) * self.equations.direction
+        full[:, :own] += slope[:, np.newaxis] * derivatives
         return full
 
 

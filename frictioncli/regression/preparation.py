@@ -1,7 +1,7 @@
 """Rows that may enter the regression of a joint, and those that may not, counted by reason."""
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import pandas as pd
@@ -9,6 +9,7 @@ import pandas as pd
 from frictioncli.arrays import Array, Flags, Numbers
 from frictioncli.pairs.other_joints import OTHER_MOVES
 from frictioncli.pairs.settings import SteadySettings
+from frictioncli.regression.arm_dynamics import ArmColumns
 from frictioncli.regression.equation import EquationTerms, JointEquations
 from frictioncli.regression.filters import STEP_TIMES, matched_filters
 from frictioncli.regression.motion_rows import MotionLog, MotionRows
@@ -17,6 +18,7 @@ SLOW = "slower than friction's law holds"
 AFTER_REVERSAL = "just after a start or reversal"
 NO_TEMPERATURE = "no motor temperature"
 NO_LOAD = "no measured load"
+UNKNOWN_ARM = "angle of another joint unknown"
 
 _SLOWEST_SHARE = 0.01
 """Rows slower than this share of the highest speed are left out: the joint may stick."""
@@ -62,7 +64,12 @@ class PreparedJoint:
     other_share: float = 0.0
 
 
-def prepare(motion: MotionLog, payload: pd.Series | None = None) -> PreparedJoint:
+def prepare(
+    motion: MotionLog,
+    payload: pd.Series | None = None,
+    arm: Callable[[Array], ArmColumns] | None = None,
+    state: Array | None = None,
+) -> PreparedJoint:
     """Choose the rows and the source of the acceleration.
 
     Parameters
@@ -71,6 +78,10 @@ def prepare(motion: MotionLog, payload: pd.Series | None = None) -> PreparedJoin
         Rows of the joint.
     payload : Series, optional
         Payload by run and recording, missing where unknown. [kg]
+    arm : callable, optional
+        Makes the columns of the whole arm's dynamics from the motion of all joints.
+    state : ndarray, shape (rows, joints, 3), optional
+        That motion. [deg], [deg/s], [deg/s²]
 
     Returns
     -------
@@ -91,14 +102,18 @@ def prepare(motion: MotionLog, payload: pd.Series | None = None) -> PreparedJoin
         carried = payload.reindex(keys).to_numpy(float)
 
     def leave_out(reason: str, unfit: Flags) -> None:
-        nonlocal rows
+        nonlocal rows, state
         if unfit.any():
+            state = None if state is None else state[~unfit]
             dropped[reason] = dropped.get(reason, 0) + int(rows.samples[unfit].sum())
             rows = rows.where(~unfit)
 
     shared = np.nan_to_num(rows.other_speed) > 0
     share = float(shared.mean()) if len(rows) else 0.0
-    if 0 < share <= _MOST_WITH_OTHERS:
+    if state is not None:
+        leave_out(UNKNOWN_ARM, np.isnan(state.sum(axis=(1, 2))))
+        share = 0.0
+    elif 0 < share <= _MOST_WITH_OTHERS:
         leave_out(OTHER_MOVES, shared)
         share = 0.0
     elif share:
@@ -132,6 +147,18 @@ def prepare(motion: MotionLog, payload: pd.Series | None = None) -> PreparedJoin
     )
     if not known.any():
         terms = terms.without("gamma")
+    if arm is not None and state is not None and len(rows):
+        columns = arm(state)
+        equations = replace(equations, arm=columns, payload=np.zeros_like(number))
+        terms = replace(
+            terms,
+            base_parameters=columns.torque.shape[1],
+            gravity=False,
+            delay=False,
+            payloads=(float("nan"),),
+        )
+        if len(payloads) > 1:
+            notes.append("payloads are not told apart in the dynamics of the whole arm")
     return PreparedJoint(
         equations=equations, terms=terms, dropped=dropped, notes=tuple(notes), other_share=share
     )

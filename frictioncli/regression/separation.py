@@ -2,6 +2,8 @@
 
 from collections.abc import Callable, Collection, Iterable, Mapping
 from dataclasses import dataclass
+from functools import partial
+from pathlib import Path
 from typing import Any
 
 import pandas as pd
@@ -9,9 +11,11 @@ import pyarrow as pa
 
 from frictioncli.errors import NotEnoughData
 from frictioncli.pairs.other_joints import OTHER_MOVES
+from frictioncli.regression.arm_dynamics import ArmModel
+from frictioncli.regression.arm_motion import arm_motions
 from frictioncli.regression.cells import torque_cells
 from frictioncli.regression.determination import regress
-from frictioncli.regression.motion_rows import MotionLog, motion_rows
+from frictioncli.regression.motion_rows import motion_rows
 from frictioncli.regression.preparation import PreparedJoint, prepare, with_wide_enough_filter
 from frictioncli.regression.text import regression_facts, regression_text
 
@@ -53,6 +57,7 @@ def torques_by_regression(
     manifest: pd.DataFrame | None = None,
     units: tuple[str, str] = ("N·m", "N·m"),
     doubtful: bool = True,
+    urdf: Path | None = None,
 ) -> RegressedTorques:
     r"""Return friction and load torque of any motion by regression of all samples.
 
@@ -73,6 +78,9 @@ def torques_by_regression(
     doubtful : bool
         Whether a joint is regressed that moves mostly while others move, or in one direction only;
         its friction then holds what the others add, or the offset of the torque.
+    urdf : Path, optional
+        Kinematics of the arm, for joints that move together; see
+        :class:`~frictioncli.regression.arm_dynamics.ArmModel`.
 
     Returns
     -------
@@ -83,6 +91,8 @@ def torques_by_regression(
     ------
     NotEnoughData
         If no joint can be regressed, with the reason of each.
+    OptionError
+        If the URDF cannot be used.
 
     Notes
     -----
@@ -128,9 +138,11 @@ def torques_by_regression(
     >>> abs(row["friction_torque"] - 5 - 2 * np.sqrt(row["speed"])) < 0.1
     np.True_
     """
+    arm = None if urdf is None else ArmModel(urdf)
     motions = with_wide_enough_filter(lambda width: motion_rows(read(), step_time=width))
     payload = None if manifest is None else manifest["payload"]
     phase = None if manifest is None else manifest["phase"]
+    states = {} if arm is None else arm_motions(read, motions, range(1, arm.joints + 1))
     tables, texts, faults = [], [], []
     standing: list[str] = []
     signs: dict[int, int] = {}
@@ -144,7 +156,9 @@ def torques_by_regression(
             standing.append(str(joint))
             continue
         try:
-            prepared = _prepared(joint, motion, payload, doubtful=doubtful)
+            columns = None if arm is None else partial(arm.columns, joint)
+            prepared = prepare(motion, payload, columns, states.get(joint))
+            _refuse_doubtful(joint, prepared, doubtful=doubtful)
             found = regress(prepared, joint, sign)
         except NotEnoughData as fault:
             faults.append(str(fault))
@@ -174,15 +188,12 @@ def torques_by_regression(
     )
 
 
-def _prepared(
-    joint: int, motion: MotionLog, payload: pd.Series | None, *, doubtful: bool
-) -> PreparedJoint:
-    """Return the rows of a joint; refuse those that are doubtful, unless that is allowed."""
-    prepared = prepare(motion, payload)
+def _refuse_doubtful(joint: int, prepared: PreparedJoint, *, doubtful: bool) -> None:
+    """Refuse a joint whose friction holds something else, unless that is allowed."""
     if prepared.other_share and not doubtful:
         raise NotEnoughData(
             f"joint {joint}: {OTHER_MOVES} in {prepared.other_share:.0%} of its motion, and the"
-            " weight and inertia of the others act on it; log it alone, or try"
+            " weight and inertia of the others act on it; log it alone, give --urdf, or try"
             " 'frictioncli separate --by regression', whose friction then holds what they add"
         )
     if len(prepared.equations.rows) and not prepared.terms.offset and not doubtful:
@@ -190,4 +201,3 @@ def _prepared(
             f"joint {joint}: motion in one direction only, in which an offset of the torque counts"
             " as friction; log both directions, or try 'frictioncli separate --by regression'"
         )
-    return prepared

@@ -38,6 +38,8 @@ def parameter_units(found: JointRegression, torque_unit: str, load_unit: str) ->
             units[name] = inertia
         elif name.startswith("gravity"):
             units[name] = torque_unit
+        elif name.startswith("base"):
+            units[name] = ""
     return units
 
 
@@ -71,7 +73,11 @@ def regression_text(
         f" {ways}"
     ]
     shown = [name for name in estimate.names if name not in estimate.terms.friction]
-    for name in [one for one in shown if one != "delta"]:
+    if estimate.terms.base_parameters:
+        lines.append(
+            f"  dynamics of the whole arm: {estimate.terms.base_parameters} base parameters"
+        )
+    for name in [one for one in shown if one != "delta" and not one.startswith("base")]:
         low, high = estimate.interval(name)
         lines.append(
             f"  {name:12s} {estimate.parameters[name]:10.4g}  {f'{low:.4g} to {high:.4g}':>22s}"

@@ -115,6 +115,7 @@ def _regressed(
         manifest=read_phase_and_payload(work / RECORDINGS),
         units=(str(tables.facts(source).get("torque_unit", "N·m")), "N·m"),
         doubtful=settings.by == REGRESSED,
+        urdf=settings.urdf,
     )
 
 
@@ -142,7 +143,7 @@ def _write(
     facts["separated_by"] = {
         str(joint): PAIRED if joint in by_pairs else REGRESSED for joint in signs
     }
-    provenance = Provenance("separate", asdict(settings), input_hashes(inputs))
+    provenance = Provenance("separate", _told(settings), input_hashes(inputs))
     ranges = TorqueRanges()
     with tables.TableWriter(work / TORQUES, schemas.TORQUES, provenance) as torques:
         for rows in ranges.update(_rows(source, by_pairs, regressed)):
@@ -151,6 +152,12 @@ def _write(
         torques.facts = facts
     text = separation_text(ranges, by_pairs, facts, given=settings.sign is not None)
     return StageResult(work / TORQUES, "\n".join([*([text] if text else []), *texts]))
+
+
+def _told(settings: SeparationSettings) -> dict[str, object]:
+    """Return the settings for the provenance; a path as text."""
+    urdf = None if settings.urdf is None else str(settings.urdf)
+    return asdict(settings) | {"urdf": urdf}
 
 
 def _rows(

@@ -129,7 +129,11 @@ def test_options_are_in_the_provenance_of_what_is_written(tmp_path):
     assert (samples["joints"], samples["units"]) == ([2], {"torque": "N·m"})
     pairs = tables.metadata(work / "pairs.parquet")["settings"]
     assert (pairs["bin_width"], pairs["steady"]["min_samples"]) == (10.0, 7)
-    assert tables.metadata(work / "torques.parquet")["settings"] == {"by": "auto", "sign": 1}
+    assert tables.metadata(work / "torques.parquet")["settings"] == {
+        "by": "auto",
+        "urdf": None,
+        "sign": 1,
+    }
     model = json.loads((work / "model.json").read_text(encoding="utf-8"))
     assert model["provenance"]["settings"]["temperature"] == "motor"
 

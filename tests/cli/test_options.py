@@ -74,6 +74,7 @@ def pairing(place):
 def separation(place):
     return {
         "--by": ("regression", f"{place}.by", "regression"),
+        "--urdf": ("arm.urdf", f"{place}.urdf", Path("arm.urdf")),
         "--sign": ("-1", f"{place}.sign", -1),
     }
 
