@@ -20,14 +20,12 @@ from frictioncli.diagnosis.ramps.evidence import RampEvidence, RampLog, ramp_evi
 from frictioncli.diagnosis.ramps.timing import torque_timing
 from frictioncli.diagnosis.ramps.timing_rivals import TimingRivals
 from frictioncli.diagnosis.search.cause import Cause
-from frictioncli.diagnosis.search.cause_search import (
-    SearchResult,
-    find_causes,
-    given_up_causes,
-)
+from frictioncli.diagnosis.search.cause_search import find_causes
 from frictioncli.diagnosis.search.cause_selection import judged_on_new_run
 from frictioncli.diagnosis.search.lack_of_fit import Structure
+from frictioncli.diagnosis.search.margin import channel_margin, margin_of, strength
 from frictioncli.diagnosis.search.measurement import beside_the_rest
+from frictioncli.diagnosis.search.search_result import SearchResult, given_up_causes
 from frictioncli.diagnosis.search.standing import with_standing
 from frictioncli.diagnosis.search.timing_causes import judged_by_timing
 from frictioncli.diagnosis.search.understood import understood
@@ -37,12 +35,6 @@ from frictioncli.diagnosis.thermal.refine import LAG, search_with_lag, settled
 from frictioncli.effects import EFFECTS
 from frictioncli.effects.base import Effect
 from frictioncli.errors import NotEnoughData
-
-MARGIN_SHARE = 0.005
-"""Smallest size worth a name, as a share of the mean friction."""
-
-LEAST_MARGIN = 0.1
-"""Smallest size worth a name, where torque is in N·m. [N·m]"""
 
 LEAST_PAIRS = 12
 """With fewer pairs noise cannot be distinguished from structure."""
@@ -95,6 +87,8 @@ class Diagnosis:
         Temperature of the gear, where a lag of it is a cause.
     timing : TimingRivals or None
         By how much the torque is late, and whether by a delay or a filter.
+    load_margin : float or None
+        The margin of what shows in a load channel of the log; none without one. [N·m]
     """
 
     joint: int
@@ -117,6 +111,7 @@ class Diagnosis:
     ramps: RampEvidence | None
     thermal: ThermalEstimate | None = None
     timing: TimingRivals | None = None
+    load_margin: float | None = None
 
 
 def diagnose_joint(
@@ -180,7 +175,7 @@ def diagnose_joint(
         named = list(judged_on_new_run(named, found.step, new))
     causes, unnamed = understood(found.step, named, margin, settings.alpha)
     given_up = given_up_causes(found, settings.alpha)
-    visible = _visible((*judged, *given_up), named, causes, unnamed)
+    visible = _visible((*judged, *given_up), named, causes, unnamed, problem)
     extension = gain = None
     if lag is not None and not any(cause.fit.effect.name == LAG for cause in causes):
         # what is not named does not move the temperature of the extended model
@@ -217,6 +212,7 @@ def diagnose_joint(
         floor=_floor(found),
         detectable=found.detectable_sizes(effects, settings.alpha, margin),
         margin=margin,
+        load_margin=channel_margin(base, "load", margin) if base.has_load_channel else None,
         rmse=float(np.sqrt(np.mean(squared))),
         worst=worst_misfits(base),
         runs=problem.runs,
@@ -247,29 +243,12 @@ def predicting(extension: Extension, causes: Sequence[Cause]) -> Extension:
     return replace(extension, effects=effects)
 
 
-def margin_of(problem: Problem, torque_unit: str, settings: DiagnosisSettings) -> float:
-    """Return the smallest size worth a name, in the torque unit.
-
-    Parameters
-    ----------
-    problem : Problem
-        The rows, whose mean friction counts.
-    torque_unit : str
-        Unit of everything torque-like; the least margin of 0.1 N·m holds for N·m only.
-    settings : DiagnosisSettings
-        Its margin is taken where it is given.
-    """
-    if settings.margin is not None:
-        return settings.margin
-    share = MARGIN_SHARE * float(np.mean(np.abs(problem.friction)))
-    return max(share, LEAST_MARGIN) if torque_unit == "N·m" else share
-
-
 def _visible(
     judged: Sequence[Cause],
     named: Sequence[Cause],
     causes: Sequence[Cause],
     unnamed: Structure | None,
+    problem: Problem,
 ) -> tuple[Cause, ...]:
     """Return what was found and is not named, with the reason, largest first."""
     left = [cause for cause in judged if cause.standing != "named"]
@@ -282,7 +261,11 @@ def _visible(
             reason = f"structure along {unnamed.axis} is left that no effect explains"
             cause = replace(cause, standing="visible", reason=reason)
         left.append(cause)
-    return tuple(sorted(left, key=lambda cause: -cause.visible))
+
+    def share(cause: Cause) -> float:
+        return strength(problem, cause.fit.effect.channel, cause.visible)
+
+    return tuple(sorted(left, key=share, reverse=True))
 
 
 def _verdict(causes: Sequence[Cause], unnamed: Structure | None) -> str:

@@ -5,8 +5,8 @@ import pandas as pd
 import pytest
 
 from frictioncli.diagnosis.data.build_problem import build_problems
-from frictioncli.diagnosis.diagnose import margin_of
 from frictioncli.diagnosis.search.cause_search import find_causes
+from frictioncli.diagnosis.search.margin import margin_of
 from frictioncli.diagnosis.search.standing import with_standing
 from frictioncli.diagnosis.settings import DiagnosisSettings
 from frictioncli.effects import EFFECTS

@@ -11,9 +11,10 @@ import pandas as pd
 
 from frictioncli import documents
 from frictioncli.diagnosis.data.build_problem import build_problems
-from frictioncli.diagnosis.diagnose import diagnose_joint, margin_of
+from frictioncli.diagnosis.diagnose import diagnose_joint
 from frictioncli.diagnosis.documents.from_diagnosis import diagnosis_document, extended_document
 from frictioncli.diagnosis.search.cause_search import find_causes
+from frictioncli.diagnosis.search.margin import margin_of
 from frictioncli.diagnosis.settings import DiagnosisSettings
 from frictioncli.effects import EFFECTS
 from frictioncli.model.fitting import fit_joint

@@ -238,13 +238,15 @@ class DiagnosisDocument(msgspec.Struct, frozen=True, kw_only=True):
         The structure without a name.
     margin : float or None
         Smallest size worth a name; None in files of versions without it. [torque unit]
+    load_margin : float or None
+        The same of what shows in a load channel of the log; None without one. [load unit]
     gain : GainRecord or None
         How much less the extended model misses; none without causes.
     remainder : RemainderRecord or None
         What the extended model still misses; none where it is hardly more than noise.
     detectable : mapping of str to (float or None)
         Smallest RMS of each effect that is found four times in five; none where these data cannot
-        show it. [torque unit]
+        show it. [torque unit; load unit of effects of the load, where the log has a load channel]
     simulation : SimulationRecord
         What the base model misses.
     ramps : RampsRecord or None
@@ -267,6 +269,7 @@ class DiagnosisDocument(msgspec.Struct, frozen=True, kw_only=True):
     visible: tuple[CauseRecord, ...] = ()
     structure: StructureRecord | None = None
     margin: float | None = None
+    load_margin: float | None = None
     gain: GainRecord | None
     remainder: RemainderRecord | None = None
     detectable: Mapping[str, float | None]

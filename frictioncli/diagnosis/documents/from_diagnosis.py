@@ -68,6 +68,7 @@ def diagnosis_document(diagnosis: Diagnosis, settings: DiagnosisSettings) -> Dia
         visible=tuple(_visible_record(diagnosis, cause) for cause in diagnosis.visible),
         structure=None if diagnosis.structure is None else _structure_record(diagnosis.structure),
         margin=diagnosis.margin,
+        load_margin=diagnosis.load_margin,
         gain=None
         if gain is None
         else GainRecord(

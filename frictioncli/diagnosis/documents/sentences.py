@@ -1,6 +1,7 @@
 """What a diagnosis found, sentence by sentence, as terminal and page say it."""
 
 from frictioncli.diagnosis.documents.document import OTHER_JOINT, CauseRecord, DiagnosisDocument
+from frictioncli.effects import BY_NAME
 from frictioncli.wording import in_words, list_text, number_text, quantity_text
 
 _STANDING = {
@@ -124,6 +125,9 @@ def margin_text(document: DiagnosisDocument) -> str:
     if document.margin is None:
         return ""
     margin = f"{number_text(document.margin, 2)} {document.torque_unit}"
+    if document.load_margin is not None:
+        least = f"{number_text(document.load_margin, 2)} {document.unit_of('load')}"
+        return f"Sizes below {margin} (--margin), and {least} in the load, are not named."
     return f"Sizes below {margin} are not named (--margin)."
 
 
@@ -135,7 +139,12 @@ def detectable_text(document: DiagnosisDocument) -> str:
     document : DiagnosisDocument
         The joint's diagnosis.
     """
-    known = sorted((size, name) for name, size in document.detectable.items() if size is not None)
+    known = sorted(
+        (size, name)
+        for name, size in document.detectable.items()
+        # sizes in another unit are not compared
+        if size is not None and document.unit_of(BY_NAME[name].channel) == document.torque_unit
+    )
     if not known:
         return "These data can show none of the effects."
     unit = document.torque_unit

@@ -8,7 +8,7 @@ effect is tested against all others once more beside the other accepted ones: ev
 explains its part nearly as well joins its credible set.
 """
 
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -23,10 +23,12 @@ from frictioncli.diagnosis.noise.significance import (
 from frictioncli.diagnosis.ramps.evidence import RampEvidence, with_ramp_evidence
 from frictioncli.diagnosis.search.catalogue import Catalogue
 from frictioncli.diagnosis.search.cause import CONVINCING, Cause
-from frictioncli.diagnosis.search.effect_size import left_size, other_form, shown_share, sizes_of
+from frictioncli.diagnosis.search.effect_size import left_size, shown_share, sizes_of
+from frictioncli.diagnosis.search.margin import channel_margin, strength
 from frictioncli.diagnosis.search.measurement import measurement_causes, possible_effects
 from frictioncli.diagnosis.search.precomputed import Precomputed
 from frictioncli.diagnosis.search.rivals import rival_log_bayes_factors
+from frictioncli.diagnosis.search.search_result import SearchResult
 from frictioncli.diagnosis.search.standing import beyond_bounds
 from frictioncli.diagnosis.search.step import Step, free_coefficients
 from frictioncli.diagnosis.settings import DiagnosisSettings
@@ -39,63 +41,10 @@ _LEAST_SHARE = 0.5
 _REFINED = 3
 """Number of effects whose shapes are refined off the grid before the best is accepted."""
 
+_SUPERFLUOUS = "other causes explain what it explained"
+
 _CLEARLY = 3.0
 """Log Bayes factor by which another effect must fit better to replace an accepted one."""
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class SearchResult:
-    """Result of a search.
-
-    Attributes
-    ----------
-    causes : tuple of Cause
-        Causes found, strongest first.
-    measurement : tuple of Cause
-        Effects of the measurement that stand beside the base, and are significant.
-    rejected : dict of str to HypothesisTest
-        Tests of all other effects at the last step.
-    dropped : dict of str to str
-        Effects that were accepted and given up again, with the reason.
-    step : Step
-        The last step: base, causes, noise and discrepancy.
-    """
-
-    causes: tuple[Cause, ...]
-    measurement: tuple[Cause, ...]
-    rejected: dict[str, HypothesisTest]
-    dropped: dict[str, str]
-    step: Step
-
-    def detectable_sizes(
-        self, effects: Sequence[Effect], alpha: float, margin: float
-    ) -> dict[str, float | None]:
-        """Return the smallest RMS size of each effect that would be named four times in five.
-
-        Parameters
-        ----------
-        effects : sequence of Effect
-            The catalogue.
-        alpha : float
-            Significance level of the whole search.
-        margin : float
-            Smallest size worth a name. [N·m]
-
-        Returns
-        -------
-        dict of str to (float or None)
-            Sizes [N·m]; None where the data lack what the effect needs.
-        """
-        count = max(len(self.rejected) + len(self.causes), 1)
-        tests = self.rejected | {cause.fit.effect.name: cause.test for cause in self.causes}
-        found: dict[str, float | None] = dict.fromkeys(effect.name for effect in effects)
-        for effect in effects:
-            if effect.name in tests:
-                expected = replace(tests[effect.name].effect_fit(effect), variances=None)
-                smooth = other_form(self.step.precomputed, expected)
-                size = tests[effect.name].detectable_size(alpha / count, margin, smooth)
-                found[effect.name] = size
-        return found
 
 
 def find_causes(
@@ -133,6 +82,9 @@ def find_causes(
     search = _Search(precomputed, Catalogue.of(precomputed, hypotheses), settings, margin, ramps)
     accepted: list[EffectFit] = []
     dropped: dict[str, str] = {}
+    impossible: set[str] = set()
+    superfluous: set[str] = set()
+    again: set[str] = set()
     while True:
         step, tests = search.tested(accepted)
         significant = [
@@ -140,24 +92,39 @@ def find_causes(
             for one in tests.values()
             if one.p_value < settings.alpha
             and one.log_bayes_factor > CONVINCING
-            and one.name not in dropped
+            and (one.name not in dropped or one.name in superfluous)
             and search.matters(step, one)
         ]
+        new = [one for one in significant if one.name not in superfluous]
+        significant = new or significant
         if not significant or len(accepted) >= settings.most:
             break
+        # what made these superfluous may have been given up since: each comes back once
+        for one in significant:
+            if one.name in superfluous:
+                superfluous.remove(one.name)
+                again.add(one.name)
+                del dropped[one.name]
         candidates = [*accepted, _best(step, significant)]
-        impossible = search.impossible(candidates)
-        if impossible:
-            dropped[candidates[-1].effect.name] = impossible
+        reason = search.impossible(candidates)
+        if reason:
+            dropped[candidates[-1].effect.name] = reason
+            impossible.add(candidates[-1].effect.name)
             continue
-        retested = search.retested(candidates)
+        retested = search.retested(candidates, dropped)
         # an effect that another one has made superfluous must not come back again and again
         for name in _names(candidates) - _names(retested):
-            dropped[name] = "other causes explain what it explained"
+            if name not in again:
+                superfluous.add(name)
+            dropped[name] = _SUPERFLUOUS
         accepted = retested
-    causes = [_cause(search, accepted, i) for i in range(len(accepted))]
+    causes = [_cause(search, accepted, i, impossible) for i in range(len(accepted))]
+
+    def share(cause: Cause) -> float:
+        return strength(problem, cause.fit.effect.channel, cause.size)
+
     return SearchResult(
-        causes=tuple(sorted(causes, key=lambda cause: -cause.size)),
+        causes=tuple(sorted(causes, key=share, reverse=True)),
         measurement=measurement_causes(step, beside),
         rejected=tests,
         dropped={name: why for name, why in dropped.items() if name not in _names(accepted)},
@@ -203,8 +170,9 @@ class _Search:
 
     def matters(self, step: Step, test: HypothesisTest) -> bool:
         """Return whether the base leaves enough of an effect for the search to go on with it."""
-        size, _, _ = left_size(step.precomputed, test.effect_fit(BY_NAME[test.name]))
-        return size > _LEAST_SHARE * self.margin
+        effect = BY_NAME[test.name]
+        size, _, _ = left_size(step.precomputed, test.effect_fit(effect))
+        return size > _LEAST_SHARE * channel_margin(step.problem, effect.channel, self.margin)
 
     def impossible(self, accepted: Sequence[EffectFit]) -> str:
         """Return why the last of some effects is impossible: the data ask for more than bounds.
@@ -221,47 +189,58 @@ class _Search:
         unbounded = replace(newest, coefficients=coefficients, covariance=covariance)
         return beyond_bounds(unbounded, self.precomputed.problem)
 
-    def retested(self, accepted: list[EffectFit]) -> list[EffectFit]:
+    def retested(self, accepted: list[EffectFit], dropped: Collection[str]) -> list[EffectFit]:
         """Return the accepted effects, each tested once more beside the others.
 
         An effect accepted early was tested without the later ones. It is kept, replaced by an
-        effect that fits clearly better, or dropped if the others have made it superfluous.
+        effect that fits clearly better, or dropped if the others have made it superfluous. One that
+        was given up replaces none: what is impossible would explain what is another's.
         """
         current = list(accepted)
         if len(current) == 1:
             return current
         for one in accepted:
             others = [other for other in current if other is not one]
-            again = self._retested(one, others)
+            again = self._retested(one, others, dropped)
             if again is None:
                 current = others
             else:
                 current[current.index(one)] = again
         return current
 
-    def _retested(self, one: EffectFit, others: Sequence[EffectFit]) -> EffectFit | None:
+    def _retested(
+        self, one: EffectFit, others: Sequence[EffectFit], dropped: Collection[str]
+    ) -> EffectFit | None:
         """Return an effect refitted beside others, or its replacement; None if superfluous."""
         step, tests = self.tested(others)
-        best = max(tests.values(), key=lambda test: test.log_bayes_factor)
+        possible = [test for test in tests.values() if test.name not in dropped]
+        best = max(possible, key=lambda test: test.log_bayes_factor)
         own = tests[one.effect.name]
         if best.log_bayes_factor <= CONVINCING:
             return None
         again = step.refined(one)
         factor = own.refined_log_bayes_factor(again)
         if best.name != own.name and best.log_bayes_factor - factor > _CLEARLY:
-            return _best(step, [best])
+            replacement = _best(step, [best])
+            return again if self.impossible([*others, replacement]) else replacement
         return again
 
 
-def _cause(search: _Search, accepted: Sequence[EffectFit], number: int) -> Cause:
-    """Return an accepted effect with its credible set, beside the other accepted effects."""
+def _cause(
+    search: _Search, accepted: Sequence[EffectFit], number: int, impossible: Collection[str]
+) -> Cause:
+    """Return an accepted effect with its credible set, beside the other accepted effects.
+
+    What is physically impossible cannot replace it.
+    """
     one = accepted[number]
     others = [other for other in accepted if other is not one]
     step, tests = search.tested(others)
     fit = step.refined(one)
     own = tests[one.effect.name]
     factor = own.refined_log_bayes_factor(fit)
-    share = posterior_probabilities(rival_log_bayes_factors(step, fit, factor, tests))
+    possible = {name: test for name, test in tests.items() if name not in impossible}
+    share = posterior_probabilities(rival_log_bayes_factors(step, fit, factor, possible))
     return Cause(
         fit=fit,
         test=own,
@@ -270,33 +249,3 @@ def _cause(search: _Search, accepted: Sequence[EffectFit], number: int) -> Cause
         shown=shown_share(step.precomputed, fit, others),
         **sizes_of(step.precomputed, fit),
     )
-
-
-def given_up_causes(found: SearchResult, alpha: float) -> tuple[Cause, ...]:
-    """Return effects that were accepted and given up again, and still stand out of the noise.
-
-    Parameters
-    ----------
-    found : SearchResult
-        Result of a search.
-    alpha : float
-        Significance level.
-    """
-    causes = []
-    for name, reason in found.dropped.items():
-        test = found.rejected.get(name)
-        if test is None or test.p_value >= alpha:
-            continue
-        fit = test.effect_fit(BY_NAME[name])
-        causes.append(
-            Cause(
-                fit=fit,
-                test=test,
-                effects=(name,),
-                probabilities={name: 1.0},
-                **sizes_of(found.step.precomputed, fit),
-                standing="undetermined",
-                reason=reason,
-            )
-        )
-    return tuple(causes)

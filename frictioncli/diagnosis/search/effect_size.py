@@ -96,4 +96,10 @@ def _left(known: Precomputed, fit: EffectFit) -> Array:
     """
     basis = known.problem.basis(fit.effect, fit.shape)
     span = known.span_of_base if fit.effect.measurement else known.span
-    return left_by(span, basis)
+    left = left_by(span, basis)
+    if known.problem.has_load_channel:
+        # the channels may have different units: only the one in which it shows counts
+        friction, load = np.split(left, 2)
+        other = load if fit.effect.channel == "friction" else friction
+        other[:] = 0.0
+    return left

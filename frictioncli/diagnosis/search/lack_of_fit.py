@@ -32,6 +32,7 @@ from frictioncli.diagnosis.fit.mixed_model import Components, MixedFit, Variance
 from frictioncli.diagnosis.fit.transformed_columns import Part
 from frictioncli.diagnosis.fit.variance_components import fit_variances
 from frictioncli.diagnosis.search.axis_columns import axis_columns
+from frictioncli.diagnosis.search.margin import channel_margin
 from frictioncli.diagnosis.search.step import Step
 from frictioncli.effects.base import Basis, Channel
 from frictioncli.linear_algebra import orthonormal_basis
@@ -102,7 +103,8 @@ def unnamed_structure(step: Step, margin: float, alpha: float) -> Structure | No
     """
     for one in structures(step):
         least = one.size if one.p_value < _NO_DOUBT else one.interval[0]
-        if one.p_value < min(_SIGNIFICANT, alpha) and least > margin:
+        smallest = channel_margin(step.problem, one.channel, margin)
+        if one.p_value < min(_SIGNIFICANT, alpha) and least > smallest:
             return one
     return None
 
@@ -139,7 +141,7 @@ def structures(step: Step) -> list[Structure]:
         if squares <= 0:
             continue
         scale = float(np.sqrt(len(columns) / squares))
-        fit = _beside_function(step, expected, basis, scale, (null.variances, *starts))
+        fit = _beside_function(step, expected, basis, scale, (null.variances, known))
         place = slice(step.known, step.known + columns.shape[1])
         size, interval = _realised(
             scale * left, fit.coefficients[place], fit.covariance[place, place]

@@ -10,6 +10,7 @@ from frictioncli.diagnosis.data.problem import Problem
 from frictioncli.diagnosis.fit.columns import main_channel
 from frictioncli.diagnosis.fit.hypotheses import EffectFit, physical_bounds
 from frictioncli.diagnosis.search.cause import CONVINCING, Cause
+from frictioncli.diagnosis.search.margin import channel_margin
 
 _Z95 = 1.96
 
@@ -61,6 +62,7 @@ def with_standing(
 
 def _judged(cause: Cause, problem: Problem, margin: float, alpha: float) -> Cause:
     low, high = cause.visible_interval
+    margin = channel_margin(problem, cause.fit.effect.channel, margin)
     left = "the base leaves"
     if cause.fit.effect.measurement and cause.visible > 0:
         low, high = (cause.size / cause.visible * bound for bound in (low, high))

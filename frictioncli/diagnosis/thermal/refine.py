@@ -10,7 +10,7 @@ from frictioncli.diagnosis.data.build_problem import at_temperature
 from frictioncli.diagnosis.data.problem import Problem
 from frictioncli.diagnosis.fit.extension import Extension
 from frictioncli.diagnosis.fit.hypotheses import EffectFit
-from frictioncli.diagnosis.search.cause_search import SearchResult
+from frictioncli.diagnosis.search.search_result import SearchResult
 from frictioncli.diagnosis.thermal.estimate import MEASURED, ThermalEstimate, estimate_temperature
 from frictioncli.effects.base import (
     Basis,
