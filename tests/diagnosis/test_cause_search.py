@@ -118,7 +118,7 @@ def test_what_was_dropped_does_not_come_back(catalogue, monkeypatch):
     effects = catalogue(*THREE)
     tried = []
 
-    def fickle(search, accepted):
+    def fickle(search, accepted, dropped=()):
         tried.append(accepted[-1].effect.name)
         assert len(tried) < 10
         return accepted[:-1]
@@ -223,11 +223,11 @@ def test_the_search_ends_whatever_the_catalogue(catalogue, monkeypatch, seed):
     tried = []
     settled = cause_search._Search.retested
 
-    def counted(search, accepted):
+    def counted(search, accepted, dropped=()):
         tried.append([one.effect.name for one in accepted])
         # each round drops a name for good or keeps one more of at most four
         assert len(tried) <= 9 * 5
-        return settled(search, accepted)
+        return settled(search, accepted, dropped)
 
     monkeypatch.setattr(cause_search._Search, "retested", counted)
     data = problem(seed, friction=lambda rows: sum(a * one(rows) for a, one in mixed))

@@ -136,3 +136,14 @@ def test_what_is_not_named_cancels_nothing(joint):
     against = effect("against", [(-1.0, A)])
     found = standing(joint, cause(), cause(against, interval=(0.0, 0.1), statistic=99.0))
     assert [one[0] for one in found] == ["named", "negligible"]
+
+
+def test_a_load_channel_has_a_margin_in_its_own_unit(joint):
+    # the margin of friction, here 0.2, may be a current: it says nothing of a load in N·m
+    own = replace(joint, has_load_channel=True, load=np.full_like(joint.load, 100.0))
+    in_load = replace(WAVE, channel="load")
+    small = cause(in_load, interval=(0.21, 0.49))
+    assert standing(own, small)[0][0] == "negligible"
+    assert standing(joint, small)[0][0] == "named"
+    assert standing(own, cause(in_load, interval=(0.51, 0.9)))[0][0] == "named"
+    assert standing(own, cause(interval=(0.21, 0.49)))[0][0] == "named"

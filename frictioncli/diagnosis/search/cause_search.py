@@ -189,7 +189,7 @@ class _Search:
         unbounded = replace(newest, coefficients=coefficients, covariance=covariance)
         return beyond_bounds(unbounded, self.precomputed.problem)
 
-    def retested(self, accepted: list[EffectFit], dropped: Collection[str]) -> list[EffectFit]:
+    def retested(self, accepted: list[EffectFit], dropped: Collection[str] = ()) -> list[EffectFit]:
         """Return the accepted effects, each tested once more beside the others.
 
         An effect accepted early was tested without the later ones. It is kept, replaced by an
