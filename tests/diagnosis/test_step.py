@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from scipy import stats
 
+from frictioncli.diagnosis.data.build_problem import simulated
 from frictioncli.diagnosis.fit.columns import base_rows, residual_of_base
 from frictioncli.diagnosis.fit.hypotheses import EffectFit, hypothesis_of
 from frictioncli.diagnosis.search.catalogue import Catalogue
@@ -14,8 +15,10 @@ from frictioncli.diagnosis.search.lack_of_fit import structures
 from frictioncli.diagnosis.search.precomputed import Precomputed
 from frictioncli.diagnosis.search.step import Step
 from frictioncli.effects import BY_NAME
-from tests.diagnosis.dense_noise import problem
+from frictioncli.model.friction import FrictionParameters, friction_torque
+from tests.diagnosis.dense_noise import days, problem
 from tests.diagnosis.wave_effects import A, B, C, effect, wave
+from tests.equation_16 import TRUTH
 
 DRIFTS = ({"drift": 0.2}, {"drift": 0.6, "drift_time": 120.0}, {"drift": 1.0, "drift_time": 9000.0})
 TESTED = (
@@ -68,6 +71,36 @@ def test_noise_has_no_structure_beyond_chance():
         assert all(one.interval[0] <= one.size <= one.interval[1] for one in found)
         least.append(found[0].p_value)
     assert np.sum(np.array(least) < 0.05) <= 1
+
+
+def one_value(column, value):
+    """Return two days of a joint with 1.5 N·m of ripple, at one speed or temperature."""
+    parameters = FrictionParameters(**TRUTH)
+
+    def friction(of):
+        load = 95.0 * np.cos(np.radians(of["position"]))
+        return friction_torque(
+            parameters, load=load, speed=of["speed"], temperature=of["motor_temperature"]
+        )
+
+    rows = days(1)
+    same = rows.assign(**{column: value})
+    ripple = 1.5 * np.sin(2 * np.radians(rows["position"]))
+    same["friction_torque"] += friction(same) - friction(rows) + ripple
+    return simulated(same, "motor", parameters, np.array([95.0, 0.0, 0.0]))[1]
+
+
+@pytest.mark.parametrize(
+    ("column", "value", "axis"),
+    [("speed", 24.955, "speed"), ("motor_temperature", 31.0, "temperature")],
+)
+def test_structure_is_never_along_an_axis_of_one_value(column, value, axis):
+    """At one speed angle and speed are one axis, the angle."""
+    found = structures(Step.of(Precomputed.of(one_value(column, value)), []))
+    assert found[0].axes == ("position",)
+    assert found[0].p_value < 1e-6
+    assert all(axis not in one.axes for one in found)
+    assert any("position" in one.axes and len(one.axes) == 2 for one in found)
 
 
 @pytest.mark.parametrize("every", [20, 32, 40])

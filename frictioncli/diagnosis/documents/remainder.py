@@ -20,6 +20,7 @@ from frictioncli.diagnosis.data.problem import Problem
 from frictioncli.diagnosis.diagnose import Diagnosis, predicting
 from frictioncli.diagnosis.documents.document import RemainderRecord
 from frictioncli.diagnosis.fit.extension import misfits
+from frictioncli.diagnosis.search.axis_columns import varying_axes
 
 ADEQUATE = 1.25
 """Greatest misfit on a run kept out of a model that is adequate, as a multiple of the noise."""
@@ -88,6 +89,8 @@ def remainder_record(diagnosis: Diagnosis) -> RemainderRecord | None:
 def largest_structure(problem: Problem, friction: Array, load: Array | None) -> AxisStructure:
     """Return the axis and channel along which a misfit has the most structure.
 
+    Axes along which nothing varies are left out.
+
     Parameters
     ----------
     problem : Problem
@@ -95,10 +98,12 @@ def largest_structure(problem: Problem, friction: Array, load: Array | None) -> 
     friction, load : ndarray, shape (rows,)
         Misfit in both channels; no load where it is not simulated. [N·m]
     """
+    varying = varying_axes(problem)
     channels = {"friction": friction} if load is None else {"friction": friction, "load": load}
     found = [
         AxisStructure(axis, channel, _size(values, _bins(getattr(problem.table, column)), pair))
         for axis, column in _AXES.items()
+        if axis in varying
         for channel, values in channels.items()
         for pair in [problem.layout.row_pair]
     ]

@@ -30,9 +30,61 @@ _HYSTERESIS = 0.5
 _MOST_LEVELS = 16
 """Speed levels with a column of their own."""
 
+_CENTRAL = (0.05, 0.95)
+"""Quantiles between which a quantity must vary for its axis to be told from others."""
+
+_LEAST_RELATIVE = 0.05
+"""Least spread of speed relative to its mean, and of load relative to its greatest."""
+
+_LEAST_LOAD = 0.02
+"""Least spread of a simulated load relative to the mean friction: less carries no structure."""
+
+_LEAST_ANGLE = 5.0
+"""Least spread of the joint angle. [deg]"""
+
+_LEAST_TEMPERATURE = 1.0
+"""Least spread of the temperature: one step of a register. [°C]"""
+
+
+def varying_axes(problem: Problem) -> frozenset[str]:
+    """Return the axes along which the quantity varies; time always does.
+
+    Where all pairs have one speed, functions of angle and speed are functions of the angle: no data
+    can show that something depends on what is always the same.
+
+    Parameters
+    ----------
+    problem : Problem
+        The rows.
+    """
+    table = problem.table
+    load = _LEAST_RELATIVE * float(np.max(np.abs(table.load)))
+    if not problem.has_load_channel:
+        load = max(load, _LEAST_LOAD * float(np.mean(np.abs(problem.friction))))
+    least = {
+        "position": (table.position, _LEAST_ANGLE),
+        "speed": (table.speed, _LEAST_RELATIVE * float(np.mean(table.speed))),
+        "temperature": (table.temperature, _LEAST_TEMPERATURE),
+        "load": (table.load, load),
+    }
+    varying = (name for name, (values, spread) in least.items() if _spread(values) > spread)
+    return frozenset(["time", *varying])
+
+
+def _spread(values: Array) -> float:
+    return float(np.ptp(np.quantile(values, _CENTRAL)))
+
 
 def axis_columns(problem: Problem) -> dict[tuple[tuple[str, ...], Channel], Array]:
-    """Return columns by axis and channel, shape (rows, columns) each."""
+    """Return columns by axis and channel, shape (rows, columns) each.
+
+    Axes along which nothing varies are left out.
+
+    Parameters
+    ----------
+    problem : Problem
+        The rows.
+    """
     table = problem.table
     angle = np.radians(table.position)
     orders = np.repeat(np.arange(1, _HARMONICS + 1), 2)
@@ -48,7 +100,7 @@ def axis_columns(problem: Problem) -> dict[tuple[tuple[str, ...], Channel], Arra
     levels = _levels(table.temperature)
     relative_temperature = ((table.temperature - table.temperature.mean()) / 10.0)[:, np.newaxis]
     relative_speed = (table.speed / table.speed.mean())[:, np.newaxis]
-    return {
+    columns: dict[tuple[tuple[str, ...], Channel], Array] = {
         (("speed",), "friction"): speed,
         (("temperature",), "friction"): np.hstack([temperature, warming * temperature]),
         (("position",), "friction"): harmonics,
@@ -66,6 +118,8 @@ def axis_columns(problem: Problem) -> dict[tuple[tuple[str, ...], Channel], Arra
         (("speed",), "load"): speed,
         (("temperature",), "load"): np.hstack([levels, levels * np.cos(angle)[:, np.newaxis]]),
     }
+    varying = varying_axes(problem)
+    return {place: values for place, values in columns.items() if varying.issuperset(place[0])}
 
 
 def _cosines(values: Array) -> Array:
