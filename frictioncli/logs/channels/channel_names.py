@@ -72,7 +72,7 @@ _ALIASES: tuple[tuple[Meaning, str], ...] = (
         "axisvelact axisvel velocity velocities vel jointvelocity jointvelocities actualvelocity"
         " velocityact velact qd dq qdot actualqd statedq robotactualjointvelocities speed"
         " geschwindigkeit achsgeschwindigkeit gelenkgeschwindigkeit axisvelocity jointvel"
-        " axisspeed jointspeed observationvelocity observationqvel",
+        " axisspeed jointspeed actvelo actvel observationvelocity observationqvel",
     ),
     (
         Meaning(VELOCITY, MOTOR_SIDE),
@@ -84,7 +84,7 @@ _ALIASES: tuple[tuple[Meaning, str], ...] = (
         Meaning(TORQUE, JOINT_SIDE, 1),
         "torque torques jointtorque jointtorques axistorque drehmoment moment tau effort"
         " torqueaxisact actualtorque torqueact mt statetauj tauj measuredtorque achsmoment"
-        " gelenkmoment torqact axistorqact observationeffort observationtorque",
+        " gelenkmoment torqact axistorqact acttorque acttorq observationeffort observationtorque",
     ),
     (Meaning(TORQUE, JOINT_SIDE, 2), "geartorqact geartorque geartorq getriebemoment"),
     (

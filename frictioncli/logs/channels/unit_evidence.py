@@ -145,7 +145,7 @@ def motion_units(
         assumed = velocity or ("rad/s" if positions[0] == "rad" else "deg/s")
         return MotionUnits(time or "s", positions[0], assumed, False, "")
     best: tuple[float, MotionUnits] | None = None
-    for time_unit in ("s", "ms", "us"):
+    for time_unit in dict.fromkeys((time or "s", "s", "ms", "us")):
         for position_unit in positions:
             for velocity_unit, velocity_factor in FACTORS["velocity"].items():
                 expected = (

@@ -21,7 +21,7 @@ _OFFSETS = {"K": -273.15, "°F": -32.0 * 5.0 / 9.0, "mK": -273.15}
 
 FACTORS: Mapping[str, Mapping[str, float]] = MappingProxyType(
     {
-        "time": {"s": 1.0, "ms": 1e-3, "us": 1e-6, "ns": 1e-9, "min": 60.0},
+        "time": {"s": 1.0, "ms": 1e-3, "us": 1e-6, "ns": 1e-9, "min": 60.0, "100ns": 1e-7},
         "position": {"deg": 1.0, "rad": _DEGREES_PER_RADIAN, "udeg": 1e-6},
         "velocity": {"deg/s": 1.0, "rad/s": _DEGREES_PER_RADIAN, "rpm": 6.0, "mdeg/s": 1e-3},
         "torque": {"N·m": 1.0, "mN·m": 1e-3, "A": 1.0, "mA": 1e-3, "%": 1.0},
@@ -37,6 +37,7 @@ _SPELLINGS = {
     "ms": "ms msec millis milliseconds millisekunden",
     "us": "us µs μs usec microseconds mikrosekunden",
     "ns": "ns nsec nanoseconds",
+    "100ns": "100ns",
     "min": "min minutes minuten",
     "deg": "deg ° degree degrees grad",
     "rad": "rad radian radians radiant",

@@ -20,6 +20,7 @@ from frictioncli.logs.formats.encoding import (
     line_blocks,
     line_blocks_from,
 )
+from frictioncli.logs.formats.twincat_scope import scope_dialect
 from frictioncli.logs.log_source import MAX_ROW_TEXT, CsvHints, RawBatch, ReadTask, Refusal
 
 _SMALL_FILE = 1 << 20
@@ -45,7 +46,7 @@ def read_delimited(path: Path, head: bytes, hints: CsvHints) -> "DelimitedText |
         lines.pop()  # cut off at the end of the head
     if lines and lines[0].lower().startswith("sep="):
         lines[0] = ""
-    dialect = detect(lines, hints)
+    dialect = scope_dialect(lines, hints) or detect(lines, hints)
     if isinstance(dialect, Refusal):
         return dialect
     above = head.split(b"\n", dialect.data_line - 1)[: dialect.data_line - 1]

@@ -9,6 +9,7 @@ from frictioncli.logs.channels.channel_map import ChannelMap, mapped_channels, w
 from frictioncli.logs.channels.joint_channels import JointChannels, assign_channels
 from frictioncli.logs.channels.recognition import LogChannel, joint_in_name, recognise_channels
 from frictioncli.logs.formats import open_logs
+from frictioncli.logs.formats.twincat_scope import scope_start
 from frictioncli.logs.log_source import LogSource, Refusal
 from frictioncli.logs.runs.discovery import LogFile, LogRun
 from frictioncli.logs.runs.integrated_position import (
@@ -198,10 +199,10 @@ def _without_position(
 
 def _with_own_start(sidecar: Sidecar, source: LogSource) -> Sidecar:
     """Return the sidecar with the start that the log's own text tells, where no other is known."""
-    start = recorder_start(getattr(source, "preamble", b""))
-    inner = getattr(source, "source", None)
-    if start is None and inner is not None:
-        start = recorder_start(getattr(inner, "preamble", b""))
+    # a source that adds columns holds the one that was read
+    text = source if hasattr(source, "preamble") else getattr(source, "source", None)
+    head = getattr(text, "preamble", b"")
+    start = recorder_start(head) or scope_start(head)
     if start is None or sidecar.started_at is not None:
         return sidecar
     return replace(sidecar, started_at=start, notes=(*sidecar.notes, "started as its head tells"))
