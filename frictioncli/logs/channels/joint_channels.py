@@ -171,5 +171,6 @@ def _missing(
     return Refusal(
         f"no_{what}_channel",
         f"no {' and no '.join(lacking)} channel{which} found; columns found: {shown}; a friction"
-        " test needs time, position and torque (or motor current): name them with --map",
+        " test needs time, position and torque (or motor current): name them with --map, of which"
+        " 'frictioncli inspect LOGS --suggest-map' writes a first one",
     )

@@ -19,6 +19,8 @@ _HEAD_LINES = 60
 _DELIMITERS = ("\t", ";", ",")
 _FILETIME = 1e16
 """Times above this are in units of 100 ns since 1601."""
+_LAST_FILETIME = 3e18
+"""Later times are beyond the calendar. [100 ns]"""
 _EPOCH = datetime(1601, 1, 1, tzinfo=UTC)
 
 
@@ -69,13 +71,15 @@ def scope_start(head: bytes) -> datetime | None:
     Examples
     --------
     >>> scope_start(b"Name\tProject\nStarttime of export\t132000000000000000\n").isoformat()
-    '2019-04-17T02:40:00+00:00'
+    '2019-04-17T18:40:00+00:00'
     """
     at = head.find(_START.encode())
     if not head.startswith(_NAME.encode()) or at < 0:
         return None
     text = head[at + len(_START) :].split(b"\n", 1)[0].strip(b"\t;, \r").split(b"\t")[0]
-    return _EPOCH + timedelta(microseconds=int(text) // 10) if text.isdigit() else None
+    if not text.isdigit() or not _FILETIME < int(text) < _LAST_FILETIME:
+        return None
+    return _EPOCH + timedelta(microseconds=int(text) // 10)
 
 
 def _columns(keyed: dict[str, list[str]], time_unit: str) -> tuple[str, ...]:
