@@ -40,6 +40,11 @@ _LEAST_ERROR = 1e-9
 """Least standard error that counts."""
 
 
+_FAR_OFF = 0.02
+"""Least RMS misfit of pair means, relative to the mean friction, of a lag that would look like
+other effects as well."""
+
+
 @dataclass(frozen=True, slots=True, kw_only=True)
 class RefinedLag:
     """A lag of the gear, estimated as a temperature.
@@ -132,7 +137,7 @@ def search_with_lag(
     """
     if LAG not in {one.name for one in effects}:
         return search(problem, effects), None
-    first = refine_thermal(problem, new)
+    first = refine_thermal(problem, new) if _is_far_off(problem) else None
     if first is not None and _explains_most(first.estimate):
         found = search(first.problem, effects)
         if _has_lag(found) and len(found.causes) == 1:
@@ -151,6 +156,13 @@ def search_with_lag(
     without = search(problem, [one for one in effects if one.name != LAG])
     dropped = without.dropped | {LAG: "the measured temperature explains friction as well"}
     return replace(without, dropped=dropped), None
+
+
+def _is_far_off(problem: Problem) -> bool:
+    """Return whether the base model misses the means of pairs by so much that a lag is large."""
+    means = problem.layout.means(problem.friction_misfit[:, np.newaxis])
+    missed = float(np.sqrt(np.mean(np.square(means - np.mean(means)))))
+    return missed > _FAR_OFF * float(np.mean(np.abs(problem.friction)))
 
 
 def _explains_most(estimate: ThermalEstimate) -> bool:
