@@ -232,12 +232,19 @@ def detectable_table(document: DiagnosisDocument, unit: str) -> TextTable:
             (
                 in_words(name),
                 BY_NAME[name].summary if name in BY_NAME else "",
-                UNDETECTABLE if sizes[name] is None else number_text(sizes[name], 2),
+                _size_cell(document, name),
             )
             for name in names
         ),
         texts=2,
     )
+
+
+def _size_cell(document: DiagnosisDocument, name: str) -> str:
+    size = document.detectable[name]
+    if size is None:
+        return document.undetectable.get(name, UNDETECTABLE)
+    return number_text(size, 2)
 
 
 def worst_table(document: DiagnosisDocument) -> TextTable:

@@ -11,6 +11,7 @@ from frictioncli import schemas, tables
 from frictioncli.diagnosis.diagnose import diagnose_joint
 from frictioncli.diagnosis.documents.from_diagnosis import diagnosis_document
 from frictioncli.diagnosis.documents.text import verdict_text
+from frictioncli.diagnosis.search.effect_size import LACKING, TAKEN_BY_BASE
 from frictioncli.diagnosis.settings import DiagnosisSettings
 from frictioncli.effects import EFFECTS
 from frictioncli.errors import NotEnoughData, OptionError, TableError
@@ -46,6 +47,10 @@ def diagnosed(rows):
 def said(diagnosis):
     """Return what the terminal says."""
     return verdict_text(diagnosis_document(diagnosis, DiagnosisSettings()))
+
+
+def undetectable(diagnosis):
+    return diagnosis_document(diagnosis, DiagnosisSettings()).undetectable
 
 
 @pytest.mark.parametrize("seed", range(3))
@@ -173,6 +178,25 @@ def test_detectable_sizes_cover_the_catalogue():
     # a ripple is averaged over 160 pairs of 34 bins of 0.3 N·m: about 0.3 * sqrt(2 * 25 / 5440),
     # and the discrepancy has as much again along the same axis
     assert 0.01 < whatever["position_ripple"] < 0.2
+
+
+def test_no_detectable_size_is_larger_than_the_friction():
+    """At two speeds base and drift take a viscous term whole; at one it is not asked about."""
+    rows = days(1)
+    speeds = sorted(rows["speed"].unique())
+    fast = rows[rows["speed"].isin(speeds[-2:])]
+    two = diagnosed(fast)
+    whole = fast["friction_torque"].abs().mean()
+    assert all(size < 1.1 * whole for size in two.detectable.values() if size is not None)
+    assert two.detectable["position_ripple"] < 1
+    for name in ("linear_viscous", "quadratic_drag"):
+        assert two.detectable[name] is None
+        assert undetectable(two)[name] == TAKEN_BY_BASE
+    one = diagnosed(rows[rows["speed"] == speeds[-1]])
+    assert undetectable(one)["linear_viscous"] == LACKING
+    for found in (one, two):
+        missing = {name for name, size in found.detectable.items() if size is None}
+        assert set(undetectable(found)) == missing
 
 
 def test_too_few_pairs_are_named():

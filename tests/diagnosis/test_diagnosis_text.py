@@ -3,6 +3,7 @@
 from frictioncli.diagnosis.documents.document import RemainderRecord
 from frictioncli.diagnosis.documents.sentences import lasting_text, size_text
 from frictioncli.diagnosis.documents.text import verdict_text
+from frictioncli.diagnosis.search.effect_size import LACKING, TAKEN_BY_BASE
 from tests.report.diagnosis_documents import cause, diagnosis
 
 DELAY = cause(
@@ -91,3 +92,11 @@ def test_detectable_sizes_are_said():
         " (drift)."
     )
     assert lines(detectable={"run_in": None})[-1] == "These data can show none of the effects."
+
+
+def test_what_the_base_takes_entirely_is_said():
+    why = {"run_in": TAKEN_BY_BASE, "load_linear": LACKING, "velocity_exponent": TAKEN_BY_BASE}
+    sizes = {"stribeck": 0.2} | dict.fromkeys(why)
+    said = "Cannot be told from the base on these data: run in and velocity exponent."
+    assert lines(detectable=sizes, undetectable=why)[-1].endswith(f"N·m (stribeck). {said}")
+    assert lines(detectable=dict.fromkeys(why), undetectable=why)[-1].endswith(f"effects. {said}")

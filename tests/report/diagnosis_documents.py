@@ -155,7 +155,8 @@ DIAGNOSIS_DOCUMENT = {
         "ci95": [0.4, 0.6],
         "noise_floor": 0.7,
     },
-    "detectable": {"stribeck": 0.4, "run_in": None},
+    "detectable": {"stribeck": 0.4, "run_in": None, "payload_change": None},
+    "undetectable": {"payload_change": "cannot be told from the base on these data"},
     "simulation": {
         "rmse": 2.1,
         "worst": [

@@ -92,6 +92,7 @@ def test_section_says_what_was_found(diagnosed):
     assert "50 % less (95 % interval: 40 % less to 60 % less)" in section.gain
     assert section.detectable.rows[0][2] == "0.40"
     assert section.detectable.rows[1][2] == UNDETECTABLE
+    assert section.detectable.rows[2][2] == "cannot be told from the base on these data"
     assert section.worst.rows[0] == (
         "temperature 25.0 to 31.0 °C",
         "67.5 deg/s",

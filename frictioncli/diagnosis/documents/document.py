@@ -20,7 +20,6 @@ Kind = Annotated[str, msgspec.Meta(pattern="^(friction|load|measurement)$")]
 Standing = Annotated[str, msgspec.Meta(pattern="^(named|visible|negligible|undetermined)$")]
 """What may be said of a cause."""
 
-
 OTHER_JOINT = "other_joint"
 """Name of the motion of other joints: of the measurement, without a term in the extended model."""
 
@@ -247,6 +246,8 @@ class DiagnosisDocument(msgspec.Struct, frozen=True, kw_only=True):
     detectable : mapping of str to (float or None)
         Smallest RMS of each effect that is found four times in five; none where these data cannot
         show it. [torque unit; load unit of effects of the load, where the log has a load channel]
+    undetectable : mapping of str to str
+        Of each effect without such a size the reason; empty in files of versions without it.
     simulation : SimulationRecord
         What the base model misses.
     ramps : RampsRecord or None
@@ -273,6 +274,7 @@ class DiagnosisDocument(msgspec.Struct, frozen=True, kw_only=True):
     gain: GainRecord | None
     remainder: RemainderRecord | None = None
     detectable: Mapping[str, float | None]
+    undetectable: Mapping[str, str] = {}
     simulation: SimulationRecord
     ramps: RampsRecord | None = None
     torque_unit: str

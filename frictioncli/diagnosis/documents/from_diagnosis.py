@@ -32,11 +32,13 @@ from frictioncli.diagnosis.documents.remainder import remainder_record
 from frictioncli.diagnosis.documents.thermal_record import record_of_lag
 from frictioncli.diagnosis.ramps.evidence import RampEstimate
 from frictioncli.diagnosis.search.cause import Cause
+from frictioncli.diagnosis.search.effect_size import LACKING, TAKEN_BY_BASE
 from frictioncli.diagnosis.search.lack_of_fit import Structure
 from frictioncli.diagnosis.search.timing_causes import DELAY, FILTER
 from frictioncli.diagnosis.settings import DiagnosisSettings
 from frictioncli.diagnosis.thermal.refine import LAG
-from frictioncli.effects import torque_filter
+from frictioncli.effects import BY_NAME, torque_filter
+from frictioncli.effects.base import missing_columns
 from frictioncli.effects.history_text import history_text
 from frictioncli.model.document import PARAMETERS, FrictionModel
 from frictioncli.model.friction import FrictionParameters
@@ -81,6 +83,7 @@ def diagnosis_document(diagnosis: Diagnosis, settings: DiagnosisSettings) -> Dia
         ),
         remainder=remainder_record(diagnosis),
         detectable=diagnosis.detectable,
+        undetectable=_undetectable(diagnosis),
         simulation=SimulationRecord(rmse=diagnosis.rmse, worst=diagnosis.worst),
         ramps=_ramps_record(diagnosis),
         torque_unit=diagnosis.torque_unit,
@@ -89,6 +92,15 @@ def diagnosis_document(diagnosis: Diagnosis, settings: DiagnosisSettings) -> Dia
         held_out=diagnosis.held_out,
         settings=settings,
     )
+
+
+def _undetectable(diagnosis: Diagnosis) -> dict[str, str]:
+    """Return why effects have no detectable size."""
+    return {
+        name: LACKING if missing_columns(BY_NAME[name], diagnosis.base.table) else TAKEN_BY_BASE
+        for name, size in diagnosis.detectable.items()
+        if size is None
+    }
 
 
 def extended_document(diagnosis: Diagnosis, model: FrictionModel) -> ExtendedDocument:

@@ -1,6 +1,7 @@
 """What a diagnosis found, sentence by sentence, as terminal and page say it."""
 
 from frictioncli.diagnosis.documents.document import OTHER_JOINT, CauseRecord, DiagnosisDocument
+from frictioncli.diagnosis.search.effect_size import TAKEN_BY_BASE
 from frictioncli.effects import BY_NAME
 from frictioncli.wording import in_words, list_text, number_text, quantity_text
 
@@ -145,13 +146,15 @@ def detectable_text(document: DiagnosisDocument) -> str:
         # sizes in another unit are not compared
         if size is not None and document.unit_of(BY_NAME[name].channel) == document.torque_unit
     )
+    taken = [in_words(name) for name, why in document.undetectable.items() if why == TAKEN_BY_BASE]
+    hidden = f" {TAKEN_BY_BASE[0].upper()}{TAKEN_BY_BASE[1:]}: {list_text(taken)}." if taken else ""
     if not known:
-        return "These data can show none of the effects."
+        return f"These data can show none of the effects.{hidden}"
     unit = document.torque_unit
     (least, easiest), (most, hardest) = known[0], known[-1]
     return (
         f"Smallest sizes that would be named four times in five: {number_text(least, 2)} {unit} RMS"
-        f" ({in_words(easiest)}) to {number_text(most, 2)} {unit} ({in_words(hardest)})."
+        f" ({in_words(easiest)}) to {number_text(most, 2)} {unit} ({in_words(hardest)}).{hidden}"
     )
 
 

@@ -17,6 +17,12 @@ _FORM = 0.05
 """Standard deviation of what the form of an effect misses, relative to its size: no joint follows
 the equation of an entry exactly, nor does the base take as much of it as of that."""
 
+TAKEN_BY_BASE = "cannot be told from the base on these data"
+"""Reason why an effect has no detectable size: larger than all friction it could not be named."""
+
+LACKING = "these data lack what it needs"
+"""Reason why an effect has no detectable size: a column is missing, or does not vary."""
+
 
 def sizes_of(known: Precomputed, fit: EffectFit) -> dict[str, Any]:
     """Return the sizes of an effect by the names of the fields of a cause."""

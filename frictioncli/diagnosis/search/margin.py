@@ -50,6 +50,25 @@ def channel_margin(problem: Problem, channel: str, margin: float) -> float:
     return max(MARGIN_SHARE * float(np.mean(np.abs(problem.load))), LEAST_MARGIN)
 
 
+def whole_torque(problem: Problem, channel: str) -> float:
+    """Return the torque that an effect cannot be larger than, in the unit of the channel.
+
+    The mean friction; of an effect in the load the mean load. Where an axis carries less load than
+    it has friction, and both have one unit, the mean friction counts there too.
+
+    Parameters
+    ----------
+    problem : Problem
+        The rows.
+    channel : {"friction", "load"}
+        The channel.
+    """
+    friction, load = (float(np.mean(np.abs(one))) for one in (problem.friction, problem.load))
+    if channel == "friction":
+        return friction
+    return load if problem.has_load_channel else max(friction, load)
+
+
 def strength(problem: Problem, channel: str, size: float) -> float:
     """Return a size relative to the mean torque of its channel, by which causes are ordered [-].
 

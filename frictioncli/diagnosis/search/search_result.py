@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 from frictioncli.diagnosis.fit.hypotheses import HypothesisTest
 from frictioncli.diagnosis.search.cause import Cause
 from frictioncli.diagnosis.search.effect_size import other_form, sizes_of
-from frictioncli.diagnosis.search.margin import channel_margin
+from frictioncli.diagnosis.search.margin import channel_margin, whole_torque
 from frictioncli.diagnosis.search.step import Step
 from frictioncli.effects import BY_NAME
 from frictioncli.effects.base import Effect
@@ -53,7 +53,8 @@ class SearchResult:
         Returns
         -------
         dict of str to (float or None)
-            Sizes [N·m]; None where the data lack what the effect needs.
+            Sizes [N·m]; None where the data lack what the effect needs, and where the base takes so
+            much of it that it would have to be larger than the torque that there is.
         """
         count = max(len(self.rejected) + len(self.causes), 1)
         tests = self.rejected | {cause.fit.effect.name: cause.test for cause in self.causes}
@@ -64,7 +65,8 @@ class SearchResult:
                 smooth = other_form(self.step.precomputed, expected)
                 least = channel_margin(self.step.problem, effect.channel, margin)
                 size = tests[effect.name].detectable_size(alpha / count, least, smooth)
-                found[effect.name] = size
+                if size is not None and size <= whole_torque(self.step.problem, effect.channel):
+                    found[effect.name] = size
         return found
 
 
