@@ -103,6 +103,23 @@ def test_structure_is_never_along_an_axis_of_one_value(column, value, axis):
     assert any("position" in one.axes and len(one.axes) == 2 for one in found)
 
 
+def test_noise_of_a_measured_load_is_no_structure_along_it():
+    """The misfit of a load that is measured is as noisy as the axis it would be drawn against."""
+    rows = days(2)
+    noise = np.random.default_rng(5).normal(0, 3.0, len(rows))
+    rows["load_torque"] += noise
+    gravity = np.array([95.0, 0.0, 0.0])
+    data = simulated(
+        rows.assign(load=rows["load_torque"]), "motor", FrictionParameters(**TRUTH), gravity
+    )[1]
+    assert data.has_load_channel
+    in_load = [
+        one for one in structures(Step.of(Precomputed.of(data), [])) if one.channel == "load"
+    ]
+    assert in_load
+    assert min(one.p_value for one in in_load) > 1e-3
+
+
 @pytest.mark.parametrize("every", [20, 32, 40])
 def test_few_pairs_of_noise_have_no_structure(every):
     """16 to 32 pairs: indicators of speed and temperature are as many, and would fit them all."""

@@ -78,7 +78,7 @@ def _spread(values: Array) -> float:
 def axis_columns(problem: Problem) -> dict[tuple[tuple[str, ...], Channel], Array]:
     """Return columns by axis and channel, shape (rows, columns) each.
 
-    Axes along which nothing varies are left out.
+    Axes along which nothing varies are left out, and a measured load as the axis of itself.
 
     Parameters
     ----------
@@ -119,6 +119,9 @@ def axis_columns(problem: Problem) -> dict[tuple[tuple[str, ...], Channel], Arra
         (("temperature",), "load"): np.hstack([levels, levels * np.cos(angle)[:, np.newaxis]]),
     }
     varying = varying_axes(problem)
+    if problem.has_load_channel:
+        # along a measured load its own noise is structure
+        del columns[("load",), "load"]
     return {place: values for place, values in columns.items() if varying.issuperset(place[0])}
 
 
