@@ -16,6 +16,7 @@ from frictioncli.pairs.thermal_phases import SWEEP
 
 YES, IN_PART, NO = "yes", "in part", "no"
 STAGES = ("ingest", "pair", "separate", "fit", "diagnose", "simulate")
+_AS_FAR = "as far as the regression gives torques"
 _SPEEDS_SHOWN = 8
 _LEAST_OPPOSING = 0.8
 """Least share of pairs in which friction opposes motion. [-]"""
@@ -114,6 +115,10 @@ def joint_summary(
         later = [_fit(pairs), _diagnose(pairs, recordings), _simulate(pairs)]
         is_doubtful = stages[-1].suffices == IN_PART
         stages += [_doubtful(stage) if is_doubtful else stage for stage in later]
+    if not len(pairs):
+        regression = "without pairs, 'separate' regresses all motion, and says whether it suffices"
+        stages.append(StageVerdict("separate", IN_PART, regression))
+        stages += [StageVerdict(name, IN_PART, _AS_FAR) for name in STAGES[len(stages) :]]
     missing = STAGES[len(stages) :]
     stages += [StageVerdict(name, NO, f"needs what {stages[-1].name} gives") for name in missing]
     return JointSummary(
