@@ -8,13 +8,14 @@ from frictioncli.arrays import Array
 from frictioncli.errors import NotEnoughData
 from frictioncli.regression.dissipation import friction_sign
 from frictioncli.regression.equation import (
+    FRICTION_TERMS,
     EquationTerms,
     JointEquations,
     friction_columns,
     load_torque,
 )
 from frictioncli.regression.estimate import RegressionEstimate
-from frictioncli.regression.identification import identify, some_equations
+from frictioncli.regression.identification import DELTA_BOUNDS, identify, some_equations
 from frictioncli.regression.preparation import PreparedJoint
 
 LEAST_ROWS = 100
@@ -28,6 +29,8 @@ _LEAST_SPEED_RATIO = 1.5
 
 _LEAST_ANGLE_SPAN = 20.0
 """Angles that span less do not tell gravity's amplitude, but its torque there. [deg]"""
+
+_STRAIGHT = "the fall with temperature is too little curved to tell beta from gamma; fixed at 0"
 
 _SIGNIFICANT = 3.0
 """Standard deviations from 0 from which a delay is believed."""
@@ -204,22 +207,20 @@ def _by_interval(
         if fewer is not None:
             return fewer
     if "delta" in estimate.parameters:
-        half = estimate.quantile() * estimate.deviation("delta")
-        if half >= estimate.parameters["delta"] or estimate.parameters["gamma"] * sign <= 0:
-            if "beta" in terms.friction and estimate.parameters["gamma"] * sign > 0:
-                undetermined["beta"] = (
-                    "the fall with temperature is too little curved to tell beta from gamma;"
-                    " fixed at 0"
-                )
+        delta, gamma = estimate.parameters["delta"], estimate.parameters["gamma"] * sign
+        vague = estimate.quantile() * estimate.deviation("delta") >= delta
+        at_bound = any(abs(delta / bound - 1) < 1e-3 for bound in DELTA_BOUNDS)
+        if vague or at_bound or gamma <= 0:
+            if "beta" in terms.friction and gamma > 0:
+                undetermined["beta"] = _STRAIGHT
                 return terms.without("beta")
             reason = "the data do not show that friction falls with temperature; left out (0)"
             undetermined |= {"gamma": reason, "delta": reason}
-            restored = tuple(n for n in ("tau_c", "alpha", "beta") if n in terms.friction)
-            if "beta" not in restored and "beta" in undetermined:
-                undetermined.pop("beta")
-                restored = (*restored, "beta")
-            order = [n for n in ("tau_c", "alpha", "beta") if n in restored]
-            return replace(terms, friction=tuple(order))
+            left = terms.without("gamma").friction
+            if undetermined.get("beta") == _STRAIGHT:
+                del undetermined["beta"]
+                left = tuple(name for name in FRICTION_TERMS if name in (*left, "beta"))
+            return replace(terms, friction=left)
     return None
 
 

@@ -62,5 +62,10 @@ def _mean_friction(equations: JointEquations, estimate: RegressionEstimate) -> t
     mean = (equations.direction[:, np.newaxis] * columns).mean(axis=0)
     gradient[first : first + len(mean)] = mean
     value = gradient @ np.array([estimate.parameters[name] for name in estimate.names])
+    if "delta" in estimate.parameters:
+        # the errors of gamma and delta cancel for the most part
+        falling = np.abs(columns[:, estimate.terms.friction.index("gamma")])
+        slope = -estimate.parameters["gamma"] * np.mean(falling * equations.temperature)
+        gradient[estimate.names.index("delta")] = slope
     variance = float(gradient @ estimate.covariance @ gradient)
     return float(value), float(np.sqrt(max(variance, 0.0)))

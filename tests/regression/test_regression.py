@@ -11,6 +11,7 @@ from frictioncli.regression.determination import regress
 from frictioncli.regression.motion_rows import motion_rows
 from frictioncli.regression.preparation import prepare, with_wide_enough_filter
 from frictioncli.regression.separation import torques_by_regression
+from tests.moves import move_sequence
 from tests.regression import programmes
 
 TRUTH = {
@@ -200,3 +201,20 @@ def test_a_velocity_that_contradicts_the_position_is_taken_and_said():
     found = regression(programmes.samples(scaled, torque))
     assert "contradict each other" in found.prepared.notes[0]
     assert not found.equations.speed_from_position
+
+
+def test_one_speed_does_not_tell_viscous_friction_even_where_temperature_does_not_either():
+    """Moves there and back at one speed while the joint warms a little: one constant is left."""
+    motion = move_sequence(np.tile([-50, 50], 30), np.full(59, 40.0), period=0.01)
+    parts = tuple(motion[name].to_numpy() for name in motion)
+    # without what the ramps hold, the speeds are those of the plateau
+    generator = np.random.default_rng(31)
+    table = programmes.samples(
+        parts,
+        programmes.torque(parts, alpha=0.0) + generator.normal(0, 0.5, len(parts[0])),
+        motor_temperature=np.linspace(25, 38, len(parts[0])),
+    )
+    found = regression(table)
+    assert {"beta", "gamma", "delta"} <= set(found.undetermined)
+    assert found.estimate.terms.friction == ("tau_c",)
+    assert found.estimate.parameters["tau_c"] == pytest.approx(8 + 2 * np.sqrt(40.0), rel=0.01)
