@@ -25,6 +25,7 @@ from frictioncli.inspection.sufficiency import JointSummary, RecordingCounts, jo
 from frictioncli.inspection.unit_reasons import other_remarks
 from frictioncli.inspection.unusable_file import inspect_unusable
 from frictioncli.logs.channels.channel_map import ChannelMap, read_map
+from frictioncli.logs.channels.channel_names import INTEGRATED
 from frictioncli.logs.log_source import Refusal
 from frictioncli.logs.run_logs import plan_run
 from frictioncli.logs.runs.discovery import LogRun, discover
@@ -34,6 +35,7 @@ from frictioncli.logs.samples.log_rows import RejectedRows
 from frictioncli.logs.samples.recording import RecordingSummary, SampleSink, read_recording
 from frictioncli.logs.samples.timeline import DatedLog, RunClock
 from frictioncli.logs.settings import IngestSettings
+from frictioncli.pairs.segments import without_angle
 from frictioncli.pairs.settings import PairingSettings
 
 
@@ -153,6 +155,10 @@ class _InspectedLogs:
         return frame.astype(types).set_index(["run", "recording"])
 
 
+def _is_integrated(dated: DatedLog) -> bool:
+    return any(plan.channels.position.name == INTEGRATED for plan in dated.planned.plans)
+
+
 def _joints(dated: DatedLog) -> list[int]:
     return [plan.channels.joint for plan in dated.planned.plans]
 
@@ -180,7 +186,8 @@ def _inspect_run(
             if recording is not None:
                 clock.place(dated, recording)
                 inspected.usable.append(dated)
-                yield from stored_samples(store, run.name)
+                stored = stored_samples(store, run.name)
+                yield from map(without_angle, stored) if _is_integrated(dated) else stored
     timeline = clock.timeline(has_manifest=manifest.found)
     inspected.time_known &= timeline.known
     inspected.remarks += timeline.warnings

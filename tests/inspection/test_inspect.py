@@ -189,14 +189,14 @@ class TestRealLogs:
     """The traps that the README of the real logs names, as far as a program can see them."""
 
     def test_xarm_torque_is_freed_of_friction(self):
-        """Its half difference is about zero, and joint 7 holds dummies, and a file is empty."""
+        """The current is read in its place; joint 7 holds dummies, and a file is empty."""
         found = inspect([REAL / "xarm6-j2"])
         joint = next(joint for joint in found.joints if joint.joint == 2)
         separate = next(stage for stage in joint.stages if stage.name == "separate")
-        assert separate.suffices == "in part"
+        assert separate.suffices == "yes"
         assert sum(file.reason == "empty_file" for file in found.files) == 1
         usable = [file for file in found.files if not file.refusal]
-        assert all("Torque_6 holds only zeros" in " ".join(file.notes) for file in usable)
+        assert all("Current_6 holds only zeros" in " ".join(file.notes) for file in usable)
         for file in usable:
             assert file.sampling.rate_hz == pytest.approx(2, abs=0.01)
             (grid,) = {

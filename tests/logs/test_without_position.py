@@ -6,6 +6,7 @@ import pytest
 
 from frictioncli import schemas, tables
 from frictioncli.errors import LogError
+from frictioncli.inspection.inspect import inspect
 from frictioncli.logs.ingest import IngestSettings, ingest
 from frictioncli.stages.pair import pair
 
@@ -64,6 +65,11 @@ def test_pairs_go_by_speed(drive, tmp_path):
     friction = (pairs["torque_forward"] - pairs["torque_reverse"]) / 2
     expected = 0.005 * (20 + 0.05 * pairs["speed"] / 6)
     np.testing.assert_allclose(friction, expected, rtol=0.02)
+
+
+def test_inspect_says_that_the_logs_suffice(drive):
+    (joint,) = inspect([drive]).joints
+    assert {stage.name: stage.suffices for stage in joint.stages}["pair"] != "no"
 
 
 @pytest.mark.parametrize("batch_bytes", [1000, 1 << 22])
