@@ -267,6 +267,7 @@ def test_lag_between_two_columns(shift, seed):
     ("folder", "expected"),
     [
         ("xarm6-j3", ("Pos_2", "Velocity_2", "Current_2", "Torque_2")),
+        ("ur10e-j1", ("column 2", "column 8", "column 14", None)),
         ("damiao-5", ("position", "velocity", "torque_feedback", None)),
     ],
 )

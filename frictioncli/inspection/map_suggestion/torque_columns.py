@@ -15,7 +15,11 @@ from frictioncli.inspection.map_suggestion.columns import (
     LogColumns,
 )
 from frictioncli.inspection.map_suggestion.log_head import LogHead
-from frictioncli.inspection.map_suggestion.measured_or_commanded import is_command, is_derived
+from frictioncli.inspection.map_suggestion.measured_or_commanded import (
+    is_command,
+    is_derived,
+    roughness,
+)
 from frictioncli.logs.channels import channel_names as names
 from frictioncli.logs.channels import units
 
@@ -26,6 +30,8 @@ _LEAST_EXPLAINED = 0.05
 """Least share of variance that the direction explains in a torque."""
 _LEAST_GRAVITY = 0.5
 """Least share of variance that the angle explains in a load."""
+_NEARLY = 0.9
+"""Columns that agree so well show the same quantity."""
 _SURE_SHARE = 0.5
 _CURRENT_WORDS = ("curr", "strom", "amp", "i_")
 
@@ -143,7 +149,7 @@ def guess_torque(
     )
     if not ranked and not named:
         return None
-    best = ranked[0] if ranked else named[0]
+    best = _measured(columns, ranked) if ranked else named[0]
     reason = (
         f"differs by twice {best.jump:.3g} between the directions, which explains"
         f" {100 * best.explained:.0f} % of what the angle does not"
@@ -159,6 +165,30 @@ def guess_torque(
     )
     unit = _torque_unit(columns, best.column)
     return ColumnGuess(best.column, reason, confidence, unit, alternatives)
+
+
+def _measured(columns: LogColumns, ranked: Sequence[DirectionDependence]) -> DirectionDependence:
+    """Return the first column, or of unnamed ones that say the same the roughest.
+
+    A measured value is rougher than the one that was computed for it.
+    """
+    first = ranked[0]
+    values = columns.head.values[first.column]
+    if columns.is_named(first.column, names.TORQUE):
+        return first
+    same = [
+        one
+        for one in ranked
+        if not columns.is_named(one.column, names.TORQUE)
+        and one.explained > _NEARLY * first.explained
+        and np.corrcoef(values, columns.head.values[one.column])[0, 1] > _NEARLY
+    ]
+
+    def relative_roughness(one: DirectionDependence) -> float:
+        column = columns.head.values[one.column]
+        return roughness(column) / float(np.std(column))
+
+    return max([first, *same], key=relative_roughness)
 
 
 def guess_load(
