@@ -59,7 +59,9 @@ CASES = (
         folders=("xarm6-j2",),
         map="xarm6-j2.toml",
         known="14 recordings at 2 Hz, two speeds, friction in the current [A], the load in a"
-        " channel of its own [N·m]. Turn angles are random; the motor warms from 20 to 43 °C.",
+        " channel of its own [N·m]. Turn angles are random; the motor warms from 20 to 43 °C."
+        " Nearly all pairs are at 40 to 50 deg/s, and the load is a function of the angle:"
+        " structure along the load may as well be along the angle.",
     ),
     Case(
         name="xarm6-j3",
@@ -67,7 +69,9 @@ CASES = (
         folders=("xarm6-j3/a_none", "xarm6-j3/b_weight", "xarm6-j3/c_none"),
         map="xarm6-j3.toml",
         known="The weight was in the hand in the second run only: the amplitude of the load is"
-        " 13.4, 23.5 and 13.4 N·m. Friction falls with temperature, in all runs without weight.",
+        " 13.4, 23.5 and 13.4 N·m. Friction falls with temperature, in all runs without weight."
+        " The change of payload is right. Nothing that can be seen in the figure defends the step"
+        " of friction, of a chance of 0.5 %: we do not believe it.",
     ),
     Case(
         name="kinova-gen3-j4",
@@ -82,7 +86,8 @@ CASES = (
         name="epos-drive1",
         title="maxon EPOS drive 1 (RViMLab/TRO2021-Dynamic-Modelling, MIT)",
         folders=("epos-drive1",),
-        known="A recorder's files without positions, one speed per file.",
+        known="A recorder's files without positions, one speed per file. Friction in a motor is"
+        " often taken to grow in proportion to speed, where the base model has its square root.",
     ),
     Case(
         name="damiao-5",
