@@ -32,6 +32,9 @@ _LEAST_ANGLE_SPAN = 20.0
 
 _STRAIGHT = "the fall with temperature is too little curved to tell beta from gamma; fixed at 0"
 
+_LEAST_LOAD_SPREAD = 0.05
+"""Spread of the squared load, as a share of its mean, below which its term is Coulomb friction."""
+
 _SIGNIFICANT = 3.0
 """Standard deviations from 0 from which a delay is believed."""
 
@@ -170,7 +173,9 @@ def _by_excitation(prepared: PreparedJoint) -> tuple[EquationTerms, dict[str, st
         reason = "motion in one direction only; what is constant counts as friction"
         undetermined["offset"] = reason
     span = float(np.ptp(equations.rows.position))
-    if span < _LEAST_ANGLE_SPAN:
+    if not equations.rows.position.any():
+        undetermined["gravity"] = "the log has no angle"
+    elif span < _LEAST_ANGLE_SPAN:
         undetermined["gravity"] = f"angle spans {span:.1f} deg; its torque there is still told"
     return terms, undetermined
 
@@ -184,7 +189,9 @@ def _without_vague_load(
 ) -> EquationTerms | None:
     """Return the terms without that of the load, if it may be zero or negative; else none."""
     low, high = sorted((sign or 1) * bound for bound in estimate.interval("alpha"))
-    if low > 0 or (not sign and high < 0):
+    squared = estimate.squared_load
+    varies = float(np.std(squared)) > _LEAST_LOAD_SPREAD * float(np.mean(squared))
+    if varies and (low > 0 or (not sign and high < 0)):
         return None
     load = np.sqrt(estimate.squared_load)
     undetermined["alpha"] = (

@@ -124,7 +124,8 @@ def prepare(
     fastest = float(np.quantile(speed, 0.99)) if len(rows) else 0.0
     slowest = max(SteadySettings().min_speed, _SLOWEST_SHARE * fastest)
     leave_out(SLOW, speed < slowest)
-    leave_out(AFTER_REVERSAL, rows.travel < _PRESLIDING)
+    if rows.position.any():  # else the log has no angles
+        leave_out(AFTER_REVERSAL, rows.travel < _PRESLIDING)
     known = np.isfinite(rows.motor_temperature)
     if known.any():
         leave_out(NO_TEMPERATURE, ~known)

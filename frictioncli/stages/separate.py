@@ -101,19 +101,26 @@ def _regressed(
 ) -> "RegressedTorques":
     """Return the torques of joints by regression of all samples of the work folder."""
     # it imports scipy, which a separation of pairs does not need
+    from frictioncli.pairs.segments import without_angle
     from frictioncli.regression.separation import torques_by_regression
 
     source, pairs = work / SAMPLES, work / PAIRS
     if bin_width is None:
         known = tables.facts(pairs).get("bin_width") if pairs.exists() else None
         bin_width = float(known or PairingSettings().bin_width)
+    facts = tables.facts(source)
+
+    def read() -> Iterator[pa.RecordBatch]:
+        samples = tables.prefetch(tables.batches(source, schemas.SAMPLES))
+        return map(without_angle, samples) if facts.get("position") == "integrated" else samples
+
     return torques_by_regression(
-        lambda: tables.prefetch(tables.batches(source, schemas.SAMPLES)),
+        read,
         bin_width=bin_width,
         sign=settings.sign,
         joints=joints,
         manifest=read_phase_and_payload(work / RECORDINGS),
-        units=(str(tables.facts(source).get("torque_unit", "N·m")), "N·m"),
+        units=(str(facts.get("torque_unit", "N·m")), "N·m"),
         doubtful=settings.by == REGRESSED,
         urdf=settings.urdf,
     )

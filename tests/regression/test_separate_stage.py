@@ -185,6 +185,33 @@ def test_one_direction_is_regressed_only_when_told(tmp_path):
     assert "not determined: offset: motion in one direction only" in str(separate(work, REGRESSION))
 
 
+def test_a_log_without_angles_has_no_gravity(tmp_path):
+    """A motor on a bench, whose position was integrated: friction by speed alone."""
+    generator = np.random.default_rng(27)
+    motion = programmes.sines(120, generator)
+    torque = programmes.torque(motion, gravity=(0.0, 0.0), alpha=0.0)
+    torque += generator.normal(0, 0.2, len(torque))
+    facts = {"torque_unit": "N·m", "position": "integrated"}
+    tables.write(
+        tmp_path / "samples.parquet",
+        programmes.samples(motion, torque),
+        schemas.SAMPLES,
+        Provenance("ingest"),
+        facts,
+    )
+    assert "not determined: gravity: the log has no angle" in str(separate(tmp_path, REGRESSION))
+    rows = tables.read(tmp_path / TORQUES, schemas.TORQUES)
+    assert rows["position"].std() == 0
+    error = rows["friction_torque"] - 8.0 - 2.0 * np.sqrt(rows["speed"])
+    assert np.abs(error).max() < 0.3
+    # the constant load of an offset is not told from Coulomb friction
+    found = tables.facts(tmp_path / TORQUES)["regression"]["1"]
+    assert "alpha" in found["undetermined"]
+    assert found["condition"] < 100
+    middle = found["friction"][1]
+    assert middle["estimate"] == pytest.approx(8.0 + 2.0 * np.sqrt(middle["speed"]), rel=0.02)
+
+
 @pytest.mark.slow
 def test_both_ways_agree_on_a_simulated_joint(tmp_path):
     """Logs of the simulator, with noise from pair to pair: the same friction by both ways."""
