@@ -7,10 +7,16 @@ from matplotlib.figure import Figure
 from frictioncli.report.labels import TEMPERATURE_SYMBOLS, figure_text, friction_label
 from frictioncli.report.results import MOST_RUNS, JointResults, by_speed
 from frictioncli.report.style import FAINT, MODEL, WIDTH, label_right, legend_above, points
-from frictioncli.wording import number_text, speed_text
+from frictioncli.wording import number_text, range_text, speed_text
 
 _LABEL_DISTANCE = 0.028
 """Least distance between two labels as a share of the time shown."""
+
+_DEGREES = ("first_degree", "latest_degree")
+"""Criteria that count degrees."""
+
+_PAPER_K, _PAPER_TMAX, _PAPER_COUNT = 5.0, 3600.0, 6
+"""Scale of (20) [-], time [s] and number of corrections of the source paper."""
 
 _FRICTION_HEIGHT = 3.6
 _STRIP_HEIGHT = 1.5
@@ -49,6 +55,38 @@ def corrected_friction_figure(results: JointResults, phase: str) -> Figure:
         friction.sharex(temperature)
         temperature.set_xlabel("time t [min]")
     return figure
+
+
+def corrections_text(results: JointResults, phase: str) -> str:
+    """Return why a phase has as many corrections as it has; empty where none follows the degrees.
+
+    Parameters
+    ----------
+    results : JointResults
+        One joint's results, with a schedule.
+    phase : {"heat-up", "cool-down"}
+        The phase.
+    """
+    schedule = results.schedule[results.schedule["phase"] == phase]
+    made = schedule[schedule["corrected"].astype(bool) | schedule["failed"].astype(bool)]
+    motor = results.pairs[["run", "pair", "motor_temperature"]]
+    made = made.merge(motor, on=["run", "pair"]).sort_values(["run", "time"])
+    passed = made.groupby("run")["motor_temperature"].diff().abs().dropna()
+    if not (schedule["criterion"].isin(_DEGREES).all() and len(passed)):
+        return ""
+    counts = sorted(made.groupby("run").size())
+    text = (
+        f" {range_text([str(count) for count in counts])} corrections: the first is"
+        " made at the start of the phase, and from one to the next the motor passes"
+        f" {number_text(passed.median(), 1)} °C (median)."
+    )
+    same = (schedule["k"] == _PAPER_K).all() and (schedule["tmax"] == _PAPER_TMAX).all()
+    if same and any(count != _PAPER_COUNT for count in counts):
+        text += (
+            f" The paper has {_PAPER_COUNT} at this k and tmax over 40 °C, about 8 °C from one to"
+            " the next; no reading of (20) gives that where successive degrees take similar times."
+        )
+    return text
 
 
 def _draw_friction(panel: Axes, own: pd.DataFrame, results: JointResults) -> None:

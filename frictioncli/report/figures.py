@@ -6,7 +6,7 @@ from functools import partial
 
 from matplotlib.figure import Figure
 
-from frictioncli.report.correction_figures import corrected_friction_figure
+from frictioncli.report.correction_figures import corrected_friction_figure, corrections_text
 from frictioncli.report.evaluation_figure import (
     error_figure,
     setting_text,
@@ -149,6 +149,7 @@ def _schedule_caption(results: JointResults, phase: str) -> str:
         " (points), smoothed (thin line), predicted by (16) with T = Tm + ΔT (dashed). Vertical"
         " lines are corrections with the new ΔT, dotted where it could not be computed. Between"
         " two lines the dashed curve should stay on the thin one."
+        f"{corrections_text(results, phase)}"
     )
 
 

@@ -1,9 +1,11 @@
 """Figures 9 and 10: friction predicted with corrected temperature."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
-from frictioncli.report.correction_figures import corrected_friction_figure
+from frictioncli.report.correction_figures import corrected_friction_figure, corrections_text
 from tests.report.figure_contents import texts
 
 
@@ -22,3 +24,22 @@ def test_every_correction_has_its_line_and_value(two_runs, phase):
         assert ("failed" if row.failed else value) in shown
     parameter = next(line for line in figure.axes[1].lines if line.get_label() == "T = Tm + ΔT")
     np.testing.assert_allclose(parameter.get_ydata(), own["temperature_parameter"])
+
+
+def test_the_number_of_corrections_is_explained_by_the_degrees_between_them(two_runs):
+    schedule = two_runs.schedule.assign(criterion="first_degree", k=5.0, tmax=3600.0)
+    motor = two_runs.pairs.set_index(["run", "pair"])["motor_temperature"]
+    own = schedule[(schedule["phase"] == "heat-up") & schedule["corrected"]].sort_values("time")
+    passed = [
+        abs(float(step))
+        for run, rows in own.groupby("run")
+        for step in np.diff([motor[run, pair] for pair in rows["pair"]])
+    ]
+    said = corrections_text(replace(two_runs, schedule=schedule), "heat-up")
+    assert f"the motor passes {np.median(passed):.0f} °C (median)." in said
+    assert "The paper has 6 at this k and tmax" in said
+    other = corrections_text(replace(two_runs, schedule=schedule.assign(k=7.0)), "heat-up")
+    assert other in said
+    assert "paper" not in other
+    unknown = schedule.assign(criterion="uncertainty")
+    assert corrections_text(replace(two_runs, schedule=unknown), "heat-up") == ""
