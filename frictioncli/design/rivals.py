@@ -133,7 +133,9 @@ def open_questions_of(
         EffectFit(one.effect, dict(one.shape), one.coefficients, np.zeros((0, 0)), 0.0)
         for one in extended.effects
     ]
-    settled = [fit for cause, fit in zip(named, fits, strict=True) if len(cause.effects) == 1]
+    settled = [fit for cause, fit in zip(named, fits, strict=False) if len(cause.effects) == 1]
+    # effects of the measurement that are corrected without a name follow the causes
+    settled += fits[len(named) :]
     questions = []
     for number, cause in enumerate(named):
         if len(cause.effects) == 1:

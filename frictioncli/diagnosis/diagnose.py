@@ -24,7 +24,7 @@ from frictioncli.diagnosis.search.cause_search import find_causes
 from frictioncli.diagnosis.search.cause_selection import judged_on_new_run
 from frictioncli.diagnosis.search.lack_of_fit import Structure
 from frictioncli.diagnosis.search.margin import channel_margin, margin_of, strength
-from frictioncli.diagnosis.search.measurement import beside_the_rest
+from frictioncli.diagnosis.search.measurement import CLEAR, beside_the_rest, corrected_without_name
 from frictioncli.diagnosis.search.search_result import SearchResult, given_up_causes
 from frictioncli.diagnosis.search.standing import with_standing
 from frictioncli.diagnosis.search.timing_causes import judged_by_timing
@@ -38,9 +38,6 @@ from frictioncli.errors import NotEnoughData
 
 LEAST_PAIRS = 12
 """With fewer pairs noise cannot be distinguished from structure."""
-
-_CLEAR = 1e-3
-"""Greatest p-value of an effect of the measurement that is listed though it is not named."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -63,8 +60,11 @@ class Diagnosis:
         Structure that no effect of the catalogue explains.
     gain : Gain or None
         Reduction of the misfit by the extension; none where no cause was found.
+    corrected : tuple of Cause
+        Effects of the measurement that are not named, and that the extension corrects all the same:
+        noise alone is hardly the reason for them.
     extension : Extension or None
-        The base with the causes, refitted.
+        The base with the causes and what is corrected, refitted.
     base : Problem
         The rows without the hold-out run, with the base model about which the extension is linear.
     judged : Problem
@@ -98,6 +98,7 @@ class Diagnosis:
     visible: tuple[Cause, ...]
     structure: Structure | None
     gain: Gain | None
+    corrected: tuple[Cause, ...]
     extension: Extension | None
     base: Problem
     judged: Problem
@@ -175,14 +176,17 @@ def diagnose_joint(
         named = list(judged_on_new_run(named, found.step, new))
     causes, unnamed = understood(found.step, named, margin, settings.alpha)
     given_up = given_up_causes(found, settings.alpha)
-    visible = _visible((*judged, *given_up), named, causes, unnamed, problem)
+    corrected = corrected_without_name(judged, causes)
+    names = {one.fit.effect.name for one in corrected}
+    rest = [one for one in judged if one.fit.effect.name not in names]
+    visible = _visible((*rest, *corrected, *given_up), named, causes, unnamed, problem)
     extension = gain = None
     if lag is not None and not any(cause.fit.effect.name == LAG for cause in causes):
         # what is not named does not move the temperature of the extended model
         problem, new, lag = base, base_new, None
     if causes:
-        fits = [cause.fit for cause in causes]
-        weighted_fit = beside_the_rest(problem, weighted_fit, found.measurement, causes)
+        fits = [cause.fit for cause in (*causes, *corrected)]
+        weighted_fit = beside_the_rest(problem, weighted_fit, found.measurement, fits)
         extension = extend(problem, weighted_fit, fits)
         if lag is not None:
             lag, extension = settled(
@@ -206,6 +210,7 @@ def diagnose_joint(
         visible=visible,
         structure=unnamed,
         gain=gain,
+        corrected=corrected,
         extension=extension,
         base=problem,
         judged=new or problem,
@@ -233,13 +238,14 @@ def predicting(extension: Extension, causes: Sequence[Cause]) -> Extension:
     extension : Extension
         The base with the causes, refitted.
     causes : sequence of Cause
-        The causes, in the order of its effects.
+        The causes, in the order of its effects; other effects may follow.
     """
-    effects = tuple(
-        fitted
-        for fitted, cause in zip(extension.effects, causes, strict=True)
-        if cause.holds_on_new_run is not False or cause.fit.effect.moments is not None
-    )
+    gone = {
+        number
+        for number, cause in enumerate(causes)
+        if cause.holds_on_new_run is False and cause.fit.effect.moments is None
+    }
+    effects = tuple(one for number, one in enumerate(extension.effects) if number not in gone)
     return replace(extension, effects=effects)
 
 
@@ -253,7 +259,7 @@ def _visible(
     """Return what was found and is not named, with the reason, largest first."""
     left = [cause for cause in judged if cause.standing != "named"]
     # an effect of the measurement that nothing speaks for is not worth a line
-    left = [one for one in left if not one.fit.effect.measurement or one.test.p_value < _CLEAR]
+    left = [one for one in left if not one.fit.effect.measurement or one.test.p_value < CLEAR]
     for cause in named:
         if any(cause is other for other in causes):
             continue

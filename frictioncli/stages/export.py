@@ -104,7 +104,7 @@ def _extension(work: Path, model: FrictionModel) -> DeployedExtension | None:
         )
     diagnosis, extended = documents[model.joint]
     interval = None
-    for fitted, cause in zip(extended.effects, diagnosis.modelled_causes, strict=True):
+    for fitted, cause in zip(extended.effects, diagnosis.modelled_causes, strict=False):
         if fitted.effect.name == LAG:
             stated = cause.parameters.get("time_constant")
             interval = stated.ci95 if stated else None

@@ -134,7 +134,8 @@ class ExtendedDocument(FrictionModel):
     Attributes
     ----------
     effects : tuple of EffectRecord
-        The effects, in the order of the causes. Without any the following fields are absent.
+        The effects, in the order of the causes, then effects of the measurement that are corrected
+        without a name. Without any the following fields are absent.
     linear_about : FrictionParameters
         Parameters of the base about which the extended model is linear.
     gravity_about, gravity : GravityCoefficients
@@ -175,7 +176,8 @@ class ExtendedModel:
     gravity, gravity_about : GravityCoefficients
         Gravity as refitted, and the base's; not used without effects.
     effects : tuple of FittedEffect
-        The effects, in the order of the causes; without any it adds nothing to its base.
+        The effects, in the order of the causes, then those that are corrected without a name;
+        without any it adds nothing to its base.
     hidden : HiddenTemperature or None
         Temperature of the gear about which it is linear; none for the measured one.
     """

@@ -85,7 +85,7 @@ class Reloaded:
 
     @property
     def causes(self) -> tuple[CauseRecord, ...]:
-        """Causes that effects of the catalogue stand for, in the order of the terms."""
+        """Causes that effects of the catalogue stand for, in the order of the first terms."""
         return self.document.modelled_causes
 
 
@@ -106,7 +106,7 @@ def read_documents(work: Path) -> dict[int, tuple[DiagnosisDocument, ExtendedMod
     for joint, document in diagnoses.items():
         named = len(document.modelled_causes)
         effects = models[joint].effects if joint in models else ()
-        if joint not in models or len(effects) != named:
+        if joint not in models or len(effects) < named:
             raise TableError(
                 f"{work / EXTENDED}: has {len(effects)} effects of joint {joint}, {DIAGNOSIS} has"
                 f" {named} named causes; run 'frictioncli diagnose' again"
@@ -146,7 +146,7 @@ def _predicted(new: Misfits, document: DiagnosisDocument) -> Misfits:
     The history of a change already says that it is not there.
     """
     after = dict(new.after)
-    for term, cause in zip(new.terms, document.modelled_causes, strict=True):
+    for term, cause in zip(new.terms, document.modelled_causes, strict=False):
         if cause.holds_on_new_run is False and term.effect.moments is None:
             after = {channel: values + term.of(channel) for channel, values in after.items()}
     return replace(new, after=after)

@@ -1,6 +1,7 @@
 """Effects of the measurement that stand beside the base: which are possible, and their tests."""
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 from scipy import stats
@@ -16,6 +17,9 @@ from frictioncli.diagnosis.search.precomputed import Precomputed
 from frictioncli.diagnosis.search.standing import beyond_bounds
 from frictioncli.diagnosis.search.step import Step
 from frictioncli.effects.base import Effect
+
+CLEAR = 0.01
+"""Greatest p-value of an effect of the measurement that is listed and corrected without a name."""
 
 
 def possible_effects(precomputed: Precomputed, effects: Sequence[Effect]) -> tuple[Effect, ...]:
@@ -64,11 +68,36 @@ def measurement_causes(step: Step, effects: Sequence[Effect]) -> tuple[Cause, ..
     return tuple(found)
 
 
+def corrected_without_name(judged: Sequence[Cause], causes: Sequence[Cause]) -> tuple[Cause, ...]:
+    """Return effects of the measurement that are corrected though they are not named.
+
+    They may be smaller than what is worth a name, and a prediction without them is worse. Without
+    causes there is no extended model that could correct them.
+
+    Parameters
+    ----------
+    judged : sequence of Cause
+        All that was found, with its standing.
+    causes : sequence of Cause
+        Those that extend the model.
+    """
+    if not causes:
+        return ()
+    named = {cause.fit.effect.name for cause in causes}
+    return tuple(
+        replace(one, reason=f"{one.reason}; corrected all the same")
+        for one in judged
+        if one.fit.effect.measurement
+        and one.test.p_value < CLEAR
+        and one.fit.effect.name not in named
+    )
+
+
 def beside_the_rest(
     problem: Problem,
     weighted_fit: WeightedFit,
     measurement: Sequence[Cause],
-    causes: Sequence[Cause],
+    fitted: Sequence[EffectFit],
 ) -> WeightedFit:
     """Return a weighted fit that allows for effects of the measurement that are not fitted.
 
@@ -80,9 +109,9 @@ def beside_the_rest(
         Weights of both channels.
     measurement : sequence of Cause
         All effects of the measurement beside the base.
-    causes : sequence of Cause
-        The causes that extend the model.
+    fitted : sequence of EffectFit
+        The effects that extend the model.
     """
-    fitted = {cause.fit.effect.name for cause in causes}
-    rest = [cause.fit for cause in measurement if cause.fit.effect.name not in fitted]
+    names = {one.effect.name for one in fitted}
+    rest = [cause.fit for cause in measurement if cause.fit.effect.name not in names]
     return beside_unfitted(problem, weighted_fit, rest)

@@ -1,0 +1,68 @@
+"""Effects of the measurement that the extended model corrects though they are not named."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from frictioncli.diagnosis.diagnose import diagnose_joint
+from frictioncli.diagnosis.documents.extended_model import extended_model
+from frictioncli.diagnosis.documents.from_diagnosis import diagnosis_document, extended_document
+from frictioncli.diagnosis.documents.reload import reload
+from frictioncli.diagnosis.fit.hypotheses import EffectFit
+from frictioncli.diagnosis.search.cause import Cause
+from frictioncli.diagnosis.search.measurement import corrected_without_name
+from frictioncli.diagnosis.settings import DiagnosisSettings
+from frictioncli.effects import BY_NAME
+from frictioncli.model.fitting import fit_joint
+from frictioncli.model.settings import FitSettings
+from tests.diagnosis.test_standing import cause
+from tests.simulation.torque_table import simulate_world
+from tests.studies.blind_worlds import World
+
+
+def of(name, p_value, standing="visible"):
+    one = cause(p_value=p_value)
+    fit = EffectFit(BY_NAME[name], {}, np.array([1.0]), np.array([[0.01]]), 50.0)
+    return replace(one, fit=fit, effects=(name,), standing=standing, reason="small")
+
+
+def corrected(judged, causes):
+    return [one.fit.effect.name for one in corrected_without_name(judged, causes)]
+
+
+def test_what_noise_hardly_explains_is_corrected_where_there_is_a_cause():
+    named: Cause = of("load_offset", 1e-9, "named")
+    clear, doubtful = of("torque_delay", 1e-3), of("backlash", 0.2)
+    ripple = of("position_ripple", 1e-9)
+    judged = (named, clear, doubtful, ripple)
+    assert corrected(judged, [named]) == ["torque_delay"]
+    assert corrected(judged, [ripple]) == ["load_offset", "torque_delay"]
+    assert corrected(judged, []) == []
+    (one,) = corrected_without_name(judged, [named])
+    assert one.reason == "small; corrected all the same"
+
+
+@pytest.mark.slow
+def test_what_is_corrected_follows_the_causes_and_counts_for_the_prediction():
+    """A joint that does many small things; its documents predict the new run as the diagnosis."""
+    world = World("single", "load_temperature", 0)
+    torques = simulate_world(world.settings(world.names)).torques
+    settings = DiagnosisSettings()
+    diagnosis = diagnose_joint(torques, "motor", "N·m", settings)
+    names = [one.fit.effect.name for one in diagnosis.corrected]
+    assert names
+    assert all(BY_NAME[name].measurement for name in names)
+    document = diagnosis_document(diagnosis, settings)
+    extended = extended_document(diagnosis, fit_joint(torques, {}, FitSettings()))
+    causes = [one.fit.effect.name for one in diagnosis.causes]
+    assert [one.name for one in extended.effects] == [*causes, *names]
+    assert all(
+        one.reason.endswith("corrected all the same")
+        for one in document.visible
+        if one.effects[0] in names
+    )
+    new = reload(torques, document, extended_model(extended)).new
+    square = np.square(new.after["friction"]) + np.square(new.after["load"])
+    assert np.sqrt(np.mean(square)) == pytest.approx(diagnosis.gain.after, rel=1e-6)
+    assert diagnosis.gain.after < diagnosis.gain.before
