@@ -50,6 +50,7 @@ def reading(place):
         "--joint": ("3 --joint 5", f"{place}.joints", (3, 5)),
         "--map": ("a.toml", f"{place}.map_file", Path("a.toml")),
         "--gear-ratio": ("-90.5", f"{place}.gear_ratio", -90.5),
+        "--rated-torque": ("0.5", f"{place}.rated_torque", 0.5),
         "--time-unit": ("ms", f"{place}.time_unit", "ms"),
         "--position-unit": ("rad", f"{place}.position_unit", "rad"),
         "--velocity-unit": ("rpm", f"{place}.velocity_unit", "rpm"),
