@@ -72,6 +72,17 @@ def test_what_noise_may_explain_is_undetermined_whatever_its_size(joint, test):
     assert (found, "noise" in reason) == ("undetermined", True)
 
 
+@pytest.mark.parametrize(("p_value", "expected"), [(5e-4, "named"), (5e-3, "undetermined")])
+def test_a_change_needs_more_significance_than_another_effect(joint, p_value, expected):
+    """Drift looks like a change at some moment more often than p-values say."""
+    step = BY_NAME["step_change"]
+    shape = step.shapes(joint.all_runs)[0]
+    ((found, _),) = standing(joint, cause(step, (1.0,), (0.1,), shape=shape, p_value=p_value))
+    assert found == expected
+    ((found, _),) = standing(joint, cause(p_value=p_value))
+    assert found == "named"
+
+
 def test_what_physics_forbids_is_not_named(joint):
     """Below 0, by more than its error; on a bound alone; a coefficient that may be nothing."""
     for coefficient, error, word in (

@@ -17,6 +17,10 @@ _Z95 = 1.96
 _BEYOND = 0.25
 """How far a share may be below 0 or above 1."""
 
+_OF_CHANGES = 0.02
+"""Significance level of a change, relative to that of other effects: drift over a few dozen pairs
+looks like a change at some moment or other much more often than p-values say."""
+
 _SHOWN = 0.5
 """Least share of a cause that the residuals show at face value."""
 
@@ -67,6 +71,8 @@ def _judged(cause: Cause, problem: Problem, margin: float, alpha: float) -> Caus
     if cause.fit.effect.measurement and cause.visible > 0:
         low, high = (cause.size / cause.visible * bound for bound in (low, high))
         left = "there is"
+    if cause.fit.effect.moments is not None:
+        alpha *= _OF_CHANGES
     if not (cause.test.p_value < alpha and cause.test.log_bayes_factor > CONVINCING):
         return replace(cause, standing="undetermined", reason="noise may be the reason")
     impossible = _impossible(cause, problem)
