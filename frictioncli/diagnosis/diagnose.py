@@ -25,6 +25,8 @@ from frictioncli.diagnosis.search.cause_selection import judged_on_new_run
 from frictioncli.diagnosis.search.lack_of_fit import Structure
 from frictioncli.diagnosis.search.margin import channel_margin, margin_of, strength
 from frictioncli.diagnosis.search.measurement import CLEAR, beside_the_rest, corrected_without_name
+from frictioncli.diagnosis.search.new_run_changes import changes_on_new_run, with_effect
+from frictioncli.diagnosis.search.new_run_misfit import NewRunMisfit
 from frictioncli.diagnosis.search.search_result import SearchResult, given_up_causes
 from frictioncli.diagnosis.search.standing import with_standing
 from frictioncli.diagnosis.search.timing_causes import judged_by_timing
@@ -193,11 +195,26 @@ def diagnose_joint(
                 lag, fits, lambda rows, among: extend(rows, weighted_fit, among)
             )
             problem, new = lag.problem, lag.new
+    appeared: tuple[Cause, ...] = ()
+    if new:
+        before = extension or extend(problem, weighted_fit, [])
+        predicted, floor = predicting(before, causes), _floor(found)
+        appeared = changes_on_new_run(
+            NewRunMisfit.of(problem, new, predicted, weighted_fit, found.step.noise()),
+            [one for one in effects if one not in [cause.fit.effect for cause in causes]],
+            floor=floor,
+            margin=margin,
+        )
+        for cause in appeared:
+            extension = with_effect(before, cause.fit, len(causes))
+        causes = (*causes, *appeared)
+    if extension is not None:
         gain = measured_gain(
             new or problem,
             predicting(extension, causes),
             base=base_new or base,
-            basis="new_run" if new else "within_run",
+            # a change that begins on the run kept out was fitted there
+            basis="new_run" if new and not appeared else "within_run",
             floor=_floor(found),
             seed=settings.seed,
         )

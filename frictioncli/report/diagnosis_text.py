@@ -190,6 +190,8 @@ def gain_sentence(document: DiagnosisDocument, unit: str) -> str:
     low, high = gain.ci95
     if gain.basis == "new_run":
         where = f"On run {document.held_out}, which the diagnosis has not seen,"
+    elif document.held_out is not None:
+        where = f"On run {document.held_out}, where a change was found and fitted,"
     else:
         where = "On the same data that it was fitted to"
     text = (
@@ -200,7 +202,8 @@ def gain_sentence(document: DiagnosisDocument, unit: str) -> str:
         f" {number_text(gain.noise_floor)} {unit}."
     )
     if gain.basis != "new_run":
-        text += " A gain on data already used flatters; log a second run to know it."
+        further = "a second" if document.held_out is None else "another"
+        text += f" A gain on data already used flatters; log {further} run to know it."
     if high < 0:
         text += " The extended model is worse than the base model: do not use it."
     elif low <= 0:

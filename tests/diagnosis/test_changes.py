@@ -4,8 +4,14 @@ import numpy as np
 import pytest
 
 from frictioncli.diagnosis.diagnose import diagnose_joint
+from frictioncli.diagnosis.documents.extended_model import extended_model
+from frictioncli.diagnosis.documents.from_diagnosis import diagnosis_document, extended_document
+from frictioncli.diagnosis.documents.reload import reload
+from frictioncli.diagnosis.documents.sentences import lasting_text
 from frictioncli.diagnosis.settings import DiagnosisSettings
 from frictioncli.effects.history_text import history_text
+from frictioncli.model.fitting import fit_joint
+from frictioncli.model.settings import FitSettings
 from frictioncli.simulator.settings import SynthesisSettings
 from tests.simulation.changed_table import hours, middle, with_friction_step, with_payload
 from tests.simulation.torque_table import simulate_torques
@@ -99,6 +105,33 @@ def test_a_payload_on_the_second_of_three_days():
     assert when == "in run day2"
     assert cause.fit.coefficients == pytest.approx([10.0, 2.0], abs=0.1)
     assert diagnosis.gain.after < 1.25 * diagnosis.floor
+
+
+@pytest.mark.parametrize(
+    ("change", "name", "size"),
+    [(with_payload, "payload_change", [6.0, 0.0]), (with_friction_step, "step_change", [3.0])],
+)
+def test_a_change_on_the_last_day_only(change, name, size):
+    """It is found on the run kept out, so that the gain is no gain on data never seen."""
+    table = days(2)
+    table = change(table, on_the_second_day(table) & middle(table), size[0])
+    diagnosis, cause, when = found(table)
+    assert (diagnosis.verdict, cause.effects) == ("named", (name,))
+    assert (cause.holds_on_new_run, cause.only_on_new_run) == (True, True)
+    assert when == "in run day2 from 3.6 h on"
+    assert cause.fit.coefficients == pytest.approx(size, abs=0.5)
+    assert diagnosis.gain.basis == "within_run"
+    assert diagnosis.gain.after < 1.25 * diagnosis.floor < diagnosis.gain.before
+    settings = DiagnosisSettings()
+    document = diagnosis_document(diagnosis, settings)
+    (record,) = document.causes
+    assert lasting_text(record, document) == (
+        "There in run day2 from 3.6 h on only: found and fitted on the run kept out (day2)."
+    )
+    extended = extended_document(diagnosis, fit_joint(table, {}, FitSettings(temperature="motor")))
+    again = reload(table, document, extended_model(extended)).new
+    squared = again.problem.squared(again.after["friction"], again.after["load"])
+    assert np.sqrt(np.mean(squared)) == pytest.approx(diagnosis.gain.after)
 
 
 def test_nothing_is_said_of_days_without_a_change():

@@ -37,9 +37,9 @@ class CauseRecord(msgspec.Struct, frozen=True, kw_only=True):
     standing : {"named", "visible", "negligible", "undetermined"}
         What may be said of it: it is named; it stands out of the noise, but is not named; it is
         smaller than the margin; its size is not known well enough.
-    holds_on_new_run : bool or None
-        Whether it is there on the hold-out run too: if not, it is a change that did not last. None
-        where that cannot be tested.
+    holds_on_new_run, only_on_new_run : bool or None, bool
+        Whether it is there on the hold-out run: if not, it is a change that did not last; None where
+        that cannot be tested. Whether it begins there: then it was found and fitted there.
     reason : str
         Why it is not named; empty where it is.
     effects : tuple of str
@@ -61,8 +61,7 @@ class CauseRecord(msgspec.Struct, frozen=True, kw_only=True):
     size_ci95 : (float, float) or None
         95 % interval of that. [torque unit]
     visible_size : float or None
-        RMS of what the base model leaves of it: the rest is in the base model's parameters.
-        [torque unit]
+        RMS of what the base model leaves of it; its parameters have the rest. [torque unit]
     visible_ci95 : (float, float) or None
         95 % interval of that. [torque unit]
     p_value : float
@@ -78,6 +77,7 @@ class CauseRecord(msgspec.Struct, frozen=True, kw_only=True):
     kind: Kind | None = None
     standing: Standing = "named"
     holds_on_new_run: bool | None = None
+    only_on_new_run: bool = False
     reason: str = ""
     effects: tuple[str, ...]
     probabilities: Mapping[str, float]

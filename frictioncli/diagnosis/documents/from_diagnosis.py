@@ -205,6 +205,7 @@ def _record(
         kind=effect.kind,
         standing=cause.standing,
         holds_on_new_run=cause.holds_on_new_run,
+        only_on_new_run=cause.only_on_new_run,
         reason=cause.reason,
         effects=cause.effects,
         probabilities=cause.probabilities,

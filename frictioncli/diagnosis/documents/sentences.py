@@ -84,6 +84,8 @@ def lasting_text(cause: CauseRecord, document: DiagnosisDocument) -> str:
     held_out = f"the run kept out ({document.held_out})"
     if cause.holds_on_new_run is None or document.held_out is None:
         return f"There {cause.when}." if cause.when else ""
+    if cause.only_on_new_run:
+        return f"There {cause.when} only: found and fitted on {held_out}."
     if cause.holds_on_new_run:
         when = f"There {cause.when}: it is there" if cause.when else "It is there"
         return f"{when} on {held_out} too."

@@ -39,6 +39,8 @@ class Cause:
         Why it is not named, in words; empty where it is.
     holds_on_new_run : bool or None
         Whether it is there on the hold-out run too; None where that cannot be tested.
+    only_on_new_run : bool
+        Whether it begins on the hold-out run, so that it was found and fitted there.
     """
 
     fit: EffectFit
@@ -52,3 +54,4 @@ class Cause:
     standing: str = "named"
     reason: str = ""
     holds_on_new_run: bool | None = None
+    only_on_new_run: bool = False

@@ -149,7 +149,7 @@ def _test_of_change(residual: NewRunResidual, shape: Shape) -> NewRunTest:
     share = measured_share(table)[new.rows]
     span = next(one for one in run_spans(table) if present(share, history([one])).all())
     absent, whole = (with_run(shape, span, parts) for parts in ([], [span]))
-    tried = distinct((with_run(shape, span, [part]) for part in _parts(share, span)), share)
+    tried = distinct((with_run(shape, span, [part]) for part in parts_of(share, span)), share)
     # with drift only a history with all moments right explains more than a wrong one
     quiet = residual.without_drift()
     best = max((shape, whole, *tried), key=quiet.evidence)
@@ -170,8 +170,16 @@ def _test_of_change(residual: NewRunResidual, shape: Shape) -> NewRunTest:
     return replace(missed, holds=None, shape=shape)
 
 
-def _parts(share: Array, span: Stretch) -> list[Stretch]:
-    """Return the stretches to try on a run with these shares of all pairs."""
+def parts_of(share: Array, span: Stretch) -> list[Stretch]:
+    """Return the stretches to try on a run.
+
+    Parameters
+    ----------
+    share : ndarray
+        Shares of all pairs measured before its rows. [-]
+    span : (float, float)
+        The stretch of the run.
+    """
     known = np.unique(share)
     places = np.unique(np.linspace(0, len(known) - 1, _MOMENTS + 2).round().astype(np.intp))[1:-1]
     moments = known[places].tolist()

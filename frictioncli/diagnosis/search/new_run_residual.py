@@ -77,8 +77,8 @@ class NewRunResidual:
         fitted = refit(problem, weighted_fit, [*others, fit])
         *rest, own = fitted.effects
         kept = slice(0, -len(own.coefficients))
-        covariance = weighted_fit.error_covariance(*_columns(problem, fitted.effects))
-        root = _square_root(covariance[kept, kept])
+        covariance = weighted_fit.error_covariance(*model_columns(problem, fitted.effects))
+        root = square_root(covariance[kept, kept])
         # a change is evaluated where it is there throughout, and multiplied by its history later
         shape = history([(0.0, 1.0)]) if fit.effect.moments is not None else fit.shape
         extra = (new.temperature_variance, np.zeros_like(new.layout.time))
@@ -89,7 +89,7 @@ class NewRunResidual:
                 extra,
                 new.basis(fit.effect, shape),
                 misfits(new, replace(fitted, effects=tuple(rest))),
-                _columns(new, rest),
+                model_columns(new, rest),
                 strict=True,
             )
         )
@@ -198,8 +198,8 @@ class ChannelResidual:
     ) -> "ChannelResidual":
         """Return a channel under a noise."""
         weights = Weights.of(new.layout, noise, extra)
-        columns = _reduced(weights, np.column_stack([nuisance, residual]))
-        solved = _solved(weights, columns)
+        columns = reduced_rows(weights, np.column_stack([nuisance, residual]))
+        solved = solved_rows(weights, columns)
         return cls(
             noise=noise,
             extra=extra,
@@ -214,7 +214,7 @@ class ChannelResidual:
     @property
     def crossed(self) -> Array:
         """Products of the nuisance with the residual, shape (columns,)."""
-        columns = _reduced(self.weights, self.residual[:, np.newaxis])
+        columns = reduced_rows(self.weights, self.residual[:, np.newaxis])
         return np.asarray(self.solved[:, :-1].T @ columns[:, 0])
 
     def products(self, there: Array) -> tuple[float, float, Array]:
@@ -228,9 +228,9 @@ class ChannelResidual:
         torque = self.torque * there
         if not np.any(torque):
             return 0.0, 0.0, np.zeros(self.nuisance.shape[1])
-        own = _reduced(self.weights, torque[:, np.newaxis])
+        own = reduced_rows(self.weights, torque[:, np.newaxis])
         across = self.solved.T @ own[:, 0]
-        squared = float(own[:, 0] @ _solved(self.weights, own)[:, 0])
+        squared = float(own[:, 0] @ solved_rows(self.weights, own)[:, 0])
         return float(across[-1]), squared, across[:-1]
 
     def with_own_noise(self, new: Problem, there: Array) -> "ChannelResidual":
@@ -249,7 +249,7 @@ class ChannelResidual:
             point=self.noise.point,
             extra=self.extra,
         )[0][0]
-        return self._under(new, _greater(self.noise, found))
+        return self._under(new, greater_noise(self.noise, found))
 
     def without_drift(self, new: Problem) -> "ChannelResidual":
         """Return the same with the variance of the drift as noise of pairs."""
@@ -260,19 +260,19 @@ class ChannelResidual:
         return ChannelResidual.of(new, noise, self.extra, self.torque, self.residual, self.nuisance)
 
 
-def _columns(problem: Problem, effects: Sequence[EffectFit]) -> tuple[Array, Array]:
+def model_columns(problem: Problem, effects: Sequence[EffectFit]) -> tuple[Array, Array]:
     """Return the columns of base and effects in friction and load, shape (rows, columns) each."""
     bases = [base_rows(problem), *(problem.basis(one.effect, one.shape) for one in effects)]
     friction, load = (np.hstack([basis[channel] for basis in bases]) for channel in (0, 1))
     return friction, load
 
 
-def _reduced(weights: Weights, rows: Array) -> Array:
+def reduced_rows(weights: Weights, rows: Array) -> Array:
     """Return deviations within pairs and, below them, pair means, shape (n, columns)."""
     return np.vstack([weights.layout.contrasts(rows), weights.layout.means(rows)])
 
 
-def _solved(weights: Weights, columns: Array) -> Array:
+def solved_rows(weights: Weights, columns: Array) -> Array:
     """Return the inverse covariance of the noise times reduced columns, shape (n, columns)."""
     within, means = np.split(columns, [-len(weights.deviation)])
     return np.vstack([within / weights.point**2, weights.covariance.solve(means)])
@@ -283,7 +283,7 @@ def _inverse(friction: ChannelResidual, load: ChannelResidual) -> Array:
     return np.asarray(np.linalg.inv(np.eye(len(information)) + information))
 
 
-def _square_root(covariance: Array) -> Array:
+def square_root(covariance: Array) -> Array:
     """Return a matrix whose product with its transpose is a covariance, in any units."""
     deviation = np.sqrt(np.maximum(np.diag(covariance), 0.0))
     size = np.where(deviation > 0, deviation, 1.0)
@@ -291,7 +291,7 @@ def _square_root(covariance: Array) -> Array:
     return np.asarray(deviation[:, np.newaxis] * vectors * np.sqrt(np.maximum(values, 0.0)))
 
 
-def _greater(first: Noise, second: Noise) -> Noise:
+def greater_noise(first: Noise, second: Noise) -> Noise:
     """Return the noise with the greater deviations, and the time of the greater drift."""
     slower = first if first.drift >= second.drift else second
     return replace(

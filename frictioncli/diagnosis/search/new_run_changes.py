@@ -1,0 +1,242 @@
+r"""Changes that begin on the run that was kept out, so that the runs seen have nothing of them.
+
+What the extended model leaves of the new run's torque is, as in
+:mod:`frictioncli.diagnosis.search.new_run_residual`,
+
+.. math:: r = N z + C(h)\, c + e, \quad z \sim N(0, I), \quad e \sim N(0, V)
+
+with the columns *C* of a change of history *h*. Its coefficients and twice the log likelihood ratio
+to its absence are, with the precision *M* of *r* without *z*,
+
+.. math:: c = (C^\mathsf{T} M C)^{-1} C^\mathsf{T} M r, \quad
+    S = r^\mathsf{T} M C\, (C^\mathsf{T} M C)^{-1} C^\mathsf{T} M r .
+
+Another day always differs a little, and anything else that the model lacks there is larger than
+noise too. So a change is accepted only where it is beyond doubt, is a single stretch, explains
+nearly all that is left and more than other torque with the same history, or than a slow one; and
+where it begins with the run, only if it is more than days differ by.
+"""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from frictioncli.arrays import Array
+from frictioncli.diagnosis.data.problem import Problem
+from frictioncli.diagnosis.fit.columns import base_rows, main_channel
+from frictioncli.diagnosis.fit.extension import Extension
+from frictioncli.diagnosis.fit.hypotheses import EffectFit, HypothesisTest, physical_bounds
+from frictioncli.diagnosis.noise.significance import NullDistribution, log_bayes_factor
+from frictioncli.diagnosis.search.cause import CONVINCING, Cause
+from frictioncli.diagnosis.search.cause_selection import BEYOND_DOUBT
+from frictioncli.diagnosis.search.new_run import parts_of
+from frictioncli.diagnosis.search.new_run_misfit import NewRunMisfit
+from frictioncli.effects.base import Basis, Effect
+from frictioncli.effects.history import (
+    Shape,
+    distinct,
+    history,
+    presence,
+    present,
+    run_spans,
+    stretches,
+)
+from frictioncli.effects.history_search import refined_history
+from frictioncli.effects.pair_series import measured_share
+
+ADEQUATE = 1.25
+"""Greatest misfit on a run kept out of a model that is adequate, as a multiple of the noise."""
+
+_EXPLAINED = 0.8
+"""Least share of the mean square that is left beyond the noise, for a change to be its cause."""
+
+_BETWEEN_DAYS = 0.03
+"""Least change that begins with the run, relative to the mean friction: days differ by less."""
+
+_CLEARLY = 30.0
+"""Statistic by which a change explains more than each of its rivals."""
+
+_CLEAR_SHARE = 0.02
+"""The same as a share of its statistic."""
+
+_LEAST_PRESENT = 0.1
+"""Least share of the pairs of the run that have a change, and that lack one that begins later."""
+
+_LAGS = (1 / 8, 1 / 3, 1.0)
+"""Time constants of slow torque that is tried instead, as shares of the run."""
+
+_FORM = 0.05
+"""Standard deviation of what the form of a change misses, relative to its size."""
+
+_Z95 = 1.96
+
+
+def changes_on_new_run(
+    residual: NewRunMisfit, tried: Sequence[Effect], *, floor: float, margin: float
+) -> tuple[Cause, ...]:
+    """Return the change that explains what the extended model leaves of a new run, if one does.
+
+    Parameters
+    ----------
+    residual : NewRunMisfit
+        What the extended model leaves of the run.
+    tried : sequence of Effect
+        Effects that are no cause yet; of them changes count.
+    floor : float
+        RMS of point and pair noise. [N·m]
+    margin : float
+        Smallest size worth a name. [N·m]
+    """
+    left = residual.mean_square(residual.misfit)
+    if left <= (ADEQUATE * floor) ** 2:
+        return ()
+    found = []
+    for effect in tried:
+        if effect.moments is None:
+            continue
+        cause = _change(residual, effect, len(tried), margin)
+        if cause is None:
+            continue
+        torque = residual.new.basis(effect, cause.fit.shape)
+        without = tuple(
+            misfit - columns @ cause.fit.coefficients
+            for misfit, columns in zip(residual.misfit, torque, strict=True)
+        )
+        if left - residual.mean_square((without[0], without[1])) >= _EXPLAINED * (left - floor**2):
+            found.append(cause)
+    return tuple(sorted(found, key=lambda one: -one.test.statistic)[:1])
+
+
+def with_effect(extension: Extension, fit: EffectFit, place: int) -> Extension:
+    """Return an extension with an effect that was fitted beside it on another run.
+
+    Parameters
+    ----------
+    extension : Extension
+        The base with the causes.
+    fit : EffectFit
+        The effect.
+    place : int
+        Number of effects that precede it.
+    """
+    before = extension.effects[:place]
+    known = len(extension.names) + len(extension.gravity)
+    coefficients = known + sum(len(one.coefficients) for one in before)
+    shapes = sum(len(one.effect.shape) for one in before)
+    errors = np.sqrt(np.maximum(np.diag(fit.covariance), 0.0))
+    return replace(
+        extension,
+        effects=(*before, fit, *extension.effects[place:]),
+        errors=np.insert(extension.errors, coefficients, errors),
+        shape_errors=np.insert(extension.shape_errors, shapes, np.zeros(len(fit.effect.shape))),
+    )
+
+
+def _change(residual: NewRunMisfit, effect: Effect, count: int, margin: float) -> Cause | None:
+    """Return a change on the new run as a cause, if it is beyond doubt."""
+    new = residual.new
+    table = new.all_runs
+    share = np.unique(measured_share(table)[new.rows])
+    span = next(one for one in run_spans(table) if present(share, history([one])).all())
+    shapes = [history([span])]
+    shapes += distinct((history([part]) for part in parts_of(share, span)), share)
+    quiet = residual.without_drift()
+
+    def score(shape: Shape) -> float:
+        return quiet.fitted(new.basis(effect, shape))[2] / 2
+
+    scores = [score(shape) for shape in shapes]
+    best = refined_history(shapes[int(np.argmax(scores))], table, new.rows, score)
+    there = present(share, best)
+    few = min(np.mean(there), np.mean(~there)) < _LEAST_PRESENT
+    if few or score(best) - scores[0] < CONVINCING + np.log(len(shapes)):
+        best = shapes[0]
+    if len(stretches(best)) != 1:
+        return None
+    columns = new.basis(effect, best)
+    own = residual.with_own_noise(columns)
+    coefficients, covariance, statistic = own.fitted(columns)
+    rivals = max(own.fitted(one)[2] for one in _rivals(new, best))
+    lower, upper = physical_bounds(effect, new)
+    null = NullDistribution(
+        coefficients=len(coefficients),
+        freedom=max(len(new.layout.time) - base_rows(new)[0].shape[1], 1),
+        shapes=len(shapes),
+    )
+    p_value = min(1.0, count * null.p_value(statistic))
+    factor = log_bayes_factor(np.array([2 * one for one in scores]), len(coefficients))
+    present_rows = presence(table, best)[new.rows] > 0
+    size, error = _size(main_channel(columns, effect)[present_rows], coefficients, covariance)
+    low, high = (size + way * _Z95 * np.hypot(error, _FORM * size) for way in (-1, 1))
+    needed = margin
+    if present(share.min(), best) and effect.channel == "friction":
+        needed = max(needed, _BETWEEN_DAYS * float(np.mean(np.abs(new.friction))))
+    if (
+        p_value > BEYOND_DOUBT
+        or factor < CONVINCING
+        or low < needed
+        or statistic - rivals < max(_CLEARLY, _CLEAR_SHARE * statistic)
+        or np.any((coefficients < lower) | (coefficients > upper))
+    ):
+        return None
+    of_run = float(np.sqrt(np.mean(present_rows)))
+    fit = EffectFit(effect, best, coefficients, covariance, statistic)
+    test = HypothesisTest(
+        name=effect.name,
+        shape=best,
+        coefficients=coefficients,
+        covariance=covariance,
+        statistic=statistic,
+        p_value=p_value,
+        log_bayes_factor=factor,
+        freedom=len(coefficients),
+        null=null,
+        size_scale=of_run * error,
+    )
+    return Cause(
+        fit=fit,
+        test=test,
+        effects=(effect.name,),
+        probabilities={effect.name: 1.0},
+        size=of_run * size,
+        visible=of_run * size,
+        visible_interval=(of_run * low, of_run * high),
+        holds_on_new_run=True,
+        only_on_new_run=True,
+    )
+
+
+def _size(columns: Array, coefficients: Array, covariance: Array) -> tuple[float, float]:
+    """Return the RMS of a torque, and its standard error to first order [N·m]."""
+    inner = columns.T @ columns / len(columns)
+    size = float(np.sqrt(max(float(coefficients @ inner @ coefficients), 1e-300)))
+    slope = inner @ coefficients / size
+    return size, float(np.sqrt(max(float(slope @ covariance @ slope), 0.0)))
+
+
+def _rivals(new: Problem, shape: Mapping[str, float]) -> list[Basis]:
+    """Return other torque that might be left: with the history of a change, and slow ones."""
+    table = new.table
+    there = presence(new.all_runs, shape)[new.rows]
+    nothing = np.zeros((len(there), 1))
+
+    def friction(values: Array) -> Basis:
+        return Basis(values[:, np.newaxis], nothing)
+
+    since = table.time - table.time.min()
+    duration = max(float(np.ptp(since)), 1e-9)
+    after = np.maximum(table.time - float(np.min(table.time[there > 0])), 0.0)
+    slow = [since, *(1 - np.exp(-since / (lag * duration)) for lag in _LAGS)]
+    slow += [after, *(1 - np.exp(-after / (lag * duration)) for lag in _LAGS)]
+    gain = (there * table.friction)[:, np.newaxis], (there * table.load)[:, np.newaxis]
+    return [
+        Basis(*gain),
+        friction(there * table.friction),
+        friction(there * np.sqrt(table.speed)),
+        friction(there * table.temperature_slope),
+        friction(there * np.square(table.load)),
+        Basis(nothing, there[:, np.newaxis]),
+        *(friction(one) for one in slow),
+        *(Basis(nothing, one[:, np.newaxis]) for one in slow),
+    ]
