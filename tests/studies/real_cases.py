@@ -70,8 +70,7 @@ CASES = (
         map="xarm6-j3.toml",
         known="The weight was in the hand in the second run only: the amplitude of the load is"
         " 13.4, 23.5 and 13.4 N·m. Friction falls with temperature, in all runs without weight."
-        " The change of payload is right. Nothing that can be seen in the figure defends the step"
-        " of friction, of a chance of 0.5 %: we do not believe it.",
+        " The change of payload is right.",
     ),
     Case(
         name="kinova-gen3-j4",

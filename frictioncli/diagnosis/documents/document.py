@@ -38,8 +38,8 @@ class CauseRecord(msgspec.Struct, frozen=True, kw_only=True):
         What may be said of it: it is named; it stands out of the noise, but is not named; it is
         smaller than the margin; its size is not known well enough.
     holds_on_new_run, only_on_new_run : bool or None, bool
-        Whether it is there on the hold-out run: if not, it is a change that did not last; None where
-        that cannot be tested. Whether it begins there: then it was found and fitted there.
+        Whether it is there on the hold-out run: if not, it is a change that did not last; None
+        where that cannot be tested. Whether it begins there: then it was found and fitted there.
     reason : str
         Why it is not named; empty where it is.
     effects : tuple of str
