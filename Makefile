@@ -9,7 +9,7 @@ LARGEST ?= 1e8
 export OMP_NUM_THREADS := 1
 export OPENBLAS_NUM_THREADS := 1
 
-.PHONY: reproduce test test-all lint same coverage blind comparison fleet planning wear real-diagnoses bench fuzz kill clean
+.PHONY: reproduce test test-all lint same coverage blind comparison fleet planning wear real real-diagnoses bench fuzz kill clean
 
 reproduce: $(VENV)/installed
 	$(BIN)/frictioncli run sample_logs/kr10 -w $(RUN)
@@ -38,6 +38,9 @@ planning: $(VENV)/tested
 
 wear: $(VENV)/tested
 	$(BIN)/python -m tests.studies.wear 20
+
+real: $(VENV)/tested
+	$(BIN)/python -m tests.studies.real $(REAL)
 
 real-diagnoses: $(VENV)/tested
 	$(BIN)/python -m tests.studies.real_diagnoses $(REAL)

@@ -26,6 +26,10 @@ class Case:
         What is known of these logs from elsewhere.
     judgement : str
         What we think of the diagnosis, and where it is doubtful.
+    refused : str
+        What a user would call a refusal, right or wrong, as far as we see.
+    doubt : str
+        What a user would call wrong about a result, as far as we see.
     """
 
     name: str
@@ -35,6 +39,8 @@ class Case:
     joints: tuple[int, ...] | None = None
     known: str = ""
     judgement: str = ""
+    refused: str = ""
+    doubt: str = ""
 
 
 CASES = (
@@ -46,12 +52,21 @@ CASES = (
         known="Four speeds there and back on one morning, no temperature. By another program, in"
         " 5-degree bins: half-differences of 0.136, 0.312 and 0.387 N·m (motor side) at 46, 229 and"
         " 320 deg/s.",
+        doubt="The fourth speed, 399 deg/s, is not paired: its constant part is too short. Three"
+        " pairs fit a line and tell little of its form; all of the friction is given to √v."
+        " The suggested map takes the torque of the gear, where the program unaided takes"
+        " that of the motor: two answers to one question. Divided by the ratio of 89.25, the"
+        " gear's torque holds about half of the friction that the motor's does, and nothing"
+        " says so.",
     ),
     Case(
         name="kuka-kr3-combined",
         title="KUKA KR3 R540, PTP_Combined, another day",
         folders=("kuka-kr3/PTP_Combined",),
         known="Axes moving alone and together; few moves at constant speed.",
+        refused="Half wrong. Two pairs per joint fix no model, but there is friction in them, and"
+        " the independent script finds it; the program prints it on the way, as a result of"
+        " `separate`, and ends with the refusal.",
     ),
     Case(
         name="xarm6-j2",
@@ -62,6 +77,8 @@ CASES = (
         " channel of its own [N·m]. Turn angles are random; the motor warms from 20 to 43 °C."
         " Nearly all pairs are at 40 to 50 deg/s, and the load is a function of the angle:"
         " structure along the load may as well be along the angle.",
+        doubt="Nearly all pairs are at two speeds: that Coulomb friction is not determined is"
+        " right, that all goes to √v is only a form.",
     ),
     Case(
         name="xarm6-j3",
@@ -80,6 +97,9 @@ CASES = (
         known="One speed and one temperature. In the first 20 s joints 2 and 6 drive to"
         " zero: what they add to joint 4 is no step of its friction. Without these seconds nothing"
         " is left to find.",
+        doubt="The suggested map takes the current, where the program unaided takes the torque,"
+        " and its diagnosis is another one: causes on the current of 29 pairs at one speed"
+        " and one temperature, a change of payload that nobody made. We do not believe them.",
     ),
     Case(
         name="epos-drive1",
@@ -87,6 +107,9 @@ CASES = (
         folders=("epos-drive1",),
         known="A recorder's files without positions, one speed per file. Friction in a motor is"
         " often taken to grow in proportion to speed, where the base model has its square root.",
+        doubt="Friction falls up to about 240 deg/s and rises then: a Stribeck curve with a"
+        " linear term fits eleven times better than a line. The base model has neither and"
+        " describes these figures badly; the diagnosis names the rise and misses the fall.",
     ),
     Case(
         name="damiao-5",
@@ -97,6 +120,8 @@ CASES = (
         known="A staircase of speeds without stops, held for 1 s each; positions wrap at ±12.5 rad"
         " and advance 1.66 to 1.99 times the integral of velocity. By another program 0.0771 +"
         " 0.00324·√v N·m.",
+        doubt="Four of eight speeds only, and three samples in four are dropped as accelerating."
+        " The motor's number 5 stands in a column and is not taken: it is called joint 1.",
     ),
     Case(
         name="ur10e-j1",
@@ -104,18 +129,28 @@ CASES = (
         folders=("ur10e-j1",),
         map="ur10e-j1.toml",
         known="The joint moves in sines: no constant speed at all.",
+        refused="Right without a map: nothing in the file says what its 31 columns are.",
+        doubt="The unit of the torque is wrong with the suggested map: columns 14 to 19 hold"
+        " currents, and the map says N·m, though it adds that numbers do not tell. The"
+        " figures are right as amperes.",
     ),
     Case(
         name="ur3-cobotops",
         title="UR3 (UCI dataset 963, CC BY 4.0)",
         folders=("ur3-cobotops",),
         known="Currents, temperatures and speeds at 1 Hz, no positions.",
+        refused="Right: without positions gravity cannot be told from friction in a robot's arm.",
     ),
     Case(
         name="nist-ur5",
         title="UR5 (NIST, doi 10.18434/M31962)",
         folders=("nist-ur5",),
         known="All joints move at once on one trajectory.",
+        refused="Right as it stands: every joint moves with the others, and no `--urdf` is given."
+        " Some would rather have a number with a warning.",
+        doubt="Wrong to be given at all without a warning: the suggested map names one joint"
+        " only, so that the program no longer sees that the others move, and what it refused"
+        " unaided it then does. Its friction holds what they add.",
     ),
 )
 """In the order of the page."""

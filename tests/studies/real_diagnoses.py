@@ -10,7 +10,6 @@ others keep their text.
 """
 
 import os
-import re
 import sys
 import tempfile
 import time
@@ -29,7 +28,7 @@ from frictioncli.stages.separate import separate
 from frictioncli.workfiles import TORQUES
 from tests.studies.real_cases import CASES, MAPS, Case
 from tests.studies.real_figure import draw
-from tests.studies.real_page import joint_text, refusal_text, write_section
+from tests.studies.real_page import joint_text, refusal_text, without_path, write_section
 
 ROOT = Path(__file__).parents[2]
 PAGE = ROOT / "docs" / "real-diagnoses.md"
@@ -67,11 +66,6 @@ def analysed(case: Case, logs: Path, work: Path) -> str:
     except FrictionError as refusal:
         return str(refusal)
     return ""
-
-
-def without_path(text: str, logs: Path) -> str:
-    """Return a message without the folder in which the logs happen to be."""
-    return re.sub(re.escape(f"{logs}/"), "", text)
 
 
 def figure_of(case: Case, found: Reloaded) -> str:

@@ -36,11 +36,37 @@ _HEAD = (
 )
 
 
+def without_path(text: str, logs: Path) -> str:
+    """Return a message without the folder in which the logs happen to be."""
+    return text.replace(f"{logs}/", "")
+
+
+def shortened(refusal: str) -> str:
+    """Return the beginning of a refusal; that of many files repeats itself."""
+    if len(refusal) <= _LONGEST:
+        return refusal
+    return f"{refusal[: max(refusal.rfind('; ', 0, _LONGEST), refusal.rfind(' ', 0, 200))]}; …"
+
+
 def refusal_text(refusal: str) -> str:
     """Return the section on logs that are refused."""
-    if len(refusal) > _LONGEST:
-        refusal = f"{refusal[: refusal.rindex('; ', 0, _LONGEST)]}; …"
-    return f"Refused: “{refusal}”"
+    return f"Refused: “{shortened(refusal)}”"
+
+
+def diagnosis_sentence(document: DiagnosisDocument) -> str:
+    """Return a joint's diagnosis in one sentence: the verdict, what is named, what is only seen."""
+    named = [
+        " or ".join(f"`{name}`" for name in cause.effects) or "structure without a name"
+        for cause in document.causes
+    ]
+    seen = [" or ".join(f"`{name}`" for name in cause.effects) for cause in document.visible]
+    parts = [
+        f"found: {'; '.join(named)}" if named else "nothing is named",
+        f"seen and not named: {'; '.join(seen)}" if seen else "",
+        f"the simulated torque misses the measured one by"
+        f" {number_text(document.simulation.rmse)} {document.torque_unit} (RMS)",
+    ]
+    return f"{document.verdict}: {'; '.join(part for part in parts if part)}"
 
 
 def joint_text(case: Case, found: Reloaded, rows: pd.DataFrame, figure: str) -> str:
