@@ -1,7 +1,7 @@
 """Inspection of logs: what they hold and what they suffice for; nothing is written."""
 
 import tempfile
-from collections.abc import Iterator, Sequence
+from collections.abc import Collection, Iterator, Sequence
 from dataclasses import dataclass, field, replace
 from functools import partial
 from pathlib import Path
@@ -178,10 +178,11 @@ def _inspect_run(
         for log in logs.refused
     }
     clock = RunClock(run.name)
+    told = {*settings.forced_units(), *channel_map.units}
     for dated, start, chunks in logs.recordings(clock, settings.batch_bytes):
         with SampleStore(folder) as store:
             sink = partial(store_samples, store, dated.planned.log.recording, start)
-            file, recording = _inspect_log(dated.planned, chunks, sink, settings)
+            file, recording = _inspect_log(dated.planned, chunks, sink, settings, told)
             files[file.path] = file
             if recording is not None:
                 clock.place(dated, recording)
@@ -204,9 +205,13 @@ def _manifest(run: LogRun, inspected: _InspectedLogs) -> RunManifest:
 
 
 def _inspect_log(
-    planned: PlannedLog, chunks: Iterator[LogChunk], sink: SampleSink, settings: IngestSettings
+    planned: PlannedLog,
+    chunks: Iterator[LogChunk],
+    sink: SampleSink,
+    settings: IngestSettings,
+    told: Collection[str],
 ) -> tuple[FileInspection, RecordingSummary | None]:
-    """Return what one log holds; its samples go to the sink."""
+    """Return what one log holds; its samples go to the sink, units of `told` are the user's."""
     monitor, rejected = LogMonitor(planned), RejectedRows()
     try:
         result = read_recording(planned, monitor.observe(chunks), rejected, sink)
@@ -222,7 +227,7 @@ def _inspect_log(
         rows=monitor.rows_read,
         rejected=rejected.counts(),
         sampling=monitor.sampling(),
-        joints=monitor.joints(settings.forced_units()),
+        joints=monitor.joints(told),
         notes=tuple(dict.fromkeys(text for plan in planned.plans for text in other_remarks(plan))),
     )
     if isinstance(result, Refusal):

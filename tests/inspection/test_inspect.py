@@ -184,6 +184,22 @@ def test_hostile_names_do_not_act_on_the_terminal(tmp_path, hostile):
     assert all(character.isprintable() or character == "\n" for character in shown)
 
 
+def test_a_unit_of_the_map_is_as_told_whatever_the_values(tmp_path):
+    """Values beyond a turn are no reason where the user says rad."""
+    log = clean_log().set_axis(["t", "q_2", "qd_2", "m", *clean_log().columns[4:]], axis=1)
+    log["q_2"], log["qd_2"] = np.radians(log["q_2"]), np.radians(log["qd_2"])
+    (tmp_path / "channels.toml").write_text(
+        '[channels]\ntime = "t"\nposition = "q_2"\nvelocity = "qd_2"\ntorque = "m"\n[units]\n'
+        'position = "rad"\nvelocity = "rad/s"\ntorque = "A"\n[joint]\nnumber = 2\n',
+        encoding="utf-8",
+    )
+    path = write(log, tmp_path / "log.csv")
+    found = inspect([path], IngestSettings(map_file=tmp_path / "channels.toml"))
+    channels = {one.quantity: one for one in found.files[0].joints[0].channels}
+    assert {channels[name].evidence for name in ("position", "velocity", "torque")} == {"as told"}
+    assert max(abs(channels["position"].lowest), abs(channels["position"].highest)) > 6.9
+
+
 @pytest.mark.skipif(not REAL.is_dir(), reason=f"no real logs beside the project: {REAL}")
 class TestRealLogs:
     """The traps that the README of the real logs names, as far as a program can see them."""
