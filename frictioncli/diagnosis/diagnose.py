@@ -178,7 +178,7 @@ def diagnose_joint(
         named = list(judged_on_new_run(named, found.step, new))
     causes, unnamed = understood(found.step, named, margin, settings.alpha)
     given_up = given_up_causes(found, settings.alpha)
-    corrected = corrected_without_name(judged, causes)
+    corrected = corrected_without_name(judged, causes, problem)
     names = {one.fit.effect.name for one in corrected}
     rest = [one for one in judged if one.fit.effect.name not in names]
     visible = _visible((*rest, *corrected, *given_up), named, causes, unnamed, problem)

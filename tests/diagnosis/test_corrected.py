@@ -16,6 +16,7 @@ from frictioncli.diagnosis.settings import DiagnosisSettings
 from frictioncli.effects import BY_NAME
 from frictioncli.model.fitting import fit_joint
 from frictioncli.model.settings import FitSettings
+from tests.diagnosis.dense_noise import problem
 from tests.diagnosis.test_standing import cause
 from tests.simulation.torque_table import simulate_world
 from tests.studies.blind_worlds import World
@@ -23,12 +24,15 @@ from tests.studies.blind_worlds import World
 
 def of(name, p_value, standing="visible"):
     one = cause(p_value=p_value)
-    fit = EffectFit(BY_NAME[name], {}, np.array([1.0]), np.array([[0.01]]), 50.0)
+    fit = EffectFit(BY_NAME[name], {}, np.array([0.01]), np.array([[1e-6]]), 50.0)
     return replace(one, fit=fit, effects=(name,), standing=standing, reason="small")
 
 
+DATA = problem(1)
+
+
 def corrected(judged, causes):
-    return [one.fit.effect.name for one in corrected_without_name(judged, causes)]
+    return [one.fit.effect.name for one in corrected_without_name(judged, causes, DATA)]
 
 
 def test_what_noise_hardly_explains_is_corrected_where_there_is_a_cause():
@@ -39,7 +43,9 @@ def test_what_noise_hardly_explains_is_corrected_where_there_is_a_cause():
     assert corrected(judged, [named]) == ["torque_delay"]
     assert corrected(judged, [ripple]) == ["load_offset", "torque_delay"]
     assert corrected(judged, []) == []
-    (one,) = corrected_without_name(judged, [named])
+    impossible = replace(clear, fit=replace(clear.fit, coefficients=np.array([-9.0])))
+    assert corrected((named, impossible), [named]) == []
+    (one,) = corrected_without_name(judged, [named], DATA)
     assert one.reason == "small; corrected all the same"
 
 

@@ -34,12 +34,16 @@ from frictioncli.diagnosis.search.step import Step, free_coefficients
 from frictioncli.diagnosis.settings import DiagnosisSettings
 from frictioncli.effects import BY_NAME, MEASUREMENT_EFFECTS
 from frictioncli.effects.base import Effect, applicable
+from frictioncli.wording import in_words
 
 _LEAST_SHARE = 0.5
 """Share of the margin that the base must leave of an effect for the search to go on with it."""
 
 _REFINED = 3
 """Number of effects whose shapes are refined off the grid before the best is accepted."""
+
+_SURELY = 4.0
+"""Standard errors by which an effect of the measurement is beyond its bounds without doubt."""
 
 _SUPERFLUOUS = "other causes explain what it explained"
 
@@ -79,7 +83,8 @@ def find_causes(
         precomputed = Precomputed.of(problem, beside, discrepancy)
     tried = applicable(effects, problem.table)
     hypotheses = [hypothesis_of(effect, problem) for effect in tried]
-    search = _Search(precomputed, Catalogue.of(precomputed, hypotheses), settings, margin, ramps)
+    catalogue = Catalogue.of(precomputed, hypotheses)
+    search = _Search(precomputed, catalogue, settings, margin, ramps, beside)
     accepted: list[EffectFit] = []
     dropped: dict[str, str] = {}
     impossible: set[str] = set()
@@ -98,7 +103,13 @@ def find_causes(
         new = [one for one in significant if one.name not in superfluous]
         significant = new or significant
         if not significant or len(accepted) >= settings.most:
-            break
+            cancelling = search.cancelling(accepted)
+            if cancelling is None:
+                break
+            accepted = [one for one in accepted if one is not cancelling[0]]
+            dropped[cancelling[0].effect.name] = cancelling[1]
+            impossible.add(cancelling[0].effect.name)
+            continue
         # what made these superfluous may have been given up since: each comes back once
         for one in significant:
             if one.name in superfluous:
@@ -156,6 +167,7 @@ class _Search:
     settings: DiagnosisSettings
     margin: float
     ramps: RampEvidence | None
+    beside: tuple[Effect, ...] = ()
 
     def tested(self, accepted: Sequence[EffectFit]) -> tuple[Step, dict[str, HypothesisTest]]:
         """Return the step with these effects accepted, and the tests of all others there."""
@@ -188,6 +200,26 @@ class _Search:
         covariance[np.ix_(free, free)] = fit.covariance[np.ix_(place, place)]
         unbounded = replace(newest, coefficients=coefficients, covariance=covariance)
         return beyond_bounds(unbounded, self.precomputed.problem)
+
+    def cancelling(self, accepted: Sequence[EffectFit]) -> tuple[EffectFit, str] | None:
+        """Return an accepted effect that cancels one of the measurement, and the reason.
+
+        Beside it the effect of the measurement is physically impossible, and without it is not.
+        """
+        measured = self._impossible_measurement(accepted)
+        for one in reversed(accepted if measured else ()):
+            others = [other for other in accepted if other is not one]
+            gone = measured - self._impossible_measurement(others)
+            if gone:
+                name = in_words(min(gone))
+                return one, f"beside it {name} of the measurement would be physically impossible"
+        return None
+
+    def _impossible_measurement(self, accepted: Sequence[EffectFit]) -> set[str]:
+        """Return the effects of the measurement that are surely beyond their bounds."""
+        found = measurement_causes(Step.of(self.precomputed, accepted), self.beside)
+        problem = self.precomputed.problem
+        return {one.fit.effect.name for one in found if beyond_bounds(one.fit, problem, _SURELY)}
 
     def retested(self, accepted: list[EffectFit], dropped: Collection[str] = ()) -> list[EffectFit]:
         """Return the accepted effects, each tested once more beside the others.

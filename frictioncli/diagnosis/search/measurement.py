@@ -68,7 +68,9 @@ def measurement_causes(step: Step, effects: Sequence[Effect]) -> tuple[Cause, ..
     return tuple(found)
 
 
-def corrected_without_name(judged: Sequence[Cause], causes: Sequence[Cause]) -> tuple[Cause, ...]:
+def corrected_without_name(
+    judged: Sequence[Cause], causes: Sequence[Cause], problem: Problem
+) -> tuple[Cause, ...]:
     """Return effects of the measurement that are corrected though they are not named.
 
     They may be smaller than what is worth a name, and a prediction without them is worse. Without
@@ -80,6 +82,8 @@ def corrected_without_name(judged: Sequence[Cause], causes: Sequence[Cause]) -> 
         All that was found, with its standing.
     causes : sequence of Cause
         Those that extend the model.
+    problem : Problem
+        The joint's rows.
     """
     if not causes:
         return ()
@@ -90,6 +94,7 @@ def corrected_without_name(judged: Sequence[Cause], causes: Sequence[Cause]) -> 
         if one.fit.effect.measurement
         and one.test.p_value < CLEAR
         and one.fit.effect.name not in named
+        and not beyond_bounds(one.fit, problem)
     )
 
 

@@ -88,7 +88,7 @@ def _judged(cause: Cause, problem: Problem, margin: float, alpha: float) -> Caus
     return replace(cause, standing="visible" if low > 0 else "undetermined", reason=reason)
 
 
-def beyond_bounds(fit: EffectFit, problem: Problem) -> str:
+def beyond_bounds(fit: EffectFit, problem: Problem, errors: float = _Z95) -> str:
     """Return which coefficient of an effect is physically impossible; empty if none is.
 
     It may be beyond its bounds by its error; a share of 0 to 1 by a quarter besides, since no form
@@ -100,10 +100,12 @@ def beyond_bounds(fit: EffectFit, problem: Problem) -> str:
         The effect.
     problem : Problem
         The joint's rows, with whose friction bounds in units of torque grow.
+    errors : float, optional
+        By how many standard errors it must be beyond them.
     """
     lower, upper = physical_bounds(fit.effect, problem)
     is_share = (lower == 0.0) & (upper == 1.0)
-    reach = _Z95 * _errors(fit) + np.where(is_share, _BEYOND, 0.0)
+    reach = errors * _errors(fit) + np.where(is_share, _BEYOND, 0.0)
     beyond = (fit.coefficients < lower - reach) | (fit.coefficients > upper + reach)
     parameters = fit.effect.coefficients
     for parameter, value, outside in zip(parameters, fit.coefficients, beyond, strict=True):
