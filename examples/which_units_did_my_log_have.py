@@ -37,12 +37,15 @@ def show(paths):
 found = show(given or logs)
 
 # %% The same logs with positions in radians and temperatures in Kelvin under the same headers
+# A velocity beside the positions gives the radians away: without one the header would stand.
 with tempfile.TemporaryDirectory() as folder:
     spoilt = []
     for log in logs:
         table = pd.read_csv(log, sep=";", encoding="cp1252")
         for name in table.columns:
             if "AxisPos" in name:
+                velocity = name.replace("Pos", "Vel").replace("[°]", "[°/s]")
+                table[velocity] = np.gradient(table[name], 0.012)
                 table[name] = np.radians(table[name])
             if "temperatur" in name:
                 table[name] = table[name] + 273.15

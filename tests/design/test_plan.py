@@ -37,6 +37,12 @@ def thin(tmp_path_factory):
     fit(work)
     # so few pairs tell what is there, and not how much of it
     diagnose(work, DiagnosisSettings(margin=0.1))
+    # as if they left two names: what a plan asks does not depend on how sure this joint's are
+    found = json.loads((work / "diagnosis.json").read_text(encoding="utf-8"))
+    assert found["causes"][0]["effects"] == ["thermal_lag"]
+    found["causes"][0]["effects"] = ["thermal_lag", "run_in"]
+    found["verdict"] = "ambiguous"
+    (work / "diagnosis.json").write_text(json.dumps(found), encoding="utf-8")
     return work
 
 

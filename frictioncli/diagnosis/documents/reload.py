@@ -106,7 +106,8 @@ def read_documents(work: Path) -> dict[int, tuple[DiagnosisDocument, ExtendedMod
     for joint, document in diagnoses.items():
         named = len(document.modelled_causes)
         effects = models[joint].effects if joint in models else ()
-        if joint not in models or len(effects) < named:
+        belong = len(effects) >= named and all(one.effect.measurement for one in effects[named:])
+        if joint not in models or not belong:
             raise TableError(
                 f"{work / EXTENDED}: has {len(effects)} effects of joint {joint}, {DIAGNOSIS} has"
                 f" {named} named causes; run 'frictioncli diagnose' again"
