@@ -10,12 +10,14 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from frictioncli import schemas, tables
-from frictioncli.errors import LogError
+from frictioncli.errors import LogError, NotEnoughData
 from frictioncli.inspection.inspect import inspect
 from frictioncli.inspection.map_suggestion.measured_or_commanded import lag
 from frictioncli.inspection.map_suggestion.suggest_map import suggested_map
 from frictioncli.logs.ingest import ingest
 from frictioncli.logs.settings import IngestSettings
+from frictioncli.stages.run import run
+from frictioncli.stages.settings import RunSettings
 from tests.logs.logs import REAL
 
 from .faulty import COLUMNS, clean_log, write
@@ -247,6 +249,37 @@ def test_what_pairs_nothing_is_not_called_sure(tmp_path):
     text = suggested_map([write(table, tmp_path / "log.csv")])
     assert "Checked: with it no move at constant speed has a counterpart" in text
     assert "# sure" not in text
+
+
+@pytest.mark.parametrize("swing", [0.0, 20.0])
+def test_a_suggested_map_does_not_hide_the_motion_of_other_joints(swing, tmp_path):
+    """Joint 2 turns during every second move of joint 1 where it swings."""
+    rng = np.random.default_rng(5)
+    seconds = np.arange(0, 80, 0.01)
+    angle = 40 * np.abs((seconds / 4) % 2 - 1)
+    rate = np.gradient(angle, seconds)
+    other = 10 + swing * np.clip(np.minimum(seconds % 16, 16 - seconds % 16) - 4, 0, 4)
+    log = pd.DataFrame({"clock": seconds, "Pos_0": angle, "Pos_1": other, "Vel_0": rate})
+    log["Current_0"] = 2 * np.sign(rate) + rng.normal(0, 0.05, len(seconds))
+    text = suggested_map([write(log, tmp_path / "log.csv")], IngestSettings(joints=(1,)))
+    assert ("another joint moves during 5" in text) == (swing > 0)
+    map_file = tmp_path / "channels.toml"
+    map_file.write_text(text, encoding="utf-8")
+    ingest([tmp_path / "log.csv"], tmp_path / "work", IngestSettings(map_file=map_file))
+    samples = tables.read(tmp_path / "work" / "samples.parquet", schemas.SAMPLES)
+    assert set(samples["joint"]) == {1}
+    assert set(samples["other_joints"]) == ({0, 2} if swing else {0})
+
+
+@pytest.mark.skipif(not REAL.is_dir(), reason=f"no real logs beside the project: {REAL}")
+def test_a_suggested_map_of_an_arm_that_moves_as_a_whole_is_no_way_round_its_refusal(tmp_path):
+    text = suggested_map([REAL / "nist-ur5"])
+    assert "# joint 2: another joint moves during 100 % of its motion" in text
+    map_file = tmp_path / "channels.toml"
+    map_file.write_text(text, encoding="utf-8")
+    mapped = IngestSettings(map_file=map_file)
+    with pytest.raises(NotEnoughData, match="other joint moves in 100% of its motion"):
+        run([REAL / "nist-ur5"], tmp_path / "work", RunSettings(ingest=mapped))
 
 
 @given(shift=st.floats(-6, 6), seed=st.integers(0, 100))

@@ -7,7 +7,7 @@ import pytest
 
 from frictioncli import schemas, tables
 from frictioncli.errors import MappingError
-from frictioncli.logs.channels.channel_map import read_map
+from frictioncli.logs.channels.channel_map import ChannelMap, mapped_channels, read_map
 from frictioncli.logs.ingest import IngestSettings, ingest
 
 from .logs import back_and_forth, kuka_columns, write
@@ -156,3 +156,21 @@ def test_a_map_in_one_line_names_columns_by_number(header, tmp_path):
 def test_a_bad_map_in_one_line(text, message):
     with pytest.raises(MappingError, match=message):
         read_map(Path(text))
+
+
+@pytest.mark.parametrize(("number", "others"), [(2, {1, 3}), (3, {2, 4}), (1, None)])
+def test_positions_of_other_joints_are_known_beside_a_mapped_one(number, others):
+    """Pos_1 is joint 2 by its name; the map may count otherwise, but not below joint 1."""
+    columns = ["t", "Pos_0", "Pos_1", "Pos_2", "cmd", "Current_1"]
+    channel_map = ChannelMap(channels={"position": "Pos_1", "torque": "Current_1"})
+    found = mapped_channels(channel_map, columns, number)
+    positions = {c.joint: c.name for c in found if c.quantity == "position"}
+    assert positions.pop(number) == "Pos_1"
+    assert (set(positions) or None) == others
+
+
+def test_columns_that_differ_in_a_number_need_not_be_positions():
+    columns = ["t", "column 2", "column 3", "column 4"]
+    channel_map = ChannelMap(channels={"position": "column 2", "torque": "column 4"})
+    found = mapped_channels(channel_map, columns, 1)
+    assert [c.name for c in found if c.quantity == "position"] == ["column 2"]

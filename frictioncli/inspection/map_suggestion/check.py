@@ -33,7 +33,8 @@ class Check:
     Attributes
     ----------
     text : str
-        A sentence for the user.
+        A sentence for the user, and one in a line of its own for each joint beside whose motion
+        others move.
     is_doubtful : bool
         Whether it speaks against the map.
     """
@@ -64,20 +65,25 @@ def check_by_pairing(text: str, logs: Sequence[Path], settings: IngestSettings) 
             samples = tables.batches(folder / SAMPLES, schemas.SAMPLES)
             if tables.facts(folder / SAMPLES).get("position") == "integrated":
                 samples = map(without_angle, samples)
-            _, pairs, _ = segments_and_pairs(samples, lambda: manifest, PairingSettings(), folder)
+            _, pairs, motion = segments_and_pairs(
+                samples, lambda: manifest, PairingSettings(), folder
+            )
         except FrictionError as error:
             return Check(f"Checked: logs cannot be used with it: {error}", is_doubtful=True)
+    others = "".join(f"\n{text}" for text in motion.texts(sorted(motion.shared)))
     if pairs.empty:
         return Check(
-            "Checked: with it no move at constant speed has a counterpart the other way",
+            f"Checked: with it no move at constant speed has a counterpart the other way{others}",
             is_doubtful=True,
         )
     half = pairs["half_difference"].to_numpy(float)
     same = float(np.mean(np.sign(half) == np.sign(np.median(half))))
-    found = f"Checked: with it {count_text(len(half), 'pair')} of moves there and back are found"
+    paired = f"Checked: with it {count_text(len(half), 'pair')} of moves there and back are found"
     if same < _ONE_SIGN:
-        return Check(f"{found}, but half differences of torque of both signs", is_doubtful=True)
-    return Check(f"{found}; half the difference of torque is {np.median(half):.3g}", False)
+        return Check(
+            f"{paired}, but half differences of torque of both signs{others}", is_doubtful=True
+        )
+    return Check(f"{paired}; half the difference of torque is {np.median(half):.3g}{others}", False)
 
 
 def _first_files(logs: Sequence[Path]) -> list[Path]:

@@ -27,7 +27,7 @@ def map_text(suggestion: Suggestion, head: LogHead, source: str, check: str = ""
     columns = len(head.values) + len(head.constants)
     lines = [
         f"# Suggested from {_comment(source)}: {head.rows} rows, {columns} columns of numbers.",
-        *([f"# {_comment(check)}"] if check else []),
+        *(f"# {_comment(line)}" for line in check.splitlines()),
         "# Check every line, then:",
         "# frictioncli inspect LOGS --map THIS_FILE",
         "",

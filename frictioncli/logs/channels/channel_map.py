@@ -162,7 +162,8 @@ def mapped_channels(
 ) -> tuple[LogChannel, ...] | Refusal:
     """Return the channels that the map names, and those recognised where it names none.
 
-    Where the map names position or torque, only the time is still recognised by its name.
+    Where the map names position or torque, only the time is still recognised by its name, and the
+    positions of other joints that have the name of the mapped one but for the number.
 
     Parameters
     ----------
@@ -204,12 +205,34 @@ def mapped_channels(
         unit = split_unit(columns[index])[1]
         if not unit and known is not None:
             unit = known.unit
-        kept.append(
-            LogChannel(
-                index, columns[index], Meaning(quantity, side, unit=unit), joint, unit, wanted
-            )
+        mapped = LogChannel(
+            index, columns[index], Meaning(quantity, side, unit=unit), joint, unit, wanted
         )
+        if quantity == POSITION:
+            others = _other_positions(recognised, index, joint)
+            kept += others
+            mapped = replace(mapped, family=others[0].family) if others else mapped
+        kept.append(mapped)
     return tuple(kept)
+
+
+def _other_positions(recognised: Sequence[LogChannel], index: int, joint: int) -> list[LogChannel]:
+    """Return the positions of other joints, of the same family as the mapped one.
+
+    Their numbers count from that of the mapped joint, which may differ from the number in its name.
+    """
+    own = next((c for c in recognised if c.column == index and c.quantity == POSITION), None)
+    if own is None or own.joint is None:
+        return []
+    others = [
+        replace(c, joint=c.joint + joint - own.joint)
+        for c in recognised
+        if c.joint is not None
+        and (c.meaning, c.family) == (own.meaning, own.family)
+        and c.column != index
+    ]
+    # a number below 1 shows that the joint's number counts otherwise
+    return others if all(c.joint is not None and c.joint >= 1 for c in others) else []
 
 
 def with_side(channel: LogChannel, channel_map: ChannelMap) -> LogChannel:
