@@ -4,6 +4,7 @@ from pathlib import Path
 
 SAMPLES = "samples.parquet"
 RECORDINGS = "recordings.parquet"
+REJECTED = "rejected.parquet"
 PAIRS = "pairs.parquet"
 RAMPS = "ramps.parquet"
 STARTS = "starts.parquet"

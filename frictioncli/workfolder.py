@@ -4,6 +4,7 @@ import os
 import shutil
 from collections.abc import Iterable, Iterator
 from contextlib import contextmanager, suppress
+from dataclasses import dataclass
 from pathlib import Path
 
 from filelock import FileLock, Timeout
@@ -84,16 +85,55 @@ def outdated(paths: Iterable[Path]) -> list[str]:
         if output in seen or not output.is_file():
             continue
         seen.add(output)
-        stage, inputs = _origin(output)
-        if stage == "ingest":  # its inputs are logs, which lie elsewhere
-            continue
-        for name, digest in inputs.items():
-            path = output.with_name(name)
-            if path.exists() and _is_replaced(path, output, digest):
-                text = f"{output.name} was made from another {name} than the one here"
-                warnings[f"{text}; run 'frictioncli {stage}' again"] = None
-            waiting.append(path)
+        origin = origin_of(output)
+        for name in origin.replaced:
+            text = f"{output.name} was made from another {name} than the one here"
+            warnings[f"{text}; run 'frictioncli {origin.stage}' again"] = None
+        waiting += [output.with_name(name) for name in origin.inputs]
     return list(warnings)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Origin:
+    """Stage that made a file of a work folder, and the files there that it was made from.
+
+    Attributes
+    ----------
+    stage : str
+        The stage; empty where that is unknown.
+    inputs : tuple of str
+        Names of the inputs that lie in a work folder; logs do not.
+    replaced : tuple of str
+        Names of the inputs that are there, but with other content than then.
+    """
+
+    stage: str = ""
+    inputs: tuple[str, ...] = ()
+    replaced: tuple[str, ...] = ()
+
+
+def origin_of(output: Path) -> Origin:
+    """Return the stage and the inputs of a file of a work folder.
+
+    Parameters
+    ----------
+    output : Path
+        The file; one that does not exist has no origin.
+    """
+    if not output.is_file():
+        return Origin()
+    stage, inputs = _origin(output)
+    if stage == "ingest":  # its inputs are logs, which lie elsewhere
+        return Origin(stage=stage)
+    return Origin(
+        stage=stage,
+        inputs=tuple(inputs),
+        replaced=tuple(
+            name
+            for name, digest in inputs.items()
+            if (path := output.with_name(name)).exists() and _is_replaced(path, output, digest)
+        ),
+    )
 
 
 def _make_folder(work: Path) -> list[Path]:

@@ -31,7 +31,8 @@ def work(tmp_path_factory):
     """The work folder that the commands of the quick start leave."""
     folder = tmp_path_factory.mktemp("quick") / "friction-run"
     for line in quick_start():
-        words = [word.replace("friction-run", str(folder)) for word in shlex.split(line)[1:]]
+        words = shlex.split(line, comments=True)[1:]
+        words = [str(folder.with_name(word)) if word.endswith("-run") else word for word in words]
         done = subprocess.run(
             [sys.executable, "-m", "frictioncli", *words],
             cwd=ROOT,
@@ -41,7 +42,7 @@ def work(tmp_path_factory):
             check=False,
         )
         assert done.returncode == 0, f"{line}: {done.stderr}"
-        if words[0] == "run":
+        if words[0] == "run" and str(folder) in words:
             published = markdown(comparison(folder))
     return folder, published
 

@@ -78,6 +78,7 @@ def _page(results: WorkFolderResults, sections: Sequence[JointSection]) -> str:
         script=Markup(script),
         script_digest=b64encode(sha256(script.encode()).digest()).decode(),
         joints=sections,
+        left_out=results.left_out,
         data=data_section(results),
         version=__version__,
     )

@@ -1,6 +1,6 @@
 """Contents of a work folder as the report uses them, read once and passed on."""
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Set
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -18,6 +18,7 @@ from frictioncli.errors import TableError
 from frictioncli.model.document import FrictionModel, read_models
 from frictioncli.model.friction import friction_torque
 from frictioncli.model.zero_load import PAIR_KEY, friction_at_zero_load, temperature_of
+from frictioncli.report.belonging import belonging_files
 from frictioncli.report.style import PHASES, SpeedStyle, speed_styles
 from frictioncli.workfiles import DIAGNOSIS, EVALUATION, EXTENDED, MODEL, SCHEDULE, TORQUES
 
@@ -147,6 +148,8 @@ class WorkFolderResults:
         Recordings and rejected rows of the logs; empty if there is no such table.
     metadata : mapping of str to mapping
         Per file its provenance and, for tables, facts about their rows.
+    left_out : tuple of str
+        Parts that belong to other torques or another model and are not shown, one sentence each.
     """
 
     joints: tuple[JointResults, ...]
@@ -154,6 +157,7 @@ class WorkFolderResults:
     recordings: pd.DataFrame
     rejected: pd.DataFrame
     metadata: Mapping[str, Mapping[str, Any]]
+    left_out: tuple[str, ...] = ()
 
     @property
     def runs(self) -> list[str]:
@@ -189,13 +193,16 @@ def read_results(work: Path) -> WorkFolderResults:
         raise TableError(f"{path} is missing; 'frictioncli separate -w {work}' makes it")
     torques = tables.read(path, schemas.TORQUES)
     models = read_models(work / MODEL)
+    belonging = belonging_files(work)
     schedule, evaluation, recordings, rejected = (
-        _read_if_present(work, table)
+        _read_if_present(work, table, belonging.files)
         for table in (schemas.SCHEDULE, schemas.EVALUATION, schemas.RECORDINGS, schemas.REJECTED)
     )
-    diagnoses = read_documents(work)
-    extended_models, extensions = _read_extended_models(work)
-    metadata = dict(_read_metadata(work))
+    diagnoses = read_documents(work) if belonging.files >= {DIAGNOSIS, EXTENDED} else {}
+    extended_models, extensions = (
+        _read_extended_models(work) if EXTENDED in belonging.files else ({}, {})
+    )
+    metadata = dict(_read_metadata(work, belonging.files))
     simulated_extended = bool(_settings(metadata, SCHEDULE).get("extended"))
     joints = []
     for model in models:
@@ -223,13 +230,14 @@ def read_results(work: Path) -> WorkFolderResults:
         recordings=recordings,
         rejected=rejected,
         metadata=metadata,
+        left_out=belonging.left_out,
     )
 
 
-def _read_if_present(work: Path, table: schemas.Table) -> pd.DataFrame:
-    """Return a table of the work folder, without rows if the file does not exist."""
+def _read_if_present(work: Path, table: schemas.Table, files: Set[str]) -> pd.DataFrame:
+    """Return a table of the work folder, without rows if it is not among the files."""
     path = work / f"{table.name}.parquet"
-    if path.exists():
+    if path.name in files:
         return tables.read(path, table)
     return pd.DataFrame(columns=list(table.names))
 
@@ -239,20 +247,18 @@ def _read_extended_models(
 ) -> tuple[dict[int, FrictionModel], dict[int, ExtendedModel]]:
     """Return the friction function and the effects of each joint's extended model."""
     path = work / EXTENDED
-    if not path.exists():
-        return {}, {}
     return {model.joint: model for model in read_models(path)}, read_extended(path)
 
 
-def _read_metadata(work: Path) -> Iterator[tuple[str, Mapping[str, Any]]]:
-    """Yield the name and the metadata of each file with provenance."""
+def _read_metadata(work: Path, files: Set[str]) -> Iterator[tuple[str, Mapping[str, Any]]]:
+    """Yield the name and the metadata of each of the files with provenance."""
     for table in _TABLES:
         path = work / f"{table}.parquet"
-        if path.exists():
+        if path.name in files:
             yield path.name, tables.metadata(path)
     for name in (MODEL, DIAGNOSIS, EXTENDED):
         path = work / name
-        if path.exists():
+        if name in files:
             provenance = documents.read_provenance(path)
             yield name, provenance.as_dict() if provenance else {}
 

@@ -12,7 +12,7 @@ import pytest
 from frictioncli import schemas, tables
 from frictioncli.diagnosis.documents.reload import Reloaded
 from frictioncli.model.friction import PUBLISHED, friction_torque, temperature_from_friction
-from frictioncli.provenance import Provenance
+from frictioncli.provenance import Provenance, input_hashes
 from frictioncli.report.results import JointResults, read_results
 from tests.report.diagnosis_documents import write_diagnosis
 
@@ -200,8 +200,6 @@ def write_work(
         [make_torques(runs, joint, temperature=temperature) for joint in joints],
         ignore_index=True,
     )
-    separated = Provenance("separate", {"sign": "auto"}, {"pairs.parquet": "cd" * 32})
-    tables.write(work / "torques.parquet", torques, schemas.TORQUES, separated, facts)
     pairs = torques.drop(columns=["friction_torque", "load_torque"])
     paired = Provenance("pair", {"bin_width": 10.0}, {"samples.parquet": "ef" * 32})
     dropped = {"no partner": 40, "not at constant speed": 1234}
@@ -212,6 +210,8 @@ def write_work(
         paired,
         facts | {"dropped": dropped, "samples": 200_000},
     )
+    separated = Provenance("separate", {"sign": "auto"}, input_hashes([work / "pairs.parquet"]))
+    tables.write(work / "torques.parquet", torques, schemas.TORQUES, separated, facts)
     if schedule and temperature:
         made = pd.concat(
             [make_schedule(torques[torques["joint"] == joint], every=3600.0) for joint in joints]
@@ -248,7 +248,8 @@ def write_work(
     )
     tables.write(work / "rejected.parquet", rejected, schemas.REJECTED, ingested)
     models = {str(joint): make_model(joint, unit, temperature=temperature) for joint in joints}
-    document = dict(models[str(joints[0])])
+    fitted = Provenance("fit", {"method": "joint"}, input_hashes([work / "torques.parquet"]))
+    document = models[str(joints[0])] | {"provenance": fitted.as_dict()}
     if len(joints) > 1:
         document["joints"] = models
     (work / "model.json").write_text(json.dumps(document), encoding="utf-8")

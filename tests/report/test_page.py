@@ -124,5 +124,5 @@ def test_page_tells_what_became_of_the_data(tmp_path, write_work):
     assert "2.3 deg/s | 0 | 0 | 1 | 1" in rows
     assert "19.1 deg/s | 10 | 30 | 1 | 41" in rows
     assert text.count("sign +1 found") == 1
-    assert "cd" * 32 in text
+    assert "ef" * 32 in text
     assert "the log has no temperature; merged into beta" in text
