@@ -4,6 +4,7 @@ from frictioncli.inspection.map_suggestion.columns import ColumnGuess
 from frictioncli.inspection.map_suggestion.log_head import LogHead
 from frictioncli.inspection.map_suggestion.suggestion import Suggestion
 from frictioncli.logs.channels import channel_names as names
+from frictioncli.logs.channels.recognition import split_unit
 from frictioncli.plain_text import escaped, printable
 
 _MAX_COMMENT = 180
@@ -40,10 +41,15 @@ def map_text(suggestion: Suggestion, head: LogHead, source: str, check: str = ""
     lines += ["", "[units]"]
     for quantity, guess in suggestion.guesses.items():
         doubt = ""
-        if quantity == names.TORQUE:
+        if quantity == names.TORQUE and not split_unit(head.names[guess.column])[1]:
             doubt = "  # by name only, numbers do not tell: N·m, or A if it is a current"
         lines.append(f'{quantity} = "{guess.unit}"{doubt}')
-    return "\n".join([*lines, "", "[joint]", f"number = {suggestion.joint}", ""])
+    if suggestion.torque_side != names.JOINT_SIDE:
+        lines += ["", "[side]", f'torque = "{suggestion.torque_side}"']
+    lines += ["", "[joint]", f"number = {suggestion.joint}"]
+    if suggestion.gear_ratio is not None:
+        lines.append(f"gear_ratio = {suggestion.gear_ratio:.6g}")
+    return "\n".join([*lines, ""])
 
 
 def _channel_lines(quantity: str, guess: ColumnGuess, head: LogHead) -> list[str]:

@@ -1,6 +1,7 @@
 """Suggest a mapping file for logs whose columns are not recognised."""
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
@@ -11,9 +12,12 @@ from frictioncli.inspection.map_suggestion.log_head import LogHead, read_log_hea
 from frictioncli.inspection.map_suggestion.map_text import map_text
 from frictioncli.inspection.map_suggestion.suggestion import Suggestion, suggest_columns
 from frictioncli.logs.channels.channel_map import ChannelMap, read_map
+from frictioncli.logs.channels.joint_plan import JointPlan
 from frictioncli.logs.formats import open_log
 from frictioncli.logs.log_source import LogSource, Refusal
-from frictioncli.logs.runs.discovery import discover
+from frictioncli.logs.reading_plan import planned_logs
+from frictioncli.logs.runs.discovery import LogFile, discover
+from frictioncli.logs.runs.file_joint import joint_of_file
 from frictioncli.logs.runs.opening import open_run
 from frictioncli.logs.settings import IngestSettings
 
@@ -25,7 +29,8 @@ def suggested_map(logs: Sequence[Path], settings: IngestSettings | None = None) 
     """Return the text of a suggested mapping file.
 
     It is made from the log that shows most, of those whose columns are not recognised if there are
-    some. What it says is checked by pairing the moves of the logs with it.
+    some. Where they are, it takes the torque that ``ingest`` takes without a map. What it says is
+    checked by pairing the moves of the logs with it.
 
     Parameters
     ----------
@@ -59,10 +64,10 @@ def suggested_map(logs: Sequence[Path], settings: IngestSettings | None = None) 
     joint = settings.joints[0] if settings.joints else None
     best: tuple[Suggestion, LogHead, str] | None = None
     reasons = []
-    for source in _sources(logs, settings, channel_map):
-        head = read_log_head(source)
+    for log in _looked_at(logs, settings, channel_map):
+        source, head = log.source, read_log_head(log.source)
         try:
-            found = suggest_columns(head, joint)
+            found = suggest_columns(head, joint, file_joint=log.joint, plans=log.plans)
         except NotEnoughData as error:
             reasons.append(f"{source.path}: {error}")
             continue
@@ -77,27 +82,44 @@ def suggested_map(logs: Sequence[Path], settings: IngestSettings | None = None) 
     )
 
 
-def _sources(
+@dataclass(frozen=True, slots=True)
+class _Log:
+    """A log, the joint that file or id column name, and how ``ingest`` would read it."""
+
+    source: LogSource
+    joint: int | None
+    plans: tuple[JointPlan, ...]
+
+
+def _looked_at(
     logs: Sequence[Path], settings: IngestSettings, channel_map: ChannelMap
-) -> list[LogSource]:
+) -> list[_Log]:
     """Return logs whose columns are not recognised, else those that can be opened.
 
     Of many, some evenly spaced ones are returned, the first among them.
     """
-    unrecognised, recognised, refusals = [], [], []
+    unrecognised: list[LogFile] = []
+    recognised: list[LogFile] = []
+    refusals = []
+    plans: dict[Path, tuple[JointPlan, ...]] = {}
     for run in discover(logs):
         opened, refused = open_run(run, settings, channel_map)
-        recognised += [log.file.path for log in opened]
+        recognised += [log.file for log in opened]
+        planned, _ = planned_logs(opened, settings, channel_map)
+        plans |= {log.log.file.path: log.plans for log in planned}
         for log in refused:
             if log.refusal.reason.startswith("no_"):
-                unrecognised.append(log.file.path)
+                unrecognised.append(log.file)
             else:
                 refusals.append(f"{log.file.path}: {log.refusal.text}")
-    paths = unrecognised or recognised
-    spaced = sorted({round(i) for i in np.linspace(0, max(len(paths) - 1, 0), _MOST_FILES)})
-    # not merged with others: with a mapping file, the files of a trace stay separate
-    sources = [open_log(paths[i], channel_map.hints) for i in spaced] if paths else []
-    usable = [source for source in sources if not isinstance(source, Refusal)]
+    files = unrecognised or recognised
+    spaced = sorted({round(i) for i in np.linspace(0, max(len(files) - 1, 0), _MOST_FILES)})
+    usable = []
+    for file in [files[i] for i in spaced] if files else []:
+        # not merged with others: with a mapping file, the files of a trace stay separate
+        source = open_log(file.path, channel_map.hints)
+        if not isinstance(source, Refusal):
+            usable.append(_Log(source, joint_of_file(file, source), plans.get(file.path, ())))
     if not usable:
         raise LogError("no log can be opened; " + "; ".join(refusals[:4]))
     return usable

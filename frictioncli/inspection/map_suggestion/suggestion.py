@@ -11,6 +11,7 @@ from frictioncli.inspection.map_suggestion.columns import (
     MAX_ALTERNATIVES,
     SURE,
     ColumnGuess,
+    LogColumns,
     log_columns,
 )
 from frictioncli.inspection.map_suggestion.derivatives import Derivative, find_derivatives
@@ -26,8 +27,12 @@ from frictioncli.inspection.map_suggestion.torque_columns import (
     direction_dependences,
     guess_load,
     guess_torque,
+    load_as_read,
+    torque_as_read,
 )
 from frictioncli.logs.channels import channel_names as names
+from frictioncli.logs.channels import units
+from frictioncli.logs.channels.joint_plan import JointPlan
 
 
 @dataclass(frozen=True, slots=True)
@@ -42,11 +47,17 @@ class Suggestion:
         Number of the joint, from 1.
     travel : float
         Travel of the joint in both directions. [deg]
+    torque_side : str
+        Side of the gear of the torque, ``joint`` or ``motor``.
+    gear_ratio : float or None
+        Motor turns per joint turn, by which a motor's torque is brought to the joint. [-]
     """
 
     guesses: Mapping[str, ColumnGuess]
     joint: int
     travel: float = 0.0
+    torque_side: str = names.JOINT_SIDE
+    gear_ratio: float | None = None
 
     @property
     def worth(self) -> tuple[int, float]:
@@ -64,7 +75,13 @@ class Suggestion:
         return replace(self, guesses=guesses)
 
 
-def suggest_columns(head: LogHead, joint: int | None) -> Suggestion:
+def suggest_columns(
+    head: LogHead,
+    joint: int | None,
+    *,
+    file_joint: int | None = None,
+    plans: Sequence[JointPlan] = (),
+) -> Suggestion:
     """Suggest the columns of one joint.
 
     Parameters
@@ -73,6 +90,10 @@ def suggest_columns(head: LogHead, joint: int | None) -> Suggestion:
         The beginning of the log.
     joint : int or None
         The joint wanted, from 1; None for the one that moves most.
+    file_joint : int, optional
+        The joint that the file tells, of columns whose names have none.
+    plans : sequence of JointPlan
+        How the log is read without a map, by joint; its torque and load are then suggested too.
 
     Raises
     ------
@@ -88,10 +109,14 @@ def suggest_columns(head: LogHead, joint: int | None) -> Suggestion:
     time, derivatives = _time_with_derivatives(head, times)
     columns = log_columns(head, time.column)
     time_columns = frozenset(one.column for one in times)
+    integrated = next((p for p in plans if p.channels.position.name == names.INTEGRATED), None)
+    if integrated is not None:
+        return _without_position(columns, times, integrated)
     motion = find_motion(columns, derivatives, time, time_columns, joint)
-    number = joint or columns.joints.get(motion.position.column) or 1
+    number = joint or columns.joints.get(motion.position.column) or file_joint or 1
     moving = {column for pair in derivatives for column in (pair.position, pair.velocity)}
     excluded = time_columns | moving | {motion.position.column}
+    plan = next((one for one in plans if one.channels.joint == number), None)
     dependences = direction_dependences(
         head, motion.degrees, motion.degrees_per_second, excluded | columns.no_torque()
     )
@@ -99,15 +124,60 @@ def suggest_columns(head: LogHead, joint: int | None) -> Suggestion:
         names.TIME: _guess_time(time, times, motion),
         names.POSITION: motion.position,
         names.VELOCITY: motion.velocity,
-        names.TORQUE: guess_torque(columns, dependences, number),
     }
-    torque = guesses[names.TORQUE]
-    if torque is not None:
-        guesses[names.LOAD] = guess_load(columns, dependences, number, torque.column)
+    torque = torque_as_read(columns, dependences, plan) if plan is not None else None
+    if torque is not None and plan is not None:
+        guesses |= {names.TORQUE: torque, names.LOAD: load_as_read(columns, plan)}
+    else:
+        plan, torque = None, guess_torque(columns, dependences, number)
+        guesses[names.TORQUE] = torque
+        if torque is not None:
+            guesses[names.LOAD] = guess_load(columns, dependences, number, torque.column)
     chosen = {guess.column for guess in guesses.values() if guess is not None}
     guesses[names.MOTOR_TEMPERATURE] = guess_temperature(columns, number, excluded | chosen)
     travel = float(np.abs(np.diff(motion.degrees)).sum())
-    return Suggestion({name: g for name, g in guesses.items() if g is not None}, number, travel)
+    found = {name: guess for name, guess in guesses.items() if guess is not None}
+    return _at_side(Suggestion(found, number, travel), plan)
+
+
+def _without_position(
+    columns: LogColumns, times: Sequence[TimeColumn], plan: JointPlan
+) -> Suggestion:
+    """Return the columns of a log of one axis without position, all known by their names."""
+    rate, time = plan.channels.velocity, plan.channels.time
+    guesses: dict[str, ColumnGuess | None] = {
+        names.TIME: ColumnGuess(time.column, "its name says so", LIKELY, times[0].unit or "s"),
+    }
+    travel = 0.0
+    if rate is not None:
+        conversion = plan.conversions[names.VELOCITY]
+        why = "its name says so; position is its integral, as the log has none"
+        guesses[names.VELOCITY] = ColumnGuess(rate.column, why, LIKELY, conversion.unit)
+        clock = plan.conversions[names.TIME].factor * columns.head.values[time.column]
+        speed = np.abs(conversion.factor * columns.head.values.get(rate.column, 0.0 * clock))
+        travel = float(np.sum(speed[1:] * np.diff(clock)))
+    guesses[names.TORQUE] = torque_as_read(columns, (), plan)
+    chosen = {guess.column for guess in guesses.values() if guess is not None}
+    number = plan.channels.joint
+    guesses[names.MOTOR_TEMPERATURE] = guess_temperature(columns, number, chosen)
+    found = {name: guess for name, guess in guesses.items() if guess is not None}
+    return _at_side(Suggestion(found, number, travel), plan)
+
+
+def _at_side(suggestion: Suggestion, plan: JointPlan | None) -> Suggestion:
+    """Return a suggestion with the side of the torque, as it is read without a map."""
+    if plan is None or plan.torque_unit != "N·m":
+        return suggestion
+    conversion = plan.conversions[names.TORQUE]
+    if plan.torque_side == names.MOTOR_SIDE:
+        return replace(suggestion, torque_side=names.MOTOR_SIDE)
+    if plan.channels.torque.meaning.side == names.JOINT_SIDE:
+        return suggestion
+    ratio = conversion.factor / units.FACTORS[names.TORQUE][conversion.unit]
+    # of no side by its name, and taken as that of the joint
+    if ratio == 1.0:
+        return suggestion
+    return replace(suggestion, torque_side=names.MOTOR_SIDE, gear_ratio=ratio)
 
 
 def _time_with_derivatives(

@@ -22,6 +22,7 @@ from frictioncli.inspection.map_suggestion.measured_or_commanded import (
 )
 from frictioncli.logs.channels import channel_names as names
 from frictioncli.logs.channels import units
+from frictioncli.logs.channels.joint_plan import JointPlan
 
 _LEAST_SPEED = 0.1
 """Least speed of a moving joint, as a share of the highest speed."""
@@ -120,6 +121,79 @@ def _mean_squared_residual(regressors: Array, values: Array) -> float:
     return float(np.mean((values - regressors @ coefficients) ** 2))
 
 
+def torque_as_read(
+    columns: LogColumns, dependences: Sequence[DirectionDependence], plan: JointPlan
+) -> ColumnGuess | None:
+    """Return the torque that is read without a map: one decision for both.
+
+    Parameters
+    ----------
+    columns : LogColumns
+        The columns of the log.
+    dependences : sequence of DirectionDependence
+        Result of :func:`direction_dependences`.
+    plan : JointPlan
+        How the log is read without a map.
+
+    Returns
+    -------
+    ColumnGuess or None
+        None where that torque stands in another file.
+    """
+    torque = plan.channels.torque
+    if torque.is_merged or torque.column not in columns.head.values:
+        return None
+    by_column = {one.column: one for one in dependences}
+    own = by_column.get(torque.column)
+    reason, confidence = "its name says so", LIKELY
+    if own is not None and own.is_significant:
+        reason = _reason(own)
+        confidence = SURE if own.explained > _SURE_SHARE else LIKELY
+    elif own is not None:
+        reason, confidence = f"{reason}, but it does not change with the direction of motion", GUESS
+    others = [channel.column for channel in plan.channels.other_torques if not channel.is_merged]
+    alternatives = tuple(
+        (column, _opposes(by_column[column]) if column in by_column else "by its name")
+        for column in others[:MAX_ALTERNATIVES]
+        if column in columns.head.values
+    )
+    return ColumnGuess(
+        torque.column,
+        f"{reason}; it is also read without a map",
+        confidence,
+        plan.conversions[names.TORQUE].unit,
+        alternatives,
+    )
+
+
+def load_as_read(columns: LogColumns, plan: JointPlan) -> ColumnGuess | None:
+    """Return the load that is read without a map, None where there is none.
+
+    Parameters
+    ----------
+    columns : LogColumns
+        The columns of the log.
+    plan : JointPlan
+        How the log is read without a map.
+    """
+    load = plan.channels.load
+    if load is None or load.is_merged or load.column not in columns.head.values:
+        return None
+    reason = "the load beside that torque, as it is read without a map"
+    return ColumnGuess(load.column, reason, LIKELY, plan.conversions[names.LOAD].unit)
+
+
+def _reason(one: DirectionDependence) -> str:
+    return (
+        f"differs by twice {one.jump:.3g} between the directions, which explains"
+        f" {100 * one.explained:.0f} % of what the angle does not"
+    )
+
+
+def _opposes(one: DirectionDependence) -> str:
+    return f"opposes motion too, by {one.jump:.3g}"
+
+
 def guess_torque(
     columns: LogColumns, dependences: Sequence[DirectionDependence], joint: int
 ) -> ColumnGuess | None:
@@ -151,8 +225,7 @@ def guess_torque(
         return None
     best = _measured(columns, ranked) if ranked else named[0]
     reason = (
-        f"differs by twice {best.jump:.3g} between the directions, which explains"
-        f" {100 * best.explained:.0f} % of what the angle does not"
+        _reason(best)
         if ranked
         else "its name says so, but it does not change with the direction of motion"
     )
@@ -160,9 +233,7 @@ def guess_torque(
     if ranked:
         confidence = SURE if best.explained > _SURE_SHARE else LIKELY
     others = [one for one in (ranked or named) if one.column != best.column]
-    alternatives = tuple(
-        (one.column, f"opposes motion too, by {one.jump:.3g}") for one in others[:MAX_ALTERNATIVES]
-    )
+    alternatives = tuple((one.column, _opposes(one)) for one in others[:MAX_ALTERNATIVES])
     unit = _torque_unit(columns, best.column)
     return ColumnGuess(best.column, reason, confidence, unit, alternatives)
 

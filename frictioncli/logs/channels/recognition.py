@@ -16,7 +16,8 @@ _JOINT_LAST = re.compile(
     r"^(?P<name>.*?)(?:(?<=[a-z])[AJ]|[ _.\-(\[]+[AaJj]?[ _]?|)(?P<joint>\d{1,2})[)\]]?$"
 )
 _JOINT_FIRST = re.compile(
-    r"^(?:joint|axis|axle|achse|gelenk|[aj])[ _.]?(?P<joint>\d{1,2})[ _.\-]+(?P<name>.+)$", re.I
+    r"^(?:joint|axis|axle|achse|gelenk|motor|[aj])[ _.]?(?P<joint>\d{1,2})[ _.\-]+(?P<name>.+)$",
+    re.I,
 )
 _MEASURED = re.compile(
     r"(?:^|(?<=[ _.\-]))(?:feedback|fbk|fb|actual|act|measured|meas|ist|value|averaged|average|avg)"
@@ -25,8 +26,11 @@ _MEASURED = re.compile(
 )
 _JOINT_IN_BRACKETS = re.compile(r"^[AaJj]?\d{1,2}$")
 _JOINT_IN_FILE_NAME = re.compile(
-    r"NextGenDrive#(\d{1,2})|(?:^|[_\s-])(?:A|J|axis|joint|achse)(\d)$", re.I
+    r"NextGenDrive#(\d{1,2})"
+    r"|(?:^|[_\s-])(?:A|J|(?:axis|joint|achse|motor)[_\s-]?)(\d{1,2})$",
+    re.I,
 )
+_ID_COLUMN = re.compile(r"^(?:motor|joint|axis|achse|servo)[ _.]?(?:id|no|nr|number|nummer)$", re.I)
 
 
 @dataclass(frozen=True, slots=True)
@@ -167,6 +171,25 @@ def joint_in_name(stem: str) -> int | None:
     --------
     >>> joint_in_name("trace_NextGenDrive#3")
     3
+    >>> joint_in_name("ur-20_01_22-joint_1")
+    1
     """
     found = _JOINT_IN_FILE_NAME.search(stem)
-    return int(found[1] or found[2]) if found else None
+    return int(found[1] or found[2]) or None if found else None
+
+
+def id_column(columns: Sequence[str]) -> int | None:
+    """Return the column that numbers the joint or motor of each row, None where there is none.
+
+    Parameters
+    ----------
+    columns : sequence of str
+        Column names.
+
+    Examples
+    --------
+    >>> id_column(["time", "motor_id", "position"])
+    1
+    """
+    matches = (i for i, name in enumerate(columns) if _ID_COLUMN.match(split_unit(name)[0]))
+    return next(matches, None)

@@ -7,11 +7,12 @@ from pathlib import Path
 
 from frictioncli.logs.channels.channel_map import ChannelMap, mapped_channels, with_side
 from frictioncli.logs.channels.joint_channels import JointChannels, assign_channels
-from frictioncli.logs.channels.recognition import LogChannel, joint_in_name, recognise_channels
+from frictioncli.logs.channels.recognition import LogChannel, recognise_channels
 from frictioncli.logs.formats import open_logs
 from frictioncli.logs.formats.twincat_scope import scope_start
 from frictioncli.logs.log_source import LogSource, Refusal
 from frictioncli.logs.runs.discovery import LogFile, LogRun
+from frictioncli.logs.runs.file_joint import joint_of_file
 from frictioncli.logs.runs.integrated_position import (
     IntegratedPosition,
     integrable,
@@ -155,7 +156,7 @@ def _choices(
     choices: dict[LogFile, _Choice | Refusal] = {}
     choices_by_header: dict[tuple[tuple[str, ...], int], _Choice | Refusal] = {}
     for file, source in sources.items():
-        joint = _file_joint(file, settings, channel_map)
+        joint = _file_joint(file, source, settings, channel_map)
         if file in merged:
             log = merged[file]
             choices[file] = _choose(log.source, log.channels, log.joints, file_joint=joint)
@@ -267,13 +268,15 @@ def _may_share_name(files: Sequence[LogFile], choices: Mapping[LogFile, _Choice]
     return len(files) == 1 or (one_trace and len(set(joints)) == len(joints))
 
 
-def _file_joint(file: LogFile, settings: IngestSettings, channel_map: ChannelMap) -> int:
+def _file_joint(
+    file: LogFile, source: LogSource, settings: IngestSettings, channel_map: ChannelMap
+) -> int:
     """Return the joint of columns whose names contain no joint number."""
     if channel_map.joint is not None:
         return channel_map.joint
-    in_name = joint_in_name(file.stem)
-    if in_name is not None:
-        return in_name
+    told = joint_of_file(file, source)
+    if told is not None:
+        return told
     if settings.joints is not None and len(settings.joints) == 1:
         return settings.joints[0]
     return 1
