@@ -47,6 +47,9 @@ OTHER_JOINTS = Quantity(
     "",
     "other joints of the recording that move, as the sum of 2^(joint - 1)",
 )
+POSE = Quantity(
+    "pose", "", "", "number of the pose of the other joints; none while one of them moves"
+)
 LOAD = Quantity("load", "L", "N·m", "load torque from a channel of its own")
 PAYLOAD = Quantity("payload", "m", "kg", "payload given by the manifest")
 FRICTION_TORQUE = Quantity("friction_torque", "τ", TORQUE, "friction torque, opposes the motion")

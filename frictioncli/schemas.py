@@ -54,6 +54,7 @@ _RECORDING = Column("recording", _LABEL, "", "one log file of the run")
 _JOINT_COLUMN = Column("joint", _JOINT, "", "joint number, from 1")
 _PAIR = Column("pair", _COUNT, "", "number of the pair, unique within run and joint")
 _PHASE = Column("phase", _LABEL, "", "heat-up, cool-down or sweep")
+_POSE = Column(q.POSE.name, _COUNT, "", q.POSE.description, nullable=True)
 _SPEED = _of(q.SPEED)
 _PAIR_TIME = Column("time", _REAL, "s", "middle of the pair, since the run's first sample")
 _CRITERION = Column("criterion", _LABEL, "", "rule that decides when to correct")
@@ -80,6 +81,7 @@ SAMPLES = Table(
         _of(q.LOAD, nullable=True),
         _of(q.OTHER_SPEED, nullable=True),
         Column(q.OTHER_JOINTS.name, _COUNT, "", q.OTHER_JOINTS.description, nullable=True),
+        _POSE,
     ),
 )
 
@@ -133,6 +135,7 @@ _PAIR_COLUMNS = (
     _of(q.MOTOR_TEMPERATURE_READING, nullable=True),
     _of(q.LOAD, nullable=True),
     _of(q.PAYLOAD, nullable=True),
+    _POSE,
 )
 
 _ONE_DIRECTION = ("torque_forward", "torque_reverse")
@@ -183,6 +186,7 @@ RAMPS = Table(
         _of(q.MOTOR_TORQUE),
         _of(q.LOAD, nullable=True),
         Column("samples", _COUNT, "", "samples of the means"),
+        _POSE,
     ),
 )
 
@@ -203,6 +207,7 @@ STARTS = Table(
         _of(q.MOTOR_TEMPERATURE, nullable=True),
         _of(q.HOUSING_TEMPERATURE, nullable=True),
         _of(q.PAYLOAD, nullable=True),
+        _POSE,
     ),
 )
 

@@ -32,6 +32,7 @@ from frictioncli.logs.runs.discovery import LogRun, discover
 from frictioncli.logs.runs.manifest import RunManifest, read_run_manifest
 from frictioncli.logs.samples.chunks import LogChunk, PlannedLog
 from frictioncli.logs.samples.log_rows import RejectedRows
+from frictioncli.logs.samples.poses import Poses
 from frictioncli.logs.samples.recording import RecordingSummary, SampleSink, read_recording
 from frictioncli.logs.samples.timeline import DatedLog, RunClock
 from frictioncli.logs.settings import IngestSettings
@@ -128,6 +129,7 @@ class _InspectedLogs:
     usable: list[DatedLog] = field(default_factory=list)
     remarks: list[str] = field(default_factory=list)
     time_known: bool = True
+    poses: Poses = field(default_factory=Poses)
 
     @property
     def joints(self) -> tuple[int, ...]:
@@ -182,7 +184,9 @@ def _inspect_run(
     for dated, start, chunks in logs.recordings(clock, settings.batch_bytes):
         with SampleStore(folder) as store:
             sink = partial(store_samples, store, dated.planned.log.recording, start)
-            file, recording = _inspect_log(dated.planned, chunks, sink, settings, told)
+            file, recording = _inspect_log(
+                dated.planned, chunks, sink, settings, told, inspected.poses
+            )
             files[file.path] = file
             if recording is not None:
                 clock.place(dated, recording)
@@ -210,11 +214,12 @@ def _inspect_log(
     sink: SampleSink,
     settings: IngestSettings,
     told: Collection[str],
+    poses: Poses,
 ) -> tuple[FileInspection, RecordingSummary | None]:
     """Return what one log holds; its samples go to the sink, units of `told` are the user's."""
     monitor, rejected = LogMonitor(planned), RejectedRows()
     try:
-        result = read_recording(planned, monitor.observe(chunks), rejected, sink)
+        result = read_recording(planned, monitor.observe(chunks), rejected, sink, poses=poses)
     except LogError as error:
         result = Refusal("contradicts_survey", str(error))
     log = planned.log

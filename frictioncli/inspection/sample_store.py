@@ -19,6 +19,7 @@ _CHANNELS = (
     names.HOUSING_TEMPERATURE,
     names.LOAD,
     names.OTHER_SPEED,
+    names.POSE,
 )
 _SAMPLES = "samples"
 _BATCH_ROWS = 1 << 16

@@ -165,7 +165,7 @@ def _ingest_run(
     logs = plan_run(run, manifest, settings, channel_map, opened=outputs.hasher.add)
     ingested.warnings += manifest.warnings
     ingested.refused += logs.refused
-    clock = _read_logs(run, logs, settings.batch_bytes, outputs, ingested.refused)
+    clock = _read_logs(run, logs, settings.batch_bytes, outputs, ingested)
     timeline = clock.timeline(has_manifest=manifest.found)
     if timeline.placed:
         ingested.timelines[run.name] = timeline
@@ -174,7 +174,7 @@ def _ingest_run(
 
 
 def _read_logs(
-    run: LogRun, logs: RunLogs, batch_bytes: int, outputs: _Outputs, refused: list[RefusedLog]
+    run: LogRun, logs: RunLogs, batch_bytes: int, outputs: _Outputs, ingested: IngestedLogs
 ) -> RunClock:
     """Write the samples of all logs; those that turn out unusable are added to the refused."""
     clock = RunClock(run.name)
@@ -183,10 +183,12 @@ def _read_logs(
         log, joints = dated.planned.log, [plan.channels.joint for plan in dated.planned.plans]
         outputs.samples.begin_recording(run.name, log.recording, joints, start)
         rejected = RejectedRows()
-        result = read_recording(dated.planned, chunks, rejected, outputs.samples.add, continuous)
+        result = read_recording(
+            dated.planned, chunks, rejected, outputs.samples.add, continuous, ingested.poses
+        )
         if isinstance(result, Refusal):
             outputs.samples.discard_recording(joints)
-            refused.append(RefusedLog(run, log.file, log.recording, result))
+            ingested.refused.append(RefusedLog(run, log.file, log.recording, result))
             continue
         clock.place(dated, result)
         continuous.update(joint for joint, reg in result.registers.items() if reg.continuous)

@@ -9,6 +9,7 @@ from frictioncli.errors import LogError
 from frictioncli.logs.channels.channel_names import INTEGRATED
 from frictioncli.logs.channels.joint_plan import JointPlan
 from frictioncli.logs.runs.opening import RefusedLog
+from frictioncli.logs.samples.poses import Poses
 from frictioncli.logs.samples.quantized_temperature import Knots
 from frictioncli.logs.samples.recording import RecordingSummary
 from frictioncli.logs.samples.timeline import Timeline
@@ -109,6 +110,8 @@ class IngestedLogs:
         Run and joint -> knots of the motor temperature for each recording.
     refused : list of RefusedLog
         Files that cannot be used.
+    poses : Poses
+        Poses of the joints.
     notes, warnings : list of str
         What concerns whole runs.
     """
@@ -116,6 +119,7 @@ class IngestedLogs:
     timelines: dict[str, Timeline] = field(default_factory=dict)
     knots: dict[tuple[str, int], tuple[Knots | None, ...]] = field(default_factory=dict)
     refused: list[RefusedLog] = field(default_factory=list)
+    poses: Poses = field(default_factory=Poses)
     notes: list[str] = field(default_factory=list)
     warnings: list[str] = field(default_factory=list)
 
@@ -148,6 +152,7 @@ class IngestedLogs:
             "position": _common("position", ((n, _position_kind(plan)) for n, plan in plans)),
             "notes": [*_grouped_by_remark(notes, len(recordings)), *self.notes],
             "warnings": [*_grouped_by_remark(warnings, len(recordings)), *self.warnings],
+            "poses": self.poses.facts(),
             "time_known": all(timeline.known for timeline in self.timelines.values()),
         }
 

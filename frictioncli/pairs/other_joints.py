@@ -1,8 +1,9 @@
-"""Samples of a joint while other joints of the same recording move.
+"""Samples of a joint while other joints of the same recording move, or stand elsewhere.
 
 A joint that moves loads its neighbours with its inertia and turns the weight that they carry, which
 the separation of friction and load cannot know. Such samples are left out, unless they are more
-than half of what there is, or no pair would be left.
+than half of what there is, or no pair would be left. Where the others come to stand elsewhere, in
+another pose, gravity is another one: moves in different poses are no pair, unless none is left.
 """
 
 from collections.abc import Iterable
@@ -12,10 +13,16 @@ from typing import Any
 import numpy as np
 
 from frictioncli.arrays import Array, Flags, Numbers
-from frictioncli.pairs.slices import slice_indices
+from frictioncli.pairs.slices import reduce_slices, slice_indices
 
 OTHER_MOVES = "other joint moves"
 """Reason why samples at constant speed are in no pair."""
+
+STAND_ELSEWHERE = "other joints come to stand elsewhere"
+"""Reason why samples of a move in a second pose are in no pair."""
+
+OTHER_POSE = "the other joints stand elsewhere than for the partner"
+"""Reason why samples whose partner has another pose are in no pair."""
 
 LEFT_OUT = "left out"
 KEPT = "used nonetheless, and its torque holds what the others add"
@@ -41,6 +48,8 @@ class OtherMotion:
         The other joints that moved, as the sum of 2^(joint - 1).
     needed : set of int
         Joints of which no pair is left without such samples.
+    across_poses : set of int
+        Joints of which no pair is left in one pose.
     """
 
     samples: dict[int, int] = field(default_factory=dict)
@@ -49,6 +58,7 @@ class OtherMotion:
     moves: dict[int, int] = field(default_factory=dict)
     others: dict[int, int] = field(default_factory=dict)
     needed: set[int] = field(default_factory=set)
+    across_poses: set[int] = field(default_factory=set)
 
     def add(
         self, joint: int, count: Numbers, segment: Numbers, shared: Flags, period: float
@@ -80,6 +90,11 @@ class OtherMotion:
         """Return whether such samples of a joint are left out."""
         return joint not in self.needed and 0 < self.share(joint) <= _MOST
 
+    def tells_poses_apart(self, joint: int) -> bool:
+        """Return whether only moves in one pose of the other joints are pairs of a joint."""
+        known = not self.share(joint) or self.leaves_out(joint)
+        return known and joint not in self.across_poses
+
     def facts(self, joint: int) -> dict[str, Any]:
         """Return what is known of such samples of a joint, as the tables of pairs state it."""
         others = self.others.get(joint, 0)
@@ -107,11 +122,16 @@ class OtherMotion:
             " motion at constant speed: " + (LEFT_OUT if self.leaves_out(joint) else KEPT)
             for joint in joints
             if self.share(joint)
+        ] + [
+            f"joint {joint}: no move there and back in one pose of the other joints: used"
+            " nonetheless, and its friction holds half of what their poses change in gravity"
+            for joint in joints
+            if joint in self.across_poses
         ]
 
 
-def bins_with_other_motion(
-    other_speed: Array,
+def bins_with_marks(
+    marked: Flags,
     position: Array,
     start: Numbers,
     stop: Numbers,
@@ -119,12 +139,12 @@ def bins_with_other_motion(
     segment: Numbers,
     number: Numbers,
 ) -> Flags:
-    """Return during which angle bins of segments another joint moved.
+    """Return which angle bins of segments hold a marked sample.
 
     Parameters
     ----------
-    other_speed : ndarray, shape (samples,)
-        Speed of the fastest other joint; NaN where not known. [deg/s]
+    marked : ndarray of bool, shape (samples,)
+        The marks.
     position : ndarray, shape (samples,)
         Joint angle. [deg]
     start, stop : ndarray of int, shape (segments,)
@@ -137,15 +157,14 @@ def bins_with_other_motion(
     Returns
     -------
     ndarray of bool, shape (bins,)
-        True where one sample or more was taken while another joint moved.
+        True where one sample or more is marked.
     """
-    moving = other_speed > 0
     index = slice_indices(start, stop)
-    moves = moving[index]
-    if not moves.any():
+    marks = marked[index]
+    if not marks.any():
         return np.zeros(len(segment), bool)
-    owner = np.repeat(np.arange(len(start)), stop - start)[moves]
-    crossed = np.floor(position[index[moves]] / width).astype(np.int64)
+    owner = np.repeat(np.arange(len(start)), stop - start)[marks]
+    crossed = np.floor(position[index[marks]] / width).astype(np.int64)
     lowest = min(int(crossed.min()), int(number.min(initial=0)))
     span = max(int(crossed.max()), int(number.max(initial=0))) - lowest + 1
     found: Flags = np.isin(segment * span + number - lowest, owner * span + crossed - lowest)
@@ -170,3 +189,38 @@ def joints_that_move(other_joints: Array, start: Numbers, stop: Numbers) -> int:
     """
     sets = np.unique(np.nan_to_num(other_joints[slice_indices(start, stop)])).astype(np.int64)
     return int(np.bitwise_or.reduce(sets)) if len(sets) else 0
+
+
+def poses_of_segments(pose: Array, start: Numbers, stop: Numbers) -> tuple[Array, Flags]:
+    """Return the pose in which each segment is mostly, and the samples in another one.
+
+    Parameters
+    ----------
+    pose : ndarray, shape (samples,)
+        Number of the pose; NaN while another joint moves, or where not known.
+    start, stop : ndarray of int, shape (segments,)
+        First and past-the-end sample of each segment.
+
+    Returns
+    -------
+    pose : ndarray, shape (segments,)
+        Numbers of poses, NaN where not known.
+    elsewhere : ndarray of bool, shape (samples,)
+        True where a sample of a segment is in another pose than the segment.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> pose = np.array([1.0, np.nan, 2.0, 2.0, 3.0])
+    >>> poses_of_segments(pose, np.array([0, 4]), np.array([4, 5]))
+    (array([2., 3.]), array([ True, False, False, False, False]))
+    """
+    elsewhere = np.zeros(len(pose), bool)
+    found = reduce_slices(np.fmin, pose, start, stop)
+    several = np.flatnonzero(reduce_slices(np.fmax, pose, start, stop) > found)
+    for segment in several.tolist():
+        own = pose[start[segment] : stop[segment]]
+        numbers, counts = np.unique(own[np.isfinite(own)], return_counts=True)
+        found[segment] = numbers[np.argmax(counts)]
+        elsewhere[start[segment] : stop[segment]] = np.isfinite(own) & (own != found[segment])
+    return found, elsewhere

@@ -91,6 +91,7 @@ def pair_rows(segments: SegmentTables, pairing: Pairing, phase: pd.Series) -> It
                     "n_reverse": bins["n_reverse"],
                     "load": bins["load"],
                     "payload": pairs["payload"][row],
+                    "pose": pairs["pose"][row],
                 },
             )
 
@@ -126,6 +127,7 @@ def ramp_rows(segments: SegmentTables, payload: pd.Series) -> Iterator[pa.Table]
                     "move": ramps["move"] + before,
                     "part": np.array(PARTS, dtype=object)[ramps["part"]],
                     "payload": carried.astype(float),
+                    "pose": ramps["pose"],
                 },
             )
         before += segments.counts[joint]
@@ -162,6 +164,7 @@ def start_rows(segments: SegmentTables, payload: pd.Series) -> Iterator[pa.Table
                     "recording": names[rows["recording"]],
                     "move": rows["move"] + before,
                     "payload": carried.astype(float),
+                    "pose": rows["pose"],
                 },
             )
         before += segments.counts[joint]
@@ -239,7 +242,7 @@ def pairing_text(
         )
         lines.append(f"joint {joint}: {speeds.total()} pairs: {text}{more} deg/s")
     for joint in sorted(counts.speeds):
-        kind = "note" if other_motion.leaves_out(joint) else "warning"
+        kind = "note" if other_motion.tells_poses_apart(joint) else "warning"
         lines += [f"{kind}: {text}" for text in other_motion.texts([joint])]
     dropped = "; ".join(f"{reason} {count}" for reason, count in facts["dropped"].items() if count)
     lines.append(

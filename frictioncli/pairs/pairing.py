@@ -1,33 +1,28 @@
 """Pairs of counter-directed segments of the same speed, joint, temperature and angles."""
 
-import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
 import pandas as pd
 
-from frictioncli.arrays import Array, Flags, Numbers
+from frictioncli.arrays import Array, Numbers
 from frictioncli.errors import NotEnoughData
 from frictioncli.pairs.added_torque import AddedByOthers
+from frictioncli.pairs.common_speeds import Level, common_speeds, is_same_command
 from frictioncli.pairs.matching import Matches, SegmentArrays, match_bins
 from frictioncli.pairs.matching_groups import MatchingGroup, matching_groups
 from frictioncli.pairs.no_pairs_text import directions_text, dropped_text
-from frictioncli.pairs.other_joints import OTHER_MOVES, OtherMotion
+from frictioncli.pairs.other_joints import OTHER_MOVES, OTHER_POSE, OtherMotion
 from frictioncli.pairs.partitioned_store import Columns, PartitionedStore
 from frictioncli.pairs.segments import TEMPERATURES, Joint, SegmentTables
 from frictioncli.pairs.settings import PairingSettings
 from frictioncli.pairs.speed_levels import SpeedCounts, speed_levels, steps_of
 
-Level = tuple[int, int]
-
 _ALONE = "no counter-directed partner"
 _NOT_SHARED = "angle not shared with the partner"
 _OTHER_PAYLOAD = "the partner has another payload"
-_REASONS = (OTHER_MOVES, _ALONE, _NOT_SHARED, _OTHER_PAYLOAD)
-
-_SAME_COMMAND = 0.01
-"""Speeds this close to the median of their level, as a share, are one commanded speed."""
+_REASONS = (OTHER_MOVES, _ALONE, _NOT_SHARED, _OTHER_PAYLOAD, OTHER_POSE)
 
 
 @dataclass(frozen=True, slots=True)
@@ -38,7 +33,8 @@ class Pairing:
     ----------
     store : PartitionedStore
         Two tables by run and joint. ``pairs``, one row per pair in time order: pair (its number),
-        level, recording (its number), speed [deg/s], time [s], the temperatures [°C], payload [kg].
+        level, recording (its number), speed [deg/s], time [s], the temperatures [°C], payload [kg],
+        pose (of the other joints).
         ``bins``, one row per pair and angle bin: pair, bin, torques and samples of both directions,
         load.
     speeds : dict of (int, int) to float
@@ -68,7 +64,7 @@ class Pairing:
             np.array([by_level[joint, level] for level in pairs["level"].tolist()])
             for by_level in (self.speeds, self.medians)
         )
-        return np.where(_is_same_command(pairs["speed"], median), common, pairs["speed"])
+        return np.where(is_same_command(pairs["speed"], median), common, pairs["speed"])
 
 
 def pair_segments(
@@ -81,7 +77,7 @@ def pair_segments(
 
     Moves with different payloads are loaded differently and make no pair, nor do a move whose
     payload is known and one whose payload is not. Two moves of unknown payload are taken to have
-    the same.
+    the same. So it is with poses of the other joints, unless no pair is left.
 
     Parameters
     ----------
@@ -122,16 +118,18 @@ def pair_segments(
     motion = segments.other_motion
     paired = {joint for joint, _ in pairer.speeds}
     motion.needed |= {joint for joint in motion.shared if motion.leaves_out(joint)} - paired
-    if motion.needed:
+    motion.across_poses |= pairer.in_other_poses() - paired - motion.needed
+    if motion.needed or motion.across_poses:
         pairer.added = {
             joint: found for joint, found in pairer.added.items() if joint not in motion.needed
         }
-        again = [joint for joint in sorted(segments.counts) if joint[1] in motion.needed]
+        redone = motion.needed | motion.across_poses
+        again = [joint for joint in sorted(segments.counts) if joint[1] in redone]
         pairer.add_all(segments, again)
     dropped = pairer.total()
     if not pairer.speeds:
         mixed = "".join(
-            f", {reason}" for reason in (_OTHER_PAYLOAD, OTHER_MOVES) if dropped[reason]
+            f", {reason}" for reason in (_OTHER_PAYLOAD, OTHER_POSE, OTHER_MOVES) if dropped[reason]
         )
         raise NotEnoughData(
             f"no pair of counter-directed moves: {directions_text(segments)}{mixed}; expected"
@@ -140,7 +138,7 @@ def pair_segments(
             " motion is for 'frictioncli separate --by regression'"
         )
     medians = {level: counts.median for level, counts in pairer.speeds.items()}
-    speeds = _common_speeds(store, medians)
+    speeds = common_speeds(store, medians)
     return Pairing(store, speeds, medians, segments.dropped | dropped, pairer.added)
 
 
@@ -169,12 +167,20 @@ class _Pairer:
         """Return the samples dropped of all joints, by reason."""
         return {reason: sum(one[reason] for one in self.dropped.values()) for reason in _REASONS}
 
+    def in_other_poses(self) -> set[int]:
+        """Return the joints with samples whose partner has another pose of the other joints."""
+        return {joint for (_, joint), reasons in self.dropped.items() if reasons[OTHER_POSE]}
+
     def add(self, joint: Joint, group: MatchingGroup, count: int) -> int:
         """Pair the segments of a group, numbered from ``count``; return the number of pairs."""
         segments, bins = group.segments, group.bins
         steps, levels = self.steps_and_levels
         level = levels[np.searchsorted(steps, steps_of(segments["speed"]))]
         payload = self.payloads[segments["recording"]]
+        pose = segments["pose"]
+        if not self.other_motion.tells_poses_apart(joint[1]):
+            pose = np.full(len(pose), np.nan)
+        kind = np.stack([payload, pose])
         if bins["shared"].any() or joint[1] in self.added:
             of_bins = (
                 values[bins["segment"]]
@@ -189,27 +195,32 @@ class _Pairer:
             self.dropped[joint][OTHER_MOVES] += int(bins["n"][shared].sum())
             bins = {name: values[~shared] for name, values in bins.items()}
         arrays = _arrays(segments, bins)
-        matches = match_bins(arrays, _groups(segments["start"], level, payload), self.settings)
+        matches = match_bins(arrays, _groups(segments["start"], level, kind), self.settings)
         matched = matches.bin_match >= 0
-        other_payload = ~matched
-        if len(np.unique(payload)) > 1:
-            # the bins that remain would match with another payload
-            rest = _arrays(segments, {name: values[~matched] for name, values in bins.items()})
-            again = match_bins(rest, _groups(segments["start"], level), self.settings)
-            other_payload[~matched] = again.bin_match >= 0
-        else:
-            other_payload[:] = False
+        rest = ~matched
+        # the bins that remain may match in another pose, or else with another payload
+        other = {}
+        for reason, differs, kept in (
+            (OTHER_POSE, pose, kind[:1]),
+            (_OTHER_PAYLOAD, payload, kind[:0]),
+        ):
+            other[reason] = np.zeros(len(rest), bool)
+            if len(np.unique(differs)) > 1:
+                left = _arrays(segments, {name: values[rest] for name, values in bins.items()})
+                again = match_bins(left, _groups(segments["start"], level, kept), self.settings)
+                other[reason][rest] = again.bin_match >= 0
+                rest = rest & ~other[reason]
         paired = np.concatenate([matches.forward, matches.reverse])
         alone = ~np.isin(bins["segment"], paired)
         for reason, rows in (
-            (_ALONE, ~matched & ~other_payload & alone),
-            (_NOT_SHARED, ~matched & ~other_payload & ~alone),
-            (_OTHER_PAYLOAD, other_payload),
+            (_ALONE, rest & alone),
+            (_NOT_SHARED, rest & ~alone),
+            *other.items(),
         ):
             self.dropped[joint][reason] += int(bins["n"][rows].sum())
         if not len(paired):
             return 0
-        pairs, number = _pairs(segments, matches, level, payload, count)
+        pairs, number = _pairs(segments, matches, level, kind, count)
         for one in np.unique(pairs["level"]).tolist():
             counts = self.speeds.setdefault((joint[1], one), SpeedCounts())
             counts.add(pairs["speed"][pairs["level"] == one])
@@ -234,13 +245,15 @@ def _payloads(segments: SegmentTables, payload: pd.Series | None) -> Array:
     return payload.reindex(pd.MultiIndex.from_tuples(segments.recordings)).to_numpy(float)
 
 
-def _groups(start: Array, level: Numbers, payload: Array | None = None) -> list[Numbers]:
-    """Return the segments that may pair with each other, in time order."""
-    kind = np.zeros(len(level)) if payload is None else payload
-    order = np.lexsort((start, kind, level))
-    # an unknown payload is equal to another unknown one
-    _, code = np.unique(kind[order], return_inverse=True)
-    new = (np.diff(level[order]) != 0) | (np.diff(code) != 0)
+def _groups(start: Array, level: Numbers, kinds: Array) -> list[Numbers]:
+    """Return the segments that may pair with each other, in time order.
+
+    They have the same level and the same value of each of the kinds, shape (kinds, segments); an
+    unknown value, NaN, is equal to another unknown one.
+    """
+    codes = [level, *(np.unique(kind, return_inverse=True)[1] for kind in kinds)]
+    order = np.lexsort((start, *reversed(codes)))
+    new = np.any([np.diff(code[order]) != 0 for code in codes], axis=0)
     return np.split(order, np.flatnonzero(new) + 1)
 
 
@@ -257,7 +270,7 @@ def _arrays(segments: Columns, bins: Columns) -> SegmentArrays:
 
 
 def _pairs(
-    segments: Columns, matches: Matches, level: Numbers, payload: Array, count: int
+    segments: Columns, matches: Matches, level: Numbers, kind: Array, count: int
 ) -> tuple[Columns, Numbers]:
     """Return a row per pair in time order, and the number of the pair of each match."""
     one, other = matches.forward, matches.reverse
@@ -270,7 +283,8 @@ def _pairs(
         "level": level[one],
         "recording": segments["recording"][one],
         "time": time,
-        "payload": payload[one],
+        "payload": kind[0][one],
+        "pose": kind[1][one],
     }
     for name in ("speed", *TEMPERATURES):
         pairs[name] = (segments[name][one] + segments[name][other]) / 2
@@ -297,24 +311,3 @@ def _paired_bins(bins: Columns, matches: Matches, number: Numbers) -> Columns:
         "n_reverse": bins["n"][reverse],
         "load": (bins["load"][forward] + bins["load"][reverse]) / 2,
     }
-
-
-def _is_same_command(speed: Array, median: Array | float) -> Flags:
-    return np.abs(speed - median) < _SAME_COMMAND * median
-
-
-def _common_speeds(
-    store: PartitionedStore[Joint], medians: dict[Level, float]
-) -> dict[Level, float]:
-    """Return the mean of the speeds that are one commanded speed, by joint and level [deg/s]."""
-    sums: dict[Level, list[float]] = {level: [] for level in medians}
-    counts = dict.fromkeys(medians, 0)
-    for joint in store.keys:
-        for (pairs,) in store.read(joint, "pairs"):
-            for one in np.unique(pairs["level"]).tolist():
-                level = joint[1], one
-                speed = pairs["speed"][pairs["level"] == one]
-                same = speed[_is_same_command(speed, medians[level])]
-                sums[level].append(math.fsum(same))
-                counts[level] += len(same)
-    return {level: math.fsum(sums[level]) / max(counts[level], 1) for level in medians}

@@ -10,7 +10,7 @@ from itertools import chain
 import numpy as np
 import pyarrow as pa
 
-from frictioncli.arrays import Array
+from frictioncli.arrays import Array, Flags
 from frictioncli.pairs.bins import bin_means
 from frictioncli.pairs.chunks import SampleChunk, chunks
 from frictioncli.pairs.constant_speed import (
@@ -19,9 +19,11 @@ from frictioncli.pairs.constant_speed import (
     constant_speed_segments,
 )
 from frictioncli.pairs.other_joints import (
+    STAND_ELSEWHERE,
     OtherMotion,
-    bins_with_other_motion,
+    bins_with_marks,
     joints_that_move,
+    poses_of_segments,
 )
 from frictioncli.pairs.partitioned_store import Columns, PartitionedStore
 from frictioncli.pairs.ramps import MEANS, PreviousMove, ramp_means
@@ -33,7 +35,7 @@ from frictioncli.pairs.starts import StartCounts
 Joint = tuple[str, int]
 
 TEMPERATURES = ("motor_temperature", "housing_temperature", "motor_temperature_reading")
-_CHANNELS = (*MEANS, "motor_temperature_reading", "other_speed", "other_joints")
+_CHANNELS = (*MEANS, "motor_temperature_reading", "other_speed", "other_joints", "pose")
 
 _FIRST_ROWS = 1 << 17
 """Samples from which it is found whether the angle bins must be wider."""
@@ -53,11 +55,12 @@ class SegmentTables:
     store : PartitionedStore
         Three tables by run and joint. ``segments``, one row per segment: recording (its number in
         ``recordings``), direction (+1, -1), speed [deg/s], start, stop [s], motor_temperature,
-        housing_temperature, motor_temperature_reading [°C]. ``bins``, one row per segment and angle
-        bin: segment (number within run and joint), bin (number), n (samples), torque at the bin's
-        centre, load, time [s], shared (whether another joint moved meanwhile). ``ramps``: rows of
-        :func:`frictioncli.pairs.ramps.ramp_means` with recording; ``move`` is the number of the
-        segment. ``starts``: rows of :class:`frictioncli.pairs.starts.StartCounts` likewise.
+        housing_temperature, motor_temperature_reading [°C], pose (of the other joints). ``bins``,
+        one row per segment and angle bin: segment (number within run and joint), bin (number), n
+        (samples), torque at the bin's centre, load, time [s], shared (whether another joint moved
+        meanwhile). ``ramps``: rows of :func:`frictioncli.pairs.ramps.ramp_means` with recording and
+        pose; ``move`` is the number of the segment. ``starts``: rows of
+        :class:`frictioncli.pairs.starts.StartCounts` likewise.
     counts : dict of (str, int) to int
         Number of segments of each run and joint that has some.
     recordings : list of tuple of str
@@ -167,7 +170,9 @@ class _Finder:
     counts: dict[Joint, int] = field(default_factory=dict)
     recordings: list[tuple[str, str]] = field(default_factory=list)
     samples: int = 0
-    dropped: dict[str, int] = field(default_factory=lambda: dict.fromkeys((*REASONS, _BARELY), 0))
+    dropped: dict[str, int] = field(
+        default_factory=lambda: dict.fromkeys((*REASONS, _BARELY, STAND_ELSEWHERE), 0)
+    )
     speeds: dict[int, SpeedCounts] = field(
         default_factory=lambda: {1: SpeedCounts(), -1: SpeedCounts()}
     )
@@ -198,9 +203,10 @@ class _Finder:
             counts.add(np.abs(found.speed[np.sign(found.speed) == direction]))
         direction, stop = self._last_moves.get(source.joint, (0, 0))
         previous = PreviousMove(direction, stop - chunk.offset)
+        pose, elsewhere = poses_of_segments(channels["pose"], found.start, found.stop)
         tables = {
-            "segments": self._segments(channels, found),
-            "bins": self._bins(channels, found, source.joint, chunk.period),
+            "segments": self._segments(channels, found) | {"pose": pose},
+            "bins": self._bins(channels, found, source.joint, chunk.period, elsewhere),
             "ramps": ramp_means(channels, found, chunk.period, previous),
             "starts": self.starts.add((source.run, source.joint), channels, found, chunk.period),
         }
@@ -211,6 +217,7 @@ class _Finder:
         before = self.counts.get(joint, 0)
         tables["bins"]["segment"] = tables["bins"]["segment"] + before
         for name in ("ramps", "starts"):
+            tables[name]["pose"] = pose[tables[name]["move"]]
             tables[name]["move"] = tables[name]["move"] + before
         self.counts[joint] = before + len(found.start)
         self.store.add(joint, tables)
@@ -228,7 +235,12 @@ class _Finder:
         } | {name: slice_means(channels[name], found.start, found.stop) for name in TEMPERATURES}
 
     def _bins(
-        self, channels: dict[str, Array], found: ConstantSpeedSegments, joint: int, period: float
+        self,
+        channels: dict[str, Array],
+        found: ConstantSpeedSegments,
+        joint: int,
+        period: float,
+        elsewhere: Flags,
     ) -> Columns:
         time, start, stop = channels["time"], found.start, found.stop
         means = bin_means(
@@ -248,10 +260,22 @@ class _Finder:
             name: getattr(means, name)[covered]
             for name in ("segment", "bin", "n", "torque", "load", "time")
         }
-        position = channels["position"]
-        shared = bins_with_other_motion(
-            channels["other_speed"], position, start, stop, self.width, bins["segment"], bins["bin"]
-        )
+
+        def marked(samples: Flags) -> Flags:
+            return bins_with_marks(
+                samples,
+                channels["position"],
+                start,
+                stop,
+                self.width,
+                bins["segment"],
+                bins["bin"],
+            )
+
+        gone = marked(elsewhere)
+        self.dropped[STAND_ELSEWHERE] += int(bins["n"][gone].sum())
+        bins = {name: values[~gone] for name, values in bins.items()}
+        shared = marked(channels["other_speed"] > 0)
         self.other_motion.add(joint, bins["n"], bins["segment"], shared, period)
         if shared.any():
             others = joints_that_move(channels["other_joints"], start, stop)

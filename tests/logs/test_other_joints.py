@@ -8,7 +8,7 @@ import pytest
 from frictioncli import schemas, tables
 from frictioncli.logs.ingest import IngestSettings, ingest
 from frictioncli.logs.samples.log_rows import LogRows
-from frictioncli.logs.samples.other_joints import mean_speed, with_other_speed
+from frictioncli.logs.samples.other_joints import mean_speed, with_other_joints
 
 TIME = np.arange(0, 20, 0.01)
 
@@ -22,7 +22,7 @@ def other_speed(log, joints, cuts=()):
     """Return the speed beside each joint, reading the log in pieces."""
     edges = [0, *cuts, len(log)]
     pieces = [log.take(slice(a, b)) for a, b in pairwise(edges)]
-    found = list(with_other_speed(pieces, joints))
+    found = list(with_other_joints(pieces, joints))
     assert all(set(piece.columns) >= {(joint, "position") for joint in joints} for piece in found)
     return {
         joint: np.concatenate([piece.columns[joint, "other_speed"] for piece in found])
@@ -46,11 +46,12 @@ def test_the_speed_of_the_fastest_other_joint_stands_beside_each():
 
 def test_joints_that_are_not_read_count_and_their_columns_end_there():
     log = rows(q4=np.zeros(len(TIME)), q6=20 * np.clip(TIME - 2, 0, 4))
-    (block,) = with_other_speed([log], [4])
+    (block,) = with_other_joints([log], [4])
     assert set(block.columns) == {
         (4, "position"),
         (4, "other_speed"),
         (4, "other_joints"),
+        (4, "pose"),
     }
     # joint 6 alone moves, from 2 s on
     np.testing.assert_array_equal(block.columns[4, "other_joints"][[100, 300]], [0, 2**5])
@@ -79,7 +80,7 @@ def test_noise_and_a_wrapping_angle_are_no_motion():
 
 def test_a_log_of_one_joint_says_nothing():
     log = rows(q1=TIME)
-    (block,) = with_other_speed([log], [1])
+    (block,) = with_other_joints([log], [1])
     assert set(block.columns) == {(1, "position")}
 
 

@@ -11,6 +11,7 @@ import numpy as np
 from frictioncli.arrays import Array
 from frictioncli.logs.channels import channel_names as names
 from frictioncli.logs.samples.log_rows import LogRows
+from frictioncli.logs.samples.poses import Poses
 
 WINDOW = 0.5
 """Time over which the change of a position is taken. [s]"""
@@ -25,11 +26,14 @@ _TURN = 360.0
 """A position may jump by this where it wraps. [deg]"""
 
 
-def with_other_speed(blocks: Iterable[LogRows], joints: Sequence[int]) -> Iterator[LogRows]:
-    """Yield rows with the motion of the other joints beside each joint's channels.
+def with_other_joints(
+    blocks: Iterable[LogRows], joints: Sequence[int], poses: Poses | None = None
+) -> Iterator[LogRows]:
+    """Yield rows with the motion and the pose of the other joints beside each joint's channels.
 
-    It is the speed of the fastest of them, and which of them move. Columns of joints that are not
-    read are left out. Where the log has the position of one joint only, rows stay as they are.
+    It is the speed of the fastest of them, which of them move, and where all stand. Columns of
+    joints that are not read are left out. Where the log has the position of one joint only, rows
+    stay as they are.
 
     Parameters
     ----------
@@ -37,7 +41,10 @@ def with_other_speed(blocks: Iterable[LogRows], joints: Sequence[int]) -> Iterat
         Rows in ascending time, with the positions of all joints whose position is known.
     joints : sequence of int
         Joints that are read.
+    poses : Poses, optional
+        Poses of the logs before; new ones are added.
     """
+    poses = poses or Poses()
     before: LogRows | None = None
     for block in blocks:
         positions = _positions(block)
@@ -50,11 +57,16 @@ def with_other_speed(blocks: Iterable[LogRows], joints: Sequence[int]) -> Iterat
             for joint, key in positions.items()
         }
         before = tail.take(_last(tail.time))
+        places = {
+            joint: poses.places(joint, block.columns[key], speeds[joint] == 0)
+            for joint, key in positions.items()
+        }
         columns = {key: values for key, values in block.columns.items() if key[0] in joints}
         for joint in joints:
             others = {other: speed for other, speed in speeds.items() if other != joint}
             columns[joint, names.OTHER_SPEED] = np.max(list(others.values()), axis=0)
             columns[joint, names.OTHER_JOINTS] = joint_set(others)
+            columns[joint, names.POSE] = poses.of(joint, places)
         yield LogRows(block.lines, block.time, columns)
 
 

@@ -12,7 +12,8 @@ from frictioncli.logs.runs.opening import OpenedLog
 from frictioncli.logs.samples.chunks import LogChunk, PlannedLog
 from frictioncli.logs.samples.differentiation import half_window, max_gap
 from frictioncli.logs.samples.log_rows import NO_VALUES, REASONS, LogRows, RejectedRows
-from frictioncli.logs.samples.other_joints import with_other_speed
+from frictioncli.logs.samples.other_joints import with_other_joints
+from frictioncli.logs.samples.poses import Poses
 from frictioncli.logs.samples.quantized_temperature import longest_change_interval
 from frictioncli.logs.samples.row_checks import (
     add_velocity,
@@ -70,6 +71,7 @@ def read_recording(
     rejected: RejectedRows,
     sink: SampleSink,
     continuous: Collection[int] = (),
+    poses: Poses | None = None,
 ) -> RecordingSummary | Refusal:
     """Hand all samples of a log to a sink.
 
@@ -85,6 +87,8 @@ def read_recording(
         Takes the samples.
     continuous : collection of int
         Joints whose motor temperature is known to be continuous, not quantized.
+    poses : Poses, optional
+        Poses of the recordings before; new ones are added.
 
     Returns
     -------
@@ -110,7 +114,7 @@ def read_recording(
     longest = longest_change_interval(planned.period)
     kept, first, time = 0, 0.0, np.zeros(1)
     try:
-        for rows in _usable_rows(planned, counted(), rejected):
+        for rows in _usable_rows(planned, counted(), rejected, poses):
             first = first if kept else float(rows.time[0])
             kept += len(rows)
             time = rows.time - first if first else rows.time
@@ -127,7 +131,10 @@ def read_recording(
 
 
 def _usable_rows(
-    planned: PlannedLog, chunks: Iterable[LogChunk], rejected: RejectedRows
+    planned: PlannedLog,
+    chunks: Iterable[LogChunk],
+    rejected: RejectedRows,
+    poses: Poses | None,
 ) -> Iterator[LogRows]:
     """Yield the rows that become samples, with all channels, in ascending time."""
 
@@ -147,7 +154,7 @@ def _usable_rows(
     half, gap = half_window(planned.period), max_gap(planned.period)
     moving = add_velocity(started, derived, rejected, half=half, gap=gap)
     joints = [plan.channels.joint for plan in planned.plans]
-    for rows in with_other_speed(moving, joints):
+    for rows in with_other_joints(moving, joints, poses):
         if len(rows):
             yield rows
 

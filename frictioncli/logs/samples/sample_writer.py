@@ -38,6 +38,7 @@ _COPIED_CHANNELS = (
     names.LOAD,
     names.OTHER_SPEED,
     names.OTHER_JOINTS,
+    names.POSE,
 )
 
 RunKnots = Mapping[tuple[str, int], Sequence[Knots | None]]
