@@ -22,6 +22,9 @@ from frictioncli.correction.uncertainty import replay_with_filter
 from frictioncli.errors import NotEnoughData
 from frictioncli.model.document import FrictionModel
 
+_MOST_COUNTS = 15
+"""Most numbers of corrections that a line of text lists."""
+
 
 class Evaluation(NamedTuple):
     """Result of the evaluation.
@@ -285,7 +288,10 @@ def evaluation_text(rows: pd.DataFrame, unit: str) -> str:
     lines = []
     for (run, joint), group in rows.groupby(["run", "joint"], sort=False):
         uncorrected = group[group["criterion"] == "none"].set_index("phase")["epsilon"]
-        lines.append(f"{run}, joint {joint}: epsilon [{unit}] by number of corrections")
+        lines.append(
+            f"{run}, joint {joint}: epsilon [{unit}] by number of corrections; where several"
+            " settings give the same number, their median"
+        )
         for phase, part in group.groupby("phase", sort=False):
             lines.append(
                 f"  {phase:9s} none: {uncorrected[phase]:.2f}  {_by_count(part, 'first_degree')}"
@@ -297,5 +303,7 @@ def evaluation_text(rows: pd.DataFrame, unit: str) -> str:
 
 def _by_count(rows: pd.DataFrame, criterion: str) -> str:
     chosen = rows[rows["criterion"] == criterion]
-    median = chosen.groupby("corrections")["epsilon"].median().head(15)
-    return "  ".join(f"{count}: {value:.2f}" for count, value in median.items())
+    median = chosen.groupby("corrections")["epsilon"].median()
+    texts = [f"{count}: {value:.2f}" for count, value in median.head(_MOST_COUNTS).items()]
+    more = len(median) - len(texts)
+    return "  ".join(texts + ([f"({more} more)"] if more > 0 else []))

@@ -1,9 +1,13 @@
 """Figures 9 and 10: friction predicted with corrected temperature in heating and cooling."""
 
+import numpy as np
 import pandas as pd
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from numpy.typing import ArrayLike
 
+from frictioncli.arrays import Array
+from frictioncli.model.friction import friction_torque
 from frictioncli.report.labels import TEMPERATURE_SYMBOLS, figure_text, friction_label
 from frictioncli.report.results import MOST_RUNS, JointResults, by_speed
 from frictioncli.report.style import FAINT, MODEL, WIDTH, label_right, legend_above, points
@@ -94,6 +98,7 @@ def _draw_friction(panel: Axes, own: pd.DataFrame, results: JointResults) -> Non
     for speed, group in by_speed(own):
         style = results.style(speed)
         minutes = group["time"] / 60.0
+        stepped, predicted = predicted_steps(own, group, results)
         tooltips = [
             f"{speed_text(speed)}, {row['time'] / 60.0:.0f} min: measured"
             f" {number_text(row['friction_torque'])} {results.unit}, predicted"
@@ -102,7 +107,7 @@ def _draw_friction(panel: Axes, own: pd.DataFrame, results: JointResults) -> Non
         ]
         points(panel, minutes, group["friction_torque"], style, opacity=0.5, tooltips=tooltips)
         panel.plot(minutes, group["friction_smoothed"], color=style.colour, linewidth=1.0)
-        panel.plot(minutes, group["friction_predicted"], "--", color=style.colour, linewidth=2.0)
+        panel.plot(stepped / 60.0, predicted, "--", color=style.colour, linewidth=2.0)
         labels.append(
             (float(group["friction_predicted"].iloc[-1]), speed_text(speed), style.colour)
         )
@@ -123,9 +128,63 @@ def _draw_temperature(panel: Axes, own: pd.DataFrame, results: JointResults) -> 
     minutes = own["time"] / 60.0
     measured = own["temperature_parameter"] - own["temperature_correction"]
     panel.plot(minutes, measured, color=FAINT, label=symbol)
-    panel.plot(minutes, own["temperature_parameter"], color=MODEL, label=f"T = {symbol} + ΔT")
+    time, parameter = _parameter_steps(own, own["time"].to_numpy())
+    panel.plot(time / 60.0, parameter, color=MODEL, label=f"T = {symbol} + ΔT")
     panel.set_ylabel("T [°C]")
     legend_above(panel)
+
+
+def predicted_steps(
+    own: pd.DataFrame, group: pd.DataFrame, results: JointResults
+) -> tuple[Array, Array]:
+    """Return the predicted friction of one speed over time, with a step at every correction.
+
+    A correction takes effect at once, but the pairs of a speed are minutes apart: a line through
+    them alone would show ramps.
+
+    Parameters
+    ----------
+    own : DataFrame
+        Rows of the schedule of one run and phase, by time.
+    group : DataFrame
+        Those of one speed.
+    results : JointResults
+        One joint's results.
+
+    Returns
+    -------
+    time, friction : ndarray, shape (points,)
+        Times occur twice at corrections. [s], [torque unit]
+    """
+    model = results.extended_model if results.simulated_extended else results.model
+    at = group["time"].to_numpy()
+    time, parameter = _parameter_steps(own, at)
+    speed = float(group["speed"].iloc[0])
+
+    def friction(temperature: ArrayLike) -> Array:
+        assert model is not None  # the schedule was simulated with it
+        return friction_torque(model.friction, load=0.0, speed=speed, temperature=temperature)
+
+    # what effects of an extended model add changes slowly
+    added = group["friction_predicted"] - friction(group["temperature_parameter"])
+    return time, friction(parameter) + np.interp(time, at, added)
+
+
+def _parameter_steps(own: pd.DataFrame, at: Array) -> tuple[Array, Array]:
+    """Return times with each correction between ``at`` twice, and the temperature parameter."""
+    known = own["time"].to_numpy()
+    correction = own["temperature_correction"].to_numpy()
+    measured = own["temperature_parameter"].to_numpy() - correction
+    events = known[own["corrected"].astype(bool).to_numpy()]
+    events = events[(events > at[0]) & (events <= at[-1])]
+    time = np.concatenate([np.setdiff1d(at, events), events, events])
+    after = np.repeat([1, 0, 1], [len(time) - 2 * len(events), len(events), len(events)])
+    order = np.lexsort((after, time))
+    time, after = time[order], after[order]
+    last = np.searchsorted(known, time, side="right") - 1
+    first = np.maximum(np.searchsorted(known, time, side="left") - 1, 0)
+    place = np.where(after == 1, last, first)
+    return time, np.interp(time, known, measured) + correction[place]
 
 
 def _draw_corrections(friction: Axes, temperature: Axes, own: pd.DataFrame) -> None:

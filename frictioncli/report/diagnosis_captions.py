@@ -9,11 +9,11 @@ def evidence_caption(results: JointResults, *, cause: CauseRecord, fitted: str) 
     """Return the caption of the figure of one cause."""
     return (
         f"{cause.claim} Points: mean misfit of the {cause.channel} in bins, with twice its"
-        " standard error over pairs; a point without a bar is a single pair. Left: the base model."
-        f" Middle: the extended model without this cause, and the term fitted for it, {fitted};"
-        " it may exceed the misfit on the left, where the base model's parameters make up for it."
-        " Right: the extended model. The cause stands if the middle points lie on the lines and the"
-        " right ones on zero. Bars: which effects could be at work, the credible set in blue."
+        " standard error over pairs; a point without a bar is a single pair. First: the base model."
+        f" Second: the extended model without this cause, and the term fitted for it, {fitted};"
+        " it may exceed the misfit above, where the base model's parameters compensate for it."
+        " Third: the extended model. The cause stands if the second points lie on the lines and the"
+        " third ones on zero. Bars: which effects could be at work, the credible set in blue."
     )
 
 
@@ -22,19 +22,20 @@ def simulation_caption(results: JointResults, *, held_out: str | None) -> str:
     new = f" Run {held_out} was kept out of the fit." if held_out else ""
     return (
         "Points: measured torque, forward filled, reverse hollow; lines: simulated along the same"
-        f" motion by the base model. Below: their difference.{new} Left: mean of each pair over its"
-        " angles. Right: means over all pairs of the slowest and the fastest speed shown."
+        f" motion by the base model. Below each: their difference.{new} First: mean of each pair"
+        " over its angles. Then: means over the pairs of the fastest speed shown, heating and"
+        " cooling apart, since their misfits may cancel."
     )
 
 
 def map_caption(results: JointResults, *, extended: bool) -> str:
     """Return the caption of the residual maps."""
-    below = " The lower row of each channel shows the extended model." if extended else ""
+    beside = " Left: the base model. Right: the extended model." if extended else ""
     return (
         "Mean of measured minus simulated torque per cell, red where more was measured than"
-        " simulated, blue where less; grey: no data. Friction is what opposes the motion, load what"
-        f" does not turn with it; each has its own scale, centred at zero.{below} A trend or a"
-        " patch is structure; a pattern without order is noise."
+        f" simulated, blue where less; grey: no data.{beside} Friction reverses with direction;"
+        " load does not. Each has its own scale. A trend or a patch is structure; a pattern without"
+        " order is noise."
     )
 
 
@@ -43,7 +44,7 @@ def gain_caption(results: JointResults, *, document: DiagnosisDocument) -> str:
     run = f"run {document.held_out}" if document.held_out else "the data fitted"
     return (
         f"What the simulated torque misses on {run}, both directions, by the base and by the"
-        " extended model. Left: how the misfit is distributed. Right: how many points miss by more"
+        " extended model. First: how the misfit is distributed. Then: how many points miss by more"
         " than a size. Grey: noise of points and pairs, which no model can predict."
     )
 

@@ -26,6 +26,7 @@ from frictioncli.wording import (
 
 UNDETECTABLE = "cannot be shown by these data"
 
+_PHASES = {"heat-up": "rising", "cool-down": "falling"}
 _AXIS_UNITS = {"temperature": "°C", "angle": "deg"}
 
 
@@ -254,16 +255,17 @@ def worst_table(document: DiagnosisDocument) -> TextTable:
     """Return the conditions under which the simulated torque is furthest from the measured one."""
     return TextTable(
         title="Where the simulated torque misses most",
-        header=("where", "speed", "channel", "measured − simulated, mean"),
+        header=("where", "temperature", "speed", "channel", "measured − simulated, mean"),
         rows=tuple(
             (
                 f"{place.axis} {number_text(place.low)} to {number_text(place.high)}"
                 f" {_AXIS_UNITS.get(place.axis, '')}".rstrip(),
+                _PHASES.get(place.phase, "steady or unknown"),
                 speed_text(place.speed),
                 place.channel,
                 f"{number_text(place.misfit)} {document.unit_of(place.channel)}",
             )
             for place in document.simulation.worst
         ),
-        texts=3,
+        texts=4,
     )

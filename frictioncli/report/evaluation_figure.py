@@ -10,6 +10,7 @@ from frictioncli.report.labels import CRITERION_WORDS, figure_text
 from frictioncli.report.results import MOST_RUNS, JointResults
 from frictioncli.report.style import (
     FAINT,
+    MODEL,
     PHASE_COLOURS,
     PHASE_WORDS,
     PHASES,
@@ -25,7 +26,7 @@ BASELINES = ("none", "equal")
 _PAPER_BOUND = 2.0
 """Error that the source paper reaches. [N·m]"""
 
-_MOST_GROUPS = 14
+_MOST_GROUPS = 16
 """Greatest number of groups of bars."""
 
 _BAR_WIDTH = 0.38
@@ -51,7 +52,7 @@ def error_figure(results: JointResults) -> Figure:
     runs = sorted(results.evaluation["run"].unique())[:MOST_RUNS]
     evaluation = results.evaluation[results.evaluation["run"].isin(runs)]
     criteria = [criterion, *_other_criterion(criterion, evaluation)]
-    counts = shown_counts(evaluation[evaluation["criterion"].isin(criteria)])
+    counts = shown_counts(_drawn_rows(results))
     figure, axes = panels(len(runs), height=3.4)
     for run, panel in zip(runs, axes, strict=True):
         own = evaluation[evaluation["run"] == run]
@@ -64,6 +65,8 @@ def error_figure(results: JointResults) -> Figure:
         for name in criteria[1:]:
             panel.plot([], [], label=CRITERION_WORDS[name], color=FAINT, **_OTHER)
         panel.plot([], [], color=FAINT, linestyle=_DASHES, linewidth=1.3, label="no correction")
+        if results.unit == "N·m":
+            panel.axhline(_PAPER_BOUND, color=MODEL, linewidth=1.0, linestyle=":", label="2 N·m")
         panel.set_xticks(range(len(counts)), [str(count) for count in counts])
         panel.grid(visible=False, axis="x")
         panel.set_title(figure_text(run))
@@ -93,7 +96,7 @@ def _phase_bars(
     # zero corrections have no spacing
     known = known[(known["criterion"] != "equal") | (known["corrections"] > 0)]
     errors = {
-        name: mean_error_per_count(known[known["criterion"] == name])
+        name: error_per_count(known[known["criterion"] == name])
         for name in (criteria[0], "equal", *criteria[1:])
     }
     bars = errors[criteria[0]]
@@ -152,19 +155,21 @@ def _other_criterion(criterion: str, evaluation: pd.DataFrame) -> list[str]:
     return [name for name in others if name != criterion][:1]
 
 
-def mean_error_per_count(rows: pd.DataFrame) -> pd.DataFrame:
-    """Return the mean error and the greatest number of failures per number of corrections.
+def error_per_count(rows: pd.DataFrame) -> pd.DataFrame:
+    """Return the median error and the greatest number of failures per number of corrections.
+
+    Several settings may give the same number; their median is what the terminal prints too.
 
     Parameters
     ----------
     rows : DataFrame
         Rows of :data:`frictioncli.schemas.EVALUATION` of one run, phase and criterion.
     """
-    return rows.groupby("corrections").agg(epsilon=("epsilon", "mean"), failed=("failed", "max"))
+    return rows.groupby("corrections").agg(epsilon=("epsilon", "median"), failed=("failed", "max"))
 
 
 def shown_counts(rows: pd.DataFrame) -> list[int]:
-    """Return the numbers of corrections shown in Figure 11, at most fourteen.
+    """Return the numbers of corrections shown in Figure 11, at most sixteen.
 
     Numbers shared by most runs, phases and criteria are preferred, so that these can be compared,
     and among them the lowest.
@@ -177,6 +182,27 @@ def shown_counts(rows: pd.DataFrame) -> list[int]:
     phases = rows[["run", "phase", "criterion", "corrections"]].drop_duplicates()
     frequency = phases.groupby("corrections").size().sort_values(ascending=False, kind="stable")
     return sorted(int(count) for count in frequency.index[:_MOST_GROUPS])
+
+
+def counts_left_out(results: JointResults) -> list[int]:
+    """Return the numbers of corrections that were evaluated and have no room in Figure 11.
+
+    Parameters
+    ----------
+    results : JointResults
+        One joint's results.
+    """
+    rows = _drawn_rows(results)
+    return sorted({int(count) for count in rows["corrections"]} - set(shown_counts(rows)))
+
+
+def _drawn_rows(results: JointResults) -> pd.DataFrame:
+    """Return the rows of the evaluation whose numbers of corrections Figure 11 shows."""
+    criterion = compared_criterion(results)
+    runs = sorted(results.evaluation["run"].unique())[:MOST_RUNS]
+    evaluation = results.evaluation[results.evaluation["run"].isin(runs)]
+    criteria = [criterion, *_other_criterion(criterion, evaluation)]
+    return evaluation[evaluation["criterion"].isin(criteria)]
 
 
 def compared_criterion(results: JointResults, *, bounded: bool = True) -> str:

@@ -61,9 +61,9 @@ def evidence_figure(results: JointResults, *, diagnosis: Reloaded, index: int) -
     axis, channel = str(cause.seen_in), str(cause.channel)
     bars = shown_probabilities(cause.probabilities, cause.effects)
     low = 0.62 + 0.24 * len(bars)
-    figure = Figure(figsize=(WIDTH, 3.3 + low), layout="constrained")
-    upper, lower = figure.subfigures(2, 1, squeeze=False, height_ratios=(3.3, low))[:, 0]
-    panels = upper.subplots(1, 3, sharey=True, sharex=True)
+    figure = Figure(figsize=(WIDTH, 6.6 + low), layout="constrained")
+    upper, lower = figure.subfigures(2, 1, squeeze=False, height_ratios=(6.6, low))[:, 0]
+    panels = upper.subplots(3, 1, sharey=True, sharex=True)
     table = seen.problem.table
     rows = pd.DataFrame(
         {
@@ -86,9 +86,9 @@ def evidence_figure(results: JointResults, *, diagnosis: Reloaded, index: int) -
     if axis == "order" or (axis == "speed" and table.speed.max() > 8 * table.speed.min()):
         _logarithmic(panels[0], rows["at"])
     label = AXES[axis][0] + (f" [{results.load_unit}]" if axis == "load" else "")
-    panels[1].set_xlabel(label)
+    panels[-1].set_xlabel(label)
     unit = results.unit if channel == "friction" else results.load_unit
-    panels[0].set_ylabel(f"{channel}: measured − simulated [{unit}]")
+    panels[1].set_ylabel(f"{channel}: measured − simulated [{unit}]")
     handles, labels = panels[1].get_legend_handles_labels()
     upper.legend(handles, labels, loc="outside lower center", ncols=len(labels))
     _draw_probabilities(lower.subplots(), bars, set(cause.effects))

@@ -8,6 +8,7 @@ from matplotlib.figure import Figure
 
 from frictioncli.report.correction_figures import corrected_friction_figure, corrections_text
 from frictioncli.report.evaluation_figure import (
+    counts_left_out,
     error_figure,
     setting_text,
     uncertainty_text,
@@ -97,15 +98,20 @@ def _time_caption(results: JointResults) -> str:
 def _temperature_caption(results: JointResults, kind: str) -> str:
     column, name = f"{kind}_temperature", f"{kind} temperature"
     known = results.thermal_pairs.dropna(subset=[column])
-    fastest = known[known["speed"] == known["speed"].max()].sort_values(column, kind="stable")
-    cold, hot = fastest.iloc[0], fastest.iloc[-1]
+    texts = []
+    for run in thermal_runs(results, column):
+        own = known[known["run"] == run]
+        fastest = own[own["speed"] == own["speed"].max()].sort_values(column, kind="stable")
+        cold, hot = fastest.iloc[0], fastest.iloc[-1]
+        texts.append(
+            f"{run}: {number_text(cold['friction_torque'])} {results.unit} at"
+            f" {cold[column]:.0f} °C, {number_text(hot['friction_torque'])} {results.unit} at"
+            f" {hot[column]:.0f} °C"
+        )
     return (
         f"Friction torque at zero load against the {name}; heating filled, cooling hollow. At"
-        f" {speed_text(cold['speed'])} it is {number_text(cold['friction_torque'])}"
-        f" {results.unit} at"
-        f" {cold[column]:.0f} °C and {number_text(hot['friction_torque'])} {results.unit} at"
-        f" {hot[column]:.0f} °C. Where filled and hollow points differ at one temperature, the"
-        f" {name} alone does not tell the friction."
+        f" {speed_text(known['speed'].max())}, {'; '.join(texts)}. Where filled and hollow points"
+        f" differ at one temperature, the {name} alone does not determine friction."
     )
 
 
@@ -115,9 +121,12 @@ def _means_caption(results: JointResults) -> str:
         " runs between the branches."
     )
     if results.model.temperature != "mean":
-        curves += f" It was fitted, and is drawn here, over the {_model_temperature(results)}."
+        curves += (
+            " The paper has T* = (Tm + Tc)/2 on this axis; this function was fitted over the"
+            f" {_model_temperature(results)} and is drawn over that."
+        )
     return (
-        "Points: mean of the heating and the cooling branch at the same temperature, equation (11)."
+        "Points: mean of the heating and cooling branches at equal temperature, equation (11)."
         f" {curves}"
     )
 
@@ -138,8 +147,9 @@ def _speed_caption(results: JointResults) -> str:
             f" equation (15) with the {_model_temperature(results)}."
         )
     return (
-        f"{carried} A Stribeck effect would show as points that rise above the curve towards zero"
-        " speed."
+        f"{carried} Heating filled and moved to the left, cooling hollow and moved to the right,"
+        " so that no point hides another. A Stribeck effect would show as points that rise above"
+        " the curve towards zero speed."
     )
 
 
@@ -157,11 +167,14 @@ def _evaluation_caption(results: JointResults) -> str:
     sentences = [
         "Corrections of the extended model." if results.evaluated_extended else "",
         "Error ε of equation (21) against the number of corrections in a phase. Where several"
-        " settings give the same number, the bar is their mean. Diamonds: the same number of"
+        " settings give the same number, the bar is their median. Diamonds: the same number of"
         " corrections, equally spaced.",
         uncertainty_text(results),
-        "Dashed lines: no correction at all. Few corrections suffice where the bars fall quickly"
-        " and then stay level.",
+        "Dashed lines: no correction at all.",
+        "Dotted: 2 N·m, the error that the paper reaches." if results.unit == "N·m" else "",
+        f"Not drawn, for lack of room: {list_text([str(n) for n in left])} corrections."
+        if (left := counts_left_out(results))
+        else "",
     ]
     return " ".join(sentence for sentence in sentences if sentence)
 
@@ -173,10 +186,9 @@ def _residual_caption(results: JointResults) -> str:
     else:
         lag = "."
     return (
-        "What the model, without temperature correction, leaves of the measured friction. Left:"
-        f" mean of each of the {pairs}. Right: mean over all pairs of a speed, by angle, in the"
-        " colours of the other figures. A trend or a wave is structure that the model does not"
-        f" have{lag}"
+        "Measured minus modelled friction, without temperature correction. Points: mean of each of"
+        f" the {pairs}. By angle: mean over all pairs of a speed. A trend or a wave is structure"
+        f" that the model lacks{lag}"
     )
 
 
@@ -246,7 +258,7 @@ FIGURES = (
     ),
     FigureSpec(
         name="residuals",
-        title="What the model leaves",
+        title="Residuals",
         caption=_residual_caption,
         missing=residuals_missing,
         draw=residual_figure,

@@ -24,6 +24,12 @@ REFERENCE_TEMPERATURE = 20.0
 
 _MOST_CURVES = 8
 _MOST_HOT = 2
+_ASIDE = {"heat-up": -0.012, "": 0.0, "cool-down": 0.012}
+"""Shift of the points of each phase in Figure 8, as a share of the highest speed."""
+
+_FEW_PAIRS = 3
+"""Number of pairs at a speed up to which their mean would hide them."""
+
 _CURVES_HEIGHT = 3.6
 _SHIFTED_HEIGHT = 1.7
 
@@ -138,30 +144,35 @@ def speed_figure(results: JointResults) -> Figure:
         own = carried[carried["run"] == run]
         panel.plot(speeds, curve, color=MODEL, label="model (16), L = 0")
         for speed, group in by_speed(own):
-            points(
-                panel,
-                group["speed"],
-                group["carried"],
-                results.style(speed),
-                opacity=0.35,
-                tooltips=[
-                    f"{speed_text(speed)}: {number_text(friction)} {results.unit}"
-                    for friction in group["carried"]
-                ],
-            )
-        means = own.groupby("speed")["carried"].mean()
+            for phase, aside in _ASIDE.items():
+                branch = group[_branch(group) == phase]
+                points(
+                    panel,
+                    branch["speed"] + aside * fastest,
+                    branch["carried"],
+                    results.style(speed),
+                    filled=phase != "cool-down",
+                    size=4.0,
+                    tooltips=[
+                        f"{speed_text(speed)}: {number_text(friction)} {results.unit}"
+                        for friction in branch["carried"]
+                    ],
+                )
+        several = own.groupby("speed").filter(lambda group: len(group) > _FEW_PAIRS)
+        means = several.groupby("speed")["carried"].mean()
         panel.plot(
             means.index,
             means,
             linestyle="none",
             marker="_",
-            markersize=13,
-            markeredgewidth=2.2,
+            markersize=24,
+            markeredgewidth=1.6,
             color=MODEL,
             zorder=1.9,
-            label="mean of the pairs at a speed",
         )
-        panel.plot([], [], "o", color=FAINT, markersize=3.5, label="one pair")
+        panel.plot([], [], "_", color=MODEL, markersize=9, markeredgewidth=1.6, label="mean")
+        panel.plot([], [], "o", color=FAINT, markersize=3.5, label="pair")
+        panel.plot([], [], "o", color=FAINT, markerfacecolor="white", label="cooling")
         panel.set_title(figure_text(run))
         panel.set_ylabel(friction_label(results.unit))
         panel.set_ylim(bottom=min(0.0, panel.get_ylim()[0]))
@@ -169,6 +180,11 @@ def speed_figure(results: JointResults) -> Figure:
         legend_above(panel)
     axes[-1].set_xlabel("speed |φ'| [deg/s]")
     return figure
+
+
+def _branch(pairs: pd.DataFrame) -> pd.Series:
+    """Return the phase of each pair, empty outside heating and cooling."""
+    return pairs["phase"].where(pairs["phase"].isin(PHASES), "")
 
 
 def has_temperature_term(results: JointResults) -> bool:

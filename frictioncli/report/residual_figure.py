@@ -1,7 +1,5 @@
 """Figure of the residuals: measured minus modelled friction torque."""
 
-from typing import Any
-
 import numpy as np
 import pandas as pd
 from matplotlib.axes import Axes
@@ -9,12 +7,19 @@ from matplotlib.figure import Figure
 
 from frictioncli.report.labels import TEMPERATURE_LABELS
 from frictioncli.report.results import JointResults, by_speed
-from frictioncli.report.style import COOLING, HEATING, MODEL, OTHER_PHASE, RASTER_FROM, WIDTH
+from frictioncli.report.style import (
+    COOLING,
+    HEATING,
+    MODEL,
+    OTHER_PHASE,
+    RASTER_FROM,
+    WIDTH,
+    legend_above,
+)
 from frictioncli.wording import speed_text
 
 _ANGLE_BINS = 36
 _MOST_NAMED = 4
-_LEGEND: dict[str, Any] = {"columnspacing": 1.0, "handlelength": 1.2}
 
 
 def residuals(results: JointResults) -> pd.DataFrame:
@@ -50,21 +55,24 @@ def residual_figure(results: JointResults) -> Figure:
         residual=("residual", "mean"),
     )
     has_temperature = bool(pairs["temperature"].notna().any())
-    figure = Figure(figsize=(WIDTH, 3.4), layout="constrained")
-    axes = figure.subplots(1, 3 if has_temperature else 2, sharey=True)
+    count = 3 if has_temperature else 2
+    figure = Figure(figsize=(WIDTH, 0.4 + 2.2 * count), layout="constrained")
+    axes = figure.subplots(count, 1)
+    if has_temperature:
+        axes[1].sharey(axes[0])
     _draw_pairs(axes[0], pairs, "speed")
     axes[0].set_xlabel("speed |φ'| [deg/s]")
     if has_temperature:
         _draw_pairs(axes[1], pairs, "temperature")
-        axes[1].set_xlabel(TEMPERATURE_LABELS[results.model.temperature].replace(" = ", "\n= "))
+        axes[1].set_xlabel(TEMPERATURE_LABELS[results.model.temperature])
     _draw_angle_means(axes[-1], rows, results)
     axes[-1].set_xlabel("joint angle φ [deg]")
-    axes[0].set_ylabel(f"measured − model [{results.unit}]")
+    for panel in axes:
+        panel.set_ylabel(f"residual [{results.unit}]")
     # above the panels, since points may lie anywhere inside
-    left, right = axes[0].get_legend_handles_labels(), axes[-1].get_legend_handles_labels()
-    figure.legend(*left, loc="outside upper left", ncols=len(left[1]), **_LEGEND)
-    if len(right[1]) <= _MOST_NAMED:
-        figure.legend(*right, loc="outside upper right", ncols=len(right[1]), **_LEGEND)
+    legend_above(axes[0])
+    if len(axes[-1].get_legend_handles_labels()[1]) <= _MOST_NAMED:
+        legend_above(axes[-1])
     for panel in axes:
         panel.axhline(0.0, color=MODEL, linewidth=0.9)
     return figure

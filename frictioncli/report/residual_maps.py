@@ -10,10 +10,10 @@ from matplotlib.figure import Figure
 from frictioncli.arrays import Array, Indices
 from frictioncli.diagnosis.documents.reload import Reloaded
 from frictioncli.effects.base import EffectTable
-from frictioncli.report.binning import group_boundaries, merge_close_values
+from frictioncli.report.binning import group_boundaries, is_warming, merge_close_values
 from frictioncli.report.labels import TEMPERATURE_SYMBOLS
 from frictioncli.report.results import JointResults
-from frictioncli.report.style import WIDTH
+from frictioncli.report.style import MODEL, WIDTH
 
 _COLOURS = "RdBu_r"
 _EMPTY = "#D9DBDF"
@@ -41,12 +41,18 @@ class MapAxis:
         Edges of the cells.
     names : tuple of str
         Names of the cells, if these are to be drawn with equal width.
+    ticks : tuple of (float, str)
+        Places and texts of the ticks, where these are not the values.
+    fold : float
+        Where the axis turns from rising to falling temperature; NaN for other axes.
     """
 
     label: str
     values: Array
     edges: Array
     names: tuple[str, ...] = ()
+    ticks: tuple[tuple[float, str], ...] = ()
+    fold: float = float("nan")
 
     @property
     def cell(self) -> Indices:
@@ -70,29 +76,31 @@ def residual_map_figure(results: JointResults, *, diagnosis: Reloaded) -> Figure
         models.append(("extended model", seen.after))
     axes = _map_axes(seen.problem.table, results.model.temperature)
     wanted = (("temperature", "speed"), ("clock", "position"), ("position", "speed"))
-    columns = [(axes[across], axes[up]) for across, up in wanted if across in axes and up in axes]
-    figure = Figure(figsize=(WIDTH, 0.6 + 4.2 * len(models)), layout="constrained")
-    grid = figure.subplots(2 * len(models), len(columns), squeeze=False)
+    pairs = [(axes[across], axes[up]) for across, up in wanted if across in axes and up in axes]
+    figure = Figure(figsize=(WIDTH, 0.5 + 3.8 * len(pairs)), layout="constrained")
+    grid = figure.subplots(2 * len(pairs), len(models), squeeze=False, sharey="row")
     for index, channel in enumerate(("friction", "load")):
-        panels = grid[index * len(models) : (index + 1) * len(models)]
+        panels = grid[index * len(pairs) : (index + 1) * len(pairs)]
         means = [
             [
                 cell_means(across, up, misfit[channel], seen.problem.table.pair)
-                for across, up in columns
+                for _, misfit in models
             ]
-            for _, misfit in models
+            for across, up in pairs
         ]
-        limit = colour_limit(means[0])
+        limit = colour_limit([drawn[0] for drawn in means])
         meshes = [
             _draw_map(panel, across, up, mean, limit)
-            for row, drawn in zip(panels, means, strict=True)
-            for panel, (across, up), (mean, _) in zip(row, columns, drawn, strict=True)
+            for row, (across, up), drawn in zip(panels, pairs, means, strict=True)
+            for panel, (mean, _) in zip(row, drawn, strict=True)
         ]
-        for row, (name, _) in zip(panels, models, strict=True):
-            row[0].set_title(f"{channel}, {name}: measured − simulated")
+        for panel, (name, _) in zip(panels[0], models, strict=True):
+            panel.set_title(f"{channel}, {name}")
+        for panel in panels[:, 1:].flat:
+            panel.set_ylabel("")
         unit = results.unit if channel == "friction" else results.load_unit
-        bar = figure.colorbar(meshes[0], ax=list(panels.flat), extend="both", aspect=30, pad=0.01)
-        bar.set_label(f"misfit [{unit}]")
+        bar = figure.colorbar(meshes[0], ax=list(panels.flat), extend="both", aspect=40, pad=0.01)
+        bar.set_label(f"measured − simulated [{unit}]")
         bar.outline.set_visible(False)
     return figure
 
@@ -155,22 +163,21 @@ def _draw_map(panel: Axes, across: MapAxis, up: MapAxis, mean: Array, limit: flo
     panel.set_ylabel(up.label)
     if up.names:
         panel.set_yticks(np.arange(len(up.names)) + 0.5, up.names)
+    if across.ticks:
+        panel.set_xticks(*zip(*across.ticks, strict=True))
+        panel.axvline(across.fold, color=MODEL, linewidth=0.9)
     return mesh
 
 
 def _map_axes(table: EffectTable, temperature: str) -> dict[str, MapAxis]:
     symbol = TEMPERATURE_SYMBOLS[temperature]
-    wanted = {
-        "temperature": (f"temperature {symbol} [°C]", table.temperature),
-        "clock": ("time [h]", table.clock / 3600.0),
-    }
-    axes = {
-        name: MapAxis(
-            label, values, np.linspace(values.min(), values.max(), _CELL_COUNTS[name] + 1)
-        )
-        for name, (label, values) in wanted.items()
-        if np.ptp(values) > 0
-    }
+    axes = {}
+    hours = table.clock / 3600.0
+    if np.ptp(hours) > 0:
+        edges = np.linspace(hours.min(), hours.max(), _CELL_COUNTS["clock"] + 1)
+        axes["clock"] = MapAxis("time [h]", hours, edges)
+    if np.ptp(table.temperature) > 0:
+        axes["temperature"] = _temperature_axis(table, symbol)
     angles = np.unique(table.position)
     half = float(np.min(np.diff(angles), initial=10.0)) / 2
     ends = angles[:1] - half, angles[-1:] + half
@@ -178,6 +185,29 @@ def _map_axes(table: EffectTable, temperature: str) -> dict[str, MapAxis]:
     axes["position"] = MapAxis("joint angle φ [deg]", table.position, edges)
     axes["speed"] = _speed_axis(table.speed)
     return axes
+
+
+def _temperature_axis(table: EffectTable, symbol: str) -> MapAxis:
+    """Return the axis of temperature: rising from left to right, then falling.
+
+    With a thermal lag the misfits of both have opposite signs; in common cells they would cancel.
+    """
+    temperature, count = table.temperature, _CELL_COUNTS["temperature"]
+    low, high = float(temperature.min()), float(temperature.max())
+    warming = is_warming(table)
+    if warming.all() or not warming.any():
+        return MapAxis(f"temperature {symbol} [°C]", temperature, np.linspace(low, high, count + 1))
+    folded = np.where(warming, temperature, 2 * high - temperature)
+    middle = (low + high) / 2
+    ticks = [(at, f"{at:.0f}") for at in (low, middle, high)]
+    ticks += [(2 * high - at, f"{at:.0f}") for at in (middle, low)]
+    return MapAxis(
+        f"{symbol} [°C], heating | cooling",
+        folded,
+        np.linspace(low, 2 * high - low, 2 * count + 1),
+        ticks=tuple(ticks),
+        fold=high,
+    )
 
 
 def _speed_axis(speed: Array) -> MapAxis:

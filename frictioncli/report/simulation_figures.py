@@ -8,17 +8,25 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from frictioncli.diagnosis.documents.reload import Misfits, Reloaded
-from frictioncli.report.binning import bin_numbers, merge_close_values
+from frictioncli.report.binning import bin_numbers, is_warming, merge_close_values
 from frictioncli.report.labels import figure_text
 from frictioncli.report.results import JointResults
-from frictioncli.report.style import FAINT, MODEL, WIDTH, SpeedStyle
+from frictioncli.report.style import (
+    COOLING,
+    FAINT,
+    HEATING,
+    MODEL,
+    WIDTH,
+    SpeedStyle,
+    legend_above,
+)
 from frictioncli.wording import number_text, speed_text
 
 _CLOCK = 1 / 3600.0
 _MOST_SPEEDS = 4
 _BEFORE, _AFTER = "#D55E00", "#0072B2"
 _DIRECTIONS = (("forward", 1.0, True), ("reverse", -1.0, False))
-_LEGEND: dict[str, Any] = {"columnspacing": 1.1, "handlelength": 1.3, "handletextpad": 0.4}
+_HEATING, _COOLING = 1.0, -1.0
 _LEAST_SHARE = 0.5
 """Least share of a speed's pairs that reach an angle, for the mean at this angle to be drawn.
 
@@ -32,9 +40,10 @@ _EDGES = 61
 def simulated_rows(results: JointResults, diagnosis: Reloaded) -> pd.DataFrame:
     """Return measured and simulated torque of both directions, one row per pair and angle bin.
 
-    Columns are ``time`` [h], ``run``, ``pair``, ``speed``, ``bin`` and ``position``, the measured
-    torques ``forward`` and ``reverse``, and the simulated ones ``forward_simulated`` and
-    ``reverse_simulated``. If the log has a load channel, the torque is that of friction almisfits.
+    Columns are ``time`` [h], ``run``, ``pair``, ``speed``, ``bin`` and ``position``, ``series``,
+    1 where the temperature rises and -1 where it falls, the measured torques ``forward`` and
+    ``reverse``, and the simulated ones ``forward_simulated`` and ``reverse_simulated``. If the log
+    has a load channel, the torque is that of friction alone.
 
     Parameters
     ----------
@@ -67,6 +76,7 @@ def _rows(results: JointResults, misfits: Misfits) -> pd.DataFrame:
         "pair": table.pair,
         "speed": table.speed,
         "position": table.position,
+        "series": np.where(is_warming(table), _HEATING, _COOLING),
     }
     for name, sign, _ in _DIRECTIONS:
         direction = sign * results.model.sign
@@ -87,37 +97,65 @@ def simulation_figure(results: JointResults, *, diagnosis: Reloaded) -> Figure:
         The joint's diagnosis.
     """
     rows = simulated_rows(results, diagnosis)
-    figure = Figure(figsize=(WIDTH, 6.4), layout="constrained")
-    grid = figure.subplots(2, 2, sharex="col", width_ratios=(1.25, 1), height_ratios=(1.25, 1))
+    figure = Figure(figsize=(WIDTH, 9.0), layout="constrained")
+    parts = figure.subfigures(2, 1, squeeze=False)[:, 0]
+    grid = np.column_stack(
+        [part.subplots(2, 1, sharex=True, height_ratios=(1.25, 1)) for part in parts]
+    )
     pairs = rows.groupby(["run", "pair", "speed"], as_index=False).mean(numeric_only=True)
     shown = _shown_speeds(pairs)
-    _draw_torque(grid[:, 0], results, pairs, shown, "time")
+    _draw_torque(grid[:, 0], pairs, _series(results, shown), "time")
     _name_runs(grid[0, 0], pairs, diagnosis)
-    pairs_at_angle = rows.groupby(["speed", "bin"])["time"].transform("size")
-    common = pairs_at_angle >= _LEAST_SHARE * pairs_at_angle.groupby(rows["speed"]).transform("max")
-    angles = rows[common].groupby(["speed", "bin"], as_index=False).mean(numeric_only=True)
-    _draw_torque(grid[:, 1], results, angles, [shown[0], shown[-1]], "position")
+    fastest = rows[rows["speed"] == shown[-1]]
+    series = _series_by_direction(fastest, results)
+    _draw_torque(grid[:, 1], _means_by_angle(fastest), series, "position")
     shown_part = "torque u" if results.load_unit == results.unit else "friction's part of torque"
-    grid[0, 0].set_ylabel(f"{shown_part} [{results.unit}]")
-    grid[1, 0].set_ylabel(f"measured − simulated [{results.unit}]")
+    for upper, lower in grid.T:
+        upper.set_ylabel(f"{shown_part} [{results.unit}]")
+        lower.set_ylabel(f"measured − simulated [{results.unit}]")
+        lower.axhline(0.0, color=MODEL, linewidth=0.9, zorder=1)
     grid[1, 0].set_xlabel("time, run after run [h]")
     grid[1, 1].set_xlabel("joint angle φ [deg]")
-    grid[0, 0].set_title("means of pairs", loc="left")
-    grid[0, 1].set_title("means over all pairs of a speed", loc="left")
-    for panel in grid[1]:
-        panel.axhline(0.0, color=MODEL, linewidth=0.9, zorder=1)
-    marks = [
-        (results.style(speed).colour, results.style(speed).marker, True, speed_text(speed))
-        for speed in shown
-    ]
-    marks += [(FAINT, "o", True, "forward"), (FAINT, "o", False, "reverse")]
-    for colour, marker, filled, label in marks:
-        marker_style = _marker_style(SpeedStyle(colour, marker), filled=filled)
-        grid[0, 0].plot([], [], label=label, **marker_style)
-    grid[0, 0].plot([], [], color=MODEL, linewidth=1.2, label="simulated")
-    handles, labels = grid[0, 0].get_legend_handles_labels()
-    figure.legend(handles, labels, loc="outside lower center", ncols=len(labels), **_LEGEND)
+    grid[0, 0].set_title("means of pairs")
+    grid[0, 1].set_title(f"means at {speed_text(shown[-1])}")
+    _legend(grid[0, 0], [(speed_text(speed), results.style(speed)) for speed in shown])
+    _legend(grid[0, 1], [(name, style) for name, _, style in series if name])
     return figure
+
+
+def _legend(panel: Axes, series: list[tuple[str, SpeedStyle]]) -> None:
+    """Put a legend of the series, of both directions and of the simulation above a panel."""
+    marks = [(name, style, True) for name, style in series]
+    grey = SpeedStyle(FAINT, "o")
+    for label, style, filled in (*marks, ("forward", grey, True), ("reverse", grey, False)):
+        panel.plot([], [], label=label, **_marker_style(style, filled=filled))
+    panel.plot([], [], color=MODEL, linewidth=1.2, label="simulated")
+    legend_above(panel)
+
+
+def _series(results: JointResults, speeds: list[float]) -> list[tuple[str, float, SpeedStyle]]:
+    return [("", speed, results.style(speed)) for speed in speeds]
+
+
+def _series_by_direction(
+    rows: pd.DataFrame, results: JointResults
+) -> list[tuple[str, float, SpeedStyle]]:
+    """Return heating and cooling as series; they would cancel each other in a common mean."""
+    marker = results.style(float(rows["speed"].iloc[0])).marker
+    if rows["series"].nunique() < 2:
+        return [("", float(rows["series"].iloc[0]), results.style(float(rows["speed"].iloc[0])))]
+    return [
+        ("heating", _HEATING, SpeedStyle(HEATING, marker)),
+        ("cooling", _COOLING, SpeedStyle(COOLING, marker)),
+    ]
+
+
+def _means_by_angle(rows: pd.DataFrame) -> pd.DataFrame:
+    """Return means per angle and direction of temperature, of angles that most pairs reach."""
+    pairs_at_angle = rows.groupby(["series", "bin"])["time"].transform("size")
+    most = pairs_at_angle.groupby(rows["series"]).transform("max")
+    common = rows[pairs_at_angle >= _LEAST_SHARE * most]
+    return common.groupby(["series", "bin"], as_index=False).mean(numeric_only=True)
 
 
 def _shown_speeds(pairs: pd.DataFrame) -> list[float]:
@@ -132,13 +170,16 @@ def _shown_speeds(pairs: pd.DataFrame) -> list[float]:
 
 
 def _draw_torque(
-    panels: np.ndarray, results: JointResults, rows: pd.DataFrame, speeds: list[float], along: str
+    panels: np.ndarray,
+    rows: pd.DataFrame,
+    series: list[tuple[str, float, SpeedStyle]],
+    along: str,
 ) -> None:
     upper, lower = panels
-    for speed in speeds:
-        own = rows[rows["speed"] == speed].sort_values(along)
+    for _, number, style in series:
+        own = rows[rows["series" if along == "position" else "speed"] == number].sort_values(along)
         for name, _, filled in _DIRECTIONS:
-            marker_style = _marker_style(results.style(speed), filled=filled)
+            marker_style = _marker_style(style, filled=filled)
             upper.plot(own[along], own[name], **marker_style)
             lower.plot(own[along], own[name] - own[f"{name}_simulated"], **marker_style)
             for _, run in own.groupby("run") if "run" in own else [("", own)]:
@@ -197,8 +238,8 @@ def gain_figure(results: JointResults, *, diagnosis: Reloaded, floor: float) -> 
         float(np.percentile(np.abs(misfit), _TAIL_PERCENTILE)) for _, misfit, _, _ in models
     )
     edges = np.linspace(-reach, reach, _EDGES)
-    figure = Figure(figsize=(WIDTH, 3.5), layout="constrained")
-    left, right = figure.subplots(1, 2)
+    figure = Figure(figsize=(WIDTH, 5.6), layout="constrained")
+    left, right = figure.subplots(2, 1)
     for name, misfit, colour, line in models:
         rms = float(np.sqrt(np.mean(np.square(misfit))))
         label = f"{name}, RMS {number_text(rms)} {results.unit}"
@@ -221,6 +262,5 @@ def gain_figure(results: JointResults, *, diagnosis: Reloaded, floor: float) -> 
     right.set_ylim(0, 100)
     right.set_xlabel(f"size of the misfit [{results.unit}]")
     right.set_ylabel("points that miss by more [%]")
-    handles, labels = left.get_legend_handles_labels()
-    figure.legend(handles, labels, loc="outside upper left", ncols=len(labels), **_LEGEND)
+    left.legend(loc="upper left")
     return figure

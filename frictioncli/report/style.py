@@ -19,8 +19,8 @@ from numpy.typing import ArrayLike
 
 from frictioncli.report.tooltips import set_tooltips
 
-WIDTH = 8.0
-"""Width of every figure, the same for all so that their text has one size on the page. [inch]"""
+WIDTH = 5.6
+"""Width of every figure, narrow enough that its text can be read on a phone. [inch]"""
 
 RASTER_FROM = 3000
 """Number of points above which they are stored as an image in the SVG, to keep it small."""
@@ -30,6 +30,15 @@ _MOST_TOOLTIPS = 1000
 
 _LINE_HEIGHT = 0.18
 """Line height of the smallest text. [inch]"""
+
+_LEGEND_CHARACTERS = 56
+"""Characters that have room above a panel, in a legend and a title."""
+
+_HANDLE_CHARACTERS = 5
+"""Width of a legend's mark, in characters."""
+
+_LEGEND_ROW = 13.0
+"""Height of a row of a legend. [pt]"""
 
 HEATING = "#C44536"
 COOLING = "#2B6CB0"
@@ -50,11 +59,11 @@ _MARKERS = ("o", "s", "^", "D", "v", "P")
 
 _STYLE = {
     "font.family": "sans-serif",
-    "font.size": 10.0,
-    "axes.titlesize": 10.5,
+    "font.size": 9.5,
+    "axes.titlesize": 10.0,
     "axes.titleweight": "bold",
     "axes.titlelocation": "left",
-    "axes.labelsize": 10.0,
+    "axes.labelsize": 9.5,
     "xtick.labelsize": 9.0,
     "ytick.labelsize": 9.0,
     "legend.fontsize": 9.0,
@@ -203,19 +212,28 @@ def points(
 
 
 def legend_above(axes: Axes) -> None:
-    """Put the legend in one row above the panel, right of its title, so that it covers no data."""
-    entries = len(axes.get_legend_handles_labels()[1])
-    if not entries:
+    """Put the legend above the panel, right of its title, so that it covers no data.
+
+    A long legend has several rows, and a title beside which it has no room stands above it. Call
+    this after the title is set.
+    """
+    labels = axes.get_legend_handles_labels()[1]
+    if not labels:
         return
+    widths = [len(label) + _HANDLE_CHARACTERS for label in labels]
+    rows = -(-sum(widths) // _LEGEND_CHARACTERS)
     axes.legend(
         loc="lower right",
         bbox_to_anchor=(1.0, 0.99),
-        ncols=entries,
+        ncols=-(-len(labels) // rows),
         borderaxespad=0.0,
-        columnspacing=1.2,
-        handlelength=1.6,
-        handletextpad=0.5,
+        columnspacing=1.0,
+        handlelength=1.4,
+        handletextpad=0.4,
     )
+    title = axes.get_title("left")
+    if title and len(title) + sum(widths) / rows > _LEGEND_CHARACTERS:
+        axes.set_title(title, loc="left", pad=6 + _LEGEND_ROW * rows)
 
 
 def label_right(axes: Axes, labels: Sequence[tuple[float, str, str]], *, height: float) -> None:

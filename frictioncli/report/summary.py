@@ -8,7 +8,11 @@ import pandas as pd
 from frictioncli.diagnosis.documents.document import DiagnosisDocument
 from frictioncli.diagnosis.documents.sentences import alternatives_text
 from frictioncli.model.document import PARAMETERS
-from frictioncli.report.evaluation_figure import compared_criterion, setting_text
+from frictioncli.report.evaluation_figure import (
+    compared_criterion,
+    error_per_count,
+    setting_text,
+)
 from frictioncli.report.labels import CRITERION_WORDS, PARAMETER_SYMBOLS, TEMPERATURE_WORDS
 from frictioncli.report.results import JointResults
 from frictioncli.report.style import PHASE_WORDS, PHASES
@@ -176,8 +180,9 @@ def corrections_needed(results: JointResults) -> KeyNumber | None:
         for _, own in rows.groupby("run"):
             uncorrected = own.loc[own["criterion"] == "none", "epsilon"]
             limit = _TARGET_ERROR if in_torque else _TARGET_SHARE * float(uncorrected.max())
-            enough = own[(own["criterion"] == criterion) & (own["epsilon"] <= limit)]
-            counts.append(int(enough["corrections"].min()) if len(enough) else None)
+            errors = error_per_count(own[own["criterion"] == criterion])["epsilon"]
+            enough = errors.index[errors <= limit]
+            counts.append(int(enough.min()) if len(enough) else None)
         if reached := sorted(count for count in counts if count is not None):
             failing = counts.count(None)
             not_all = f" ({count_text(failing, 'run')} never)" if failing else ""
@@ -192,7 +197,7 @@ def corrections_needed(results: JointResults) -> KeyNumber | None:
     return KeyNumber(
         name="corrections needed",
         value=", ".join(texts),
-        context=f"fewest of all settings tried whose ε is at most {small}; criterion"
+        context=f"fewest whose median ε over the settings tried is at most {small}; criterion"
         f" “{CRITERION_WORDS.get(criterion, criterion)}”"
         f"{', extended model' if results.evaluated_extended else ''}",
     )

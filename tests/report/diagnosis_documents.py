@@ -167,6 +167,7 @@ DIAGNOSIS_DOCUMENT = {
                 "high": 31.0,
                 "speed": 67.5,
                 "misfit": -4.5,
+                "phase": "heat-up",
             }
         ],
     },

@@ -95,6 +95,7 @@ def test_section_says_what_was_found(diagnosed):
     assert section.detectable.rows[2][2] == "cannot be told from the base on these data"
     assert section.worst.rows[0] == (
         "temperature 25.0 to 31.0 °C",
+        "rising",
         "67.5 deg/s",
         "friction",
         "−4.50 N·m",

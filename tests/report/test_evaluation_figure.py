@@ -5,12 +5,17 @@ from dataclasses import replace
 import numpy as np
 import pandas as pd
 
+from frictioncli.correction.evaluation import evaluation_text
 from frictioncli.report.evaluation_figure import (
+    counts_left_out,
     error_figure,
+    error_per_count,
     setting_text,
     shown_counts,
     uncertainty_text,
 )
+from frictioncli.report.figures import FIGURES
+from frictioncli.report.summary import corrections_needed
 from tests.report.figure_contents import data_lines, texts
 
 
@@ -37,8 +42,36 @@ def test_of_many_counts_the_shared_and_then_the_lowest_are_shown(two_runs):
     row = two_runs.evaluation.iloc[[0]]
     many = row.loc[row.index.repeat(60)].assign(corrections=range(1, 61))
     both = pd.concat([many, row.assign(corrections=40, phase="cool-down")])
-    assert shown_counts(many) == list(range(1, 15))
-    assert shown_counts(both) == [*range(1, 14), 40]
+    assert shown_counts(many) == list(range(1, 17))
+    assert shown_counts(both) == [*range(1, 16), 40]
+
+
+def test_counts_without_room_are_told(two_runs):
+    row = two_runs.evaluation[two_runs.evaluation["criterion"] == "first_degree"].iloc[[0]]
+    many = row.loc[row.index.repeat(20)].assign(corrections=range(1, 21))
+    results = replace(two_runs, evaluation=many)
+    assert counts_left_out(results) == [17, 18, 19, 20]
+    caption = next(figure for figure in FIGURES if figure.name == "fig11").caption(results)
+    assert "Not drawn, for lack of room: 17, 18, 19 and 20 corrections." in caption
+    assert "Not drawn" not in next(f for f in FIGURES if f.name == "fig11").caption(two_runs)
+
+
+def test_one_convention_for_several_settings_of_one_number(two_runs):
+    """The bar, the key number and the terminal take the median."""
+    row = two_runs.evaluation[two_runs.evaluation["criterion"] == "first_degree"].iloc[[0]]
+    errors = [1.0, 1.9, 9.0]
+    rows = row.loc[row.index.repeat(3)].assign(epsilon=errors, corrections=5, run="day-1")
+    assert error_per_count(rows)["epsilon"].tolist() == [1.9]
+    none = two_runs.evaluation[two_runs.evaluation["criterion"] == "none"].iloc[[0]]
+    table = pd.concat([rows, none.assign(run="day-1", phase=rows["phase"].iloc[0])])
+    assert "5: 1.90" in evaluation_text(table, "N·m")
+    needed = corrections_needed(replace(two_runs, evaluation=table))
+    assert needed is not None
+    assert needed.value.startswith("5 in")
+    worse = table.assign(epsilon=np.where(table["epsilon"] == 1.9, 2.1, table["epsilon"]))
+    needed = corrections_needed(replace(two_runs, evaluation=worse))
+    assert needed is not None
+    assert needed.value.startswith("never enough")
 
 
 def test_runs_share_the_counts_of_the_axis(two_runs):

@@ -49,10 +49,16 @@ def test_friction_is_carried_to_20_degrees_by_equation_15(two_runs):
 
 def test_speed_figure_shows_all_speeds_and_the_model(two_runs):
     axes = speed_figure(two_runs).axes[0]
-    means = next(line for line in axes.lines if line.get_label() == "mean of the pairs at a speed")
-    np.testing.assert_allclose(
-        sorted(means.get_xdata()), [2.3, 5, 10, 19.1, 30, 43, 67.5, 85, 101.2]
-    )
+    drawn = [line for line in axes.lines if line.get_linestyle() == "None"]
+    at = np.concatenate([np.asarray(line.get_xdata(), float) for line in drawn])
+    for speed in (2.3, 5, 10, 19.1, 30, 43, 67.5, 85, 101.2):
+        assert np.min(np.abs(at - speed)) < 1e-9
+    # branches stand beside each other, so that no point hides another
+    pairs = two_runs.pairs[two_runs.pairs["run"] == "day-1"]
+    heating = (pairs["phase"] == "heat-up") & (pairs["speed"] == 101.2)
+    assert np.sum(np.isclose(at, 101.2 - 0.012 * 101.2)) == heating.sum() > 3
+    means = next(line for line in axes.lines if line.get_markersize() == 24)
+    np.testing.assert_allclose(sorted(means.get_xdata()), [19.1, 43, 67.5, 101.2])
     curve = next(line for line in axes.lines if line.get_label() == "model (16), L = 0")
     np.testing.assert_allclose(curve.get_ydata(), at_zero_load(np.asarray(curve.get_xdata()), 20))
 

@@ -6,9 +6,7 @@ import numpy as np
 import pytest
 
 from frictioncli.report import style
-from frictioncli.report.binning import (
-    merge_close_values,
-)
+from frictioncli.report.binning import is_warming, merge_close_values
 from frictioncli.report.residual_maps import MapAxis, cell_means, colour_limit, residual_map_figure
 from tests.report.figure_contents import texts
 
@@ -21,17 +19,23 @@ def test_maps_hold_cell_means_about_zero(diagnosed, diagnosis):
     assert mesh.norm.vmin == -mesh.norm.vmax
     shown = np.ma.filled(mesh.get_array().astype(float), np.nan)
     assert shown.shape[0] == len(np.unique(merge_close_values(table.speed)))
+    # rising temperature in the left half, falling in the right one, mirrored
     edges = np.linspace(table.temperature.min(), table.temperature.max(), 10)
+    warming = is_warming(table)
+    assert warming.any()
+    assert not warming.all()
     for speed, row in ((19.1, 3), (101.2, 8)):
         for column, (low, high) in enumerate(pairwise(edges)):
-            chosen = (table.speed == speed) & (table.temperature >= low)
-            chosen &= (table.temperature < high) | (column == 8)
-            wanted = missed[chosen].mean() if chosen.any() else np.nan
-            np.testing.assert_allclose(shown[row, column], wanted)
+            for branch, place in ((warming, column), (~warming, 17 - column)):
+                inside = (table.temperature > low + 1e-9) & (table.temperature < high - 1e-9)
+                chosen = (table.speed == speed) & branch & inside
+                if chosen.any():
+                    np.testing.assert_allclose(shown[row, place], missed[chosen].mean(), atol=0.2)
     shown = texts(figure)
-    assert "friction, base model: measured − simulated" in shown
-    assert "load, base model: measured − simulated" in shown
-    assert {"speed [deg/s]", "temperature Tm [°C]", "joint angle φ [deg]", "time [h]"} <= set(shown)
+    assert {"friction, base model", "load, base model", "friction, extended model"} <= set(shown)
+    assert "measured − simulated [N·m]" in shown
+    axes = {"speed [deg/s]", "Tm [°C], heating | cooling", "joint angle φ [deg]", "time [h]"}
+    assert axes <= set(shown)
 
 
 def test_empty_cells_are_not_zero_and_noise_is_pale():

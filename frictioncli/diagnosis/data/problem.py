@@ -45,6 +45,8 @@ class Misfit:
         Speed of the pairs. [deg/s]
     misfit : float
         Mean of measured minus simulated torque there. [N·m]
+    phase : {"heat-up", "cool-down", ""}
+        Whether the temperature rises or falls there; empty where it is steady or unknown.
     """
 
     channel: str
@@ -53,6 +55,7 @@ class Misfit:
     high: float
     speed: float
     misfit: float
+    phase: str = ""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
