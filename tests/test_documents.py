@@ -14,7 +14,7 @@ from frictioncli import documents
 from frictioncli.comparison.document import ComparisonDocument
 from frictioncli.deployment.document import DeployedDocument
 from frictioncli.design.document import PlanDocument
-from frictioncli.diagnosis.data.gravity import GravityCoefficients
+from frictioncli.diagnosis.data.gravity_document import GravityCoefficients
 from frictioncli.diagnosis.documents.document import DiagnosisDocument
 from frictioncli.diagnosis.documents.extended_model import ExtendedDocument
 from frictioncli.diagnosis.settings import DiagnosisSettings

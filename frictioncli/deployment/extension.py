@@ -23,7 +23,7 @@ from numpy.typing import ArrayLike
 from frictioncli.arrays import Array
 from frictioncli.deployment.gear_temperature import GearLag
 from frictioncli.diagnosis.data.build_problem import simulated
-from frictioncli.diagnosis.data.gravity import stated_gravity
+from frictioncli.diagnosis.data.gravity_document import stated_gravity
 from frictioncli.diagnosis.data.hidden_temperature import HiddenTemperature
 from frictioncli.diagnosis.documents.extended_model import ExtendedModel, FittedEffect
 from frictioncli.effects.base import EffectTable
@@ -167,7 +167,9 @@ def _gear_lag(
 ) -> GearLag:
     """Return the thermal lag of the gear with its usual size in the log."""
     gravity = stated_gravity(model.gravity_about)
-    _, problem = simulated(torques, model.temperature, model.about, gravity, model.hidden)
+    _, problem = simulated(
+        torques, model.temperature, model.about, gravity, model.hidden, model.gravity_about.form
+    )
     hidden = model.hidden or HiddenTemperature.of(
         fitted.shape["time_constant"], fitted.coefficients, problem.reference_power
     )

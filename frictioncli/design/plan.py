@@ -17,7 +17,6 @@ from frictioncli.design.settings import PlanSettings
 from frictioncli.design.steps import Step
 from frictioncli.design.thermal_model import thermal_model_of
 from frictioncli.diagnosis.data.build_problem import build_problems
-from frictioncli.diagnosis.data.gravity import NAMES
 from frictioncli.diagnosis.data.problem import Problem
 from frictioncli.diagnosis.documents.document import DiagnosisDocument
 from frictioncli.diagnosis.documents.extended_model import ExtendedModel
@@ -300,9 +299,11 @@ def _planning_parameters(problem: Problem) -> FrictionParameters:
 
 def _planning_gravity(problem: Problem, limits: Limits) -> np.ndarray:
     """Return the fitted gravity coefficients; an unmeasured payload gets a usual lever."""
-    if len(problem.gravity) > len(NAMES) or not limits.payloads:
-        return problem.gravity
-    return np.append(problem.gravity, [_USUAL_LEVER, 0.0])
+    # a programme is driven in one pose of the other joints
+    gravity = problem.gravity[: problem.gravity_form.first_coefficients]
+    if problem.gravity_form.payloads or not limits.payloads:
+        return gravity
+    return np.append(gravity, [_USUAL_LEVER, 0.0])
 
 
 def _joint_number(torques: pd.DataFrame) -> int:

@@ -21,7 +21,7 @@ from frictioncli.design.steps import (
     round_trip,
 )
 from frictioncli.design.thermal_model import ThermalModel
-from frictioncli.diagnosis.data.gravity import columns_of, known_payload
+from frictioncli.diagnosis.data.gravity import form_of, known_payload
 from frictioncli.model.friction import FrictionParameters, friction_torque
 
 _SETTLING = 0.2
@@ -244,7 +244,7 @@ def _table(joint: PlannedJoint, pairs: Sequence[_Pair], run: str) -> pd.DataFram
             "travel": per_row([one.travel for one in pairs]),
         }
     )
-    load = columns_of(table, payloads=len(joint.gravity) > 3) @ joint.gravity
+    load = form_of(joint.gravity).columns(table) @ joint.gravity
     friction = _friction(joint, speed, motor, load)
     load_channel = load if joint.torques["load"].notna().any() else np.nan
     rows = table.assign(load=load_channel, friction_torque=friction, load_torque=load)

@@ -3,7 +3,7 @@
 import numpy as np
 
 from frictioncli.diagnosis.data.build_problem import simulated
-from frictioncli.diagnosis.data.gravity import stated_gravity
+from frictioncli.diagnosis.data.gravity_document import stated_gravity
 from frictioncli.effects.friction_heat import friction_power
 from frictioncli.effects.pair_series import pair_heads
 

@@ -18,7 +18,7 @@ from frictioncli.deployment.extended_corrector import ExtendedCorrector
 from frictioncli.deployment.extension import MEMORYLESS, deployable_extension
 from frictioncli.deployment.gear_temperature import GearLag, GearTemperature
 from frictioncli.diagnosis.data.build_problem import simulated
-from frictioncli.diagnosis.data.gravity import GravityCoefficients, stated_gravity
+from frictioncli.diagnosis.data.gravity_document import GravityCoefficients, stated_gravity
 from frictioncli.diagnosis.data.hidden_temperature import HiddenTemperature
 from frictioncli.diagnosis.documents.apply_extension import (
     friction_beyond,

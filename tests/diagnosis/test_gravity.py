@@ -9,7 +9,8 @@ import pytest
 
 from frictioncli import schemas, tables
 from frictioncli.diagnosis.data.build_problem import build_problems, simulated
-from frictioncli.diagnosis.data.gravity import gravity_columns, gravity_document, stated_gravity
+from frictioncli.diagnosis.data.gravity import GravityForm, gravity_columns
+from frictioncli.diagnosis.data.gravity_document import gravity_document, stated_gravity
 from frictioncli.diagnosis.diagnose import diagnose_joint
 from frictioncli.diagnosis.documents.apply_extension import without_effects
 from frictioncli.diagnosis.documents.extended_model import read_extended
@@ -122,9 +123,11 @@ def test_files_state_gravity_as_they_did_and_payloads_beside():
     assert list(msgspec.to_builtins(five))[3:] == ["cosine_per_kg", "sine_per_kg"]
     np.testing.assert_array_equal(stated_gravity(five), np.arange(5.0))
     np.testing.assert_array_equal(stated_gravity(three), [1, 2, 3])
-    np.testing.assert_array_equal(stated_gravity(three, 5), [1, 2, 3, 0, 0])
+    np.testing.assert_array_equal(
+        stated_gravity(three, GravityForm(payloads=True)), [1, 2, 3, 0, 0]
+    )
     with pytest.raises(TableError, match="frictioncli diagnose"):
-        stated_gravity(five, 3)
+        stated_gravity(five, GravityForm())
 
 
 def test_payloads_in_turn_are_no_finding_and_an_undeclared_mass_is():
@@ -187,3 +190,94 @@ def test_gravity_s_slope_is_that_of_the_logged_current_where_load_is_a_channel_o
     table = build_problems(rows, "motor")[0].table
     other = build_problems(carried(payloads=(3.0,)), "motor")[0].table
     assert table.load_gradient == pytest.approx(0.02 * other.load_gradient)
+
+
+def in_poses(*, noise=0.3, change=25.0, days=(0, 1), undeclared=0.0):
+    """Two days, another pose every ten pairs; ``days`` are the second day's poses.
+
+    In pose 1 gravity is less by a cosine and some sine; in pose 2 it is that of pose 0.
+    """
+    rows = carried(payloads=(2.0,), noise=0.0, undeclared=undeclared).assign(payload=np.nan)
+    block = (rows["pair"] // 10).to_numpy()
+    pose = np.where(rows["run"] == "day1", block % 3, np.array(days)[block % len(days)])
+    angle = np.radians(rows["position"])
+    less = np.where(pose == 1, change * np.cos(angle) - 0.3 * change * np.sin(angle), 0.0)
+    load = rows["load_torque"] - less
+    friction = rows["friction_torque"] + 0.0014 * (np.square(load) - np.square(rows["load_torque"]))
+    noisy = load + noise * np.random.default_rng(4).normal(size=len(rows))
+    return rows.assign(load_torque=noisy, friction_torque=friction, pose=pose)
+
+
+def test_each_pose_that_differs_has_a_gravity_of_its_own():
+    seen, new = build_problems(in_poses(noise=1e-6), "motor", "day2")
+    assert seen.gravity_form.poses == ((1,),)
+    expected = [P + 2 * PER_KG, Q + 2 * ASIDE, C, -25.0, 7.5]
+    np.testing.assert_allclose(seen.gravity, expected, atol=1e-4)
+    assert np.abs(new.load_misfit).max() < 1e-4
+    # the load in the friction is that of the pose
+    assert seen.parameters.alpha == pytest.approx(0.0014, rel=0.02)
+
+
+def test_poses_that_change_nothing_share_a_gravity():
+    """Of forty comparisons a few at most take noise for a difference: the level is 1 %."""
+    apart = 0
+    for seed in range(20):
+        rows = in_poses(noise=0.0, change=0.0)
+        rng = np.random.default_rng(seed)
+        of_pair = rng.normal(0, 0.5, rows["pair"].max() + 1)[rows["pair"]]
+        rows["load_torque"] += of_pair + rng.normal(0, 0.3, len(rows))
+        seen, _ = build_problems(rows, "motor", "day2")
+        apart += len(seen.gravity_form.poses)
+    assert apart <= 3
+
+
+def test_gravity_in_a_pose_that_only_the_new_run_has_is_fitted_there():
+    rows = in_poses(noise=1e-6, days=(1, 5))
+    five = rows["pose"] == 5
+    angle = np.radians(rows["position"])
+    rows.loc[five, "load_torque"] += 11 * np.cos(angle[five])
+    seen, new = build_problems(rows, "motor", "day2")
+    assert len(seen.gravity) == len(new.gravity) == 5
+    assert np.abs(new.load_misfit).max() < 1e-4
+    ordered = rows[rows["run"] == "day2"].sort_values(["time", "pair", "position"])
+    np.testing.assert_allclose(new.table.load, ordered["load_torque"], atol=1e-4)
+
+
+@pytest.mark.parametrize("days", [(0, 1), (4,)], ids=["in turn", "a new one"])
+def test_poses_known_from_the_log_are_no_finding(days):
+    """Without the poses the same log is not understood."""
+    rows = in_poses(days=days)
+    known = diagnose_joint(rows, "motor", "N·m", DiagnosisSettings())
+    assert known.verdict == "no_evidence"
+    assert not [cause.effects for cause in known.visible]
+    hidden = diagnose_joint(rows.assign(pose=0), "motor", "N·m", DiagnosisSettings())
+    assert hidden.verdict != "no_evidence"
+
+
+def test_a_payload_in_one_pose_is_found_beside_the_gravity_of_the_others():
+    found = diagnose_joint(in_poses(undeclared=0.5), "motor", "N·m", DiagnosisSettings())
+    assert [cause.effects for cause in found.causes] == [("payload_change",)]
+
+
+def test_an_extended_model_states_the_gravity_of_each_pose(tmp_path):
+    rows = in_poses(undeclared=0.5).assign(
+        torque_forward=1.0, torque_reverse=1.0, n_forward=1, n_reverse=1
+    )
+    path = tmp_path / TORQUES
+    tables.write(path, rows, schemas.TORQUES, Provenance("test"), {"torque_unit": "N·m"})
+    fit(tmp_path)
+    diagnose(tmp_path)
+    written = json.loads((tmp_path / EXTENDED).read_text(encoding="utf-8"))
+    (other,) = written["gravity"]["in_poses"]
+    assert other["poses"] == [1]
+    assert other["cosine"] == pytest.approx(-25.0, abs=0.3)
+    stored = tables.read(path, schemas.TORQUES)
+    (document, extended), *_ = read_documents(tmp_path).values()
+    found = reload(stored, document, extended)
+    before, after = (np.std(rows["load"]) for rows in (found.new.before, found.new.after))
+    assert after < 0.5 < before
+    (model,) = read_models(tmp_path / EXTENDED)
+    added = without_effects(stored, model, read_extended(tmp_path / EXTENDED)[2])[2]
+    assert added.abs().max() < 1.0
+    with pytest.raises(TableError, match="other poses of the other joints"):
+        stated_gravity(extended.gravity, GravityForm())

@@ -5,7 +5,7 @@ import pytest
 
 from frictioncli.deployment.extension import deployable_extension
 from frictioncli.diagnosis.data.build_problem import simulated
-from frictioncli.diagnosis.data.gravity import stated_gravity
+from frictioncli.diagnosis.data.gravity_document import stated_gravity
 from frictioncli.diagnosis.diagnose import Diagnosis, diagnose_joint
 from frictioncli.diagnosis.documents.document import DiagnosisDocument
 from frictioncli.diagnosis.documents.extended_model import (
@@ -84,7 +84,7 @@ def test_a_controller_has_the_friction_of_the_model(rows, model):
     added = extension.added_friction(
         load=table.load, speed=table.speed, temperature=table.motor_temperature, excess=excess
     )
-    gravity = stated_gravity(model.gravity, len(problem.gravity)) - problem.gravity
+    gravity = stated_gravity(model.gravity, problem.gravity_form) - problem.gravity
     beyond = model.beyond(problem).friction - problem.friction_by_gravity @ gravity
     np.testing.assert_allclose(added, beyond, atol=1e-9)
     warm = friction_torque(

@@ -8,16 +8,18 @@ import pandas as pd
 from frictioncli.arrays import Array, Flags
 from frictioncli.diagnosis.data.base_models import candidate_bases
 from frictioncli.diagnosis.data.gravity import (
-    NAMES,
+    GravityForm,
     by_angle,
     carried_load,
-    columns_of,
     differs,
+    form_of,
     known_payload,
+    known_pose,
 )
 from frictioncli.diagnosis.data.hidden_temperature import HiddenTemperature
 from frictioncli.diagnosis.data.motion_history import clock_of, series, travel_of
 from frictioncli.diagnosis.data.pair_layout import PairLayout
+from frictioncli.diagnosis.data.pose_gravity import gravities_by_pose
 from frictioncli.diagnosis.data.problem import Problem
 from frictioncli.effects.base import EffectTable
 from frictioncli.effects.pair_series import rows_of
@@ -38,7 +40,9 @@ def build_problems(
     """Return the problem of one joint, and that of its hold-out run.
 
     The base model is fitted to the rows of the first only; the second is simulated with it. Gravity
-    depends on the payload if two payloads are known in the rows of the first.
+    depends on the payload if two payloads are known in the rows of the first, and on the pose of
+    the other joints where it differs between those of the first. In a pose that only the hold-out
+    run has, gravity is not predicted but fitted to that run.
 
     Parameters
     ----------
@@ -56,18 +60,46 @@ def build_problems(
     """
     rows = torques.sort_values(["run", "time", "pair", "position"], ignore_index=True)
     new = (rows["run"] == held_out).to_numpy()
-    columns = columns_of(rows, payloads=differs(known_payload(rows)[~new]))
     load = rows["load_torque"].to_numpy(float)
+    form = _gravity_form(rows[~new], load[~new])
+    columns = form.columns(rows)
     gravity = np.linalg.lstsq(columns[~new], load[~new], rcond=None)[0]
-    smooth = carried_load(columns, gravity) if rows["load"].isna().all() else load
+    unseen = _in_unseen_poses(rows, new, load - columns @ gravity)
+    smooth = load
+    if rows["load"].isna().all():
+        smooth = carried_load(columns, gravity) + unseen
+    rows["load_torque"] -= unseen
     problem = min(
         (
-            _assembled(rows, temperature, smooth, columns, gravity, base.parameters, base.names)
+            _assembled(
+                rows, temperature, smooth, (form, columns, gravity), base.parameters, base.names
+            )
             for base in candidate_bases(rows.assign(load_torque=smooth)[~new], temperature)
         ),
         key=lambda problem: _typical_misfit(problem, ~new),
     )
     return problem.part(~new), problem.part(new) if new.any() else None
+
+
+def _gravity_form(rows: pd.DataFrame, load: Array) -> GravityForm:
+    """Return what the gravity of rows depends on."""
+    form = GravityForm(payloads=differs(known_payload(rows)))
+    pair = rows.groupby(PAIR_KEY, sort=False, observed=True).ngroup().to_numpy()
+    position = rows["position"].to_numpy(float)
+    poses = gravities_by_pose(load, form.columns(rows), position, known_pose(rows), pair)
+    return GravityForm(form.payloads, poses)
+
+
+def _in_unseen_poses(rows: pd.DataFrame, new: Flags, misfit: Array) -> Array:
+    """Return what poses that only the hold-out run has add to gravity, shape (rows,) [N·m]."""
+    pose, added = known_pose(rows), np.zeros(len(rows))
+    for number in np.unique(pose[new & np.isfinite(pose)]):
+        own = pose == number
+        if (own & ~new).any():
+            continue
+        columns = GravityForm().columns(rows[own])[:, :2]
+        added[own] = columns @ np.linalg.lstsq(columns, misfit[own], rcond=None)[0]
+    return added
 
 
 def _typical_misfit(problem: Problem, chosen: Flags) -> float:
@@ -82,6 +114,7 @@ def simulated(
     parameters: FrictionParameters,
     gravity: Array,
     hidden: HiddenTemperature | None = None,
+    form: GravityForm | None = None,
 ) -> tuple[pd.Index, Problem]:
     """Return the problem of rows simulated with a given base model, and its order of the rows.
 
@@ -93,11 +126,13 @@ def simulated(
         Temperature that the friction function is given.
     parameters : FrictionParameters
         Parameters of friction.
-    gravity : ndarray, shape (3,) or (5,)
-        Coefficients of cos q, sin q and 1, and of the first two per mass of the payload. [N·m],
-        [N·m/kg]
+    gravity : ndarray, shape (coefficients,)
+        Coefficients of cos q, sin q and 1, of the first two per mass of the payload, and of those
+        of further poses. [N·m], [N·m/kg]
     hidden : HiddenTemperature, optional
         Temperature of the gear at which friction is simulated; by default the measured one.
+    form : GravityForm, optional
+        What the gravity depends on; by default that of three or five coefficients.
 
     Returns
     -------
@@ -105,15 +140,15 @@ def simulated(
         Labels of the rows of ``torques`` in the order of the problem, and the problem.
     """
     rows = torques.sort_values(["run", "time", "pair", "position"])
-    columns = columns_of(rows, payloads=len(gravity) > len(NAMES))
+    form = form or form_of(gravity)
+    columns = form.columns(rows)
     smooth = rows["load"].isna().all()
     load = carried_load(columns, gravity) if smooth else rows["load_torque"].to_numpy(float)
     problem = _assembled(
         rows.reset_index(drop=True),
         temperature,
         load,
-        columns,
-        gravity,
+        (form, columns, gravity),
         parameters,
         PARAMETERS,
         hidden,
@@ -125,13 +160,16 @@ def _assembled(
     rows: pd.DataFrame,
     temperature: str,
     load: Array,
-    columns: Array,
-    gravity: Array,
+    by_gravity: tuple[GravityForm, Array, Array],
     parameters: FrictionParameters,
     names: tuple[str, ...],
     hidden: HiddenTemperature | None = None,
 ) -> Problem:
-    """Return the problem of all rows, with friction simulated by the base model."""
+    """Return the problem of all rows, with friction simulated by the base model.
+
+    ``by_gravity`` is the form of gravity, its columns and its coefficients.
+    """
+    form, columns, gravity = by_gravity
     pair = rows.groupby(PAIR_KEY, sort=False, observed=True).ngroup().to_numpy()
     run, run_names = pd.factorize(rows["run"])
     speed = rows["speed"].to_numpy(float)
@@ -189,6 +227,7 @@ def _assembled(
         names=names,
         parameters=parameters,
         gravity=gravity,
+        gravity_form=form,
         reference_power=reference_power,
         has_load_channel=bool(rows["load"].notna().any()),
         temperature_error=_RECONSTRUCTED if reconstructed else _REGISTERED,

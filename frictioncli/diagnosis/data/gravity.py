@@ -7,17 +7,20 @@ so that *p* and *r* do not depend on its mass: five coefficients for any number 
 coefficients for each payload would absorb a wrong mass in the manifest, or a tool mounted
 elsewhere; with five coefficients these show as misfit and can be diagnosed.
 
+In poses of the other joints in which gravity is another (:mod:`frictioncli.diagnosis.data.
+pose_gravity`), further coefficients of cosine and sine are added to those of the pose of most rows.
+
 Where no two payloads are known, *p* and *r* cannot be distinguished from *P* and *Q* and are left
 out. Where only some rows have a payload, the others count as moved without one, 0 kg. If that is
 wrong, it shows as misfit too.
 """
 
-import msgspec
+from dataclasses import dataclass
+
 import numpy as np
 import pandas as pd
 
 from frictioncli.arrays import Array
-from frictioncli.errors import TableError
 
 NAMES = ("cosine", "sine", "offset")
 PER_MASS = ("cosine_per_kg", "sine_per_kg")
@@ -38,6 +41,19 @@ def known_payload(torques: pd.DataFrame) -> Array:
     if "payload" not in torques:
         return np.full(len(torques), np.nan)
     return torques["payload"].to_numpy(float)
+
+
+def known_pose(torques: pd.DataFrame) -> Array:
+    """Return the pose of each row, NaN where unknown, shape (rows,).
+
+    Parameters
+    ----------
+    torques : DataFrame
+        Rows of :data:`frictioncli.schemas.TORQUES`.
+    """
+    if "pose" not in torques:
+        return np.full(len(torques), np.nan)
+    return torques["pose"].to_numpy(float, na_value=np.nan)
 
 
 def differs(payload: Array) -> bool:
@@ -77,18 +93,67 @@ def gravity_columns(position: Array, payload: Array | None = None) -> Array:
     return np.column_stack(columns)
 
 
-def columns_of(torques: pd.DataFrame, *, payloads: bool) -> Array:
-    """Return the columns of the gravity torque of rows of a table of torques.
+@dataclass(frozen=True, slots=True)
+class GravityForm:
+    """What gravity depends on beside the joint's angle.
 
-    Parameters
+    Attributes
     ----------
-    torques : DataFrame
-        Rows of :data:`frictioncli.schemas.TORQUES`.
     payloads : bool
-        Whether gravity depends on the payload: five columns instead of three.
+        Whether it goes with the payload: five columns instead of three.
+    poses : tuple of tuple of int
+        Poses of the other joints in which it is another one, those with the same gravity together:
+        two columns each. In all other poses it is that of the first columns.
     """
-    position = torques["position"].to_numpy(float)
-    return gravity_columns(position, known_payload(torques) if payloads else None)
+
+    payloads: bool = False
+    poses: tuple[tuple[int, ...], ...] = ()
+
+    @property
+    def in_one_pose(self) -> "GravityForm":
+        """The same for one pose."""
+        return GravityForm(self.payloads)
+
+    @property
+    def coefficients(self) -> int:
+        """Number of the coefficients."""
+        return self.first_coefficients + 2 * len(self.poses)
+
+    @property
+    def first_coefficients(self) -> int:
+        """Number of the coefficients in the pose of most rows."""
+        return len(NAMES) + len(PER_MASS) * self.payloads
+
+    def columns(self, torques: pd.DataFrame) -> Array:
+        """Return the columns of the gravity torque, shape (rows, coefficients).
+
+        Parameters
+        ----------
+        torques : DataFrame
+            Rows of :data:`frictioncli.schemas.TORQUES`, or of ramps or starts.
+        """
+        position = torques["position"].to_numpy(float)
+        return self.columns_at(position, known_payload(torques), known_pose(torques))
+
+    def columns_at(self, position: Array, payload: Array, pose: Array) -> Array:
+        """Return the same at angles, shape (rows, coefficients).
+
+        Parameters
+        ----------
+        position, payload, pose : ndarray, shape (rows,)
+            Joint angle [deg], payload [kg], number of the pose; NaN where not known.
+
+        Examples
+        --------
+        >>> import numpy as np
+        >>> form = GravityForm(poses=((1, 4),))
+        >>> print(form.columns_at(np.zeros(2), np.full(2, np.nan), np.array([0.0, 4.0])))
+        [[1. 0. 1. 0. 0.]
+         [1. 0. 1. 1. 0.]]
+        """
+        first = gravity_columns(position, payload if self.payloads else None)
+        more = [first[:, :2] * np.isin(pose, one)[:, np.newaxis] for one in self.poses]
+        return np.hstack([first, *more])
 
 
 def by_angle(columns: Array) -> Array:
@@ -96,12 +161,12 @@ def by_angle(columns: Array) -> Array:
 
     Parameters
     ----------
-    columns : ndarray, shape (rows, 3) or (rows, 5)
-        As of :func:`gravity_columns`, or their derivatives.
+    columns : ndarray, shape (rows, coefficients)
+        As of :class:`GravityForm`, or their derivatives.
 
     Returns
     -------
-    ndarray, shape (rows, 3) or (rows, 5)
+    ndarray, shape (rows, coefficients)
         The derivatives.
 
     Examples
@@ -112,7 +177,7 @@ def by_angle(columns: Array) -> Array:
      [-0.0175  0.      0.    ]]
     """
     derivative = np.zeros_like(columns)
-    for cosine in range(0, columns.shape[1], len(NAMES)):
+    for cosine in (0, *range(len(NAMES), columns.shape[1], 2)):
         derivative[:, cosine] = -columns[:, cosine + 1]
         derivative[:, cosine + 1] = columns[:, cosine]
     return derivative * (np.pi / 180)
@@ -134,9 +199,9 @@ def carried_load(columns: Array, gravity: Array) -> Array:
 
     Parameters
     ----------
-    columns : ndarray, shape (rows, 3) or (rows, 5)
-        As of :func:`gravity_columns`.
-    gravity : ndarray, shape (3,) or (5,)
+    columns : ndarray, shape (rows, coefficients)
+        As of :class:`GravityForm`.
+    gravity : ndarray, shape (coefficients,)
         Coefficients. [N·m], [N·m/kg]
 
     Examples
@@ -148,62 +213,6 @@ def carried_load(columns: Array, gravity: Array) -> Array:
     return np.asarray(columns @ gravity)
 
 
-class GravityCoefficients(msgspec.Struct, frozen=True, kw_only=True, omit_defaults=True):
-    """Coefficients of the gravity torque, as ``extended-model.json`` states them.
-
-    Attributes
-    ----------
-    cosine, sine : float
-        Coefficients of the cosine and the sine of the joint angle. [N·m]
-    offset : float
-        Constant. [N·m]
-    cosine_per_kg, sine_per_kg : float or None
-        Coefficients of the cosine and the sine times the payload; none where no two payloads are
-        known. [N·m/kg]
-    """
-
-    cosine: float
-    sine: float
-    offset: float
-    cosine_per_kg: float | None = None
-    sine_per_kg: float | None = None
-
-    def __post_init__(self) -> None:
-        if (self.cosine_per_kg is None) != (self.sine_per_kg is None):
-            raise ValueError("expected both cosine_per_kg and sine_per_kg, or none")
-
-
-def gravity_document(gravity: Array) -> GravityCoefficients:
-    """Return three or five coefficients of gravity by name, as documents state them."""
-    names = (*NAMES, *PER_MASS)[: len(gravity)]
-    return GravityCoefficients(**dict(zip(names, map(float, gravity), strict=True)))
-
-
-def stated_gravity(stated: GravityCoefficients, count: int | None = None) -> Array:
-    """Return the coefficients that a document states, shape (3,) or (5,).
-
-    Parameters
-    ----------
-    stated : GravityCoefficients
-        The coefficients.
-    count : int, optional
-        Number of coefficients to return; those per mass are zero if the document has none. By
-        default as many as the document states.
-
-    Raises
-    ------
-    TableError
-        If the document states coefficients per mass and only three are wanted.
-    """
-    coefficients = [stated.cosine, stated.sine, stated.offset]
-    if stated.cosine_per_kg is not None and stated.sine_per_kg is not None:
-        coefficients += [stated.cosine_per_kg, stated.sine_per_kg]
-    found = np.array(coefficients)
-    if count is None or count == len(found):
-        return found
-    if count < len(found):
-        raise TableError(
-            "the extended model's gravity goes with the payload, and these torques have no two"
-            " payloads; run 'frictioncli diagnose' again"
-        )
-    return np.append(found, np.zeros(count - len(found)))
+def form_of(gravity: Array) -> GravityForm:
+    """Return the form of three or five coefficients in one pose."""
+    return GravityForm(payloads=len(gravity) > len(NAMES))

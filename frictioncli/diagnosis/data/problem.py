@@ -22,6 +22,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from frictioncli.arrays import Array, Flags, Indices
+from frictioncli.diagnosis.data.gravity import GravityForm
 from frictioncli.diagnosis.data.hidden_temperature import HiddenTemperature
 from frictioncli.diagnosis.data.pair_layout import PairLayout
 from frictioncli.effects.base import Basis, Effect, EffectTable
@@ -81,9 +82,12 @@ class Problem:
         Friction parameters that the columns of ``friction_base`` belong to.
     parameters : FrictionParameters
         Parameters of friction, fitted to these data.
-    gravity : ndarray, shape (3,) or (5,)
-        Coefficients of cos q, sin q and 1, and of the first two per mass of the payload where two
-        payloads are known: those of the columns of ``load_base``. [N·m], [N·m/kg]
+    gravity : ndarray, shape (coefficients,)
+        Coefficients of cos q, sin q and 1, of the first two per mass of the payload where two
+        payloads are known, and of the first two in further poses of the other joints: those of the
+        columns of ``load_base``. [N·m], [N·m/kg]
+    gravity_form : GravityForm
+        What the gravity depends on.
     reference_power : float
         Power to which the friction power of the table is referred. [N·m·deg/s]
     has_load_channel : bool
@@ -107,6 +111,7 @@ class Problem:
     names: tuple[str, ...]
     parameters: FrictionParameters
     gravity: Array
+    gravity_form: GravityForm
     reference_power: float
     has_load_channel: bool
     temperature_error: float

@@ -5,7 +5,7 @@ from dataclasses import asdict, replace
 import pandas as pd
 
 from frictioncli.diagnosis.data.build_problem import simulated
-from frictioncli.diagnosis.data.gravity import stated_gravity
+from frictioncli.diagnosis.data.gravity_document import stated_gravity
 from frictioncli.diagnosis.documents.extended_model import ExtendedModel
 from frictioncli.model.document import FrictionModel
 
@@ -27,12 +27,17 @@ def friction_beyond(
     added = pd.Series(0.0, index=torques.index)
     if not extension.effects:
         return added, model
+    about = extension.gravity_about
     order, problem = simulated(
-        torques, extension.temperature, extension.about, stated_gravity(extension.gravity_about)
+        torques,
+        extension.temperature,
+        extension.about,
+        stated_gravity(about),
+        form=about.form,
     )
     added.loc[order] = extension.beyond(problem).friction
-    about = asdict(extension.about)
-    base = {name: replace(model.parameters[name], estimate=value) for name, value in about.items()}
+    started = asdict(extension.about)
+    base = {name: replace(model.parameters[name], estimate=at) for name, at in started.items()}
     return added, replace(model, parameters=base)
 
 

@@ -11,7 +11,7 @@ from msgspec import UNSET, UnsetType
 from frictioncli import documents
 from frictioncli.arrays import Array
 from frictioncli.diagnosis.data.build_problem import at_temperature
-from frictioncli.diagnosis.data.gravity import GravityCoefficients, stated_gravity
+from frictioncli.diagnosis.data.gravity_document import GravityCoefficients, stated_gravity
 from frictioncli.diagnosis.data.hidden_temperature import HiddenTemperature
 from frictioncli.diagnosis.data.problem import Problem
 from frictioncli.effects import BY_NAME, thermal_lag
@@ -209,7 +209,7 @@ class ExtendedModel:
         changes = [
             getattr(self.parameters, name) - getattr(base.parameters, name) for name in base.names
         ]
-        gravity = stated_gravity(self.gravity, len(base.gravity)) - base.gravity
+        gravity = stated_gravity(self.gravity, base.gravity_form) - base.gravity
         friction = base.friction_base @ np.array(changes) + base.friction_by_gravity @ gravity
         friction = friction + _at_measured(base) - _at_measured(problem)
         return Beyond(

@@ -5,7 +5,7 @@ from dataclasses import fields, replace
 import numpy as np
 from msgspec import UNSET
 
-from frictioncli.diagnosis.data.gravity import gravity_document
+from frictioncli.diagnosis.data.gravity_document import gravity_document
 from frictioncli.diagnosis.diagnose import Diagnosis
 from frictioncli.diagnosis.documents.document import (
     CauseRecord,
@@ -117,7 +117,7 @@ def extended_document(diagnosis: Diagnosis, model: FrictionModel) -> ExtendedDoc
     extension = diagnosis.extension
     if extension is None:
         return ExtendedDocument(**stated, effects=())
-    base = diagnosis.base.parameters
+    base, form = diagnosis.base.parameters, diagnosis.base.gravity_form
     parameters = dict(model.parameters)
     for name, change, error in zip(
         extension.names, extension.changes, extension.errors, strict=False
@@ -144,8 +144,8 @@ def extended_document(diagnosis: Diagnosis, model: FrictionModel) -> ExtendedDoc
         linear_about=FrictionParameters(
             **{name: float(getattr(base, name)) for name in PARAMETERS}
         ),
-        gravity_about=gravity_document(diagnosis.base.gravity),
-        gravity=gravity_document(extension.gravity),
+        gravity_about=gravity_document(diagnosis.base.gravity, form),
+        gravity=gravity_document(extension.gravity, form),
         hidden_temperature=diagnosis.base.hidden or UNSET,
     )
 

@@ -10,7 +10,7 @@ import numpy as np
 import pandas as pd
 
 from frictioncli.arrays import Array, Flags
-from frictioncli.diagnosis.data.gravity import NAMES, columns_of, known_payload
+from frictioncli.diagnosis.data.gravity import NAMES, known_payload
 from frictioncli.diagnosis.data.problem import Problem
 from frictioncli.diagnosis.ramps.robust_fit import Labels, Projection
 from frictioncli.model.friction import friction_torque
@@ -120,8 +120,7 @@ class RampMisfit:
         """
         direction = sign * rows["direction"].to_numpy(float)[:, np.newaxis]
         speed = rows["velocity"].abs().to_numpy(float)
-        payloads = len(problem.gravity) > len(NAMES)
-        gravity = columns_of(rows, payloads=payloads)
+        gravity = problem.gravity_form.columns(rows)
         # a sine averaged over a bin is less than the sine at its centre
         sines = [column for column in range(gravity.shape[1]) if column != NAMES.index("offset")]
         spread = np.radians(rows["spread"].to_numpy(float))
@@ -136,7 +135,7 @@ class RampMisfit:
         gravity_torque = 0.0 * gravity_torque if problem.has_load_channel else gravity_torque
         misfit = direction[:, 0] * (rows["torque"].to_numpy(float) - gravity_torque) - friction
         inertial = direction * rows[list(LAGS)].to_numpy(float)
-        if payloads:
+        if problem.gravity_form.payloads:
             mass = np.nan_to_num(known_payload(rows))
             acceleration = direction[:, 0] * rows["acceleration"].to_numpy(float)
             inertial = np.column_stack([inertial, acceleration * (mass - mass.mean())])

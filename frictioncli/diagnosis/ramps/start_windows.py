@@ -13,7 +13,7 @@ from scipy.interpolate import CubicSpline
 from scipy.ndimage import correlate1d
 
 from frictioncli.arrays import Array, Flags
-from frictioncli.diagnosis.data.gravity import NAMES, gravity_columns, known_payload
+from frictioncli.diagnosis.data.gravity import known_payload, known_pose
 from frictioncli.diagnosis.data.problem import Problem
 from frictioncli.diagnosis.ramps.robust_fit import Labels
 from frictioncli.model.friction import friction_torque
@@ -161,7 +161,7 @@ def _assembled(grid: _Grid, sign: int, problem: Problem, temperature: str) -> St
     moving = np.where(np.abs(velocity) > _SLOWEST, np.sign(velocity), 0.0)
     mass = np.nan_to_num(known_payload(grid.first))
     known_temperature = np.nan_to_num(temperature_of(grid.first, temperature).to_numpy(float))
-    gravity = _gravity(grid.position, mass, problem.gravity)
+    gravity = _gravity(grid, mass, problem)
     friction = moving * friction_torque(
         problem.parameters,
         load=0.0 * gravity if problem.has_load_channel else gravity,
@@ -193,10 +193,15 @@ def _assembled(grid: _Grid, sign: int, problem: Problem, temperature: str) -> St
     )
 
 
-def _gravity(position: Array, mass: Array, gravity: Array) -> Array:
+def _gravity(grid: _Grid, mass: Array, problem: Problem) -> Array:
     """Return the torque of gravity, shape (starts, samples) [N·m]."""
-    payload = np.repeat(mass, position.shape[1]) if len(gravity) > len(NAMES) else None
-    return (gravity_columns(position.ravel(), payload) @ gravity).reshape(position.shape)
+    samples = grid.position.shape[1]
+    columns = problem.gravity_form.columns_at(
+        grid.position.ravel(),
+        np.repeat(mass, samples),
+        np.repeat(known_pose(grid.first), samples),
+    )
+    return np.asarray(columns @ problem.gravity).reshape(grid.position.shape)
 
 
 def _slope(values: Array, period: float, half: int) -> Array:
