@@ -64,7 +64,7 @@ def threshold_of(text: str) -> Threshold:
     >>> threshold_of("3%")
     Threshold(value=3.0, unit='%')
     """
-    match = re.fullmatch(r"\s*(\d+\.?\d*|\.\d+)\s*(%?)\s*", text)
+    match = re.fullmatch(r"\s*(\d+(?:\.\d*)?|\.\d+)\s*(%?)\s*", text)
     if match is None:
         raise OptionError(
             f"--fail-above {text}: expected a percentage of the mean friction, as 3%, or a number"

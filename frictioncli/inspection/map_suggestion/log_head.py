@@ -13,6 +13,7 @@ _FIRST_BYTES = 1 << 16
 _BATCH_BYTES = 1 << 20
 _MAX_COLUMNS = 500
 _MAX_VALUES = 8_000_000
+_MAX_BAD_ROWS = 100_000
 _MAX_ROWS = 100_000
 _LEAST_FILLED = 0.9
 """Share of cells that must be numbers in a column of numbers."""
@@ -53,12 +54,13 @@ def read_log_head(source: LogSource) -> LogHead:
         return LogHead(names, {}, {}, 0)
     most_rows = min(_MAX_VALUES // len(numeric), _MAX_ROWS)
     batches: list[RawBatch] = []
-    rows = 0
+    rows = bad = 0
     with suppress(UnreadableLog):
         for batch in source.batches(numeric, _BATCH_BYTES):
             batches.append(batch)
             rows += len(batch.lines)
-            if rows >= most_rows:
+            bad += len(batch.bad_lines)
+            if rows >= most_rows or bad > _MAX_BAD_ROWS:
                 break
     cells = {c: np.concatenate([b.values[c] for b in batches] or [np.empty(0)]) for c in numeric}
     complete = np.ones(rows, bool)

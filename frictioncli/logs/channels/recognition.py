@@ -11,9 +11,10 @@ from frictioncli.logs.channels.channel_names import (
     Meaning,
 )
 
-_UNIT = re.compile(r"^(?P<name>.*?)\s*[\[(](?P<unit>[^\[\]()]*)[\])]\s*$")
+_UNIT = re.compile(r"^(?P<name>.*?)[\[(](?P<unit>[^\[\]()]*)[\])]\s*$")
 _JOINT_LAST = re.compile(
-    r"^(?P<name>.*?)(?:(?<=[a-z])[AJ]|[ _.\-(\[]+[AaJj]?[ _]?|)(?P<joint>\d{1,2})[)\]]?$"
+    r"^(?P<name>.*?)(?:(?<=[a-z])[AJ]|(?<![ _.\-(\[])[ _.\-(\[]+[AaJj]?[ _]?|)"
+    r"(?P<joint>\d{1,2})[)\]]?$"
 )
 _JOINT_FIRST = re.compile(
     r"^(?:joint|axis|axle|achse|gelenk|motor|[aj])[ _.]?(?P<joint>\d{1,2})[ _.\-]+(?P<name>.+)$",
@@ -24,6 +25,7 @@ _MEASURED = re.compile(
     r"(?=$|[ _.\-])",
     re.I,
 )
+_NO_KEY = re.compile(r"[^a-z0-9]")
 _JOINT_IN_BRACKETS = re.compile(r"^[AaJj]?\d{1,2}$")
 _JOINT_IN_FILE_NAME = re.compile(
     r"NextGenDrive#(\d{1,2})"
@@ -83,10 +85,10 @@ def split_unit(column: str) -> tuple[str, str]:
     found = _UNIT.match(column.strip().strip('"'))
     if found is None or _JOINT_IN_BRACKETS.match(found["unit"].strip()):
         return column.strip().strip('"'), ""
-    unit = found["unit"].strip()
+    name, unit = found["name"].rstrip(), found["unit"].strip()
     if unit in ("x", "y", "z", "rx", "ry", "rz"):  # an axis of a coordinate frame, not a unit
-        return f"{found['name']} {unit}", ""
-    return found["name"], unit
+        return f"{name} {unit}", ""
+    return name, unit
 
 
 def recognise_channels(
@@ -161,7 +163,7 @@ def _candidate_names(name: str) -> tuple[str, ...]:
 def _key(name: str) -> str:
     """Return a name as a key of :data:`MEANINGS`."""
     lower = name.lower().replace("ä", "ae").replace("ö", "oe").replace("ü", "ue")
-    return re.sub(r"[^a-z0-9]", "", lower.replace("ß", "ss"))
+    return _NO_KEY.sub("", lower.replace("ß", "ss"))
 
 
 def joint_in_name(stem: str) -> int | None:

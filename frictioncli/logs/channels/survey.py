@@ -15,6 +15,7 @@ _MAX_FILES = 16
 _MAX_ROWS = 20_000
 _MIN_ROWS = 2_000
 _MAX_VALUES = 4_000_000
+_MAX_BAD_ROWS = 100_000
 _MAX_BATCHES = 64
 _BATCH_BYTES = 1 << 20
 _LEAST_MOTION = 0.01
@@ -88,9 +89,12 @@ def _head(
     source: LogSource, wanted: list[int], positions: list[int], time: int, least_rows: int
 ) -> dict[int, Array]:
     kept: list[dict[int, Array]] = []
-    rows = 0
+    rows = bad = 0
     has_moved = False
     for number, batch in enumerate(_readable_batches(source, wanted)):
+        bad += len(batch.bad_lines)
+        if bad > _MAX_BAD_ROWS:
+            break
         moves = any(_moves(batch.values[column]) for column in positions)
         if kept and not moves and not has_moved:
             if number >= _MAX_BATCHES:

@@ -59,6 +59,9 @@ _SPELLINGS = {
 }
 _CANONICAL = {text: unit for unit, texts in _SPELLINGS.items() for text in texts.split()}
 
+_NOT_READ = re.compile(r"[^\x00-\x7f]+|\?+")
+_NOT_ASCII = re.compile(r"[^\x00-\x7f]+")
+
 _LOWEST_TEMPERATURE, _HIGHEST_TEMPERATURE = -30.0, 150.0  # [°C]
 
 
@@ -105,7 +108,7 @@ def canonical(text: str, quantity: str) -> str | None:
     """
     bare = text.strip().strip("[]()").lower().replace(" ", "")
     # "°", "Â°", "ï¿½" and "?" are all a degree sign once; "Â·" and "·" are both a dot
-    tries = (bare, re.sub(r"[^\x00-\x7f]+|\?+", "°", bare), re.sub(r"[^\x00-\x7f]+", "", bare))
+    tries = (bare, _NOT_READ.sub("°", bare), _NOT_ASCII.sub("", bare))
     for spelling in tries:
         unit = _CANONICAL.get(spelling)
         if unit in FACTORS[quantity]:

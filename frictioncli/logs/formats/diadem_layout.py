@@ -11,6 +11,8 @@ from frictioncli.logs.formats.diadem_header import DamagedHeader, Header, Header
 
 _FILE, _STORAGE, _TYPE, _FIRST, _STEP = 211, 213, 214, 221, 222
 _BYTE_ORDER = 112
+_LITTLE_ENDIAN = re.compile(r"(?i)high\s*->\s*low")
+_BIG_ENDIAN = re.compile(r"(?i)low\s*->\s*high")
 
 _TYPES = {
     "REAL32": "f4",
@@ -120,9 +122,9 @@ def _pointer(section: HeaderSection) -> int:
 def _byte_order(general: HeaderSection) -> str:
     """Return numpy's byte order character; DIAdem calls little-endian ``High -> Low``."""
     text = general.text(_BYTE_ORDER, "High -> Low")
-    if re.fullmatch(r"(?i)high\s*->\s*low", text):
+    if _LITTLE_ENDIAN.fullmatch(text):
         return "<"
-    if re.fullmatch(r"(?i)low\s*->\s*high", text):
+    if _BIG_ENDIAN.fullmatch(text):
         return ">"
     raise general.damaged(_BYTE_ORDER, "'High -> Low' or 'Low -> High'")
 

@@ -10,10 +10,11 @@ from frictioncli.logs.log_source import CsvHints, Refusal
 
 _DELIMITERS = (";", "\t", ",", " ")
 _NAMES = {";": "';'", "\t": "tab", ",": "','", " ": "blanks"}
-_POINT = re.compile(r"\s*[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?\s*")
-_COMMA = re.compile(r"\s*[+-]?(\d+,?\d*|,\d+)([eE][+-]?\d+)?\s*")
-_DATE = re.compile(r"\s*\d{4}-\d\d-\d\d([T ]\d\d:\d\d.*)?\s*")
-_UNIT_CELL = re.compile(r"\s*[\[(]?[^\s\d\[\]()]{0,6}(/s\^?[2²]?)?[\])]?\s*")
+_POINT = re.compile(r"\s*[+-]?(\d+(\.\d*)?|\.\d+)([eE][+-]?\d+)?\s*")
+_COMMA = re.compile(r"\s*[+-]?(\d+(,\d*)?|,\d+)([eE][+-]?\d+)?\s*")
+_DATE = re.compile(r"\s*\d{4}-\d\d-\d\d([T ]\d\d:\d\d.*+)?\s*")
+_UNIT_CELL = re.compile(r"\s*+[\[(]?[^\s\d\[\]()]{0,6}(/s\^?[2²]?)?[\])]?\s*")
+_BLANKS_BEFORE_UNIT = re.compile(r"(?<!\s)\s++(?=[\[(])")
 _SAMPLE_LINES = 60
 _LEAST_NUMBERS = 0.3
 """Least share of cells that are numbers in the lines of a table."""
@@ -207,7 +208,7 @@ def _header_fields(line: str, delimiter: str) -> list[str]:
     """Return the fields of a line without trailing empty ones."""
     if delimiter == " ":
         # "Zeit [s]" is one field
-        line = re.sub(r"\s+(?=[\[(])", "", line)
+        line = _BLANKS_BEFORE_UNIT.sub("", line)
     fields = [field.strip().strip('"').strip() for field in split(line, delimiter)]
     while fields and not fields[-1]:
         fields.pop()

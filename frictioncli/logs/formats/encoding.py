@@ -4,6 +4,7 @@ import codecs
 import os
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 from typing import BinaryIO
 
@@ -27,6 +28,10 @@ HEAD_BYTES = 1 << 16
 """Length of the beginning from which the format is detected. [byte]"""
 _MAX_LINE = 1 << 25
 """Longest line; text without line ends must not fill the memory. [byte]"""
+_MAX_BLANKS = 1 << 25
+_MAX_BLANK_SHARE = 0.99
+"""A longer compressed text with more blanks is refused: a few kB can be GB of them. [byte, -]"""
+_BLANKS = b" \r\n"
 _EXPECTED_LINE = 1 << 16
 """Up to this line length, blocks of a file end with a whole line. [byte]"""
 # bytes that occur in no text log; tab, line feed, form feed, carriage return and Ctrl-Z may occur
@@ -213,14 +218,29 @@ def _blocks(path: Path, encoding: str, size: int) -> Iterator[bytes]:
             if not is_compressed(stream):
                 yield from _blocks_of_lines(stream, size)
                 return
-            while block := stream.read(size):
-                yield block
+            yield from _bounded_blanks(iter(partial(stream.read, size), b""))
             return
         decoder = codecs.getincrementaldecoder(encoding)("replace")
-        while block := stream.read(size):
-            yield decoder.decode(block).encode("utf-8")
+        decoded = (
+            decoder.decode(block).encode("utf-8") for block in iter(partial(stream.read, size), b"")
+        )
+        yield from _bounded_blanks(decoded) if is_compressed(stream) else decoded
         if last := decoder.decode(b"", final=True):
             yield last.encode("utf-8")
+
+
+def _bounded_blanks(blocks: Iterable[bytes]) -> Iterator[bytes]:
+    """Yield blocks until nearly all of a long text is blank."""
+    length = filled = 0
+    for block in blocks:
+        length += len(block)
+        filled += len(block.translate(None, _BLANKS))
+        if length > _MAX_BLANKS and filled < (1 - _MAX_BLANK_SHARE) * length:
+            raise UnreadableLog(
+                f"only {filled} of its first {length} characters are not blank; expected rows of"
+                " numbers"
+            )
+        yield block
 
 
 def _blocks_of_lines(stream: BinaryIO, size: int) -> Iterator[bytes]:

@@ -9,6 +9,7 @@ from pathlib import Path
 from frictioncli.arrays import Numbers
 from frictioncli.logs.log_source import LogSource, RawBatch, ReadTask
 
+_NO_KEY = re.compile(r"[^a-z0-9]")
 _SECONDS = re.compile(r"^(?P<stem>.*?)sec(?:onds|s)?$")
 _NANOSECONDS = re.compile(r"^(?P<stem>.*?)n(?:ano)?sec(?:onds|s)?$")
 
@@ -26,7 +27,7 @@ def with_joined_time(source: LogSource) -> LogSource:
 
 def _pair(columns: Sequence[str]) -> tuple[int, int] | None:
     """Return the columns of seconds and nanoseconds, None where there is no pair."""
-    plain = [re.sub(r"[^a-z0-9]", "", column.lower()) for column in columns]
+    plain = [_NO_KEY.sub("", column.lower()) for column in columns]
     parts: dict[str, int] = {}
     for index, name in enumerate(plain):
         found = _NANOSECONDS.match(name)

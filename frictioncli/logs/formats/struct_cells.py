@@ -18,10 +18,11 @@ from frictioncli.logs.formats.dialect import NOT_NUMBERS
 from frictioncli.logs.formats.encoding import decode_head, detect_encoding, line_blocks
 from frictioncli.logs.log_source import MAX_ROW_TEXT, CsvHints, RawBatch, Refusal, SequentialSource
 
-_NUMBER = r"[+-]?\d+(?:[.,]\d+)?(?:[eE][+-]?\d+)?"
-_MEMBER = re.compile(rf"\b([A-Z]\d?)\s+({_NUMBER})")
+_NUMBER = r"[+-]?\d++(?:[.,]\d++)?(?:[eE][+-]?\d++)?"
+_MEMBER = re.compile(rf"\b([A-Z]\d?)\s++({_NUMBER})")
 _STRUCT = re.compile(
-    rf"\{{?\s*(?:[A-Z]\w*\s*:)?\s*[A-Z]\d?\s+{_NUMBER}(?:\s*[,\s]\s*[A-Z]\d?\s+{_NUMBER})+\s*\}}?"
+    rf"(?:\{{\s*+)?(?:(?<!\w)[A-Z]\w*+\s*+:\s*+)?"
+    rf"[A-Z]\d?\s++{_NUMBER}(?:(?:\s++,?|,)\s*+[A-Z]\d?\s++{_NUMBER})++(?:\s*+\}})?"
 )
 _PLACEHOLDER = "\0"
 _DELIMITERS = ";\t,"

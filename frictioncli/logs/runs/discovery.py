@@ -15,6 +15,7 @@ from frictioncli.logs.runs import manifest
 Logs = Sequence[Path] | Mapping[str, Path]
 """Log files and folders, where each folder is a run; or run name -> its file or folder."""
 
+_DIGITS = re.compile(r"(\d+)")
 _IGNORED = frozenset({manifest.NAME, "truth.json", "metadata.yaml", "thumbs.db", "desktop.ini"})
 
 
@@ -58,8 +59,14 @@ def natural_key(name: str) -> list[tuple[int, int, str]]:
     >>> sorted(["s10", "s2"], key=natural_key)
     ['s2', 's10']
     """
-    parts = re.split(r"(\d+)", name.lower())
-    return [(0, int(part), "") if part.isdecimal() else (1, 0, part) for part in parts if part]
+    parts = _DIGITS.split(name.lower())
+    return [_numeric_key(part) if part.isdecimal() else (1, 0, part) for part in parts if part]
+
+
+def _numeric_key(part: str) -> tuple[int, int, str]:
+    """Return a key that orders digits by their number, however many they are."""
+    digits = "".join(str(int(digit)) for digit in part).lstrip("0")
+    return 0, len(digits), digits
 
 
 def discover(logs: Logs, excluded: Path | None = None) -> tuple[LogRun, ...]:

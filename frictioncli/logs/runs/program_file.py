@@ -8,7 +8,7 @@ from datetime import UTC, datetime
 from pathlib import Path
 
 _LONGEST = 1 << 24  # [byte]
-_LINE = re.compile(r"^\s*([A-Z][A-Z0-9 /]*?):\s*(.*?)\s*$")
+_LINE = re.compile(r"^\s*([A-Z][A-Z0-9 /]*):(.*)$")
 _DATE = re.compile(r"^(\d\d)-(\d\d)-(\d{4})$")
 _CLOCK = re.compile(r"^(\d\d):(\d\d):(\d\d)$")
 _MASS = re.compile(r"\{\s*m\s+([^\s,}]+)")
@@ -115,7 +115,7 @@ def read_program(path: Path) -> ProgramFile | None:
         elif mark.startswith("#END"):
             block = None
         elif block is not None and (entry := _LINE.match(line)):
-            block.setdefault(entry[1], entry[2])
+            block.setdefault(entry[1], entry[2].strip())
     if not header and not blocks:
         return None
     return ProgramFile(path, _start(header), tuple(_motions(blocks)))

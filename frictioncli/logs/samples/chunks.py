@@ -159,7 +159,9 @@ def convert_chunk(batch: RawBatch, planned: PlannedLog) -> LogChunk:
     """
     rejected = RejectedRows()
     for reason in sorted(set(batch.bad_reasons)):
-        rejected.add(batch.bad_lines[np.array(batch.bad_reasons) == reason], reason)
+        # an array of the texts would take 70 bytes per row
+        is_reason = np.fromiter((one == reason for one in batch.bad_reasons), bool)
+        rejected.add(batch.bad_lines[is_reason], reason)
     rows = _drop_implausible_positions(_converted(batch, planned), batch, planned, rejected)
     required = [
         (plan.channels.joint, name)

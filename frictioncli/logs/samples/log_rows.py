@@ -74,23 +74,34 @@ def concatenate_rows(first: LogRows, second: LogRows) -> LogRows:
     )
 
 
+_MOST_REJECTED, _LARGEST_SHARE = 1_000_000, 0.8
+"""A log with more rejected rows than both is given up: a few kB can unpack to 1e9 such rows."""
+
+
 @dataclass(slots=True)
 class RejectedRows:
     """Lines rejected so far, each array of lines with the indices of its ``REASONS``."""
 
     lines: list[Numbers] = field(default_factory=list)
     codes: list[NDArray[np.int8]] = field(default_factory=list)
+    count: int = 0
 
     def add(self, lines: Numbers, reason: str) -> None:
         """Add lines that are rejected for one reason."""
         if len(lines):
+            self.count += len(lines)
             self.lines.append(lines)
             self.codes.append(np.full(len(lines), REASONS.index(reason), np.int8))
 
     def extend(self, others: "RejectedRows") -> None:
         """Add the lines of another record."""
+        self.count += others.count
         self.lines += others.lines
         self.codes += others.codes
+
+    def are_hopeless(self, rows_read: int) -> bool:
+        """Return whether a log with so many rejected rows is to be read no further."""
+        return self.count > max(_MOST_REJECTED, _LARGEST_SHARE * rows_read)
 
     def counts(self) -> dict[str, int]:
         """Return reason -> number of lines, for the reasons that occur."""

@@ -1,7 +1,7 @@
 """Logs read in chunks, parsed ahead in threads."""
 
 from collections import deque
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Container, Iterable, Iterator, Sequence
 from concurrent.futures import Future, ThreadPoolExecutor
 from dataclasses import dataclass
 from functools import partial
@@ -10,6 +10,7 @@ from typing import TypeVar
 
 from frictioncli.logs.log_source import RawBatch, ReadTask, UnreadableLog
 from frictioncli.logs.samples.chunks import LogChunk, PlannedLog, convert_chunk, empty_chunk
+from frictioncli.logs.samples.log_rows import RejectedRows
 
 T = TypeVar("T")
 
@@ -37,9 +38,10 @@ def read_chunks(
     batch_bytes : int
         Size of a chunk in the file. [byte]
     """
-    results = chain.from_iterable(in_order(_grouped(_tasks(logs, batch_bytes))))
+    given_up: set[int] = set()
+    results = chain.from_iterable(in_order(_grouped(_tasks(logs, batch_bytes, given_up))))
     for number, group in groupby(results, key=lambda result: result.number):
-        yield logs[number], _chunks(group)
+        yield logs[number], _chunks(group, given_up)
 
 
 def in_order(tasks: Iterable[Callable[[], T]]) -> Iterator[T]:
@@ -69,14 +71,24 @@ class _ChunkResult:
     chunk: LogChunk | UnreadableLog
 
 
-def _chunks(results: Iterable[_ChunkResult]) -> Iterator[LogChunk]:
+def _chunks(results: Iterable[_ChunkResult], given_up: set[int]) -> Iterator[LogChunk]:
+    """Yield the chunks of a log up to where hardly any row was usable."""
+    rows_read, rejected = 0, RejectedRows()
     for result in results:
         if isinstance(result.chunk, UnreadableLog):
             raise result.chunk
+        rows_read += result.chunk.rows_read
+        rejected.count += result.chunk.rejected.count
+        if rejected.are_hopeless(rows_read):
+            given_up.add(result.number)
         yield result.chunk
+        if result.number in given_up:
+            return
 
 
-def _tasks(logs: Iterable[PlannedLog], batch_bytes: int) -> Iterator[ReadTask[_ChunkResult]]:
+def _tasks(
+    logs: Iterable[PlannedLog], batch_bytes: int, given_up: Container[int]
+) -> Iterator[ReadTask[_ChunkResult]]:
     """Yield the tasks of all logs one after the other; each log has at least one."""
     for number, planned in enumerate(logs):
         last: LogChunk | UnreadableLog | None = empty_chunk(planned)
@@ -84,6 +96,8 @@ def _tasks(logs: Iterable[PlannedLog], batch_bytes: int) -> Iterator[ReadTask[_C
             for task in planned.log.source.tasks(planned.columns, batch_bytes):
                 yield ReadTask(partial(_read, number, planned, task), task.size)
                 last = None
+                if number in given_up:
+                    break
         except UnreadableLog as error:
             last = error
         if last is not None:

@@ -108,6 +108,8 @@ def read_recording(
         for chunk in chunks:
             rows_read += chunk.rows_read
             yield chunk
+            if rejected.are_hopeless(rows_read):
+                return
 
     joints = [plan.channels.joint for plan in planned.plans]
     registers = {joint: TemperatureRegister(continuous=joint in continuous) for joint in joints}

@@ -1,0 +1,69 @@
+"""Little that unpacks to much: work ends early, not only memory."""
+
+import gzip
+import subprocess
+import sys
+
+import pytest
+
+from tests.fleet.fleets import ENVIRONMENT, PROGRAM
+
+MIB = 1 << 20
+SECONDS = 60
+"""Processor time; to read all of it would take many minutes."""
+MEMORY = 500
+HEAD = b"Zeit[sec];AxisPos_Act2[deg];GearTorq_Act2[Nm]\n"
+ROWS = b"".join(b"%.3f;%.4f;%.3f\n" % (i * 0.012, i * 0.1, i % 7 * 0.3) for i in range(2000))
+
+CALL = f"""
+import resource, sys
+resource.setrlimit(resource.RLIMIT_CPU, ({SECONDS}, {SECONDS}))
+import atexit
+atexit.register(lambda: print(resource.getrusage(resource.RUSAGE_SELF).ru_maxrss // 1000))
+{PROGRAM}
+"""
+
+
+def packed(path, part, mebibytes):
+    """Write a log that goes on with the same part for long."""
+    with gzip.open(path, "wb", 6) as stream:
+        stream.write(HEAD + ROWS)
+        for _ in range(mebibytes):
+            stream.write(part * (MIB // len(part)))
+    assert path.stat().st_size < 3 * MIB
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("command", ["ingest", "inspect"])
+@pytest.mark.parametrize(
+    ("part", "reason"),
+    [
+        (b"\n", "not blank"),
+        (b"        \r\n", "not blank"),
+        (b"x\n", "wrong_field_count"),
+        (b"0;0;0\n", "time_not_increasing"),
+    ],
+)
+def test_gigabytes_in_kilobytes_end_early(tmp_path, command, part, reason):
+    (tmp_path / "day").mkdir()
+    packed(tmp_path / "day" / "log.csv.gz", part, 400)
+    arguments = [command, str(tmp_path / "day")]
+    if command == "ingest":
+        arguments += ["-w", str(tmp_path / "work")]
+    done = subprocess.run(
+        [sys.executable, "-c", CALL, *arguments],
+        env=ENVIRONMENT | {"COLUMNS": "500"},
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert done.returncode == (2 if command == "ingest" else 0), done
+    assert reason in done.stdout + done.stderr
+    assert int(done.stdout.split()[-1]) < MEMORY
+
+
+def test_the_limit_of_processor_time_is_one():
+    """The limit ends a call that goes on."""
+    call = CALL.replace(f"({SECONDS}, {SECONDS})", "(1, 1)").replace(PROGRAM, "while True: pass")
+    done = subprocess.run([sys.executable, "-c", call], env=ENVIRONMENT, check=False)
+    assert done.returncode < 0

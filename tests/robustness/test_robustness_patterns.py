@@ -1,0 +1,99 @@
+"""Patterns that meet text of others take a time proportional to its length."""
+
+import ast
+import importlib
+import pkgutil
+import re
+import signal
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+import frictioncli
+from tests.fleet.fleets import ENVIRONMENT
+
+LENGTH = 100_000
+SECONDS = 5.0
+"""Processor time for one text; a linear pattern needs 0.05 s, a quadratic one a minute."""
+
+BEFORE = ("", "A: ", "{ ", "a [", "2024-05-17T09:30 ")
+REPEATED = (
+    *(" ", "\t", "\r", "\n", "1", '"', "[", "]", "(", "{", "A", "a", "_", ".", ",", ":", "-", "?"),
+    *("A1 ", "A1 1 ", "A: ", "{ ", "[ ", "1,", "1 ", "1e", "a1", "a [", "é"),
+)
+AFTER = ("x", "1")
+METHODS = ("search", "match", "fullmatch", "sub", "split", "findall")
+
+
+def _patterns():
+    """Return module and name of every pattern that meets text of others."""
+    for part in ("logs", "inspection"):
+        package = importlib.import_module(f"frictioncli.{part}")
+        for found in pkgutil.walk_packages(package.__path__, f"{package.__name__}."):
+            module = importlib.import_module(found.name)
+            for name, value in vars(module).items():
+                if isinstance(value, re.Pattern):
+                    yield module, name
+
+
+def _methods(module, name):
+    """Return how a module uses a pattern; where it hands it on, the ways of the callers."""
+    source = Path(module.__file__).read_text(encoding="utf-8")
+    used = [method for method in METHODS if f"{name}.{method}(" in source]
+    return used or [method for method in METHODS if f"pattern.{method}(" in source] or ["match"]
+
+
+def try_patterns(module_name):
+    """Use the patterns of a module on hostile texts; the process ends if one takes too long."""
+    module = importlib.import_module(module_name)
+    for name in (name for of, name in _patterns() if of is module):
+        pattern = vars(module)[name]
+        for before in BEFORE:
+            for part in REPEATED:
+                for after in AFTER:
+                    text = before + part * (LENGTH // len(part)) + after
+                    text = text.encode() if isinstance(pattern.pattern, bytes) else text
+                    for method in _methods(module, name):
+                        print(
+                            f"{name}.{method} on {before!r} + {part!r} ... + {after!r}", flush=True
+                        )
+                        signal.setitimer(signal.ITIMER_VIRTUAL, SECONDS)
+                        arguments = (text[:0], text) if method == "sub" else (text,)
+                        getattr(pattern, method)(*arguments)
+
+
+PATTERNS = list(_patterns())
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("module", sorted({module.__name__ for module, _ in PATTERNS}))
+def test_a_pattern_needs_time_in_proportion_to_the_text(module):
+    call = f"from {__name__} import try_patterns; try_patterns({module!r})"
+    done = subprocess.run(
+        [sys.executable, "-c", call], env=ENVIRONMENT, capture_output=True, text=True, check=False
+    )
+    assert done.returncode == 0, f"{done.stdout[-200:]} {done.stderr}"
+
+
+def test_a_log_of_blanks_is_told_at_once():
+    """What took 29 s: a line of blanks before the header."""
+    from frictioncli.logs.formats.struct_cells import _cells
+
+    assert _cells(" " * LENGTH) == [""]
+    assert _cells("0.1;{E6AXIS: A1 1.5, A2 -2e1};3") == [
+        "0.1",
+        [("A1", "1.5"), ("A2", "-2e1")],
+        "3",
+    ]
+
+
+def test_every_pattern_has_a_name_and_so_is_tried():
+    assert len(PATTERNS) > 30
+    folder = Path(frictioncli.__file__).parent
+    for path in [*folder.glob("logs/**/*.py"), *folder.glob("inspection/**/*.py")]:
+        for call in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+            if isinstance(call, ast.Call) and isinstance(call.func, ast.Attribute):
+                of_re = isinstance(call.func.value, ast.Name) and call.func.value.id == "re"
+                assert not of_re or call.func.attr in ("compile", "escape"), ast.unparse(call)
