@@ -26,7 +26,9 @@ from frictioncli.inspection.unit_reasons import other_remarks
 from frictioncli.inspection.unusable_file import inspect_unusable
 from frictioncli.logs.channels.channel_map import ChannelMap, read_map
 from frictioncli.logs.channels.channel_names import INTEGRATED
+from frictioncli.logs.found_constants import found_constants
 from frictioncli.logs.log_source import Refusal
+from frictioncli.logs.reading_plan import Constants
 from frictioncli.logs.run_logs import plan_run
 from frictioncli.logs.runs.discovery import LogRun, discover
 from frictioncli.logs.runs.manifest import RunManifest, read_run_manifest
@@ -90,12 +92,13 @@ def inspect(
     settings = settings or IngestSettings()
     pairing = pairing or PairingSettings()
     channel_map = read_map(settings.map_file) if settings.map_file is not None else ChannelMap()
-    inspected = _InspectedLogs()
+    runs = discover(logs)
+    inspected = _InspectedLogs(found_constants(runs, settings, channel_map))
     with tempfile.TemporaryDirectory(prefix="frictioncli-") as name:
         folder = Path(name)
         samples = (
             batch
-            for run in discover(logs)
+            for run in runs
             for batch in _inspect_run(run, settings, channel_map, folder, inspected)
         )
         segments, pairs, other_motion = segments_and_pairs(
@@ -121,10 +124,12 @@ def inspect(
 class _InspectedLogs:
     """Record of all logs inspected so far.
 
-    ``usable`` holds the logs whose samples can be used; ``time_known`` is false where start times
-    are not known and were assumed.
+    ``constants`` holds the torque constants that were found, by joint. ``usable`` holds the logs
+    whose samples can be used; ``time_known`` is false where start times are not known and were
+    assumed.
     """
 
+    constants: Constants
     files: list[FileInspection] = field(default_factory=list)
     usable: list[DatedLog] = field(default_factory=list)
     remarks: list[str] = field(default_factory=list)
@@ -174,7 +179,7 @@ def _inspect_run(
 ) -> Iterator[pa.RecordBatch]:
     """Yield the samples of all logs of a run in the order of time, and record what they hold."""
     manifest = _manifest(run, inspected)
-    logs = plan_run(run, manifest, settings, channel_map)
+    logs = plan_run(run, manifest, settings, channel_map, constants=inspected.constants)
     files = {
         log.file.path: inspect_unusable(run, log.file.path, log.refusal, channel_map, settings)
         for log in logs.refused

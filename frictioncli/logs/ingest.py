@@ -14,7 +14,9 @@ from frictioncli import schemas
 from frictioncli.errors import FrictionError, LogError, MappingError
 from frictioncli.files import atomic_write
 from frictioncli.logs.channels.channel_map import ChannelMap, is_inline, read_map
+from frictioncli.logs.found_constants import found_constants
 from frictioncli.logs.log_source import Refusal
+from frictioncli.logs.reading_plan import Constants, wanted_constant
 from frictioncli.logs.run_logs import RunLogs, plan_run
 from frictioncli.logs.runs.discovery import LogRun, Logs, discover
 from frictioncli.logs.runs.manifest import read_run_manifest
@@ -25,7 +27,7 @@ from frictioncli.logs.samples.recording import read_recording
 from frictioncli.logs.samples.sample_writer import SampleWriter
 from frictioncli.logs.samples.temperature_register import run_knots
 from frictioncli.logs.samples.timeline import RunClock, Timeline
-from frictioncli.logs.settings import IngestSettings
+from frictioncli.logs.settings import AUTO, IngestSettings
 from frictioncli.logs.summary import IngestedLogs, IngestSummary
 from frictioncli.provenance import Provenance, sha256
 from frictioncli.tables import TableWriter
@@ -77,10 +79,13 @@ def ingest(logs: Logs, work: Path, settings: IngestSettings | None = None) -> In
             stack.enter_context(_BackgroundHasher()),
         )
         ingested = IngestedLogs()
+        constants = found_constants(runs, settings, channel_map)
         for run in runs:
-            _ingest_run(run, settings, channel_map, outputs, ingested)
+            _ingest_run(run, settings, channel_map, outputs, ingested, constants)
         if not ingested.recordings:
             raise _no_usable_log(ingested.refused)
+        if wanted_constant(settings, channel_map) == AUTO and not constants:
+            ingested.notes.append("no torque constant is needed: no torque is a motor current")
         facts = ingested.facts()
         inputs = _input_hashes(ingested, outputs.hasher, settings)
         provenance = Provenance("ingest", settings.as_dict(), inputs)
@@ -159,10 +164,11 @@ def _ingest_run(
     channel_map: ChannelMap,
     outputs: _Outputs,
     ingested: IngestedLogs,
+    constants: Constants,
 ) -> None:
     """Read all logs of a run."""
     manifest = read_run_manifest(run.folder, [file.path.name for file in run.files])
-    logs = plan_run(run, manifest, settings, channel_map, opened=outputs.hasher.add)
+    logs = plan_run(run, manifest, settings, channel_map, outputs.hasher.add, constants)
     ingested.warnings += manifest.warnings
     ingested.refused += logs.refused
     clock = _read_logs(run, logs, settings.batch_bytes, outputs, ingested)

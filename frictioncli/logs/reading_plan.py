@@ -1,6 +1,6 @@
 """How each log is read: logs with the same header are surveyed together and share one plan."""
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import replace
 
 from frictioncli.errors import OptionError
@@ -8,14 +8,21 @@ from frictioncli.logs.channels.channel_map import ChannelMap
 from frictioncli.logs.channels.joint_plan import JointPlan, plan_joint
 from frictioncli.logs.channels.survey import survey
 from frictioncli.logs.channels.torque_choice import choose_torques
+from frictioncli.logs.channels.torque_constant import TorqueConstant
 from frictioncli.logs.log_source import Refusal
 from frictioncli.logs.runs.opening import OpenedLog, RefusedLog
 from frictioncli.logs.samples.chunks import PlannedLog, plan_log
 from frictioncli.logs.settings import IngestSettings
 
+Constants = Mapping[int, TorqueConstant | Refusal]
+"""Torque constant by joint, or why it is not known."""
+
 
 def planned_logs(
-    opened: Iterable[OpenedLog], settings: IngestSettings, channel_map: ChannelMap
+    opened: Iterable[OpenedLog],
+    settings: IngestSettings,
+    channel_map: ChannelMap,
+    constants: Constants | None = None,
 ) -> tuple[list[PlannedLog], list[RefusedLog]]:
     """Return how each log is to be read, and the logs that cannot be read.
 
@@ -27,14 +34,16 @@ def planned_logs(
         Units and gear ratio given by option, which take precedence over the map's.
     channel_map : ChannelMap
         Units and gear ratio given by the mapping file.
+    constants : mapping of int to TorqueConstant or Refusal, optional
+        Those that were found, by joint; one that the user gives takes precedence.
 
     Raises
     ------
     OptionError
-        If one gear ratio is given for several joints.
+        If one gear ratio or one torque constant is given for several joints.
     """
     found, refused = [], []
-    for log, plans in _joint_plans(opened, settings, channel_map):
+    for log, plans in _joint_plans(opened, settings, channel_map, constants or {}):
         if isinstance(plans, Refusal):
             refused.append(RefusedLog(log.run, log.file, log.recording, plans))
         else:
@@ -43,14 +52,17 @@ def planned_logs(
 
 
 def _joint_plans(
-    logs: Iterable[OpenedLog], settings: IngestSettings, channel_map: ChannelMap
+    logs: Iterable[OpenedLog],
+    settings: IngestSettings,
+    channel_map: ChannelMap,
+    constants: Constants,
 ) -> Iterator[tuple[OpenedLog, list[JointPlan] | Refusal]]:
     """Yield each log with the plans of its joints, or why none of them can be read."""
     layouts: dict[tuple[str, ...], list[OpenedLog]] = {}
     for log in logs:
         layouts.setdefault(log.layout, []).append(log)
     for same_layout in layouts.values():
-        plans = _plans_of_layout(same_layout, settings, channel_map)
+        plans = _plans_of_layout(same_layout, settings, channel_map, constants)
         for log in same_layout:
             yield log, plans if isinstance(plans, Refusal) else _with_notes(plans, log)
 
@@ -63,7 +75,10 @@ def _with_notes(plans: list[JointPlan], log: OpenedLog) -> list[JointPlan]:
 
 
 def _plans_of_layout(
-    logs: list[OpenedLog], settings: IngestSettings, channel_map: ChannelMap
+    logs: list[OpenedLog],
+    settings: IngestSettings,
+    channel_map: ChannelMap,
+    constants: Constants,
 ) -> list[JointPlan] | Refusal:
     first = logs[0]
     surveyed = survey([log.source for log in logs], first.channels, first.joints[0].time.column)
@@ -77,14 +92,45 @@ def _plans_of_layout(
         )
     rated = settings.rated_torque
     rated = channel_map.rated_torque if rated is None else rated
+    told = wanted_constant(settings, channel_map)
+    if isinstance(told, float | int):
+        one = TorqueConstant(float(told), None, "as told")
+        constants = {channels.joint: one for channels in first.joints}
     chosen = choose_torques(first.joints, surveyed)
     found = [
-        plan_joint(joint, surveyed, forced=forced, gear_ratio=ratio, rated_torque=rated)
+        plan_joint(
+            joint,
+            surveyed,
+            forced=forced,
+            gear_ratio=ratio,
+            rated_torque=rated,
+            constant=constants.get(joint.joint),
+        )
         for joint in chosen
     ]
     plans = [plan for plan in found if isinstance(plan, JointPlan)]
+    scaled = [str(plan.channels.joint) for plan in plans if plan.constant is not None]
+    if isinstance(told, float | int) and len(scaled) > 1:
+        raise OptionError(
+            f"torque constant {told:g} N·m/A is given, but {first.file.path} has currents of joints"
+            f" {', '.join(scaled)}; expected one joint: choose it with --joint"
+        )
     refusals = [plan for plan in found if isinstance(plan, Refusal)]
     if not plans:
         return refusals[0]
     left_out = tuple(f"left out: {refusal.text}" for refusal in refusals)
     return [replace(plans[0], notes=(*plans[0].notes, *left_out)), *plans[1:]]
+
+
+def wanted_constant(settings: IngestSettings, channel_map: ChannelMap) -> float | str | None:
+    """Return the torque constant that the user gives, ``auto``, or None.
+
+    Parameters
+    ----------
+    settings : IngestSettings
+        The option, which takes precedence.
+    channel_map : ChannelMap
+        The mapping file.
+    """
+    told = settings.torque_constant
+    return channel_map.torque_constant if told is None else told

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from frictioncli.logs.channels.channel_map import ChannelMap
-from frictioncli.logs.reading_plan import planned_logs
+from frictioncli.logs.reading_plan import Constants, planned_logs
 from frictioncli.logs.runs.discovery import LogRun
 from frictioncli.logs.runs.manifest import RunManifest
 from frictioncli.logs.runs.opening import RefusedLog, open_run
@@ -53,6 +53,7 @@ def plan_run(
     settings: IngestSettings,
     channel_map: ChannelMap,
     opened: Callable[[Iterable[Path]], None] = lambda _: None,
+    constants: Constants | None = None,
 ) -> RunLogs:
     """Open the logs of a run, survey their units, and put them in the order of time.
 
@@ -68,13 +69,15 @@ def plan_run(
         Mapping file of the user.
     opened : callable, optional
         Called with the files of the logs that could be opened, before the survey reads them.
+    constants : mapping of int to TorqueConstant or Refusal, optional
+        Torque constants found, see :mod:`frictioncli.logs.found_constants`.
 
     Raises
     ------
     OptionError
-        If one gear ratio is given for several joints.
+        If one gear ratio or one torque constant is given for several joints.
     """
     logs, refused = open_run(run, settings, channel_map)
     opened(file for log in logs for file in log.source.files)
-    planned, unusable = planned_logs(logs, settings, channel_map)
+    planned, unusable = planned_logs(logs, settings, channel_map, constants)
     return RunLogs(tuple(in_time_order(planned, manifest.entries)), (*refused, *unusable))

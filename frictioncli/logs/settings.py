@@ -8,6 +8,25 @@ from frictioncli.errors import OptionError
 from frictioncli.logs.channels import units
 from frictioncli.options import NO_OPTION, option
 
+AUTO = "auto"
+"""In place of a torque constant: it is found from a torque that is logged beside the current."""
+
+
+def torque_constant(text: str) -> float | str:
+    """Return a torque constant as it is typed: ``auto``, or a number.
+
+    Raises
+    ------
+    OptionError
+        If it is neither.
+    """
+    if text.strip().lower() == AUTO:
+        return AUTO
+    try:
+        return float(text)
+    except ValueError:
+        raise OptionError(f"torque constant {text!r}: expected auto, or N·m/A, not 0") from None
+
 
 @dataclass(frozen=True, kw_only=True)
 class IngestSettings:
@@ -23,6 +42,9 @@ class IngestSettings:
         Motor turns per joint turn, negative if motor and joint turn in opposite directions. [-]
     rated_torque : float or None
         Torque that 100 % stands for, where torques are in percent. [N·m]
+    torque_constant : float or str or None
+        Torque at the joint per motor current, negative if the current counts the other way; or
+        ``auto``. [N·m/A]
     time_unit, position_unit, velocity_unit, torque_unit, temperature_unit : str or None
         Unit of that quantity in the logs, whatever their headers say: s, ms, us; deg, rad, udeg;
         deg/s, rad/s, rpm, mdeg/s; N·m, mN·m, A, mA, %; °C, K, °F, m°C, mK.
@@ -43,6 +65,15 @@ class IngestSettings:
     )
     rated_torque: float | None = field(
         default=None, metadata=option("Torque that 100 % stands for, for torques in % [N·m].")
+    )
+    torque_constant: float | str | None = field(
+        default=None,
+        metadata=option(
+            "Torque at the joint per motor current [N·m/A], or auto: from a torque beside it.",
+            typed=str,
+            metavar="auto|VALUE",
+            convert=torque_constant,
+        ),
     )
     time_unit: str | None = field(default=None, metadata=option("Force the unit: s, ms, us."))
     position_unit: str | None = field(
@@ -70,6 +101,11 @@ class IngestSettings:
             )
         if self.rated_torque is not None and not 0 < self.rated_torque < math.inf:
             raise OptionError(f"rated torque {self.rated_torque}: expected N·m, > 0")
+        constant = self.torque_constant
+        if isinstance(constant, str) and constant != AUTO:
+            raise OptionError(f"torque constant {constant!r}: expected auto, or N·m/A, not 0")
+        if isinstance(constant, float | int) and (not math.isfinite(constant) or constant == 0):
+            raise OptionError(f"torque constant {constant:g}: expected auto, or N·m/A, not 0")
         if self.batch_bytes < 1:
             raise OptionError(f"batch size {self.batch_bytes}: expected at least 1 byte")
         self.forced_units()
@@ -113,5 +149,6 @@ class IngestSettings:
             "map_file": map_name or None,
             "gear_ratio": self.gear_ratio,
             "rated_torque": self.rated_torque,
+            "torque_constant": self.torque_constant,
             "units": self.forced_units(),
         }

@@ -150,6 +150,7 @@ class IngestedLogs:
                 "side of the torque", ((n, plan.torque_side) for n, plan in plans)
             ),
             "position": _common("position", ((n, _position_kind(plan)) for n, plan in plans)),
+            **_constants(plan for _, plan in plans),
             "notes": [*_grouped_by_remark(notes, len(recordings)), *self.notes],
             "warnings": [*_grouped_by_remark(warnings, len(recordings)), *self.warnings],
             "poses": self.poses.facts(),
@@ -187,6 +188,12 @@ class IngestedLogs:
             notes=tuple(facts["notes"]),
             warnings=tuple(facts["warnings"]),
         )
+
+
+def _constants(plans: Iterable[JointPlan]) -> dict[str, Any]:
+    """Return the torque constant by joint, as a fact; nothing where there is none."""
+    found = {str(p.channels.joint): p.constant.fact() for p in plans if p.constant is not None}
+    return {"torque_constant": found} if found else {}
 
 
 def _position_kind(plan: JointPlan) -> str:

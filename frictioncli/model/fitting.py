@@ -125,16 +125,23 @@ def _estimates(
 def _with_shared_error(
     interval: tuple[float, float], facts: dict[str, Any], joint: int, name: str
 ) -> tuple[float, float]:
-    """Return an interval widened by that of the regression from which the torques come, if any.
+    """Return an interval widened by what errs in all torques alike, which scatter does not show.
 
-    Inertia, gravity and offset of a regression err in all of its torques alike, which their scatter
-    does not show.
+    That is inertia, gravity and offset of a regression from which the torques come, and the torque
+    constant by which a current was brought to N·m.
     """
+    widths = [interval[1] - interval[0]]
     regression = facts.get("regression", {}).get(str(joint), {}).get("parameters", {})
-    if name not in regression:
+    if name in regression:
+        low, high = regression[name]["ci95"]
+        widths.append(high - low)
+    constant = facts.get("torque_constant", {}).get(str(joint), {})
+    if constant.get("ci95") and name != "delta":
+        low, high = constant["ci95"]
+        widths.append(abs(sum(interval) / 2 * (high - low) / constant["estimate"]))
+    if len(widths) == 1:
         return interval
-    low, high = regression[name]["ci95"]
-    centre, half = sum(interval) / 2, float(np.hypot(high - low, interval[1] - interval[0]) / 2)
+    centre, half = sum(interval) / 2, float(np.linalg.norm(widths)) / 2
     return centre - half, centre + half
 
 

@@ -51,6 +51,7 @@ def reading(place):
         "--map": ("a.toml", f"{place}.map_file", Path("a.toml")),
         "--gear-ratio": ("-90.5", f"{place}.gear_ratio", -90.5),
         "--rated-torque": ("0.5", f"{place}.rated_torque", 0.5),
+        "--torque-constant": ("-5.5", f"{place}.torque_constant", -5.5),
         "--time-unit": ("ms", f"{place}.time_unit", "ms"),
         "--position-unit": ("rad", f"{place}.position_unit", "rad"),
         "--velocity-unit": ("rpm", f"{place}.velocity_unit", "rpm"),

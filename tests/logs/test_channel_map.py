@@ -7,7 +7,8 @@ import pytest
 
 from frictioncli import schemas, tables
 from frictioncli.errors import MappingError
-from frictioncli.logs.channels.channel_map import ChannelMap, mapped_channels, read_map
+from frictioncli.logs.channels.channel_map import ChannelMap, read_map
+from frictioncli.logs.channels.mapped_channels import mapped_channels
 from frictioncli.logs.ingest import IngestSettings, ingest
 
 from .logs import back_and_forth, kuka_columns, write

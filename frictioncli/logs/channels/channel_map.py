@@ -6,7 +6,7 @@ import math
 import re
 import tomllib
 from collections.abc import Collection, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
@@ -17,18 +17,15 @@ from frictioncli.logs.channels.channel_names import (
     JOINT_SIDE,
     MOTOR_SIDE,
     POSITION,
-    TIME,
     TORQUE,
     VELOCITY,
-    Meaning,
 )
-from frictioncli.logs.channels.recognition import LogChannel, recognise_channels, split_unit
-from frictioncli.logs.log_source import CsvHints, Refusal
+from frictioncli.logs.log_source import CsvHints
 
 _SECTIONS = ("channels", "units", "side", "csv", "joint")
 _SIDED = (POSITION, VELOCITY, TORQUE)
 _CSV_KEYS = ("delimiter", "decimal", "encoding")
-_JOINT_KEYS = ("number", "gear_ratio", "rated_torque")
+_JOINT_KEYS = ("number", "gear_ratio", "rated_torque", "torque_constant")
 _INLINE = re.compile(rf"\s*({'|'.join((*CHANNELS, 'joint'))})\s*=")
 _DELIMITERS = {";": ";", ",": ",", "\t": "\t", " ": " ", "tab": "\t", "space": " ", "blank": " "}
 
@@ -53,6 +50,8 @@ class ChannelMap:
         Motor turns per joint turn, negative where they turn in opposite directions. [-]
     rated_torque : float or None
         Torque that 100 % stands for, where torque is in percent. [N·m]
+    torque_constant : float or str or None
+        Torque at the joint per motor current, or ``auto``. [N·m/A]
     """
 
     channels: dict[str, str] = field(default_factory=dict)
@@ -62,6 +61,7 @@ class ChannelMap:
     joint: int | None = None
     gear_ratio: float | None = None
     rated_torque: float | None = None
+    torque_constant: float | str | None = None
 
 
 def read_map(path: Path) -> ChannelMap:
@@ -121,6 +121,7 @@ def read_map(path: Path) -> ChannelMap:
         joint=_joint(path, sections["joint"].get("number")),
         gear_ratio=_number(path, "gear_ratio", sections["joint"].get("gear_ratio")),
         rated_torque=_number(path, "rated_torque", sections["joint"].get("rated_torque")),
+        torque_constant=_constant(path, sections["joint"].get("torque_constant")),
     )
 
 
@@ -155,114 +156,6 @@ def _inline_map(text: str) -> ChannelMap:
         if colon:
             channel_units[name] = _unit(where, name, unit)
     return ChannelMap(channels=channels, units=channel_units, joint=joint)
-
-
-def mapped_channels(
-    channel_map: ChannelMap, columns: Sequence[str], joint: int
-) -> tuple[LogChannel, ...] | Refusal:
-    """Return the channels that the map names, and those recognised where it names none.
-
-    Where the map names position or torque, only the time is still recognised by its name, and the
-    positions of other joints that have the name of the mapped one but for the number.
-
-    Parameters
-    ----------
-    channel_map : ChannelMap
-        The map.
-    columns : sequence of str
-        All column names of the log.
-    joint : int
-        The joint of the mapped columns.
-
-    Returns
-    -------
-    tuple of LogChannel or Refusal
-        Refused as ``mapped_column_missing`` where the log lacks a mapped column.
-    """
-    recognised = recognise_channels(columns)
-    if TORQUE not in channel_map.channels and POSITION not in channel_map.channels:
-        kept = [
-            with_side(c, channel_map) for c in recognised if c.quantity not in channel_map.channels
-        ]
-    else:
-        kept = [c for c in recognised if c.quantity == TIME and TIME not in channel_map.channels]
-    for quantity, wanted in channel_map.channels.items():
-        index = _find(columns, wanted)
-        if index is None:
-            names = [column for column in columns if column]
-            close = difflib.get_close_matches(wanted, names, n=3, cutoff=0.4)
-            hint = f"; close: {', '.join(close)}" if close else ""
-            return Refusal(
-                "mapped_column_missing",
-                f"no column {wanted!r}, which the map names as {quantity}{hint}; columns found:"
-                f" {', '.join(names[:20])}",
-            )
-        known = next((c.meaning for c in recognised if c.column == index), None)
-        if known is not None and known.quantity != quantity:
-            known = None
-        side = known.side if known is not None and quantity != TORQUE else JOINT_SIDE
-        side = channel_map.sides.get(quantity, side)
-        unit = split_unit(columns[index])[1]
-        if not unit and known is not None:
-            unit = known.unit
-        mapped = LogChannel(
-            index, columns[index], Meaning(quantity, side, unit=unit), joint, unit, wanted
-        )
-        if quantity == POSITION:
-            others = _other_positions(recognised, index, joint)
-            kept += others
-            mapped = replace(mapped, family=others[0].family) if others else mapped
-        kept.append(mapped)
-    return tuple(kept)
-
-
-def _other_positions(recognised: Sequence[LogChannel], index: int, joint: int) -> list[LogChannel]:
-    """Return the positions of other joints, of the same family as the mapped one.
-
-    Their numbers count from that of the mapped joint, which may differ from the number in its name.
-    """
-    own = next((c for c in recognised if c.column == index and c.quantity == POSITION), None)
-    if own is None or own.joint is None:
-        return []
-    others = [
-        replace(c, joint=c.joint + joint - own.joint)
-        for c in recognised
-        if c.joint is not None
-        and (c.meaning, c.family) == (own.meaning, own.family)
-        and c.column != index
-    ]
-    # a number below 1 shows that the joint's number counts otherwise
-    return others if all(c.joint is not None and c.joint >= 1 for c in others) else []
-
-
-def with_side(channel: LogChannel, channel_map: ChannelMap) -> LogChannel:
-    """Return a channel with the side of the gear that the map gives its quantity.
-
-    Parameters
-    ----------
-    channel : LogChannel
-        A recognised channel.
-    channel_map : ChannelMap
-        The map.
-    """
-    side = channel_map.sides.get(channel.quantity)
-    if side is None:
-        return channel
-    return replace(channel, meaning=replace(channel.meaning, side=side))
-
-
-def _find(columns: Sequence[str], wanted: str) -> int | None:
-    """Return the index of a column by its name, or by its number from 1.
-
-    The name may lack blanks around it or its unit.
-    """
-    for normal in (str, str.strip, lambda name: split_unit(name)[0]):
-        matches = [i for i, column in enumerate(columns) if normal(column) == normal(wanted)]
-        if matches:
-            return matches[0]
-    if wanted.isdigit() and 1 <= int(wanted) <= len(columns):
-        return int(wanted) - 1
-    return None
 
 
 def _unit(path: Path, name: str, text: Any) -> str:
@@ -303,8 +196,16 @@ def _number(path: Path, key: str, value: Any) -> float | None:
         return None
     if isinstance(value, int | float) and math.isfinite(value) and value not in (0, True):
         return float(value)
-    meaning = "motor turns per joint turn, not 0" if key == "gear_ratio" else "N·m at 100 %, not 0"
+    meaning = {
+        "gear_ratio": "motor turns per joint turn, not 0",
+        "rated_torque": "N·m at 100 %, not 0",
+        "torque_constant": "'auto', or N·m/A, not 0",
+    }[key]
     raise MappingError(f"{path}: [joint] {key} = {value!r}; expected {meaning}")
+
+
+def _constant(path: Path, value: Any) -> float | str | None:
+    return "auto" if value == "auto" else _number(path, "torque_constant", value)
 
 
 def _check_keys(path: Path, what: str, given: Collection[str], allowed: Sequence[str]) -> None:

@@ -11,6 +11,7 @@ from frictioncli.logs.channels.joint_channels import JointChannels
 from frictioncli.logs.channels.motion_units import JointMotion, Remarks, joint_motion
 from frictioncli.logs.channels.recognition import LogChannel
 from frictioncli.logs.channels.survey import Survey
+from frictioncli.logs.channels.torque_constant import TorqueConstant
 from frictioncli.logs.channels.transmission import Transmission, find_transmission
 from frictioncli.logs.channels.units import UnitConversion
 from frictioncli.logs.log_source import Refusal
@@ -32,6 +33,8 @@ class JointPlan:
         ``N·m``, ``A`` or ``%``.
     torque_side : str
         Side of the gear, ``joint`` or ``motor``.
+    constant : TorqueConstant or None
+        By which a motor current was brought to N·m.
     notes, warnings : tuple of str
         Where the reading departs from the header or adds to it.
     """
@@ -43,6 +46,7 @@ class JointPlan:
     torque_side: str
     notes: tuple[str, ...]
     warnings: tuple[str, ...]
+    constant: TorqueConstant | None = None
 
 
 def plan_joint(
@@ -52,6 +56,7 @@ def plan_joint(
     forced: Mapping[str, str],
     gear_ratio: float | None,
     rated_torque: float | None = None,
+    constant: TorqueConstant | Refusal | None = None,
 ) -> JointPlan | Refusal:
     """Decide which channels of a joint are used, in which unit, and on which side of the gear.
 
@@ -67,12 +72,14 @@ def plan_joint(
         Motor turns per joint turn, given by the user. [-]
     rated_torque : float, optional
         Torque that 100 % stands for. [N·m]
+    constant : TorqueConstant or Refusal, optional
+        Torque per motor current, or why it is not known.
 
     Returns
     -------
     JointPlan or Refusal
         Refused as ``no_torque_channel`` (an empty or all-zero column),
-        ``unclear_position_unit`` or ``no_gear_ratio``.
+        ``unclear_position_unit``, ``no_gear_ratio`` or as the torque constant was.
     """
     remarks = Remarks(notes=list(channels.notes))
     torque_values = survey.pooled(channels.torque)
@@ -118,7 +125,19 @@ def plan_joint(
         rated = 1.0
     side, factor = _torque_side(channels, torque_unit, gear, remarks)
     factor *= rated
-    conversions[names.TORQUE] = _scaled(units.conversion_from(torque_unit, names.TORQUE), factor)
+    torque = units.conversion_from(torque_unit, names.TORQUE)
+    is_current = torque_unit in ("A", "mA")
+    if is_current and isinstance(constant, Refusal):
+        return constant
+    if is_current and isinstance(constant, TorqueConstant):
+        side, factor, torque_unit = names.JOINT_SIDE, constant.value, "N·m"
+        remarks.notes.append(constant.text(channels.joint, channels.torque.name))
+    elif constant is not None:
+        remarks.warnings.append(
+            f"the torque constant of joint {channels.joint} has no use: {channels.torque.name} is"
+            f" read in {torque_unit}"
+        )
+    conversions[names.TORQUE] = _scaled(torque, factor)
     _add_temperatures(channels, survey, forced, conversions, remarks)
     if channels.load is not None:
         written = units.canonical(channels.load.unit, names.LOAD)
@@ -139,6 +158,7 @@ def plan_joint(
         torque_side=side,
         notes=tuple(remarks.notes),
         warnings=tuple(remarks.warnings),
+        constant=constant if is_current and isinstance(constant, TorqueConstant) else None,
     )
 
 

@@ -5,8 +5,9 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
-from frictioncli.logs.channels.channel_map import ChannelMap, mapped_channels, with_side
+from frictioncli.logs.channels.channel_map import ChannelMap
 from frictioncli.logs.channels.joint_channels import JointChannels, assign_channels
+from frictioncli.logs.channels.mapped_channels import mapped_channels, with_side
 from frictioncli.logs.channels.recognition import LogChannel, recognise_channels
 from frictioncli.logs.formats import open_logs
 from frictioncli.logs.formats.twincat_scope import scope_start
