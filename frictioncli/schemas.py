@@ -49,6 +49,10 @@ def _of(quantity: Quantity, *, nullable: bool = False) -> Column:
     return Column(quantity.name, _REAL, quantity.unit, quantity.description, nullable)
 
 
+def _nullable(name: str, kind: pa.DataType, unit: str, description: str) -> Column:
+    return Column(name, kind, unit, description, nullable=True)
+
+
 _RUN = Column("run", _LABEL, "", "one folder of logs: one day, one thermal history")
 _RECORDING = Column("recording", _LABEL, "", "one log file of the run")
 _JOINT_COLUMN = Column("joint", _JOINT, "", "joint number, from 1")
@@ -82,6 +86,7 @@ SAMPLES = Table(
         _of(q.OTHER_SPEED, nullable=True),
         Column(q.OTHER_JOINTS.name, _COUNT, "", q.OTHER_JOINTS.description, nullable=True),
         _POSE,
+        _nullable("payload", _REAL, "kg", "payload of the motion, where a program tells several"),
     ),
 )
 
@@ -258,10 +263,6 @@ REFERENCE_TEMPERATURES = (20, 40, 60)
 
 _ESTIMATED = ("tau_c", "alpha", "beta", "gamma", "delta")
 _IN_UNIT = "torque unit"
-
-
-def _nullable(name: str, kind: pa.DataType, unit: str, description: str) -> Column:
-    return Column(name, kind, unit, description, nullable=True)
 
 
 def _interval(name: str, unit: str, description: str) -> tuple[Column, ...]:

@@ -32,7 +32,7 @@ from frictioncli.logs.reading_plan import Constants
 from frictioncli.logs.run_logs import plan_run
 from frictioncli.logs.runs.discovery import LogRun, discover
 from frictioncli.logs.runs.manifest import RunManifest, read_run_manifest
-from frictioncli.logs.samples.chunks import LogChunk, PlannedLog
+from frictioncli.logs.samples.chunks import LogChunk
 from frictioncli.logs.samples.log_rows import RejectedRows
 from frictioncli.logs.samples.poses import Poses
 from frictioncli.logs.samples.recording import RecordingSummary, SampleSink, read_recording
@@ -189,9 +189,7 @@ def _inspect_run(
     for dated, start, chunks in logs.recordings(clock, settings.batch_bytes):
         with SampleStore(folder) as store:
             sink = partial(store_samples, store, dated.planned.log.recording, start)
-            file, recording = _inspect_log(
-                dated.planned, chunks, sink, settings, told, inspected.poses
-            )
+            file, recording = _inspect_log(dated, chunks, sink, settings, told, inspected.poses)
             files[file.path] = file
             if recording is not None:
                 clock.place(dated, recording)
@@ -214,7 +212,7 @@ def _manifest(run: LogRun, inspected: _InspectedLogs) -> RunManifest:
 
 
 def _inspect_log(
-    planned: PlannedLog,
+    dated: DatedLog,
     chunks: Iterator[LogChunk],
     sink: SampleSink,
     settings: IngestSettings,
@@ -222,9 +220,17 @@ def _inspect_log(
     poses: Poses,
 ) -> tuple[FileInspection, RecordingSummary | None]:
     """Return what one log holds; its samples go to the sink, units of `told` are the user's."""
+    planned = dated.planned
     monitor, rejected = LogMonitor(planned), RejectedRows()
     try:
-        result = read_recording(planned, monitor.observe(chunks), rejected, sink, poses=poses)
+        result = read_recording(
+            planned,
+            monitor.observe(chunks),
+            rejected,
+            sink,
+            poses=poses,
+            payloads=dated.payloads,
+        )
     except LogError as error:
         result = Refusal("contradicts_survey", str(error))
     log = planned.log

@@ -20,6 +20,7 @@ _CHANNELS = (
     names.LOAD,
     names.OTHER_SPEED,
     names.POSE,
+    names.PAYLOAD,
 )
 _SAMPLES = "samples"
 _BATCH_ROWS = 1 << 16

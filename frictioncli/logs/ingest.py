@@ -190,7 +190,13 @@ def _read_logs(
         outputs.samples.begin_recording(run.name, log.recording, joints, start)
         rejected = RejectedRows()
         result = read_recording(
-            dated.planned, chunks, rejected, outputs.samples.add, continuous, ingested.poses
+            dated.planned,
+            chunks,
+            rejected,
+            outputs.samples.add,
+            continuous,
+            ingested.poses,
+            dated.payloads,
         )
         if isinstance(result, Refusal):
             outputs.samples.discard_recording(joints)

@@ -18,8 +18,8 @@ from frictioncli.pairs.slices import reduce_slices, slice_indices
 OTHER_MOVES = "other joint moves"
 """Reason why samples at constant speed are in no pair."""
 
-STAND_ELSEWHERE = "other joints come to stand elsewhere"
-"""Reason why samples of a move in a second pose are in no pair."""
+STAND_ELSEWHERE = "other joints come to stand elsewhere, or the payload changes"
+"""Reason why samples of a move in a second pose or with a second payload are in no pair."""
 
 OTHER_POSE = "the other joints stand elsewhere than for the partner"
 """Reason why samples whose partner has another pose are in no pair."""
@@ -191,36 +191,36 @@ def joints_that_move(other_joints: Array, start: Numbers, stop: Numbers) -> int:
     return int(np.bitwise_or.reduce(sets)) if len(sets) else 0
 
 
-def poses_of_segments(pose: Array, start: Numbers, stop: Numbers) -> tuple[Array, Flags]:
-    """Return the pose in which each segment is mostly, and the samples in another one.
+def numbers_of_segments(number: Array, start: Numbers, stop: Numbers) -> tuple[Array, Flags]:
+    """Return the number that most samples of each segment have, and the samples with another one.
 
     Parameters
     ----------
-    pose : ndarray, shape (samples,)
-        Number of the pose; NaN while another joint moves, or where not known.
+    number : ndarray, shape (samples,)
+        Number of the pose, NaN while another joint moves; or payload [kg]. NaN where not known.
     start, stop : ndarray of int, shape (segments,)
         First and past-the-end sample of each segment.
 
     Returns
     -------
-    pose : ndarray, shape (segments,)
-        Numbers of poses, NaN where not known.
-    elsewhere : ndarray of bool, shape (samples,)
-        True where a sample of a segment is in another pose than the segment.
+    number : ndarray, shape (segments,)
+        The numbers, NaN where not known.
+    other : ndarray of bool, shape (samples,)
+        True where a sample of a segment has another number than the segment.
 
     Examples
     --------
     >>> import numpy as np
     >>> pose = np.array([1.0, np.nan, 2.0, 2.0, 3.0])
-    >>> poses_of_segments(pose, np.array([0, 4]), np.array([4, 5]))
+    >>> numbers_of_segments(pose, np.array([0, 4]), np.array([4, 5]))
     (array([2., 3.]), array([ True, False, False, False, False]))
     """
-    elsewhere = np.zeros(len(pose), bool)
-    found = reduce_slices(np.fmin, pose, start, stop)
-    several = np.flatnonzero(reduce_slices(np.fmax, pose, start, stop) > found)
+    other = np.zeros(len(number), bool)
+    found = reduce_slices(np.fmin, number, start, stop)
+    several = np.flatnonzero(reduce_slices(np.fmax, number, start, stop) > found)
     for segment in several.tolist():
-        own = pose[start[segment] : stop[segment]]
-        numbers, counts = np.unique(own[np.isfinite(own)], return_counts=True)
-        found[segment] = numbers[np.argmax(counts)]
-        elsewhere[start[segment] : stop[segment]] = np.isfinite(own) & (own != found[segment])
-    return found, elsewhere
+        own = number[start[segment] : stop[segment]]
+        values, counts = np.unique(own[np.isfinite(own)], return_counts=True)
+        found[segment] = values[np.argmax(counts)]
+        other[start[segment] : stop[segment]] = np.isfinite(own) & (own != found[segment])
+    return found, other

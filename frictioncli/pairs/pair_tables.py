@@ -12,7 +12,7 @@ import pyarrow as pa
 from numpy.typing import NDArray
 
 from frictioncli import schemas, tables
-from frictioncli.arrays import Numbers
+from frictioncli.arrays import Array, Numbers
 from frictioncli.pairs import starts
 from frictioncli.pairs.other_joints import OtherMotion
 from frictioncli.pairs.pairing import Pairing
@@ -118,7 +118,7 @@ def ramp_rows(segments: SegmentTables, payload: pd.Series) -> Iterator[pa.Table]
             if segments.other_motion.leaves_out(joint[1]):
                 alone = ~ramps[SHARED]
                 ramps = {name: values[alone] for name, values in ramps.items()}
-            carried = _of_recordings(segments, ramps["recording"], payload)
+            carried = _carried(segments, ramps, payload)
             yield _table(
                 joint,
                 {name: ramps[name] for name in COLUMNS}
@@ -126,7 +126,7 @@ def ramp_rows(segments: SegmentTables, payload: pd.Series) -> Iterator[pa.Table]
                     "recording": names[ramps["recording"]],
                     "move": ramps["move"] + before,
                     "part": np.array(PARTS, dtype=object)[ramps["part"]],
-                    "payload": carried.astype(float),
+                    "payload": carried,
                     "pose": ramps["pose"],
                 },
             )
@@ -156,18 +156,24 @@ def start_rows(segments: SegmentTables, payload: pd.Series) -> Iterator[pa.Table
             if segments.other_motion.leaves_out(joint[1]):
                 kept &= ~np.isin(found["move"], found["move"][found[SHARED]])
             rows = {name: values[kept] for name, values in found.items()}
-            carried = _of_recordings(segments, rows["recording"], payload)
+            carried = _carried(segments, rows, payload)
             yield _table(
                 joint,
                 {name: rows[name] for name in starts.COLUMNS}
                 | {
                     "recording": names[rows["recording"]],
                     "move": rows["move"] + before,
-                    "payload": carried.astype(float),
+                    "payload": carried,
                     "pose": rows["pose"],
                 },
             )
         before += segments.counts[joint]
+
+
+def _carried(segments: SegmentTables, rows: Columns, payload: pd.Series) -> Array:
+    """Return the payload of the motion of rows, else that of their recording [kg]."""
+    of_recording = _of_recordings(segments, rows["recording"], payload).astype(float)
+    return np.where(np.isnan(rows["payload"]), of_recording, rows["payload"])
 
 
 def _of_recordings(

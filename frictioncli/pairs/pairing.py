@@ -88,7 +88,7 @@ def pair_segments(
     store : PartitionedStore
         Store for the pairs.
     payload : Series, optional
-        Payload by run and recording, missing where unknown. [kg]
+        Payload by run and recording, missing where unknown; that of a segment goes before. [kg]
 
     Returns
     -------
@@ -176,7 +176,8 @@ class _Pairer:
         segments, bins = group.segments, group.bins
         steps, levels = self.steps_and_levels
         level = levels[np.searchsorted(steps, steps_of(segments["speed"]))]
-        payload = self.payloads[segments["recording"]]
+        payload = segments["payload"]
+        payload = np.where(np.isnan(payload), self.payloads[segments["recording"]], payload)
         pose = segments["pose"]
         if not self.other_motion.tells_poses_apart(joint[1]):
             pose = np.full(len(pose), np.nan)

@@ -23,7 +23,7 @@ from frictioncli.pairs.other_joints import (
     OtherMotion,
     bins_with_marks,
     joints_that_move,
-    poses_of_segments,
+    numbers_of_segments,
 )
 from frictioncli.pairs.partitioned_store import Columns, PartitionedStore
 from frictioncli.pairs.ramps import MEANS, PreviousMove, ramp_means
@@ -35,7 +35,7 @@ from frictioncli.pairs.starts import StartCounts
 Joint = tuple[str, int]
 
 TEMPERATURES = ("motor_temperature", "housing_temperature", "motor_temperature_reading")
-_CHANNELS = (*MEANS, "motor_temperature_reading", "other_speed", "other_joints", "pose")
+_CHANNELS = (*MEANS, "motor_temperature_reading", "other_speed", "other_joints", "pose", "payload")
 
 _FIRST_ROWS = 1 << 17
 """Samples from which it is found whether the angle bins must be wider."""
@@ -55,12 +55,13 @@ class SegmentTables:
     store : PartitionedStore
         Three tables by run and joint. ``segments``, one row per segment: recording (its number in
         ``recordings``), direction (+1, -1), speed [deg/s], start, stop [s], motor_temperature,
-        housing_temperature, motor_temperature_reading [°C], pose (of the other joints). ``bins``,
-        one row per segment and angle bin: segment (number within run and joint), bin (number), n
-        (samples), torque at the bin's centre, load, time [s], shared (whether another joint moved
-        meanwhile). ``ramps``: rows of :func:`frictioncli.pairs.ramps.ramp_means` with recording and
-        pose; ``move`` is the number of the segment. ``starts``: rows of
-        :class:`frictioncli.pairs.starts.StartCounts` likewise.
+        housing_temperature, motor_temperature_reading [°C], pose (of the other joints), payload
+        [kg] where it differs within recordings. ``bins``, one row per segment and angle bin:
+        segment (number within run and joint), bin (number), n (samples), torque at the bin's
+        centre, load, time [s], shared (whether another joint moved meanwhile). ``ramps``: rows of
+        :func:`frictioncli.pairs.ramps.ramp_means` with recording, pose and payload; ``move`` is the
+        number of the segment. ``starts``: rows of :class:`frictioncli.pairs.starts.StartCounts`
+        likewise.
     counts : dict of (str, int) to int
         Number of segments of each run and joint that has some.
     recordings : list of tuple of str
@@ -203,9 +204,11 @@ class _Finder:
             counts.add(np.abs(found.speed[np.sign(found.speed) == direction]))
         direction, stop = self._last_moves.get(source.joint, (0, 0))
         previous = PreviousMove(direction, stop - chunk.offset)
-        pose, elsewhere = poses_of_segments(channels["pose"], found.start, found.stop)
+        pose, elsewhere = numbers_of_segments(channels["pose"], found.start, found.stop)
+        payload, other = numbers_of_segments(channels["payload"], found.start, found.stop)
+        elsewhere |= other
         tables = {
-            "segments": self._segments(channels, found) | {"pose": pose},
+            "segments": self._segments(channels, found) | {"pose": pose, "payload": payload},
             "bins": self._bins(channels, found, source.joint, chunk.period, elsewhere),
             "ramps": ramp_means(channels, found, chunk.period, previous),
             "starts": self.starts.add((source.run, source.joint), channels, found, chunk.period),
@@ -217,7 +220,10 @@ class _Finder:
         before = self.counts.get(joint, 0)
         tables["bins"]["segment"] = tables["bins"]["segment"] + before
         for name in ("ramps", "starts"):
-            tables[name]["pose"] = pose[tables[name]["move"]]
+            tables[name] |= {
+                "pose": pose[tables[name]["move"]],
+                "payload": payload[tables[name]["move"]],
+            }
             tables[name]["move"] = tables[name]["move"] + before
         self.counts[joint] = before + len(found.start)
         self.store.add(joint, tables)

@@ -125,7 +125,7 @@ def torque_cells(
 
 
 def _groups(found: JointRegression) -> Numbers:
-    """Return the pair of each row: one run, payload, level of speed, temperature and time."""
+    """Return the pair of each row: one run, state of load, level of speed, temperature and time."""
     rows, speed = found.equations.rows, np.abs(found.equations.velocity)
     level = np.round(np.log(np.maximum(speed, 1e-9)) / np.log(_SPEED_RATIO)).astype(np.int64)
     warm = np.floor(np.nan_to_num(rows.motor_temperature) / _WARMER).astype(np.int64)
@@ -133,7 +133,7 @@ def _groups(found: JointRegression) -> Numbers:
     keys = pd.DataFrame(
         {
             "run": rows.run,
-            "payload": found.equations.payload,
+            "state": found.equations.state,
             "level": level,
             "warm": warm,
             "block": block,
@@ -242,7 +242,7 @@ def _pairs(
 ) -> pd.DataFrame:
     """Return what is constant in each pair, numbered in order of time within its run."""
     rows = found.equations.rows
-    payloads = np.array(found.estimate.terms.payloads)
+    terms, state = found.estimate.terms, found.equations.state
     frame = pd.DataFrame(
         {
             "group": group,
@@ -253,7 +253,8 @@ def _pairs(
             "motor_temperature": rows.motor_temperature,
             "housing_temperature": rows.housing_temperature,
             "motor_temperature_reading": rows.motor_temperature_reading,
-            "payload": payloads[found.equations.payload],
+            "payload": np.array(terms.payloads)[state],
+            "pose": np.array(terms.poses)[state],
         }
     )
     grouped = frame.groupby("group")

@@ -42,8 +42,9 @@ class EquationTerms:
     base_parameters : int
         Number of base parameters of the whole arm, in place of inertia and gravity of one joint; 0
         without its kinematics.
-    payloads : tuple of float
-        Payloads, each with an inertia and a gravity of its own; NaN where unknown. [kg]
+    payloads, poses : tuple of float
+        Payload [kg] and number of the pose of the other joints, NaN where unknown, in each state of
+        the load; every state has an inertia and a gravity of its own.
     """
 
     friction: tuple[str, ...] = FRICTION_TERMS
@@ -53,6 +54,7 @@ class EquationTerms:
     delay: bool = True
     base_parameters: int = 0
     payloads: tuple[float, ...] = (float("nan"),)
+    poses: tuple[float, ...] = (float("nan"),)
 
     def without(self, *names: str) -> "EquationTerms":
         """Return the terms without some of the friction terms."""
@@ -92,8 +94,8 @@ class JointEquations:
         Whether velocity and acceleration are those of the position, or of the logged velocity.
     temperature : ndarray, shape (rows,)
         Temperature of equation (16), zero where there is none. [°C]
-    payload : ndarray of int, shape (rows,)
-        Number of the payload among those of the terms.
+    state : ndarray of int, shape (rows,)
+        Number of the state of the load, payload and pose, among those of the terms.
     arm : ArmColumns or None
         Columns of the base parameters of the whole arm.
     """
@@ -101,7 +103,7 @@ class JointEquations:
     rows: MotionRows
     speed_from_position: bool
     temperature: Array
-    payload: Numbers
+    state: Numbers
     arm: ArmColumns | None = None
 
     @property
@@ -136,7 +138,7 @@ class JointEquations:
             rows=self.rows.where(kept),
             speed_from_position=self.speed_from_position,
             temperature=self.temperature[kept],
-            payload=self.payload[kept],
+            state=self.state[kept],
             arm=None if self.arm is None else self.arm.where(kept),
         )
 
@@ -165,7 +167,7 @@ def load_columns(equations: JointEquations, terms: EquationTerms, delay: float) 
     # the average of a cosine over the filter's weights is smaller than that of the mean angle
     shrink = np.exp(-np.square(np.radians(velocity)) * rows.variance / 2)
     for number in range(len(terms.payloads) if equations.arm is None else 0):
-        here = (equations.payload == number).astype(float)
+        here = (equations.state == number).astype(float)
         columns.append(here * acceleration)
         if terms.gravity:
             columns += [here * shrink * np.cos(angle), here * shrink * np.sin(angle)]

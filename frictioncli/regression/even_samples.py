@@ -10,6 +10,9 @@ from frictioncli.pairs.chunks import SampleChunk
 from frictioncli.pairs.moves import SMOOTHING, samples_in
 from frictioncli.pairs.slices import slice_indices
 
+STEPS = ("pose", "payload")
+"""Channels of numbers without anything between them."""
+
 _UNEVEN = 0.02
 """Share of the period by which time steps of an evenly sampled log may differ."""
 
@@ -72,7 +75,11 @@ def even_samples(chunk: SampleChunk) -> EvenSamples:
     period = chunk.period
     number = np.arange(int(np.ceil(time[0] / period)), int(time[-1] / period) + 1)
     grid = number * period
-    channels = {name: np.interp(grid, time, values) for name, values in chunk.channels.items()}
+    before = np.clip(np.searchsorted(time, grid, side="right") - 1, 0, len(time) - 1)
+    channels = {
+        name: values[before] if name in STEPS else np.interp(grid, time, values)
+        for name, values in chunk.channels.items()
+    }
     first = np.searchsorted(grid, time[start], side="left")
     last = np.searchsorted(grid, time[stop - 1], side="right")
     last = np.maximum(last, first)

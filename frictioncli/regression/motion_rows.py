@@ -30,6 +30,8 @@ _CHANNELS = (
     "motor_temperature_reading",
     "load",
     "other_speed",
+    "pose",
+    "payload",
 )
 
 _FOURTH = np.array([1.0, -4.0, 6.0, -4.0, 1.0])
@@ -69,6 +71,10 @@ class MotionRows:
         Temperatures, NaN where unknown. [°C]
     other_speed : ndarray, shape (rows,)
         Speed of the fastest other joint, NaN where unknown. [deg/s]
+    pose : ndarray, shape (rows,)
+        Number of the pose of the other joints, NaN while one moves or where unknown.
+    payload : ndarray, shape (rows,)
+        Payload of the motion, NaN where only that of the recording may be known. [kg]
     variance : ndarray, shape (rows,)
         Variance of the weights of the averages. [s²]
     """
@@ -93,6 +99,8 @@ class MotionRows:
     housing_temperature: Array
     motor_temperature_reading: Array
     other_speed: Array
+    pose: Array
+    payload: Array
     variance: Array
 
     def __len__(self) -> int:
@@ -251,6 +259,8 @@ def _add(motion: MotionLog, chunk: SampleChunk, step_time: float) -> None:
                     "housing_temperature",
                     "motor_temperature_reading",
                     "other_speed",
+                    "pose",
+                    "payload",
                 )
             },
         }

@@ -19,6 +19,7 @@ AFTER_REVERSAL = "just after a start or reversal"
 NO_TEMPERATURE = "no motor temperature"
 NO_LOAD = "no measured load"
 UNKNOWN_ARM = "angle of another joint unknown"
+RARE_STATE = "little motion with that payload and pose of the other joints"
 
 _SLOWEST_SHARE = 0.01
 """Rows slower than this share of the highest speed are left out: the joint may stick."""
@@ -34,6 +35,12 @@ _CONSISTENT = 0.02
 
 _NOISY = 2e-4
 """Share of noise in the variance of the acceleration above which a wider filter is taken."""
+
+_LEAST_ROWS_OF_STATE = 60
+"""Rows with a payload and pose from which inertia and gravity are told, about 3 s."""
+
+_MOST_RARE = 0.5
+"""Share of rows in rare states above which poses are not told apart."""
 
 _KNOWN = 0.9
 """A load channel with values in this share of rows is used."""
@@ -133,32 +140,52 @@ def prepare(
     has_load = bool(len(rows)) and float(measured.mean()) >= _KNOWN
     if has_load:
         leave_out(NO_LOAD, ~measured)
-    payloads, number = _payload_numbers(carried[rows.recording.astype(np.int64)])
+
+    def states() -> Array:
+        of_recording = carried[rows.recording.astype(np.int64)]
+        payload = np.where(np.isnan(rows.payload), of_recording, rows.payload)
+        # while others move no pose is known
+        return np.stack([payload, rows.pose if told_apart else np.full(len(rows), np.nan)], axis=1)
+
+    told_apart = not share
+    rare = _rare(states())
+    if rare.sum() > _MOST_RARE * len(rows):
+        told_apart = False
+        notes.append(
+            "the other joints stand elsewhere in nearly every move: gravity is that of all poses"
+            " together, and friction may hold what they change"
+        )
+        rare = _rare(states())
+    if rare.any() and not rare.all():
+        leave_out(RARE_STATE, rare)
+    payloads, poses, number = _state_numbers(states())
     equations = JointEquations(
         rows=rows,
         speed_from_position=from_position,
         temperature=np.nan_to_num(rows.motor_temperature),
-        payload=number,
+        state=number,
     )
     terms = EquationTerms(
         offset=len(np.unique(equations.direction)) > 1,
         gravity=bool(len(rows)) and float(np.ptp(rows.position)) > 1.0,
         load_channel=has_load,
         payloads=payloads,
+        poses=poses,
     )
     if not known.any():
         terms = terms.without("gamma")
     if arm is not None and state is not None and len(rows):
         columns = arm(state)
-        equations = replace(equations, arm=columns, payload=np.zeros_like(number))
+        equations = replace(equations, arm=columns, state=np.zeros_like(number))
         terms = replace(
             terms,
             base_parameters=columns.torque.shape[1],
             gravity=False,
             delay=False,
             payloads=(float("nan"),),
+            poses=(float("nan"),),
         )
-        if len(payloads) > 1:
+        if len(set(payloads)) > 1:
             notes.append("payloads are not told apart in the dynamics of the whole arm")
     return PreparedJoint(
         equations=equations, terms=terms, dropped=dropped, notes=tuple(notes), other_share=share
@@ -246,10 +273,23 @@ def _velocity(rows: MotionRows, from_position: bool) -> Array:
     return rows.position_slope if from_position else rows.velocity
 
 
-def _payload_numbers(payload: Array) -> tuple[tuple[float, ...], Numbers]:
-    """Return the payloads that occur, unknown last, and the number of each row's."""
-    known = np.isfinite(payload)
-    values = np.unique(payload[known])
-    number = np.where(known, np.searchsorted(values, payload), len(values))
-    listed = [*values.tolist(), *([] if known.all() and len(values) else [float("nan")])]
-    return tuple(listed), np.asarray(number, dtype=np.int64)
+def _rare(states: Array) -> Flags:
+    """Return which rows have a payload and pose that few rows have."""
+    if not len(states):
+        return np.zeros(0, bool)
+    _, number, count = np.unique(
+        np.nan_to_num(states, nan=-1.0), axis=0, return_inverse=True, return_counts=True
+    )
+    return np.asarray(count[number.reshape(-1)] < _LEAST_ROWS_OF_STATE)
+
+
+def _state_numbers(
+    states: Array,
+) -> tuple[tuple[float, ...], tuple[float, ...], Numbers]:
+    """Return the payloads and poses that occur together, unknown last, and that of each row."""
+    if not len(states):
+        return (float("nan"),), (float("nan"),), np.zeros(0, np.int64)
+    found, number = np.unique(np.nan_to_num(states, nan=np.inf), axis=0, return_inverse=True)
+    found[np.isinf(found)] = np.nan
+    payloads, poses = found.T.tolist()
+    return tuple(payloads), tuple(poses), number.reshape(-1).astype(np.int64)

@@ -7,6 +7,7 @@ import numpy as np
 
 from frictioncli.regression.cells import TorqueCells
 from frictioncli.regression.determination import JointRegression
+from frictioncli.regression.equation import EquationTerms
 from frictioncli.wording import count_text
 
 
@@ -83,6 +84,7 @@ def regression_text(
             f"  {name:12s} {estimate.parameters[name]:10.4g}  {f'{low:.4g} to {high:.4g}':>22s}"
             f"  {units[name]}"
         )
+    lines += _state_lines(estimate.terms)
     at = "" if found.temperature is None else f" at {found.temperature:.0f} °C"
     friction = ", ".join(
         f"{value:.3g} ({low:.3g} to {high:.3g}) at {speed:.3g} deg/s"
@@ -97,6 +99,21 @@ def regression_text(
     lines += [f"  not determined: {name}: {why}" for name, why in found.undetermined.items()]
     lines += [f"  warning: {note}" for note in found.prepared.notes]
     return "\n".join(lines)
+
+
+def _state_lines(terms: EquationTerms) -> list[str]:
+    """Return a line for each state of the load that has an inertia and a gravity of its own."""
+    lines = []
+    for number, (payload, pose) in enumerate(zip(terms.payloads, terms.poses, strict=True)):
+        told = [
+            *([] if np.isnan(payload) else [f"{payload:g} kg"]),
+            *([] if np.isnan(pose) else [f"pose {pose:.0f} of the other joints"]),
+        ]
+        if len(terms.payloads) > 1:
+            suffix = f"_{number + 1}" if number else ""
+            of = ", ".join(told) or "unknown payload and pose"
+            lines.append(f"  inertia{suffix}, gravity{suffix}: with {of}")
+    return lines
 
 
 def regression_facts(

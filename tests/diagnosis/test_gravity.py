@@ -281,3 +281,15 @@ def test_an_extended_model_states_the_gravity_of_each_pose(tmp_path):
     assert added.abs().max() < 1.0
     with pytest.raises(TableError, match="other poses of the other joints"):
         stated_gravity(extended.gravity, GravityForm())
+
+
+def test_a_payload_known_on_the_new_run_alone_is_no_misfit_there():
+    rows = carried(payloads=(0.0,))
+    late = rows["run"] == "day2"
+    angle = np.radians(rows["position"])
+    rows.loc[late, "load_torque"] += 5 * np.cos(angle[late])
+    seen, new = build_problems(rows.assign(payload=3.0 * late), "motor", "day2")
+    assert len(seen.gravity) == 3
+    assert np.abs(new.load_misfit).max() < 1e-6
+    _, unknown = build_problems(rows.assign(payload=np.nan), "motor", "day2")
+    assert np.abs(unknown.load_misfit).max() == pytest.approx(5, rel=0.01)

@@ -1,5 +1,6 @@
 """What ``_PROG.TXT`` beside a trace tells: motions, payload, date."""
 
+import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
@@ -95,6 +96,28 @@ def test_the_native_header_tells_the_start_more_exactly(tmp_path):
     (tmp_path / "run" / "t_PROG.TXT").write_text(PROGRAM)
     read(tmp_path / "run", tmp_path / "work", joints=(3,))
     assert recordings(tmp_path / "work")["started_at"][0] == "2021-05-19T15:03:52.944500+00:00"
+
+
+def test_payloads_that_differ_reach_the_samples_of_their_motions(tmp_path):
+    write_file(tmp_path / "run", "t_KRCIpo", interpolator(), native=False)
+    two = PROGRAM.replace("50.000000 }\nLOAD: { m 0.661000 }", "50.000000 }\nLOAD: { m 2.0 }")
+    (tmp_path / "run" / "t_PROG.TXT").write_text(two)
+    summary, samples = read(tmp_path / "run", tmp_path / "work", joints=(3,))
+    assert recordings(tmp_path / "work")["payload"].isna().all()
+    np.testing.assert_array_equal(samples["payload"], np.where(samples["time"] < 1.4, 0.661, 2.0))
+    assert any("payloads 0.661, 2 kg: by motion" in note for note in summary.notes)
+
+
+def test_a_manifest_s_payload_goes_before_those_of_motions(tmp_path):
+    write_file(tmp_path / "run", "t_KRCIpo", interpolator(), native=False)
+    two = PROGRAM.replace("50.000000 }\nLOAD: { m 0.661000 }", "50.000000 }\nLOAD: { m 2.0 }")
+    (tmp_path / "run" / "t_PROG.TXT").write_text(two)
+    (tmp_path / "run" / "manifest.csv").write_text(
+        "file;started_at;payload\nt_KRCIpo.csv;2024-01-02T03:04:05;2.5\n"
+    )
+    _, samples = read(tmp_path / "run", tmp_path / "work", joints=(3,))
+    assert samples["payload"].isna().all()
+    assert recordings(tmp_path / "work")["payload"].tolist() == [2.5]
 
 
 @pytest.mark.parametrize("listed", ["t", "t_KRCIpo", "t_KRCIpo.csv", "t_KRCIpo.dat"])

@@ -126,3 +126,15 @@ def test_a_table_without_the_column_is_read(tmp_path):
     read = tables.read(tmp_path / "old.parquet", schemas.TORQUES)
     assert read["payload"].isna().all()
     assert list(read.columns) == list(schemas.TORQUES.names)
+
+
+def test_payloads_of_motions_within_one_recording_keep_them_apart():
+    frame = moves([0, 170, 0, 170, 0], ["a"] * 4)
+    move = np.repeat([0, 1, 2, 3], len(frame) // 4)
+    mass = np.array([2.0, 4.0, 4.0, 2.0])[np.resize(move, len(frame))]
+    result = paired(frame.assign(payload=mass), {"a": np.nan})
+    assert sorted(result.pairs["payload"].unique()) == [2.0, 4.0]
+    assert result.dropped[OTHER] == 0
+    one = paired(frame.assign(payload=np.where(move < 1, 2.0, 4.0)), {"a": np.nan})
+    assert one.pairs["payload"].unique().tolist() == [4.0]
+    assert one.dropped[OTHER] > 0

@@ -10,7 +10,7 @@ from tests.found import pairs as paired
 from tests.moves import move_sequence, samples
 
 OTHER = "the other joints stand elsewhere than for the partner"
-ELSEWHERE = "other joints come to stand elsewhere"
+ELSEWHERE = "other joints come to stand elsewhere, or the payload changes"
 FRICTION = 8.0
 
 

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pandas as pd
+import pyarrow as pa
 import pytest
 
 from frictioncli.errors import NotEnoughData
@@ -9,7 +10,7 @@ from frictioncli.model.fitting import fit_joint
 from frictioncli.model.settings import FitSettings
 from frictioncli.regression.determination import regress
 from frictioncli.regression.motion_rows import motion_rows
-from frictioncli.regression.preparation import prepare, with_wide_enough_filter
+from frictioncli.regression.preparation import RARE_STATE, prepare, with_wide_enough_filter
 from frictioncli.regression.separation import torques_by_regression
 from tests.moves import move_sequence
 from tests.regression import programmes
@@ -148,6 +149,49 @@ def test_each_payload_has_its_gravity():
     assert found.parameters["gravity_cos"] == pytest.approx(55.0, rel=0.01)
     assert found.parameters["gravity_cos_2"] == pytest.approx(75.0, rel=0.01)
     assert found.parameters["inertia_2"] == pytest.approx(5.0, rel=0.02)
+
+
+def in_two_states(masses=(0.0, 5.0), seconds=120, **columns):
+    """A log whose gravity goes with a mass from one stretch of time to the next."""
+    parts, last = [], 0.0
+    for number, mass in enumerate(masses):
+        motion = programmes.sines(seconds, np.random.default_rng(number))
+        torque = programmes.torque(motion, gravity=(55.0 + 4 * mass, -12.0), alpha=0.0)
+        shifted = (motion[0] + last, *motion[1:])
+        table = programmes.samples(shifted, torque).to_pandas()
+        own = {name: values[number] for name, values in columns.items()}
+        parts.append(table.assign(**own))
+        last = shifted[0][-1] + 0.1
+    return pa.Table.from_pandas(pd.concat(parts, ignore_index=True), preserve_index=False)
+
+
+@pytest.mark.parametrize("column", ["pose", "payload"])
+def test_each_pose_and_each_payload_of_a_motion_has_its_gravity(column):
+    table = in_two_states(**{column: (0.0, 5.0)})
+    found = regression(table).estimate
+    assert found.parameters["gravity_cos"] == pytest.approx(55.0, rel=0.01)
+    assert found.parameters["gravity_cos_2"] == pytest.approx(75.0, rel=0.01)
+    assert found.parameters["tau_c"] == pytest.approx(8.0, rel=0.03)
+    rows = torques_by_regression(table.to_batches).table
+    assert set(rows[column]) == {0.0, 5.0}
+    assert rows.groupby("pair")[column].nunique().max() == 1
+
+
+def test_a_pose_of_little_motion_is_left_out_and_one_in_each_move_is_not_told_apart():
+    table = in_two_states((0.0, 0.0), 60, pose=(0.0, 1.0))
+    prepared = prepare(motion_rows(table.to_batches())[1])
+    assert RARE_STATE not in prepared.dropped
+    assert prepared.terms.poses == (0.0, 1.0)
+    frame = table.to_pandas()
+    rare = frame.assign(pose=np.where(frame.index > 0.99 * len(frame), 2.0, 0.0))
+    prepared = prepare(motion_rows(pa.Table.from_pandas(rare).to_batches())[1])
+    assert prepared.dropped[RARE_STATE] > 0
+    assert prepared.terms.poses == (0.0,)
+    always = frame.assign(pose=(frame["time"] // 1.5).astype(float))
+    prepared = prepare(motion_rows(pa.Table.from_pandas(always).to_batches())[1])
+    assert RARE_STATE not in prepared.dropped
+    assert np.isnan(prepared.terms.poses).all()
+    assert any("stand elsewhere in nearly every move" in note for note in prepared.notes)
 
 
 def test_a_measured_load_takes_the_place_of_gravity():

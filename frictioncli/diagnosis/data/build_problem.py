@@ -40,9 +40,8 @@ def build_problems(
     """Return the problem of one joint, and that of its hold-out run.
 
     The base model is fitted to the rows of the first only; the second is simulated with it. Gravity
-    depends on the payload if two payloads are known in the rows of the first, and on the pose of
-    the other joints where it differs between those of the first. In a pose that only the hold-out
-    run has, gravity is not predicted but fitted to that run.
+    goes with the payloads, and the poses of other joints, that differ in the first. With those that
+    only the hold-out run has, gravity is not predicted but fitted to that run.
 
     Parameters
     ----------
@@ -64,10 +63,8 @@ def build_problems(
     form = _gravity_form(rows[~new], load[~new])
     columns = form.columns(rows)
     gravity = np.linalg.lstsq(columns[~new], load[~new], rcond=None)[0]
-    unseen = _in_unseen_poses(rows, new, load - columns @ gravity)
-    smooth = load
-    if rows["load"].isna().all():
-        smooth = carried_load(columns, gravity) + unseen
+    unseen = _unseen_gravity(rows, new, load - columns @ gravity, form)
+    smooth = carried_load(columns, gravity) + unseen if rows["load"].isna().all() else load
     rows["load_torque"] -= unseen
     problem = min(
         (
@@ -90,15 +87,19 @@ def _gravity_form(rows: pd.DataFrame, load: Array) -> GravityForm:
     return GravityForm(form.payloads, poses)
 
 
-def _in_unseen_poses(rows: pd.DataFrame, new: Flags, misfit: Array) -> Array:
-    """Return what poses that only the hold-out run has add to gravity, shape (rows,) [N·m]."""
-    pose, added = known_pose(rows), np.zeros(len(rows))
-    for number in np.unique(pose[new & np.isfinite(pose)]):
-        own = pose == number
-        if (own & ~new).any():
-            continue
-        columns = GravityForm().columns(rows[own])[:, :2]
-        added[own] = columns @ np.linalg.lstsq(columns, misfit[own], rcond=None)[0]
+def _unseen_gravity(rows: pd.DataFrame, new: Flags, misfit: Array, form: GravityForm) -> Array:
+    """Return what poses and payloads that only the hold-out run has add to gravity [N·m].
+
+    They are known, so that it is no change that has to be found.
+    """
+    mass = np.nan_to_num(known_payload(rows)) * (not form.payloads)
+    states = np.column_stack([np.nan_to_num(known_pose(rows), nan=-1.0), mass])
+    added = np.zeros(len(rows))
+    for state in np.unique(states[new], axis=0):
+        own = (states == state).all(axis=1)
+        if not (own & ~new).any():
+            columns = GravityForm().columns(rows[own])[:, :2]
+            added[own] = columns @ np.linalg.lstsq(columns, misfit[own], rcond=None)[0]
     return added
 
 

@@ -13,6 +13,8 @@ OTHER_SPEED = "other_speed"
 """Not a channel of a log: the speed of the fastest other joint, from its position."""
 OTHER_JOINTS = "other_joints"
 """Not a channel of a log: which other joints move, from their positions."""
+PAYLOAD = "payload"
+"""Not a channel of a log: what the program that ran says is carried."""
 POSE = "pose"
 """Not a channel of a log: where the other joints stand, as a number."""
 

@@ -65,6 +65,16 @@ class ProgramFile:
         same = len(known) == len(masses) and known and max(known) - min(known) < _SAME_MASS
         return known[0] if same else None
 
+    @property
+    def payloads(self) -> tuple[tuple[float, float], ...]:
+        """Start [s] and payload [kg] of each motion, where every payload is known and some differ.
+
+        A payload holds until the next motion starts.
+        """
+        found = [(motion.start, motion.payload) for motion in self.motions]
+        known = tuple((start, mass) for start, mass in found if mass is not None)
+        return known if len(known) == len(found) and self.payload is None else ()
+
     def __str__(self) -> str:
         if not self.motions:
             return "tells of no motion"
@@ -76,7 +86,8 @@ class ProgramFile:
             text += f" at {low:g}" + (f" to {high:g}" if high > low else "") + " % of axis speed"
         masses = sorted({m.payload for m in self.motions if m.payload is not None})
         if self.payload is None and masses:
-            return f"{text}, payloads {', '.join(f'{mass:g}' for mass in masses)} kg: none taken"
+            taken = "by motion" if self.payloads else "none taken"
+            return f"{text}, payloads {', '.join(f'{mass:g}' for mass in masses)} kg: {taken}"
         return text + (f", payload {self.payload:g} kg" if self.payload is not None else "")
 
 

@@ -26,11 +26,14 @@ class Sidecar:
         Mass at the tool by the program file. [kg]
     notes : tuple of str
         The file that each value comes from.
+    payloads : tuple of (float, float)
+        Start [s] of each motion and mass [kg] from then on, where the program file tells several.
     """
 
     started_at: datetime | None = None
     payload: float | None = None
     notes: tuple[str, ...] = ()
+    payloads: tuple[tuple[float, float], ...] = ()
 
 
 def read_sidecar(log: Path, names: Collection[str]) -> Sidecar:
@@ -61,7 +64,8 @@ def read_sidecar(log: Path, names: Collection[str]) -> Sidecar:
         note = "started as its _PROG.TXT tells"
     else:
         note = "its _PROG.TXT has no valid date"
-    return Sidecar(start or program.started_at, program.payload, (note, f"its _PROG.TXT {program}"))
+    notes = note, f"its _PROG.TXT {program}"
+    return Sidecar(start or program.started_at, program.payload, notes, program.payloads)
 
 
 def _start_by_header(header: Path) -> datetime | None:

@@ -1,6 +1,6 @@
 """One log read to its end: samples in order of time, and a summary of the recording."""
 
-from collections.abc import Callable, Collection, Iterable, Iterator
+from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -72,6 +72,7 @@ def read_recording(
     sink: SampleSink,
     continuous: Collection[int] = (),
     poses: Poses | None = None,
+    payloads: Sequence[tuple[float, float]] = (),
 ) -> RecordingSummary | Refusal:
     """Hand all samples of a log to a sink.
 
@@ -89,6 +90,8 @@ def read_recording(
         Joints whose motor temperature is known to be continuous, not quantized.
     poses : Poses, optional
         Poses of the recordings before; new ones are added.
+    payloads : sequence of (float, float)
+        Start [s] of each motion by the clock of the log, and payload [kg] from then on.
 
     Returns
     -------
@@ -124,7 +127,7 @@ def read_recording(
                 reading = rows.columns.get((joint, names.MOTOR_TEMPERATURE))
                 if reading is not None:
                     register.update(time, reading, longest)
-            sink(rows, time)
+            sink(_with_payloads(rows, joints, payloads), time)
     except UnreadableLog as error:
         return Refusal("unreadable_file", str(error))
     counts = rejected.counts()
@@ -159,6 +162,18 @@ def _usable_rows(
     for rows in with_other_joints(moving, joints, poses):
         if len(rows):
             yield rows
+
+
+def _with_payloads(
+    rows: LogRows, joints: Sequence[int], payloads: Sequence[tuple[float, float]]
+) -> LogRows:
+    """Return rows with the payload of the motion that ran; before the first, that of the first."""
+    if not payloads:
+        return rows
+    start, mass = np.array(payloads).T
+    carried = mass[np.maximum(np.searchsorted(start, rows.time, side="right") - 1, 0)]
+    added = {(joint, names.PAYLOAD): carried for joint in joints}
+    return LogRows(rows.lines, rows.time, {**rows.columns, **added})
 
 
 def _refusal(

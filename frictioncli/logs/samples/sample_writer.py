@@ -39,6 +39,7 @@ _COPIED_CHANNELS = (
     names.OTHER_SPEED,
     names.OTHER_JOINTS,
     names.POSE,
+    names.PAYLOAD,
 )
 
 RunKnots = Mapping[tuple[str, int], Sequence[Knots | None]]

@@ -30,12 +30,15 @@ class DatedLog:
         Its row of the manifest.
     payload : float or None
         Mass at the tool by the manifest, else by the sidecar files. [kg]
+    payloads : tuple of (float, float)
+        Start [s] of each motion and mass [kg] from then on, where they differ.
     """
 
     planned: PlannedLog
     started_at: datetime | None
     entry: ManifestEntry | None
     payload: float | None
+    payloads: tuple[tuple[float, float], ...] = ()
 
 
 @dataclass(frozen=True, slots=True)
@@ -113,7 +116,15 @@ def in_time_order(
         planned.log.sidecar.payload if payload is None else payload
         for planned, payload in zip(logs, payloads, strict=True)
     ]
-    if None not in completed:
+    by_motion: list[tuple[tuple[float, float], ...]] = [
+        planned.log.sidecar.payloads if payload is None else ()
+        for planned, payload in zip(logs, completed, strict=True)
+    ]
+    all_known = all(
+        payload is not None or motions
+        for payload, motions in zip(completed, by_motion, strict=True)
+    )
+    if all_known:
         payloads = completed
     starts: dict[str, datetime] = {}
     for planned, entry in zip(logs, listed, strict=True):
@@ -121,8 +132,14 @@ def in_time_order(
         if start is not None:
             starts[name] = min(start, starts.get(name, start))
     dated = [
-        DatedLog(planned, starts.get(planned.log.recording), entry, payload)
-        for planned, entry, payload in zip(logs, listed, payloads, strict=True)
+        DatedLog(
+            planned,
+            starts.get(planned.log.recording),
+            entry,
+            payload,
+            motions if all_known else (),
+        )
+        for planned, entry, payload, motions in zip(logs, listed, payloads, by_motion, strict=True)
     ]
     return sorted(
         dated,
