@@ -12,25 +12,25 @@ from dataclasses import dataclass, replace
 import numpy as np
 import pandas as pd
 
-from frictioncli.diagnosis.data.build_problem import build_problems
 from frictioncli.diagnosis.data.problem import Misfit, Problem
 from frictioncli.diagnosis.data.worst_misfits import worst_misfits
 from frictioncli.diagnosis.fit.extension import Extension, Gain, extend, measured_gain
 from frictioncli.diagnosis.ramps.evidence import RampEvidence, RampLog, ramp_evidence
-from frictioncli.diagnosis.ramps.timing import torque_timing
+from frictioncli.diagnosis.ramps.settling import Settling, settled_problems
 from frictioncli.diagnosis.ramps.timing_rivals import TimingRivals
 from frictioncli.diagnosis.search.cause import Cause
 from frictioncli.diagnosis.search.cause_search import find_causes
-from frictioncli.diagnosis.search.cause_selection import judged_on_new_run
+from frictioncli.diagnosis.search.cause_selection import judged_on_new_run, refuted_by_new_run
 from frictioncli.diagnosis.search.lack_of_fit import Structure
-from frictioncli.diagnosis.search.margin import channel_margin, margin_of, strength
-from frictioncli.diagnosis.search.measurement import CLEAR, beside_the_rest, corrected_without_name
+from frictioncli.diagnosis.search.margin import channel_margin, margin_of
+from frictioncli.diagnosis.search.measurement import beside_the_rest, corrected_without_name
 from frictioncli.diagnosis.search.new_run_changes import changes_on_new_run, with_effect
 from frictioncli.diagnosis.search.new_run_misfit import NewRunMisfit
 from frictioncli.diagnosis.search.search_result import SearchResult, given_up_causes
 from frictioncli.diagnosis.search.standing import with_standing
 from frictioncli.diagnosis.search.timing_causes import judged_by_timing
 from frictioncli.diagnosis.search.understood import understood
+from frictioncli.diagnosis.search.verdict import verdict_of, visible_causes
 from frictioncli.diagnosis.settings import DiagnosisSettings
 from frictioncli.diagnosis.thermal.estimate import ThermalEstimate
 from frictioncli.diagnosis.thermal.refine import LAG, search_with_lag, settled
@@ -91,6 +91,8 @@ class Diagnosis:
         By how much the torque is late, and whether by a delay or a filter.
     load_margin : float or None
         The margin of what shows in a load channel of the log; none without one. [N·m]
+    settling : Settling or None
+        Bins that were left out because the logged torque had not settled.
     """
 
     joint: int
@@ -115,6 +117,7 @@ class Diagnosis:
     thermal: ThermalEstimate | None = None
     timing: TimingRivals | None = None
     load_margin: float | None = None
+    settling: Settling | None = None
 
 
 def diagnose_joint(
@@ -158,30 +161,38 @@ def diagnose_joint(
             f"joint {joint}: {pairs} pairs to learn from, expected at least {LEAST_PAIRS}, to tell"
             " noise from structure; log more moves there and back"
         )
-    problem, new = build_problems(torques, temperature, held_out)
-    margin = margin_of(problem, torque_unit, settings)
-    evidence = ramp_evidence(ramps, problem, temperature) if ramps else None
+    rows = settled_problems(torques, temperature, held_out, ramps, LEAST_PAIRS)
+    base, base_new, starts = rows.problem, rows.new, rows.timing
+    margin = margin_of(base, torque_unit, settings)
+    evidence = ramp_evidence(ramps, base, temperature) if ramps else None
 
     def search(rows: Problem, tried: Sequence[Effect]) -> SearchResult:
         return find_causes(rows, tried, settings, margin, evidence)
 
-    base, base_new = problem, new
-    found, lag = search_with_lag(problem, new, effects, search, margin)
-    if lag is not None:
-        problem, new = lag.problem, lag.new
-    weighted_fit = found.step.weighted_fit()
-    judged = with_standing((*found.measurement, *found.causes), problem, margin, settings.alpha)
-    starts = torque_timing(ramps, problem, temperature) if ramps else None
-    judged, timing = judged_by_timing(judged, starts)
-    named = [cause for cause in judged if cause.standing == "named"]
-    if new:
+    refuted: tuple[Cause, ...] = ()
+    while True:
+        tried = [one for one in effects if one.name not in {no.fit.effect.name for no in refuted}]
+        found, lag = search_with_lag(base, base_new, tried, search, margin)
+        problem, new = (base, base_new) if lag is None else (lag.problem, lag.new)
+        judged = with_standing((*found.measurement, *found.causes), problem, margin, settings.alpha)
+        judged, timing = judged_by_timing(judged, starts)
+        named = [cause for cause in judged if cause.standing == "named"]
+        if new is None:
+            break
         named = list(judged_on_new_run(named, found.step, new))
+        worse = refuted_by_new_run(named, found.step, new)
+        if not worse:
+            break
+        refuted += worse
+    weighted_fit = found.step.weighted_fit()
     causes, unnamed = understood(found.step, named, margin, settings.alpha)
     given_up = given_up_causes(found, settings.alpha)
     corrected = corrected_without_name(judged, causes, problem)
     names = {one.fit.effect.name for one in corrected}
     rest = [one for one in judged if one.fit.effect.name not in names]
-    visible = _visible((*rest, *corrected, *given_up), named, causes, unnamed, problem)
+    visible = visible_causes(
+        (*rest, *corrected, *given_up, *refuted), named, causes, unnamed, problem
+    )
     extension = gain = None
     if lag is not None and not any(cause.fit.effect.name == LAG for cause in causes):
         # what is not named does not move the temperature of the extended model
@@ -222,7 +233,7 @@ def diagnose_joint(
     return Diagnosis(
         joint=joint,
         torque_unit=torque_unit,
-        verdict=_verdict(causes, unnamed),
+        verdict=verdict_of(causes, unnamed),
         causes=causes,
         visible=visible,
         structure=unnamed,
@@ -242,6 +253,7 @@ def diagnose_joint(
         ramps=evidence,
         thermal=None if lag is None else lag.estimate,
         timing=timing,
+        settling=rows.settling,
     )
 
 
@@ -264,39 +276,6 @@ def predicting(extension: Extension, causes: Sequence[Cause]) -> Extension:
     }
     effects = tuple(one for number, one in enumerate(extension.effects) if number not in gone)
     return replace(extension, effects=effects)
-
-
-def _visible(
-    judged: Sequence[Cause],
-    named: Sequence[Cause],
-    causes: Sequence[Cause],
-    unnamed: Structure | None,
-    problem: Problem,
-) -> tuple[Cause, ...]:
-    """Return what was found and is not named, with the reason, largest first."""
-    left = [cause for cause in judged if cause.standing != "named"]
-    # an effect of the measurement that nothing speaks for is not worth a line
-    left = [one for one in left if not one.fit.effect.measurement or one.test.p_value < CLEAR]
-    for cause in named:
-        if any(cause is other for other in causes):
-            continue
-        if cause.standing == "named" and unnamed is not None:
-            reason = f"structure along {unnamed.axis} is left that no effect explains"
-            cause = replace(cause, standing="visible", reason=reason)
-        left.append(cause)
-
-    def share(cause: Cause) -> float:
-        return strength(problem, cause.fit.effect.channel, cause.visible)
-
-    return tuple(sorted(left, key=share, reverse=True))
-
-
-def _verdict(causes: Sequence[Cause], unnamed: Structure | None) -> str:
-    if unnamed is not None:
-        return "unnamed"
-    if not causes:
-        return "no_evidence"
-    return "named" if all(len(cause.effects) == 1 for cause in causes) else "ambiguous"
 
 
 def _floor(found: SearchResult) -> float:

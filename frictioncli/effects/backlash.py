@@ -12,7 +12,8 @@ at all speeds alike, other than a delay of the torque, which grows with speed.
 
 import numpy as np
 
-from frictioncli.effects.base import Basis, Effect, EffectTable, Parameter, Signature
+from frictioncli.effects.base import Basis, Effect, EffectTable, Signature
+from frictioncli.effects.parameter import Parameter
 
 
 def basis(table: EffectTable) -> Basis:

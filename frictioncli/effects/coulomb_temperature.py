@@ -8,10 +8,10 @@ from frictioncli.effects.base import (
     Basis,
     Effect,
     EffectTable,
-    Parameter,
     Signature,
     friction_only,
 )
+from frictioncli.effects.parameter import Parameter
 
 
 def basis(table: EffectTable) -> Basis:

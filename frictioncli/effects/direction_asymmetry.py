@@ -12,7 +12,8 @@ A constant asymmetry looks like an offset of the torque sensor.
 
 import numpy as np
 
-from frictioncli.effects.base import Basis, Effect, EffectTable, Parameter, Signature, load_only
+from frictioncli.effects.base import Basis, Effect, EffectTable, Signature, load_only
+from frictioncli.effects.parameter import Parameter
 
 _REFERENCE_SPEED = 50.0
 """Speed at which the viscous part is that of the base model. [deg/s]"""

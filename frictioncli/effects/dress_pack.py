@@ -9,7 +9,8 @@ stiffening spring can.
 
 import numpy as np
 
-from frictioncli.effects.base import Basis, Effect, EffectTable, Parameter, Signature, load_only
+from frictioncli.effects.base import Basis, Effect, EffectTable, Signature, load_only
+from frictioncli.effects.parameter import Parameter
 
 
 def basis(table: EffectTable, *, rest: float, stiffening: float) -> Basis:

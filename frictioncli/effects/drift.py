@@ -5,7 +5,8 @@ r"""Friction changes steadily with time: wear, ageing grease, a drifting sensor.
 
 import numpy as np
 
-from frictioncli.effects.base import Basis, Effect, EffectTable, Parameter, Signature, friction_only
+from frictioncli.effects.base import Basis, Effect, EffectTable, Signature, friction_only
+from frictioncli.effects.parameter import Parameter
 
 
 def basis(table: EffectTable, *, time_constant: float) -> Basis:

@@ -14,8 +14,9 @@ from collections.abc import Iterable, Mapping
 import numpy as np
 
 from frictioncli.arrays import Array, Flags
-from frictioncli.effects.base import EffectTable, Parameter
+from frictioncli.effects.base import EffectTable
 from frictioncli.effects.pair_series import measured_share, pair_heads
+from frictioncli.effects.parameter import Parameter
 
 Shape = dict[str, float]
 """Shape parameters of a history."""

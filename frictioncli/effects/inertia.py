@@ -15,8 +15,9 @@ torque grows with :math:`v`. The shape parameter ``growth`` is 0 in the first ca
 
 import numpy as np
 
-from frictioncli.effects.base import Basis, Effect, EffectTable, Parameter, Signature
+from frictioncli.effects.base import Basis, Effect, EffectTable, Signature
 from frictioncli.effects.pair_series import stroke_ends
+from frictioncli.effects.parameter import Parameter
 
 
 def basis(table: EffectTable, *, distance: float, growth: float) -> Basis:
@@ -89,6 +90,7 @@ EFFECT = Effect(
             lower=-20.0,
             upper=20.0,
             description="Half of what accelerating takes more than braking, at 100 deg/s",
+            within="inertial_torque",
         ),
     ),
     basis=basis,

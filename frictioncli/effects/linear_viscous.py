@@ -3,7 +3,8 @@ r"""A part of viscous friction is proportional to speed and independent of tempe
 .. math:: \Delta\tau = k_v v
 """
 
-from frictioncli.effects.base import Basis, Effect, EffectTable, Parameter, Signature, friction_only
+from frictioncli.effects.base import Basis, Effect, EffectTable, Signature, friction_only
+from frictioncli.effects.parameter import Parameter
 
 
 def basis(table: EffectTable) -> Basis:

@@ -5,7 +5,8 @@ r"""Friction grows with the absolute load torque, not only with its square.
 
 import numpy as np
 
-from frictioncli.effects.base import Basis, Effect, EffectTable, Parameter, Signature, friction_only
+from frictioncli.effects.base import Basis, Effect, EffectTable, Signature, friction_only
+from frictioncli.effects.parameter import Parameter
 
 
 def basis(table: EffectTable) -> Basis:
@@ -29,7 +30,7 @@ EFFECT = Effect(
             symbol="al",
             unit="1",
             lower=0.0,
-            upper=0.2,
+            upper=0.5,
             description="Friction torque per load torque",
         ),
     ),

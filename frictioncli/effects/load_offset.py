@@ -10,7 +10,8 @@ where the square of the constant is part of Coulomb friction. The share of the c
 gear carries is :math:`1 - c_0/c`.
 """
 
-from frictioncli.effects.base import Basis, Effect, EffectTable, Parameter, Signature, friction_only
+from frictioncli.effects.base import Basis, Effect, EffectTable, Signature, friction_only
+from frictioncli.effects.parameter import Parameter
 
 
 def basis(table: EffectTable) -> Basis:

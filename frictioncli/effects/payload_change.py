@@ -9,9 +9,10 @@ Friction changes with the load as the term :math:`\alpha L^2` of the base model,
 
 import numpy as np
 
-from frictioncli.effects.base import Basis, Effect, EffectTable, Parameter, Signature
+from frictioncli.effects.base import Basis, Effect, EffectTable, Signature
 from frictioncli.effects.history import SHAPE, presence
 from frictioncli.effects.history_search import histories
+from frictioncli.effects.parameter import Parameter
 
 
 def basis(table: EffectTable, **shape: float) -> Basis:

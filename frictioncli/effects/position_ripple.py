@@ -8,7 +8,8 @@ the search ends there. At order 2 a ripple resembles the load term of a joint un
 
 import numpy as np
 
-from frictioncli.effects.base import Basis, Effect, EffectTable, Parameter, Signature, friction_only
+from frictioncli.effects.base import Basis, Effect, EffectTable, Signature, friction_only
+from frictioncli.effects.parameter import Parameter
 
 _LEAST_PERIODS = 1.25
 """Over fewer periods a ripple cannot be distinguished from a load term."""

@@ -5,7 +5,8 @@ r"""Drag of churned lubricant grows with the square of speed.
 
 import numpy as np
 
-from frictioncli.effects.base import Basis, Effect, EffectTable, Parameter, Signature, friction_only
+from frictioncli.effects.base import Basis, Effect, EffectTable, Signature, friction_only
+from frictioncli.effects.parameter import Parameter
 
 REFERENCE_SPEED = 100.0
 """Speed at which the drag is stated. [deg/s]"""

@@ -7,7 +7,8 @@ with the number *n* of the pair after a rest *r*.
 
 import numpy as np
 
-from frictioncli.effects.base import Basis, Effect, EffectTable, Parameter, Signature
+from frictioncli.effects.base import Basis, Effect, EffectTable, Signature
+from frictioncli.effects.parameter import Parameter
 
 
 def basis(table: EffectTable, *, pairs: float, rest_time: float, at_start: float) -> Basis:

@@ -11,8 +11,9 @@ speed, and it starts at the reversal, the same angle for slow and fast moves.
 
 import numpy as np
 
-from frictioncli.effects.base import Basis, Effect, EffectTable, Parameter, Signature
+from frictioncli.effects.base import Basis, Effect, EffectTable, Signature
 from frictioncli.effects.pair_series import turning_points
+from frictioncli.effects.parameter import Parameter
 
 
 def basis(table: EffectTable, *, distance: float, side: float) -> Basis:

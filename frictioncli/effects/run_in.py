@@ -8,8 +8,9 @@ on every cold start is no running-in, but an effect of temperature or of rest.
 
 import numpy as np
 
-from frictioncli.effects.base import Basis, Effect, EffectTable, Parameter, Signature, friction_only
+from frictioncli.effects.base import Basis, Effect, EffectTable, Signature, friction_only
 from frictioncli.effects.pair_series import starts
+from frictioncli.effects.parameter import Parameter
 
 
 def basis(table: EffectTable, *, distance: float) -> Basis:

@@ -12,8 +12,9 @@ that of a line through the readings of ten minutes.
 import numpy as np
 
 from frictioncli.arrays import Array
-from frictioncli.effects.base import Basis, Effect, EffectTable, Parameter, Signature, friction_only
+from frictioncli.effects.base import Basis, Effect, EffectTable, Signature, friction_only
 from frictioncli.effects.pair_series import pair_heads, starts
+from frictioncli.effects.parameter import Parameter
 
 _HALF_WINDOW = 300.0
 """Half the window of the line through the readings. [s]"""

@@ -6,9 +6,10 @@ When it is there tells its history (:mod:`frictioncli.effects.history`): from a 
 two moments, or in a part of every run.
 """
 
-from frictioncli.effects.base import Basis, Effect, EffectTable, Parameter, Signature, friction_only
+from frictioncli.effects.base import Basis, Effect, EffectTable, Signature, friction_only
 from frictioncli.effects.history import SHAPE, presence
 from frictioncli.effects.history_search import histories
+from frictioncli.effects.parameter import Parameter
 
 
 def basis(table: EffectTable, **shape: float) -> Basis:

@@ -5,7 +5,8 @@ r"""Stribeck effect: boundary friction rises towards standstill.
 
 import numpy as np
 
-from frictioncli.effects.base import Basis, Effect, EffectTable, Parameter, Signature, friction_only
+from frictioncli.effects.base import Basis, Effect, EffectTable, Signature, friction_only
+from frictioncli.effects.parameter import Parameter
 
 _REFERENCE = 40.0
 """Temperature at which the Stribeck velocity is stated. [°C]"""

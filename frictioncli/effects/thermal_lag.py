@@ -28,7 +28,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from frictioncli.arrays import Array, Flags
-from frictioncli.effects.base import Basis, Effect, EffectTable, Parameter, Signature, friction_only
+from frictioncli.effects.base import Basis, Effect, EffectTable, Signature, friction_only
 from frictioncli.effects.friction_heat import friction_power
 from frictioncli.effects.pair_series import (
     first_order_lag,
@@ -36,6 +36,7 @@ from frictioncli.effects.pair_series import (
     pair_heads,
     starts,
 )
+from frictioncli.effects.parameter import Parameter
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

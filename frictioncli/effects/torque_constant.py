@@ -9,14 +9,8 @@ magnets about 0.11 %/°C. A negative coefficient means that the controller overc
 
 import numpy as np
 
-from frictioncli.effects.base import (
-    REFERENCE_TEMPERATURE,
-    Basis,
-    Effect,
-    EffectTable,
-    Parameter,
-    Signature,
-)
+from frictioncli.effects.base import REFERENCE_TEMPERATURE, Basis, Effect, EffectTable, Signature
+from frictioncli.effects.parameter import Parameter
 
 
 def basis(table: EffectTable) -> Basis:

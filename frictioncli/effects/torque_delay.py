@@ -13,7 +13,8 @@ delay, and :mod:`frictioncli.effects.torque_filter` measures by how much it is m
 
 import numpy as np
 
-from frictioncli.effects.base import Basis, Effect, EffectTable, Parameter, Signature
+from frictioncli.effects.base import Basis, Effect, EffectTable, Signature
+from frictioncli.effects.parameter import Parameter
 
 
 def basis(table: EffectTable) -> Basis:

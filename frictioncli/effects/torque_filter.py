@@ -19,7 +19,8 @@ that its third derivative is known from the first.
 
 import numpy as np
 
-from frictioncli.effects.base import Basis, Effect, EffectTable, Parameter, Signature
+from frictioncli.effects.base import Basis, Effect, EffectTable, Signature
+from frictioncli.effects.parameter import Parameter
 
 BY_TIME_CONSTANT = (
     "The torque in these logs is smoothed by a filter with a time constant of {time_constant}."

@@ -11,8 +11,9 @@ product is well determined.
 
 import numpy as np
 
-from frictioncli.effects.base import Basis, Effect, EffectTable, Parameter, Signature, friction_only
+from frictioncli.effects.base import Basis, Effect, EffectTable, Signature, friction_only
 from frictioncli.effects.pair_series import pair_heads
+from frictioncli.effects.parameter import Parameter
 
 
 def basis(table: EffectTable, *, exponent: float) -> Basis:

@@ -7,7 +7,11 @@ from functools import partial
 from matplotlib.figure import Figure
 
 from frictioncli.diagnosis.documents.reload import Reloaded
-from frictioncli.diagnosis.documents.sentences import margin_text, remainder_text
+from frictioncli.diagnosis.documents.sentences import (
+    margin_text,
+    remainder_text,
+    settling_text,
+)
 from frictioncli.report.diagnosis_captions import (
     cause_title,
     evidence_caption,
@@ -52,6 +56,8 @@ class DiagnosisSection:
         found and is not named.
     margin : str
         The smallest size worth a name, in words.
+    settling : str
+        What was left out because the torque had not settled; may be empty.
     worst, detectable : TextTable or None
         Largest misfits of the simulation; smallest size at which each effect would be found.
     """
@@ -63,6 +69,7 @@ class DiagnosisSection:
     visible: tuple[CauseText, ...] = ()
     remainder: str = ""
     margin: str = ""
+    settling: str = ""
     gain: str = ""
     worst: TextTable | None = None
     detectable: TextTable | None = None
@@ -87,6 +94,7 @@ def diagnosis_section(results: JointResults) -> DiagnosisSection:
         visible=tuple(visible_texts(document)),
         remainder=remainder_text(document),
         margin=margin_text(document),
+        settling=settling_text(document),
         gain=gain_sentence(document, unit),
         worst=worst if worst.rows else None,
         detectable=detectable_table(document, unit),

@@ -29,7 +29,10 @@ QUICK = ("nuisances",)
 
 
 def diagnosed(name, seed):
-    effects, nuisances = WORLDS[name]
+    return diagnosed_joint(*WORLDS[name], seed)
+
+
+def diagnosed_joint(effects, nuisances, seed):
     settings = SynthesisSettings(
         seed=seed, joint_kind="plain", effects=effects, nuisances=nuisances
     )
@@ -124,3 +127,14 @@ def test_joints_with_nothing_hidden_have_no_named_property_under_all_nuisances()
         for seed in range(40, 48)
     ]
     assert sum(map(bool, named)) <= 1, named
+
+
+@pytest.mark.slow
+def test_what_makes_the_prediction_of_a_new_day_worse_is_not_named():
+    """Friction that has run in stays as it is; a drift would go on, which day 2 refutes."""
+    diagnosis = diagnosed_joint(("run_in:5.66",), ("all",), 0)
+    keeps_the_rules(diagnosis)
+    drift = next(cause for cause in diagnosis.visible if cause.fit.effect.name == "drift")
+    assert "misfit of the run that was held out" in drift.reason
+    assert "run_in" in {cause.fit.effect.name for cause in diagnosis.causes}
+    assert diagnosis.gain.after < 0.5 * diagnosis.gain.before

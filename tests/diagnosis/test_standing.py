@@ -158,3 +158,17 @@ def test_a_load_channel_has_a_margin_in_its_own_unit(joint):
     assert standing(joint, small)[0][0] == "named"
     assert standing(own, cause(in_load, interval=(0.51, 0.9)))[0][0] == "named"
     assert standing(own, cause(interval=(0.21, 0.49)))[0][0] == "named"
+
+
+@pytest.mark.parametrize(
+    ("inertial", "unequal", "possible"),
+    [(1.0, 0.9, True), (1.0, 1.2, True), (1.0, 2.0, False), (-1.0, 2.0, False), (-1.0, -0.9, True)],
+)
+def test_half_a_difference_of_torques_of_one_sign_is_at_most_their_mean(
+    joint, inertial, unequal, possible
+):
+    """With accelerations a and b of one sign, |a - b| <= |a + b|, whatever the torque's sign."""
+    shape = {"distance": 10.0, "growth": 0.0}
+    one = cause(BY_NAME["inertia"], (inertial, unequal), (0.1, 0.1), shape=shape)
+    ((_, reason),) = standing(joint, one)
+    assert ("unequal_braking is physically impossible" in reason) != possible

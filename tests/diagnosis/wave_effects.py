@@ -2,7 +2,8 @@
 
 import numpy as np
 
-from frictioncli.effects.base import Basis, Effect, Parameter, Signature
+from frictioncli.effects.base import Basis, Effect, Signature
+from frictioncli.effects.parameter import Parameter
 
 
 def wave(order, phase=0.0):

@@ -8,7 +8,8 @@ import numpy as np
 import pytest
 
 from frictioncli.effects import BY_NAME, EFFECTS, MEASUREMENT_EFFECTS, NEEDS
-from frictioncli.effects.base import Parameter, applicable, missing_columns
+from frictioncli.effects.base import applicable, missing_columns
+from frictioncli.effects.parameter import Parameter
 from tests.effects.tables import COLUMNS, selected, small, two_days
 
 CONTRACT = [

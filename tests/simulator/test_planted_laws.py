@@ -10,7 +10,7 @@ from frictioncli.arrays import Array
 from frictioncli.diagnosis.data.build_problem import build_problems
 from frictioncli.diagnosis.data.problem import Problem
 from frictioncli.effects import BY_NAME
-from frictioncli.effects.base import Parameter
+from frictioncli.effects.parameter import Parameter
 from frictioncli.simulator.planted.catalogue import EFFECTS
 from frictioncli.simulator.settings import SynthesisSettings
 from tests.simulation.torque_table import simulate_torques

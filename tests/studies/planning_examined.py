@@ -3,7 +3,6 @@
 import random
 import time
 
-import numpy as np
 import pandas as pd
 
 from frictioncli.design.blocks import all_blocks
@@ -15,7 +14,8 @@ from frictioncli.diagnosis.diagnose import Diagnosis, diagnose_joint
 from frictioncli.diagnosis.documents.extended_model import extended_model
 from frictioncli.diagnosis.documents.from_diagnosis import diagnosis_document, extended_document
 from frictioncli.diagnosis.search.cause_search import find_causes
-from frictioncli.diagnosis.search.cause_selection import LEAST_VISIBLE
+from frictioncli.diagnosis.search.margin import margin_of
+from frictioncli.diagnosis.search.standing import with_standing
 from frictioncli.diagnosis.settings import DiagnosisSettings
 from frictioncli.effects import EFFECTS
 from frictioncli.errors import OptionError
@@ -98,14 +98,13 @@ def _compared(world: World) -> dict[str, object]:
 
 
 def _named(torques: pd.DataFrame) -> str:
-    """Return the sets of causes by all runs together, the last one not kept out.
-
-    Slight ones, which no diagnosis finds worth modelling, do not count.
-    """
+    """Return the sets of causes that are named by all runs together, the last one not kept out."""
     problem, _ = build_problems(torques, TEMPERATURE)
-    found = find_causes(problem, EFFECTS, DiagnosisSettings())
-    least = LEAST_VISIBLE * float(np.mean(np.abs(problem.friction)))
-    causes = [cause for cause in found.causes if cause.visible >= least]
+    settings = DiagnosisSettings()
+    margin = margin_of(problem, "N·m", settings)
+    found = find_causes(problem, EFFECTS, settings, margin)
+    judged = with_standing(found.causes, problem, margin, settings.alpha)
+    causes = [cause for cause in judged if cause.standing == "named"]
     return ";".join("|".join(cause.effects) for cause in causes)
 
 

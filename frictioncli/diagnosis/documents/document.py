@@ -9,6 +9,7 @@ import msgspec
 from frictioncli import documents
 from frictioncli.diagnosis.data.problem import Misfit
 from frictioncli.diagnosis.documents.extended_model import ParameterRecord
+from frictioncli.diagnosis.documents.ramps_record import RampsRecord, SettlingRecord
 from frictioncli.diagnosis.settings import DiagnosisSettings
 
 Channel = Annotated[str, msgspec.Meta(pattern="^(friction|load)$")]
@@ -198,28 +199,6 @@ class SimulationRecord(msgspec.Struct, frozen=True, kw_only=True):
     worst: tuple[Misfit, ...] = ()
 
 
-class RampsRecord(msgspec.Struct, frozen=True, kw_only=True):
-    """What the ramps of the moves show.
-
-    Attributes
-    ----------
-    inertia : ParameterRecord
-        Inertia.
-    rmse_before, rmse_after : float
-        RMS misfit of the ramps without and with inertia and transient. [torque unit]
-    log_odds_reversal_transient : float
-        Natural logarithm of the odds of a transient after reversals. [1]
-    moves : int
-        Moves that begin with a reversal.
-    """
-
-    inertia: ParameterRecord
-    rmse_before: float
-    rmse_after: float
-    log_odds_reversal_transient: float
-    moves: int
-
-
 class DiagnosisDocument(msgspec.Struct, frozen=True, kw_only=True):
     """One joint of ``diagnosis.json``.
 
@@ -252,6 +231,8 @@ class DiagnosisDocument(msgspec.Struct, frozen=True, kw_only=True):
         What the base model misses.
     ramps : RampsRecord or None
         What the ramps show; none where the log has no ramps.
+    settling : SettlingRecord or None
+        Bins that were left out because the logged torque had not settled; none where none were.
     torque_unit : str
         Unit of torque.
     load_unit : str or None
@@ -277,6 +258,7 @@ class DiagnosisDocument(msgspec.Struct, frozen=True, kw_only=True):
     undetectable: Mapping[str, str] = {}
     simulation: SimulationRecord
     ramps: RampsRecord | None = None
+    settling: SettlingRecord | None = None
     torque_unit: str
     load_unit: str | None = None
     runs: tuple[str, ...]

@@ -11,7 +11,6 @@ from frictioncli.diagnosis.documents.document import (
     CauseRecord,
     DiagnosisDocument,
     GainRecord,
-    RampsRecord,
     SimulationRecord,
     StructureRecord,
 )
@@ -28,6 +27,7 @@ from frictioncli.diagnosis.documents.parameters import (
     fitted_parameters,
     statement,
 )
+from frictioncli.diagnosis.documents.ramps_record import ramps_record, settling_record
 from frictioncli.diagnosis.documents.remainder import remainder_record
 from frictioncli.diagnosis.documents.thermal_record import record_of_lag
 from frictioncli.diagnosis.ramps.evidence import RampEstimate
@@ -62,7 +62,7 @@ def diagnosis_document(diagnosis: Diagnosis, settings: DiagnosisSettings) -> Dia
     ]
     if diagnosis.structure is not None:
         causes.append(_unnamed_record(diagnosis.structure))
-    gain = diagnosis.gain
+    gain, ramps, settling = diagnosis.gain, diagnosis.ramps, diagnosis.settling
     return DiagnosisDocument(
         joint=diagnosis.joint,
         verdict=diagnosis.verdict,
@@ -85,7 +85,8 @@ def diagnosis_document(diagnosis: Diagnosis, settings: DiagnosisSettings) -> Dia
         detectable=diagnosis.detectable,
         undetectable=_undetectable(diagnosis),
         simulation=SimulationRecord(rmse=diagnosis.rmse, worst=diagnosis.worst),
-        ramps=_ramps_record(diagnosis),
+        ramps=None if ramps is None else ramps_record(ramps, diagnosis.torque_unit),
+        settling=None if settling is None else settling_record(settling),
         torque_unit=diagnosis.torque_unit,
         load_unit=_LOAD_UNIT if diagnosis.base.has_load_channel else None,
         runs=diagnosis.runs,
@@ -147,23 +148,6 @@ def extended_document(diagnosis: Diagnosis, model: FrictionModel) -> ExtendedDoc
         gravity_about=gravity_document(diagnosis.base.gravity, form),
         gravity=gravity_document(extension.gravity, form),
         hidden_temperature=diagnosis.base.hidden or UNSET,
-    )
-
-
-def _ramps_record(diagnosis: Diagnosis) -> RampsRecord | None:
-    ramps = diagnosis.ramps
-    if ramps is None:
-        return None
-    return RampsRecord(
-        inertia=ParameterRecord(
-            estimate=ramps.inertia.value,
-            ci95=(ramps.inertia.low, ramps.inertia.high),
-            unit=f"{diagnosis.torque_unit}/(deg/s²)",
-        ),
-        rmse_before=ramps.rms_before,
-        rmse_after=ramps.rms_after,
-        log_odds_reversal_transient=ramps.log_odds,
-        moves=ramps.moves,
     )
 
 

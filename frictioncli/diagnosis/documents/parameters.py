@@ -9,7 +9,8 @@ from frictioncli.arrays import Array
 from frictioncli.diagnosis.documents.extended_model import ParameterRecord
 from frictioncli.diagnosis.fit.extension import Extension
 from frictioncli.diagnosis.fit.hypotheses import EffectFit
-from frictioncli.effects.base import Effect, Parameter
+from frictioncli.effects.base import Effect
+from frictioncli.effects.parameter import Parameter
 from frictioncli.quantities import TORQUE
 from frictioncli.wording import quantity_text
 

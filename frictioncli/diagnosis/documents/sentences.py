@@ -117,6 +117,25 @@ def note_text(cause: CauseRecord) -> str:
     return cause.statement if OTHER_JOINT in cause.effects else ""
 
 
+def settling_text(document: DiagnosisDocument) -> str:
+    """Return what was left out because the logged torque had not settled; empty if nothing was.
+
+    Parameters
+    ----------
+    document : DiagnosisDocument
+        The joint's diagnosis.
+    """
+    settling = document.settling
+    if settling is None:
+        return ""
+    pairs = f", among them all of {settling.pairs} pairs" if settling.pairs else ""
+    return (
+        f"left out: {settling.bins} angle bins{pairs}, passed within {settling.seconds:.2g} s of"
+        " the first bin of a segment, when the delayed or filtered torque still showed the start of"
+        " the move"
+    )
+
+
 def margin_text(document: DiagnosisDocument) -> str:
     """Return the smallest size worth a name; empty where the document does not say it.
 

@@ -15,6 +15,7 @@ from frictioncli.diagnosis.documents.sentences import (
     margin_text,
     note_text,
     remainder_text,
+    settling_text,
     size_text,
     standing_text,
 )
@@ -44,6 +45,7 @@ def verdict_text(document: DiagnosisDocument) -> str:
         lines.append(_gain_text(document.gain, document))
     lines += [
         remainder_text(document),
+        settling_text(document),
         margin_text(document),
         detectable_text(document),
     ]

@@ -20,7 +20,8 @@ from frictioncli.diagnosis.data.problem import Problem
 from frictioncli.diagnosis.fit.columns import base_rows
 from frictioncli.diagnosis.fit.hypotheses import EffectFit
 from frictioncli.diagnosis.fit.weighted_fit import WeightedFit
-from frictioncli.effects.base import Basis, Parameter
+from frictioncli.effects.base import Basis
+from frictioncli.effects.parameter import Parameter
 
 _BLOCK = 12
 """Pairs per block of the bootstrap: the misfits of neighbouring pairs are not independent."""

@@ -9,7 +9,7 @@ load, and of errors in the form of the friction model [1]_. Each function is a s
 over the range of its quantity, with :math:`s_k` falling with *k*, so that it is smooth. The
 coefficients of the base model are free, so that only the part of a function that is orthogonal to
 the base counts [2]_; it is this part that has the amplitude. The amplitude :math:`\omega` of
-each function is at least its share of 1 % of the mean friction; above that it has a lognormal
+each function is at least its share of 0.75 % of the mean friction; above that it has a lognormal
 prior, and is estimated with each rival in place.
 
 Errors of the base's parameters are what a function adds along the base's columns, where no data
@@ -33,15 +33,13 @@ from frictioncli.diagnosis.data.problem import Problem
 from frictioncli.diagnosis.fit.columns import ModelColumns, reduced
 from frictioncli.effects.base import Channel, EffectTable
 
-SHARE = 0.01
-"""RMS of the whole discrepancy that is expected beforehand, relative to the mean friction."""
+SHARE = 0.0075
+"""RMS of the whole discrepancy that is expected beforehand, relative to the mean friction.
+
+The nuisances of the simulator, all at once, leave 0.4 to 0.8 %."""
 
 SPREAD = 0.7
 """Standard deviation of the natural logarithm of each function's amplitude beforehand."""
-
-_FORM_WEIGHT = 3.0
-"""Amplitude of errors in the form of the friction model, relative to that of the other functions:
-its exponents are fitted to one joint, and differ from joint to joint."""
 
 _MINOR_WEIGHT = 0.6
 """The same of functions of two quantities and of those in the load channel: main effects are larger
@@ -91,15 +89,15 @@ class Discrepancy:
     components : tuple of Component
         The functions.
     rows : ndarray, shape (2 * rows, columns)
-        Their columns, friction above load, orthogonal to the base: of each function the squares sum
-        to 1 on average.
+        Their columns, friction above load, orthogonal to the base: of a main
+        effect the squares sum to 1 on average.
     whole : tuple of ndarray, shape (2 * rows, columns)
         Columns of each function before the base is taken out: of a function as a whole the squares
         sum to 1 on average, and its lowest orders weigh more.
     columns : ModelColumns
         The former, reduced.
     amplitude : float
-        RMS of each function that is expected beforehand. [N·m]
+        RMS of a main effect that is expected beforehand. [N·m]
     """
 
     components: tuple[Component, ...]
@@ -169,22 +167,22 @@ def discrepancy_of(problem: Problem, span: Array, share: float = SHARE) -> Discr
     if share > 0 and not problem.has_load_channel:
         parts += [("load", *one) for one in _functions(problem.table, _LOAD)]
     components: list[Component] = []
-    left, whole, first = [np.zeros((2 * rows, 0))], [], 0
+    left, whole, first, squares = [np.zeros((2 * rows, 0))], [], 0, 0.0
     for channel, axes, values in parts:
         zeros = np.zeros_like(values)
         columns = np.vstack([values, zeros] if channel == "friction" else [zeros, values])
         orthogonal = columns - span @ (span.T @ columns)
         if np.sum(np.square(orthogonal)) <= _LEAST_LEFT * np.sum(np.square(columns)):
             continue
-        weight = _MINOR_WEIGHT if channel == "load" or len(axes) > 1 else 1.0
+        weight = _MINOR_WEIGHT if channel == "load" or len(axes) == 2 else 1.0
         if axes == _FORM:
             orthogonal = orthogonal @ _orthonormal_combination(orthogonal)
-            weight = _FORM_WEIGHT
         scale = weight * np.sqrt(rows / float(np.sum(np.square(orthogonal))))
         left.append(scale * orthogonal)
         whole.append(weight * _of_errors(axes, columns))
         components.append(Component(axes, channel, slice(first, first + orthogonal.shape[1])))
         first += orthogonal.shape[1]
+        squares += weight**2
     together = np.hstack(left)
     friction, load = np.split(together, 2)
     mean = float(np.mean(np.abs(problem.friction)))
@@ -193,7 +191,7 @@ def discrepancy_of(problem: Problem, span: Array, share: float = SHARE) -> Discr
         rows=together,
         whole=tuple(whole),
         columns=reduced(problem.layout, friction, load),
-        amplitude=share * mean / np.sqrt(max(len(components), 1)),
+        amplitude=share * mean / np.sqrt(max(squares, 1.0)),
     )
 
 

@@ -2,22 +2,31 @@
 
 A change of friction or payload has its history on the new run, which is an input and no parameter.
 A cause beyond doubt of which the new run has nothing did not last: it stays a cause, and the
-extended model does not predict it there. A cause that the new run contradicts is not named.
+extended model does not predict it there. A cause that the new run contradicts is not named, nor one
+that makes its prediction worse.
 """
 
 from collections.abc import Sequence
 from dataclasses import replace
 
+import numpy as np
+
 from frictioncli.diagnosis.data.problem import Problem
+from frictioncli.diagnosis.fit.extension import extend, misfits
+from frictioncli.diagnosis.fit.hypotheses import EffectFit
 from frictioncli.diagnosis.search.cause import Cause
 from frictioncli.diagnosis.search.new_run import NewRunTest, new_run_test
 from frictioncli.diagnosis.search.step import Step
+from frictioncli.effects.thermal_lag import EFFECT as THERMAL_LAG
 
 BEYOND_DOUBT = 1e-6
 """Greatest p-value of a property of the joint that stays named though the new run lacks it."""
 
 _NOTHING = 0.2
 """Greatest amplitude on the new run that counts as nothing, beside its interval."""
+
+_WORSE = 1.05
+"""RMS misfit of a new run with a cause over that without it from which on the run refutes it."""
 
 _ROUNDS = 2
 """Times that the histories of all changes are fitted on the new run, each beside the others."""
@@ -49,6 +58,45 @@ def judged_on_new_run(causes: Sequence[Cause], step: Step, new: Problem) -> tupl
         if not _is_change(one):
             found[number] = _with_test(one, _tested(found, number, step, new))
     return tuple(found)
+
+
+def refuted_by_new_run(causes: Sequence[Cause], step: Step, new: Problem) -> tuple[Cause, ...]:
+    """Return causes that make the prediction of a new run clearly worse, no longer named.
+
+    A slow cause that goes on as it did may be far off a day later, though something of its sign is
+    there. Changes have their history on the new run; a lag is judged with its temperature; effects
+    of the measurement belong to the log.
+
+    Parameters
+    ----------
+    causes : sequence of Cause
+        Causes that are named, judged on the new run.
+    step : Step
+        The last step of the search.
+    new : Problem
+        Rows of a run that was held out.
+    """
+    weighted_fit = step.weighted_fit()
+    among = [one for one in causes if one.standing == "named" and one.holds_on_new_run is not False]
+
+    def missed(fits: Sequence[EffectFit]) -> float:
+        extension = extend(step.problem, weighted_fit, fits)
+        return float(np.sqrt(np.mean(new.squared(*misfits(new, extension)))))
+
+    refuted = []
+    with_all = missed([one.fit for one in among])
+    for cause in among:
+        effect = cause.fit.effect
+        if effect.measurement or _is_change(cause) or effect.name == THERMAL_LAG.name:
+            continue
+        without = missed([one.fit for one in among if one is not cause])
+        if with_all > _WORSE * without:
+            reason = (
+                f"with it the misfit of the run that was held out is {with_all / without:.2g} times"
+                " as large as without"
+            )
+            refuted.append(replace(cause, standing="visible", reason=reason))
+    return tuple(refuted)
 
 
 def _is_change(cause: Cause) -> bool:

@@ -111,6 +111,21 @@ def beyond_bounds(fit: EffectFit, problem: Problem, errors: float = _Z95) -> str
     for parameter, value, outside in zip(parameters, fit.coefficients, beyond, strict=True):
         if outside:
             return f"{parameter.name} of {value:.3g} {parameter.unit} is physically impossible"
+    return _larger_than_whole(fit, errors)
+
+
+def _larger_than_whole(fit: EffectFit, errors: float) -> str:
+    """Return which coefficient surely exceeds one that it cannot exceed; empty if none does."""
+    names = [one.name for one in fit.effect.coefficients]
+    for number, parameter in enumerate(fit.effect.coefficients):
+        if not parameter.within:
+            continue
+        whole = names.index(parameter.within)
+        signs = np.zeros(len(names))
+        signs[[number, whole]] = np.sign(fit.coefficients[[number, whole]]) * [1, -1]
+        excess = float(np.sum(signs * fit.coefficients))
+        if excess > errors * float(np.sqrt(max(float(signs @ fit.covariance @ signs), 0.0))):
+            return f"{parameter.name} is physically impossible: greater than {parameter.within}"
     return ""
 
 
