@@ -199,10 +199,19 @@ def _table(joint: Joint, columns: Columns) -> pa.Table:
 
 @dataclass(slots=True)
 class PairCounts:
-    """Counts of pairs by joint and speed, and of their samples."""
+    """Counts of pairs by joint and speed, and of their samples by joint."""
 
     speeds: dict[int, Counter[float]] = field(default_factory=dict)
-    samples: int = 0
+    of_joint: Counter[int] = field(default_factory=Counter)
+
+    @property
+    def samples(self) -> int:
+        """Samples in pairs, of all joints."""
+        return self.of_joint.total()
+
+    def share(self, joint: int, moving: int) -> float:
+        """Return the share of a joint's samples in motion that are in pairs."""
+        return self.of_joint[joint] / max(moving, 1)
 
     def count(self, tables: Iterable[pa.Table]) -> Iterator[pa.Table]:
         """Yield tables of :func:`pair_rows` unchanged, and count them."""
@@ -212,7 +221,7 @@ class PairCounts:
             speed = np.round(rows["speed"].to_numpy()[first], 1)
             self.speeds.setdefault(joint, Counter()).update(speed.tolist())
             for name in ("n_forward", "n_reverse"):
-                self.samples += int(rows[name].to_numpy().sum())
+                self.of_joint[joint] += int(rows[name].to_numpy().sum())
             yield rows
 
 

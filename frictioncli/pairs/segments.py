@@ -78,6 +78,8 @@ class SegmentTables:
         Samples in bins during which other joints moved.
     starts : StartCounts
         Which starts are to be kept.
+    moving : dict of int to int
+        Samples in motion, by joint.
     """
 
     store: PartitionedStore[Joint]
@@ -89,6 +91,7 @@ class SegmentTables:
     samples: int
     other_motion: OtherMotion
     starts: StartCounts
+    moving: dict[int, int]
 
 
 def without_angle(batch: pa.RecordBatch) -> pa.RecordBatch:
@@ -179,6 +182,7 @@ class _Finder:
     )
     other_motion: OtherMotion = field(default_factory=OtherMotion)
     starts: StartCounts = field(default_factory=StartCounts)
+    moving: dict[int, int] = field(default_factory=dict)
     _last_moves: dict[int, tuple[int, int]] = field(default_factory=dict)
 
     def add(self, chunk: SampleChunk) -> None:
@@ -196,6 +200,8 @@ class _Finder:
         )
         self.samples += chunk.end - chunk.begin
         self.dropped["standing"] += chunk.standing
+        moving = chunk.end - chunk.begin - chunk.standing
+        self.moving[source.joint] = self.moving.get(source.joint, 0) + moving
         for reason, count in found.dropped.items():
             self.dropped[reason] += count
         if not len(found.start):
@@ -299,4 +305,5 @@ class _Finder:
             self.samples,
             self.other_motion,
             self.starts,
+            self.moving,
         )

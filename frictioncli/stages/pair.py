@@ -85,6 +85,9 @@ def pair(work: Path, settings: PairingSettings | None = None) -> StageResult:
             starts.write(rows)
         for rows in counts.count(pair_rows(segments, pairing, manifest["phase"])):
             pairs.write(rows)
+        facts["in_pairs"] = {
+            str(joint): counts.share(joint, segments.moving[joint]) for joint in counts.speeds
+        }
     text = pairing_text(counts, facts, segments.other_motion, settings.bin_width)
     return StageResult(work / PAIRS, text)
 

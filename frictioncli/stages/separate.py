@@ -31,6 +31,13 @@ if TYPE_CHECKING:
 
 PAIRED, REGRESSED = "pairs", "regression"
 
+_MANY_PAIRS = 30
+"""Pairs from which they are taken, whatever share of the motion they hold."""
+
+_LEAST_SHARE = 0.1
+"""Share of the samples in motion that fewer pairs hold at least; else a regression is tried. It
+uses most of them, and is refused where it does not tell friction from the rest."""
+
 
 @stage
 def separate(
@@ -69,12 +76,12 @@ def separate(
     few = {} if settings.by == PAIRED else _with_few_pairs(work, found)
     regressed, texts = None, []
     if few:
-        counts = ", ".join(f"{count_text(n, 'pair')} of joint {joint}" for joint, n in few.items())
+        told = "; ".join(few.values())
         try:
             regressed = _regressed(work, settings, bin_width, joints=few)
-            texts.append(f"too few pairs ({counts}): by regression")
+            texts.append(f"{told}: by regression")
         except NotEnoughData as fault:
-            texts.append(f"too few pairs ({counts}), and no regression: {fault}")
+            texts.append(f"{told}, and no regression: {fault}")
     others = {
         joint: values
         for joint, values in found.items()
@@ -85,12 +92,24 @@ def separate(
 
 def _with_few_pairs(
     work: Path, found: Mapping[int, Mapping[str, HalfDifferences]]
-) -> dict[int, int]:
-    """Return the joints with too few pairs for a fit, and their numbers, if there are samples."""
+) -> dict[int, str]:
+    """Return the joints that a regression may tell more of, and why, if there are samples.
+
+    They have too few pairs for a fit, or not many, which hold next to nothing of their motion.
+    """
     if not (work / SAMPLES).exists():
         return {}
-    counts = {joint: sum(one.count for one in runs.values()) for joint, runs in found.items()}
-    return {joint: count for joint, count in counts.items() if count < LEAST_PAIRS}
+    shares = tables.facts(work / PAIRS).get("in_pairs", {})
+    told = {}
+    for joint, runs in found.items():
+        count, share = sum(one.count for one in runs.values()), shares.get(str(joint), 1.0)
+        if count < LEAST_PAIRS:
+            told[joint] = f"too few pairs ({count_text(count, 'pair')} of joint {joint})"
+        elif count < _MANY_PAIRS and share < _LEAST_SHARE:
+            told[joint] = (
+                f"{count_text(count, 'pair')} of joint {joint} hold {share:.0%} of its motion"
+            )
+    return told
 
 
 def _regressed(

@@ -104,10 +104,21 @@ def test_pairs_that_suffice_are_used_and_said(tmp_path):
     assert tables.facts(tmp_path / "work" / TORQUES)["separated_by"] == {"2": "pairs"}
 
 
-def test_too_few_pairs_give_way_to_a_regression(tmp_path):
-    """One pair at one speed, then sines."""
-    pairs = move_sequence([0, 100, 0], [20.0, 20.0], period=0.01)
-    swing = programmes.sines(120, np.random.default_rng(22), centre=0.0)
+@pytest.mark.parametrize(
+    ("count", "seconds", "said"),
+    [
+        (1, 120, "too few pairs (1 pair of joint 1): by regression"),
+        (4, 300, "4 pairs of joint 1 hold 5% of its motion: by regression"),
+        (4, 20, ""),
+    ],
+)
+def test_pairs_that_hold_little_of_the_motion_give_way_to_a_regression(
+    count, seconds, said, tmp_path
+):
+    """Pairs at growing speeds, then sines."""
+    speeds = np.repeat(20.0 * np.arange(1, count + 1), 2)
+    pairs = move_sequence([0, 100] * count + [0], speeds, period=0.01)
+    swing = programmes.sines(seconds, np.random.default_rng(22), centre=0.0)
     after = pairs["time"].iloc[-1] + 5.0
     table = programmes.samples(
         tuple(
@@ -127,8 +138,9 @@ def test_too_few_pairs_give_way_to_a_regression(tmp_path):
     write_samples(work, table)
     pair(work)
     text = str(separate(work))
-    assert "too few pairs (1 pair of joint 1): by regression" in text
-    assert tables.facts(work / TORQUES)["separated_by"] == {"1": "regression"}
+    assert said in text
+    way = "regression" if said else "pairs"
+    assert tables.facts(work / TORQUES)["separated_by"] == {"1": way}
     # as told, pairs are used nonetheless
     separate(work, SeparationSettings(by="pairs"))
     assert tables.facts(work / TORQUES)["separated_by"] == {"1": "pairs"}
