@@ -63,6 +63,22 @@ def printable(text: str, longest: int = _LONGEST) -> str:
     return f"{line[: longest - 3 - half]}...{line[-half:]}"
 
 
+def whole_number(text: str) -> int | None:
+    """Return the whole number that a text of at most 18 ASCII digits stands for, else None.
+
+    Parameters
+    ----------
+    text : str
+        Any text; ``int`` takes other digits too, and fails where there are thousands.
+
+    Examples
+    --------
+    >>> whole_number("12"), whole_number("1.5"), whole_number("9" * 5000)
+    (12, None, None)
+    """
+    return int(text) if text.isascii() and text.isdecimal() and len(text) <= 18 else None
+
+
 def escaped(character: str) -> str:
     r"""Return a character as it is, or as ``\uXXXX`` if it cannot be printed.
 

@@ -66,6 +66,12 @@ def new_limits(settings: PlanSettings) -> Limits:
     assert low is not None
     assert high is not None
     assert fastest is not None  # else they are missing
+    hottest = settings.max_temperature or DEFAULT_HOTTEST
+    if hottest < COLDEST + 1:
+        raise OptionError(
+            f"--max-temperature {hottest:g} °C: expected {COLDEST + 1} °C or more; the paper heats"
+            f" from {COLDEST} °C"
+        )
     rated = settings.rated_speed
     if rated is not None and fastest > rated:
         raise OptionError(
@@ -77,7 +83,7 @@ def new_limits(settings: PlanSettings) -> Limits:
         high=high,
         slowest=min(max(SWEEP[0] * _scale(fastest), step or 0.0), fastest),
         fastest=fastest,
-        hottest=settings.max_temperature or DEFAULT_HOTTEST,
+        hottest=hottest,
         speed_step=step,
     )
 

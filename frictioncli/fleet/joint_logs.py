@@ -2,6 +2,7 @@
 
 import csv
 import io
+import math
 import os
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
@@ -10,7 +11,9 @@ from pathlib import Path
 from typing import Any
 
 from frictioncli.errors import LogError, MappingError
+from frictioncli.logs.channels.channel_names import MAX_JOINT
 from frictioncli.logs.runs.discovery import natural_key
+from frictioncli.plain_text import printable, whole_number
 
 REQUIRED_COLUMNS = ("robot", "joint", "run", "path")
 """Columns that a table of contents must have."""
@@ -200,10 +203,13 @@ def _parquet_rows(path: Path) -> tuple[list[str], Iterable[tuple[int, Mapping[st
     import pyarrow.parquet as pq
 
     try:
-        table = pq.read_table(path, partitioning=None)
-    except (OSError, pa.ArrowInvalid) as error:
+        names = pq.read_schema(path).names
+        known = [name for name in (*REQUIRED_COLUMNS, *OPTIONAL_COLUMNS) if name in names]
+        rows = pq.read_table(path, columns=known, partitioning=None).to_pylist()
+    # ValueError also: text that is not UTF-8, dates that Python has not
+    except (OSError, ValueError, OverflowError, pa.ArrowException) as error:
         raise MappingError(f"{path}: cannot be read as Parquet ({error})") from error
-    return table.column_names, enumerate(table.to_pylist(), start=1)
+    return names, enumerate(rows, start=1)
 
 
 def _csv_rows(path: Path) -> tuple[list[str], Iterable[tuple[int, Mapping[str, Any]]]]:
@@ -237,27 +243,33 @@ def _cell_text(value: Any) -> str:
 def _robot_name(name: str, where: str) -> str:
     if not name or len(name.encode()) > 200 or any(c in "/\\" or not c.isprintable() for c in name):
         raise MappingError(
-            f"{where}: robot {name!r} cannot be part of a folder's name; expected printable"
-            " characters without / and \\, 200 at most"
+            f"{where}: robot {printable(name)!r} cannot be part of a folder's name; expected"
+            " printable characters without / and \\, 200 at most"
         )
     return name
 
 
 def _joint_number(text: str, where: str) -> int:
-    if not text.isascii() or not text.isdecimal() or not 1 <= int(text) <= 32767:
-        raise MappingError(f"{where}: joint {text!r}; expected a joint number from 1")
-    return int(text)
+    number = whole_number(text)
+    if number is None or not 1 <= number <= MAX_JOINT:
+        raise MappingError(
+            f"{where}: joint {printable(text)!r}; expected a joint number from 1 to {MAX_JOINT}"
+        )
+    return number
 
 
 def _gear_ratio(text: str, where: str) -> float | None:
     if not text:
         return None
     try:
-        return float(text)
+        value = float(text)
     except ValueError:
-        raise MappingError(
-            f"{where}: gear_ratio {text!r}; expected motor turns per joint turn"
-        ) from None
+        value = math.nan
+    if math.isfinite(value) and value:
+        return value
+    raise MappingError(
+        f"{where}: gear_ratio {printable(text)!r}; expected motor turns per joint turn, not 0"
+    )
 
 
 def _absolute_path(base: Path, text: str, where: str) -> Path:

@@ -6,6 +6,7 @@ from pathlib import Path
 
 from frictioncli.errors import OptionError
 from frictioncli.logs.channels import units
+from frictioncli.logs.channels.channel_names import MAX_JOINT
 from frictioncli.options import NO_OPTION, option
 
 AUTO = "auto"
@@ -91,8 +92,10 @@ class IngestSettings:
     batch_bytes: int = field(default=1 << 22, metadata=NO_OPTION)
 
     def __post_init__(self) -> None:
-        if self.joints is not None and (not self.joints or min(self.joints) < 1):
-            raise OptionError(f"joints {self.joints}: expected joint numbers from 1")
+        if self.joints is not None and not (
+            self.joints and all(1 <= joint <= MAX_JOINT for joint in self.joints)
+        ):
+            raise OptionError(f"joints {self.joints}: expected joint numbers from 1 to {MAX_JOINT}")
         if self.gear_ratio is not None and (
             not math.isfinite(self.gear_ratio) or self.gear_ratio == 0
         ):

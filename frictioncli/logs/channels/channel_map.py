@@ -1,11 +1,6 @@
 """The mapping file: columns, units and text form given by the user where detection fails."""
 
-import codecs
-import difflib
-import math
 import re
-import tomllib
-from collections.abc import Collection, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -20,14 +15,25 @@ from frictioncli.logs.channels.channel_names import (
     TORQUE,
     VELOCITY,
 )
+from frictioncli.logs.channels.map_entries import (
+    CSV_KEYS,
+    MAX_COLUMN,
+    check_keys,
+    csv_hints,
+    joint_number,
+    listed,
+    ratio,
+    shown,
+    toml_document,
+    torque_constant,
+)
 from frictioncli.logs.log_source import CsvHints
+from frictioncli.plain_text import whole_number
 
 _SECTIONS = ("channels", "units", "side", "csv", "joint")
 _SIDED = (POSITION, VELOCITY, TORQUE)
-_CSV_KEYS = ("delimiter", "decimal", "encoding")
 _JOINT_KEYS = ("number", "gear_ratio", "rated_torque", "torque_constant")
 _INLINE = re.compile(rf"\s*({'|'.join((*CHANNELS, 'joint'))})\s*=")
-_DELIMITERS = {";": ";", ",": ",", "\t": "\t", " ": " ", "tab": "\t", "space": " ", "blank": " "}
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -84,44 +90,37 @@ def read_map(path: Path) -> ChannelMap:
     """
     if is_inline(path):
         return _inline_map(str(path))
-    try:
-        text = path.read_text(encoding="utf-8-sig")
-        document = tomllib.loads(text)
-    except (OSError, UnicodeDecodeError, tomllib.TOMLDecodeError) as error:
-        raise MappingError(
-            f"{path}: cannot be read as a mapping file ({error}); expected TOML with"
-            f" {_listed(_SECTIONS)}"
-        ) from error
-    _check_keys(path, "section", document, _SECTIONS)
+    document = toml_document(path, _SECTIONS)
+    check_keys(path, "section", document, _SECTIONS)
     sections = {name: document.get(name, {}) for name in _SECTIONS}
     for name, section in sections.items():
         if not isinstance(section, dict):
-            raise MappingError(f"{path}: {name} = {section!r}; expected a section [{name}]")
+            raise MappingError(f"{path}: {name} = {shown(section)}; expected a section [{name}]")
     channels, channel_units = sections["channels"], sections["units"]
-    _check_keys(path, "name in [channels]", channels, CHANNELS)
-    _check_keys(path, "name in [units]", channel_units, CHANNELS)
-    _check_keys(path, "name in [side]", sections["side"], _SIDED)
-    _check_keys(path, "key in [csv]", sections["csv"], _CSV_KEYS)
-    _check_keys(path, "key in [joint]", sections["joint"], _JOINT_KEYS)
+    check_keys(path, "name in [channels]", channels, CHANNELS)
+    check_keys(path, "name in [units]", channel_units, CHANNELS)
+    check_keys(path, "name in [side]", sections["side"], _SIDED)
+    check_keys(path, "key in [csv]", sections["csv"], CSV_KEYS)
+    check_keys(path, "key in [joint]", sections["joint"], _JOINT_KEYS)
     for name, column in channels.items():
-        is_number = isinstance(column, int) and column is not True and column >= 1
+        is_number = isinstance(column, int) and column is not True and 1 <= column <= MAX_COLUMN
         if not is_number and not (isinstance(column, str) and column.strip()):
             raise MappingError(
-                f"{path}: [channels] {name} = {column!r}; expected a column name, or its number"
-                " from 1"
+                f"{path}: [channels] {name} = {shown(column)}; expected a column name, or its"
+                " number from 1"
             )
     for name, side in sections["side"].items():
         if side not in (JOINT_SIDE, MOTOR_SIDE):
-            raise MappingError(f"{path}: [side] {name} = {side!r}; expected joint or motor")
+            raise MappingError(f"{path}: [side] {name} = {shown(side)}; expected joint or motor")
     return ChannelMap(
         channels={name: str(column) for name, column in channels.items()},
         sides=dict(sections["side"]),
         units={name: _unit(path, name, text) for name, text in channel_units.items()},
-        hints=_hints(path, sections["csv"]),
-        joint=_joint(path, sections["joint"].get("number")),
-        gear_ratio=_number(path, "gear_ratio", sections["joint"].get("gear_ratio")),
-        rated_torque=_number(path, "rated_torque", sections["joint"].get("rated_torque")),
-        torque_constant=_constant(path, sections["joint"].get("torque_constant")),
+        hints=csv_hints(path, sections["csv"]),
+        joint=joint_number(path, sections["joint"].get("number")),
+        gear_ratio=ratio(path, "gear_ratio", sections["joint"].get("gear_ratio")),
+        rated_torque=ratio(path, "rated_torque", sections["joint"].get("rated_torque")),
+        torque_constant=torque_constant(path, sections["joint"].get("torque_constant")),
     )
 
 
@@ -148,9 +147,9 @@ def _inline_map(text: str) -> ChannelMap:
         if not equals or not value:
             raise MappingError(f"--map: {entry!r}; expected name=column or name=column:unit")
         if name == "joint":
-            joint = _joint(where, int(value) if value.isdigit() else value)
+            joint = joint_number(where, whole_number(value) or value)
             continue
-        _check_keys(where, "name", [name], (*CHANNELS, "joint"))
+        check_keys(where, "name", [name], (*CHANNELS, "joint"))
         column, colon, unit = value.rpartition(":")
         channels[name] = column.strip() if colon else value
         if colon:
@@ -162,59 +161,6 @@ def _unit(path: Path, name: str, text: Any) -> str:
     unit = units.canonical(text, name) if isinstance(text, str) else None
     if unit is None or unit not in units.FACTORS[name]:
         raise MappingError(
-            f"{path}: [units] {name} = {text!r}; expected one of {_listed(units.FACTORS[name])}"
+            f"{path}: [units] {name} = {shown(text)}; expected one of {listed(units.FACTORS[name])}"
         )
     return unit
-
-
-def _hints(path: Path, section: dict[str, Any]) -> CsvHints:
-    delimiter, decimal, encoding = (section.get(key) for key in _CSV_KEYS)
-    if delimiter is not None and delimiter not in _DELIMITERS:
-        raise MappingError(
-            f"{path}: [csv] delimiter = {delimiter!r}; expected one of {_listed(_DELIMITERS)}"
-        )
-    if decimal not in (None, ".", ","):
-        raise MappingError(f"{path}: [csv] decimal = {decimal!r}; expected '.' or ','")
-    if encoding is not None:
-        try:
-            encoding = codecs.lookup(encoding).name
-        except (LookupError, TypeError) as error:
-            raise MappingError(
-                f"{path}: [csv] encoding = {encoding!r}; expected for example utf-8, cp1252, utf-16"
-            ) from error
-    return CsvHints(None if delimiter is None else _DELIMITERS[delimiter], decimal, encoding)
-
-
-def _joint(path: Path, number: Any) -> int | None:
-    if number is None or (isinstance(number, int) and number is not True and number >= 1):
-        return number
-    raise MappingError(f"{path}: [joint] number = {number!r}; expected a joint number from 1")
-
-
-def _number(path: Path, key: str, value: Any) -> float | None:
-    if value is None:
-        return None
-    if isinstance(value, int | float) and math.isfinite(value) and value not in (0, True):
-        return float(value)
-    meaning = {
-        "gear_ratio": "motor turns per joint turn, not 0",
-        "rated_torque": "N·m at 100 %, not 0",
-        "torque_constant": "'auto', or N·m/A, not 0",
-    }[key]
-    raise MappingError(f"{path}: [joint] {key} = {value!r}; expected {meaning}")
-
-
-def _constant(path: Path, value: Any) -> float | str | None:
-    return "auto" if value == "auto" else _number(path, "torque_constant", value)
-
-
-def _check_keys(path: Path, what: str, given: Collection[str], allowed: Sequence[str]) -> None:
-    for key in given:
-        if key not in allowed:
-            close = difflib.get_close_matches(key, allowed, n=1)
-            hint = f"; did you mean {close[0]}?" if close else ""
-            raise MappingError(f"{path}: unknown {what}: {key}; expected {_listed(allowed)}{hint}")
-
-
-def _listed(names: Collection[str]) -> str:
-    return ", ".join(repr(name) if not name.strip() else name for name in names)

@@ -22,6 +22,8 @@ INTEGRATED = "integral of velocity"
 """Name of the position that is made where a log has none."""
 
 TOOL = "tool"
+MAX_JOINT = 32767
+"""Largest number of a joint, which the tables keep in 16 bits."""
 CHANNELS = (TIME, POSITION, VELOCITY, TORQUE, MOTOR_TEMPERATURE, HOUSING_TEMPERATURE, LOAD)
 
 JOINT_SIDE = "joint"

@@ -8,6 +8,10 @@ from frictioncli.logs.channels.channel_map import ChannelMap
 from frictioncli.logs.channels.channel_names import JOINT_SIDE, POSITION, TIME, TORQUE, Meaning
 from frictioncli.logs.channels.recognition import LogChannel, recognise_channels, split_unit
 from frictioncli.logs.log_source import Refusal
+from frictioncli.plain_text import whole_number
+
+_COMPARED = 100
+"""Length up to which names are compared; the time grows with its square. [characters]"""
 
 
 def mapped_channels(
@@ -42,8 +46,8 @@ def mapped_channels(
     for quantity, wanted in channel_map.channels.items():
         index = _find(columns, wanted)
         if index is None:
-            names = [column for column in columns if column]
-            close = difflib.get_close_matches(wanted, names, n=3, cutoff=0.4)
+            names = [column[:_COMPARED] for column in columns if column]
+            close = difflib.get_close_matches(wanted[:_COMPARED], names, n=3, cutoff=0.4)
             hint = f"; close: {', '.join(close)}" if close else ""
             return Refusal(
                 "mapped_column_missing",
@@ -113,6 +117,5 @@ def _find(columns: Sequence[str], wanted: str) -> int | None:
         matches = [i for i, column in enumerate(columns) if normal(column) == normal(wanted)]
         if matches:
             return matches[0]
-    if wanted.isdigit() and 1 <= int(wanted) <= len(columns):
-        return int(wanted) - 1
-    return None
+    number = whole_number(wanted)
+    return number - 1 if number is not None and 1 <= number <= len(columns) else None

@@ -16,7 +16,7 @@ from frictioncli.logs.formats.encoding import (
     FileHead,
     LineBlock,
     decode_head,
-    detect_encoding,
+    known_encoding,
     line_blocks,
     line_blocks_from,
 )
@@ -31,7 +31,7 @@ _NUMBER_BYTES = b"0123456789+-eE\r\n"
 
 def read_delimited(path: Path, head: bytes, hints: CsvHints) -> "DelimitedText | Refusal | None":
     """Open a text log, or say why the text is no table; None when it is not text."""
-    encoding = hints.encoding or detect_encoding(head)
+    encoding = known_encoding(head, hints.encoding)
     if encoding is None:
         return None
     text = decode_head(head, encoding)

@@ -140,7 +140,7 @@ class RowParser:
 
     def _types(self, wanted: list[int]) -> dict[str, pa.DataType]:
         dates = self.dialect.dates
-        return {str(i): pa.string() if i in dates else pa.float64() for i in wanted}
+        return {str(i): pa.binary() if i in dates else pa.float64() for i in wanted}
 
     def _table(self, content: bytes, types: dict[str, pa.DataType]) -> pa.Table | None:
         """Return the columns of the given types, or None where pyarrow rejects a row."""
@@ -213,8 +213,9 @@ def raw_batch(
             values[column] = np.empty(0)
             continue
         cells = table.column(str(column))
-        if pa.types.is_string(cells.type):
-            values[column] = seconds_since_1970(cells.to_pylist())
+        if pa.types.is_binary(cells.type):  # whose bytes need not be text
+            texts = [cell.decode("utf-8", "replace") for cell in cells.to_pylist()]
+            values[column] = seconds_since_1970(texts)
             continue
         values[column] = _without_placeholders(cells.to_numpy())
     return RawBatch(lines, values, bad_lines, reasons)

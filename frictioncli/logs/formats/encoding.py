@@ -24,6 +24,7 @@ _BOMS = (
 )
 ASCII_BASED = ("utf-8", "cp1252")
 """Encodings in which line ends and numbers are the same bytes as in ASCII."""
+_NEED_MARK = ("utf-16", "utf-32")
 HEAD_BYTES = 1 << 16
 """Length of the beginning from which the format is detected. [byte]"""
 _MAX_LINE = 1 << 25
@@ -124,6 +125,23 @@ def detect_encoding(head: bytes) -> str | None:
     except UnicodeDecodeError:
         return "cp1252"
     return "utf-8"
+
+
+def known_encoding(head: bytes, given: str | None) -> str | None:
+    """Return the encoding of a text file that the user may have given; None for binary content.
+
+    UTF-16 and UTF-32 need a byte order: without a byte order mark it is found, else little-endian.
+
+    Examples
+    --------
+    >>> known_encoding("Zeit".encode("utf-16-be"), "utf-16")
+    'utf-16-be'
+    """
+    if given not in _NEED_MARK or any(head.startswith(bom) for bom, _ in _BOMS[1:]):
+        return given or detect_encoding(head)
+    width = int(given[-2:]) // 8
+    zeros = [head[place::width].count(0) for place in range(width)]
+    return f"{given}-be" if zeros[0] > zeros[-1] else f"{given}-le"
 
 
 def decode_head(head: bytes, encoding: str) -> str:

@@ -15,7 +15,7 @@ import numpy as np
 
 from frictioncli.arrays import Numbers
 from frictioncli.logs.formats.dialect import NOT_NUMBERS
-from frictioncli.logs.formats.encoding import decode_head, detect_encoding, line_blocks
+from frictioncli.logs.formats.encoding import decode_head, known_encoding, line_blocks
 from frictioncli.logs.log_source import MAX_ROW_TEXT, CsvHints, RawBatch, Refusal, SequentialSource
 
 _NUMBER = r"[+-]?\d++(?:[.,]\d++)?(?:[eE][+-]?\d++)?"
@@ -31,7 +31,7 @@ _INSPECTED_LINES = 20
 
 def read_struct_cells(path: Path, head: bytes, hints: CsvHints) -> "StructCells | Refusal | None":
     """Open a log of KUKA variables; None where no cell holds a structure."""
-    encoding = hints.encoding or detect_encoding(head)
+    encoding = known_encoding(head, hints.encoding)
     if encoding is None:
         return None
     lines = decode_head(head, encoding).splitlines()[:_INSPECTED_LINES]

@@ -10,6 +10,7 @@ from pathlib import Path
 
 from frictioncli.errors import MappingError
 from frictioncli.logs.runs.trace_names import is_module, trace_of
+from frictioncli.plain_text import printable
 
 NAME = "manifest.csv"
 PHASES = ("heat-up", "cool-down", "sweep")
@@ -119,15 +120,12 @@ def read_manifest(path: Path) -> tuple[ManifestEntry, ...]:
     if not filled:
         raise MappingError(f"{path}: empty; expected a header 'file;started_at' and a row per file")
     delimiter = max(";,\t", key=filled[0][1].count)
-    header = [
-        name.strip().lower() for name in next(csv.reader([filled[0][1]], delimiter=delimiter))
-    ]
+    header = [name.lower() for name in _cells(path, *filled[0], delimiter)]
     _check_header(path, header)
     entries: list[ManifestEntry] = []
     known: dict[str, int] = {}
     for row, line in filled[1:]:
-        fields = [cell.strip() for cell in next(csv.reader([line], delimiter=delimiter))]
-        cells = dict(zip(header, fields, strict=False))
+        cells = dict(zip(header, _cells(path, row, line, delimiter), strict=False))
         entry = _entry(path, row, cells)
         if entry.file in known:
             raise MappingError(
@@ -139,19 +137,31 @@ def read_manifest(path: Path) -> tuple[ManifestEntry, ...]:
     return tuple(entries)
 
 
+def _cells(path: Path, row: int, line: str, delimiter: str) -> list[str]:
+    """Return the cells of a line without blanks around them."""
+    try:
+        return [cell.strip() for cell in next(csv.reader([line], delimiter=delimiter), [])]
+    except csv.Error as error:
+        raise MappingError(
+            f"{path} row {row}: {error}; expected cells of at most {csv.field_size_limit()}"
+            " characters"
+        ) from error
+
+
 def _check_header(path: Path, header: list[str]) -> None:
     for name in ("file", "started_at"):
         if name not in header:
             raise MappingError(
-                f"{path} row 1: no column {name}; found {', '.join(header)}; expected"
+                f"{path} row 1: no column {name}; found {printable(', '.join(header))}; expected"
                 " file;started_at and optionally phase, payload (kg), ambient (°C)"
             )
     for name in header:
         if name and name not in _COLUMNS:
-            close = difflib.get_close_matches(name, _COLUMNS, n=1)
+            close = difflib.get_close_matches(name[:100], _COLUMNS, n=1)
             hint = f"; did you mean {close[0]}?" if close else ""
             raise MappingError(
-                f"{path} row 1: unknown column {name}; expected {', '.join(_COLUMNS)}{hint}"
+                f"{path} row 1: unknown column {printable(name)}; expected"
+                f" {', '.join(_COLUMNS)}{hint}"
             )
 
 
@@ -163,14 +173,15 @@ def _entry(path: Path, row: int, cells: dict[str, str]) -> ManifestEntry:
         started_at = datetime.fromisoformat(start)
     except ValueError as error:
         raise MappingError(
-            f"{path} row {row}: started_at is {start!r}; expected ISO 8601 such as"
+            f"{path} row {row}: started_at is {printable(start)!r}; expected ISO 8601 such as"
             " 2024-05-17T09:30:00"
         ) from error
     if started_at.tzinfo is None:
         started_at = started_at.replace(tzinfo=UTC)
     if phase and phase not in PHASES:
         raise MappingError(
-            f"{path} row {row}: phase is {phase!r}; expected {', '.join(PHASES)} or nothing"
+            f"{path} row {row}: phase is {printable(phase)!r}; expected"
+            f" {', '.join(PHASES)} or nothing"
         )
     return ManifestEntry(
         file,
@@ -191,7 +202,9 @@ def _number(path: Path, row: int, name: str, text: str) -> float | None:
         value = math.nan
     if not math.isfinite(value):
         unit = "kg" if name == "payload" else "°C"
-        raise MappingError(f"{path} row {row}: {name} is {text!r}; expected a number in {unit}")
+        raise MappingError(
+            f"{path} row {row}: {name} is {printable(text)!r}; expected a number in {unit}"
+        )
     return value
 
 

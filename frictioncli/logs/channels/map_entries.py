@@ -1,0 +1,209 @@
+"""Entries of a mapping file: read and checked one by one."""
+
+import codecs
+import difflib
+import math
+import tomllib
+from collections.abc import Collection, Sequence
+from pathlib import Path
+from typing import Any
+
+from frictioncli.errors import MappingError
+from frictioncli.logs.channels.channel_names import MAX_JOINT
+from frictioncli.logs.log_source import CsvHints
+from frictioncli.plain_text import printable
+
+CSV_KEYS = ("delimiter", "decimal", "encoding")
+MAX_COLUMN = 1 << 31
+_MAX_BYTES = 1 << 20  # [byte]
+_DELIMITERS = {";": ";", ",": ",", "\t": "\t", " ": " ", "tab": "\t", "space": " ", "blank": " "}
+_NO_TEXT = frozenset({"idna", "punycode", "undefined", "unicode_escape", "raw_unicode_escape"})
+"""Encodings that name something else than the characters of a text."""
+_SAMPLE = "t;1,5\t-2.5e3\r\n"
+
+
+def toml_document(path: Path, sections: Collection[str]) -> dict[str, Any]:
+    """Return the content of a mapping file.
+
+    Parameters
+    ----------
+    path : Path
+        The file.
+    sections : collection of str
+        Names of its sections, for the message.
+
+    Raises
+    ------
+    MappingError
+        If it is not TOML, or has more than 1 MiB.
+    """
+    try:
+        with path.open("rb") as stream:
+            content = stream.read(_MAX_BYTES + 1)
+        if len(content) > _MAX_BYTES:
+            raise ValueError("more than 1 MiB")
+        return tomllib.loads(content.decode("utf-8-sig"))
+    # ValueError also: numbers of thousands of digits; RecursionError: brackets in brackets
+    except (OSError, ValueError, RecursionError) as error:
+        raise MappingError(
+            f"{path}: cannot be read as a mapping file ({error}); expected TOML with"
+            f" {listed(sections)}"
+        ) from error
+
+
+def shown(value: Any) -> str:
+    """Return a value of a mapping file for a message, shortened."""
+    try:
+        return printable(repr(value))
+    except (ValueError, RecursionError):  # a number of thousands of digits
+        return f"a {type(value).__name__}"
+
+
+def csv_hints(path: Path, section: dict[str, Any]) -> CsvHints:
+    """Return the form of the text that the section ``[csv]`` gives.
+
+    Parameters
+    ----------
+    path : Path
+        The mapping file.
+    section : dict
+        The section.
+
+    Raises
+    ------
+    MappingError
+        If a value is not known.
+    """
+    delimiter, decimal, encoding = (section.get(key) for key in CSV_KEYS)
+    if delimiter is not None and not (isinstance(delimiter, str) and delimiter in _DELIMITERS):
+        raise MappingError(
+            f"{path}: [csv] delimiter = {shown(delimiter)}; expected one of {listed(_DELIMITERS)}"
+        )
+    if decimal not in (None, ".", ","):
+        raise MappingError(f"{path}: [csv] decimal = {shown(decimal)}; expected '.' or ','")
+    if encoding is not None:
+        name = _text_encoding(encoding)
+        if name is None:
+            raise MappingError(
+                f"{path}: [csv] encoding = {shown(encoding)}; expected for example utf-8, cp1252,"
+                " utf-16"
+            )
+        encoding = name
+    return CsvHints(None if delimiter is None else _DELIMITERS[delimiter], decimal, encoding)
+
+
+def _text_encoding(name: Any) -> str | None:
+    """Return the name by which Python knows an encoding of text; None for anything else."""
+    try:
+        codec = codecs.lookup(name)
+        read = codec.incrementaldecoder is not None and codec.name.replace("-", "_") not in _NO_TEXT
+        return codec.name if read and _SAMPLE.encode(name).decode(name) == _SAMPLE else None
+    # each codec has errors of its own, and those that make bytes of bytes raise others again
+    except Exception:
+        return None
+
+
+def joint_number(path: Path, number: Any) -> int | None:
+    """Return the number of a joint, None where none is given.
+
+    Parameters
+    ----------
+    path : Path
+        The mapping file.
+    number : object
+        The number as it was read.
+
+    Raises
+    ------
+    MappingError
+        If it is no number from 1 to 32767.
+    """
+    is_number = isinstance(number, int) and number is not True
+    if number is None or (is_number and 1 <= number <= MAX_JOINT):
+        return number
+    raise MappingError(
+        f"{path}: [joint] number = {shown(number)}; expected a joint number from 1 to {MAX_JOINT}"
+    )
+
+
+def ratio(path: Path, key: str, value: Any) -> float | None:
+    """Return a gear ratio, rated torque or torque constant, None where none is given.
+
+    Parameters
+    ----------
+    path : Path
+        The mapping file.
+    key : str
+        ``gear_ratio``, ``rated_torque`` or ``torque_constant``.
+    value : object
+        The value as it was read.
+
+    Raises
+    ------
+    MappingError
+        If it is no number, 0 or infinite.
+    """
+    if value is None:
+        return None
+    if isinstance(value, int | float) and value is not True:
+        try:
+            number = float(value)
+        except OverflowError:
+            number = math.inf
+        if math.isfinite(number) and number != 0:
+            return number
+    meaning = {
+        "gear_ratio": "motor turns per joint turn, not 0",
+        "rated_torque": "N·m at 100 %, not 0",
+        "torque_constant": "'auto', or N·m/A, not 0",
+    }[key]
+    raise MappingError(f"{path}: [joint] {key} = {shown(value)}; expected {meaning}")
+
+
+def torque_constant(path: Path, value: Any) -> float | str | None:
+    """Return the torque constant, ``auto`` where it is to be found.
+
+    Parameters
+    ----------
+    path : Path
+        The mapping file.
+    value : object
+        The value as it was read.
+
+    Raises
+    ------
+    MappingError
+        If it is neither.
+    """
+    return "auto" if value == "auto" else ratio(path, "torque_constant", value)
+
+
+def check_keys(path: Path, what: str, given: Collection[str], allowed: Sequence[str]) -> None:
+    """Check that all keys are known.
+
+    Parameters
+    ----------
+    path : Path
+        The mapping file.
+    what : str
+        The keys in words.
+    given, allowed : collection of str
+        The keys.
+
+    Raises
+    ------
+    MappingError
+        If one is not, with the nearest known one.
+    """
+    for key in given:
+        if key not in allowed:
+            close = difflib.get_close_matches(key[:100], allowed, n=1)
+            hint = f"; did you mean {close[0]}?" if close else ""
+            raise MappingError(
+                f"{path}: unknown {what}: {printable(key)}; expected {listed(allowed)}{hint}"
+            )
+
+
+def listed(names: Collection[str]) -> str:
+    """Return names one after the other; those of blanks in quotes."""
+    return ", ".join(repr(name) if not name.strip() else name for name in names)
