@@ -302,7 +302,7 @@ FLEET = Table(
         _nullable("verdict", _LABEL, "", "verdict of the diagnosis"),
         _nullable("causes", _TEXT, "", "its causes, strongest first"),
         *_interval("gain", "", "share of the misfit that the extended model takes"),
-        _nullable("gain_basis", _LABEL, "", "new_run, or within_run where the gain flatters"),
+        _nullable("gain_basis", _LABEL, "", "new_run, or within_run where the gain is optimistic"),
         _nullable("reference_speed", _REAL, "deg/s", "middle of the speeds of the data"),
         *(
             _nullable(

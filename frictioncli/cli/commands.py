@@ -165,11 +165,16 @@ def diagnose(
 
 
 @command()
-def report(work: Work = WORK) -> None:
+def report(
+    work: Work = WORK,
+    png: Annotated[
+        bool, typer.Option("--png", help="Write each figure as PNG too; the page makes them too.")
+    ] = False,
+) -> None:
     """Draw the figures (deg, deg/s, s, N·m, °C) and write report/index.html."""
     from frictioncli.stages.report import report as report_stage
 
-    say(report_stage(work))
+    say(report_stage(work, png=png))
 
 
 @command(before={"min_speed": ["bin_width"]})

@@ -27,6 +27,7 @@ from frictioncli.design.plan import Expectation, Plan
 from frictioncli.design.predicted_rows import Timing
 from frictioncli.design.rivals import Question
 from frictioncli.design.steps import HeatStep, SeriesStep, Step
+from frictioncli.diagnosis.documents.extended_model import ExtendedDocument
 from frictioncli.quantities import TORQUE
 
 _NOTABLE = 0.1
@@ -36,6 +37,7 @@ _NOTABLE = 0.1
 def plan_document(
     plan: Plan,
     units: Mapping[str, str],
+    stated: Mapping[str, float],
     files: Sequence[str],
     check_files: Sequence[str],
     minutes: float,
@@ -48,6 +50,8 @@ def plan_document(
         The plan.
     units : mapping of str to str
         Units of the base model's parameters.
+    stated : mapping of str to float
+        Half-widths as of :func:`stated_half_widths`.
     files, check_files : sequence of str
         Names of the robot program's files, and of the check's.
     minutes : float
@@ -80,7 +84,7 @@ def plan_document(
             ),
         ),
         questions=tuple(_question(plan, one, number) for number, one in enumerate(questions)),
-        intervals=tuple(interval_records(plan, units)),
+        intervals=tuple(interval_records(plan, units, stated)),
         thermal=None
         if thermal is None
         else ThermalRecord(
@@ -194,8 +198,34 @@ def raised_chances(
     return sorted(found, key=lambda one: one[2] - one[3])
 
 
-def interval_records(plan: Plan, units: Mapping[str, str]) -> list[IntervalRecord]:
+def stated_half_widths(model: ExtendedDocument) -> dict[str, float]:
+    """Return the half-widths of the 95 % intervals that an extended model states.
+
+    Parameters
+    ----------
+    model : ExtendedDocument
+        The extended model.
+
+    Returns
+    -------
+    dict of str to float
+        By name as in a plan, such as ``beta`` or ``stribeck.boundary_torque``; zero at a bound.
+        Parameters without an interval are left out.
+    """
+    intervals = {name: one.ci95 for name, one in model.parameters.items()}
+    for effect in model.effects:
+        for name, one in effect.coefficients.items():
+            intervals[f"{effect.name}.{name}"] = one.ci95
+    return {name: (ci95[1] - ci95[0]) / 2 for name, ci95 in intervals.items() if ci95 is not None}
+
+
+def interval_records(
+    plan: Plan, units: Mapping[str, str], stated: Mapping[str, float]
+) -> list[IntervalRecord]:
     """Return the interval of each parameter, now and after the programme.
+
+    What is known now is what the diagnosis states; the programme narrows it by the factor by which
+    it narrows the interval that is predicted from the rows.
 
     Parameters
     ----------
@@ -203,6 +233,8 @@ def interval_records(plan: Plan, units: Mapping[str, str]) -> list[IntervalRecor
         The plan.
     units : mapping of str to str
         Units of the base model's parameters.
+    stated : mapping of str to float
+        Half-widths as of :func:`stated_half_widths`.
     """
     known = dict(units)
     for one in plan.criterion.open_questions.causes:
@@ -210,14 +242,16 @@ def interval_records(plan: Plan, units: Mapping[str, str]) -> list[IntervalRecor
             unit = parameter.unit.replace(TORQUE, plan.torque_unit)
             known[f"{one.effect.name}.{parameter.name}"] = unit
     first, last = plan.expected[0].half_widths, plan.expected[-1].half_widths
+    # a parameter at its bound has no interval to narrow
+    now = {name: stated.get(name) or first[name] for name in first}
     return [
         IntervalRecord(
             parameter=name,
             estimate=_rounded(plan.criterion.estimates[name]),
-            half_width_now=_rounded(first[name]),
-            half_width_after=_rounded(last[name]),
+            half_width_now=_rounded(now[name]),
+            half_width_after=_rounded(now[name] * last[name] / first[name]),
             unit=known.get(name, ""),
-            wide=name in plan.criterion.of_interest,
+            wide=name in plan.criterion.of_interest and stated.get(name) != 0.0,
         )
         for name in first
     ]

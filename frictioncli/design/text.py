@@ -11,7 +11,9 @@ _LIKELY = 0.01
 """Least probability of a rival that is mentioned."""
 
 
-def plan_text(plan: Plan, units: Mapping[str, str], files: Sequence[str]) -> str:
+def plan_text(
+    plan: Plan, units: Mapping[str, str], stated: Mapping[str, float], files: Sequence[str]
+) -> str:
     """Return the plan in plain words."""
     whole = plan.timings[-1].end
     lines = [
@@ -38,11 +40,11 @@ def plan_text(plan: Plan, units: Mapping[str, str], files: Sequence[str]) -> str
             "    log both as runs of their own: diagnose learns from all runs but the last,"
         )
         lines.append("    which shows whether what it has learned is worth modelling")
-    wide = [one for one in interval_records(plan, units) if one.wide]
+    wide = [one for one in interval_records(plan, units, stated) if one.wide]
     for one in wide:
         lines.append(
-            f"  {one.parameter} {one.estimate:.3g} {one.unit}:"
-            f" +-{one.half_width_now:.2g} now, +-{one.half_width_after:.2g} after"
+            f"  {one.parameter} {one.estimate:.3g} {'' if one.unit == '1' else one.unit}".rstrip()
+            + f": +-{one.half_width_now:.2g} now, +-{one.half_width_after:.2g} after"
         )
     limits = plan.limits
     lines.append(

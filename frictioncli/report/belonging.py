@@ -10,6 +10,7 @@ from frictioncli.workfiles import (
     EXTENDED,
     MODEL,
     PAIRS,
+    PLAN,
     RECORDINGS,
     REJECTED,
     SAMPLES,
@@ -23,6 +24,7 @@ _RESULTS = {
     EXTENDED: "extended model",
     SCHEDULE: "simulated corrections",
     EVALUATION: "comparison of corrections",
+    PLAN: "next experiment",
 }
 """Files made from torques and model, and what the page shows of them."""
 

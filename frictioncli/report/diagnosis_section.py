@@ -1,7 +1,7 @@
 """Section of the page on the diagnosis: text, tables, and the list of its figures."""
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 
 from matplotlib.figure import Figure
@@ -30,6 +30,7 @@ from frictioncli.report.diagnosis_text import (
     worst_table,
 )
 from frictioncli.report.evidence_figure import evidence_figure
+from frictioncli.report.experiment import experiment_sentence
 from frictioncli.report.figures import FigureSpec
 from frictioncli.report.missing_data import nothing_missing
 from frictioncli.report.page_tables import TextTable
@@ -87,9 +88,13 @@ def diagnosis_section(results: JointResults) -> DiagnosisSection:
         return DiagnosisSection(missing=results.diagnosis_missing)
     document, unit = results.diagnosis.document, results.unit
     worst = worst_table(document)
+    planned = experiment_sentence(results)
     return DiagnosisSection(
         verdict=verdict_sentence(document, unit),
-        causes=tuple(cause_texts(document)),
+        causes=tuple(
+            replace(cause, experiment=planned or cause.experiment)
+            for cause in cause_texts(document)
+        ),
         unnamed=tuple(unnamed_texts(document)),
         visible=tuple(visible_texts(document)),
         remainder=remainder_text(document),

@@ -14,6 +14,7 @@ from frictioncli.diagnosis.documents.sentences import (
     standing_text,
 )
 from frictioncli.effects import BY_NAME
+from frictioncli.report.model_section import poorly_determined
 from frictioncli.report.page_tables import TextTable
 from frictioncli.wording import (
     in_words,
@@ -23,6 +24,9 @@ from frictioncli.wording import (
     quantity_text,
     speed_text,
 )
+
+_NOTABLE_SHARE = 0.01
+"""Least probability of another effect that is mentioned. [1]"""
 
 UNDETECTABLE = "cannot be shown by these data"
 
@@ -46,6 +50,12 @@ class CauseText:
         Probability that noise alone would give as much.
     standing : str
         Why it is not named, if it is not.
+    doubt : str
+        Which of its parameters are poorly determined; empty if none is.
+    against : tuple of str
+        What speaks against it.
+    figure : str
+        Name of the figure of its evidence; empty without one.
     finding, lasting, note : str
         The cause in a sentence with values; whether it lasts, empty where that cannot be tested;
         what is said of it though it is not named, empty for most.
@@ -59,6 +69,9 @@ class CauseText:
     size: str
     p_value: str
     standing: str
+    doubt: str
+    against: tuple[str, ...]
+    figure: str
     finding: str
     lasting: str
     note: str
@@ -161,6 +174,9 @@ def _cause(cause: CauseRecord, document: DiagnosisDocument) -> CauseText:
         p_value=chance_text(cause),
         # reasons of the search name effects as files do
         standing=in_words(standing_text(cause)),
+        doubt=poorly_determined(dict(cause.parameters)),
+        against=tuple(_against(cause, document)),
+        figure=(cause.figure or "").removesuffix(".svg"),
         finding=finding_text(cause),
         lasting=lasting_text(cause, document),
         note=note_text(cause),
@@ -169,6 +185,36 @@ def _cause(cause: CauseRecord, document: DiagnosisDocument) -> CauseText:
         parameters="; ".join(_parameter(name, stated) for name, stated in cause.parameters.items()),
         experiment=cause.experiment,
     )
+
+
+def _against(cause: CauseRecord, document: DiagnosisDocument) -> list[str]:
+    """Return what speaks against a cause, or leaves it open."""
+    found = []
+    others = [
+        f"{in_words(name)} {probability_text(share)}"
+        for name, share in cause.probabilities.items()
+        if name not in cause.effects and share >= _NOTABLE_SHARE
+    ]
+    if others:
+        found.append(f"Other effects are possible: {', '.join(others)}.")
+    if len(cause.effects) > 1:
+        found.append("These data cannot tell the effects of the set apart.")
+    if cause.holds_on_new_run is None:
+        found.append("It could not be tested on a run that the diagnosis has not seen.")
+    elif not cause.holds_on_new_run:
+        found.append(f"It is not there on the run kept out ({document.held_out}).")
+    if doubt := poorly_determined(dict(cause.parameters)):
+        found.append(f"Its parameters are not all well determined: {doubt}.")
+    gain = document.gain
+    if gain is not None and gain.ci95[0] <= 0:
+        found.append("The extended model is not surely better than the base model.")
+    left = document.remainder
+    if left is not None and left.channel == cause.channel:
+        found.append(
+            f"With it {number_text(left.size, 2)} {document.unit_of(left.channel)} are still"
+            f" unexplained, mostly along {left.axis}: its form may not be exactly this."
+        )
+    return found
 
 
 def _parameter(name: str, stated: ParameterRecord) -> str:
@@ -204,7 +250,7 @@ def gain_sentence(document: DiagnosisDocument, unit: str) -> str:
     )
     if gain.basis != "new_run":
         further = "a second" if document.held_out is None else "another"
-        text += f" A gain on data already used flatters; log {further} run to know it."
+        text += f" A gain on its own training data is optimistic; log {further} run to know it."
     if high < 0:
         text += " The extended model is worse than the base model: do not use it."
     elif low <= 0:

@@ -6,8 +6,10 @@ from dataclasses import dataclass
 from markupsafe import Markup, escape
 
 from frictioncli.report.diagnosis_section import diagnosis_figures
-from frictioncli.report.figure_files import png, svg
+from frictioncli.report.figure_files import png as png_bytes
+from frictioncli.report.figure_files import svg
 from frictioncli.report.figures import FIGURES, FigureSpec
+from frictioncli.report.operating_point import OVERVIEW
 from frictioncli.report.results import JointResults
 from frictioncli.report.style import style_context
 
@@ -27,7 +29,7 @@ class DrawnFigure:
     svg : Markup
         SVG element; empty if the figure could not be drawn.
     png : bytes
-        Content of the PNG file.
+        Content of the PNG file; empty if it was not asked for.
     """
 
     name: str
@@ -43,6 +45,8 @@ class JointFigures:
 
     Attributes
     ----------
+    overview : DrawnFigure
+        Friction at a glance.
     paper : list of DrawnFigure
         Figures of the source paper and of the residuals.
     diagnosis : list of DrawnFigure
@@ -51,12 +55,18 @@ class JointFigures:
         Titles of figures that could not be drawn, and the reason that they share.
     """
 
+    overview: DrawnFigure
     paper: list[DrawnFigure]
     diagnosis: list[DrawnFigure]
     undrawn: list[tuple[str, str]]
 
+    @property
+    def all(self) -> list[DrawnFigure]:
+        """Every figure, in the order of the page."""
+        return [self.overview, *self.paper, *self.diagnosis]
 
-def draw_figures(results: JointResults, prefix: str = "") -> JointFigures:
+
+def draw_figures(results: JointResults, prefix: str = "", *, png: bool = False) -> JointFigures:
     """Draw all figures of one joint.
 
     Parameters
@@ -65,17 +75,22 @@ def draw_figures(results: JointResults, prefix: str = "") -> JointFigures:
         One joint's results.
     prefix : str
         Prefix of the figures' names, to tell those of several joints apart.
+    png : bool
+        Whether they are also drawn as PNG.
     """
-    paper = [draw_figure(spec, results, prefix) for spec in FIGURES]
+    paper = [draw_figure(spec, results, prefix, png=png) for spec in FIGURES]
     diagnosis = diagnosis_figures(results.diagnosis)
     return JointFigures(
+        overview=draw_figure(OVERVIEW, results, prefix, png=png),
         paper=[figure for figure in paper if figure.svg],
-        diagnosis=[draw_figure(spec, results, prefix) for spec in diagnosis],
+        diagnosis=[draw_figure(spec, results, prefix, png=png) for spec in diagnosis],
         undrawn=_undrawn(paper),
     )
 
 
-def draw_figure(spec: FigureSpec, results: JointResults, prefix: str = "") -> DrawnFigure:
+def draw_figure(
+    spec: FigureSpec, results: JointResults, prefix: str = "", *, png: bool = False
+) -> DrawnFigure:
     """Draw one figure, or state why it cannot be drawn.
 
     Parameters
@@ -86,6 +101,8 @@ def draw_figure(spec: FigureSpec, results: JointResults, prefix: str = "") -> Dr
         One joint's results.
     prefix : str
         Prefix of the figure's name, to tell those of several joints apart.
+    png : bool
+        Whether it is also drawn as PNG.
     """
     name = f"{prefix}{spec.name}"
     if missing := spec.missing(results):
@@ -97,7 +114,7 @@ def draw_figure(spec: FigureSpec, results: JointResults, prefix: str = "") -> Dr
             title=spec.title,
             text=spec.caption(results),
             svg=Markup(svg(figure, name, str(escape(spec.title)))),
-            png=png(figure),
+            png=png_bytes(figure) if png else b"",
         )
 
 

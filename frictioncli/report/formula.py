@@ -4,6 +4,7 @@ import re
 
 from markupsafe import Markup, escape
 
+from frictioncli.model.document import FrictionModel
 from frictioncli.report.labels import TEMPERATURE_WORDS
 from frictioncli.report.results import JointResults
 from frictioncli.wording import number_text
@@ -24,18 +25,18 @@ def unit_markup(unit: str) -> Markup:
     return Markup("").join(_POWERS.get(part, escape(part)) for part in parts)
 
 
-def friction_formula(results: JointResults) -> Markup:
-    """Return equation (16) with the joint's parameters; terms that are zero are left out.
+def friction_formula(model: FrictionModel) -> Markup:
+    """Return equation (16) with a model's parameters; terms that are zero are left out.
 
     Parameters
     ----------
-    results : JointResults
-        The joint's results.
+    model : FrictionModel
+        The model.
     """
-    values = results.model.friction
+    values = model.friction
 
     def with_unit(name: str) -> Markup:
-        parameter = results.model.parameters[name]
+        parameter = model.parameters[name]
         unit = (
             parameter.unit.removeprefix("1")
             if parameter.unit.startswith("1/")

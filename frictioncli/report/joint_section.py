@@ -2,14 +2,15 @@
 
 from dataclasses import dataclass
 
-from markupsafe import Markup
-
 from frictioncli.report.diagnosis_section import DiagnosisSection, diagnosis_section
 from frictioncli.report.drawing import JointFigures
+from frictioncli.report.experiment import Experiment, experiment
 from frictioncli.report.explorer import Explorer, explorer
 from frictioncli.report.figures import runs_drawn_note
-from frictioncli.report.formula import formula_symbols, friction_formula
+from frictioncli.report.first_screen import Answer, answers
+from frictioncli.report.formula import formula_symbols
 from frictioncli.report.missing_data import evaluation_missing
+from frictioncli.report.model_section import ModelCard, model_cards, parameters_table
 from frictioncli.report.page_tables import TextTable, epsilon_tables, pairs_table
 from frictioncli.report.parameters import (
     ParameterRow,
@@ -31,10 +32,18 @@ class JointSection:
     ----------
     number : int
         Joint number, from 1.
+    prefix : str
+        Prefix of the names of its figures.
+    answers : list of Answer
+        First screen: how much friction, how sure, what is wrong, what to do next.
     summary, measurement : str
         The result, and what was measured.
-    formula, symbols : Markup, str
-        Friction function with numbers, and the meaning of its symbols.
+    models, symbols : list of ModelCard, str
+        Base and extended model with numbers, and the meaning of their symbols.
+    both : TextTable or None
+        Parameters of both models side by side, if there are two.
+    experiment : Experiment or None
+        The next experiment, if one was planned.
     key_numbers : list of KeyNumber
         Most important numbers.
     ratings : list of QualityRating
@@ -64,10 +73,14 @@ class JointSection:
     """
 
     number: int
+    prefix: str
+    answers: list[Answer]
     summary: str
     measurement: str
-    formula: Markup
+    models: list[ModelCard]
     symbols: str
+    both: TextTable | None
+    experiment: Experiment | None
     key_numbers: list[KeyNumber]
     ratings: list[QualityRating]
     parameters: list[ParameterRow]
@@ -104,9 +117,13 @@ def joint_section(
     document = results.diagnosis.document if results.diagnosis else None
     return JointSection(
         number=results.joint,
+        prefix=figures.overview.name.removesuffix("overview"),
+        answers=answers(results),
         summary=summary_text(results, document),
         measurement=measurement_text(results),
-        formula=friction_formula(results),
+        models=model_cards(results),
+        both=parameters_table(results),
+        experiment=experiment(results),
         symbols=formula_symbols(results),
         key_numbers=key_numbers(results, document),
         ratings=quality_ratings(results, counts, document),

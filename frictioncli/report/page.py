@@ -14,6 +14,7 @@ from frictioncli import __version__
 from frictioncli.files import atomic_write
 from frictioncli.plain_text import without_control_characters
 from frictioncli.report.data_section import data_section, ingest_counts
+from frictioncli.report.downloads import downloads, write_downloads
 from frictioncli.report.drawing import draw_figures
 from frictioncli.report.figure_files import svg_file
 from frictioncli.report.formula import unit_markup
@@ -22,7 +23,7 @@ from frictioncli.report.results import WorkFolderResults, read_results
 from frictioncli.wording import list_text
 
 
-def write_report(work: Path) -> Path:
+def write_report(work: Path, *, png: bool = False) -> Path:
     """Write the report of a work folder and return the path of its page.
 
     An earlier folder ``report`` is replaced. The same inputs give the same bytes.
@@ -31,6 +32,8 @@ def write_report(work: Path) -> Path:
     ----------
     work : Path
         The work folder, with at least ``torques.parquet`` and ``model.json``.
+    png : bool
+        Whether each figure is also written as PNG, which takes as long as drawing it.
 
     Returns
     -------
@@ -45,7 +48,7 @@ def write_report(work: Path) -> Path:
     results = read_results(work)
     several = len(results.joints) > 1
     figures = [
-        draw_figures(joint, prefix=f"joint{joint.joint}-" if several else "")
+        draw_figures(joint, prefix=f"joint{joint.joint}-" if several else "", png=png)
         for joint in results.joints
     ]
     counts = ingest_counts(results)
@@ -56,32 +59,46 @@ def write_report(work: Path) -> Path:
     ]
     page = _page(results, sections)
     folder = work / "report"
+    offered = downloads(results)
     with atomic_write(folder) as draft:
         draft.mkdir()
+        write_downloads(work, draft, offered)
         (draft / "index.html").write_text(page, encoding="utf-8", newline="\n")
         for drawn in figures:
-            for figure in (*drawn.diagnosis, *drawn.paper):
+            for figure in drawn.all:
                 (draft / f"{figure.name}.svg").write_text(
                     svg_file(figure.svg), encoding="utf-8", newline="\n"
                 )
-                (draft / f"{figure.name}.png").write_bytes(figure.png)
+                if figure.png:
+                    (draft / f"{figure.name}.png").write_bytes(figure.png)
     return folder / "index.html"
 
 
 def _page(results: WorkFolderResults, sections: Sequence[JointSection]) -> str:
     """Fill in the template of the page."""
-    script = _resource("explorer.js")
+    scripts = [_script("figures.js")]
+    if any(not section.explorer.missing for section in sections):
+        scripts.append(_script("explorer.js"))
     return _template().render(
         title=_title([section.number for section in sections]),
         runs=f"{'Run' if len(results.runs) == 1 else 'Runs'}: {list_text(results.runs)}",
         css=Markup(_resource("style.css")),
-        script=Markup(script),
-        script_digest=b64encode(sha256(script.encode()).digest()).decode(),
+        scripts=scripts,
         joints=sections,
         left_out=results.left_out,
         data=data_section(results),
+        downloads=downloads(results),
         version=__version__,
     )
+
+
+def _script(name: str) -> dict[str, str]:
+    """Return a script with the digest by which the page allows it."""
+    code = _resource(name)
+    return {
+        "code": Markup(code),
+        "digest": b64encode(sha256(code.encode()).digest()).decode(),
+    }
 
 
 def _title(joints: Sequence[int]) -> str:

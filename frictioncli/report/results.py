@@ -1,6 +1,6 @@
 """Contents of a work folder as the report uses them, read once and passed on."""
 
-from collections.abc import Iterator, Mapping, Set
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -9,23 +9,36 @@ import numpy as np
 import pandas as pd
 from numpy.typing import ArrayLike
 
-from frictioncli import documents, schemas, tables
+from frictioncli import schemas, tables
 from frictioncli.arrays import Array
+from frictioncli.design.document import PlanDocument
 from frictioncli.diagnosis.documents.document import DiagnosisDocument
-from frictioncli.diagnosis.documents.extended_model import ExtendedModel, read_extended
+from frictioncli.diagnosis.documents.extended_model import ExtendedDocument, ExtendedModel
 from frictioncli.diagnosis.documents.reload import Reloaded, is_current, read_documents, reload
 from frictioncli.errors import TableError
 from frictioncli.model.document import FrictionModel, read_models
 from frictioncli.model.friction import friction_torque
 from frictioncli.model.zero_load import PAIR_KEY, friction_at_zero_load, temperature_of
 from frictioncli.report.belonging import belonging_files
+from frictioncli.report.folder_reading import (
+    read_extended_models,
+    read_if_present,
+    read_metadata,
+    read_plan,
+)
 from frictioncli.report.style import PHASES, SpeedStyle, speed_styles
-from frictioncli.workfiles import DIAGNOSIS, EVALUATION, EXTENDED, MODEL, SCHEDULE, TORQUES
+from frictioncli.workfiles import (
+    DIAGNOSIS,
+    EVALUATION,
+    EXTENDED,
+    MODEL,
+    PLAN,
+    SCHEDULE,
+    TORQUES,
+)
 
 MOST_RUNS = 3
 """Greatest number of runs drawn in a figure, to fit a page."""
-
-_TABLES = ("samples", "recordings", "rejected", "pairs", "torques", "schedule", "evaluation")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -49,14 +62,16 @@ class JointResults:
         Whether the schedule was simulated with the extended model.
     evaluation_settings : mapping
         Settings of the evaluation; empty without one.
-    extended_model : FrictionModel or None
-        Friction function of the extended model.
+    extended_model : ExtendedDocument or None
+        The extended model: its friction function, and the records of its effects.
     extension : ExtendedModel or None
         Effects of the extended model.
     diagnosis : Reloaded or None
         Diagnosis of these runs.
     diagnosis_missing : str
         Why there is no diagnosis of these runs; empty if there is one.
+    plan : PlanDocument or None
+        The next experiment.
     """
 
     model: FrictionModel
@@ -67,10 +82,11 @@ class JointResults:
     styles: Mapping[float, SpeedStyle] = field(default_factory=dict)
     simulated_extended: bool = False
     evaluation_settings: Mapping[str, Any] = field(default_factory=dict)
-    extended_model: FrictionModel | None = None
+    extended_model: ExtendedDocument | None = None
     extension: ExtendedModel | None = None
     diagnosis: Reloaded | None = None
     diagnosis_missing: str = ""
+    plan: PlanDocument | None = None
 
     @property
     def joint(self) -> int:
@@ -148,6 +164,8 @@ class WorkFolderResults:
         Recordings and rejected rows of the logs; empty if there is no such table.
     metadata : mapping of str to mapping
         Per file its provenance and, for tables, facts about their rows.
+    files : frozenset of str
+        Names of the files of the work folder that belong together.
     left_out : tuple of str
         Parts that belong to other torques or another model and are not shown, one sentence each.
     """
@@ -157,6 +175,7 @@ class WorkFolderResults:
     recordings: pd.DataFrame
     rejected: pd.DataFrame
     metadata: Mapping[str, Mapping[str, Any]]
+    files: frozenset[str] = frozenset()
     left_out: tuple[str, ...] = ()
 
     @property
@@ -195,14 +214,15 @@ def read_results(work: Path) -> WorkFolderResults:
     models = read_models(work / MODEL)
     belonging = belonging_files(work)
     schedule, evaluation, recordings, rejected = (
-        _read_if_present(work, table, belonging.files)
+        read_if_present(work, table, belonging.files)
         for table in (schemas.SCHEDULE, schemas.EVALUATION, schemas.RECORDINGS, schemas.REJECTED)
     )
     diagnoses = read_documents(work) if belonging.files >= {DIAGNOSIS, EXTENDED} else {}
     extended_models, extensions = (
-        _read_extended_models(work) if EXTENDED in belonging.files else ({}, {})
+        read_extended_models(work) if EXTENDED in belonging.files else ({}, {})
     )
-    metadata = dict(_read_metadata(work, belonging.files))
+    plan = read_plan(work) if PLAN in belonging.files else None
+    metadata = dict(read_metadata(work, belonging.files))
     simulated_extended = bool(_settings(metadata, SCHEDULE).get("extended"))
     joints = []
     for model in models:
@@ -222,6 +242,7 @@ def read_results(work: Path) -> WorkFolderResults:
                 extension=extensions.get(model.joint),
                 diagnosis=diagnosis,
                 diagnosis_missing=missing,
+                plan=plan if plan is not None and plan.joint == model.joint else None,
             )
         )
     return WorkFolderResults(
@@ -230,37 +251,9 @@ def read_results(work: Path) -> WorkFolderResults:
         recordings=recordings,
         rejected=rejected,
         metadata=metadata,
+        files=belonging.files,
         left_out=belonging.left_out,
     )
-
-
-def _read_if_present(work: Path, table: schemas.Table, files: Set[str]) -> pd.DataFrame:
-    """Return a table of the work folder, without rows if it is not among the files."""
-    path = work / f"{table.name}.parquet"
-    if path.name in files:
-        return tables.read(path, table)
-    return pd.DataFrame(columns=list(table.names))
-
-
-def _read_extended_models(
-    work: Path,
-) -> tuple[dict[int, FrictionModel], dict[int, ExtendedModel]]:
-    """Return the friction function and the effects of each joint's extended model."""
-    path = work / EXTENDED
-    return {model.joint: model for model in read_models(path)}, read_extended(path)
-
-
-def _read_metadata(work: Path, files: Set[str]) -> Iterator[tuple[str, Mapping[str, Any]]]:
-    """Yield the name and the metadata of each of the files with provenance."""
-    for table in _TABLES:
-        path = work / f"{table}.parquet"
-        if path.name in files:
-            yield path.name, tables.metadata(path)
-    for name in (MODEL, DIAGNOSIS, EXTENDED):
-        path = work / name
-        if name in files:
-            provenance = documents.read_provenance(path)
-            yield name, provenance.as_dict() if provenance else {}
 
 
 def _settings(metadata: Mapping[str, Mapping[str, Any]], file: str) -> Mapping[str, Any]:

@@ -229,8 +229,8 @@ def _correction_sentence(results: JointResults) -> str:
     ]
     without = f", against {' and '.join(uncorrected)} without correction" if uncorrected else ""
     return (
-        f"With the temperature parameter corrected on the way ({setting_text(results)}), the error"
-        f" ε of the predicted friction is {' and '.join(errors)}{without}."
+        f"With periodic temperature corrections ({setting_text(results)}), the error ε of the"
+        f" predicted friction is {' and '.join(errors)}{without}."
     )
 
 

@@ -5,14 +5,21 @@ from pathlib import Path
 
 from frictioncli import schemas, tables
 from frictioncli.design.document import PlanDocument, ProgrammeRecord
-from frictioncli.design.from_plan import block_record, limits_record, plan_document
+from frictioncli.design.from_plan import (
+    block_record,
+    limits_record,
+    plan_document,
+    stated_half_widths,
+)
 from frictioncli.design.paper_protocol import algorithms, new_limits, usual_seconds
 from frictioncli.design.plan import plan_joint
 from frictioncli.design.programs import FORMS
 from frictioncli.design.programs.robot_program import SAFETY_NOTE, RobotProgram
 from frictioncli.design.settings import PlanSettings
 from frictioncli.design.text import plan_text
+from frictioncli.diagnosis.documents.extended_model import ExtendedDocument
 from frictioncli.diagnosis.documents.reload import is_current, read_documents
+from frictioncli.documents import read_joints
 from frictioncli.documents import write as write_document
 from frictioncli.errors import NotEnoughData, OptionError, TableError
 from frictioncli.files import write_text
@@ -86,10 +93,12 @@ def plan(work: Path, settings: PlanSettings | None = None) -> StageResult:
         )
         checks = _write_program(work, check, settings.to)
     units = {one: entry.unit for one, entry in models[joint].parameters.items()}
+    extensions = read_joints(work / EXTENDED, ExtendedDocument, "diagnose")
+    stated = stated_half_widths(next(one for one in extensions if one.joint == joint))
     inputs = input_hashes([work / TORQUES, work / MODEL, work / DIAGNOSIS, work / EXTENDED])
-    planned = plan_document(experiment, units, files, checks, settings.minutes)
+    planned = plan_document(experiment, units, stated, files, checks, settings.minutes)
     write_document(work / PLAN, planned, Provenance("plan", asdict(settings), inputs))
-    return StageResult(work / PLAN, plan_text(experiment, units, [*files, *checks]))
+    return StageResult(work / PLAN, plan_text(experiment, units, stated, [*files, *checks]))
 
 
 @stage

@@ -6,7 +6,7 @@ from frictioncli.stages.stage import StageResult, stage
 
 
 @stage
-def report(work: Path) -> StageResult:
+def report(work: Path, *, png: bool = False) -> StageResult:
     """Draw the figures and write the page: ``report/index.html``.
 
     Parameters
@@ -14,6 +14,8 @@ def report(work: Path) -> StageResult:
     work : Path
         Work folder with ``torques.parquet`` and ``model.json``; other tables are shown if they
         exist.
+    png : bool
+        Whether each figure is also written as PNG.
 
     Raises
     ------
@@ -22,5 +24,5 @@ def report(work: Path) -> StageResult:
     """
     from frictioncli.report.page import write_report
 
-    page = write_report(work)
+    page = write_report(work, png=png)
     return StageResult(page, str(page))

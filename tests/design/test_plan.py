@@ -2,12 +2,15 @@
 
 import json
 import shutil
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
 from frictioncli import schemas, tables
+from frictioncli.design.from_plan import interval_records, stated_half_widths
 from frictioncli.design.settings import PlanSettings
+from frictioncli.diagnosis.documents.extended_model import EffectRecord, ParameterRecord
 from frictioncli.diagnosis.settings import DiagnosisSettings
 from frictioncli.errors import FrictionError
 from frictioncli.provenance import Provenance
@@ -222,3 +225,42 @@ def test_without_data_the_papers_algorithms_are_written(tmp_path):
     heating = [step["until_degC"] for step in blocks[1]["steps"] if step["kind"] == "heat"]
     assert heating == list(np.arange(25.0, 66.0))
     assert (work / "friction_a2_new.script").exists()
+
+
+def test_intervals_now_are_those_that_the_diagnosis_states():
+    """One source: the page shows the diagnosis's intervals beside the plan's."""
+    effect = EffectRecord(
+        name="stribeck",
+        equation="",
+        channel="friction",
+        shape={},
+        coefficients={
+            "boundary_torque": ParameterRecord(estimate=3.0, ci95=(2.6, 3.4), unit="N·m"),
+            "other": ParameterRecord(estimate=0.0, ci95=(0.0, 0.0), unit="1"),
+            "unknown": ParameterRecord(estimate=1.0, ci95=None, unit="1"),
+        },
+    )
+    model = SimpleNamespace(
+        parameters={"beta": SimpleNamespace(ci95=(3.0, 6.0))}, effects=(effect,)
+    )
+    stated = stated_half_widths(model)
+    assert stated == pytest.approx(
+        {"beta": 1.5, "stribeck.boundary_torque": 0.4, "stribeck.other": 0.0}
+    )
+    names = (*stated, "gamma")
+    plan = SimpleNamespace(
+        torque_unit="N·m",
+        expected=(
+            SimpleNamespace(half_widths=dict.fromkeys(names, 0.2)),
+            SimpleNamespace(half_widths=dict.fromkeys(names, 0.1)),
+        ),
+        criterion=SimpleNamespace(
+            open_questions=SimpleNamespace(causes=()),
+            estimates=dict.fromkeys(names, 1.0),
+            of_interest=names,
+        ),
+    )
+    found = {one.parameter: one for one in interval_records(plan, {}, stated)}
+    assert (found["beta"].half_width_now, found["beta"].half_width_after) == (1.5, 0.75)
+    assert found["gamma"].half_width_now == 0.2
+    assert [name for name, one in found.items() if not one.wide] == ["stribeck.other"]

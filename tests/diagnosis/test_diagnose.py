@@ -157,11 +157,11 @@ def test_a_planted_effect_of_the_simulator_is_found_blind():
     assert any("torque_constant" in cause.effects for cause in diagnosis.causes)
 
 
-def test_one_day_only_says_that_its_gain_flatters():
+def test_one_day_only_says_that_its_gain_is_optimistic():
     rows = lagging(days(8))
     diagnosis = diagnosed(rows[rows["run"] == "day1"])
     assert diagnosis.gain.basis == "within_run"
-    assert "flatters" in said(diagnosis)
+    assert "optimistic" in said(diagnosis)
 
 
 def test_detectable_sizes_cover_the_catalogue():

@@ -123,7 +123,7 @@ def test_a_gain_that_is_none_is_said_to_be_none():
     unsure = {"reduction": -0.3, "ci95": (-0.5, 0.1)}
     assert "The interval holds zero" in sentence(**unsure)
     unsure |= {"basis": "within_run"}
-    assert "flatters" in sentence(**unsure)
+    assert "optimistic" in sentence(**unsure)
     assert " A " in sentence(**unsure)
     assert "N·m" not in sentence(**unsure)
     assert gain_sentence(structs.replace(document, gain=None), "A") == ""
@@ -228,7 +228,7 @@ def test_page_has_the_section_after_the_figures_escaped_and_the_same_twice(
     document["causes"][1]["effects"] = ["direction_asymmetry", HOSTILE]
     document["detectable"][HOSTILE] = None
     (work / "diagnosis.json").write_text(json.dumps(document), encoding="utf-8")
-    page = write_report(work)
+    page = write_report(work, png=True)
     text = page.read_text(encoding="utf-8")
     start = text.index(">What the simulation gets wrong</h2>")
     assert text.index(">Figures</h2>") < start < text.index(">Parameters</h2>")
@@ -243,6 +243,6 @@ def test_page_has_the_section_after_the_figures_escaped_and_the_same_twice(
     # the whole page's bytes are compared elsewhere; drawing takes long
     results = read_results(work).joints[0]
     for figure in diagnosis_figures(results.diagnosis)[1:3]:
-        again = draw_figure(figure, results)
+        again = draw_figure(figure, results, png=True)
         assert again.svg in text
         assert again.png == (page.parent / f"{figure.name}.png").read_bytes()

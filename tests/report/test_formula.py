@@ -4,11 +4,11 @@ from frictioncli.report.formula import formula_symbols, friction_formula, unit_m
 
 
 def test_formula_has_the_numbers_with_their_units(two_runs, without_temperature):
-    assert friction_formula(two_runs).striptags() == (
+    assert friction_formula(two_runs.model).striptags() == (
         "τ = 10.57 N·m + 0.001400/(N·m) · L² + (3.480 N·m/(deg/s)½ + 15.66 N·m/(deg/s)½"
         " · e−0.05600/°C · T) · √v"
     )
-    assert friction_formula(without_temperature).striptags() == (
+    assert friction_formula(without_temperature.model).striptags() == (
         "τ = 10.57 N·m + 0.001400/(N·m) · L² + 6.500 N·m/(deg/s)½ · √v"
     )
     assert "T: motor temperature Tm in °C" in formula_symbols(two_runs)

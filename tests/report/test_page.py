@@ -5,8 +5,11 @@ import re
 import xml.etree.ElementTree as ElementTree
 from itertools import pairwise
 
+import numpy as np
+import pandas as pd
 import pytest
 
+from frictioncli import schemas, tables
 from frictioncli.errors import TableError
 from frictioncli.report.page import write_report
 
@@ -19,12 +22,12 @@ def hostile_page(tmp_path_factory, write_work):
     model = json.loads((work / "model.json").read_text())
     model["parameters"]["tau_c"]["reason"] = "<img src=x onerror=alert(2)>"
     (work / "model.json").write_text(json.dumps(model))
-    return write_report(work)
+    return write_report(work, png=True)
 
 
 def test_folder_holds_the_page_and_two_files_per_figure(hostile_page):
-    figures = [f"fig{n}" for n in range(3, 12)] + ["residuals"]
-    wanted = {"index.html"} | {f"{f}.{kind}" for f in figures for kind in ("svg", "png")}
+    figures = ["overview", *(f"fig{n}" for n in range(3, 12)), "residuals"]
+    wanted = {"index.html", "data"} | {f"{f}.{kind}" for f in figures for kind in ("svg", "png")}
     assert {path.name for path in hostile_page.parent.iterdir()} == wanted
     for path in hostile_page.parent.glob("*.svg"):
         ElementTree.parse(path)
@@ -46,7 +49,11 @@ def test_page_needs_nothing_from_elsewhere(hostile_page):
     page = hostile_page.read_text(encoding="utf-8")
     # a link to the paper asks for nothing until it is followed
     paper = "https://doi.org/10.1155/2019/6931563"
-    assert set(re.findall(r'(?:src|href)="(?!#)([^"]*)"', page)) == {paper}
+    links = set(re.findall(r'(?:src|href)="(?!#)([^"]*)"', page))
+    # nor does one to a file that lies beside the page
+    assert {link for link in links if not link.startswith("data/")} == {paper}
+    for link in links - {paper}:
+        assert (hostile_page.parent / link).is_file()
     assert "default-src 'none'" in page
     assert not re.findall(r"url\((?!#)", page)
     assert "@import" not in page
@@ -70,10 +77,10 @@ def test_identifiers_are_unique_and_references_hit(hostile_page):
 def test_same_inputs_give_the_same_bytes_and_replace_the_whole_folder(hostile_page):
     folder = hostile_page.parent
     work = folder.parent
-    before = {path.name: path.read_bytes() for path in folder.iterdir()}
+    before = {path: path.read_bytes() for path in folder.rglob("*") if path.is_file()}
     (folder / "stale.svg").write_text("old")
-    write_report(work)
-    assert {path.name: path.read_bytes() for path in folder.iterdir()} == before
+    write_report(work, png=True)
+    assert {path: path.read_bytes() for path in folder.rglob("*") if path.is_file()} == before
     assert [path.name for path in work.iterdir() if path.name.startswith(".")] == []
 
 
@@ -99,7 +106,7 @@ def test_damaged_model_is_refused(tmp_path, write_work):
 
 def test_each_joint_has_its_section_and_files(tmp_path, write_work):
     work = write_work(tmp_path, runs=("day-1",), joints=(2, 3), temperature=False)
-    page = write_report(work)
+    page = write_report(work, png=True)
     names = {path.name for path in page.parent.iterdir()}
     assert {"joint2-fig3.svg", "joint3-fig3.svg", "joint3-fig8.png"} <= names
     assert "fig3.svg" not in names
@@ -126,3 +133,24 @@ def test_page_tells_what_became_of_the_data(tmp_path, write_work):
     assert text.count("sign +1 found") == 1
     assert "ef" * 32 in text
     assert "the log has no temperature; merged into beta" in text
+
+
+def test_downloads_are_the_tables_of_the_folder(tmp_path, write_work):
+    work = write_work(tmp_path, runs=("day-1",))
+    data = write_report(work).parent / "data"
+    assert (data / "torques.parquet").read_bytes() == (work / "torques.parquet").read_bytes()
+    for table in (schemas.TORQUES, schemas.SCHEDULE, schemas.EVALUATION):
+        offered = pd.read_csv(data / f"{table.name}.csv")
+        known = tables.read(work / f"{table.name}.parquet", table)
+        assert list(offered.columns) == list(known.columns)
+        assert len(offered) == len(known)
+    friction = tables.read(work / "torques.parquet", schemas.TORQUES)["friction_torque"]
+    offered = pd.read_csv(data / "torques.csv")["friction_torque"]
+    np.testing.assert_allclose(offered, friction, rtol=1e-8)
+
+
+def test_figures_are_png_files_on_demand_only(tmp_path, write_work):
+    work = write_work(tmp_path, runs=("day-1",), temperature=False)
+    folder = write_report(work).parent
+    assert not list(folder.glob("*.png"))
+    assert list(folder.glob("*.svg"))

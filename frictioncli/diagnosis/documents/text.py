@@ -86,7 +86,7 @@ def _gain_text(gain: GainRecord, document: DiagnosisDocument) -> str:
     where = (
         f"on run {document.held_out}, new to the extension"
         if gain.basis == "new_run"
-        else "within the same run, which flatters"
+        else "on its own training data (optimistic)"
     )
     return (
         f"extended model: {gain.rmse_before:.3g} -> {gain.rmse_after:.3g} {unit} {where}, a gain of"

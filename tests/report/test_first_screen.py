@@ -1,0 +1,79 @@
+"""First screen: four answers in few words, with numbers that the tables have."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from msgspec import structs
+
+from frictioncli.report.first_screen import answers, word_count
+from frictioncli.report.operating_point import operating_point, overview_figure
+from frictioncli.wording import number_text
+
+
+def by_question(results):
+    return {one.question: f"{one.value} {one.text}" for one in answers(results)}
+
+
+def test_answers_have_less_than_sixty_words(two_runs, diagnosed, current_log, without_temperature):
+    for results in (two_runs, diagnosed, current_log, without_temperature):
+        found = answers(results)
+        assert len(found) == 4
+        assert word_count(found) < 60
+
+
+def test_how_much_is_equation_16_at_the_medians(diagnosed):
+    point = operating_point(diagnosed)
+    pairs = diagnosed.thermal_pairs
+    assert point.speed in set(pairs["speed"])
+    assert point.temperature == pytest.approx(np.median(pairs["motor_temperature"]))
+    p = diagnosed.model.friction
+    by_hand = p.tau_c + (p.beta + p.gamma * np.exp(-p.delta * point.temperature)) * np.sqrt(
+        point.speed
+    )
+    assert point.friction == pytest.approx(by_hand, rel=1e-12)
+    said = by_question(diagnosed)["How much"]
+    assert said.startswith(f"{number_text(by_hand)} N·m at {point.speed:g} deg/s")
+
+
+def test_how_sure_is_the_misfit_on_the_new_run(diagnosed, two_runs):
+    said = by_question(diagnosed)["How sure"]
+    assert said == (
+        "±2.00 N·m RMS by equation (16); ±1.00 N·m by the extended model, on new run day-2"
+    )
+    assert by_question(two_runs)["How sure"] == "±1.13 N·m RMS misfit of equation (16)"
+
+
+def test_what_is_wrong_names_the_causes(diagnosed, two_runs):
+    said = by_question(diagnosed)["What the simulation gets wrong"]
+    assert "stribeck" in said
+    assert "not judged yet" in by_question(two_runs)["What the simulation gets wrong"]
+
+
+def test_without_temperature_the_point_has_none(without_temperature):
+    point = operating_point(without_temperature)
+    assert np.isnan(point.temperature)
+    assert "°C" not in point.conditions
+    assert len(overview_figure(without_temperature).axes[0].get_lines()) > 0
+
+
+def test_the_picture_holds_the_point_and_both_intervals(diagnosed):
+    panel = overview_figure(diagnosed).axes[0]
+    point = operating_point(diagnosed)
+    bars = [container for container in panel.containers if container.has_yerr]
+    heights = []
+    for container in bars:
+        (segments,) = container.lines[2]
+        ((_, low), (_, high)) = segments.get_segments()[0]
+        assert (low + high) / 2 == pytest.approx(point.friction)
+        heights.append((high - low) / 2)
+    assert heights == pytest.approx([1.96 * 2.0, 1.96 * 1.0])
+
+
+def test_a_gain_that_may_be_none_is_not_recommended(diagnosed):
+    document = diagnosed.diagnosis.document
+    unsure = structs.replace(document, gain=structs.replace(document.gain, ci95=(-0.1, 0.4)))
+    results = replace(diagnosed, diagnosis=replace(diagnosed.diagnosis, document=unsure))
+    said = by_question(results)
+    assert "extended model" not in said["How sure"]
+    assert "use the extended model" not in said["What to do next"]
