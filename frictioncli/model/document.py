@@ -12,6 +12,7 @@ from frictioncli import documents
 from frictioncli.model.friction import FORM, FrictionParameters
 from frictioncli.model.noise import Noise
 from frictioncli.provenance import Provenance
+from frictioncli.wording import count_text
 
 TemperatureKind = Annotated[str, msgspec.Meta(pattern="^(motor|housing|mean)$")]
 """Which temperature the friction function is given: motor, housing, or the mean of both."""
@@ -90,7 +91,9 @@ class FrictionModel:
     rmse : float
         Root mean square error over all pairs and angle bins. [torque unit]
     n_pairs : int
-        Pairs used.
+        Pairs used; by regression, groups of one speed, temperature and time.
+    separated_by : {"pairs", "regression"}
+        Where its torques come from.
     noise : Noise
         The noise of the measurements. [torque unit]
     correlation : mapping of str to mapping of str to float
@@ -116,6 +119,7 @@ class FrictionModel:
     correlation: Mapping[str, Mapping[str, float]] = field(default_factory=dict)
     range: InputRange
     notes: tuple[str, ...] = ()
+    separated_by: str = "pairs"
 
     def __post_init__(self) -> None:
         missing = [name for name in PARAMETERS if name not in self.parameters]
@@ -132,6 +136,11 @@ class FrictionModel:
         """Whether the data tell how friction falls with temperature."""
         return self.friction.gamma > 0 and self.friction.delta > 0
 
+    @property
+    def row_noun(self) -> str:
+        """What one of its observations is called: ``pair``, or ``group`` by regression."""
+        return "group" if self.separated_by == "regression" else "pair"
+
     def table(self) -> str:
         """Return the parameters with units and 95 % intervals, and what is not determined."""
         lines = [
@@ -144,8 +153,9 @@ class FrictionModel:
             mark = "" if entry.determined else "not determined: "
             lines.append(line + (f"  ({mark}{entry.reason})" if entry.reason else ""))
         lines.append(
-            f"  rmse {self.rmse:.3g} {self.torque_unit} over {self.n_pairs} pairs; noise: point"
-            f" {self.noise.point:.2g}, pair {self.noise.pair:.2g}, drift {self.noise.drift:.2g}"
+            f"  rmse {self.rmse:.3g} {self.torque_unit} over"
+            f" {count_text(self.n_pairs, self.row_noun)}; noise: point {self.noise.point:.2g},"
+            f" {self.row_noun} {self.noise.pair:.2g}, drift {self.noise.drift:.2g}"
             f" {self.torque_unit} over {self.noise.drift_time / 60:.0f} min"
         )
         return "\n".join([*lines, *(f"  note: {note}" for note in self.notes)])

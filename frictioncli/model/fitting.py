@@ -46,6 +46,12 @@ def fit_joint(torques: pd.DataFrame, facts: dict[str, Any], settings: FitSetting
     known, notes = _with_temperature(torques, temperature, joint)
     observed = observations(known, temperature)
     n_pairs = len(observed.friction)
+    separated_by = facts.get("separated_by", {}).get(str(joint), "pairs")
+    if n_pairs < LEAST_PAIRS and separated_by == "regression":
+        raise NotEnoughData(
+            f"joint {joint}: {n_pairs} group(s) of one speed, temperature and time found by"
+            f" regression, expected at least {LEAST_PAIRS}; log more motion"
+        )
     if n_pairs < LEAST_PAIRS:
         raise NotEnoughData(
             f"joint {joint}: {n_pairs} pair(s) of counter-directed moves found, expected at least"
@@ -69,6 +75,7 @@ def fit_joint(torques: pd.DataFrame, facts: dict[str, Any], settings: FitSetting
         correlation=_correlations(estimate),
         range=_ranges(known, observed.temperature),
         notes=tuple(notes),
+        separated_by=str(separated_by),
     )
 
 

@@ -38,6 +38,9 @@ _LEAST_LOAD_SPREAD = 0.05
 _SIGNIFICANT = 3.0
 """Standard deviations from 0 from which a delay is believed."""
 
+_SAME_SPEED = 0.05
+"""Speeds that differ by a smaller share count as one."""
+
 _VAGUE = 0.5
 """Friction whose half interval exceeds this share of it is not determined."""
 
@@ -239,12 +242,18 @@ def _temperature(equations: JointEquations, terms: EquationTerms) -> float | Non
 def _friction_at(
     equations: JointEquations, estimate: RegressionEstimate, sign: int
 ) -> dict[float, tuple[float, float, float]]:
-    """Return friction without load at three speeds of the log, with its interval."""
+    """Return friction without load at up to three speeds of the log, with its interval.
+
+    They are the median and, where they are told from it, the 10 % and the 90 % quantile.
+    """
     found = {}
     delta = estimate.parameters.get("delta", 0.0)
     cold = float(np.exp(-delta * np.median(equations.temperature)))
     temperature = float(np.median(equations.temperature))
-    for speed in np.quantile(np.abs(equations.velocity), [0.1, 0.5, 0.9]).tolist():
+    low, middle, high = np.quantile(np.abs(equations.velocity), [0.1, 0.5, 0.9]).tolist()
+    slower = [low] if low < (1 - _SAME_SPEED) * middle else []
+    faster = [high] if high > (1 + _SAME_SPEED) * middle else []
+    for speed in (*slower, middle, *faster):
         root = float(np.sqrt(speed))
         gamma = estimate.parameters.get("gamma", 0.0)
         slopes = {
@@ -267,7 +276,9 @@ def _friction_at(
 
 def _refuse(found: JointRegression, joint: int) -> None:
     """Refuse friction that is not told from load and inertia, or that predicts nothing."""
-    speed, (value, low, _) = list(found.friction.items())[1]
+    middle = float(np.median(np.abs(found.equations.velocity)))
+    speed = min(found.friction, key=lambda one: abs(one - middle))
+    value, low, _ = found.friction[speed]
     if value - low > _VAGUE * abs(value):
         raise NotEnoughData(
             f"joint {joint}: friction is not told from load and inertia"

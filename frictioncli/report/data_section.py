@@ -99,7 +99,7 @@ def data_section(results: WorkFolderResults) -> DataSection:
     counts = (
         _ingest_table(results.log_files),
         _rejected_table(results.rejected),
-        _dropped_table(pairing, used),
+        _dropped_table(pairing, used, by_regression=_is_regressed(results)),
     )
     origins = [_file_origin(file, metadata) for file, metadata in results.metadata.items()]
     return DataSection(
@@ -111,9 +111,15 @@ def data_section(results: WorkFolderResults) -> DataSection:
 
 
 def _pairing_facts(results: WorkFolderResults) -> Mapping[str, Any]:
-    """Return the facts of the pairs, or of the torques where they come from no pairs."""
-    source = PAIRS if PAIRS in results.metadata else TORQUES
+    """Return the facts of the pairs, or of the torques where none come from pairs."""
+    source = TORQUES if _is_regressed(results) or PAIRS not in results.metadata else PAIRS
     return dict(results.metadata.get(source, {}).get("facts", {}))
+
+
+def _is_regressed(results: WorkFolderResults) -> bool:
+    """Return whether all torques come from regressions."""
+    facts = results.metadata.get(TORQUES, {}).get("facts", {})
+    return set(facts.get("separated_by", {}).values()) == {"regression"}
 
 
 def _unusable_files(rejected: pd.DataFrame) -> int:
@@ -125,7 +131,7 @@ def _joints_without_model(results: WorkFolderResults) -> list[tuple[str, str]]:
     measured = {int(joint) for joint in results.torques["joint"]}
     without = sorted(measured - {joint.joint for joint in results.joints})
     return [
-        ("fit", f"joint {joint} has pairs but no model; 'frictioncli fit' says why")
+        ("fit", f"joint {joint} has torques but no model; 'frictioncli fit' says why")
         for joint in without
     ]
 
@@ -154,13 +160,15 @@ def _rejected_table(rejected: pd.DataFrame) -> TextTable:
     )
 
 
-def _dropped_table(pairing: Mapping[str, Any], used: int) -> TextTable:
+def _dropped_table(pairing: Mapping[str, Any], used: int, *, by_regression: bool) -> TextTable:
     dropped = pairing.get("dropped") or {}
     rows = [(in_words(str(reason)), thousands_text(int(n))) for reason, n in dropped.items() if n]
     if rows:
-        rows.append(("used in pairs", thousands_text(used)))
+        kind = "groups" if by_regression else "pairs"
+        rows.append((f"used in {kind}", thousands_text(used)))
+    way = "the regression" if by_regression else "pairing"
     return TextTable(
-        title="Samples left out by pairing", header=("reason", "samples"), rows=tuple(rows)
+        title=f"Samples left out by {way}", header=("reason", "samples"), rows=tuple(rows)
     )
 
 
@@ -178,7 +186,8 @@ def _counts_sentence(results: WorkFolderResults, pairing: Mapping[str, Any], use
         parts.append(f"{count_text(unusable, 'file')} could not be used at all")
     if pairing.get("samples"):
         share = 100.0 * used / float(pairing["samples"])
-        parts.append(f"{share:.0f} % of the samples went into pairs")
+        kind = "the regression" if _is_regressed(results) else "pairs"
+        parts.append(f"{share:.0f} % of the samples went into {kind}")
     return f"{'; '.join(parts)}." if parts else ""
 
 

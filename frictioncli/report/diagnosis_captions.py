@@ -9,7 +9,8 @@ def evidence_caption(results: JointResults, *, cause: CauseRecord, fitted: str) 
     """Return the caption of the figure of one cause."""
     return (
         f"{cause.claim} Points: mean misfit of the {cause.channel} in bins, with twice its"
-        " standard error over pairs; a point without a bar is a single pair. First: the base model."
+        f" standard error over {results.row_noun}s; a point without a bar is a single"
+        f" {results.row_noun}. First: the base model."
         f" Second: the extended model without this cause, and the term fitted for it, {fitted};"
         " it may exceed the misfit above, where the base model's parameters compensate for it."
         " Third: the extended model. The cause stands if the second points lie on the lines and the"
@@ -22,9 +23,9 @@ def simulation_caption(results: JointResults, *, held_out: str | None) -> str:
     new = f" Run {held_out} was kept out of the fit." if held_out else ""
     return (
         "Points: measured torque, forward filled, reverse hollow; lines: simulated along the same"
-        f" motion by the base model. Below each: their difference.{new} First: mean of each pair"
-        " over its angles. Then: means over the pairs of the fastest speed shown, heating and"
-        " cooling apart, since their misfits may cancel."
+        f" motion by the base model. Below each: their difference.{new} First: mean of each"
+        f" {results.row_noun} over its angles. Then: means over the {results.row_noun}s of the"
+        " fastest speed shown, heating and cooling apart, since their misfits may cancel."
     )
 
 
@@ -45,7 +46,7 @@ def gain_caption(results: JointResults, *, document: DiagnosisDocument) -> str:
     return (
         f"What the simulated torque misses on {run}, both directions, by the base and by the"
         " extended model. First: how the misfit is distributed. Then: how many points miss by more"
-        " than a size. Grey: noise of points and pairs, which no model can predict."
+        f" than a size. Grey: noise of points and {results.row_noun}s, which no model can predict."
     )
 
 

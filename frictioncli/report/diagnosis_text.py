@@ -275,14 +275,16 @@ def detectable_table(document: DiagnosisDocument, unit: str) -> TextTable:
     sizes = document.detectable
     names = [name for name in BY_NAME if name in sizes]
     names += sorted(set(sizes) - set(names))
+    # where a log has a load channel, effects on the load are in its unit
+    one_unit = document.unit_of("load") == unit
     return TextTable(
         title="Smallest size of each effect that would be named four times in five",
-        header=("effect", "what it is", f"RMS [{unit}]"),
+        header=("effect", "what it is", f"RMS [{unit}]" if one_unit else "RMS"),
         rows=tuple(
             (
                 in_words(name),
                 BY_NAME[name].summary if name in BY_NAME else "",
-                _size_cell(document, name),
+                _size_cell(document, name, stated=not one_unit),
             )
             for name in names
         ),
@@ -290,11 +292,12 @@ def detectable_table(document: DiagnosisDocument, unit: str) -> TextTable:
     )
 
 
-def _size_cell(document: DiagnosisDocument, name: str) -> str:
+def _size_cell(document: DiagnosisDocument, name: str, *, stated: bool) -> str:
     size = document.detectable[name]
     if size is None:
         return document.undetectable.get(name, UNDETECTABLE)
-    return number_text(size, 2)
+    channel = BY_NAME[name].channel if name in BY_NAME else "friction"
+    return f"{number_text(size, 2)} {document.unit_of(channel)}" if stated else number_text(size, 2)
 
 
 def worst_table(document: DiagnosisDocument) -> TextTable:

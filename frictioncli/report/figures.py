@@ -70,11 +70,13 @@ class FigureSpec:
 
 
 def _load_caption(results: JointResults) -> str:
+    noun = results.row_noun
+    single = "pairs of moves" if noun == "pair" else "groups of one speed"
     return (
-        "Points: measured friction of single pairs of moves, one per angle bin. Lines: α·L² + G"
-        " with one α for all pairs and the shift G of each pair, equations (9) and (10). Below, the"
-        " same points without their shift: the load term holds where they follow the one parabola"
-        " over the whole load range."
+        f"Points: measured friction of single {single}, one per angle bin. Lines: α·L² + G"
+        f" with one α for all {noun}s and the shift G of each {noun}, equations (9) and (10)."
+        " Below, the same points without their shift: the load term holds where they follow the one"
+        " parabola over the whole load range."
     )
 
 
@@ -92,7 +94,7 @@ def _time_caption(results: JointResults) -> str:
                 )
         texts.append(f"{run}: {list_text(phases)}")
     temperatures = f" Motor temperature, {'; '.join(texts)}." if texts else ""
-    return f"Temperatures at the measured pairs; the phases are shaded.{temperatures}"
+    return f"Temperatures at the measured {results.row_noun}s; the phases are shaded.{temperatures}"
 
 
 def _temperature_caption(results: JointResults, kind: str) -> str:
@@ -180,14 +182,15 @@ def _evaluation_caption(results: JointResults) -> str:
 
 
 def _residual_caption(results: JointResults) -> str:
-    pairs = count_text(residuals(results).groupby(["run", "pair"]).ngroups, "pair")
+    noun = results.row_noun
+    pairs = count_text(residuals(results).groupby(["run", "pair"]).ngroups, noun)
     if thermal_runs(results, "motor_temperature", "housing_temperature"):
         lag = "; heating and cooling on different sides of zero point to a lag of temperature."
     else:
         lag = "."
     return (
         "Measured minus modelled friction, without temperature correction. Points: mean of each of"
-        f" the {pairs}. By angle: mean over all pairs of a speed. A trend or a wave is structure"
+        f" the {pairs}. By angle: mean over all {noun}s of a speed. A trend or a wave is structure"
         f" that the model lacks{lag}"
     )
 

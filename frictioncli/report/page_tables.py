@@ -153,7 +153,7 @@ def _cell(rows: pd.DataFrame) -> str:
 
 
 def pairs_table(results: JointResults) -> TextTable:
-    """Return the number of pairs per speed and phase.
+    """Return the number of pairs, or of groups by regression, per speed and phase.
 
     Parameters
     ----------
@@ -168,7 +168,7 @@ def pairs_table(results: JointResults) -> TextTable:
         counts = [int((own["phase"] == phase).sum()) for phase in phases]
         rows.append((speed_text(speed), *(str(count) for count in counts), str(len(own))))
     return TextTable(
-        title="Pairs per speed and phase",
+        title=f"{results.row_noun}s per speed and phase".capitalize(),
         header=("speed", *(PHASE_WORDS.get(phase, phase) for phase in phases), "all"),
         rows=tuple(rows),
     )

@@ -163,12 +163,13 @@ def runs_rating(results: JointResults) -> QualityRating:
 
 
 def pairs_rating(results: JointResults) -> QualityRating:
-    """Rate the number of pairs of counter-directed moves."""
-    count = len(results.pairs)
+    """Rate the number of pairs of counter-directed moves, or of groups by regression."""
+    count, noun = len(results.pairs), results.row_noun
+    meaning = results.rows_meaning.rstrip(",")
     return QualityRating(
         level=_at_least(count, _PAIRS),
-        name="Pairs",
-        reason=f"{count_text(count, 'pair')} of counter-directed moves; good from {_PAIRS[0]}.",
+        name=f"{noun}s".capitalize(),
+        reason=f"{count_text(count, noun)} {meaning}; good from {_PAIRS[0]}.",
     )
 
 

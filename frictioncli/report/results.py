@@ -99,6 +99,18 @@ class JointResults:
         return self.model.torque_unit
 
     @property
+    def row_noun(self) -> str:
+        """What a row of ``pairs`` is called: ``pair``, or ``group`` by regression."""
+        return self.model.row_noun
+
+    @property
+    def rows_meaning(self) -> str:
+        """What a row of ``pairs`` is, to follow its noun."""
+        if self.row_noun == "pair":
+            return "of counter-directed moves"
+        return "of samples at one speed, temperature and time, by regression,"
+
+    @property
     def load_unit(self) -> str:
         """Unit of load torque: N·m if the log has a load channel, else that of friction torque."""
         return "N·m" if self.torques["load"].notna().any() else self.unit

@@ -116,7 +116,7 @@ def simulation_figure(results: JointResults, *, diagnosis: Reloaded) -> Figure:
         lower.axhline(0.0, color=MODEL, linewidth=0.9, zorder=1)
     grid[1, 0].set_xlabel("time, run after run [h]")
     grid[1, 1].set_xlabel("joint angle φ [deg]")
-    grid[0, 0].set_title("means of pairs")
+    grid[0, 0].set_title(f"means of {results.row_noun}s")
     grid[0, 1].set_title(f"means at {speed_text(shown[-1])}")
     _legend(grid[0, 0], [(speed_text(speed), results.style(speed)) for speed in shown])
     _legend(grid[0, 1], [(name, style) for name, _, style in series if name])

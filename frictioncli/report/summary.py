@@ -99,11 +99,10 @@ def measurement_text(results: JointResults) -> str:
         if load
         else ""
     )
+    rows = f"{count_text(len(results.pairs), results.row_noun)} {results.rows_meaning}"
     return (
         f"Joint {results.joint} was measured in {count_text(len(results.runs), 'run')}"
-        f" ({list_text(results.runs)}): {count_text(len(results.pairs), 'pair')} of"
-        " counter-directed"
-        f" moves {at}{warm}{loads}."
+        f" ({list_text(results.runs)}): {rows} {at}{warm}{loads}."
     )
 
 

@@ -262,3 +262,17 @@ def test_one_speed_does_not_tell_viscous_friction_even_where_temperature_does_no
     assert {"beta", "gamma", "delta"} <= set(found.undetermined)
     assert found.estimate.terms.friction == ("tau_c",)
     assert found.estimate.parameters["tau_c"] == pytest.approx(8 + 2 * np.sqrt(40.0), rel=0.01)
+
+
+@pytest.mark.parametrize(("speeds", "count"), [((19.1,), 1), ((19.1, 60.0), 2)])
+def test_friction_at_one_speed_is_told_once(speeds, count):
+    """There and back at 19.1 deg/s, with the noise of a logged velocity, and at others."""
+    turns = np.resize([0.0, 90.0], 25)
+    motion = move_sequence(turns, np.repeat(np.resize(speeds, 12), 2), period=0.01)
+    motion["velocity"] += np.random.default_rng(7).normal(0, 0.02, len(motion))
+    columns = tuple(motion[name].to_numpy() for name in motion)
+    found = regression(programmes.samples(columns, programmes.torque(columns, alpha=0.0)))
+    assert len(found.friction) == count
+    assert len({f"{speed:.3g}" for speed in found.friction}) == count
+    middle = min(found.friction, key=lambda speed: abs(speed - 19.1))
+    assert found.friction[middle][0] == pytest.approx(8.0 + 2.0 * np.sqrt(19.1), rel=0.02)

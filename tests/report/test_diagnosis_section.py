@@ -20,6 +20,7 @@ from frictioncli.report.diagnosis_section import diagnosis_figures, diagnosis_se
 from frictioncli.report.diagnosis_text import (
     UNDETECTABLE,
     cause_texts,
+    detectable_table,
     gain_sentence,
     verdict_sentence,
 )
@@ -246,3 +247,17 @@ def test_page_has_the_section_after_the_figures_escaped_and_the_same_twice(
         again = draw_figure(figure, results, png=True)
         assert again.svg in text
         assert again.png == (page.parent / f"{figure.name}.png").read_bytes()
+
+
+def test_smallest_sizes_of_effects_on_a_load_channel_have_its_unit():
+    sizes = {"stribeck": 0.5, "payload_change": 2.0, "drift": None}
+    document = diagnosis(sets=[], detectable=sizes)
+    table = detectable_table(document, "N·m")
+    assert table.header[-1] == "RMS [N·m]"
+    assert [row[-1] for row in table.rows][::2] == ["0.50", "2.0"]
+    current = structs.replace(document, torque_unit="A", load_unit="N·m")
+    table = detectable_table(current, "A")
+    assert table.header[-1] == "RMS"
+    cells = dict(zip((row[0] for row in table.rows), (row[-1] for row in table.rows), strict=True))
+    assert cells[table.rows[0][0]] == "0.50 A"
+    assert "2.0 N·m" in cells.values()

@@ -6,7 +6,9 @@ import numpy as np
 from msgspec import structs
 
 from frictioncli.diagnosis.documents.document import GainRecord
-from frictioncli.report.page_tables import epsilon_tables
+from frictioncli.report.figures import FIGURES
+from frictioncli.report.page_tables import epsilon_tables, pairs_table
+from frictioncli.report.quality_ratings import pairs_rating
 from frictioncli.report.results import read_results
 from frictioncli.report.summary import (
     corrections_needed,
@@ -123,3 +125,18 @@ def test_key_numbers_have_units_and_what_to_read_them_with(two_runs, without_tem
     assert last.value == "1.00 N·m"
     assert "on day-2, a run it has not seen; base model 5.00 N·m" in last.context
     assert [number.name for number in key_numbers(without_temperature, None)] == [names[3]]
+
+
+def test_what_a_regression_measured_is_not_called_pairs(two_runs):
+    count = len(two_runs.pairs)
+    assert f"{count} pairs of counter-directed moves" in measurement_text(two_runs)
+    regressed = replace(two_runs, model=replace(two_runs.model, separated_by="regression"))
+    text = measurement_text(regressed)
+    assert f"{count} groups of samples at one speed" in text
+    assert "pair" not in text
+    assert "pair" not in two_runs.model.table().replace("pair 0.2", "").replace("298 pairs", "")
+    assert "over 298 groups; noise: point 0.61, group 0.2" in regressed.model.table()
+    for name, caption in [(figure.name, figure.caption(regressed)) for figure in FIGURES]:
+        assert "pair" not in caption, name
+    assert pairs_table(regressed).title == "Groups per speed and phase"
+    assert pairs_rating(regressed).name == "Groups"
