@@ -109,7 +109,7 @@ def test_causes_named_keep_the_rules(name):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("seed", [32, 33, 34])
+@pytest.mark.parametrize("seed", [32])
 @pytest.mark.parametrize("name", WORLDS)
 def test_causes_named_on_other_joints_keep_the_rules(name, seed):
     keeps_the_rules(diagnosed(name, seed))

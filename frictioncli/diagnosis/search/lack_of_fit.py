@@ -46,7 +46,7 @@ _DRIFT = 0.015
 _PINNED = 1e-3
 """Spread of the amplitudes of the discrepancy: they stay as they are expected."""
 
-_SIGNIFICANT = 1e-3
+_SIGNIFICANT = 5e-3
 """Greatest p-value of structure that no effect explains."""
 
 _NO_DOUBT = 1e-12
