@@ -10,7 +10,7 @@ from scipy.io import savemat
 
 from frictioncli import schemas, tables
 from frictioncli.errors import LogError
-from frictioncli.logs.ingest import ingest
+from frictioncli.logs.ingest import IngestSettings, ingest
 
 from .logs import back_and_forth
 
@@ -88,6 +88,31 @@ def test_lists_of_lerobot(tmp_path):
     table |= {"timestamp": time, "frame_index": np.arange(len(time)), "episode_index": 0 * time}
     pq.write_table(pa.table(table), tmp_path / "episode_000000.parquet")
     check(tmp_path / "episode_000000.parquet", tmp_path, joints=(1, 2))
+
+
+@pytest.mark.parametrize("restarts", [True, False])
+@pytest.mark.parametrize("batch_bytes", [1 << 22, 1 << 12])
+def test_episodes_of_lerobot_in_one_file_follow_each_other(restarts, batch_bytes, tmp_path):
+    """Three episodes, each with a time of its own from 0, or with one that goes on."""
+    time, position, _, torque = back_and_forth()
+    own = time - time[0]
+    length = own[-1] + 2.0
+    start = np.zeros(3) if restarts else length * np.arange(3)
+    state, effort = ([np.tile(values, 3)] for values in (position, torque))
+    table = {
+        "observation.state": pa.array(list(np.stack(state, axis=1)), pa.list_(pa.float64())),
+        "observation.effort": pa.array(list(np.stack(effort, axis=1)), pa.list_(pa.float64())),
+        "timestamp": (start[:, np.newaxis] + own).ravel(),
+        "episode_index": np.repeat([7, 8, 9], len(time)),
+    }
+    pq.write_table(pa.table(table), tmp_path / "file-000.parquet")
+    settings = IngestSettings(batch_bytes=batch_bytes)
+    summary = ingest([tmp_path / "file-000.parquet"], tmp_path / "work", settings)
+    assert summary.rows_kept == 3 * len(time)
+    samples = tables.read(tmp_path / "work" / "samples.parquet", schemas.SAMPLES)
+    pause = 1.0 if restarts else 2.0
+    expected = (own + (own[-1] + pause) * np.arange(3)[:, np.newaxis]).ravel()
+    np.testing.assert_allclose(samples["time"], expected, atol=1e-9)
 
 
 def test_archives_that_are_no_arrays_are_named(tmp_path):

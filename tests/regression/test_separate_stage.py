@@ -152,6 +152,39 @@ def test_pairs_that_are_told_and_missing_are_named(tmp_path):
         separate(tmp_path / "work", SeparationSettings(by="pairs"))
 
 
+def write_speeds(path, motion, torque):
+    """Write the log of a motor on a bench, without positions."""
+    path.parent.mkdir(parents=True)
+    columns = {"time [s]": motion[0], "velocity [deg/s]": motion[2], "torque [Nm]": torque}
+    pd.DataFrame(columns).to_csv(path, index=False, float_format="%.7g")
+
+
+@pytest.mark.parametrize("offset", [0.0, 1.5])
+def test_a_log_without_positions_is_regressed_by_its_velocity(offset, tmp_path):
+    """Sines of a motor on a bench: no gravity, but inertia, friction and an offset."""
+    generator = np.random.default_rng(31)
+    motion = programmes.sines(240, generator)
+    torque = programmes.torque(motion, gravity=(0.0, 0.0), offset=offset, alpha=0.0)
+    torque += programmes.autoregressive(generator, len(torque), 0.3, 0.5)
+    write_speeds(tmp_path / "day1" / "bench.csv", motion, torque)
+    work = tmp_path / "work"
+    run([tmp_path / "day1"], work)
+    facts = tables.facts(work / TORQUES)
+    assert facts["position"] == "integrated"
+    assert facts["separated_by"] == {"1": "regression"}
+    found = facts["regression"]["1"]
+    assert "no angle" in found["undetermined"]["gravity"]
+    for name, true in (("inertia", programmes.INERTIA), ("offset", offset)):
+        low, high = found["parameters"][name]["ci95"]
+        assert low - 0.02 * programmes.INERTIA < true < high + 0.02 * programmes.INERTIA
+    (model,) = read_models(work / "model.json")
+    assert model.parameters["tau_c"].estimate == pytest.approx(8.0, rel=0.05)
+    assert model.parameters["beta"].estimate == pytest.approx(2.0, rel=0.05)
+    rows = tables.read(work / TORQUES, schemas.TORQUES)
+    assert len(set(rows["position"])) == 1
+    np.testing.assert_allclose(rows["load_torque"], offset, atol=0.3)
+
+
 def test_a_refusal_names_both_ways(tmp_path):
     motion = programmes.sines(3, np.random.default_rng(23))
     write_log(tmp_path / "day1" / "short.csv", motion, programmes.torque(motion))

@@ -20,6 +20,7 @@ from frictioncli.logs.formats.containers import (
     unreadable_on_error,
     with_unit,
 )
+from frictioncli.logs.formats.episodes import EPISODE, TIME, EpisodeClock
 from frictioncli.logs.log_source import CsvHints, Refusal
 
 _PARQUET = b"PAR1"
@@ -204,8 +205,16 @@ def _rows(
 ) -> Iterator[Rows]:
     """Yield the values of the given columns; see :class:`ContainerLog`."""
     fields = list(dict.fromkeys(leaves[column].path[0] for column in columns))
+    names = [leaf.name for leaf in leaves]
+    has_episodes = {EPISODE, TIME} <= set(names) and names.index(TIME) in columns
+    fields += [EPISODE] * (has_episodes and EPISODE not in fields)
+    clock = EpisodeClock()
     for batch in batches(path, fields, rows):
-        yield {column: _values(batch, leaves[column]) for column in columns}
+        values = {column: _values(batch, leaves[column]) for column in columns}
+        if has_episodes:
+            time, episode = names.index(TIME), _values(batch, leaves[names.index(EPISODE)])
+            values[time] = clock.continued(values[time], episode)
+        yield values
 
 
 def _values(batch: pa.RecordBatch, leaf: _Leaf) -> Array:
