@@ -4,9 +4,8 @@ The options of a command are the fields of its settings, see :mod:`frictioncli.c
 works with the settings is imported last, so that help and wrong options are answered at once.
 """
 
-import sys
 from collections.abc import Iterable, Iterator
-from contextlib import AbstractContextManager, nullcontext
+from contextlib import contextmanager
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
@@ -14,7 +13,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from frictioncli.cli.application import app, command
-from frictioncli.cli.terminal import say
+from frictioncli.cli.terminal import say, working
 from frictioncli.comparison.settings import ComparisonSettings
 from frictioncli.correction.settings import CorrectionSettings, EvaluationGrid, ScheduleSettings
 from frictioncli.deployment.settings import ExportSettings
@@ -61,6 +60,9 @@ def inspect(
             help="Print a first mapping file (TOML) for --map, with its reasons.",
         ),
     ] = False,
+    verbose: Annotated[
+        bool, typer.Option("--verbose", help="List every file: rows, sampling, faults.")
+    ] = False,
 ) -> None:
     """Show what logs hold (deg, deg/s, s, N·m, °C), how good they are and what they suffice for."""
     if json and suggest_map:
@@ -68,11 +70,14 @@ def inspect(
     if suggest_map:
         from frictioncli.inspection.map_suggestion.suggest_map import suggested_map
 
-        say(suggested_map(logs, settings))
+        with working("inspect"):
+            suggestion = suggested_map(logs, settings)
+        say(suggestion)
         return
     from frictioncli.inspection.inspect import inspect as inspect_logs
 
-    inspection = inspect_logs(logs, settings)
+    with working("inspect"):
+        inspection = inspect_logs(logs, settings)
     if json:
         from frictioncli.documents import to_json
         from frictioncli.inspection.document import document
@@ -81,7 +86,7 @@ def inspect(
     else:
         from frictioncli.inspection.text import text
 
-        say(text(inspection))
+        say(text(inspection, verbose=verbose))
 
 
 @command()
@@ -89,7 +94,9 @@ def ingest(logs: Logs, *, work: Work = WORK, settings: IngestSettings) -> None:
     """Read logs into samples: deg, deg/s, s, N·m (or A), °C."""
     from frictioncli.stages.ingest import ingest as ingest_stage
 
-    say(ingest_stage(logs, work, settings))
+    with working("ingest"):
+        result = ingest_stage(logs, work, settings)
+    say(result)
 
 
 @command(before={"min_speed": ["bin_width"]})
@@ -97,7 +104,9 @@ def pair(*, work: Work = WORK, settings: PairingSettings) -> None:
     """Match counter-directed constant-speed motion by speed [deg/s] and angle bin [deg]."""
     from frictioncli.stages.pair import pair as pair_stage
 
-    say(pair_stage(work, settings))
+    with working("pair"):
+        result = pair_stage(work, settings)
+    say(result)
 
 
 @command()
@@ -105,7 +114,9 @@ def separate(*, work: Work = WORK, settings: SeparationSettings) -> None:
     """Separate friction torque from load torque [N·m] by equation (8)."""
     from frictioncli.stages.separate import separate as separate_stage
 
-    say(separate_stage(work, settings))
+    with working("separate"):
+        result = separate_stage(work, settings)
+    say(result)
 
 
 @command()
@@ -113,7 +124,9 @@ def fit(*, work: Work = WORK, settings: FitSettings) -> None:
     """Identify the friction model (16): load [N·m], speed [deg/s], temperature [°C]."""
     from frictioncli.stages.fit import fit as fit_stage
 
-    say(fit_stage(work, settings))
+    with working("fit"):
+        result = fit_stage(work, settings)
+    say(result)
 
 
 @command(before={"criterion": ["k", "tmax"]})
@@ -127,7 +140,9 @@ def simulate(
     """Simulate the temperature correction of Algorithm 3; tmax in minutes, epsilon in N·m."""
     from frictioncli.stages.simulate import simulate as simulate_stage
 
-    say(simulate_stage(work, schedule, settings, extended=extended))
+    with working("simulate"):
+        result = simulate_stage(work, schedule, settings, extended=extended)
+    say(result)
 
 
 @command()
@@ -141,7 +156,9 @@ def evaluate(
     """Evaluate schedules over k, tmax [min] and bound [N·m]: epsilon [N·m] by corrections."""
     from frictioncli.stages.evaluate import evaluate as evaluate_stage
 
-    say(evaluate_stage(work, grid, settings, extended=extended))
+    with working("evaluate"):
+        result = evaluate_stage(work, grid, settings, extended=extended)
+    say(result)
 
 
 @command()
@@ -159,7 +176,9 @@ def diagnose(
     from frictioncli.stages.diagnose import diagnose as diagnose_stage
     from frictioncli.stages.diagnose import has_finding
 
-    say(diagnose_stage(work, settings))
+    with working("diagnose"):
+        result = diagnose_stage(work, settings)
+    say(result)
     if fail_on and has_finding(work, named_only=fail_on == "named"):
         raise typer.Exit(_FINDING)
 
@@ -174,7 +193,9 @@ def report(
     """Draw the figures (deg, deg/s, s, N·m, °C) and write report/index.html."""
     from frictioncli.stages.report import report as report_stage
 
-    say(report_stage(work, png=png))
+    with working("report"):
+        result = report_stage(work, png=png)
+    say(result)
 
 
 @command(before={"min_speed": ["bin_width"]})
@@ -182,7 +203,13 @@ def run(logs: Logs, *, work: Work = WORK, settings: RunSettings) -> None:
     """Run the whole chain, from logs to the report. Units: deg, deg/s, s, N·m, °C."""
     from frictioncli.stages.run import run as run_chain
 
-    run_chain(logs, work, settings, progress=_say_stage)
+    with working("ingest") as line:
+
+        def told(stage: str, result: object) -> None:
+            with line.paused(f"after {stage}"):
+                _say_stage(stage, result)
+
+        run_chain(logs, work, settings, progress=told)
 
 
 def _say_stage(stage: str, result: object) -> None:
@@ -200,7 +227,9 @@ def synthesize(
     """Simulate a joint (deg, deg/s, N·m, °C, kg) and write its traces with truth.json."""
     from frictioncli.simulator.synthesize import synthesize as synthesize_traces
 
-    say(synthesize_traces(folder, settings))
+    with working("synthesize"):
+        result = synthesize_traces(folder, settings)
+    say(result)
 
 
 @command(before={"low": ["joint", "new", "seed"]})
@@ -217,7 +246,9 @@ def plan(
     from frictioncli.stages.plan import plan as plan_stage
     from frictioncli.stages.plan import plan_new
 
-    say(plan_new(work, settings) if new else plan_stage(work, settings))
+    with working("plan"):
+        result = plan_new(work, settings) if new else plan_stage(work, settings)
+    say(result)
 
 
 @command()
@@ -225,7 +256,9 @@ def export(*, work: Work = WORK, settings: ExportSettings) -> None:
     """Write the model as C, URDF, MJCF, JSON or a table (N·m or A, deg/s, °C); say what is lost."""
     from frictioncli.stages.export import export as export_stage
 
-    say(export_stage(work, settings))
+    with working("export"):
+        result = export_stage(work, settings)
+    say(result)
 
 
 @command()
@@ -249,7 +282,9 @@ def compare(
     from frictioncli.stages.compare import above_threshold
     from frictioncli.stages.compare import compare as compare_stage
 
-    say(compare_stage(runs, out, settings))
+    with working("compare"):
+        result = compare_stage(runs, out, settings)
+    say(result)
     if above_threshold(out):
         raise typer.Exit(_FINDING)
 
@@ -281,17 +316,21 @@ def fleet(
     if not diagnosis:
         settings = replace(settings, diagnosis=None)
     try:
-        summary = run_fleet(logs, out, settings, options, _progress_bar)
+        summary = run_fleet(logs, out, settings, options, _counted)
     except KeyboardInterrupt:
         say("interrupted; joints that are done stay done: call again to go on", fault=True)
         raise typer.Exit(_INTERRUPTED) from None
     say(summary)
 
 
-def _progress_bar(
-    outcomes: "Iterator[JointOutcome]", joints: int
-) -> "AbstractContextManager[Iterable[JointOutcome]]":
-    """Return the outcomes with a progress bar around them, on a terminal only."""
-    if not sys.stdout.isatty():
-        return nullcontext(outcomes)
-    return typer.progressbar(outcomes, length=joints, label="joints")
+@contextmanager
+def _counted(outcomes: "Iterator[JointOutcome]", joints: int) -> "Iterator[Iterable[JointOutcome]]":
+    """Yield the outcomes; on a terminal a line says how many joints are done, and for how long."""
+    with working(f"fleet: 0 of {joints} joints") as line:
+
+        def counted() -> "Iterator[JointOutcome]":
+            for number, outcome in enumerate(outcomes, start=1):
+                line.label = f"fleet: {number} of {joints} joints"
+                yield outcome
+
+        yield counted()

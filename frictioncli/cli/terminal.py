@@ -1,11 +1,24 @@
-"""Printing on the terminal, with control characters from logs replaced."""
+"""Printing on the terminal, with control characters from logs replaced, and progress."""
 
 import io
 import sys
+import threading
+import time
+from collections.abc import Iterator
+from contextlib import contextmanager
+from typing import TextIO
 
 import typer
 
 from frictioncli.plain_text import without_control_characters
+
+_PATIENCE = 2.0
+"""Time after which work says that it goes on. [s]"""
+
+_PERIOD = 0.5
+"""Time between two updates of the line. [s]"""
+
+_CLEAR_LINE = "\r\x1b[K"
 
 
 def say(what: object, *, fault: bool = False) -> None:
@@ -15,3 +28,97 @@ def say(what: object, *, fault: bool = False) -> None:
         # characters missing from the terminal's encoding are written as escapes
         stream.reconfigure(errors="backslashreplace")
     typer.echo(without_control_characters(str(what)), err=fault)
+
+
+class ProgressLine:
+    """A line that says what is being done and since when; rewritten in place.
+
+    Parameters
+    ----------
+    stream : file
+        Where it is written.
+    label : str
+        What is being done.
+    patience : float
+        Time before it appears. [s]
+    """
+
+    def __init__(self, stream: TextIO, label: str, patience: float = _PATIENCE) -> None:
+        self.label = label
+        self._stream = stream
+        self._patience = patience
+        self._start = time.monotonic()
+        self._lock = threading.Lock()
+        self._ended = threading.Event()
+        self._thread = threading.Thread(target=self._run, daemon=True)
+
+    def start(self) -> None:
+        """Begin to write the line."""
+        self._thread.start()
+
+    def end(self) -> None:
+        """Remove the line."""
+        self._ended.set()
+        self._thread.join()
+        self._write(_CLEAR_LINE)
+
+    @contextmanager
+    def paused(self, label: str) -> Iterator[None]:
+        """Remove the line while something else is printed; then go on with another label."""
+        with self._lock:
+            self._stream.write(_CLEAR_LINE)
+            self._stream.flush()
+            yield
+            self.label = label
+
+    def _run(self) -> None:
+        if self._ended.wait(self._patience):
+            return
+        while True:
+            with self._lock:
+                seconds = time.monotonic() - self._start
+                self._write(f"{_CLEAR_LINE}{self.label} ... {seconds:.0f} s")
+            if self._ended.wait(_PERIOD):
+                return
+
+    def _write(self, text: str) -> None:
+        self._stream.write(text)
+        self._stream.flush()
+
+
+class _NoLine(ProgressLine):
+    """Stands for a progress line where the output is no terminal: writes nothing."""
+
+    def start(self) -> None:
+        """Write nothing."""
+
+    def end(self) -> None:
+        """Write nothing."""
+
+    @contextmanager
+    def paused(self, label: str) -> Iterator[None]:
+        """Write nothing."""
+        self.label = label
+        yield
+
+
+@contextmanager
+def working(label: str, patience: float = _PATIENCE) -> Iterator[ProgressLine]:
+    """Say on a terminal what is being done, if it takes longer than two seconds.
+
+    Nothing is written where stdout or stderr is no terminal, as in a pipe.
+
+    Parameters
+    ----------
+    label : str
+        What is being done.
+    patience : float
+        Time before it is said. [s]
+    """
+    on_terminal = sys.stdout.isatty() and sys.stderr.isatty()
+    line = (ProgressLine if on_terminal else _NoLine)(sys.stderr, label, patience)
+    line.start()
+    try:
+        yield line
+    finally:
+        line.end()

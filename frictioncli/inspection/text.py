@@ -17,17 +17,30 @@ _NAME_WIDTH = 36
 _LONG_PREFIX = 12
 
 
-def text(found: Inspection) -> str:
-    """Return the text of an inspection in lines of at most 100 characters, where names allow."""
+def text(found: Inspection, *, verbose: bool = False) -> str:
+    """Return the text of an inspection in lines of at most 100 characters, where names allow.
+
+    What the logs suffice for comes first, then what is wrong with them, then their channels.
+
+    Parameters
+    ----------
+    found : Inspection
+        The inspection.
+    verbose : bool
+        Whether every file of a group of like files is listed.
+    """
     usable = [file for file in found.files if not file.refusal]
     refused = [file for file in found.files if file.refusal]
+    groups = _groups(usable)
     blocks = [
-        *(_block(group) for group in _groups(usable)),
-        *(_refused(group) for group in _refused_groups(refused)),
-        *(_wrapped(printable(remark, 8 * WIDTH), "  ", first="") for remark in found.remarks),
         *(_joint_summary(joint) for joint in found.joints if joint.forward or joint.reverse),
         *_motionless(found.joints),
+        *(_wrapped(printable(remark, 8 * WIDTH), "  ", first="") for remark in found.remarks),
+        *(_refused(group) for group in _refused_groups(refused)),
+        *(_block(group, verbose=verbose) for group in groups),
     ]
+    if not verbose and any(len(group) > 1 for group in groups):
+        blocks.append(["--verbose lists the rows, sampling and faults of every file."])
     return "\n\n".join("\n".join(block) for block in blocks)
 
 
@@ -52,7 +65,7 @@ def _refused_groups(files: Iterable[FileInspection]) -> list[list[FileInspection
     return list(groups.values())
 
 
-def _block(files: list[FileInspection]) -> list[str]:
+def _block(files: list[FileInspection], *, verbose: bool) -> list[str]:
     first = files[0]
     form = f"{printable(first.form)}; {first.columns} columns"
     if len(files) == 1:
@@ -64,7 +77,7 @@ def _block(files: list[FileInspection]) -> list[str]:
         ]
     joints = [_joint([file.joints[i] for file in files]) for i in range(len(first.joints))]
     joints.append(_stationary(files))
-    table = _table(files) if len(files) > 1 else []
+    table = _table(files) if verbose and len(files) > 1 else []
     return [*head, *(line for lines in joints for line in lines), *table, *_remarks(files)]
 
 

@@ -115,13 +115,27 @@ def test_what_holds_in_many_files_is_told_once(tmp_path):
         if number in (7, 250):
             log = log.drop(index=range(40, 60))
         write(log, tmp_path / f"part_{number:03d}.csv")
-    shown = text(inspect([tmp_path]))
-    lines = shown.splitlines()
-    assert len(lines) < 300 + 40
+    found = inspect([tmp_path])
+    lines = text(found).splitlines()
+    assert len(lines) < 40
     assert max(map(len, lines)) <= 100 + len(str(tmp_path))
     assert sum("read as deg: as the header says" in line for line in lines) == 1
     assert sum("gap" in line and "part_" in line for line in lines) == 2
-    assert sum(line.strip().startswith("part_") for line in lines) == 300
+    assert sum(line.strip().startswith("part_") for line in lines) == 0
+    listed = text(found, verbose=True).splitlines()
+    assert len(listed) < 300 + 40
+    assert sum(line.strip().startswith("part_") for line in listed) == 300
+
+
+def test_the_verdict_comes_first_and_files_on_demand(tmp_path):
+    for number in range(40):
+        write(clean_log(number % 5), tmp_path / f"part_{number:03d}.csv")
+    found = inspect([tmp_path])
+    shown = text(found).splitlines()
+    assert shown[0].startswith("joint 2 in all logs: ")
+    assert len(shown) < 40
+    assert "--verbose" in shown[-1]
+    assert "--verbose" not in text(found, verbose=True)
 
 
 def test_an_unreadable_manifest_is_a_remark(tmp_path):
