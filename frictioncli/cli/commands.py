@@ -4,16 +4,15 @@ The options of a command are the fields of its settings, see :mod:`frictioncli.c
 works with the settings is imported last, so that help and wrong options are answered at once.
 """
 
-from collections.abc import Iterable, Iterator
-from contextlib import contextmanager
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated
 
 import typer
 
 from frictioncli.cli.application import app, command
-from frictioncli.cli.terminal import say, working
+from frictioncli.cli.terminal import counted, say, say_result, say_stage, working
 from frictioncli.comparison.settings import ComparisonSettings
 from frictioncli.correction.settings import CorrectionSettings, EvaluationGrid, ScheduleSettings
 from frictioncli.deployment.settings import ExportSettings
@@ -26,9 +25,6 @@ from frictioncli.model.settings import FitSettings
 from frictioncli.pairs.settings import PairingSettings, SeparationSettings
 from frictioncli.simulator.settings import SynthesisSettings
 from frictioncli.stages.settings import RunSettings
-
-if TYPE_CHECKING:
-    from frictioncli.fleet.joint import JointOutcome
 
 __all__ = ["app"]
 
@@ -94,9 +90,7 @@ def ingest(logs: Logs, *, work: Work = WORK, settings: IngestSettings) -> None:
     """Read logs into samples: deg, deg/s, s, N·m (or A), °C."""
     from frictioncli.stages.ingest import ingest as ingest_stage
 
-    with working("ingest"):
-        result = ingest_stage(logs, work, settings)
-    say(result)
+    say_result("ingest", lambda: ingest_stage(logs, work, settings))
 
 
 @command(before={"min_speed": ["bin_width"]})
@@ -104,9 +98,7 @@ def pair(*, work: Work = WORK, settings: PairingSettings) -> None:
     """Match counter-directed constant-speed motion by speed [deg/s] and angle bin [deg]."""
     from frictioncli.stages.pair import pair as pair_stage
 
-    with working("pair"):
-        result = pair_stage(work, settings)
-    say(result)
+    say_result("pair", lambda: pair_stage(work, settings))
 
 
 @command()
@@ -114,9 +106,7 @@ def separate(*, work: Work = WORK, settings: SeparationSettings) -> None:
     """Separate friction torque from load torque [N·m] by equation (8)."""
     from frictioncli.stages.separate import separate as separate_stage
 
-    with working("separate"):
-        result = separate_stage(work, settings)
-    say(result)
+    say_result("separate", lambda: separate_stage(work, settings))
 
 
 @command()
@@ -124,9 +114,7 @@ def fit(*, work: Work = WORK, settings: FitSettings) -> None:
     """Identify the friction model (16): load [N·m], speed [deg/s], temperature [°C]."""
     from frictioncli.stages.fit import fit as fit_stage
 
-    with working("fit"):
-        result = fit_stage(work, settings)
-    say(result)
+    say_result("fit", lambda: fit_stage(work, settings))
 
 
 @command(before={"criterion": ["k", "tmax"]})
@@ -140,9 +128,7 @@ def simulate(
     """Simulate the temperature correction of Algorithm 3; tmax in minutes, epsilon in N·m."""
     from frictioncli.stages.simulate import simulate as simulate_stage
 
-    with working("simulate"):
-        result = simulate_stage(work, schedule, settings, extended=extended)
-    say(result)
+    say_result("simulate", lambda: simulate_stage(work, schedule, settings, extended=extended))
 
 
 @command()
@@ -156,9 +142,7 @@ def evaluate(
     """Evaluate schedules over k, tmax [min] and bound [N·m]: epsilon [N·m] by corrections."""
     from frictioncli.stages.evaluate import evaluate as evaluate_stage
 
-    with working("evaluate"):
-        result = evaluate_stage(work, grid, settings, extended=extended)
-    say(result)
+    say_result("evaluate", lambda: evaluate_stage(work, grid, settings, extended=extended))
 
 
 @command()
@@ -176,9 +160,7 @@ def diagnose(
     from frictioncli.stages.diagnose import diagnose as diagnose_stage
     from frictioncli.stages.diagnose import has_finding
 
-    with working("diagnose"):
-        result = diagnose_stage(work, settings)
-    say(result)
+    say_result("diagnose", lambda: diagnose_stage(work, settings))
     if fail_on and has_finding(work, named_only=fail_on == "named"):
         raise typer.Exit(_FINDING)
 
@@ -193,9 +175,7 @@ def report(
     """Draw the figures (deg, deg/s, s, N·m, °C) and write report/index.html."""
     from frictioncli.stages.report import report as report_stage
 
-    with working("report"):
-        result = report_stage(work, png=png)
-    say(result)
+    say_result("report", lambda: report_stage(work, png=png))
 
 
 @command(before={"min_speed": ["bin_width"]})
@@ -204,19 +184,7 @@ def run(logs: Logs, *, work: Work = WORK, settings: RunSettings) -> None:
     from frictioncli.stages.run import run as run_chain
 
     with working("ingest") as line:
-
-        def told(stage: str, result: object) -> None:
-            with line.paused(f"after {stage}"):
-                _say_stage(stage, result)
-
-        run_chain(logs, work, settings, progress=told)
-
-
-def _say_stage(stage: str, result: object) -> None:
-    first, *others = str(result).splitlines() or [""]
-    say(f"{stage:9s} {first}")
-    for line in others:
-        say(f"{'':9s} {line}")
+        run_chain(logs, work, settings, progress=partial(say_stage, line))
 
 
 @command()
@@ -227,9 +195,7 @@ def synthesize(
     """Simulate a joint (deg, deg/s, N·m, °C, kg) and write its traces with truth.json."""
     from frictioncli.simulator.synthesize import synthesize as synthesize_traces
 
-    with working("synthesize"):
-        result = synthesize_traces(folder, settings)
-    say(result)
+    say_result("synthesize", lambda: synthesize_traces(folder, settings))
 
 
 @command(before={"low": ["joint", "new", "seed"]})
@@ -246,9 +212,7 @@ def plan(
     from frictioncli.stages.plan import plan as plan_stage
     from frictioncli.stages.plan import plan_new
 
-    with working("plan"):
-        result = plan_new(work, settings) if new else plan_stage(work, settings)
-    say(result)
+    say_result("plan", lambda: plan_new(work, settings) if new else plan_stage(work, settings))
 
 
 @command()
@@ -256,9 +220,7 @@ def export(*, work: Work = WORK, settings: ExportSettings) -> None:
     """Write the model as C, URDF, MJCF, JSON or a table (N·m or A, deg/s, °C); say what is lost."""
     from frictioncli.stages.export import export as export_stage
 
-    with working("export"):
-        result = export_stage(work, settings)
-    say(result)
+    say_result("export", lambda: export_stage(work, settings))
 
 
 @command()
@@ -282,9 +244,7 @@ def compare(
     from frictioncli.stages.compare import above_threshold
     from frictioncli.stages.compare import compare as compare_stage
 
-    with working("compare"):
-        result = compare_stage(runs, out, settings)
-    say(result)
+    say_result("compare", lambda: compare_stage(runs, out, settings))
     if above_threshold(out):
         raise typer.Exit(_FINDING)
 
@@ -316,21 +276,8 @@ def fleet(
     if not diagnosis:
         settings = replace(settings, diagnosis=None)
     try:
-        summary = run_fleet(logs, out, settings, options, _counted)
+        summary = run_fleet(logs, out, settings, options, counted)
     except KeyboardInterrupt:
         say("interrupted; joints that are done stay done: call again to go on", fault=True)
         raise typer.Exit(_INTERRUPTED) from None
     say(summary)
-
-
-@contextmanager
-def _counted(outcomes: "Iterator[JointOutcome]", joints: int) -> "Iterator[Iterable[JointOutcome]]":
-    """Yield the outcomes; on a terminal a line says how many joints are done, and for how long."""
-    with working(f"fleet: 0 of {joints} joints") as line:
-
-        def counted() -> "Iterator[JointOutcome]":
-            for number, outcome in enumerate(outcomes, start=1):
-                line.label = f"fleet: {number} of {joints} joints"
-                yield outcome
-
-        yield counted()

@@ -4,9 +4,9 @@ import io
 import sys
 import threading
 import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
-from typing import TextIO
+from typing import TextIO, TypeVar
 
 import typer
 
@@ -28,6 +28,13 @@ def say(what: object, *, fault: bool = False) -> None:
         # characters missing from the terminal's encoding are written as escapes
         stream.reconfigure(errors="backslashreplace")
     typer.echo(without_control_characters(str(what)), err=fault)
+
+
+def say_result(label: str, call: Callable[[], object]) -> None:
+    """Call a function, say on a terminal that it works, and print what it returns."""
+    with working(label):
+        result = call()
+    say(result)
 
 
 class ProgressLine:
@@ -122,3 +129,28 @@ def working(label: str, patience: float = _PATIENCE) -> Iterator[ProgressLine]:
         yield line
     finally:
         line.end()
+
+
+def say_stage(line: ProgressLine, stage: str, result: object) -> None:
+    """Print what a stage of a run says, with its name in front."""
+    first, *others = str(result).splitlines() or [""]
+    with line.paused(f"after {stage}"):
+        say(f"{stage:9s} {first}")
+        for other in others:
+            say(f"{'':9s} {other}")
+
+
+Outcome = TypeVar("Outcome")
+
+
+@contextmanager
+def counted(outcomes: Iterator[Outcome], joints: int) -> Iterator[Iterable[Outcome]]:
+    """Yield outcomes; on a terminal a line says how many joints are done, and for how long."""
+    with working(f"fleet: 0 of {joints} joints") as line:
+
+        def counting() -> Iterator[Outcome]:
+            for number, outcome in enumerate(outcomes, start=1):
+                line.label = f"fleet: {number} of {joints} joints"
+                yield outcome
+
+        yield counting()
