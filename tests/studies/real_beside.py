@@ -29,8 +29,10 @@ def alike(result: JointResult, other: Independent) -> bool:
 def chosen_speeds(result: JointResult, other: Independent | None) -> list[SpeedFriction]:
     """Return the friction at three speeds at most, the lowest and the highest among them.
 
-    Speeds at which there is an independent figure come first.
+    Speeds at which there is an independent figure come first; a regression has no more than three.
     """
+    if result.way == "regression":
+        return result.frictions
     known = [one for one in result.frictions if other and other.at(one.speed) is not None]
     among = known or result.frictions
     if len(among) <= _MOST:
