@@ -13,6 +13,9 @@ from frictioncli.errors import OptionError
 _POINTS = 400
 """Number of equally spaced speeds of the fit."""
 
+_GRID = 21
+"""Number of loads, and of temperatures, over which the error is averaged."""
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class SimplifiedFriction:
@@ -28,8 +31,8 @@ class SimplifiedFriction:
         RMS and greatest error at the conditions of the fit. [N·m]
     worst_speed : float
         Speed of the greatest error. [deg/s]
-    worst_in_range : float
-        Greatest error over all loads and temperatures of the data. [N·m]
+    rms_in_range, worst_in_range : float
+        RMS and greatest error over all speeds, loads and temperatures of the data. [N·m]
     """
 
     dry: float
@@ -37,6 +40,7 @@ class SimplifiedFriction:
     rms: float
     worst: float
     worst_speed: float
+    rms_in_range: float
     worst_in_range: float
 
     def torque(self, speed: Array) -> Array:
@@ -67,8 +71,8 @@ class SimplifiedFriction:
             f" to the measured friction law, {conditions}",
             f"lost there: {self.rms:.3g} N·m RMS, at most {self.worst:.3g} N·m at"
             f" {self.worst_speed:.3g} deg/s",
-            f"lost at other loads and temperatures of the data: up to {self.worst_in_range:.3g}"
-            " N·m, as this form knows neither",
+            f"lost over all loads and temperatures of the data: {self.rms_in_range:.3g} N·m RMS,"
+            f" up to {self.worst_in_range:.3g} N·m, as this form knows neither",
         ]
 
 
@@ -115,12 +119,18 @@ def simplified_friction(
         for load in (*loads, max(map(abs, conditions.loads)))
         for temperature in conditions.temperatures
     ]
+    everywhere = [
+        fitted - model_torque(load, temperature)
+        for load in np.linspace(*conditions.loads, 2 * _GRID + 1)[1::2]
+        for temperature in np.linspace(*conditions.temperatures, 2 * _GRID + 1)[1::2]
+    ]
     return SimplifiedFriction(
         dry=float(dry),
         damping=float(damping),
         rms=float(np.sqrt(np.mean(np.square(error)))),
         worst=float(np.max(error)),
         worst_speed=float(speed[np.argmax(error)]),
+        rms_in_range=float(np.sqrt(np.mean(np.square(everywhere)))),
         worst_in_range=max(
             float(np.max(error)),
             *(float(np.max(np.abs(fitted - model_torque(*corner)))) for corner in corners),

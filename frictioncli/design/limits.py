@@ -22,6 +22,13 @@ _TOLERANCE = 1e-6
 """Tolerance of comparisons with a limit: relative, or [deg]."""
 
 
+LEAST_SPEED = 0.5
+"""Least highest speed; slower moves would take hours, and be written as zero. [deg/s]"""
+
+_SLOWEST = 0.01
+"""Least speed that robot programs state with two digits at least. [deg/s]"""
+
+
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Limits:
     """Limits of one joint's motion.
@@ -56,6 +63,11 @@ class Limits:
             raise OptionError(
                 f"the joint may turn from {self.low:g} to {self.high:g} deg: expected at least"
                 " 10 deg; widen it with --from and --to-angle if the robot's surroundings allow"
+            )
+        if not self.fastest >= LEAST_SPEED:
+            raise OptionError(
+                f"highest speed {self.fastest:g} deg/s: expected at least {LEAST_SPEED:g} deg/s,"
+                " which a robot program can state"
             )
         if not self.slowest <= self.fastest:
             raise OptionError(
@@ -143,7 +155,7 @@ def limits_of(torques: pd.DataFrame, settings: PlanSettings) -> Limits:
     return Limits(
         low=low,
         high=high,
-        slowest=min(measured, fastest / SPEED_RATIO),
+        slowest=max(min(measured, fastest / SPEED_RATIO), _SLOWEST),
         fastest=fastest,
         hottest=hottest if settings.max_temperature is None else settings.max_temperature,
         payloads=settings.payload,

@@ -13,9 +13,12 @@ References
    doi:10.1155/2019/6931563.
 """
 
+from typing import NamedTuple
+
 import numpy as np
 import pandas as pd
 
+from frictioncli.arrays import Array
 from frictioncli.errors import NotEnoughData
 from frictioncli.model.equations import COEFFICIENTS, Equations, jacobian
 from frictioncli.model.friction import FrictionParameters, friction_torque
@@ -65,31 +68,64 @@ def branch_means(pairs: pd.DataFrame, temperature: str = "mean") -> pd.DataFrame
     :math:`T^* = (T_c + T_m)/2`. Each branch is interpolated linearly between its measurements;
     branches of several runs are averaged run by run.
     """
-    known = pairs.assign(temperature=temperature_of(pairs, temperature)).dropna(
-        subset=["temperature"]
+    means = _branch_weights(pairs, temperature)
+    return pd.DataFrame(
+        {
+            "speed": means.speed,
+            "temperature": means.temperature,
+            "friction_torque": means.weights @ pairs["friction_torque"].to_numpy(float),
+        }
     )
-    means = []
-    for (_, _, speed), group in known.groupby(["run", "joint", "speed"], observed=True):
-        heating = group[group["phase"] == "heat-up"].sort_values("temperature")
-        cooling = group[group["phase"] == "cool-down"].sort_values("temperature")
-        if min(len(heating), len(cooling)) < 2:
-            continue
-        low = max(heating["temperature"].iloc[0], cooling["temperature"].iloc[0])
-        high = min(heating["temperature"].iloc[-1], cooling["temperature"].iloc[-1])
-        grid = np.arange(np.ceil(low / _GRID_STEP), np.floor(high / _GRID_STEP) + 1) * _GRID_STEP
+
+
+class _BranchMeans(NamedTuple):
+    """Speeds and temperatures of the means, and the weights of the pairs in them.
+
+    The mean is linear in friction: the bootstrap needs the weights only once.
+    """
+
+    speed: Array
+    temperature: Array
+    weights: Array
+
+
+def _branch_weights(pairs: pd.DataFrame, temperature: str) -> _BranchMeans:
+    """Return the weights of the pairs in the branch means, shape (means, pairs)."""
+    frame = pd.DataFrame(
+        {
+            "run": pairs["run"].to_numpy(),
+            "joint": pairs["joint"].to_numpy(),
+            "speed": pairs["speed"].to_numpy(float),
+            "phase": pairs["phase"].to_numpy(),
+            "temperature": temperature_of(pairs, temperature).to_numpy(float),
+        }
+    ).dropna(subset=["temperature"])
+    at: dict[tuple[float, float], list[Array]] = {}
+    for (_, _, speed), group in frame.groupby(["run", "joint", "speed"], observed=True):
         branches = [
-            np.interp(grid, branch["temperature"], branch["friction_torque"])
-            for branch in (heating, cooling)
+            group.loc[group["phase"] == phase, "temperature"].sort_values()
+            for phase in ("heat-up", "cool-down")
         ]
-        means.append(
-            pd.DataFrame(
-                {"speed": speed, "temperature": grid, "friction_torque": np.mean(branches, axis=0)}
-            )
-        )
-    if not means:
-        return pd.DataFrame(columns=["speed", "temperature", "friction_torque"], dtype=float)
-    together = pd.concat(means).groupby(["speed", "temperature"], as_index=False)
-    return together["friction_torque"].mean()
+        if min(map(len, branches)) < 2:
+            continue
+        low = max(branch.iloc[0] for branch in branches)
+        high = min(branch.iloc[-1] for branch in branches)
+        grid = np.arange(np.ceil(low / _GRID_STEP), np.floor(high / _GRID_STEP) + 1) * _GRID_STEP
+        weights = np.zeros((len(grid), len(pairs)))
+        for branch in branches:
+            place = np.interp(grid, branch, np.arange(len(branch)))
+            first = np.minimum(place.astype(int), len(branch) - 2)
+            rows = branch.index.to_numpy()
+            weights[np.arange(len(grid)), rows[first]] += 0.5 * (1 - (place - first))
+            weights[np.arange(len(grid)), rows[first + 1]] += 0.5 * (place - first)
+        for number, warm in enumerate(grid):
+            at.setdefault((float(speed), float(warm)), []).append(weights[number])
+    keys = sorted(at)
+    return _BranchMeans(
+        speed=np.array([speed for speed, _ in keys]),
+        temperature=np.array([warm for _, warm in keys]),
+        weights=np.array([np.mean(at[key], axis=0) for key in keys]).reshape(-1, len(pairs)),
+    )
 
 
 def consecutive_fit(
@@ -113,7 +149,8 @@ def consecutive_fit(
     """
     alpha = load_coefficient(observed)
     pairs = friction_at_zero_load(torques, alpha)
-    parameters = _viscous_law(pairs, temperature, alpha)
+    means = _branch_weights(pairs, temperature)
+    parameters = _viscous_law(means, pairs["friction_torque"].to_numpy(float), alpha)
     residual = pair_residual(observed, parameters)
     names = (*COEFFICIENTS, "delta")
     point = point_noise(observed, alpha)
@@ -144,9 +181,7 @@ def consecutive_fit(
     for choice in choices:
         shift = alpha_error * generator.standard_normal()
         disturbance = covariances[choice].draw(generator) - shift * observed.squared_load
-        again = _viscous_law(
-            pairs.assign(friction_torque=unloaded + disturbance), temperature, alpha + shift
-        )
+        again = _viscous_law(means, unloaded + disturbance, alpha + shift)
         repeated.append([getattr(again, name) for name in names])
     within = observed.friction_within - alpha * observed.squared_load_within
     squares = np.sum(observed.bins * np.square(residual)) + within @ within
@@ -162,21 +197,21 @@ def consecutive_fit(
     return estimate, Determination()
 
 
-def _viscous_law(pairs: pd.DataFrame, temperature: str, alpha: float) -> FrictionParameters:
-    """Return the fit of (12), (13) to the branch means."""
-    means = branch_means(pairs, temperature)
-    if means["speed"].nunique() < 2:
+def _viscous_law(means: _BranchMeans, friction: Array, alpha: float) -> FrictionParameters:
+    """Return the fit of (12), (13) to the branch means of the pairs' friction."""
+    speeds = len(np.unique(means.speed))
+    if speeds < 2:
         raise NotEnoughData(
             "--method paper needs a heating and a cooling branch at two speeds at least; found"
-            f" {means['speed'].nunique()}; use --method joint"
+            f" {speeds}; use --method joint"
         )
     found = minimise(
         Equations(
-            constant=np.ones(len(means)),
-            squared_load=np.zeros(len(means)),
-            root_speed=np.sqrt(means["speed"].to_numpy(float)),
-            temperature=means["temperature"].to_numpy(float),
-            friction=means["friction_torque"].to_numpy(float),
+            constant=np.ones(len(means.speed)),
+            squared_load=np.zeros(len(means.speed)),
+            root_speed=np.sqrt(means.speed),
+            temperature=means.temperature,
+            friction=means.weights @ friction,
         ),
         ("tau_c", "beta", "gamma"),
     )

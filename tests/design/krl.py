@@ -9,7 +9,7 @@ import re
 NAME = re.compile(r"[A-Z_][A-Z0-9_]{0,23}")
 _TOKEN = re.compile(
     r"\s*(?:(?P<number>\d+\.?\d*)|(?P<word>\$?[A-Z_][A-Z0-9_]*(?:\[\d+\])?(?:\.[A-Z0-9_]+)?)"
-    r"|(?P<enum>#[A-Z_]+)|(?P<sign>==|<>|<=|>=|[-+*/<>(),]))"
+    r"|(?P<enum>#[A-Z_0-9]+)|(?P<sign>==|<>|<=|>=|[-+*/<>(),]))"
 )
 _WORDS = {"AND": "and", "OR": "or", "NOT": "not", "TRUE": "True", "FALSE": "False"}
 _INI = re.compile(r"GLOBAL INTERRUPT DECL|INTERRUPT ON|BAS\(#INITMOV, 0\)")
@@ -79,13 +79,15 @@ def read_source(text):
 class Controller:
     """Runs a program on an arm."""
 
-    def __init__(self, source, data, arm, rated, axes=6):
+    def __init__(self, source, data, arm, rated, axes=6, mode="#AUT", override=100):
         self.programs = read_source(source)
         name, self.globals, self.kinds = read_data(data)
         if name != next(iter(self.programs)):
             raise KrlError(f"{name} is the data of another program")
         self.arm, self.rated = arm, rated
         self.percent = {axis: 100 for axis in range(1, axes + 1)}
+        self.mode, self.override = mode, override
+        self.traces = []
         self.began = {}
         self.stopped = {}
 
@@ -166,6 +168,11 @@ class Controller:
 
     def _assign(self, name, text, scope, kinds):
         number = re.fullmatch(r"\$(\w+)\[(\d+)\]", name)
+        if name == "$TRACE.NAME[]":
+            if not re.fullmatch(r'"\w{1,32}"', text) or text in self.traces:
+                raise KrlError(f"{name} = {text}: no name, or one that overwrites a trace")
+            self.traces.append(text)
+            return
         if name == "$TRACE.MODE":
             if text not in ("#T_START", "#T_STOP"):
                 raise KrlError(f"{name} = {text}")
@@ -214,6 +221,10 @@ class Controller:
 
     def _look_up(self, word, scope):
         number = re.fullmatch(r"\$(\w+)\[(\d+)\]", word)
+        if word == "$MODE_OP":
+            return self.mode
+        if word == "$OV_PRO":
+            return self.override
         if word == "$TRACE.STATE":
             return "#TRIGGERED" if self.arm.traced else "#T_END"
         if number and number[1] == "MOT_TEMP":

@@ -85,3 +85,9 @@ def test_the_fastest_of_a_series_has_room_to_hold_its_speed():
     assert speeds[0] == pytest.approx(9.0, rel=0.01)
     assert speeds[-1] == pytest.approx(109.5, rel=0.01)
     assert np.diff(np.log(speeds)) == pytest.approx(np.log(109.5 / 9.0) / 3, rel=0.02)
+
+
+@pytest.mark.parametrize("fastest", [1e-9, 0.4, float("nan")])
+def test_a_highest_speed_that_no_program_can_state_is_refused(fastest):
+    with pytest.raises(OptionError, match="highest speed"):
+        Limits(low=0.0, high=90.0, slowest=1e-12, fastest=fastest, hottest=60.0)

@@ -4,6 +4,7 @@ The readers know only the part of each language that is meant to be used: anythi
 """
 
 import re
+from dataclasses import replace
 
 import pytest
 
@@ -119,6 +120,31 @@ def test_a_motor_that_stays_too_hot_ends_the_program():
     assert not Robot(script, arm).run()
     arm = run_krl(program, Arm(list(START), temperature=200.0, cooling=0.0))
     assert arm.halted > 0  # a KUKA program waits for the operator there
+
+
+def test_every_recording_of_a_kuka_program_has_its_own_name():
+    """A trace of the same name would overwrite the one before; the check of the next day too."""
+    program = robot_program()
+    names = []
+    for one in (program, replace(program, name=f"{program.name}_check")):
+        files = FORMS["krl"](one)
+        source = next(text for name, text in files.items() if name.endswith(".src"))
+        names += re.findall(r'^\$TRACE\.NAME\[\] = "(\w+)"$', source, flags=re.MULTILINE)
+    series = [s for block in program.blocks for s in block.steps if isinstance(s, SeriesStep)]
+    assert len(names) == len(set(names)) == 2 * len(series) > 2
+
+
+@pytest.mark.parametrize(
+    ("mode", "override", "halts", "records"),
+    [("#AUT", 100, False, True), ("#AUT", 50, True, True), ("#T1", 30, False, False)],
+)
+def test_a_kuka_program_measures_at_full_speed_only(mode, override, halts, records):
+    program = robot_program(all_blocks(limits(payloads=()), 0)[:1])
+    source, data = (text for _, text in sorted(FORMS["krl"](program).items(), reverse=True))
+    arm = Arm(list(START))
+    Controller(source, data, arm, RATED, mode=mode, override=override).run()
+    assert (arm.halted > 0) == halts
+    assert bool(arm.traces) == records
 
 
 @pytest.mark.parametrize("form", sorted(RUNNERS))

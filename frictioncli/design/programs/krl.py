@@ -2,7 +2,8 @@
 
 System variables used [1]_: ``$VEL_AXIS`` is a whole number of per cent of the axis' rated speed,
 ``$MOT_TEMP`` the motor temperature in whole kelvins, ``$TIMER`` counts milliseconds, ``$TRACE``
-starts and ends the controller's trace.
+names, starts and ends the controller's trace, ``$MODE_OP`` is the operating mode and ``$OV_PRO``
+the program override in per cent.
 
 References
 ----------
@@ -97,18 +98,31 @@ IF $MOT_TEMP[{axis}] > T_STOP_K THEN
 ENDIF
 END
 
-; USER HOOK: starts the recording. Needs a trace configuration with position, velocity, torque and
-; motor temperature of axis {axis} that is loaded already. Replace it if you record otherwise.
-DEF TRACE_ON ( )
+; Speeds are those of the plan in automatic mode with the override at 100 %, and nowhere else.
+DEF FULL_SPEED ( )
 WAIT SEC 0.0
-$TRACE.MODE = #T_START
+IF ($MODE_OP <> #T1) AND ($OV_PRO <> 100) THEN
+  HALT ; set the override to 100 %, then start again
+ENDIF
+END
+
+; USER HOOK: starts the recording under the name set before. In T1, a trial run, nothing is
+; recorded. Needs a trace configuration that is loaded already, with position, velocity, torque and
+; motor temperature of axis {axis}. Replace it if you record otherwise.
+DEF TRACE_ON ( )
+FULL_SPEED( )
+IF $MODE_OP <> #T1 THEN
+  $TRACE.MODE = #T_START
+ENDIF
 WAIT SEC LEAD
 END
 
 ; USER HOOK: ends the recording and waits until it is written, a minute at the longest.
 DEF TRACE_OFF ( )
 WAIT SEC 0.0
-$TRACE.MODE = #T_STOP
+IF $MODE_OP <> #T1 THEN
+  $TRACE.MODE = #T_STOP
+ENDIF
 $TIMER[3] = 0
 $TIMER_STOP[3] = FALSE
 WHILE ($TRACE.STATE <> #T_END) AND ($TIMER[3] < 60000)
@@ -167,15 +181,16 @@ def _source(program: RobotProgram, name: str) -> str:
         "PTP $AXIS_ACT ; block coincidence: the robot stays where it is",
         "TARGET = $AXIS_ACT ; the other axes keep these angles",
         f"$ACC_AXIS[{axis}] = {_ACCELERATION}",
+        "FULL_SPEED( )",
     ]
     return "\n".join(
-        [*head, *_main(program), "END", "", _BODY.format(axis=axis, name=name.lower())]
+        [*head, *_main(program, name), "END", "", _BODY.format(axis=axis, name=name.lower())]
     )
 
 
-def _main(program: RobotProgram) -> list[str]:
+def _main(program: RobotProgram, name: str) -> list[str]:
     lines: list[str] = []
-    at, payload = None, None
+    at, payload, traces = None, None, 0
     for number, block in enumerate(program.blocks, start=1):
         lines += ["", f"; ---- block {number}: {to_ascii(block.name)}", *_reason(block)]
         for step in block.steps:
@@ -197,7 +212,10 @@ def _main(program: RobotProgram) -> list[str]:
                     f" {step.seconds:.1f}, {math.floor(until + KELVIN)})"
                 )
             else:
+                traces += 1
+                # a trace of the same name would overwrite the one before
                 lines += [
+                    f'$TRACE.NAME[] = "{name}_{traces:03d}"',
                     "TRACE_ON( )",
                     *(f"PAIR({step.low:.3f}, {step.high:.3f}, {v:.3f})" for v in step.speeds),
                     "TRACE_OFF( )",
