@@ -19,13 +19,14 @@ from frictioncli import tables
 from frictioncli.diagnosis.documents.reload import Reloaded, read_documents, reload
 from frictioncli.errors import FrictionError
 from frictioncli.logs.settings import IngestSettings
+from frictioncli.model.document import read_models
 from frictioncli.schemas import TORQUES as TORQUES_TABLE
 from frictioncli.stages.diagnose import diagnose
 from frictioncli.stages.fit import fit
 from frictioncli.stages.ingest import ingest
 from frictioncli.stages.pair import pair
 from frictioncli.stages.separate import separate
-from frictioncli.workfiles import TORQUES
+from frictioncli.workfiles import MODEL, TORQUES
 from tests.studies.real_cases import CASES, MAPS, Case
 from tests.studies.real_figure import draw
 from tests.studies.real_page import joint_text, refusal_text, without_path, write_section
@@ -46,11 +47,12 @@ def section_of(case: Case, logs: Path) -> str:
         if fault:
             return refusal_text(without_path(fault, logs))
         torques = tables.read(work / TORQUES, TORQUES_TABLE)
+        nouns = {model.joint: model.row_noun for model in read_models(work / MODEL)}
         texts = []
         for joint, (document, extended) in sorted(read_documents(work).items()):
             rows = torques[torques["joint"] == joint]
             found = reload(rows, document, extended)
-            texts.append(joint_text(case, found, rows, figure_of(case, found)))
+            texts.append(joint_text(case, found, rows, figure_of(case, found), nouns[joint]))
     return "\n\n".join([*texts, f"{seconds:.0f} s of processor for the chain up to the diagnosis."])
 
 

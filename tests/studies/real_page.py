@@ -69,12 +69,15 @@ def diagnosis_sentence(document: DiagnosisDocument) -> str:
     return f"{document.verdict}: {'; '.join(part for part in parts if part)}"
 
 
-def joint_text(case: Case, found: Reloaded, rows: pd.DataFrame, figure: str) -> str:
+def joint_text(
+    case: Case, found: Reloaded, rows: pd.DataFrame, figure: str, noun: str = "pair"
+) -> str:
     """Return what is said of one joint, with its figure."""
     document = found.document
     unit = document.torque_unit
     lines = [
-        f"**Joint {document.joint}: {document.verdict}.** {_measured(rows)} The simulated torque"
+        f"**Joint {document.joint}: {document.verdict}.** {_measured(rows, noun)} The"
+        " simulated torque"
         f" misses the measured one by {number_text(document.simulation.rmse)} {unit} (RMS)."
         f" {remainder_text(document)}".rstrip(),
         "",
@@ -108,14 +111,14 @@ def _bullet(cause: CauseRecord, document: DiagnosisDocument) -> str:
     return f"- not named: {names}, {size}; {standing_text(cause)}.{' ' if note else ''}{note}"
 
 
-def _measured(rows: pd.DataFrame) -> str:
-    """Return how much was measured under which conditions."""
+def _measured(rows: pd.DataFrame, noun: str) -> str:
+    """Return how much was measured under which conditions; ``noun`` is what a pair is called."""
     pairs = rows.drop_duplicates(["run", "pair"])
     ends = [number_text(float(end)) for end in (pairs["speed"].min(), pairs["speed"].max())]
     motor = pairs["motor_temperature"].dropna()
     warm = f", motor {motor.min():.0f} to {motor.max():.0f} °C" if len(motor) else ""
     return (
-        f"{count_text(len(pairs), 'pair')} in {count_text(pairs['run'].nunique(), 'run')} at"
+        f"{count_text(len(pairs), noun)} in {count_text(pairs['run'].nunique(), 'run')} at"
         f" {range_text(ends)} deg/s{warm}."
     )
 
