@@ -1,13 +1,14 @@
 """Comparison of the same joint on different days: ``compare``."""
 
 from collections.abc import Sequence
-from dataclasses import asdict
+from dataclasses import asdict, replace
 from datetime import datetime
 from pathlib import Path
 
 import pandas as pd
 
 from frictioncli import documents, schemas, tables
+from frictioncli.comparison.common_poses import with_common_poses
 from frictioncli.comparison.compare import compare_runs
 from frictioncli.comparison.document import ComparisonDocument
 from frictioncli.comparison.from_comparison import comparison_document
@@ -59,6 +60,12 @@ def compare(
     }
     joint = _joint(settings.joint, models)
     folders = [_folder(path, name, models[name][joint]) for name, path in sources.items()]
+    poses = [
+        tables.facts(path / TORQUES).get("poses", {}).get(str(joint), [])
+        for path in sources.values()
+    ]
+    common = with_common_poses([folder.torques for folder in folders], poses)
+    folders = [replace(folder, torques=rows) for folder, rows in zip(folders, common, strict=True)]
     comparison = compare_runs(run_history_of(folders), settings)
     inputs = {
         f"{name}/{file}": sha256(path / file)
