@@ -20,7 +20,11 @@ from frictioncli.diagnosis.ramps.settling import Settling, settled_problems
 from frictioncli.diagnosis.ramps.timing_rivals import TimingRivals
 from frictioncli.diagnosis.search.cause import Cause
 from frictioncli.diagnosis.search.cause_search import find_causes
-from frictioncli.diagnosis.search.cause_selection import judged_on_new_run, refuted_by_new_run
+from frictioncli.diagnosis.search.cause_selection import (
+    judged_on_new_run,
+    refuted_by_new_run,
+    uncertain_causes,
+)
 from frictioncli.diagnosis.search.lack_of_fit import Structure
 from frictioncli.diagnosis.search.margin import channel_margin, margin_of
 from frictioncli.diagnosis.search.measurement import beside_the_rest, corrected_without_name
@@ -28,7 +32,7 @@ from frictioncli.diagnosis.search.new_run_changes import changes_on_new_run, wit
 from frictioncli.diagnosis.search.new_run_misfit import NewRunMisfit
 from frictioncli.diagnosis.search.search_result import SearchResult, given_up_causes
 from frictioncli.diagnosis.search.standing import with_standing
-from frictioncli.diagnosis.search.timing_causes import judged_by_timing
+from frictioncli.diagnosis.search.timing_causes import DELAY, judged_by_timing
 from frictioncli.diagnosis.search.understood import understood
 from frictioncli.diagnosis.search.verdict import verdict_of, visible_causes
 from frictioncli.diagnosis.settings import DiagnosisSettings
@@ -40,6 +44,8 @@ from frictioncli.errors import NotEnoughData
 
 LEAST_PAIRS = 12
 """With fewer pairs noise cannot be distinguished from structure."""
+
+_UNCERTAIN = "its coefficient in the extended model may be zero"
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -186,6 +192,18 @@ def diagnose_joint(
         refuted += worse
     weighted_fit = found.step.weighted_fit()
     causes, unnamed = understood(found.step, named, margin, settings.alpha)
+    uncertain = uncertain_causes(causes, problem, weighted_fit)
+    if timing is not None:
+        # what the starts of moves tell of the delay counts, too
+        uncertain -= {DELAY}
+    judged = tuple(
+        replace(one, standing="undetermined", reason=_UNCERTAIN)
+        if one.fit.effect.name in uncertain
+        else one
+        for one in judged
+    )
+    named = [one for one in named if one.fit.effect.name not in uncertain]
+    causes = tuple(one for one in causes if one.fit.effect.name not in uncertain)
     given_up = given_up_causes(found, settings.alpha)
     corrected = corrected_without_name(judged, causes, problem)
     names = {one.fit.effect.name for one in corrected}

@@ -16,6 +16,12 @@ import numpy as np
 from frictioncli.effects.base import Basis, Effect, EffectTable, Signature
 from frictioncli.effects.parameter import Parameter
 
+BESIDE_A_FILTER = (
+    "The torque in these logs is {delay} late, and smoothed by a filter with a time constant of"
+    " {time_constant}."
+)
+"""What is said of a delay where the torque is filtered as well."""
+
 
 def basis(table: EffectTable) -> Basis:
     """Return the change of both torques per delay, shapes (rows, 1) [N·m/s]."""

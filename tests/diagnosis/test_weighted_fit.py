@@ -160,3 +160,32 @@ def test_torque_that_is_not_fitted_adds_to_the_errors_what_it_does_to_the_estima
     np.testing.assert_allclose(
         np.corrcoef(estimates.T), covariance / np.outer(size, size), atol=0.06
     )
+
+
+def test_rows_that_weigh_alike_give_ordinary_least_squares():
+    """Coefficients as numpy finds them, errors as many draws of the noise show them.
+
+    Columns along the angle that are alike in all pairs, and one that differs from pair to pair.
+    """
+    generator = np.random.default_rng(3)
+    waves = np.tile(generator.normal(size=(2, 4, 2)), (1, 16, 1))
+    pairs = np.repeat(generator.normal(size=(2, 16, 1)), 4, axis=1)
+    friction, load = np.concatenate([waves, pairs], axis=2)
+    truth = np.array([1.0, -2.0, 0.5])
+    noisy = Weights.of(PAIRS, NOISE, EXTRA).alike()
+    fit = WeightedFit(noisy, noisy)
+    between = np.linalg.cholesky(dense(PAIRS, replace(NOISE, point=0.0), EXTRA))
+    rows = np.repeat(np.arange(16), 4)
+    estimates = []
+    for _ in range(2000):
+        targets = [
+            column @ truth
+            + (between @ generator.normal(size=16))[rows]
+            + NOISE.point * generator.normal(size=ROWS)
+            for column in (friction, load)
+        ]
+        estimates.append(fit.coefficients(friction, load, (targets[0], targets[1])))
+    expected = np.linalg.lstsq(np.vstack([friction, load]), np.concatenate(targets), rcond=None)[0]
+    np.testing.assert_allclose(estimates[-1], expected, rtol=1e-9)
+    errors = np.sqrt(np.diag(fit.error_covariance(friction, load)))
+    np.testing.assert_allclose(np.std(estimates, axis=0), errors, rtol=0.06)

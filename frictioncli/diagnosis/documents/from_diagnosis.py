@@ -37,7 +37,7 @@ from frictioncli.diagnosis.search.lack_of_fit import Structure
 from frictioncli.diagnosis.search.timing_causes import DELAY, FILTER
 from frictioncli.diagnosis.settings import DiagnosisSettings
 from frictioncli.diagnosis.thermal.refine import LAG
-from frictioncli.effects import BY_NAME, torque_filter
+from frictioncli.effects import BY_NAME, torque_delay, torque_filter
 from frictioncli.effects.base import missing_columns
 from frictioncli.effects.history_text import history_text
 from frictioncli.model.document import PARAMETERS, FrictionModel
@@ -179,8 +179,12 @@ def _record(
     effect = cause.fit.effect
     said = statement(effect, parameters)
     if cause.effects == (DELAY,) and diagnosis.timing is not None:
-        parameters = {"delay": _seconds(diagnosis.timing.estimates()[0])}
+        delay, time_constant = map(_seconds, diagnosis.timing.estimates())
+        parameters = {"delay": delay}
         said = statement(effect, parameters)
+        if diagnosis.timing.best == "both":
+            parameters["time_constant"] = time_constant
+            said = statement(effect, parameters, torque_delay.BESIDE_A_FILTER)
     elif cause.effects == (FILTER,) and effect.name == DELAY and diagnosis.timing is not None:
         effect = torque_filter.EFFECT
         parameters = {"time_constant": _seconds(diagnosis.timing.estimates()[1])}

@@ -78,10 +78,8 @@ def extension_coefficients(
     units : TorqueUnits
         Units of torque.
     """
-    start = len(extension.names) + len(extension.gravity)
-    start += sum(len(one.effect.coefficients) for one in extension.effects[:number])
     one = extension.effects[number]
-    errors = extension.errors[start : start + len(one.coefficients)]
+    errors = extension.errors[extension.place(number)]
     return _coefficients(one.effect, one.coefficients, errors, units)
 
 

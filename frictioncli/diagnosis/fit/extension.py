@@ -19,6 +19,7 @@ from frictioncli.arrays import Array
 from frictioncli.diagnosis.data.problem import Problem
 from frictioncli.diagnosis.fit.columns import base_rows
 from frictioncli.diagnosis.fit.hypotheses import EffectFit
+from frictioncli.diagnosis.fit.left_by_base import Z95
 from frictioncli.diagnosis.fit.weighted_fit import WeightedFit
 from frictioncli.effects.base import Basis
 from frictioncli.effects.parameter import Parameter
@@ -70,6 +71,29 @@ class Extension(Refit):
 
     errors: Array
     shape_errors: Array
+
+    def place(self, number: int) -> slice:
+        """Return the place of an effect's coefficients among the parameters.
+
+        Parameters
+        ----------
+        number : int
+            Number of the effect, from 0.
+        """
+        start = len(self.names) + len(self.gravity)
+        start += sum(len(one.effect.coefficients) for one in self.effects[:number])
+        return slice(start, start + len(self.effects[number].effect.coefficients))
+
+    def may_be_zero(self, number: int) -> bool:
+        """Return whether the 95 % interval of an effect's only coefficient holds zero.
+
+        Parameters
+        ----------
+        number : int
+            Number of the effect, from 0.
+        """
+        coefficients, errors = self.effects[number].coefficients, self.errors[self.place(number)]
+        return len(coefficients) == 1 and abs(coefficients[0]) <= Z95 * errors[0]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

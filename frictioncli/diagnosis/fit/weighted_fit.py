@@ -1,8 +1,11 @@
-r"""Weighted least squares by which an extended model is fitted, with the covariance of its errors.
+r"""Least squares by which an extended model is fitted, with the covariance of its errors.
 
-Estimates that must predict are made by weighted least squares that does not model drift: under
-generalised least squares a slow error of the model is attributed to drift, and the model may miss
-by as much. The covariance of the estimates does account for drift,
+Estimates that must predict are made by ordinary least squares: all rows of a channel weigh the
+same. What a model of a joint misses is mostly its own error, the same in all pairs of one kind.
+Under generalised least squares a slow error is attributed to drift, and the deviations within
+pairs, whose noise averages out over many pairs, decide alone about a coefficient, however much
+worse the means of the pairs are then predicted. The covariance of the estimates accounts for the
+noise as it is,
 
 .. math:: (X^\mathsf{T} X)^{-1} X^\mathsf{T} C X (X^\mathsf{T} X)^{-1}
 
@@ -34,7 +37,7 @@ class Weights:
     point : float
         Standard deviation of an angle bin about the mean of its pair. [N·m]
     deviation : ndarray, shape (pairs,)
-        Standard deviation of each pair's mean. [N·m]
+        Standard deviation of each pair's mean by which it is weighted. [N·m]
     covariance : PairCovariance
         Covariance of the noise of the pair means.
     """
@@ -62,6 +65,10 @@ class Weights:
         )
         deviation = np.sqrt(covariance.white + noise.drift**2)
         return cls(layout, noise.point, deviation, covariance)
+
+    def alike(self) -> "Weights":
+        """Return weights under which all rows weigh the same."""
+        return replace(self, deviation=self.point / np.sqrt(self.layout.bins))
 
     def weighted(self, columns: Array) -> Array:
         """Return weighted deviations from the pair means and, below them, weighted pair means.

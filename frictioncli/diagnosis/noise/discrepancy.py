@@ -41,6 +41,10 @@ The nuisances of the simulator, all at once, leave 0.4 to 0.8 %."""
 SPREAD = 0.7
 """Standard deviation of the natural logarithm of each function's amplitude beforehand."""
 
+_FORM_ERRORS = 2.0
+"""Size of errors in the form of the friction model relative to that of the other functions, where
+they look like its parameters: exponents are fitted to one joint, and differ from joint to joint."""
+
 _MINOR_WEIGHT = 0.6
 """The same of functions of two quantities and of those in the load channel: main effects are larger
 than interactions, and gravity is better known than friction."""
@@ -179,7 +183,7 @@ def discrepancy_of(problem: Problem, span: Array, share: float = SHARE) -> Discr
             orthogonal = orthogonal @ _orthonormal_combination(orthogonal)
         scale = weight * np.sqrt(rows / float(np.sum(np.square(orthogonal))))
         left.append(scale * orthogonal)
-        whole.append(weight * _of_errors(axes, columns))
+        whole.append((_FORM_ERRORS if axes == _FORM else weight) * _of_errors(axes, columns))
         components.append(Component(axes, channel, slice(first, first + orthogonal.shape[1])))
         first += orthogonal.shape[1]
         squares += weight**2

@@ -14,6 +14,7 @@ import numpy as np
 from frictioncli.diagnosis.data.problem import Problem
 from frictioncli.diagnosis.fit.extension import extend, misfits
 from frictioncli.diagnosis.fit.hypotheses import EffectFit
+from frictioncli.diagnosis.fit.weighted_fit import WeightedFit
 from frictioncli.diagnosis.search.cause import Cause
 from frictioncli.diagnosis.search.new_run import NewRunTest, new_run_test
 from frictioncli.diagnosis.search.step import Step
@@ -97,6 +98,27 @@ def refuted_by_new_run(causes: Sequence[Cause], step: Step, new: Problem) -> tup
             )
             refuted.append(replace(cause, standing="visible", reason=reason))
     return tuple(refuted)
+
+
+def uncertain_causes(
+    causes: Sequence[Cause], problem: Problem, weighted_fit: WeightedFit
+) -> frozenset[str]:
+    """Return the names of causes whose only coefficient may be zero in the extended model.
+
+    What smooth errors of the model could add along it counts there, and what is not fitted.
+
+    Parameters
+    ----------
+    causes : sequence of Cause
+        Causes that are named.
+    problem : Problem
+        The runs seen.
+    weighted_fit : WeightedFit
+        Weights of both channels.
+    """
+    extension = extend(problem, weighted_fit, [one.fit for one in causes])
+    names = [one.fit.effect.name for one in causes]
+    return frozenset(name for number, name in enumerate(names) if extension.may_be_zero(number))
 
 
 def _is_change(cause: Cause) -> bool:

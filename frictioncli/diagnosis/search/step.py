@@ -166,14 +166,14 @@ class Step:
         return found[0], found[1]
 
     def weighted_fit(self) -> WeightedFit:
-        """Return the weighted least squares by which predictions are made under this noise."""
+        """Return the least squares by which predictions are made, and their errors."""
         layout, extra = self.problem.layout, self.problem.temperature_variance
         friction, load = self.noise()
         known = self.precomputed.discrepancy
         smooth = np.split(known.unseen(self.fit.variances.amplitude), 2)
         return WeightedFit(
-            Weights.of(layout, friction, extra),
-            Weights.of(layout, load, np.zeros_like(extra)),
+            Weights.of(layout, friction, extra).alike(),
+            Weights.of(layout, load, np.zeros_like(extra)).alike(),
             (smooth[0], smooth[1]),
         )
 
