@@ -98,8 +98,8 @@ def verdict_sentence(document: DiagnosisDocument, unit: str) -> str:
     )
     if document.verdict == "no_evidence":
         found = (
-            "No cause is named in that; what stands out of the noise, and why it is not named,"
-            " says the list below."
+            "No cause of that is named; the list below shows what is detectable, and why it is not"
+            " named."
             if document.visible
             else "No cause was found in that: no effect of the catalogue and no other structure."
             " The table below says how large each effect would have to be to be found."

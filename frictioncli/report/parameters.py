@@ -162,8 +162,8 @@ def limitations(results: JointResults, diagnosis: DiagnosisDocument | None) -> l
         if abs(value) > _STRONG_CORRELATION:
             both = f"{PARAMETER_SYMBOLS[first]} and {PARAMETER_SYMBOLS[second]}"
             sentences.append(
-                f"{both} are told only together (correlation {correlation_text(value)}): one may be"
-                " off if the other is off with it."
+                f"{both} are not determined separately (correlation {correlation_text(value)}):"
+                " they compensate each other."
             )
     return sentences + _undetermined_causes(results, diagnosis)
 

@@ -53,8 +53,7 @@ def test_limitations_are_stated(correlated, without_temperature):
     )
     assert sentences == [
         "β is known only roughly: 0.500 to 3.50 N·m.",
-        "τc and β are told only together (correlation −0.95): one may be off if the other is off"
-        " with it.",
+        "τc and β are not determined separately (correlation −0.95): they compensate each other.",
         "Which of run in and drift is at work: these data cannot tell them apart. Rest a day.",
         "Whether there is drift: these data cannot show it.",
     ]

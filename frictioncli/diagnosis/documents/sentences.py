@@ -7,7 +7,7 @@ from frictioncli.wording import in_words, list_text, number_text, quantity_text
 
 _STANDING = {
     "named": "named",
-    "visible": "stands out of the noise, but is not named",
+    "visible": "detectable, but not named",
     "negligible": "smaller than what is worth a name",
     "undetermined": "its size is not known well enough",
 }
