@@ -9,7 +9,7 @@ LARGEST ?= 1e8
 export OMP_NUM_THREADS := 1
 export OPENBLAS_NUM_THREADS := 1
 
-.PHONY: reproduce test test-all lint same coverage blind comparison fleet planning wear real real-diagnoses bench fuzz kill clean
+.PHONY: reproduce test test-all lint same coverage blind comparison fleet planning wear real real-diagnoses bench fuzz fuzz-c kill clean
 
 reproduce: $(VENV)/installed
 	$(BIN)/frictioncli run sample_logs/kr10 -w $(RUN)
@@ -52,6 +52,9 @@ bench: $(VENV)/studied
 
 fuzz: $(VENV)/tested
 	$(BIN)/python -m tests.studies.fuzz $(FUZZ)
+
+fuzz-c: $(VENV)/tested
+	$(BIN)/python -m tests.studies.fuzz_c $(FUZZ)
 
 kill: $(VENV)/tested
 	$(BIN)/python -m tests.studies.kill

@@ -269,10 +269,16 @@ def fleet(
         bool, typer.Option("--diagnosis/--no-diagnosis", help="Diagnose each joint.")
     ] = True,
     settings: RunSettings,
+    fail_on: Annotated[
+        str | None,
+        typer.Option(help="Exit with 3 on such a finding: failed (a joint).", metavar="FINDING"),
+    ] = None,
 ) -> None:
     """Run the chain for many joints; one row each in fleet.parquet. N·m (or A), °C, deg/s."""
-    from frictioncli.fleet.fleet import run_fleet
+    from frictioncli.fleet.fleet import has_failed, run_fleet
 
+    if fail_on not in (None, "failed"):
+        raise OptionError(f"--fail-on {fail_on}: expected failed")
     if not diagnosis:
         settings = replace(settings, diagnosis=None)
     try:
@@ -281,3 +287,5 @@ def fleet(
         say("interrupted; joints that are done stay done: call again to go on", fault=True)
         raise typer.Exit(_INTERRUPTED) from None
     say(summary)
+    if fail_on and has_failed(summary):
+        raise typer.Exit(_FINDING)

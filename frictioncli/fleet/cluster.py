@@ -1,16 +1,20 @@
 """Processing of joints on a running Dask cluster; the workers read and write the files."""
 
 import logging
+import time
 from collections.abc import Generator, Iterator, Sequence
 from concurrent.futures import CancelledError
 from contextlib import contextmanager
+from dataclasses import dataclass
+from pathlib import Path
 from typing import Any
 
 from frictioncli import __version__
 from frictioncli.errors import FrictionError, OptionError
-from frictioncli.fleet.joint import JointOutcome, JointTask, run_joint
-from frictioncli.fleet.local_processes import record_worker_death
+from frictioncli.fleet.joint import JointOutcome, JointTask, record_failure, run_joint
+from frictioncli.fleet.local_processes import record_timeout, record_worker_death
 
+_POLL, _RESTART = 0.05, 20  # [s]
 _PATIENCE = 60
 """Timeout for the scheduler and its first worker. [s]"""
 
@@ -18,7 +22,12 @@ _LARGEST_BATCH = 16
 _BATCHES_PER_WORKER = 20
 
 
-def run_on_cluster(tasks: Sequence[JointTask], address: str) -> Generator[JointOutcome, None, None]:
+def run_on_cluster(
+    tasks: Sequence[JointTask],
+    address: str,
+    timeout: float | None = None,
+    tls: Sequence[Path] = (),
+) -> Generator[JointOutcome, None, None]:
     """Yield the outcome of each joint as soon as it is done.
 
     The joints are sent in batches, one batch per worker at a time. If a worker dies, the scheduler
@@ -26,12 +35,19 @@ def run_on_cluster(tasks: Sequence[JointTask], address: str) -> Generator[JointO
     workers as the scheduler allows, its joints are tried one by one, and the joint that kills
     workers again has failed.
 
+    With a timeout joints are sent one by one. One that takes longer has failed, its worker is
+    restarted where a nanny watches it, and gets no further joint where none does.
+
     Parameters
     ----------
     tasks : sequence of JointTask
         The joints, with absolute paths that are the same on all workers.
     address : str
-        Address of the scheduler, such as ``tcp://host:8786``.
+        Address of the scheduler, such as ``tls://host:8786``.
+    timeout : float, optional
+        Time that a joint may take. [s]
+    tls : sequence of Path
+        Files of the authority, the certificate and its key; none: as Dask is configured.
 
     Raises
     ------
@@ -41,24 +57,39 @@ def run_on_cluster(tasks: Sequence[JointTask], address: str) -> Generator[JointO
     FrictionError
         If the scheduler is lost.
     """
-    with _client(address) as client:
+    with _client(address, tls) as client:
         from distributed import KilledWorker, as_completed
 
-        size = _batch_size(len(tasks), len(client.nthreads()))
+        size = 1 if timeout else _batch_size(len(tasks), len(client.nthreads()))
         waiting = [list(tasks[i : i + size]) for i in range(0, len(tasks), size)][::-1]
-        running: dict[str, list[JointTask]] = {}
+        running: dict[str, _Running] = {}
+        stuck: set[str] = set()
         queue = as_completed(loop=client.loop)
 
         def submit() -> None:
-            while waiting and len(running) < max(1, len(client.nthreads())):
+            workers = set(client.nthreads())
+            free = workers - stuck
+            while waiting and len(running) < max(1, len(free)) and (free or not workers):
                 batch = waiting.pop()
-                future = client.submit(_run_batch, batch, pure=False)
-                running[future.key] = batch
+                chosen = {"workers": sorted(free), "allow_other_workers": True} if stuck else {}
+                future = client.submit(_run_batch, batch, pure=False, **chosen)
+                running[future.key] = _Running(future, batch, time.monotonic())
                 queue.add(future)
 
         submit()
-        for future in queue:
-            batch = running.pop(future.key)
+        while running:
+            if timeout and not queue.has_ready():
+                time.sleep(_POLL)
+                for late in [one for one in running.values() if one.seconds() > timeout]:
+                    del running[late.future.key]
+                    stuck |= _ended(client, late.future)
+                    yield record_timeout(late.batch[0], timeout)
+                    submit()
+                continue
+            future = next(queue)
+            if future.key not in running:  # it was late
+                continue
+            batch = running.pop(future.key).batch
             try:
                 yield from future.result()
             except KilledWorker:
@@ -72,10 +103,36 @@ def run_on_cluster(tasks: Sequence[JointTask], address: str) -> Generator[JointO
                     " done: start it and call again"
                 ) from error
             submit()
+        for (task,) in waiting:
+            text = "all workers are held up by joints that took too long"
+            yield record_failure(task, text, text)
+
+
+@dataclass(frozen=True, slots=True)
+class _Running:
+    """Joints that a worker has got, and when."""
+
+    future: Any
+    batch: list[JointTask]
+    began: float
+
+    def seconds(self) -> float:
+        return time.monotonic() - self.began
+
+
+def _ended(client: Any, future: Any) -> set[str]:
+    """End the work on a future; return the workers that cannot be restarted and go on with it."""
+    workers = {name for name, keys in client.processing().items() if future.key in keys}
+    future.cancel()
+    try:
+        restarted = client.restart_workers(list(workers), timeout=_RESTART, raise_for_error=False)
+    except (ValueError, TimeoutError):  # no nanny
+        return workers
+    return {name for name in workers if restarted.get(name) != "OK"}
 
 
 @contextmanager
-def _client(address: str) -> Iterator[Any]:
+def _client(address: str, tls: Sequence[Path]) -> Iterator[Any]:
     try:
         from distributed import Client
     except ImportError as error:
@@ -83,11 +140,12 @@ def _client(address: str) -> Iterator[Any]:
             "--scheduler needs Dask; install it with: pip install 'frictioncli[cluster]'"
         ) from error
     try:
-        client = Client(address, timeout=_PATIENCE, set_as_default=False)
-    except (OSError, ValueError) as error:
+        options = {"security": _security(tls)} if tls else {}
+        client = Client(address, timeout=_PATIENCE, set_as_default=False, **options)
+    except (OSError, ValueError, TypeError) as error:
         raise OptionError(
             f"--scheduler {address}: no Dask scheduler answers ({error}); expected an address such"
-            " as tcp://host:8786"
+            " as tls://host:8786, with the files of --tls-ca, --tls-cert and --tls-key"
         ) from error
     with _no_logging("distributed.client"), client:
         try:
@@ -98,6 +156,19 @@ def _client(address: str) -> Iterator[Any]:
                 f" 'dask worker {address} --nthreads 1'"
             ) from error
         yield client
+
+
+def _security(tls: Sequence[Path]) -> Any:
+    """Return the settings of an encrypted connection, in which each side knows the other."""
+    from distributed.security import Security
+
+    authority, certificate, key = map(str, tls)
+    return Security(
+        require_encryption=True,
+        tls_ca_file=authority,
+        tls_client_cert=certificate,
+        tls_client_key=key,
+    )
 
 
 @contextmanager

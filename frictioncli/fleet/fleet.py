@@ -129,6 +129,7 @@ def run_fleet(
     """
     settings = settings or RunSettings()
     options = options or FleetSettings()
+    options.certificates()
     # workers may have another current folder
     fleet, out = fleet.absolute(), out.absolute()
     if settings.ingest.map_file is not None:
@@ -161,13 +162,19 @@ def run_fleet(
     return summary
 
 
+def has_failed(summary: FleetSummary) -> bool:
+    """Return whether a joint of a fleet has failed."""
+    return summary.status[FAILED] > 0
+
+
 def _outcomes(
     tasks: list[JointTask], options: FleetSettings
 ) -> Generator[JointOutcome, None, None]:
     """Return the outcomes, from the cluster or from processes of this machine."""
     if options.scheduler is not None:
-        return run_on_cluster(tasks, options.scheduler)
-    return run_locally(tasks, min(options.workers or os.cpu_count() or 1, len(tasks)))
+        return run_on_cluster(tasks, options.scheduler, options.timeout, options.certificates())
+    workers = min(options.workers or os.cpu_count() or 1, len(tasks))
+    return run_locally(tasks, workers, options.timeout)
 
 
 def _write_table(path: Path, tasks: list[JointTask], provenance: Provenance) -> None:

@@ -18,6 +18,7 @@ from frictioncli.fleet.joint_logs import JointLogs
 from frictioncli.fleet.joint_record import (
     FAILURE,
     JointRecord,
+    output_digests,
     read_record,
     reset_folder,
     write_record,
@@ -111,13 +112,21 @@ def _run_joint(task: JointTask) -> JointOutcome:
         key = _key(inputs, settings_document(settings, report=task.report))
         with locked(task.work):
             record = read_record(task.work)
-            if not task.redo and record is not None and record.key == key:
+            # what is damaged, or was made by a version that kept no digests, is made again
+            if (
+                not task.redo
+                and record is not None
+                and record.key == key
+                and record.outputs
+                and record.outputs == output_digests(task.work)
+            ):
                 return _outcome(task, UNCHANGED, record.row)
             reset_folder(task.work, _status_columns(task, FAILED, "not finished"))
             left_out = _run_stages(task, runs, settings)
             row = _status_columns(task, DONE, left_out) | {"runs": len(runs)} | table_row(task.work)
             row["inputs_sha256"] = _digest(inputs)
-            write_record(task.work, JointRecord(key=key, row=row))
+            outputs = output_digests(task.work)
+            write_record(task.work, JointRecord(key=key, row=row, outputs=outputs))
         return _outcome(task, DONE, row)
     except (FrictionError, OSError) as fault:
         return record_failure(task, str(fault), str(fault))

@@ -2,13 +2,14 @@
 
 import shutil
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
 from frictioncli import documents
 from frictioncli.errors import FrictionError, TableError
 from frictioncli.files import write_text
+from frictioncli.provenance import sha256
 
 RECORD = "fleet.json"
 """Name of the record; it exists from the beginning of the work on a joint."""
@@ -27,10 +28,13 @@ class JointRecord:
         Digest of inputs, settings and program version; None while the joint is not done.
     row : mapping
         Row of the table :data:`frictioncli.schemas.FLEET`.
+    outputs : mapping of str to str
+        Digest of each file of the joint by its path in the folder; empty while it is not done.
     """
 
     key: str | None
     row: Mapping[str, Any]
+    outputs: Mapping[str, str] = field(default_factory=dict)
 
 
 def read_record(work: Path) -> JointRecord | None:
@@ -39,6 +43,23 @@ def read_record(work: Path) -> JointRecord | None:
         return documents.decode((work / RECORD).read_bytes(), JointRecord)
     except (OSError, TableError):
         return None
+
+
+def output_digests(work: Path) -> dict[str, str]:
+    """Return the digest of each file that the stages have made in a folder.
+
+    Parameters
+    ----------
+    work : Path
+        Work folder of a joint.
+    """
+    files = (path for path in sorted(work.rglob("*")) if path.is_file())
+    names = {path.relative_to(work).as_posix(): path for path in files}
+    return {
+        name: sha256(path)
+        for name, path in names.items()
+        if name != RECORD and not name.startswith(".")
+    }
 
 
 def write_record(work: Path, record: JointRecord) -> None:

@@ -1,31 +1,36 @@
-"""Processing of joints in processes of this machine."""
+"""Processing of joints in processes of this machine.
+
+Who started the call handles the signals: workers ignore Ctrl-C, and end when the pipe to the
+process that started them closes, whatever has ended it.
+"""
 
 import multiprocessing
+import os
 import signal
-from collections.abc import Generator, Iterable
-from concurrent.futures import FIRST_COMPLETED, Future, ProcessPoolExecutor, wait
-from concurrent.futures.process import BrokenProcessPool
+import threading
+import time
+from collections.abc import Generator, Iterable, Iterator
+from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from itertools import islice
+from multiprocessing.connection import Connection, wait
+from multiprocessing.process import BaseProcess
+from queue import SimpleQueue
 
 from frictioncli.fleet.joint import JointOutcome, JointTask, record_failure, run_joint
 from frictioncli.fleet.settings import ATTEMPTS
 
-
-@dataclass(slots=True)
-class _Job:
-    """A joint in progress and the process pool, of one process, that it runs in."""
-
-    pool: ProcessPoolExecutor
-    task: JointTask
-    attempt: int = 1
+_CONTEXT = multiprocessing.get_context("spawn")
+"""A new interpreter, because a fork copies locks that threads of this process hold."""
 
 
-def run_locally(tasks: Iterable[JointTask], workers: int) -> Generator[JointOutcome, None, None]:
+def run_locally(
+    tasks: Iterable[JointTask], workers: int, timeout: float | None = None
+) -> Generator[JointOutcome, None, None]:
     """Yield the outcome of each joint as soon as it is done.
 
-    Each process has a pool of its own and works on one joint at a time. If a process dies, killed
-    or out of memory, only its joint is tried again, in a new process; the others go on.
+    Each process works on one joint at a time. If a process dies, killed or out of memory, only its
+    joint is tried again, in a new process; the others go on.
 
     Parameters
     ----------
@@ -33,38 +38,31 @@ def run_locally(tasks: Iterable[JointTask], workers: int) -> Generator[JointOutc
         The joints.
     workers : int
         Number of processes.
+    timeout : float, optional
+        Time after which a joint has failed and its process is ended. [s]
     """
     waiting = iter(tasks)
-    pools: list[ProcessPoolExecutor] = []
-    running: dict[Future[JointOutcome], _Job] = {}
-
-    def start(job: _Job) -> None:
-        running[job.pool.submit(run_joint, job.task)] = job
-
+    running: list[_Worker] = []
     try:
         for task in islice(waiting, workers):
-            pools.append(_one_process())
-            start(_Job(pools[-1], task))
+            running.append(_Worker())
+            running[-1].start(task)
         while running:
-            done, _ = wait(running, return_when=FIRST_COMPLETED)
-            for future in done:
-                job = running.pop(future)
-                try:
-                    yield future.result()
-                except BrokenProcessPool:
-                    pools.remove(job.pool)
-                    job.pool = _one_process()
-                    pools.append(job.pool)
-                    if job.attempt < ATTEMPTS:
-                        start(_Job(job.pool, job.task, job.attempt + 1))
-                        continue
-                    yield record_worker_death(job.task)
+            for worker in _next_ready(running, timeout):
+                outcome = worker.outcome(timeout)
+                if outcome is None:
+                    worker.start_again()
+                    continue
+                yield outcome
                 following = next(waiting, None)
                 if following is not None:
-                    start(_Job(job.pool, following))
+                    worker.start(following)
+                else:
+                    running.remove(worker)
+                    worker.end()
     finally:
-        for pool in pools:
-            pool.shutdown(wait=True, cancel_futures=True)
+        for worker in running:
+            worker.end()
 
 
 def record_worker_death(task: JointTask) -> JointOutcome:
@@ -79,12 +77,115 @@ def record_worker_death(task: JointTask) -> JointOutcome:
     return record_failure(task, text, text)
 
 
-def _one_process() -> ProcessPoolExecutor:
-    # a new interpreter, because a fork copies locks that threads of this process hold
-    context = multiprocessing.get_context("spawn")
-    return ProcessPoolExecutor(1, mp_context=context, initializer=_end_on_interrupt)
+def record_timeout(task: JointTask, timeout: float) -> JointOutcome:
+    """Record that a joint has taken too long.
+
+    Parameters
+    ----------
+    task : JointTask
+        The joint.
+    timeout : float
+        The time that it had. [s]
+    """
+    text = f"not done within the {timeout:g} s of --timeout; its process was ended"
+    return record_failure(task, text, text)
 
 
-def _end_on_interrupt() -> None:
-    """Let Ctrl-C end a worker at once and without a traceback; the caller prints the message."""
-    signal.signal(signal.SIGINT, signal.SIG_DFL)
+@dataclass(slots=True, eq=False)
+class _Worker:
+    """A process and the joint that it works on."""
+
+    process: BaseProcess | None = None
+    connection: Connection | None = None
+    task: JointTask | None = None
+    attempt: int = 1
+    began: float = 0.0
+
+    def start(self, task: JointTask) -> None:
+        """Hand out a joint, in a new process if there is none."""
+        self.task, self.attempt = task, 1
+        self._send()
+
+    def start_again(self) -> None:
+        """Hand out the same joint again, in a new process."""
+        self.attempt += 1
+        self._send()
+
+    def _send(self) -> None:
+        if self.connection is None:
+            self.connection, theirs = _CONTEXT.Pipe()
+            # a daemon is ended with this process where that ends in the usual way
+            self.process = _CONTEXT.Process(target=_work, args=(theirs,), daemon=True)
+            with _interrupt_held(), theirs:
+                self.process.start()
+        self.began = time.monotonic()
+        with suppress(OSError):  # it has died already: receiving tells
+            self.connection.send(self.task)
+
+    def outcome(self, timeout: float | None) -> JointOutcome | None:
+        """Return what became of the joint; None if it is to be tried again."""
+        assert self.task is not None
+        assert self.connection is not None
+        try:
+            if self.connection.poll():
+                outcome: JointOutcome = self.connection.recv()
+                return outcome
+        except (EOFError, OSError):
+            self.end()
+            return None if self.attempt < ATTEMPTS else record_worker_death(self.task)
+        self.end()
+        assert timeout is not None  # it was waited for no longer
+        return record_timeout(self.task, timeout)
+
+    def end(self) -> None:
+        """End the process, whatever it is doing: outputs appear whole or not at all."""
+        if self.connection is not None:
+            self.connection.close()
+        if self.process is not None:
+            self.process.kill()
+            self.process.join()
+        self.process = self.connection = None
+
+
+def _next_ready(running: list[_Worker], timeout: float | None) -> list[_Worker]:
+    """Wait for workers that have an outcome, have died or have taken too long."""
+    connections = [worker.connection for worker in running if worker.connection is not None]
+    if timeout is None:
+        ready = wait(connections)
+        return [worker for worker in running if worker.connection in ready]
+    first = min(worker.began for worker in running) + timeout
+    ready = wait(connections, max(first - time.monotonic(), 0))
+    late = time.monotonic() - timeout
+    return [w for w in running if w.connection in ready or w.began <= late]
+
+
+@contextmanager
+def _interrupt_held() -> Iterator[None]:
+    """Hold Ctrl-C back: the process that is started in the block never gets it."""
+    if not hasattr(signal, "pthread_sigmask"):
+        yield
+        return
+    before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
+    try:
+        yield
+    finally:
+        signal.pthread_sigmask(signal.SIG_SETMASK, before)
+
+
+def _work(connection: Connection) -> None:
+    """Work on joints until the connection closes, and end at once when it does."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    tasks: SimpleQueue[JointTask] = SimpleQueue()
+
+    def receive() -> None:
+        try:
+            while True:
+                tasks.put(connection.recv())
+        except (EOFError, OSError):
+            os._exit(1)
+
+    threading.Thread(target=receive, daemon=True).start()
+    while True:
+        outcome = run_joint(tasks.get())
+        with suppress(OSError):
+            connection.send(outcome)

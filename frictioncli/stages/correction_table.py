@@ -1,6 +1,6 @@
 """Tables of ``simulate`` and ``evaluate``: one calculation per joint, on either model."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from pathlib import Path
 from typing import Any
 
@@ -9,10 +9,30 @@ import pandas as pd
 from frictioncli import schemas, tables
 from frictioncli.diagnosis.documents.apply_extension import with_effects, without_effects
 from frictioncli.diagnosis.documents.extended_model import read_extended
-from frictioncli.errors import NotEnoughData
+from frictioncli.errors import NotEnoughData, TableError
 from frictioncli.model.document import FrictionModel, read_models
 from frictioncli.provenance import Provenance, input_hashes
 from frictioncli.workfiles import EXTENDED, MODEL, TORQUES
+
+
+def other_joint(source: Path, joint: int, joints: Iterable[int]) -> TableError:
+    """Return the error that a model is of a joint that the torques are not of.
+
+    Parameters
+    ----------
+    source : Path
+        File of the model.
+    joint : int
+        Its joint.
+    joints : iterable of int
+        The joints of the torques.
+    """
+    known = ", ".join(str(number) for number in sorted(set(joints)))
+    made_by = "diagnose" if source.name == EXTENDED else "fit"
+    return TableError(
+        f"{source}: of joint {joint}, but {TORQUES} beside it has joint(s) {known}; run"
+        f" 'frictioncli {made_by}' again"
+    )
 
 
 def write_correction_table(
@@ -62,6 +82,8 @@ def write_correction_table(
     parts, faults = [], []
     for model in read_models(source):
         measured = torques[torques["joint"] == model.joint]
+        if measured.empty:
+            raise other_joint(source, model.joint, torques["joint"])
         try:
             if extended:
                 reduced, base, added = without_effects(measured, model, extensions[model.joint])

@@ -13,6 +13,7 @@ from frictioncli.errors import OptionError, TableError
 from frictioncli.files import write_text
 from frictioncli.model.document import FrictionModel, read_models
 from frictioncli.provenance import input_hashes
+from frictioncli.stages.correction_table import other_joint
 from frictioncli.stages.stage import StageResult, stage
 from frictioncli.workfiles import DIAGNOSIS, EXTENDED, MODEL, TORQUES
 
@@ -64,6 +65,10 @@ def deployed(work: Path, settings: ExportSettings | None = None) -> DeployedMode
     settings = settings or ExportSettings(to="json")
     source = EXTENDED if settings.extended else MODEL
     model = _chosen(work / source, settings.joint)
+    if (work / TORQUES).exists():
+        joints = tables.read(work / TORQUES, schemas.TORQUES)["joint"].unique().tolist()
+        if model.joint not in joints:
+            raise other_joint(work / source, model.joint, joints)
     extension, inputs = None, [work / source]
     if settings.extended:
         extension = _extension(work, model)

@@ -225,7 +225,7 @@ COMMANDS = {
         },
     ),
     "fleet": Command(
-        functions=("frictioncli.fleet.fleet:run_fleet",),
+        functions=("frictioncli.fleet.fleet:run_fleet", "frictioncli.fleet.fleet:has_failed"),
         words=("FLEET",),
         options=work_folder("run_fleet.out")
         | without(reading("run_fleet.settings.ingest"), "--joint")
@@ -236,6 +236,11 @@ COMMANDS = {
             "--workers": ("3", "run_fleet.options.workers", 3),
             "--scheduler": ("tcp://host:1", "run_fleet.options.scheduler", "tcp://host:1"),
             "--redo": ("", "run_fleet.options.redo", True),
+            "--timeout": ("90", "run_fleet.options.timeout", 90.0),
+            "--tls-ca": ("ca.pem", "run_fleet.options.tls_ca", Path("ca.pem")),
+            "--tls-cert": ("own.pem", "run_fleet.options.tls_cert", Path("own.pem")),
+            "--tls-key": ("own.key", "run_fleet.options.tls_key", Path("own.key")),
+            "--fail-on": ("failed", "has_failed", ""),
             "--report": ("", "run_fleet.options.report", True),
             "--no-report": ("", "run_fleet.options.report", False),
             "--diagnosis": ("", "run_fleet.settings.diagnosis", DiagnosisSettings()),

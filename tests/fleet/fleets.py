@@ -32,8 +32,9 @@ def write_fleet(folder):
 
 
 def _interruptible():
-    """Let SIGINT interrupt the command even if the tests were started as a background job."""
-    signal.signal(signal.SIGINT, signal.SIG_DFL)
+    """Let signals act as usual even if the tests were started as a background job."""
+    for number in (signal.SIGINT, signal.SIGHUP, signal.SIGTERM):
+        signal.signal(number, signal.SIG_DFL)
 
 
 def started(*arguments, **environment):
@@ -119,3 +120,22 @@ class Deadly(JointLogs):
         if self.counter.stat().st_size <= self.deaths:
             os.kill(os.getpid(), signal.SIGKILL)
         return JointLogs.runs(self)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Endless(JointLogs):
+    """Logs that hold up the process which reads them for ever."""
+
+    def runs(self):
+        """Do not come back."""
+        while True:
+            time.sleep(60)
+
+
+def is_alive(pid):
+    """Return whether a process works; one that has ended and waits for its parent does not."""
+    try:
+        stat = Path(f"/proc/{pid}/stat").read_text(encoding="utf-8")
+    except OSError:
+        return False
+    return stat.rpartition(")")[2].split()[0] != "Z"

@@ -11,9 +11,10 @@ from frictioncli.fleet.cluster import run_on_cluster
 from frictioncli.fleet.joint import JointTask
 from frictioncli.fleet.joint_logs import find_joints
 from frictioncli.stages.settings import RunSettings
-from tests.fleet.clusters import free_port, scheduler, worker
+from tests.fleet.clusters import certificates, free_port, scheduler, worker
 from tests.fleet.fleets import Deadly, begun, contents, done, fleet, started, until
 from tests.fleet.joints import Joint, write_joint
+from tests.fleet.test_processes import tasks_of
 
 pytest.importorskip("distributed", reason="needs the extra 'cluster'")
 
@@ -98,6 +99,54 @@ def test_a_scheduler_that_goes_is_one_message_and_the_next_call_goes_on(alone, l
     again = fleet(logs, "-w", out, "--workers", 1, "--no-report")
     assert "of them before, unchanged" in again.stdout
     assert contents(out) == contents(alone[0])
+
+
+@pytest.mark.slow
+def test_an_encrypted_cluster_lets_in_only_who_is_known(tmp_path):
+    own, strange = certificates(tmp_path / "own"), certificates(tmp_path / "strange")
+    folder = tmp_path / "logs" / "robot=A" / "joint=2"
+    write_joint(folder, Joint(seed=1, runs=1, cycle=4))
+    words = (tmp_path / "logs", "-w", tmp_path / "out", "--no-report", "--no-diagnosis")
+
+    def call(address, files):
+        names = ("--tls-ca", "--tls-cert", "--tls-key")
+        options = [part for pair in zip(names, files, strict=False) for part in pair]
+        return fleet(*words, "--scheduler", address, *options)
+
+    with scheduler(tls=own) as (address, _), worker(address, tmp_path / "one", tls=own):
+        known = call(address, own)
+        assert (known.returncode, known.stderr) == (0, "")
+        assert "1 done" in known.stdout
+        for stranger in (call(address, strange), call(address.replace("tls", "tcp"), ())):
+            assert stranger.returncode == 2
+            assert "no Dask scheduler answers" in stranger.stderr
+            assert "Traceback" not in stranger.stderr
+    assert call(address, own[:2]).returncode == 2
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("nanny", [True, False])
+def test_a_joint_that_takes_for_ever_is_a_row(tmp_path, nanny):
+    tasks = list(tasks_of(tmp_path / "logs", tmp_path / "out", endless={1}))
+    with scheduler() as (address, _), worker(address, tmp_path / "one", nanny=nanny):
+        outcomes = {one.joint: one for one in run_on_cluster(tasks, address, timeout=60.0)}
+    assert "not done within the 60 s" in outcomes[1].message
+    others = {outcomes[joint].status for joint in (2, 3)}
+    assert others == ({"done"} if nanny else {"failed"})
+    if not nanny:
+        assert "all workers are held up" in outcomes[3].message
+
+
+@pytest.mark.slow
+def test_a_worker_that_does_not_answer_holds_nothing_up(tmp_path):
+    tasks = list(tasks_of(tmp_path / "logs", tmp_path / "out", endless=()))
+    with scheduler() as (address, _), worker(address, tmp_path / "one") as process:
+        outcomes = run_on_cluster(tasks, address, timeout=30.0)
+        first = next(outcomes)
+        os.kill(process.pid, signal.SIGSTOP)
+        rest = list(outcomes)
+    assert first.status == "done"
+    assert {one.status for one in rest} == {"failed"}
 
 
 def test_no_scheduler_at_the_address(tmp_path, monkeypatch):

@@ -2,6 +2,7 @@
 
 import itertools
 from contextlib import suppress
+from pathlib import Path
 
 import numpy as np
 import pyarrow as pa
@@ -171,3 +172,46 @@ def test_a_log_of_blank_lines_only_is_refused(day, tmp_path):
     (day / "log.csv").write_text(HEADER + "\n" * 100, encoding="utf-8")
     with pytest.raises(LogError):
         ingest([day], tmp_path / "work", IngestSettings())
+
+
+@pytest.mark.parametrize(
+    ("scale", "reason"), [(1e-300, "no_neighbours"), (1e-9, "expected at most one per 1 µs")]
+)
+def test_times_of_no_clock_are_refused(day, tmp_path, scale, reason):
+    rows = "".join(f"{i * 0.012 * scale};{i * 0.1:.4f};{i % 7 * 0.3:.3f}\n" for i in range(300))
+    (day / "log.csv").write_text(HEADER + rows, encoding="utf-8")
+    with pytest.raises(LogError, match=reason):
+        ingest([day], tmp_path / "work", IngestSettings())
+
+
+@pytest.mark.parametrize("command", ["ingest", "inspect"])
+def test_infinite_times_warn_of_nothing(day, tmp_path, command):
+    """Warnings are errors in the tests."""
+    rows = "".join(f"inf;{i * 0.1:.4f};{i % 7 * 0.3:.3f}\n" for i in range(300))
+    (day / "log.csv").write_text(HEADER + rows, encoding="utf-8")
+    if command == "ingest":
+        with pytest.raises(LogError, match="not_a_number"):
+            ingest([day], tmp_path / "work", IngestSettings())
+    else:
+        assert "not_a_number" in invoke("inspect", day).stdout
+
+
+@pytest.mark.parametrize("command", ["ingest", "inspect"])
+def test_a_name_of_several_lines_is_refused_in_one(day, tmp_path, command):
+    (day / "log\nfrictioncli: all is well.csv").write_text(HEADER + ROWS, encoding="utf-8")
+    options = ("-w", tmp_path / "work") if command == "ingest" else ()
+    with pytest.raises(LogError) as told:
+        invoke(command, day, *options)
+    assert "several lines" in str(told.value)
+    assert "\n" not in str(told.value)
+
+
+@pytest.mark.parametrize("sign", [-1, 0, 10, 13, 128, 256, 256 + 59, 1 << 20])
+def test_the_fast_parser_takes_only_what_it_can_tell_apart(sign):
+    parser = pytest.importorskip("frictioncli.logs.formats._plain_numbers")
+    built = Path(parser.__file__)
+    if built.stat().st_mtime < built.with_name("_plain_numbers.c").stat().st_mtime:
+        pytest.skip("built from an older source")
+    for pair in ((sign, ord(".")), (ord(";"), sign)):
+        with pytest.raises(ValueError, match="expected characters"):
+            parser.columns(b"1;2\n", *pair, np.ones(2, np.uint8).data, np.empty((2, 1)).data)

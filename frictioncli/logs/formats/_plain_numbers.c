@@ -112,7 +112,10 @@ static PyObject *columns(PyObject *Py_UNUSED(module), PyObject *args) {
     Py_ssize_t asked = 0;
     for (Py_ssize_t field = 0; field < form.fields; field++) asked += form.wanted[field] != 0;
     Py_ssize_t row_bytes = asked * (Py_ssize_t)sizeof(double);
-    if (!delimiter || !decimal || form.fields < 2 || !asked || out.len % row_bytes) {
+    /* checked before they are cast: 256 would become the zero byte that ends the text */
+    int known = delimiter > 0 && delimiter < 128 && decimal > 0 && decimal < 128 &&
+                delimiter != '\n' && delimiter != '\r' && decimal != '\n' && decimal != '\r';
+    if (!known || form.fields < 2 || !asked || out.len % row_bytes) {
         PyErr_SetString(PyExc_ValueError,
                         "expected characters, two fields or more, and room for whole rows");
     } else {

@@ -11,6 +11,7 @@ from pathlib import Path
 from frictioncli.errors import LogError
 from frictioncli.logs.formats.compression import SUFFIXES
 from frictioncli.logs.runs import manifest
+from frictioncli.plain_text import printable
 
 Logs = Sequence[Path] | Mapping[str, Path]
 """Log files and folders, where each folder is a run; or run name -> its file or folder."""
@@ -82,7 +83,8 @@ def discover(logs: Logs, excluded: Path | None = None) -> tuple[LogRun, ...]:
     Raises
     ------
     LogError
-        If a path does not exist, its name is not valid UTF-8, or no file is found.
+        If a path does not exist, its name is not valid UTF-8 or has several lines, or no file is
+        found.
     """
     paths = list(logs.values()) if isinstance(logs, Mapping) else logs
     found = {path: _files_of(path, excluded) for path in paths}
@@ -106,11 +108,13 @@ def discover(logs: Logs, excluded: Path | None = None) -> tuple[LogRun, ...]:
 
 
 def _check_name(path: Path) -> None:
-    """Raise if a name is not valid UTF-8: tables could not hold it."""
+    """Raise if a name is not valid UTF-8, which tables cannot hold, or has several lines."""
     try:
         str(path).encode()
     except UnicodeEncodeError:
         raise LogError(f"{path}: its name is no text in UTF-8; rename it") from None
+    if "\n" in path.name or "\r" in path.name:
+        raise LogError(f"{printable(str(path), 500)}: its name has several lines; rename it")
 
 
 def _in_order(files: Iterable[Path]) -> tuple[LogFile, ...]:

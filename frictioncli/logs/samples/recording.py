@@ -24,6 +24,8 @@ from frictioncli.logs.samples.temperature_register import TemperatureRegister
 
 _EXAMPLE_BYTES = 1 << 16
 _MIN_ROWS = 3
+_SHORTEST_PERIOD = 1e-6
+"""No controller samples faster. [s]"""
 
 SampleSink = Callable[[LogRows, Array], None]
 """Takes samples of all joints, and their times since the recording's first sample [s]."""
@@ -131,7 +133,7 @@ def read_recording(
     except UnreadableLog as error:
         return Refusal("unreadable_file", str(error))
     counts = rejected.counts()
-    refusal = _refusal(planned.log, rows_read, kept, counts, rejected)
+    refusal = _refusal(planned.log, rows_read, kept, counts, rejected, float(time[-1]))
     return refusal or RecordingSummary(planned, registers, rows_read, kept, counts, float(time[-1]))
 
 
@@ -177,7 +179,12 @@ def _with_payloads(
 
 
 def _refusal(
-    log: OpenedLog, rows_read: int, kept: int, counts: dict[str, int], rejected: RejectedRows
+    log: OpenedLog,
+    rows_read: int,
+    kept: int,
+    counts: dict[str, int],
+    rejected: RejectedRows,
+    duration: float,
 ) -> Refusal | None:
     """Return why a log cannot be used as a whole; None where it can."""
     counts = {reason: n for reason, n in counts.items() if reason != NO_VALUES}
@@ -189,6 +196,12 @@ def _refusal(
             reason,
             f"{n_rejected} of {rows_read} rows cannot be used, mostly {reason}, for example line"
             f" {line}: {text}",
+        )
+    if kept >= _MIN_ROWS and duration < _SHORTEST_PERIOD * (kept - 1):
+        return Refusal(
+            "implausible_time",
+            f"{kept} rows within {duration:.3g} s; expected at most one per"
+            f" {_SHORTEST_PERIOD * 1e6:g} µs; say the unit of the time with --time-unit",
         )
     if kept < _MIN_ROWS:
         return Refusal("too_few_rows", f"{kept} usable rows; expected at least {_MIN_ROWS}")

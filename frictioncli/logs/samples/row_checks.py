@@ -253,6 +253,6 @@ def _differentiated(
     rows = LogRows(block.lines, block.time, {**block.columns, **slopes}).take(which)
     isolated = np.zeros(len(rows), bool)
     for velocity in derived:
-        isolated |= np.isnan(rows.columns[velocity])
+        isolated |= ~np.isfinite(rows.columns[velocity])
     rejected.add(rows.lines[isolated], "no_neighbours")
     return rows.take(~isolated)

@@ -1,0 +1,144 @@
+"""Workers of a fleet as processes: who ends them, and who does not."""
+
+import os
+import signal
+import subprocess
+import sys
+
+import pytest
+
+from frictioncli.errors import OptionError
+from frictioncli.fleet.joint import JointTask
+from frictioncli.fleet.joint_logs import find_joints
+from frictioncli.fleet.local_processes import run_locally
+from frictioncli.fleet.settings import FleetSettings
+from frictioncli.stages.settings import RunSettings
+from tests.fleet.fleets import (
+    ENVIRONMENT,
+    PROGRAM,
+    Endless,
+    begun,
+    children,
+    contents,
+    fleet,
+    is_alive,
+    started,
+    until,
+)
+from tests.fleet.joints import Joint, write_joint
+
+QUICK = RunSettings(diagnosis=None)
+
+
+OPTIONS = ("--no-report", "--no-diagnosis")
+
+
+@pytest.fixture(scope="module")
+def small(tmp_path_factory):
+    """Return a folder with the logs of three joints, and what an undisturbed call gives."""
+    folder = tmp_path_factory.mktemp("small")
+    list(tasks_of(folder / "logs", folder / "out", endless=()))
+    result = fleet(folder / "logs", "-w", folder / "out", "--workers", 1, *OPTIONS)
+    assert "3 done, 0 failed" in result.stdout, result.stderr
+    return folder / "logs", contents(folder / "out")
+
+
+def workers_of(process):
+    """Return the processes that work on joints."""
+    found = []
+    for pid in children(process.pid):
+        with open(f"/proc/{pid}/cmdline", "rb") as stream:
+            if b"spawn_main" in stream.read():
+                found.append(pid)
+    return found
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("number", [signal.SIGTERM, signal.SIGHUP, signal.SIGKILL])
+def test_workers_end_with_the_process_that_started_them(small, tmp_path, number):
+    (logs, whole), out = small, tmp_path / "out"
+    process = started(logs, "-w", out, "--workers", 2, *OPTIONS)
+    workers = until(lambda: begun(out) and len(workers_of(process)) == 2 and workers_of(process))
+    process.send_signal(number)
+    process.communicate(timeout=300)
+    assert process.returncode == -number
+    until(lambda: not any(map(is_alive, workers)), seconds=60)
+    assert "3 done" in fleet(logs, "-w", out, "--workers", 2, *OPTIONS).stdout
+    assert contents(out) == whole
+
+
+@pytest.mark.slow
+def test_ctrl_c_where_it_is_ignored_stops_nothing(small, tmp_path):
+    """A job in the background of a script inherits that Ctrl-C is ignored."""
+    (logs, whole), out = small, tmp_path / "out"
+    process = subprocess.Popen(
+        [sys.executable, "-c", PROGRAM, "fleet", logs, "-w", out, "--workers", "2", *OPTIONS],
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+        encoding="utf-8",
+        env=ENVIRONMENT,
+        start_new_session=True,
+        preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_IGN),
+    )
+    until(lambda: begun(out) and len(workers_of(process)) == 2)
+    os.killpg(process.pid, signal.SIGINT)
+    output, errors = process.communicate(timeout=600)
+    assert (process.returncode, errors) == (0, "")
+    assert "3 done, 0 failed" in output
+    assert contents(out) == whole
+
+
+def tasks_of(folder, out, *, endless):
+    """Return a task per joint; those of some joints never end."""
+    for number in (1, 2, 3):
+        write_joint(
+            folder / "robot=A" / f"joint={number}", Joint(seed=1, runs=1, cycle=4), axis=number
+        )
+    for logs in find_joints(folder):
+        kind = Endless if logs.joint in endless else type(logs)
+        made = kind(robot="A", joint=logs.joint, folder=logs.folder)
+        yield JointTask(logs=made, work=out / logs.subfolder, settings=QUICK, report=False)
+
+
+@pytest.mark.slow
+def test_a_joint_that_takes_for_ever_fails_alone(tmp_path):
+    tasks = list(tasks_of(tmp_path / "logs", tmp_path / "out", endless={1, 3}))
+    outcomes = {one.joint: one for one in run_locally(tasks, 1, timeout=60.0)}
+    assert {joint: one.status for joint, one in outcomes.items()} == {
+        1: "failed",
+        2: "done",
+        3: "failed",
+    }
+    assert "not done within the 60 s of --timeout" in outcomes[1].message
+
+
+@pytest.mark.parametrize("timeout", [0.0, -1.0, float("nan"), float("inf")])
+def test_a_timeout_that_is_none(timeout):
+    with pytest.raises(OptionError, match="--timeout"):
+        FleetSettings(timeout=timeout)
+
+
+def test_a_failed_joint_is_told_by_the_status_if_asked_for(tmp_path):
+    logs, out = tmp_path / "logs", tmp_path / "out"
+    (logs / "robot=A" / "joint=1").mkdir(parents=True)
+    assert fleet(logs, "-w", out).returncode == 0
+    asked = fleet(logs, "-w", out, "--fail-on", "failed")
+    assert asked.returncode == 3
+    assert "1 failed" in asked.stdout
+    wrong = fleet(logs, "-w", out, "--fail-on", "any")
+    assert (wrong.returncode, wrong.stdout) == (2, "")
+
+
+@pytest.mark.slow
+def test_a_damaged_output_is_made_again(tmp_path):
+    (task, *_) = tasks_of(tmp_path / "logs", tmp_path / "out", endless=())
+    (first,) = run_locally([task], 1)
+    whole = contents(task.work)
+    for name in ("samples.parquet", "model.json"):
+        (task.work / name).write_bytes(whole[name][:-5])
+        (again,) = run_locally([task], 1)
+        assert (first.status, again.status) == ("done", "done")
+        assert contents(task.work) == whole
+    (unchanged,) = run_locally([task], 1)
+    assert unchanged.status == "unchanged"
