@@ -190,7 +190,7 @@ def diagnose_joint(
         if not worse:
             break
         refuted += worse
-    weighted_fit = found.step.weighted_fit()
+    weighted_fit = found.step.predicting_fit()
     causes, unnamed = understood(found.step, named, margin, settings.alpha)
     uncertain = uncertain_causes(causes, problem, weighted_fit)
     if timing is not None:

@@ -1,11 +1,11 @@
 r"""Least squares by which an extended model is fitted, with the covariance of its errors.
 
-Estimates that must predict are made by ordinary least squares: all rows of a channel weigh the
-same. What a model of a joint misses is mostly its own error, the same in all pairs of one kind.
-Under generalised least squares a slow error is attributed to drift, and the deviations within
-pairs, whose noise averages out over many pairs, decide alone about a coefficient, however much
-worse the means of the pairs are then predicted. The covariance of the estimates accounts for the
-noise as it is,
+Rows may be weighted by their noise, as where causes are tested. Estimates that must predict are
+made by ordinary least squares: all rows of a channel weigh the same. What a model of a joint misses
+is mostly its own error, the same in all pairs of one kind. Under generalised least squares a slow
+error is attributed to drift, and the deviations within pairs, whose noise averages out over many
+pairs, decide alone about a coefficient, however much worse the means of the pairs are then
+predicted. The covariance of the estimates accounts for the noise as it is,
 
 .. math:: (X^\mathsf{T} X)^{-1} X^\mathsf{T} C X (X^\mathsf{T} X)^{-1}
 

@@ -21,7 +21,8 @@ from frictioncli.diagnosis.search.step import Step
 from frictioncli.effects.thermal_lag import EFFECT as THERMAL_LAG
 
 BEYOND_DOUBT = 1e-6
-"""Greatest p-value of a property of the joint that stays named though the new run lacks it."""
+"""Greatest p-value of a property of the joint that stays named though the new run lacks it, and of
+one of the log whose estimate for prediction may be zero."""
 
 _NOTHING = 0.2
 """Greatest amplitude on the new run that counts as nothing, beside its interval."""
@@ -77,7 +78,7 @@ def refuted_by_new_run(causes: Sequence[Cause], step: Step, new: Problem) -> tup
     new : Problem
         Rows of a run that was held out.
     """
-    weighted_fit = step.weighted_fit()
+    weighted_fit = step.predicting_fit()
     among = [one for one in causes if one.standing == "named" and one.holds_on_new_run is not False]
 
     def missed(fits: Sequence[EffectFit]) -> float:
@@ -105,7 +106,8 @@ def uncertain_causes(
 ) -> frozenset[str]:
     """Return the names of causes whose only coefficient may be zero in the extended model.
 
-    What smooth errors of the model could add along it counts there, and what is not fitted.
+    What smooth errors of the model could add along it counts there, and what is not fitted. What is
+    beyond doubt in the log is corrected by the best estimate all the same.
 
     Parameters
     ----------
@@ -117,8 +119,12 @@ def uncertain_causes(
         Weights of both channels.
     """
     extension = extend(problem, weighted_fit, [one.fit for one in causes])
-    names = [one.fit.effect.name for one in causes]
-    return frozenset(name for number, name in enumerate(names) if extension.may_be_zero(number))
+    return frozenset(
+        cause.fit.effect.name
+        for number, cause in enumerate(causes)
+        if extension.may_be_zero(number)
+        and not (cause.fit.effect.measurement and cause.test.p_value < BEYOND_DOUBT)
+    )
 
 
 def _is_change(cause: Cause) -> bool:

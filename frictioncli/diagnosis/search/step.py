@@ -1,7 +1,7 @@
 """One step of the search: every hypothesis tested against base and accepted effects."""
 
 from collections.abc import Collection, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from scipy.optimize import minimize
@@ -166,16 +166,21 @@ class Step:
         return found[0], found[1]
 
     def weighted_fit(self) -> WeightedFit:
-        """Return the least squares by which predictions are made, and their errors."""
+        """Return the fit, weighted by this noise, by which causes are tested on another run."""
         layout, extra = self.problem.layout, self.problem.temperature_variance
         friction, load = self.noise()
         known = self.precomputed.discrepancy
         smooth = np.split(known.unseen(self.fit.variances.amplitude), 2)
         return WeightedFit(
-            Weights.of(layout, friction, extra).alike(),
-            Weights.of(layout, load, np.zeros_like(extra)).alike(),
+            Weights.of(layout, friction, extra),
+            Weights.of(layout, load, np.zeros_like(extra)),
             (smooth[0], smooth[1]),
         )
+
+    def predicting_fit(self) -> WeightedFit:
+        """Return the fit by which predictions are made: of all rows alike."""
+        fit = self.weighted_fit()
+        return replace(fit, friction=fit.friction.alike(), load=fit.load.alike())
 
     def refined(self, found: EffectFit) -> EffectFit:
         """Return an effect with its shape optimised off the grid, and the variances with it.
