@@ -25,8 +25,9 @@ from typing import Any
 import numpy as np
 from scipy.linalg import qr
 
-from frictioncli.arrays import Array, Flags
+from frictioncli.arrays import Array, Flags, Numbers
 from frictioncli.errors import OptionError
+from frictioncli.regression.inertial_bodies import pseudo_inertia
 
 _INDEPENDENT = 1e-3
 """A column of which the others leave less than this share is not kept."""
@@ -45,10 +46,14 @@ class ArmColumns:
         Torque of a unit of each parameter, in motion.
     gravity : ndarray, shape (rows, columns)
         The same at rest.
+    bodies : ndarray, shape (rows, 10 bodies + joints)
+        Torque of a unit of each parameter of the links, of the payloads but the lightest, and of
+        the rotors, in motion.
     """
 
     torque: Array
     gravity: Array
+    bodies: Array
 
     def where(self, kept: Flags) -> "ArmColumns":
         """Return the columns at some rows.
@@ -58,7 +63,9 @@ class ArmColumns:
         kept : ndarray of bool, shape (rows,)
             Whether each is kept.
         """
-        return ArmColumns(torque=self.torque[kept], gravity=self.gravity[kept])
+        return ArmColumns(
+            torque=self.torque[kept], gravity=self.gravity[kept], bodies=self.bodies[kept]
+        )
 
 
 class ArmModel:
@@ -93,7 +100,21 @@ class ArmModel:
         """Number of joints."""
         return int(self._model.nv)
 
-    def columns(self, joint: int, motion: Array) -> ArmColumns:
+    def start(self, payloads: int) -> Array:
+        """Return bodies to start a fit from, shape (bodies, 10): the links, then payloads.
+
+        Parameters
+        ----------
+        payloads : int
+            Payloads besides the lightest; each starts as a ball of 1 kg.
+        """
+        ball = np.array([1.0, 0, 0, 0, 0.004, 0, 0.004, 0, 0, 0.004])
+        links = [np.asarray(one.toDynamicParameters()) for one in list(self._model.inertias)[1:]]
+        possible = [np.linalg.eigvalsh(pseudo_inertia(one)).min() > 1e-9 for one in links]
+        chosen = [one if good else ball for one, good in zip(links, possible, strict=True)]
+        return np.array([*chosen, *([ball] * payloads)])
+
+    def columns(self, joint: int, motion: Array, payload: Numbers | None = None) -> ArmColumns:
         """Return the columns of the torque of one joint.
 
         Parameters
@@ -102,23 +123,37 @@ class ArmModel:
             Its number, from 1.
         motion : ndarray, shape (rows, joints, 3)
             Angle, velocity and acceleration of all joints. [deg], [deg/s], [deg/s²]
+        payload : ndarray of int, shape (rows,), optional
+            Number of the payload of each row, from 0 for the lightest: a body on the last link.
         """
         model, data = self._model, self._model.createData()
         state = np.radians(motion)
         rest = np.zeros(self.joints)
-        torque = np.empty((len(state), 10 * self.joints + 1))
+        torque = np.empty((len(state), 10 * self.joints))
         gravity = np.zeros_like(torque)
         regressor = self._pinocchio.computeJointTorqueRegressor
         neutral = self._pinocchio.neutral(model)
         for row, (angles, velocity, acceleration) in enumerate(state.transpose(0, 2, 1)):
             # joints without limits have cosine and sine in place of the angle
             angle = self._pinocchio.integrate(model, neutral, angles)
-            torque[row, :-1] = regressor(model, data, angle, velocity, acceleration)[joint - 1]
-            gravity[row, :-1] = regressor(model, data, angle, rest, rest)[joint - 1]
+            torque[row] = regressor(model, data, angle, velocity, acceleration)[joint - 1]
+            gravity[row] = regressor(model, data, angle, rest, rest)[joint - 1]
+        numbers = np.zeros(len(state), np.int64) if payload is None else np.asarray(payload)
+        heavier = np.arange(1, int(numbers.max(initial=0)) + 1)
+        carried = (numbers == heavier[:, np.newaxis]).astype(float)[:, :, np.newaxis]
         # the rotor turns with its own joint
-        torque[:, -1] = state[:, joint - 1, 2]
-        kept = _independent(torque)
-        return ArmColumns(torque=torque[:, kept], gravity=gravity[:, kept])
+        rotors = np.zeros((len(state), self.joints))
+        rotors[:, joint - 1] = state[:, joint - 1, 2]
+        own = slice(joint - 1, joint)
+        bodies = np.hstack([torque, *(one * torque[:, -10:] for one in carried)])
+        still = np.hstack([gravity, *(one * gravity[:, -10:] for one in carried)])
+        known = np.hstack([bodies, rotors[:, own]])
+        kept = _independent(known)
+        return ArmColumns(
+            torque=known[:, kept],
+            gravity=np.hstack([still, 0 * rotors[:, own]])[:, kept],
+            bodies=np.hstack([bodies, rotors]),
+        )
 
 
 def _independent(columns: Array) -> Array:

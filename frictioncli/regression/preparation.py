@@ -62,6 +62,9 @@ class PreparedJoint:
         What a user should know.
     other_share : float
         Share of the rows during motion of other joints, where they were kept; else 0.
+    payloads : tuple of float
+        Payloads that are bodies of the whole arm, the lightest first; empty if not all are known,
+        or without its kinematics. [kg]
     """
 
     equations: JointEquations
@@ -69,12 +72,13 @@ class PreparedJoint:
     dropped: dict[str, int]
     notes: tuple[str, ...] = ()
     other_share: float = 0.0
+    payloads: tuple[float, ...] = ()
 
 
 def prepare(
     motion: MotionLog,
     payload: pd.Series | None = None,
-    arm: Callable[[Array], ArmColumns] | None = None,
+    arm: Callable[[Array, Numbers | None], ArmColumns] | None = None,
     state: Array | None = None,
 ) -> PreparedJoint:
     """Choose the rows and the source of the acceleration.
@@ -86,7 +90,8 @@ def prepare(
     payload : Series, optional
         Payload by run and recording, missing where unknown. [kg]
     arm : callable, optional
-        Makes the columns of the whole arm's dynamics from the motion of all joints.
+        Makes the columns of the whole arm's dynamics from the motion of all joints, and the number
+        of the payload of each row where all are known.
     state : ndarray, shape (rows, joints, 3), optional
         That motion. [deg], [deg/s], [deg/s²]
 
@@ -174,8 +179,16 @@ def prepare(
     )
     if not known.any():
         terms = terms.without("gamma")
+    bodies: tuple[float, ...] = ()
     if arm is not None and state is not None and len(rows):
-        columns = arm(state)
+        masses, of_row = np.unique(states()[:, 0], return_inverse=True)
+        if np.isfinite(masses).all():
+            bodies = tuple(masses.tolist())
+        elif len(masses) > 1:
+            notes.append(
+                "payloads are not told apart in the dynamics of the whole arm, as not all are known"
+            )
+        columns = arm(state, of_row if bodies else None)
         equations = replace(equations, arm=columns, state=np.zeros_like(number))
         terms = replace(
             terms,
@@ -185,10 +198,13 @@ def prepare(
             payloads=(float("nan"),),
             poses=(float("nan"),),
         )
-        if len(set(payloads)) > 1:
-            notes.append("payloads are not told apart in the dynamics of the whole arm")
     return PreparedJoint(
-        equations=equations, terms=terms, dropped=dropped, notes=tuple(notes), other_share=share
+        equations=equations,
+        terms=terms,
+        dropped=dropped,
+        notes=tuple(notes),
+        other_share=share,
+        payloads=bodies,
     )
 
 

@@ -11,10 +11,11 @@ import pyarrow as pa
 
 from frictioncli.errors import NotEnoughData
 from frictioncli.pairs.other_joints import OTHER_MOVES
+from frictioncli.regression.arm_bodies import arm_bodies
 from frictioncli.regression.arm_dynamics import ArmModel
 from frictioncli.regression.arm_motion import arm_motions
 from frictioncli.regression.cells import torque_cells
-from frictioncli.regression.determination import regress
+from frictioncli.regression.determination import JointRegression, regress
 from frictioncli.regression.motion_rows import motion_rows
 from frictioncli.regression.preparation import PreparedJoint, prepare, with_wide_enough_filter
 from frictioncli.regression.text import regression_facts, regression_text
@@ -38,6 +39,8 @@ class RegressedTorques:
         Samples read, of all joints that were regressed.
     dropped : dict of str to int
         Samples in no row of the table, by reason.
+    arm : dict or None
+        What all joints together tell of the bodies of the arm, where its kinematics are given.
     """
 
     table: pd.DataFrame
@@ -46,6 +49,7 @@ class RegressedTorques:
     texts: tuple[str, ...]
     samples: int
     dropped: dict[str, int]
+    arm: Mapping[str, Any] | None = None
 
 
 def torques_by_regression(
@@ -149,6 +153,7 @@ def torques_by_regression(
     facts: dict[int, Mapping[str, Any]] = {}
     dropped: dict[str, int] = {}
     samples = 0
+    regressions: dict[int, JointRegression] = {}
     for joint, motion in motions.items():
         if joints is not None and joint not in joints:
             continue
@@ -168,6 +173,7 @@ def torques_by_regression(
             faults.append(f"joint {joint}: no speed and angle is passed often enough")
             continue
         samples += motion.samples
+        regressions[joint] = found
         for reason, count in [*prepared.dropped.items(), *cells.dropped.items()]:
             dropped[reason] = dropped.get(reason, 0) + count
         tables.append(cells.table)
@@ -178,6 +184,9 @@ def torques_by_regression(
         if standing:
             faults.append(f"joint {', '.join(standing)}: at rest throughout")
         raise NotEnoughData("; ".join(faults) or "no samples")
+    bodies = None if arm is None else arm_bodies(regressions, arm, units[0])
+    if bodies is not None:
+        texts += bodies.texts()
     return RegressedTorques(
         table=pd.concat(tables, ignore_index=True),
         signs=signs,
@@ -185,6 +194,7 @@ def torques_by_regression(
         texts=(*texts, *faults),
         samples=samples,
         dropped=dropped,
+        arm=None if bodies is None else bodies.facts(),
     )
 
 

@@ -162,6 +162,7 @@ def _write(
         signs |= regressed.signs
         inputs += existing(work / SAMPLES, work / RECORDINGS)
         facts["regression"] = {str(joint): one for joint, one in regressed.facts.items()}
+        facts |= {"arm": dict(regressed.arm)} if regressed.arm is not None else {}
         if not paired:
             facts |= {"samples": regressed.samples, "dropped": regressed.dropped}
         texts += regressed.texts
