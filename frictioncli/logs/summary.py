@@ -1,5 +1,6 @@
 """What ``ingest`` has read: the record of all logs, facts for later stages, and a summary."""
 
+import re
 from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
@@ -15,6 +16,10 @@ from frictioncli.logs.samples.recording import RecordingSummary
 from frictioncli.logs.samples.timeline import Timeline
 
 _NAMES_SHOWN = 6
+_ALIKE = 3
+"""Least number of remarks that are told together."""
+_NUMBER = re.compile(r"\d+(?:\.\d+)?")
+_JOINT = re.compile(r"\bjoint (\d+)\b")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -228,7 +233,7 @@ def _grouped_by_remark(remarks: Iterable[tuple[str, str]], total: int) -> tuple[
     files: dict[str, list[str]] = {}
     for file, remark in remarks:
         files.setdefault(remark, []).append(file)
-    return tuple(
+    return _merged_joints(
         remark
         if len(set(names)) == total
         else f"{names[0]}: {remark}"
@@ -236,6 +241,30 @@ def _grouped_by_remark(remarks: Iterable[tuple[str, str]], total: int) -> tuple[
         else f"in {len(names)} files: {remark}"
         for remark, names in files.items()
     )
+
+
+def _merged_joints(remarks: Iterable[str]) -> tuple[str, ...]:
+    """Return remarks, of three or more that differ in their numbers alone the first for all.
+
+    Those on what is left out, or on values of a joint, stay as they are.
+    """
+    alike: dict[str, list[str]] = {}
+    for remark in remarks:
+        own = remark.startswith("left out") or "found" in remark or "torque constant" in remark
+        alike.setdefault(remark if own else _NUMBER.sub("#", remark), []).append(remark)
+    return tuple(
+        line
+        for group in alike.values()
+        for line in (group if len(group) < _ALIKE else [_with_others(group)])
+    )
+
+
+def _with_others(remarks: Sequence[str]) -> str:
+    """Return the first of alike remarks, with the joints or the number of the others."""
+    joints = [found[1] for one in remarks[1:] if (found := _JOINT.search(one))]
+    if len(joints) == len(remarks) - 1:
+        return f"{remarks[0]} (joints {', '.join(joints)} alike)"
+    return f"{remarks[0]} (and {len(remarks) - 1} like it)"
 
 
 def _rejected_lines(files: Sequence[RejectedFile]) -> list[str]:

@@ -107,11 +107,12 @@ def _separate(work: Path, settings: RunSettings, progress: Progress) -> None:
             raise
         for name in (PAIRS, RAMPS, STARTS):
             (work / name).unlink(missing_ok=True)
-        progress("pair", StageResult(work / PAIRS, f"left out: {fault}"))
         try:
             result = separate(work, separation, bin_width=width)
         except NotEnoughData as other:
             raise NotEnoughData(f"{fault}; by regression neither: {other}") from None
+        # said once: a refusal holds it already
+        progress("pair", StageResult(work / PAIRS, f"left out: {fault}"))
     else:
         result = separate(work, separation, bin_width=width)
     progress("separate", result)

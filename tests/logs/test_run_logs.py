@@ -12,7 +12,7 @@ from frictioncli.logs.ingest import ingest
 from frictioncli.logs.runs.discovery import discover, natural_key
 from frictioncli.logs.runs.manifest import read_manifest
 
-from .logs import kuka_columns, text_of, write
+from .logs import back_and_forth, kuka_columns, text_of, write
 
 
 def recordings(work):
@@ -279,3 +279,18 @@ def test_a_log_after_one_like_it_gives_what_it_gives_alone(tmp_path, change):
         assert len(found) == len(expected)
         if len(expected):
             assert found[own].reset_index(drop=True).equals(expected[own])
+
+
+def test_notes_that_differ_in_numbers_alone_are_told_once(tmp_path):
+    """Seven joints without units give two notes, not fourteen."""
+    time, position, velocity, torque = back_and_forth()
+    columns = {"time": time}
+    for joint in range(7):
+        columns |= {f"pos_{joint}": position, f"torque_{joint}": torque + joint}
+        columns |= {f"current_{joint}": torque / 10, f"velocity_{joint}": velocity}
+    summary = ingest([write(tmp_path / "log.csv", columns)], tmp_path / "work")
+    (unit,) = (note for note in summary.notes if "no unit in the header, taken as N·m" in note)
+    assert unit.startswith("torque_0")
+    assert unit.endswith("(and 6 like it)")
+    (choice,) = (note for note in summary.notes if "not used: current" in note)
+    assert choice.endswith("(joints 2, 3, 4, 5, 6, 7 alike)")

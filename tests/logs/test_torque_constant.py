@@ -230,3 +230,9 @@ def test_real_currents(folder, joint, by_hand, tmp_path):
     assert fact["estimate"] == pytest.approx(by_hand, rel=0.03)
     low, high = fact["ci95"]
     assert (high - low) / 2 < 0.02 * by_hand
+
+
+def test_a_current_beside_a_torque_tells_how_to_get_newton_metres(tmp_path):
+    summary = ingest([log(tmp_path / "log.csv")], tmp_path / "work")
+    assert summary.torque_unit == "A"
+    assert any("with --torque-constant auto they are in N·m" in note for note in summary.notes)

@@ -132,6 +132,11 @@ def plan_joint(
     if is_current and isinstance(constant, TorqueConstant):
         side, factor, torque_unit = names.JOINT_SIDE, constant.value, "N·m"
         remarks.notes.append(constant.text(channels.joint, channels.torque.name))
+    elif is_current and (channels.load or channels.other_torques):
+        remarks.notes.append(
+            "results are in A; with --torque-constant auto they are in N·m, where the torque beside"
+            " the current tells how"
+        )
     elif constant is not None:
         remarks.warnings.append(
             f"the torque constant of joint {channels.joint} has no use: {channels.torque.name} is"
