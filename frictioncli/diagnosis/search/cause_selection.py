@@ -22,7 +22,7 @@ from frictioncli.effects.thermal_lag import EFFECT as THERMAL_LAG
 
 BEYOND_DOUBT = 1e-6
 """Greatest p-value of a property of the joint that stays named though the new run lacks it, and of
-one of the log whose estimate for prediction may be zero."""
+any cause whose coefficient may be zero in the extended model."""
 
 _NOTHING = 0.2
 """Greatest amplitude on the new run that counts as nothing, beside its interval."""
@@ -106,8 +106,8 @@ def uncertain_causes(
 ) -> frozenset[str]:
     """Return the names of causes whose only coefficient may be zero in the extended model.
 
-    What smooth errors of the model could add along it counts there, and what is not fitted. What is
-    beyond doubt in the log is corrected by the best estimate all the same.
+    What smooth errors of the model could add along it counts there, and what is not fitted. Of what
+    is there beyond doubt only the part that the base could imitate may be zero.
 
     Parameters
     ----------
@@ -122,8 +122,7 @@ def uncertain_causes(
     return frozenset(
         cause.fit.effect.name
         for number, cause in enumerate(causes)
-        if extension.may_be_zero(number)
-        and not (cause.fit.effect.measurement and cause.test.p_value < BEYOND_DOUBT)
+        if extension.may_be_zero(number) and cause.test.p_value >= BEYOND_DOUBT
     )
 
 
