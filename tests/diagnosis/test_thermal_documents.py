@@ -94,3 +94,10 @@ def test_a_controller_has_the_friction_of_the_model(rows, model):
         temperature=table.motor_temperature + excess,
     )
     np.testing.assert_allclose(added + table.friction, warm, atol=1e-9)
+
+
+def test_parameters_have_the_intervals_of_the_sentence(diagnosis):
+    record = diagnosis_document(diagnosis, DiagnosisSettings()).causes[0]
+    for name, stated in diagnosis.thermal.estimates.items():
+        assert record.parameters[name].estimate == stated.value
+        assert record.parameters[name].ci95 == (stated.low, stated.high)
