@@ -125,7 +125,11 @@ COMMANDS = {
         ),
         words=("LOGS",),
         options=reading("inspect.settings")
-        | {"--json": ("", "document", None), "--suggest-map": ("", "suggested_map", None)},
+        | {
+            "--json": ("", "document", None),
+            "--suggest-map": ("", "suggested_map", None),
+            "--verbose": ("", "text.verbose", True),
+        },
     ),
     "ingest": stage(
         "ingest", words="LOGS", options=work_folder("ingest.work") | reading("ingest.settings")
@@ -165,7 +169,9 @@ COMMANDS = {
             "--fail-on": ("named", "has_finding.named_only", True),
         },
     ),
-    "report": stage("report", options=work_folder("report.work")),
+    "report": stage(
+        "report", options=work_folder("report.work") | {"--png": ("", "report.png", True)}
+    ),
     "run": stage(
         "run",
         words="LOGS",

@@ -148,7 +148,7 @@ def test_an_extended_model_with_payloads_is_read_back(tmp_path):
     fit(tmp_path)
     diagnose(tmp_path)
     written = json.loads((tmp_path / EXTENDED).read_text(encoding="utf-8"))
-    assert written["gravity"]["cosine_per_kg"] == pytest.approx(PER_KG, abs=0.1)
+    assert written["gravity"]["cosine_per_kg"] == pytest.approx(PER_KG, abs=0.2)
     assert set(written["gravity_about"]) == set(written["gravity"])
     stored = tables.read(path, schemas.TORQUES)
     (document, extended), *_ = read_documents(tmp_path).values()
@@ -270,7 +270,7 @@ def test_an_extended_model_states_the_gravity_of_each_pose(tmp_path):
     written = json.loads((tmp_path / EXTENDED).read_text(encoding="utf-8"))
     (other,) = written["gravity"]["in_poses"]
     assert other["poses"] == [1]
-    assert other["cosine"] == pytest.approx(-25.0, abs=0.3)
+    assert other["cosine"] == pytest.approx(-25.0, abs=0.6)
     stored = tables.read(path, schemas.TORQUES)
     (document, extended), *_ = read_documents(tmp_path).values()
     found = reload(stored, document, extended)

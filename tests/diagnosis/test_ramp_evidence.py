@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from frictioncli import schemas, tables
+from frictioncli.diagnosis.data.gravity import GravityForm
 from frictioncli.diagnosis.ramps.evidence import (
     MAX_LOG_ODDS,
     RampLog,
@@ -67,7 +68,11 @@ def log(*, deficit=0.0, distance=6.0, delayed=0.0, sign=1, late=0, noise=0.3, se
 
 def evidence_of(ramps, **base):
     problem = SimpleNamespace(
-        gravity=GRAVITY, has_load_channel=False, parameters=PUBLISHED, runs=("day1",)
+        gravity=GRAVITY,
+        gravity_form=GravityForm(),
+        has_load_channel=False,
+        parameters=PUBLISHED,
+        runs=("day1",),
     )
     return ramp_evidence(ramps, SimpleNamespace(**(vars(problem) | base)), "motor")
 
@@ -126,7 +131,7 @@ def test_payload_and_a_load_channel_of_its_own():
     more = 3.0 * 8.0 * np.cos(np.radians(heavy["position"])) * (heavy["payload"] > 0)
     heavy["torque"] += more
     gravity = np.append(GRAVITY, [8.0, 0.0])
-    found = evidence_of(RampLog(heavy, 1), gravity=gravity)
+    found = evidence_of(RampLog(heavy, 1), gravity=gravity, gravity_form=GravityForm(payloads=True))
     assert found.inertia.value == pytest.approx(INERTIA, rel=0.02)
     own = rows.assign(load=10.0 * np.cos(np.radians(rows["position"])))
     found = evidence_of(RampLog(own, 1), has_load_channel=True)

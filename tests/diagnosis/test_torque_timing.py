@@ -11,6 +11,7 @@ from scipy.signal import lfilter
 
 from frictioncli import schemas, tables
 from frictioncli.diagnosis.data.build_problem import build_problems
+from frictioncli.diagnosis.data.gravity import GravityForm
 from frictioncli.diagnosis.ramps.evidence import RampLog, ramp_logs
 from frictioncli.diagnosis.ramps.timing import responded, torque_timing
 from frictioncli.logs.ingest import IngestSettings, ingest
@@ -27,7 +28,11 @@ FINE = 0.001
 FRICTION = FrictionParameters(tau_c=8.0, alpha=0.001, beta=2.0, gamma=0.0, delta=0.05)
 GRAVITY = np.array([60.0, 10.0, 3.0])
 PROBLEM = SimpleNamespace(
-    runs=("day1",), gravity=GRAVITY, has_load_channel=False, parameters=FRICTION
+    runs=("day1",),
+    gravity=GRAVITY,
+    gravity_form=GravityForm(),
+    has_load_channel=False,
+    parameters=FRICTION,
 )
 
 

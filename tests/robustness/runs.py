@@ -9,6 +9,7 @@ from collections.abc import Iterator, Mapping
 from pathlib import Path
 
 import numpy as np
+import pandas as pd
 import pyarrow.parquet as pq
 
 from tests.equation_16 import friction, write_recording
@@ -97,6 +98,8 @@ def check_readable(path: Path) -> None:
         json.loads(path.read_text(encoding="utf-8"))
     elif path.suffix == ".png":
         assert path.read_bytes().endswith(b"IEND\xaeB`\x82"), path
+    elif path.suffix == ".csv":
+        assert len(pd.read_csv(path)), path
     else:
         ends = {".html": "</html>", ".svg": "</svg>"}
         assert path.read_text(encoding="utf-8").rstrip().endswith(ends[path.suffix]), path

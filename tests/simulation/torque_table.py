@@ -147,6 +147,7 @@ def table_of(
             "motor_temperature_reading": reading[trip],
             "load": np.nan,
             "payload": np.array(setup.payloads)[trips.payload_index][trip],
+            "pose": None,
             "friction_torque": sign * (torque[0] - torque[1]) / 2.0,
             "load_torque": (torque[0] + torque[1]) / 2.0,
         }

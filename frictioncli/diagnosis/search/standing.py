@@ -17,6 +17,9 @@ _Z95 = 1.96
 _BEYOND = 0.25
 """How far a share may be below 0 or above 1."""
 
+_EXCEEDING = 1.5
+"""By how many times a coefficient may exceed one that it cannot exceed: no form is exactly true."""
+
 _OF_CHANGES = 0.02
 """Significance level of a change, relative to that of other effects: drift over a few dozen pairs
 looks like a change at some moment or other much more often than p-values say."""
@@ -122,7 +125,7 @@ def _larger_than_whole(fit: EffectFit, errors: float) -> str:
             continue
         whole = names.index(parameter.within)
         signs = np.zeros(len(names))
-        signs[[number, whole]] = np.sign(fit.coefficients[[number, whole]]) * [1, -1]
+        signs[[number, whole]] = np.sign(fit.coefficients[[number, whole]]) * [1, -_EXCEEDING]
         excess = float(np.sum(signs * fit.coefficients))
         if excess > errors * float(np.sqrt(max(float(signs @ fit.covariance @ signs), 0.0))):
             return f"{parameter.name} is physically impossible: greater than {parameter.within}"
