@@ -261,9 +261,9 @@ def _merged_joints(remarks: Iterable[str]) -> tuple[str, ...]:
 
 def _with_others(remarks: Sequence[str]) -> str:
     """Return the first of alike remarks, with the joints or the number of the others."""
-    joints = [found[1] for one in remarks[1:] if (found := _JOINT.search(one))]
-    if len(joints) == len(remarks) - 1:
-        return f"{remarks[0]} (joints {', '.join(joints)} alike)"
+    joints = [found[1] for one in remarks if (found := _JOINT.search(one))]
+    if len(set(joints)) == len(remarks):
+        return f"{remarks[0]} (joints {', '.join(joints[1:])} alike)"
     return f"{remarks[0]} (and {len(remarks) - 1} like it)"
 
 
