@@ -139,25 +139,34 @@ def test_payloads_in_turn_are_no_finding_and_an_undeclared_mass_is():
     assert ("payload_change",) in [cause.effects for cause in hidden.causes]
 
 
-def test_an_extended_model_with_payloads_is_read_back(tmp_path):
-    rows = carried(noise=0.3, undeclared=0.2).assign(
-        torque_forward=1.0, torque_reverse=1.0, n_forward=1, n_reverse=1
-    )
-    path = tmp_path / TORQUES
-    tables.write(path, rows, schemas.TORQUES, Provenance("test"), {"torque_unit": "N·m"})
-    fit(tmp_path)
-    diagnose(tmp_path)
-    written = json.loads((tmp_path / EXTENDED).read_text(encoding="utf-8"))
-    assert written["gravity"]["cosine_per_kg"] == pytest.approx(PER_KG, abs=0.2)
-    assert set(written["gravity_about"]) == set(written["gravity"])
-    stored = tables.read(path, schemas.TORQUES)
-    (document, extended), *_ = read_documents(tmp_path).values()
+def extended_written(work, rows):
+    """Return the extended model that the stages write for some torques."""
+    rows = rows.assign(torque_forward=1.0, torque_reverse=1.0, n_forward=1, n_reverse=1)
+    provenance = Provenance("test")
+    tables.write(work / TORQUES, rows, schemas.TORQUES, provenance, {"torque_unit": "N·m"})
+    fit(work)
+    diagnose(work)
+    return json.loads((work / EXTENDED).read_text(encoding="utf-8"))
+
+
+def read_back_predicts_load(work):
+    """Check the extended model as it is read back on the new run, and return it."""
+    stored = tables.read(work / TORQUES, schemas.TORQUES)
+    (document, extended), *_ = read_documents(work).values()
     found = reload(stored, document, extended)
     before, after = (np.std(rows["load"]) for rows in (found.new.before, found.new.after))
     assert after < 0.5 < before
-    (model,) = read_models(tmp_path / EXTENDED)
-    added = without_effects(stored, model, read_extended(tmp_path / EXTENDED)[2])[2]
+    (model,) = read_models(work / EXTENDED)
+    added = without_effects(stored, model, read_extended(work / EXTENDED)[2])[2]
     assert added.abs().max() < 1.0  # the effect is of the load: friction hardly changes
+    return extended
+
+
+def test_an_extended_model_with_payloads_is_read_back(tmp_path):
+    written = extended_written(tmp_path, carried(noise=0.3, undeclared=0.2))
+    assert written["gravity"]["cosine_per_kg"] == pytest.approx(PER_KG, abs=0.2)
+    assert set(written["gravity_about"]) == set(written["gravity"])
+    read_back_predicts_load(tmp_path)
 
 
 @pytest.mark.parametrize("sign", [1, -1])
@@ -260,25 +269,11 @@ def test_a_payload_in_one_pose_is_found_beside_the_gravity_of_the_others():
 
 
 def test_an_extended_model_states_the_gravity_of_each_pose(tmp_path):
-    rows = in_poses(undeclared=0.5).assign(
-        torque_forward=1.0, torque_reverse=1.0, n_forward=1, n_reverse=1
-    )
-    path = tmp_path / TORQUES
-    tables.write(path, rows, schemas.TORQUES, Provenance("test"), {"torque_unit": "N·m"})
-    fit(tmp_path)
-    diagnose(tmp_path)
-    written = json.loads((tmp_path / EXTENDED).read_text(encoding="utf-8"))
+    written = extended_written(tmp_path, in_poses(undeclared=0.5))
     (other,) = written["gravity"]["in_poses"]
     assert other["poses"] == [1]
     assert other["cosine"] == pytest.approx(-25.0, abs=0.6)
-    stored = tables.read(path, schemas.TORQUES)
-    (document, extended), *_ = read_documents(tmp_path).values()
-    found = reload(stored, document, extended)
-    before, after = (np.std(rows["load"]) for rows in (found.new.before, found.new.after))
-    assert after < 0.5 < before
-    (model,) = read_models(tmp_path / EXTENDED)
-    added = without_effects(stored, model, read_extended(tmp_path / EXTENDED)[2])[2]
-    assert added.abs().max() < 1.0
+    extended = read_back_predicts_load(tmp_path)
     with pytest.raises(TableError, match="other poses of the other joints"):
         stated_gravity(extended.gravity, GravityForm())
 

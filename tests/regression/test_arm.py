@@ -45,9 +45,8 @@ def urdf(masses=(1.0, 1.0, 1.0)):
     return "\n".join([*parts, "</robot>"])
 
 
-def arm_log(seed=0, duration=120):
-    """Samples of three joints in sines at once; torques by MuJoCo's inverse dynamics."""
-    generator = np.random.default_rng(seed)
+def arm_motions(generator, duration):
+    """Sines of three joints at once, and the torques [N·m] of MuJoCo's inverse dynamics."""
     motions = [
         programmes.sines(duration, generator, centre=10.0 * joint, amplitude=35.0)
         for joint in range(3)
@@ -60,6 +59,13 @@ def arm_log(seed=0, duration=120):
         data.qpos[:], data.qvel[:], data.qacc[:] = states[:, :, row].T
         mujoco.mj_inverse(model, data)
         torques[row] = data.qfrc_inverse
+    return motions, torques
+
+
+def arm_log(seed=0, duration=120):
+    """Samples of three joints in sines at once, with friction and noise."""
+    generator = np.random.default_rng(seed)
+    motions, torques = arm_motions(generator, duration)
     parts = []
     for joint, (motion, (tau_c, beta)) in enumerate(zip(motions, FRICTION, strict=True)):
         velocity = motion[2]

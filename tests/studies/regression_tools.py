@@ -30,7 +30,7 @@ from scipy.signal import butter, sosfiltfilt
 
 from frictioncli.regression.separation import torques_by_regression
 from tests.regression import programmes
-from tests.regression.test_arm import urdf
+from tests.regression.test_arm import arm_motions, urdf
 
 WRONG = (2.0, 0.5, 3.0)
 """Factors of the masses in the description that the tools are given."""
@@ -89,18 +89,7 @@ class Log:
 def simulated(world: World, seed: int, duration: float) -> Log:
     """Return a log: sines of all joints at once, an encoder of 0.001 deg, correlated noise."""
     generator = np.random.default_rng(seed)
-    motions = [
-        programmes.sines(duration, generator, centre=10.0 * joint, amplitude=35.0)
-        for joint in range(3)
-    ]
-    model = mujoco.MjModel.from_xml_string(urdf())
-    data = mujoco.MjData(model)
-    states = np.radians([[channel for channel in motion[1:]] for motion in motions])
-    torques = np.empty((states.shape[2], 3))
-    for row in range(len(torques)):
-        data.qpos[:], data.qvel[:], data.qacc[:] = states[:, :, row].T
-        mujoco.mj_inverse(model, data)
-        torques[row] = data.qfrc_inverse
+    motions, torques = arm_motions(generator, duration)
     clock = motions[0][0]
     parts, angles = [], []
     for joint, motion in enumerate(motions):

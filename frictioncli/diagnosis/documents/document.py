@@ -9,7 +9,8 @@ import msgspec
 from frictioncli import documents
 from frictioncli.diagnosis.data.problem import Misfit
 from frictioncli.diagnosis.documents.extended_model import ParameterRecord
-from frictioncli.diagnosis.documents.ramps_record import RampsRecord, SettlingRecord
+from frictioncli.diagnosis.documents.ramps_record import RampsRecord
+from frictioncli.diagnosis.ramps.settling import Settling
 from frictioncli.diagnosis.settings import DiagnosisSettings
 
 Channel = Annotated[str, msgspec.Meta(pattern="^(friction|load)$")]
@@ -231,7 +232,7 @@ class DiagnosisDocument(msgspec.Struct, frozen=True, kw_only=True):
         What the base model misses.
     ramps : RampsRecord or None
         What the ramps show; none where the log has no ramps.
-    settling : SettlingRecord or None
+    settling : Settling or None
         Bins that were left out because the logged torque had not settled; none where none were.
     torque_unit : str
         Unit of torque.
@@ -258,7 +259,7 @@ class DiagnosisDocument(msgspec.Struct, frozen=True, kw_only=True):
     undetectable: Mapping[str, str] = {}
     simulation: SimulationRecord
     ramps: RampsRecord | None = None
-    settling: SettlingRecord | None = None
+    settling: Settling | None = None
     torque_unit: str
     load_unit: str | None = None
     runs: tuple[str, ...]

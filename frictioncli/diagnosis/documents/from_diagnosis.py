@@ -27,7 +27,7 @@ from frictioncli.diagnosis.documents.parameters import (
     fitted_parameters,
     statement,
 )
-from frictioncli.diagnosis.documents.ramps_record import ramps_record, settling_record
+from frictioncli.diagnosis.documents.ramps_record import ramps_record
 from frictioncli.diagnosis.documents.remainder import remainder_record
 from frictioncli.diagnosis.documents.thermal_record import record_of_lag
 from frictioncli.diagnosis.ramps.evidence import RampEstimate
@@ -62,7 +62,7 @@ def diagnosis_document(diagnosis: Diagnosis, settings: DiagnosisSettings) -> Dia
     ]
     if diagnosis.structure is not None:
         causes.append(_unnamed_record(diagnosis.structure))
-    gain, ramps, settling = diagnosis.gain, diagnosis.ramps, diagnosis.settling
+    gain, ramps = diagnosis.gain, diagnosis.ramps
     return DiagnosisDocument(
         joint=diagnosis.joint,
         verdict=diagnosis.verdict,
@@ -86,7 +86,7 @@ def diagnosis_document(diagnosis: Diagnosis, settings: DiagnosisSettings) -> Dia
         undetectable=_undetectable(diagnosis),
         simulation=SimulationRecord(rmse=diagnosis.rmse, worst=diagnosis.worst),
         ramps=None if ramps is None else ramps_record(ramps, diagnosis.torque_unit),
-        settling=None if settling is None else settling_record(settling),
+        settling=diagnosis.settling,
         torque_unit=diagnosis.torque_unit,
         load_unit=_LOAD_UNIT if diagnosis.base.has_load_channel else None,
         runs=diagnosis.runs,

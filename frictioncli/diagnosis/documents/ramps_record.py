@@ -4,7 +4,6 @@ import msgspec
 
 from frictioncli.diagnosis.documents.extended_model import ParameterRecord
 from frictioncli.diagnosis.ramps.evidence import RampEvidence
-from frictioncli.diagnosis.ramps.settling import Settling
 
 
 class RampsRecord(msgspec.Struct, frozen=True, kw_only=True):
@@ -29,22 +28,6 @@ class RampsRecord(msgspec.Struct, frozen=True, kw_only=True):
     moves: int
 
 
-class SettlingRecord(msgspec.Struct, frozen=True, kw_only=True):
-    """Bins that were left out because the logged torque had not settled.
-
-    Attributes
-    ----------
-    seconds : float
-        Settling time after the first bin of a segment. [s]
-    bins, pairs : int
-        Bins that were left out, and pairs that have lost all theirs.
-    """
-
-    seconds: float
-    bins: int
-    pairs: int
-
-
 def ramps_record(ramps: RampEvidence, torque_unit: str) -> RampsRecord:
     """Return what the ramps show as a record.
 
@@ -66,14 +49,3 @@ def ramps_record(ramps: RampEvidence, torque_unit: str) -> RampsRecord:
         log_odds_reversal_transient=ramps.log_odds,
         moves=ramps.moves,
     )
-
-
-def settling_record(settling: Settling) -> SettlingRecord:
-    """Return what was left out as a record.
-
-    Parameters
-    ----------
-    settling : Settling
-        What was left out.
-    """
-    return SettlingRecord(seconds=settling.seconds, bins=settling.bins, pairs=settling.pairs)

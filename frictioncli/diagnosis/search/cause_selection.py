@@ -12,7 +12,7 @@ from dataclasses import replace
 import numpy as np
 
 from frictioncli.diagnosis.data.problem import Problem
-from frictioncli.diagnosis.fit.extension import extend, misfits
+from frictioncli.diagnosis.fit.extension import extend, misfits, refit
 from frictioncli.diagnosis.fit.hypotheses import EffectFit
 from frictioncli.diagnosis.fit.weighted_fit import WeightedFit
 from frictioncli.diagnosis.search.cause import Cause
@@ -82,8 +82,8 @@ def refuted_by_new_run(causes: Sequence[Cause], step: Step, new: Problem) -> tup
     among = [one for one in causes if one.standing == "named" and one.holds_on_new_run is not False]
 
     def missed(fits: Sequence[EffectFit]) -> float:
-        extension = extend(step.problem, weighted_fit, fits)
-        return float(np.sqrt(np.mean(new.squared(*misfits(new, extension)))))
+        fitted = refit(step.problem, weighted_fit, fits)
+        return float(np.sqrt(np.mean(new.squared(*misfits(new, fitted)))))
 
     refuted = []
     with_all = missed([one.fit for one in among])
