@@ -12,7 +12,7 @@ PACKAGE = Path(__file__).parents[1] / "frictioncli"
 LAYERS = [
     {"__main__"},
     {"cli"},
-    {"fleet"},
+    {"fleet", "challenge"},
     {"stages"},
     {"report"},
     {"inspection", "design", "deployment", "comparison"},
