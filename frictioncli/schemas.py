@@ -314,6 +314,7 @@ FLEET = Table(
             for temperature in REFERENCE_TEMPERATURES
         ),
         *_interval("change", _IN_UNIT, "friction of the last run less the mean of the earlier"),
+        _nullable("friction_by_run", pa.list_(_REAL), _IN_UNIT, "each run less their mean"),
         _nullable("inputs_sha256", _TEXT, "", "digest of all files that were read"),
     ),
 )

@@ -209,6 +209,32 @@ def quantity_text(value: float, interval: tuple[float, float] | None, unit: str)
     return f"{estimate}{noun} ({low} to {high})"
 
 
+def change_text(value: float, interval: tuple[float, float], unit: str) -> str:
+    """Return a change with signs, its unit and, in brackets, its interval.
+
+    Parameters
+    ----------
+    value : float
+        The change. [unit]
+    interval : (float, float)
+        Its interval. [unit]
+    unit : str
+        Its unit; empty where a heading has it.
+
+    Examples
+    --------
+    >>> change_text(18.23, (16.04, 20.42), "%"), change_text(-0.3, (-0.6, 0.04), "")
+    ('+18.2 % (+16.0 to +20.4)', '−0.30 (−0.60 to +0.04)')
+    """
+    # a decimal more than elsewhere shows on which side of zero an end lies
+    texts = _alike((value, *interval), (0.1 * interval[0], 0.1 * interval[1]))
+    estimate, low, high = (
+        f"+{text}" if any(digit in text for digit in "123456789") and text[0] != "−" else text
+        for text in texts
+    )
+    return f"{estimate}{unit and ' '}{unit} ({low} to {high})"
+
+
 def _alike(values: Sequence[float], interval: tuple[float, float]) -> list[str]:
     """Return values with the decimals that show an interval's half-width with one digit."""
     half = (interval[1] - interval[0]) / 2

@@ -38,10 +38,13 @@ class Change:
         Difference, the same at any speed, load and temperature. [torque unit]
     ci95 : (float, float)
         95 % confidence interval. [torque unit]
+    by_run : tuple of float
+        Friction of each run less the mean of all runs, in the order of the runs. [torque unit]
     """
 
     estimate: float
     ci95: tuple[float, float]
+    by_run: tuple[float, ...]
 
 
 def change_of_last_run(torques: pd.DataFrame, model: FrictionModel) -> Change | None:
@@ -65,7 +68,8 @@ def change_of_last_run(torques: pd.DataFrame, model: FrictionModel) -> Change | 
     runs = sorted(rows["run"].unique())
     if len(runs) < 2:
         return None
-    last = max(range(len(runs)), key=lambda number: natural_key(runs[number]))
+    in_order = sorted(range(len(runs)), key=lambda number: natural_key(runs[number]))
+    last = in_order[-1]
     observed = observations(rows, model.temperature)
     design = _design(observed, model)
     earlier = np.delete(np.arange(len(runs)), last)
@@ -104,7 +108,12 @@ def change_of_last_run(torques: pd.DataFrame, model: FrictionModel) -> Change | 
         variance = _prediction_variance(offsets[earlier], own, variance)
         degrees = len(earlier) - 1
     half_width = float(stats.t.ppf(0.975, degrees) * np.sqrt(variance))
-    return Change(estimate=estimate, ci95=(estimate - half_width, estimate + half_width))
+    levels = (offsets - offsets.mean())[in_order]
+    return Change(
+        estimate=estimate,
+        ci95=(estimate - half_width, estimate + half_width),
+        by_run=tuple(levels.tolist()),
+    )
 
 
 def _design(observed: Observations, model: FrictionModel) -> Array:

@@ -8,10 +8,12 @@ from contextlib import AbstractContextManager, closing, nullcontext
 from dataclasses import dataclass, field, replace
 from itertools import islice
 from pathlib import Path
+from urllib.parse import quote
 
 import pyarrow as pa
 
 from frictioncli import schemas
+from frictioncli.files import write_text
 from frictioncli.fleet.cluster import run_on_cluster
 from frictioncli.fleet.joint import (
     DONE,
@@ -26,11 +28,13 @@ from frictioncli.fleet.joint_record import check_folder, read_row
 from frictioncli.fleet.local_processes import run_locally
 from frictioncli.fleet.settings import FleetSettings
 from frictioncli.provenance import Provenance, sha256
+from frictioncli.report.fleet_page import fleet_html
 from frictioncli.stages.settings import RunSettings
 from frictioncli.tables import TableWriter
 from frictioncli.workfolder import locked
 
 FLEET = "fleet.parquet"
+PAGE = "fleet.html"
 
 Progress = Callable[[Iterator[JointOutcome], int], AbstractContextManager[Iterable[JointOutcome]]]
 """Wraps the outcomes and their number, as a progress bar does."""
@@ -91,7 +95,8 @@ class FleetSummary:
         if self.status[FAILED] > len(self.failures):
             more = self.status[FAILED] - len(self.failures)
             lines.append(f"          and {more} more: see status and message in {self.path.name}")
-        return "\n".join([*lines, f"table     {self.path}"])
+        page = self.path.with_name(PAGE)
+        return "\n".join([*lines, f"table     {self.path}", f"page      {page}"])
 
 
 def run_fleet(
@@ -101,7 +106,7 @@ def run_fleet(
     options: FleetSettings | None = None,
     progress: Progress = lambda outcomes, joints: nullcontext(outcomes),
 ) -> FleetSummary:
-    """Run the chain for each joint of a fleet, and write ``fleet.parquet``.
+    """Run the chain for each joint of a fleet, and write ``fleet.parquet`` and ``fleet.html``.
 
     Parameters
     ----------
@@ -159,6 +164,7 @@ def run_fleet(
         document = settings_document(settings, report=options.report)
         provenance = Provenance("fleet", document, inputs)
         _write_table(summary.path, tasks, provenance)
+        _write_page(out, tasks)
     return summary
 
 
@@ -175,6 +181,17 @@ def _outcomes(
         return run_on_cluster(tasks, options.scheduler, options.timeout, options.certificates())
     workers = min(options.workers or os.cpu_count() or 1, len(tasks))
     return run_locally(tasks, workers, options.timeout)
+
+
+def _write_page(out: Path, tasks: list[JointTask]) -> None:
+    """Write the page of the fleet, with a link to each joint's report."""
+    rows = [read_row(task.work) for task in tasks]
+    pages = [task.work / "report" / "index.html" for task in tasks]
+    addresses = [
+        quote(os.fsencode(page.relative_to(out).as_posix()), safe="/=") if page.exists() else ""
+        for page in pages
+    ]
+    write_text(out / PAGE, fleet_html(rows, addresses))
 
 
 def _write_table(path: Path, tasks: list[JointTask], provenance: Provenance) -> None:

@@ -34,6 +34,7 @@ def table_row(work: Path) -> dict[str, Any]:
     change = change_of_last_run(torques, model)
     if change is not None:
         row |= _with_interval("change", change.estimate, change.ci95)
+        row["friction_by_run"] = list(change.by_run)
     return {name: _plain(value) for name, value in row.items()}
 
 

@@ -1,25 +1,18 @@
 """The report of a work folder: a self-contained page, and its figures as files."""
 
-from base64 import b64encode
 from collections.abc import Sequence
-from hashlib import sha256
-from importlib.resources import files
 from pathlib import Path
-from typing import Any
-
-import jinja2
-from markupsafe import Markup
 
 from frictioncli import __version__
 from frictioncli.files import atomic_write
-from frictioncli.plain_text import without_control_characters
 from frictioncli.report.data_section import data_section, ingest_counts
 from frictioncli.report.downloads import downloads, write_downloads
 from frictioncli.report.drawing import draw_figures
 from frictioncli.report.figure_files import svg_file
-from frictioncli.report.formula import unit_markup
 from frictioncli.report.joint_section import JointSection, joint_section
+from frictioncli.report.joints_summary import joints_summary
 from frictioncli.report.results import WorkFolderResults, read_results
+from frictioncli.report.template import render
 from frictioncli.wording import list_text
 
 
@@ -76,15 +69,16 @@ def write_report(work: Path, *, png: bool = False) -> Path:
 
 def _page(results: WorkFolderResults, sections: Sequence[JointSection]) -> str:
     """Fill in the template of the page."""
-    scripts = [_script("figures.js")]
+    scripts = ["figures.js"]
     if any(not section.explorer.missing for section in sections):
-        scripts.append(_script("explorer.js"))
-    return _template().render(
+        scripts.append("explorer.js")
+    return render(
+        "page.html.jinja",
+        scripts=scripts,
         title=_title([section.number for section in sections]),
         runs=f"{'Run' if len(results.runs) == 1 else 'Runs'}: {list_text(results.runs)}",
-        css=Markup(_resource("style.css")),
-        scripts=scripts,
         joints=sections,
+        summary=joints_summary(sections),
         left_out=results.left_out,
         data=data_section(results),
         downloads=downloads(results),
@@ -92,39 +86,7 @@ def _page(results: WorkFolderResults, sections: Sequence[JointSection]) -> str:
     )
 
 
-def _script(name: str) -> dict[str, str]:
-    """Return a script with the digest by which the page allows it."""
-    code = _resource(name)
-    return {
-        "code": Markup(code),
-        "digest": b64encode(sha256(code.encode()).digest()).decode(),
-    }
-
-
 def _title(joints: Sequence[int]) -> str:
     if len(joints) == 1:
         return f"Friction of joint {joints[0]}"
     return f"Friction of joints {list_text([str(joint) for joint in joints])}"
-
-
-def _template() -> jinja2.Template:
-    environment = jinja2.Environment(
-        autoescape=True,
-        undefined=jinja2.StrictUndefined,
-        keep_trailing_newline=True,
-        finalize=_cleaned,
-    )
-    environment.policies["json.dumps_kwargs"] = {"separators": (",", ":")}
-    environment.filters["unit"] = unit_markup
-    return environment.from_string(_resource("page.html.jinja"))
-
-
-def _resource(name: str) -> str:
-    return (files("frictioncli.report") / name).read_text(encoding="utf-8")
-
-
-def _cleaned(value: Any) -> Any:
-    """Replace control characters in a value that the template shows, before it is escaped."""
-    if isinstance(value, Markup):
-        return Markup(without_control_characters(value))
-    return without_control_characters(value) if isinstance(value, str) else value

@@ -12,7 +12,7 @@ from matplotlib.dates import AutoDateLocator, ConciseDateFormatter
 from matplotlib.figure import Figure
 
 from frictioncli.comparison.document import ComparisonDocument, ConditionRecord, RunRecord
-from frictioncli.report.figure_files import png, svg, svg_file
+from frictioncli.report.figure_files import png, svg
 from frictioncli.report.labels import figure_text
 from frictioncli.report.style import (
     FAINT,
@@ -35,7 +35,7 @@ _NAME = "trend"
 
 
 def trend_files(document: ComparisonDocument) -> tuple[str, bytes]:
-    """Return the figure of a comparison as the contents of an SVG and of a PNG file.
+    """Return the figure of a comparison as an SVG element and as the content of a PNG file.
 
     Parameters
     ----------
@@ -45,7 +45,7 @@ def trend_files(document: ComparisonDocument) -> tuple[str, bytes]:
     title = f"Friction of joint {document.joint} over {len(document.runs)} runs"
     with style_context(_NAME):
         figure = trend_figure(document)
-        return svg_file(svg(figure, _NAME, escape(title))), png(figure)
+        return svg(figure, _NAME, escape(title)), png(figure)
 
 
 def trend_figure(document: ComparisonDocument) -> Figure:

@@ -1,9 +1,11 @@
 """Comparison of the same joint on different days: ``compare``."""
 
-from collections.abc import Sequence
+import os
+from collections.abc import Mapping, Sequence
 from dataclasses import asdict, replace
 from datetime import datetime
 from pathlib import Path
+from urllib.parse import quote
 
 import pandas as pd
 
@@ -19,19 +21,22 @@ from frictioncli.errors import OptionError
 from frictioncli.files import atomic_write, write_text
 from frictioncli.model.document import FrictionModel, read_models
 from frictioncli.provenance import Provenance, sha256
+from frictioncli.report.compare_page import compare_html
+from frictioncli.report.figure_files import svg_file
 from frictioncli.report.trend_figure import trend_files
 from frictioncli.stages.stage import StageResult, stage
 from frictioncli.workfiles import COMPARISON, MODEL, RECORDINGS, TORQUES
 from frictioncli.workfolder import outdated
 
 TREND = "trend"
+PAGE = "compare.html"
 
 
 @stage
 def compare(
     runs: Sequence[Path], work: Path, settings: ComparisonSettings | None = None
 ) -> StageResult:
-    """Find what changed between the runs of one joint: ``comparison.json``, ``trend.svg``.
+    """Find what changed between the runs of one joint: ``comparison.json``, ``compare.html``.
 
     Parameters
     ----------
@@ -75,16 +80,28 @@ def compare(
     provenance = Provenance("compare", asdict(settings), inputs)
     document = comparison_document(comparison)
     svg, png = trend_files(document)
-    write_text(work / f"{TREND}.svg", svg)
+    write_text(work / f"{TREND}.svg", svg_file(svg))
     with atomic_write(work / f"{TREND}.png") as draft:
         draft.write_bytes(png)
     documents.write(work / COMPARISON, document, provenance)
+    write_text(work / PAGE, compare_html(document, svg, _pages(sources, work)))
     warnings = [
         f"warning: {name}: {text}"
         for name, path in sources.items()
         for text in outdated([path / MODEL])
     ]
     return StageResult(work / COMPARISON, "\n".join([*warnings, comparison_text(comparison)]))
+
+
+def _pages(sources: Mapping[str, Path], work: Path) -> dict[str, str]:
+    """Return the address of the report of each work folder that has one."""
+    pages = {name: path / "report" / "index.html" for name, path in sources.items()}
+    here = work.resolve()
+    return {
+        name: quote(os.fsencode(os.path.relpath(page.resolve(), here).replace(os.sep, "/")))
+        for name, page in pages.items()
+        if page.exists()
+    }
 
 
 def above_threshold(work: Path) -> bool:

@@ -39,6 +39,7 @@ def test_a_change_above_the_threshold_ends_with_status_3(called):
 def test_what_is_written(called):
     out, _ = called
     assert sorted(path.name for path in out.iterdir()) == [
+        "compare.html",
         "comparison.json",
         "trend.png",
         "trend.svg",

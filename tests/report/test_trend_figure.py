@@ -131,5 +131,5 @@ def test_without_conditions_or_dates_there_is_one_panel_over_the_order():
 def test_pictures_are_the_same_bytes_again():
     text, picture = trend_files(document())
     assert trend_files(document()) == (text, picture)
-    assert text.startswith('<?xml version="1.0" encoding="utf-8"?>\n<svg')
+    assert text.startswith("<svg")
     assert picture.startswith(b"\x89PNG")
