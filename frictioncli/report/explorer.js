@@ -11,6 +11,7 @@
     D: "M0 -3.7L3.7 0L0 3.7L-3.7 0z",
     P: "M-1.2 -3.5h2.4v2.3h2.3v2.4h-2.3v2.3h-2.4v-2.3h-2.3v-2.4h2.3z",
   };
+  const COUNTS = 150;
   const LEFT = 46, RIGHT = 10, TOP = 34, STEP = 120, GAP = 30, ERROR = 170, BOTTOM = 40;
 
   function shape(parent, name, attributes, text) {
@@ -97,6 +98,37 @@
       });
     }
 
+    const value = (text) => Number(text.replace("\u2212", "-"));
+    const settingText = (place) =>
+      `k = ${data.k[Math.floor(place / data.tmax.length)]}, tmax = ${data.tmax[place % data.tmax.length]} min`;
+
+    /* What is recommended for a model, and which phases the setting makes worse. */
+    function advise(setting, phases) {
+      const place = data.recommended[setting.model];
+      const targets = [...new Set(phases.map((phase) => fixed(phase.target, 2)))];
+      const limit = targets.length === 1 ? `${Number(targets[0])} ${data.unit}` : "the target";
+      const all = place === null ? [] : phases.map((phase) => value(phase.epsilon[place]) <= phase.target);
+      part("recommended").textContent = place === null
+        ? (phases.every((phase) => value(phase.none) <= phase.target)
+          ? `Recommended: no correction. ε is at most ${limit} without any.`
+          : "Recommended: no correction. No setting is better.")
+        : `Recommended: ${settingText(place)}, ` + (all.every(Boolean)
+          ? `the fewest corrections with ε at most ${limit} in every phase.`
+          : `the smallest ε; no setting reaches ${limit} in every phase.`);
+      part("use").hidden = place === null;
+      const worse = phases.filter((phase) => value(phase.now) > value(phase.none));
+      part("worse").hidden = !worse.length;
+      part("worse").textContent = "With this setting, corrections make the prediction worse: " +
+        worse.map((one) => `${one.run}, ${one.word}: ε ${one.now} instead of ${one.none} ${data.unit}`).join("; ") + ".";
+    }
+
+    function use() {
+      const place = data.recommended[chosen().model];
+      part("k").value = Math.floor(place / data.tmax.length);
+      part("tmax").value = place % data.tmax.length;
+      redraw();
+    }
+
     function counted(phase) {
       const lost = phase.schedule.failed.length;
       return `${phase.schedule.time.length}` + (lost ? `, ${lost} failed` : "");
@@ -118,6 +150,7 @@
       part("told").textContent =
         `k = ${k}, tmax = ${tmax}, ${setting.model} model. ` +
         phases.map((one) => `${one.run}, ${one.word}: ${told(one)}`).join("; ") + ".";
+      advise(setting, phases);
       const rows = part("errors");
       rows.replaceChildren();
       for (const phase of phases) {
@@ -132,7 +165,46 @@
       for (const run of runsOf(phases)) {
         const section = element(charts, "section", "", "run");
         element(section, box.dataset.heading, run);
-        draw(section, phases.filter((phase) => phase.run === run));
+        const own = phases.filter((phase) => phase.run === run);
+        tradeoff(section, own, setting);
+        draw(section, own);
+      }
+    }
+
+    /* Error over the number of corrections; equal schedules are one mark. */
+    function tradeoff(parent, phases, setting) {
+      const width = Math.max(parent.clientWidth, 280);
+      const top = 24, bottom = top + COUNTS;
+      const svg = shape(parent, "svg", { class: "tradeoff", viewBox: `0 0 ${width} ${bottom + 40}`, role: "img",
+        "aria-label": "error over number of corrections" });
+      const most = Math.max(...phases.flatMap((phase) => phase.schedules.map((one) => one.time.length)), 1);
+      const high = 1.05 * Math.max(...phases.flatMap((one) => [one.target, ...[one.none, ...one.epsilon].map(value)]));
+      const x = scale(0, most, LEFT + 8, width - RIGHT - 8);
+      const y = scale(0, high, bottom, top);
+      axes(svg, { y, top, bottom }, [0, high], width);
+      for (const count of ticks(0, most, width < 500 ? 5 : 10).values) {
+        shape(svg, "text", { x: x(count), y: bottom + 17, "text-anchor": "middle" }, fixed(count, 0));
+      }
+      shape(svg, "text", { x: (LEFT + width - RIGHT) / 2, y: bottom + 34, "text-anchor": "middle" },
+        "corrections in the phase");
+      shape(svg, "text", { class: "name", x: LEFT, y: top - 8 }, `error ε [${data.unit}]`);
+      const rule = (kind, at) => shape(svg, "line", { class: kind, x1: LEFT, x2: width - RIGHT, y1: y(at), y2: y(at) });
+      const now = setting.k * data.tmax.length + setting.tmax;
+      const best = data.recommended[setting.model];
+      for (const phase of phases) {
+        hint(rule("target", phase.target), `target: ${fixed(phase.target, 2)} ${data.unit}`);
+        hint(rule(`none ${phase.phase}`, value(phase.none)), `${phase.word}, no correction: ${phase.none} ${data.unit}`);
+        const first = new Map();
+        phase.settings.forEach((schedule, place) => { if (!first.has(schedule)) first.set(schedule, place); });
+        const mark = (place, kind, r) => {
+          const count = phase.schedules[phase.settings[place]].time.length;
+          const made = shape(svg, "circle", { class: `${kind} ${phase.phase}`, r,
+            cx: x(count).toFixed(1), cy: y(value(phase.epsilon[place])).toFixed(1) });
+          hint(made, `${phase.word}, ${settingText(place)}: ${count} corrections, ε ${phase.epsilon[place]} ${data.unit}`);
+        };
+        for (const place of first.values()) mark(place, "setting", 2.2);
+        if (best !== null) mark(best, "best", 7);
+        mark(now, "now", 4.5);
       }
     }
 
@@ -241,6 +313,7 @@
     box.hidden = false;
     legend();
     redraw();
+    part("use").addEventListener("click", use);
     for (const name of ["k", "tmax", "extended"]) {
       if (part(name)) part(name).addEventListener("input", redraw);
     }

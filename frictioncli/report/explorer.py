@@ -18,6 +18,7 @@ from frictioncli.report.evaluation_figure import compared_criterion
 from frictioncli.report.grid_replay import ReplayedPhase, ScheduleGrid, replayed_phases
 from frictioncli.report.labels import CRITERION_WORDS, TEMPERATURE_SYMBOLS
 from frictioncli.report.missing_data import evaluation_missing
+from frictioncli.report.recommendation import recommended_setting, target_error
 from frictioncli.report.results import MOST_RUNS, JointResults
 from frictioncli.report.style import PHASE_WORDS
 from frictioncli.wording import number_text, speed_text
@@ -123,6 +124,9 @@ def _explorer(results: JointResults) -> Explorer:
                 name: [_phase_data(phase, results) for phase in phases]
                 for name, phases in replays.items()
             },
+            "recommended": {
+                name: recommended_setting(phases, results.unit) for name, phases in replays.items()
+            },
         },
         without_extended=without_extended,
     )
@@ -205,6 +209,7 @@ def _phase_data(phase: ReplayedPhase, results: JointResults) -> dict[str, Any]:
         "temperature": _rounded(phase.temperature[shown], 2),
         "term": _rounded(phase.term[shown], 4),
         "error": _rounded(phase.error[shown], 4),
+        "target": target_error(results.unit, phase.uncorrected),
         "none": number_text(phase.uncorrected),
         "epsilon": [number_text(float(value)) for value in phase.epsilon],
         "settings": settings,

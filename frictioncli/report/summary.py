@@ -14,15 +14,10 @@ from frictioncli.report.evaluation_figure import (
     setting_text,
 )
 from frictioncli.report.labels import CRITERION_WORDS, PARAMETER_SYMBOLS, TEMPERATURE_WORDS
+from frictioncli.report.recommendation import target_error
 from frictioncli.report.results import JointResults
 from frictioncli.report.style import PHASE_WORDS, PHASES
 from frictioncli.wording import count_text, list_text, number_text, range_text, speed_text
-
-_TARGET_ERROR = 2.0
-"""Error that the source paper reaches. [N·m]"""
-
-_TARGET_SHARE = 0.25
-"""Target as a share of the error without correction, if torque is not in N·m."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -178,7 +173,7 @@ def corrections_needed(results: JointResults) -> KeyNumber | None:
         counts = []
         for _, own in rows.groupby("run"):
             uncorrected = own.loc[own["criterion"] == "none", "epsilon"]
-            limit = _TARGET_ERROR if in_torque else _TARGET_SHARE * float(uncorrected.max())
+            limit = target_error(results.unit, float(uncorrected.max()))
             errors = error_per_count(own[own["criterion"] == criterion])["epsilon"]
             enough = errors.index[errors <= limit]
             counts.append(int(enough.min()) if len(enough) else None)

@@ -94,7 +94,7 @@ def drawn_errors(driver, run):
         """
         const name = [...document.querySelectorAll(".charts h3")].find(
           (heading) => heading.textContent === arguments[0]);
-        return [...name.nextElementSibling.querySelectorAll(".points")].map((phase) =>
+        return [...name.parentElement.querySelectorAll(".points")].map((phase) =>
           [...phase.querySelectorAll("title")].map((title) => title.textContent));
         """,
         run,
@@ -172,6 +172,63 @@ def test_switch_shows_the_extended_model(opened, work):
     assert curves(driver) != before
     assert_shown(driver, evaluated(work / "extended.parquet"), 5.0, 3600.0)
     assert cells(driver)["day-1, heating"][2] != base["day-1, heating"][2]
+
+
+def marks(driver, kind):
+    """What the marks of the error over the number of corrections of day-1 tell."""
+    return driver.execute_script(
+        """
+        const name = [...document.querySelectorAll(".charts h3")].find(
+          (heading) => heading.textContent === "day-1");
+        const run = name.parentElement.querySelector(".tradeoff");
+        return [...run.querySelectorAll(`circle.${arguments[0]}`)].map((mark) => mark.textContent);
+        """,
+        kind,
+    )
+
+
+def test_error_over_corrections_tells_what_was_evaluated(opened, work):
+    driver, rows = opened(), evaluated(work / "evaluation.parquet")
+    told = marks(driver, "now")
+    for phase, word in (("heat-up", "heating"), ("cool-down", "cooling")):
+        row = rows.loc[(phase, 5.0, 3600.0)]
+        assert (
+            f"{word}, k = 5, tmax = 60 min: {row['corrections']} corrections,"
+            f" ε {number_text(row['epsilon'])} N·m"
+        ) in told
+    schedules = {(row["corrections"], number_text(row["epsilon"])) for _, row in rows.iterrows()}
+    assert 0 < len(marks(driver, "setting")) <= 2 * len(schedules)
+
+
+def test_the_recommended_setting_is_one_click_away(opened, work):
+    driver, rows = opened(), tables.read(work / "evaluation.parquet", schemas.EVALUATION)
+    rows = rows[rows["criterion"] == "first_degree"]
+    enough = rows.groupby(["k", "tmax"])["epsilon"].max() <= 2.0
+    counts = rows.groupby(["k", "tmax"])["corrections"].sum()
+    text = part(driver, "recommended").text
+    k, tmax = re.search(r"k = ([\d.]+), tmax = ([\d.]+) min", text).groups()
+    setting = (float(k), 60.0 * float(tmax))
+    assert enough[setting]
+    assert counts[setting] == counts[enough].min()
+    part(driver, "use").send_keys("\ue007")  # the key for enter
+    assert (part(driver, "k-now").text, part(driver, "tmax-now").text) == (k, f"{tmax} min")
+    assert marks(driver, "best") == marks(driver, "now")
+
+
+def test_a_setting_that_makes_it_worse_is_said(opened, work):
+    driver = opened()
+    part(driver, "extended").send_keys(" ")
+    rows = tables.read(work / "extended.parquet", schemas.EVALUATION)
+    without = rows[rows["criterion"] == "none"].set_index(["run", "phase"])["epsilon"]
+    own = rows[(rows["criterion"] == "first_degree") & (rows["k"] == 5.0)]
+    own = own[own["tmax"] == 3600.0].set_index(["run", "phase"])["epsilon"]
+    worse = {phase for (run, phase), value in own.items() if value > without[run, phase]}
+    said = part(driver, "worse")
+    assert said.is_displayed() is bool(worse)
+    assert ("heating" in said.text, "cooling" in said.text) == (
+        "heat-up" in worse,
+        "cool-down" in worse,
+    )
 
 
 def test_curves_follow_the_width(opened):
