@@ -3,7 +3,7 @@
 import pytest
 from threadpoolctl import threadpool_limits
 
-from tests.fleet.fleets import fleet, write_fleet
+from tests.fleet.fleets import WITHOUT, fleet, write_fleet
 
 
 @pytest.fixture(autouse=True, scope="session")
@@ -26,3 +26,12 @@ def alone(logs, tmp_path_factory):
     result = fleet(logs, "-w", out, "--workers", 1, "--no-report")
     assert result.returncode == 0, result.stderr
     return out, result.stdout
+
+
+@pytest.fixture(scope="session")
+def undiagnosed(logs, tmp_path_factory):
+    """The small fleet without diagnoses: its folder, for what does not depend on them."""
+    out = tmp_path_factory.mktemp("undiagnosed") / "out"
+    result = fleet(logs, "-w", out, "--workers", 1, *WITHOUT)
+    assert result.returncode == 0, result.stderr
+    return out

@@ -15,7 +15,17 @@ from frictioncli.fleet.joint_record import read_record
 from frictioncli.fleet.local_processes import run_locally
 from frictioncli.fleet.settings import FleetSettings
 from frictioncli.stages.settings import RunSettings
-from tests.fleet.fleets import Deadly, begun, children, contents, done, fleet, started, until
+from tests.fleet.fleets import (
+    WITHOUT,
+    Deadly,
+    begun,
+    children,
+    contents,
+    done,
+    fleet,
+    started,
+    until,
+)
 from tests.fleet.joints import Joint, write_joint
 
 QUICK = RunSettings(diagnosis=None)
@@ -58,8 +68,8 @@ def test_two_workers_give_the_same_bytes(alone, logs, tmp_path):
 
 
 @pytest.mark.slow
-def test_a_worker_killed_in_mid_run_loses_nothing(alone, logs, tmp_path):
-    process = started(logs, "-w", tmp_path / "out", "--workers", 2, "--no-report")
+def test_a_worker_killed_in_mid_run_loses_nothing(undiagnosed, logs, tmp_path):
+    process = started(logs, "-w", tmp_path / "out", "--workers", 2, *WITHOUT)
     until(lambda: done(tmp_path / "out") and begun(tmp_path / "out"))
     workers = [pid for pid in children(process.pid) if is_worker(pid)]
     assert len(workers) == 2
@@ -69,7 +79,7 @@ def test_a_worker_killed_in_mid_run_loses_nothing(alone, logs, tmp_path):
     assert (process.returncode, errors) == (0, "")
     # one that was killed between its record and its answer counts as done before
     assert re.search(r"4 done( \(. of them before, unchanged\))?, 2 failed", output)
-    assert contents(tmp_path / "out") == contents(alone[0])
+    assert contents(tmp_path / "out") == contents(undiagnosed)
 
 
 def is_worker(pid):
@@ -78,9 +88,9 @@ def is_worker(pid):
 
 
 @pytest.mark.slow
-def test_ctrl_c_leaves_what_is_done_and_the_next_call_goes_on(alone, logs, tmp_path):
+def test_ctrl_c_leaves_what_is_done_and_the_next_call_goes_on(undiagnosed, logs, tmp_path):
     out = tmp_path / "out"
-    process = started(logs, "-w", out, "--workers", 1, "--no-report")
+    process = started(logs, "-w", out, "--workers", 1, *WITHOUT)
     until(lambda: done(out) and begun(out))
     os.killpg(process.pid, signal.SIGINT)
     _, errors = process.communicate(timeout=300)
@@ -88,9 +98,9 @@ def test_ctrl_c_leaves_what_is_done_and_the_next_call_goes_on(alone, logs, tmp_p
     assert errors == "interrupted; joints that are done stay done: call again to go on\n"
     assert not (out / "fleet.parquet").exists()
     before = len(done(out))
-    result = fleet(logs, "-w", out, "--workers", 1, "--no-report")
+    result = fleet(logs, "-w", out, "--workers", 1, *WITHOUT)
     assert f"4 done ({before} of them before, unchanged), 2 failed" in result.stdout
-    assert contents(out) == contents(alone[0])
+    assert contents(out) == contents(undiagnosed)
 
 
 @pytest.mark.slow
