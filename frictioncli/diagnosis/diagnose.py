@@ -14,6 +14,7 @@ import pandas as pd
 
 from frictioncli.diagnosis.data.problem import Misfit, Problem
 from frictioncli.diagnosis.data.worst_misfits import worst_misfits
+from frictioncli.diagnosis.empirical.estimate import Empirical, empirical_term
 from frictioncli.diagnosis.fit.extension import Extension, Gain, extend, measured_gain
 from frictioncli.diagnosis.ramps.evidence import RampEvidence, RampLog, ramp_evidence
 from frictioncli.diagnosis.ramps.settling import Settling, settled_problems
@@ -99,6 +100,8 @@ class Diagnosis:
         The margin of what shows in a load channel of the log; none without one. [N·m]
     settling : Settling or None
         Bins that were left out because the logged torque had not settled.
+    empirical : Empirical or None
+        A term for what is left without a known cause; none where it is not worth using.
     """
 
     joint: int
@@ -124,6 +127,7 @@ class Diagnosis:
     timing: TimingRivals | None = None
     load_margin: float | None = None
     settling: Settling | None = None
+    empirical: Empirical | None = None
 
 
 def diagnose_joint(
@@ -247,6 +251,15 @@ def diagnose_joint(
             floor=_floor(found),
             seed=settings.seed,
         )
+    beside = extension or extend(problem, weighted_fit, [])
+    empirical = empirical_term(
+        found.step,
+        (problem, beside),
+        (new, predicting(beside, causes)) if new else None,
+        margin=margin,
+        floor=_floor(found),
+        seed=settings.seed,
+    )
     squared = base.squared(base.friction_misfit, base.load_misfit)
     return Diagnosis(
         joint=joint,
@@ -272,6 +285,7 @@ def diagnose_joint(
         thermal=None if lag is None else lag.estimate,
         timing=timing,
         settling=rows.settling,
+        empirical=empirical,
     )
 
 

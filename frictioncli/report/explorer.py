@@ -136,7 +136,7 @@ def _extension_missing(extension: ExtendedModel | None) -> str:
     """Return why there is no extended model to switch to; empty if there is one."""
     if extension is None:
         return "There is no extended model to switch to; 'frictioncli diagnose' makes one."
-    if not extension.effects:
+    if extension.adds_nothing:
         return "The extended model adds nothing to the base model, so there is no switch to it."
     return ""
 

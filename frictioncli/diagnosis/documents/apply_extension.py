@@ -25,7 +25,7 @@ def friction_beyond(
         The extended model.
     """
     added = pd.Series(0.0, index=torques.index)
-    if not extension.effects:
+    if extension.adds_nothing:
         return added, model
     about = extension.gravity_about
     order, problem = simulated(

@@ -8,6 +8,7 @@ import msgspec
 
 from frictioncli import documents
 from frictioncli.diagnosis.data.problem import Misfit
+from frictioncli.diagnosis.documents.empirical_record import EmpiricalGainRecord
 from frictioncli.diagnosis.documents.extended_model import ParameterRecord
 from frictioncli.diagnosis.documents.ramps_record import RampsRecord
 from frictioncli.diagnosis.ramps.settling import Settling
@@ -221,6 +222,8 @@ class DiagnosisDocument(msgspec.Struct, frozen=True, kw_only=True):
         The same of what shows in a load channel of the log; None without one. [load unit]
     gain : GainRecord or None
         How much less the extended model misses; none without causes.
+    empirical : EmpiricalGainRecord or None
+        What the empirical term of the extended model gains; none where there is no such term.
     remainder : RemainderRecord or None
         What the extended model still misses; none where it is hardly more than noise.
     detectable : mapping of str to (float or None)
@@ -254,6 +257,7 @@ class DiagnosisDocument(msgspec.Struct, frozen=True, kw_only=True):
     margin: float | None = None
     load_margin: float | None = None
     gain: GainRecord | None
+    empirical: EmpiricalGainRecord | None = None
     remainder: RemainderRecord | None = None
     detectable: Mapping[str, float | None]
     undetectable: Mapping[str, str] = {}

@@ -14,8 +14,10 @@ from frictioncli.diagnosis.data.build_problem import at_temperature
 from frictioncli.diagnosis.data.gravity_document import GravityCoefficients, stated_gravity
 from frictioncli.diagnosis.data.hidden_temperature import HiddenTemperature
 from frictioncli.diagnosis.data.problem import Problem
+from frictioncli.diagnosis.documents.empirical_record import EmpiricalRecord
+from frictioncli.diagnosis.empirical.term import EmpiricalTerm
 from frictioncli.effects import BY_NAME, thermal_lag
-from frictioncli.effects.base import Effect
+from frictioncli.effects.base import Basis, Effect
 from frictioncli.errors import TableError
 from frictioncli.model.document import FrictionModel
 from frictioncli.model.friction import FrictionParameters, friction_torque
@@ -143,6 +145,8 @@ class ExtendedDocument(FrictionModel):
     hidden_temperature : HiddenTemperature
         Temperature of the gear at which friction is evaluated; absent where that is the measured
         one.
+    empirical : EmpiricalRecord
+        Torque without a known cause; absent where a term for it is not worth using.
     """
 
     effects: tuple[EffectRecord, ...]
@@ -150,15 +154,27 @@ class ExtendedDocument(FrictionModel):
     gravity_about: GravityCoefficients | UnsetType = UNSET
     gravity: GravityCoefficients | UnsetType = UNSET
     hidden_temperature: HiddenTemperature | UnsetType = UNSET
+    empirical: EmpiricalRecord | UnsetType = UNSET
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Beyond:
-    """What an extended model adds to the base, shape (rows,) each [N·m]."""
+    """What an extended model adds to the base, shape (rows,) each [N·m].
+
+    Attributes
+    ----------
+    friction, load : ndarray, shape (rows,)
+        All of it.
+    terms : tuple of Term
+        Its effects.
+    empirical : Basis or None
+        Its empirical term.
+    """
 
     friction: Array
     load: Array
     terms: tuple[Term, ...]
+    empirical: Basis | None = None
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -177,9 +193,11 @@ class ExtendedModel:
         Gravity as refitted, and the base's; not used without effects.
     effects : tuple of FittedEffect
         The effects, in the order of the causes, then those that are corrected without a name;
-        without any it adds nothing to its base.
+        without any, and without an empirical term, it adds nothing to its base.
     hidden : HiddenTemperature or None
         Temperature of the gear about which it is linear; none for the measured one.
+    empirical : EmpiricalTerm or None
+        Torque without a known cause.
     """
 
     temperature: str
@@ -189,6 +207,12 @@ class ExtendedModel:
     gravity_about: GravityCoefficients
     effects: tuple[FittedEffect, ...]
     hidden: HiddenTemperature | None = None
+    empirical: EmpiricalTerm | None = None
+
+    @property
+    def adds_nothing(self) -> bool:
+        """Whether it is its base."""
+        return not self.effects and self.empirical is None
 
     def beyond(self, problem: Problem) -> Beyond:
         """Return what it adds to the simulated torque of a problem's rows.
@@ -199,7 +223,7 @@ class ExtendedModel:
             Rows with the base model that the extension started from.
         """
         friction, load = np.zeros_like(problem.friction), np.zeros_like(problem.load)
-        if not self.effects:
+        if self.adds_nothing:
             return Beyond(friction=friction, load=load, terms=())
         # about the base that the extension started from, at the temperature of the gear
         base = problem
@@ -212,10 +236,15 @@ class ExtendedModel:
         gravity = stated_gravity(self.gravity, base.gravity_form) - base.gravity
         friction = base.friction_base @ np.array(changes) + base.friction_by_gravity @ gravity
         friction = friction + _at_measured(base) - _at_measured(problem)
+        empirical = None if self.empirical is None else self.empirical.at(base)
+        load = base.load_base @ gravity
+        if empirical is not None:
+            friction, load = friction + empirical.friction, load + empirical.load
         return Beyond(
             friction=sum((term.friction for term in terms), friction),
-            load=sum((term.load for term in terms), base.load_base @ gravity),
+            load=sum((term.load for term in terms), load),
             terms=terms,
+            empirical=empirical,
         )
 
     def _term(self, effect: FittedEffect, base: Problem) -> Term:
@@ -258,10 +287,10 @@ def extended_model(document: ExtendedDocument) -> ExtendedModel:
     Raises
     ------
     TableError
-        If it names an effect that the catalogue does not have, or with other parameters, or lacks
-        what the effects are refitted with.
+        If it names an effect that the catalogue does not have, or with other parameters, lacks
+        what the effects are refitted with, or has an empirical term that is no function.
     """
-    if not document.effects:
+    if not document.effects and not document.empirical:
         return ExtendedModel(
             temperature=document.temperature,
             parameters=document.friction,
@@ -271,7 +300,10 @@ def extended_model(document: ExtendedDocument) -> ExtendedModel:
             effects=(),
         )
     if not (document.linear_about and document.gravity and document.gravity_about):
-        raise TableError("expected linear_about, gravity and gravity_about beside effects")
+        raise TableError("expected linear_about, gravity and gravity_about beside the rest")
+    empirical = document.empirical or None
+    if empirical is not None:
+        empirical.check()
     return ExtendedModel(
         temperature=document.temperature,
         parameters=document.friction,
@@ -280,4 +312,5 @@ def extended_model(document: ExtendedDocument) -> ExtendedModel:
         gravity_about=document.gravity_about,
         effects=tuple(one.fitted() for one in document.effects),
         hidden=document.hidden_temperature or None,
+        empirical=empirical,
     )

@@ -14,6 +14,7 @@ from frictioncli.diagnosis.documents.document import (
     SimulationRecord,
     StructureRecord,
 )
+from frictioncli.diagnosis.documents.empirical_record import gain_record, term_record
 from frictioncli.diagnosis.documents.extended_model import (
     EffectRecord,
     ExtendedDocument,
@@ -81,6 +82,7 @@ def diagnosis_document(diagnosis: Diagnosis, settings: DiagnosisSettings) -> Dia
             ci95=gain.interval,
             noise_floor=gain.floor,
         ),
+        empirical=None if diagnosis.empirical is None else gain_record(diagnosis.empirical),
         remainder=remainder_record(diagnosis),
         detectable=diagnosis.detectable,
         undetectable=_undetectable(diagnosis),
@@ -116,6 +118,8 @@ def extended_document(diagnosis: Diagnosis, model: FrictionModel) -> ExtendedDoc
     """
     stated = {field.name: getattr(model, field.name) for field in fields(model)}
     extension = diagnosis.extension
+    if diagnosis.empirical is not None:
+        extension = diagnosis.empirical.beside
     if extension is None:
         return ExtendedDocument(**stated, effects=())
     base, form = diagnosis.base.parameters, diagnosis.base.gravity_form
@@ -148,6 +152,9 @@ def extended_document(diagnosis: Diagnosis, model: FrictionModel) -> ExtendedDoc
         gravity_about=gravity_document(diagnosis.base.gravity, form),
         gravity=gravity_document(extension.gravity, form),
         hidden_temperature=diagnosis.base.hidden or UNSET,
+        empirical=term_record(diagnosis.empirical, diagnosis.torque_unit)
+        if diagnosis.empirical
+        else UNSET,
     )
 
 

@@ -30,7 +30,7 @@ class Misfits:
         The rows, with the base model.
     before, after : dict of str to ndarray
         Measured minus simulated torque per channel, ``friction`` and ``load``, by the base and by
-        the extended model. [N·m]
+        the extended model without its empirical term. [N·m]
     terms : tuple of Term
         Effects of the extended model, in the order of the causes.
     """
@@ -154,7 +154,7 @@ def _predicted(new: Misfits, document: DiagnosisDocument) -> Misfits:
 
 
 def misfits(problem: Problem, extended: ExtendedModel) -> Misfits:
-    """Return what the base and the extended model miss of a problem's rows.
+    """Return what the base and the extended model without its empirical term miss of rows.
 
     Parameters
     ----------
@@ -167,8 +167,8 @@ def misfits(problem: Problem, extended: ExtendedModel) -> Misfits:
     if not extended.effects:
         return Misfits(problem=problem, before=before, after=before, terms=())
     beyond = extended.beyond(problem)
-    after = {
-        "friction": before["friction"] - beyond.friction,
-        "load": before["load"] - beyond.load,
-    }
+    friction, load = (beyond.friction, beyond.load)
+    if beyond.empirical is not None:
+        friction, load = friction - beyond.empirical.friction, load - beyond.empirical.load
+    after = {"friction": before["friction"] - friction, "load": before["load"] - load}
     return Misfits(problem=problem, before=before, after=after, terms=beyond.terms)

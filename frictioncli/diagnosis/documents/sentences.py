@@ -1,6 +1,7 @@
 """What a diagnosis found, sentence by sentence, as terminal and page say it."""
 
 from frictioncli.diagnosis.documents.document import OTHER_JOINT, CauseRecord, DiagnosisDocument
+from frictioncli.diagnosis.documents.empirical_record import EmpiricalGainRecord
 from frictioncli.diagnosis.search.effect_size import TAKEN_BY_BASE
 from frictioncli.effects import BY_NAME
 from frictioncli.wording import in_words, list_text, number_text, quantity_text
@@ -200,6 +201,40 @@ def remainder_text(document: DiagnosisDocument) -> str:
         f" {unit}{most} along {_AXES.get(left.axis, left.axis)}, in the {left.channel}"
         f" ({number_text(left.axis_size, 2)} {unit})."
     )
+
+
+def empirical_text(document: DiagnosisDocument) -> str:
+    """Return what an empirical term gains and where it is valid; empty without one.
+
+    Parameters
+    ----------
+    document : DiagnosisDocument
+        The joint's diagnosis.
+    """
+    found, unit = document.empirical, document.torque_unit
+    if found is None:
+        return ""
+    on = "on pairs kept out of its estimate"
+    if found.basis == "new_run":
+        on = f"on run {document.held_out}, which it has not seen"
+    low, high = (f"{share:.0%}".replace("-", "−") for share in found.ci95)
+    return (
+        "With an empirical term for what has no name, the extended model misses the torque by"
+        f" {number_text(found.rmse_after, 2)} {unit} (RMS) {on}, without by"
+        f" {number_text(found.rmse_before, 2)} {unit}: {found.reduction:.0%} less ({low} to"
+        f" {high}). It is no cause, and valid only {_within_text(found)}."
+    )
+
+
+def _within_text(found: EmpiricalGainRecord) -> str:
+    """Return the ranges of an empirical term."""
+    words = {"position": "deg", "speed": "deg/s", "temperature": "°C", "load": "N·m of load"}
+    ranges = [
+        f"{number_text(low, 3)} to {number_text(high, 3)} {words[axis]}"
+        for axis, (low, high) in found.ranges.items()
+        if axis in words and low < high
+    ]
+    return f"within {list_text(ranges)}"
 
 
 def chance_text(cause: CauseRecord) -> str:

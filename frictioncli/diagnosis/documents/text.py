@@ -10,6 +10,7 @@ from frictioncli.diagnosis.documents.document import (
 from frictioncli.diagnosis.documents.sentences import (
     chance_text,
     detectable_text,
+    empirical_text,
     finding_text,
     lasting_text,
     margin_text,
@@ -45,6 +46,7 @@ def verdict_text(document: DiagnosisDocument) -> str:
         lines.append(_gain_text(document.gain, document))
     lines += [
         remainder_text(document),
+        empirical_text(document),
         settling_text(document),
         margin_text(document),
         detectable_text(document),

@@ -31,6 +31,7 @@ import numpy as np
 from frictioncli.arrays import Array
 from frictioncli.diagnosis.data.problem import Problem
 from frictioncli.diagnosis.fit.columns import ModelColumns, reduced
+from frictioncli.diagnosis.noise.cosine_series import HALF, CosineSeries, ranges_of
 from frictioncli.effects.base import Channel, EffectTable
 
 SHARE = 0.0075
@@ -49,9 +50,6 @@ _MINOR_WEIGHT = 0.6
 """The same of functions of two quantities and of those in the load channel: main effects are larger
 than interactions, and gravity is better known than friction."""
 
-_HALF = 4.0
-"""Order from which on the cosines of a function of the angle become weaker."""
-
 _UNSEEN = float(np.exp(SPREAD**2))
 """Root mean square of an amplitude that no data show, relative to its median."""
 
@@ -60,9 +58,6 @@ _RANK = 1e-3
 
 _LEAST_LEFT = 1e-4
 """Least share of the mean square of a function that the base leaves."""
-
-_ANGLE, _ANGLE_IN_PRODUCT, _SPEED, _TEMPERATURE = 16, 6, 6, 5
-"""Greatest orders of the cosines."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -166,7 +161,7 @@ def discrepancy_of(problem: Problem, span: Array, share: float = SHARE) -> Discr
     rows = len(problem.friction)
     parts: list[tuple[Channel, tuple[str, ...], Array]] = []
     if share > 0:
-        parts.append(("friction", _FORM, _form(problem.table)))
+        parts.append(("friction", FORM, _form(problem.table)))
         parts += [("friction", *one) for one in _functions(problem.table, _FRICTION)]
     if share > 0 and not problem.has_load_channel:
         parts += [("load", *one) for one in _functions(problem.table, _LOAD)]
@@ -178,12 +173,12 @@ def discrepancy_of(problem: Problem, span: Array, share: float = SHARE) -> Discr
         orthogonal = columns - span @ (span.T @ columns)
         if np.sum(np.square(orthogonal)) <= _LEAST_LEFT * np.sum(np.square(columns)):
             continue
-        weight = _MINOR_WEIGHT if channel == "load" or len(axes) == 2 else 1.0
-        if axes == _FORM:
+        weight = weight_of(axes, channel)
+        if axes == FORM:
             orthogonal = orthogonal @ _orthonormal_combination(orthogonal)
         scale = weight * np.sqrt(rows / float(np.sum(np.square(orthogonal))))
         left.append(scale * orthogonal)
-        whole.append((_FORM_ERRORS if axes == _FORM else weight) * _of_errors(axes, columns))
+        whole.append((_FORM_ERRORS if axes == FORM else weight) * _of_errors(axes, columns))
         components.append(Component(axes, channel, slice(first, first + orthogonal.shape[1])))
         first += orthogonal.shape[1]
         squares += weight**2
@@ -199,6 +194,19 @@ def discrepancy_of(problem: Problem, span: Array, share: float = SHARE) -> Discr
     )
 
 
+def weight_of(axes: tuple[str, ...], channel: Channel) -> float:
+    """Return the amplitude that is expected of a function, relative to that of a main effect.
+
+    Parameters
+    ----------
+    axes : tuple of str
+        The quantities that it depends on.
+    channel : {"friction", "load"}
+        The channel in which it shows.
+    """
+    return _MINOR_WEIGHT if channel == "load" or len(axes) == 2 else 1.0
+
+
 def _of_errors(axes: tuple[str, ...], columns: Array) -> Array:
     """Return columns of a function as a whole, whose squares sum to the number of rows.
 
@@ -208,8 +216,8 @@ def _of_errors(axes: tuple[str, ...], columns: Array) -> Array:
     """
     order = np.arange(1, columns.shape[1] + 1)
     if axes == ("position",):
-        columns = columns * (1 + np.square(order / _HALF)) / np.square(order)
-    if axes == _FORM:
+        columns = columns * (1 + np.square(order / HALF)) / np.square(order)
+    if axes == FORM:
         size = np.linalg.norm(columns, axis=0)
         columns = columns / np.where(size > 0, size, np.inf)
     squares = float(np.sum(np.square(columns)))
@@ -225,7 +233,7 @@ def _orthonormal_combination(columns: Array) -> Array:
     return np.asarray((right[kept] / strength[kept, np.newaxis]).T / size[:, np.newaxis])
 
 
-_FORM = ("speed", "temperature", "form")
+FORM = ("speed", "temperature", "form")
 
 _FRICTION = (
     ("position",),
@@ -249,22 +257,12 @@ def _functions(
     table: EffectTable, wanted: tuple[tuple[str, ...], ...]
 ) -> list[tuple[tuple[str, ...], Array]]:
     """Return the axes and the columns of each function whose quantities vary."""
-    unit = {
-        "position": _unit(table.position),
-        "speed": _unit(np.log(np.maximum(table.speed, 1e-9))),
-        "temperature": _unit(table.temperature),
-    }
+    ranges = ranges_of(table)
     found = []
     for axes in wanted:
-        values = [unit[axis] for axis in axes]
-        if any(np.ptp(one) == 0 for one in values):
-            continue
-        alone = len(axes) == 1
-        columns = _cosines(axes[0], values[0], alone=alone)
-        for axis, one in zip(axes[1:], values[1:], strict=True):
-            second = _cosines(axis, one, alone=False)
-            columns = np.einsum("ij,ik->ijk", columns, second).reshape(len(one), -1)
-        found.append((axes, columns))
+        if all(axis in ranges for axis in axes):
+            series = CosineSeries.of(axes, table, ranges)
+            found.append((axes, series.weights * series.columns(table, ranges)))
     return found
 
 
@@ -280,22 +278,3 @@ def _form(table: EffectTable) -> Array:
     away = table.temperature - np.mean(table.temperature)
     # about the mean: the unit of speed must not matter
     return np.column_stack([viscous * (speed - np.mean(speed)), viscous * np.square(away), away])
-
-
-def _unit(values: Array) -> Array:
-    """Return values from 0 to 1; zeros where they do not vary."""
-    span = float(np.ptp(values))
-    if not np.isfinite(span) or span <= 1e-9 * max(float(np.max(np.abs(values))), 1e-9):
-        return np.zeros_like(values)
-    return (values - np.min(values)) / span
-
-
-def _cosines(axis: str, unit: Array, *, alone: bool) -> Array:
-    """Return weighted cosines of growing order over a range, shape (rows, orders)."""
-    distinct = len(np.unique(np.round(unit, 6)))
-    most = {"position": _ANGLE, "speed": _SPEED, "temperature": _TEMPERATURE}[axis]
-    if not alone:
-        most = {"position": _ANGLE_IN_PRODUCT, "speed": 3, "temperature": 3}[axis]
-    order = np.arange(1, min(most, distinct - 1) + 1)
-    weight = 1 / (1 + np.square(order / _HALF)) if axis == "position" else 1 / order
-    return np.asarray(weight * np.cos(np.pi * order * unit[:, np.newaxis]))

@@ -1,0 +1,127 @@
+"""The empirical term in documents: as the extended model carries it, and what it gains."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import msgspec
+
+from frictioncli.diagnosis.empirical.estimate import Empirical
+from frictioncli.diagnosis.empirical.term import FADING, EmpiricalTerm
+from frictioncli.diagnosis.noise.cosine_series import Range
+
+_NOTE = "empirical: what was measured and no known cause explains; not a cause"
+
+_EQUATION = (
+    "w(x) (sum_k gamma_k prod_j cos(pi k_j u_j) + du/dp b), b: base_changes and gravity_changes;"
+    " u from 0 to 1 over the range of a quantity, of the speed over that of its logarithm;"
+    " w = 1 - 3 s^2 + 2 s^3 beyond an end of a range, s the distance as a share of fading times the"
+    " range, w = 1 within all"
+)
+
+_UNITS = {"position": "deg", "speed": "deg/s", "temperature": "°C", "load": "N·m"}
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class EmpiricalRecord(EmpiricalTerm):
+    """The empirical term of ``extended-model.json``.
+
+    Attributes
+    ----------
+    note, equation : str
+        What it is, and how it is evaluated.
+    torque_unit : str
+        Unit of the coefficients.
+    units : mapping of str to str
+        Units of the ranges.
+    fading : float
+        Share of a range within which it falls to nothing beyond each end. [1]
+    size : float
+        Its RMS over the rows that it was estimated from. [torque unit]
+    """
+
+    note: str = _NOTE
+    equation: str = _EQUATION
+    torque_unit: str
+    units: Mapping[str, str]
+    fading: float = FADING
+    size: float
+
+
+class EmpiricalGainRecord(msgspec.Struct, frozen=True, kw_only=True):
+    """What the empirical term of the extended model is worth, beyond base and causes.
+
+    Attributes
+    ----------
+    size : float
+        Its RMS over the rows that it was estimated from. [torque unit]
+    size_kept_out : float
+        RMS of what it explains on blocks of pairs that were kept out of its estimate. [torque unit]
+    basis : {"new_run", "kept_out_blocks"}
+        What the following figures are of: a run that was new to all of the extended model, or these
+        blocks, which were new to the term alone.
+    rmse_before, rmse_after : float
+        RMS misfit without and with it. [torque unit]
+    reduction : float
+        Relative reduction.
+    ci95 : (float, float)
+        Its 95 % interval.
+    noise_floor : float
+        RMS of point and pair noise. [torque unit]
+    ranges : mapping of str to (float, float)
+        Angle ``position`` [deg], ``speed`` [deg/s], ``temperature`` [°C] and amount of the ``load``
+        [N·m] within which it is valid.
+    """
+
+    size: float
+    size_kept_out: float
+    basis: str
+    rmse_before: float
+    rmse_after: float
+    reduction: float
+    ci95: tuple[float, float]
+    noise_floor: float
+    ranges: Mapping[str, Range]
+
+
+def term_record(found: Empirical, torque_unit: str) -> EmpiricalRecord:
+    """Return an empirical term as ``extended-model.json`` has it.
+
+    Parameters
+    ----------
+    found : Empirical
+        The term.
+    torque_unit : str
+        Unit of torque.
+    """
+    term = found.term
+    return EmpiricalRecord(
+        functions=term.functions,
+        ranges=term.ranges,
+        base_changes=term.base_changes,
+        gravity_changes=term.gravity_changes,
+        torque_unit=torque_unit,
+        units={axis: _UNITS[axis] for axis in term.ranges},
+        size=found.size,
+    )
+
+
+def gain_record(found: Empirical) -> EmpiricalGainRecord:
+    """Return what an empirical term gains as ``diagnosis.json`` has it.
+
+    Parameters
+    ----------
+    found : Empirical
+        The term.
+    """
+    gain = found.gain
+    return EmpiricalGainRecord(
+        size=found.size,
+        size_kept_out=found.kept_out,
+        basis="new_run" if gain.basis == "new_run" else "kept_out_blocks",
+        rmse_before=gain.before,
+        rmse_after=gain.after,
+        reduction=gain.reduction,
+        ci95=gain.interval,
+        noise_floor=gain.floor,
+        ranges=found.term.ranges,
+    )

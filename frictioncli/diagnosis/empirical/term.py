@@ -1,0 +1,196 @@
+r"""An empirical term: torque by angle, speed and temperature for which no cause is known.
+
+It is a sum of series of cosines (:mod:`frictioncli.diagnosis.noise.cosine_series`), less what the
+base model takes of them, because its parameters were fitted without them,
+
+.. math:: r(x) = w(x) \left( \sum_k \gamma_k c_k(x) + \frac{\partial u}{\partial p}\, b \right) .
+
+It is valid where the joint was measured: within the ranges of its inputs :math:`w = 1`; beyond an
+end it falls smoothly, and a tenth of the range further on it is nothing.
+"""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from frictioncli.arrays import Array
+from frictioncli.diagnosis.data.gravity_document import GravityCoefficients, stated_gravity
+from frictioncli.diagnosis.data.problem import Problem
+from frictioncli.diagnosis.noise.cosine_series import AXES, CosineSeries, Range, coordinate
+from frictioncli.effects.base import Basis, EffectTable
+from frictioncli.errors import TableError
+
+FADING = 0.1
+"""Share of a range within which the term falls to nothing beyond each end."""
+
+CHANNELS = ("friction", "load")
+"""Torques that the term adds to."""
+
+INPUTS = ("position", "speed", "temperature", "load")
+"""What the term depends on, and has ranges of."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class SmoothFunction:
+    """A function of one quantity or two, as products of cosines.
+
+    Attributes
+    ----------
+    axes : tuple of str
+        The quantities: ``position``, ``speed``, ``temperature``.
+    channel : {"friction", "load"}
+        The torque that it adds to.
+    orders : tuple of int
+        Greatest order of the cosines in each quantity.
+    coefficients : tuple of float
+        Of the products, the order of the last quantity running fastest. [torque unit]
+    """
+
+    axes: tuple[str, ...]
+    channel: str
+    orders: tuple[int, ...]
+    coefficients: tuple[float, ...]
+
+    def values(self, table: EffectTable, ranges: Mapping[str, Range]) -> Array:
+        """Return the function at some rows, shape (rows,) [torque unit].
+
+        Parameters
+        ----------
+        table : EffectTable
+            The rows.
+        ranges : mapping of str to (float, float)
+            Range of each quantity, of the speed that of its logarithm.
+        """
+        columns = CosineSeries(self.axes, self.orders).columns(table, ranges)
+        return np.asarray(columns @ np.array(self.coefficients))
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class EmpiricalTerm:
+    """Torque without a known cause, with the ranges in which it is valid.
+
+    Attributes
+    ----------
+    functions : tuple of SmoothFunction
+        What it consists of.
+    ranges : mapping of str to (float, float)
+        Least and greatest angle ``position`` [deg], ``speed`` [deg/s], ``temperature`` at which
+        friction is evaluated [°C] and amount of the ``load`` [N·m] that were measured.
+    base_changes : mapping of str to float
+        What it adds to the base's parameters of friction, in their units.
+    gravity_changes : GravityCoefficients
+        What it adds to gravity.
+    """
+
+    functions: tuple[SmoothFunction, ...]
+    ranges: Mapping[str, Range]
+    base_changes: Mapping[str, float]
+    gravity_changes: GravityCoefficients
+
+    def check(self) -> None:
+        """Raise what makes the term no function of its inputs.
+
+        Raises
+        ------
+        TableError
+            If ranges, orders and coefficients do not belong together.
+        """
+        for axis in INPUTS:
+            low, high = self.ranges.get(axis, (1.0, 0.0))
+            if not low <= high or (axis == "speed" and low <= 0):
+                raise TableError(f"empirical: expected a range of {axis} from low to high")
+        for one in self.functions:
+            if not set(one.axes) <= {axis for axis in AXES if np.ptp(self.ranges[axis]) > 0}:
+                raise TableError(f"empirical: function of {one.axes}, expected some of {AXES}")
+            if one.channel not in CHANNELS:
+                raise TableError(f"empirical: channel {one.channel!r}, expected one of {CHANNELS}")
+            orders = len(one.axes) == len(one.orders)
+            if not orders or np.prod(one.orders) != len(one.coefficients):
+                raise TableError(
+                    f"empirical: {len(one.coefficients)} coefficients of {' and '.join(one.axes)},"
+                    f" expected one for each product of the orders {one.orders}"
+                )
+
+    def at(self, problem: Problem) -> Basis:
+        """Return what the term adds to both channels of a problem's rows, shape (rows,) each.
+
+        Parameters
+        ----------
+        problem : Problem
+            Rows with the base model that the term was fitted beside.
+
+        Returns
+        -------
+        Basis
+            Friction and load torque. [torque unit]
+        """
+        within = in_coordinates(self.ranges)
+        added = {"friction": np.zeros_like(problem.friction), "load": np.zeros_like(problem.load)}
+        for one in self.functions:
+            added[one.channel] = added[one.channel] + one.values(problem.table, within)
+        changes = np.array([self.base_changes.get(name, 0.0) for name in problem.names])
+        gravity = stated_gravity(self.gravity_changes, problem.gravity_form)
+        friction = problem.friction_base @ changes + problem.friction_by_gravity @ gravity
+        valid = validity(problem.table, self.ranges)
+        return Basis(
+            valid * (added["friction"] + friction),
+            valid * (added["load"] + problem.load_base @ gravity),
+        )
+
+
+def in_coordinates(ranges: Mapping[str, Range]) -> dict[str, Range]:
+    """Return ranges as series count them: of the speed that of its logarithm.
+
+    Parameters
+    ----------
+    ranges : mapping of str to (float, float)
+        Ranges in units.
+    """
+    return {
+        axis: (float(np.log(low)), float(np.log(high))) if axis == "speed" else (low, high)
+        for axis, (low, high) in ranges.items()
+    }
+
+
+def ranges_seen(table: EffectTable) -> dict[str, Range]:
+    """Return the least and greatest value of each input over some rows, in units.
+
+    Parameters
+    ----------
+    table : EffectTable
+        The rows.
+    """
+    found = {}
+    for axis in INPUTS:
+        values = getattr(table, axis)
+        values = np.abs(values) if axis == "load" else values
+        found[axis] = (float(np.min(values)), float(np.max(values)))
+    return found
+
+
+def validity(table: EffectTable, ranges: Mapping[str, Range]) -> Array:
+    r"""Return the share of an empirical term that counts, 1 where its inputs were measured.
+
+    Beyond an end the share is :math:`1 - 3 s^2 + 2 s^3`, with the distance *s* from it as a share
+    of a tenth of the range.
+
+    Parameters
+    ----------
+    table : EffectTable
+        The rows.
+    ranges : mapping of str to (float, float)
+        Ranges that were measured.
+
+    Returns
+    -------
+    ndarray, shape (rows,)
+        The share. [1]
+    """
+    found = np.ones(len(table.speed))
+    for axis, (low, high) in in_coordinates(ranges).items():
+        values = np.abs(table.load) if axis == "load" else coordinate(axis, table)
+        reach = FADING * (high - low) or FADING * max(abs(high), 1.0)
+        away = np.clip(np.maximum(low - values, values - high) / reach, 0.0, 1.0)
+        found = found * (1 - np.square(away) * (3 - 2 * away))
+    return found

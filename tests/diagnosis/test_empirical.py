@@ -1,0 +1,202 @@
+"""The empirical term for what has no name: what it gains, where it is valid, when it is used."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from frictioncli import documents
+from frictioncli.diagnosis.data.gravity_document import GravityCoefficients
+from frictioncli.diagnosis.diagnose import diagnose_joint
+from frictioncli.diagnosis.documents.apply_extension import friction_beyond
+from frictioncli.diagnosis.documents.extended_model import ExtendedDocument, extended_model
+from frictioncli.diagnosis.documents.from_diagnosis import diagnosis_document, extended_document
+from frictioncli.diagnosis.documents.text import verdict_text
+from frictioncli.diagnosis.empirical.estimate import empirical_term
+from frictioncli.diagnosis.empirical.random_functions import functions_of
+from frictioncli.diagnosis.empirical.term import EmpiricalTerm, SmoothFunction, validity
+from frictioncli.diagnosis.fit.columns import base_rows
+from frictioncli.diagnosis.fit.extension import extend, misfits
+from frictioncli.diagnosis.search.precomputed import Precomputed
+from frictioncli.diagnosis.search.step import Step
+from frictioncli.diagnosis.settings import DiagnosisSettings
+from frictioncli.errors import TableError
+from frictioncli.model.fitting import fit_joint
+from frictioncli.model.settings import FitSettings
+from frictioncli.simulator.settings import SynthesisSettings
+from tests.diagnosis.dense_noise import problem
+from tests.simulation.torque_table import simulate_torques
+
+MARGIN = 0.2
+SETTINGS = DiagnosisSettings()
+RANGES = {
+    "position": (0.0, 100.0),
+    "speed": (10.0, 100.0),
+    "temperature": (20.0, 60.0),
+    "load": (0.0, 90.0),
+}
+NOTHING = GravityCoefficients(cosine=0.0, sine=0.0, offset=0.0)
+SECOND = SmoothFunction(
+    axes=("position",), channel="friction", orders=(2,), coefficients=(0.0, 1.5)
+)
+TERM = EmpiricalTerm(functions=(SECOND,), ranges=RANGES, base_changes={}, gravity_changes=NOTHING)
+
+
+def hump(rows):
+    """Friction that is higher about 70 deg; no effect of the catalogue, broad enough to be seen."""
+    return 2.0 * np.exp(-np.square((rows.position - 70.0) / 22.0) / 2)
+
+
+def found(data, new=None):
+    step = Step.of(Precomputed.of(data), [])
+    beside = extend(data, step.predicting_fit(), [])
+    judged = None if new is None else (new, beside)
+    return empirical_term(step, (data, beside), judged, margin=MARGIN, floor=0.3, seed=0)
+
+
+def test_it_predicts_another_day_as_well_as_the_law_does():
+    """Gain beside that of knowing the law: the misfit without the hump is the noise."""
+    seen, new = problem(3, friction=hump), problem(4, friction=hump)
+    empirical = found(seen, new)
+    without = problem(4)
+    best = np.sqrt(np.mean(without.squared(without.friction_misfit, without.load_misfit)))
+    assert empirical.gain.basis == "new_run"
+    gained = empirical.gain.before**2 - empirical.gain.after**2
+    assert gained > 0.8 * (empirical.gain.before**2 - best**2)
+
+
+def test_where_nothing_is_there_it_is_not_used():
+    assert all(found(problem(seed)) is None for seed in (3, 5, 6))
+
+
+def test_what_does_not_recur_on_the_new_run_is_not_used():
+    assert found(problem(3, friction=hump)) is not None
+    assert found(problem(3, friction=hump), problem(4)) is None
+
+
+def test_columns_are_what_the_base_leaves_and_the_term_is_their_sum():
+    """The term, less its changes of the base, from its stated coefficients alone."""
+    data = problem(3, friction=hump)
+    step = Step.of(Precomputed.of(data), [])
+    functions = functions_of(
+        data, step.precomputed.discrepancy.components, step.fit.variances.amplitude
+    )
+    base = np.vstack(base_rows(data))
+    for one in functions:
+        inner = base.T @ one.columns
+        bound = np.outer(np.linalg.norm(base, axis=0), np.linalg.norm(one.columns, axis=0))
+        assert np.max(np.abs(inner) / bound) < 1e-6
+    added = found(data).term.at(data)
+    beside = extend(data, step.predicting_fit(), [])
+    before = misfits(data, beside)
+    again = extend(
+        replace(data, friction=data.friction - added.friction, load=data.load - added.load),
+        step.predicting_fit(),
+        [],
+    )
+    # taking it out hardly moves the base: by far less than its errors
+    assert (np.abs(again.changes - beside.changes) < 0.02 * beside.errors[:5]).all()
+    assert np.std(before[0] - added.friction) < 0.7 * np.std(before[0])
+
+
+def test_it_is_a_series_of_cosines_over_the_range():
+    data = problem(3)
+    place = data.table.position / 100.0
+    inside = place <= 1.0
+    table = replace(data.table, load=0 * place, speed=0 * place + 50, temperature=0 * place + 40)
+    added = TERM.at(replace(data, table=table))
+    expected = 1.5 * np.cos(2 * np.pi * place)
+    assert added.friction[inside] == pytest.approx(expected[inside])
+    assert not added.load.any()
+
+
+@pytest.mark.parametrize(
+    ("axis", "values"),
+    [
+        ("position", [-10.0, -5.0, 0.0, 100.0, 105.0, 110.0, 150.0]),
+        ("temperature", [16.0, 18.0, 20.0, 60.0, 62.0, 64.0, 90.0]),
+        ("load", [0.0, -90.0, 0.0, 90.0, 94.5, -99.0, 200.0]),
+        (
+            "speed",
+            [10 / 10**0.1, 10 / 10**0.05, 10.0, 100.0, 100 * 10**0.05, 100 * 10**0.1, 400.0],
+        ),
+    ],
+)
+def test_outside_what_was_measured_it_fades_to_nothing_within_a_tenth_of_the_range(axis, values):
+    table = problem(3).table
+    here = {"position": 50.0, "speed": 50.0, "temperature": 40.0, "load": 40.0}
+    rows = {name: np.full(len(table.speed), value) for name, value in here.items()}
+    rows[axis][: len(values)] = values
+    share = validity(replace(table, **rows), RANGES)
+    ends = [1.0, 1.0] if axis == "load" else [0.0, 0.5]
+    assert share[:7] == pytest.approx([*ends, 1.0, 1.0, 0.5, 0.0, 0.0], abs=1e-9)
+    assert (share[7:] == 1.0).all()
+
+
+@pytest.mark.parametrize(
+    "changed",
+    [
+        {"ranges": {}},
+        {"ranges": RANGES | {"speed": (0.0, 100.0)}},
+        {"ranges": RANGES | {"position": (5.0, 5.0)}},
+        {"functions": (replace(SECOND, orders=(3,)),)},
+        {"functions": (replace(SECOND, axes=("load",)),)},
+    ],
+)
+def test_a_term_that_is_no_function_is_refused(changed):
+    TERM.check()
+    with pytest.raises(TableError, match="empirical"):
+        replace(TERM, **changed).check()
+
+
+@pytest.fixture(scope="module")
+def diagnosed():
+    """Two days of a joint with a law that no catalogue lists, and its diagnosis."""
+    rows = simulate_torques(
+        SynthesisSettings(seed=7, joint_kind="plain", effects=("position_temperature:1.0",))
+    )
+    rows = rows.assign(load=np.nan)
+    return rows, diagnose_joint(rows, "motor", "N·m", SETTINGS)
+
+
+@pytest.mark.slow
+def test_documents_and_text_say_what_it_gains(diagnosed):
+    rows, diagnosis = diagnosed
+    document = diagnosis_document(diagnosis, SETTINGS)
+    assert document.empirical.basis == "new_run"
+    assert document.empirical.reduction > 0.25
+    assert document.empirical.rmse_after < 0.8 * document.empirical.rmse_before
+    assert "With an empirical term for what has no name" in verdict_text(document)
+    assert "no cause" in verdict_text(document)
+    low, high = document.empirical.ranges["temperature"]
+    assert low == rows.loc[rows["run"] != diagnosis.held_out, "motor_temperature"].min()
+    assert low < high
+
+
+@pytest.mark.slow
+def test_the_extended_model_as_it_is_read_back_predicts_the_new_run(diagnosed):
+    """From the file, by the way of ``simulate`` and ``evaluate``, friction alone."""
+    rows, diagnosis = diagnosed
+    model = fit_joint(rows, {}, FitSettings(temperature="motor"))
+    text = documents.to_json(extended_document(diagnosis, model))
+    stated = documents.decode(text.encode(), ExtendedDocument)
+    assert stated.empirical.note.startswith("empirical")
+    extended = extended_model(stated)
+    new = diagnosis.judged
+    beyond = extended.beyond(new)
+    left = new.squared(new.friction_misfit - beyond.friction, new.load_misfit - beyond.load)
+    assert np.sqrt(np.mean(left)) == pytest.approx(diagnosis.empirical.gain.after, rel=1e-6)
+    torques = rows[rows["run"] == diagnosis.held_out]
+    added, base = friction_beyond(torques, stated, extended)
+    ordered = torques.sort_values(["run", "time", "pair", "position"]).index
+    assert added.loc[ordered].to_numpy() == pytest.approx(beyond.friction, abs=1e-9)
+    assert np.std(added) > 0.8
+    assert base.parameters["tau_c"].estimate == diagnosis.base.parameters.tau_c
+
+
+@pytest.mark.slow
+def test_a_joint_with_all_nuisances_and_nothing_hidden_gets_none():
+    rows = simulate_torques(
+        SynthesisSettings(seed=11, joint_kind="plain", nuisances=("all", "friction_zones:0.02"))
+    )
+    assert diagnose_joint(rows, "motor", "N·m", SETTINGS).empirical is None
