@@ -12,13 +12,14 @@ from concurrent.futures import Future, ThreadPoolExecutor
 from contextlib import ExitStack, contextmanager
 from pathlib import Path
 from types import TracebackType
-from typing import TYPE_CHECKING, Any, Self, TypeVar
+from typing import TYPE_CHECKING, Any, Self
 
 import pyarrow as pa
 import pyarrow.parquet as pq
 
 from frictioncli.errors import TableError
 from frictioncli.files import atomic_write
+from frictioncli.parquet_footer import row_groups
 from frictioncli.provenance import Provenance
 from frictioncli.quantities import TORQUE
 from frictioncli.schemas import Table
@@ -31,7 +32,6 @@ if TYPE_CHECKING:
 _METADATA_KEY = b"frictioncli"
 _BATCH_ROWS = 1 << 17
 _READ_BYTES = 1 << 20
-_Item = TypeVar("_Item")
 _GROUP_BYTES = 1 << 23
 """Rows are written this many bytes at a time: small groups make a file slow to read."""
 
@@ -141,12 +141,17 @@ class TableWriter:
             self._writing.result()
 
     def _finish(self, kind: type[BaseException] | None, *_: object) -> None:
-        with self._writer:
-            if kind is None:
-                schema = arrow_schema(self._table, self.provenance, self.facts)
-                # as pyarrow itself stores a schema that it knows from the start
-                stored = {b"ARROW:schema": base64.b64encode(schema.serialize())}
-                self._writer.add_key_value_metadata(stored | schema.metadata)
+        try:
+            with self._writer:
+                if kind is None:
+                    self._writer.add_key_value_metadata(self._stored_metadata())
+        finally:
+            del self._writer  # it holds the metadata, 20 MB for 100,000 logs
+
+    def _stored_metadata(self) -> dict[bytes, bytes]:
+        schema = arrow_schema(self._table, self.provenance, self.facts)
+        # as pyarrow itself stores a schema that it knows from the start
+        return {b"ARROW:schema": base64.b64encode(schema.serialize()), **schema.metadata}
 
 
 def arrow_schema(table: Table, provenance: Provenance, facts: Mapping[str, Any]) -> pa.Schema:
@@ -253,20 +258,12 @@ def batches(path: Path, table: Table, rows: int = _BATCH_ROWS) -> Iterator[pa.Re
         As :func:`read`, and if a required column holds nulls or a type cannot be converted.
     """
     for part in sorted(path.glob("*.parquet")) if path.is_dir() else [path]:
-        with _opened(part, table) as file:
-            present = [name for name in table.names if name in file.schema_arrow.names]
-            # passing columns to other threads costs half as much as decoding them
-            for batch in file.iter_batches(batch_size=rows, columns=present, use_threads=False):
-                yield batch if _conforms(batch, table) else _converted(batch, table, part)
-
-
-def prefetch(items: Iterator[_Item]) -> Iterator[_Item]:
-    """Yield the items of an iterator, while a thread fetches the next one."""
-    with ThreadPoolExecutor(1) as pool:
-        fetched = pool.submit(next, items, None)
-        while (item := fetched.result()) is not None:
-            fetched = pool.submit(next, items, None)
-            yield item
+        for groups in row_groups(part):
+            with _opened(part, table, groups) as file:
+                present = [name for name in table.names if name in file.schema_arrow.names]
+                # passing columns to other threads costs half as much as decoding them
+                for batch in file.iter_batches(rows, columns=present, use_threads=False):
+                    yield batch if _conforms(batch, table) else _converted(batch, table, part)
 
 
 def _conforms(batch: pa.RecordBatch, table: Table) -> bool:
@@ -297,19 +294,22 @@ def metadata(path: Path) -> dict[str, Any]:
     if path.is_dir():
         path = next(iter(sorted(path.glob("*.parquet"))), path)
     try:
-        metadata = pq.read_schema(path).metadata or {}
+        groups = next(row_groups(path))
+        metadata = (pq.read_schema(path) if groups is None else groups).metadata or {}
         return dict(json.loads(metadata.get(_METADATA_KEY, b"{}")))
     except (OSError, pa.ArrowInvalid, ValueError) as error:
         raise TableError(f"{path}: cannot be read as Parquet ({error})") from error
 
 
 @contextmanager
-def _opened(path: Path, table: Table) -> Iterator[pq.ParquetFile]:
+def _opened(
+    path: Path, table: Table, groups: pq.FileMetaData | None = None
+) -> Iterator[pq.ParquetFile]:
     if not path.exists():
         raise TableError(missing_text(path))
     try:
         # otherwise the bytes of a whole row group would be held beside its values
-        file = pq.ParquetFile(path, pre_buffer=False, buffer_size=_READ_BYTES)
+        file = pq.ParquetFile(path, metadata=groups, pre_buffer=False, buffer_size=_READ_BYTES)
     except (OSError, pa.ArrowInvalid) as error:
         raise TableError(f"{path}: cannot be read as Parquet ({error})") from error
     with file:

@@ -21,7 +21,7 @@ LAYERS = [
     {"pairs", "logs", "simulator"},
     {"workfolder"},
     {"tables", "documents"},
-    {"schemas", "files", "provenance", "workfiles", "options"},
+    {"schemas", "files", "provenance", "workfiles", "options", "parquet_footer"},
     {"linear_algebra"},
     {"quantities", "errors", "arrays", "plain_text", "wording", "__init__"},
 ]

@@ -122,8 +122,9 @@ class _BackgroundHasher:
             self._tasks.append(task)
 
     def hashes(self) -> dict[Path, str]:
-        """Return the SHA-256 of all files, waiting for those that are not computed yet."""
-        return {file: text for task in self._tasks for file, text in task.result().items()}
+        """Return the SHA-256 of all files once, waiting for those that are not computed yet."""
+        tasks, self._tasks = self._tasks, []
+        return {file: text for task in tasks for file, text in task.result().items()}
 
 
 def _hashes(files: Sequence[Path]) -> dict[Path, str]:
@@ -238,7 +239,8 @@ def _write_tables(
     with _table_writer(folder, schemas.RECORDINGS) as recordings:
         recordings.provenance, recordings.facts = provenance, facts
         for run, timeline in ingested.timelines.items():
-            recordings.write(recording_rows(run, timeline.placed))
+            for rows in recording_rows(run, timeline.placed):
+                recordings.write(rows)
     outputs.samples.finish(folder / SAMPLES, ingested.knots, provenance, facts)
     for table in (schemas.REJECTED, schemas.RECORDINGS, schemas.SAMPLES):
         with atomic_write(work / f"{table.name}.parquet") as place:

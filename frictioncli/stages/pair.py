@@ -19,6 +19,7 @@ from frictioncli.pairs.partitioned_store import PartitionedStore
 from frictioncli.pairs.segments import Joint, find_segments, without_angle
 from frictioncli.pairs.settings import PairingSettings
 from frictioncli.provenance import Provenance, input_hashes
+from frictioncli.stages.prefetch import prefetch
 from frictioncli.stages.stage import StageResult, existing, stage
 from frictioncli.workfiles import PAIRS, RAMPS, RECORDINGS, SAMPLES, STARTS
 
@@ -59,7 +60,7 @@ def pair(work: Path, settings: PairingSettings | None = None) -> StageResult:
         tables.TableWriter(work / STARTS, schemas.STARTS, provenance) as starts,
         tables.TableWriter(work / PAIRS, schemas.PAIRS, provenance) as pairs,
     ):
-        samples = tables.prefetch(tables.batches(source, schemas.SAMPLES))
+        samples = prefetch(tables.batches(source, schemas.SAMPLES))
         if facts.get("position") == "integrated":
             samples = map(without_angle, samples)
         segments = find_segments(samples, settings.steady, settings.bin_width, segment_store)

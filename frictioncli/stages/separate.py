@@ -22,6 +22,7 @@ from frictioncli.pairs.separation import (
 from frictioncli.pairs.separation import separate as separate_pairs
 from frictioncli.pairs.settings import PairingSettings, SeparationSettings
 from frictioncli.provenance import Provenance, input_hashes
+from frictioncli.stages.prefetch import prefetch
 from frictioncli.stages.stage import StageResult, existing, stage
 from frictioncli.wording import count_text
 from frictioncli.workfiles import PAIRS, RECORDINGS, SAMPLES, TORQUES
@@ -130,7 +131,7 @@ def _regressed(
     facts = tables.facts(source)
 
     def read() -> Iterator[pa.RecordBatch]:
-        samples = tables.prefetch(tables.batches(source, schemas.SAMPLES))
+        samples = prefetch(tables.batches(source, schemas.SAMPLES))
         return map(without_angle, samples) if facts.get("position") == "integrated" else samples
 
     return torques_by_regression(
@@ -192,7 +193,7 @@ def _rows(
 ) -> Iterator[pa.RecordBatch]:
     """Yield the rows of pairs, then those of regressions."""
     if by_pairs:
-        for batch in tables.prefetch(tables.batches(source, schemas.PAIRS)):
+        for batch in prefetch(tables.batches(source, schemas.PAIRS)):
             own = batch
             if regressed is not None:
                 numbers = pa.array(list(by_pairs), type=pa.int16())

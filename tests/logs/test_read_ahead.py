@@ -6,7 +6,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from frictioncli.logs.samples.read_ahead import in_order
+from frictioncli.logs.log_source import ReadTask
+from frictioncli.logs.samples.read_ahead import _grouped, in_order
 
 
 @given(st.lists(st.integers(), max_size=40))
@@ -50,3 +51,19 @@ def test_an_error_comes_where_its_result_would():
     assert next(results) == 1
     with pytest.raises(ValueError, match="wrong"):
         next(results)
+
+
+def test_few_results_of_tiny_files_wait():
+    """Their size in the file tells nothing of what their rows take."""
+    files = 3000
+    taken = []
+
+    def tasks():
+        for number in range(files):
+            taken.append(number)
+            yield ReadTask(lambda n=number: n, 1)
+
+    groups = _grouped(tasks())
+    assert next(groups)() == list(range(256))
+    assert len(taken) == 257
+    assert [n for group in groups for n in group()] == list(range(256, files))

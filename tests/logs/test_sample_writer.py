@@ -9,6 +9,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from frictioncli import schemas, tables
+from frictioncli.logs.samples import sample_writer
 from frictioncli.logs.samples.log_rows import LogRows
 from frictioncli.logs.samples.quantized_temperature import Knots
 from frictioncli.logs.samples.sample_writer import SampleWriter
@@ -97,3 +98,16 @@ def test_short_recordings_of_different_channels_share_a_table(tmp_path):
     assert list(table["recording"]) == ["warm"] * 4 + ["bare"] * 2 + ["again"] * 3
     assert list(table["motor_temperature"].isna()) == [False] * 4 + [True] * 2 + [False] * 3
     assert list(table["position"]) == [1000 + i for i in (0, 1, 2, 3, 0, 1, 0, 1, 2)]
+
+
+def test_few_tiny_recordings_wait(tmp_path, monkeypatch):
+    monkeypatch.setattr(sample_writer, "_TABLE_PIECES", 4)
+    with SampleWriter(tmp_path) as writer:
+        for number in range(10):
+            writer.begin_recording("run", f"log {number}", [1], 10.0 * number)
+            chunk = log_rows(0, 3, [1])
+            writer.add(chunk, chunk.time)
+            assert len(writer._files[1].waiting) < 4
+        table = finished(writer, tmp_path, {("run", 1): (None,) * 10})
+    assert list(table["recording"]) == [f"log {n}" for n in range(10) for _ in range(3)]
+    assert list(table["position"]) == [1000 + i for _ in range(10) for i in range(3)]

@@ -13,6 +13,7 @@ from frictioncli.pairs import chunks, matching_groups, moves
 from frictioncli.pairs.settings import SteadySettings
 from frictioncli.provenance import Provenance
 from frictioncli.stages.pair import pair
+from frictioncli.stages.prefetch import prefetch
 from frictioncli.stages.separate import separate
 from frictioncli.workfiles import RAMPS, SAMPLES, TORQUES
 from tests import found
@@ -196,7 +197,7 @@ def test_fetching_ahead_keeps_order_and_errors():
 
     seen = []
     with pytest.raises(TableError, match="fifty-first"):
-        seen.extend(tables.prefetch(numbers()))
-    got = tables.prefetch(iter(range(50)))
+        seen.extend(prefetch(numbers()))
+    got = prefetch(iter(range(50)))
     assert list(got) == list(range(50))
-    assert next(tables.prefetch(iter(range(3)))) == 0
+    assert next(prefetch(iter(range(3)))) == 0

@@ -160,13 +160,14 @@ def parts_of_frictioncli(data: Path, out: Path) -> Callable[[], int]:
     from frictioncli.pairs.constant_speed import constant_speed_segments
     from frictioncli.pairs.settings import SteadySettings
     from frictioncli.pairs.slices import slice_means
+    from frictioncli.stages.prefetch import prefetch
 
     wanted = [column for column in schemas.SAMPLES.columns if column.name in PART_COLUMNS]
     table, settings = replace(schemas.SAMPLES, columns=tuple(wanted)), SteadySettings()
 
     def act() -> int:
         found = []
-        batches = tables.prefetch(tables.batches(data / "samples.parquet", table))
+        batches = prefetch(tables.batches(data / "samples.parquet", table))
         for chunk in chunks(batches, ("torque",), settings):
             time, velocity = chunk.channels["time"], chunk.channels["velocity"]
             segments = constant_speed_segments(

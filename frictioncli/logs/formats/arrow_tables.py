@@ -21,7 +21,8 @@ from frictioncli.logs.formats.containers import (
     with_unit,
 )
 from frictioncli.logs.formats.episodes import EPISODE, TIME, EpisodeClock
-from frictioncli.logs.log_source import CsvHints, Refusal
+from frictioncli.logs.log_source import CsvHints, Refusal, UnreadableLog
+from frictioncli.parquet_footer import LargeFooter, large_footer
 
 _PARQUET = b"PAR1"
 _ARROW = b"ARROW1\0\0"
@@ -29,7 +30,15 @@ _FEATHER_1 = b"FEA1"
 _OWN_METADATA = b"frictioncli"
 """Metadata key of the tables that this package writes."""
 _BUFFER_BYTES = 1 << 20
+_FULLY_BUFFERED = 32
+_LEAST_BUFFER = 1 << 14
+"""Columns beyond this number share their buffers, none has less. [byte]"""
+
+_LARGEST_GROUP = 1 << 24
+"""Longest description of one row group, of 150,000 columns. [byte]"""
+
 _INSPECTED_ROWS = 512
+_INSPECTED_FIELDS = 64
 _MAX_LIST = 64
 _UNIT_KEYS = (b"unit", b"units")
 _NUMBER = r"^\s*[+-]?(\d+([.,]\d*)?|[.,]\d+)([eE][+-]?\d+)?\s*$"
@@ -84,7 +93,10 @@ def read_arrow(path: Path, head: bytes, hints: CsvHints) -> ContainerLog | Refus
     if compressed is not None:
         return compressed
     with unreadable_on_error(f"cannot be read as {what}"):
-        schema = _schema(path)
+        footer = _large_footer(path) if batches is _parquet_batches else None
+        if footer is not None:
+            batches = partial(_footer_batches, footer)
+        schema = _schema(path, footer)
         if _OWN_METADATA in (schema.metadata or {}):
             return Refusal(
                 "not_a_log",
@@ -92,11 +104,14 @@ def read_arrow(path: Path, head: bytes, hints: CsvHints) -> ContainerLog | Refus
                 " from it with -w and its folder",
             )
         fields = list(dict.fromkeys(schema.names))
-        first = next(batches(path, fields, _INSPECTED_ROWS), None)
-        if first is None or not first.num_rows:
-            return Refusal("too_few_rows", f"{what} without rows; expected rows of numbers")
-        leaves = [leaf for name in fields for leaf in _leaves(_column(first, name), (name,))]
-        texts = [name for name in fields if _holds_numbers_as_text(_column(first, name))]
+        leaves: list[_Leaf] = []
+        texts: list[str] = []
+        for some in _few_at_a_time(fields):
+            first = next(batches(path, some, _INSPECTED_ROWS), None)
+            if first is None or not first.num_rows:
+                return Refusal("too_few_rows", f"{what} without rows; expected rows of numbers")
+            leaves += [leaf for name in some for leaf in _leaves(_column(first, name), (name,))]
+            texts += [name for name in some if _holds_numbers_as_text(_column(first, name))]
     if texts:
         return Refusal(
             "not_a_number",
@@ -106,16 +121,45 @@ def read_arrow(path: Path, head: bytes, hints: CsvHints) -> ContainerLog | Refus
     return ContainerLog(path, columns, what, partial(_rows, path, batches, tuple(leaves)))
 
 
-def _schema(path: Path) -> pa.Schema:
+def _large_footer(path: Path) -> LargeFooter | None:
+    footer = large_footer(path)
+    if footer is not None and footer.longest > _LARGEST_GROUP:
+        raise UnreadableLog(
+            "a Parquet table with a row group of more than about 150,000 columns; save those of the"
+            " joint alone"
+        )
+    return footer
+
+
+def _schema(path: Path, footer: LargeFooter | None) -> pa.Schema:
+    if footer is not None:
+        with pq.ParquetFile(path, metadata=next(footer.parts())) as file:
+            return file.schema_arrow
     with path.open("rb") as stream:
         is_parquet = stream.read(len(_PARQUET)) == _PARQUET
     return pq.read_schema(path) if is_parquet else pa.ipc.open_file(_mapped(path)).schema
 
 
-def _parquet_batches(path: Path, fields: Sequence[str], rows: int) -> Iterator[pa.RecordBatch]:
+def _few_at_a_time(fields: Sequence[str]) -> Iterator[list[str]]:
+    """Yield the fields in groups: every one that is read holds a page and a buffer."""
+    for begin in range(0, max(len(fields), 1), _INSPECTED_FIELDS):
+        yield list(fields[begin : begin + _INSPECTED_FIELDS])
+
+
+def _parquet_batches(
+    path: Path, fields: Sequence[str], rows: int, metadata: pq.FileMetaData | None = None
+) -> Iterator[pa.RecordBatch]:
+    buffer = max(_BUFFER_BYTES // max(len(fields) // _FULLY_BUFFERED, 1), _LEAST_BUFFER)
     # pre_buffer would hold the bytes of a whole row group in addition to its values
-    with pq.ParquetFile(path, pre_buffer=False, buffer_size=_BUFFER_BYTES) as file:
+    with pq.ParquetFile(path, metadata=metadata, pre_buffer=False, buffer_size=buffer) as file:
         yield from file.iter_batches(batch_size=rows, columns=list(fields), use_threads=False)
+
+
+def _footer_batches(
+    footer: LargeFooter, path: Path, fields: Sequence[str], rows: int
+) -> Iterator[pa.RecordBatch]:
+    for part in footer.parts():
+        yield from _parquet_batches(path, fields, rows, part)
 
 
 def _arrow_batches(path: Path, fields: Sequence[str], rows: int) -> Iterator[pa.RecordBatch]:

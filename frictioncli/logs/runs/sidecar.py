@@ -36,6 +36,9 @@ class Sidecar:
     payloads: tuple[tuple[float, float], ...] = ()
 
 
+_NO_SIDECAR = Sidecar()
+
+
 def read_sidecar(log: Path, names: Collection[str]) -> Sidecar:
     """Read the DIAdem header and the program file next to a log.
 
@@ -53,7 +56,9 @@ def read_sidecar(log: Path, names: Collection[str]) -> Sidecar:
     files = (f"{trace}{PROGRAM}{ending}" for ending in _PROGRAM_ENDINGS)
     file = next((log.with_name(name) for name in files if name in names), None)
     if file is None or not file.is_file():
-        return Sidecar(start, None, () if start is None else ("started as its .dat header tells",))
+        if start is None:
+            return _NO_SIDECAR
+        return Sidecar(start, None, ("started as its .dat header tells",))
     program = read_program(file)
     if program is None:
         notes = "started as its .dat header tells", "its _PROG.TXT cannot be understood: not used"

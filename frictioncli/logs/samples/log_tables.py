@@ -2,18 +2,22 @@
 
 from collections.abc import Iterator, Sequence
 from itertools import islice
+from typing import Any
 
 import pyarrow as pa
 
+from frictioncli.logs.channels.joint_plan import JointPlan
 from frictioncli.logs.runs.opening import OpenedLog, RefusedLog
 from frictioncli.logs.samples.log_rows import REASONS, RejectedRows
 from frictioncli.logs.samples.timeline import PlacedRecording
 
 _TABLE_ROWS = 1 << 15
+_OBJECT_ROWS = 1 << 12
+"""Rows that are objects of Python at a time: one takes 1 kB."""
 
 
-def recording_rows(run: str, recordings: Sequence[PlacedRecording]) -> pa.Table:
-    """Return the rows of ``recordings`` for a run: one per recording and joint.
+def recording_rows(run: str, recordings: Sequence[PlacedRecording]) -> Iterator[pa.Table]:
+    """Yield the rows of ``recordings`` for a run: one per recording and joint.
 
     Parameters
     ----------
@@ -22,29 +26,33 @@ def recording_rows(run: str, recordings: Sequence[PlacedRecording]) -> pa.Table:
     recordings : sequence of PlacedRecording
         Its recordings.
     """
-    rows = []
-    for placed in recordings:
-        recording, entry = placed.recording, placed.entry
-        for plan in recording.planned.plans:
-            rows.append(
-                {
-                    "run": run,
-                    "recording": recording.log.recording,
-                    "joint": plan.channels.joint,
-                    "file": str(recording.log.file.path),
-                    "started_at": placed.started_at and placed.started_at.isoformat(),
-                    "start": placed.start,
-                    "phase": entry and entry.phase,
-                    "payload": placed.payload,
-                    "ambient": entry and entry.ambient,
-                    "rows_read": recording.rows_read,
-                    "rows_kept": recording.rows_kept,
-                    "rows_rejected": sum(recording.rejected.values()),
-                    "period": recording.planned.period,
-                    "notes": "\n".join((*plan.notes, *plan.warnings)),
-                }
-            )
-    return pa.Table.from_pylist(rows)
+    rows = (
+        _recording_row(run, placed, plan)
+        for placed in recordings
+        for plan in placed.recording.planned.plans
+    )
+    while some := list(islice(rows, _OBJECT_ROWS)):
+        yield pa.Table.from_pylist(some)
+
+
+def _recording_row(run: str, placed: PlacedRecording, plan: JointPlan) -> dict[str, Any]:
+    recording, entry = placed.recording, placed.entry
+    return {
+        "run": run,
+        "recording": recording.log.recording,
+        "joint": plan.channels.joint,
+        "file": str(recording.log.file.path),
+        "started_at": placed.started_at and placed.started_at.isoformat(),
+        "start": placed.start,
+        "phase": entry and entry.phase,
+        "payload": placed.payload,
+        "ambient": entry and entry.ambient,
+        "rows_read": recording.rows_read,
+        "rows_kept": recording.rows_kept,
+        "rows_rejected": sum(recording.rejected.values()),
+        "period": recording.planned.period,
+        "notes": "\n".join((*plan.notes, *plan.warnings)),
+    }
 
 
 def rejected_rows(log: OpenedLog, rejected: RejectedRows, batch_bytes: int) -> Iterator[pa.Table]:

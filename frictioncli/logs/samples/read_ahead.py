@@ -23,6 +23,9 @@ _WAITING = 2
 _GROUP_BYTES = 1 << 21
 """Smaller tasks go to a thread in groups of this size: handing one over takes its own time."""
 
+_GROUP_TASKS = 1 << 8
+"""Results of a few rows take 2 kB each, whatever the size of the file."""
+
 
 def read_chunks(
     logs: Sequence[PlannedLog], batch_bytes: int
@@ -118,7 +121,7 @@ def _grouped(
     group: list[ReadTask[_ChunkResult]] = []
     group_bytes = 0
     for task in tasks:
-        if group and group_bytes + task.size > _GROUP_BYTES:
+        if len(group) == _GROUP_TASKS or (group and group_bytes + task.size > _GROUP_BYTES):
             yield partial(_read_all, group)
             group, group_bytes = [], 0
         group.append(task)

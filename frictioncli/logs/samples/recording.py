@@ -40,7 +40,7 @@ class RecordingSummary:
     planned : PlannedLog
         The log.
     registers : dict of int to TemperatureRegister
-        Joint -> its motor temperature register.
+        Joint -> its motor temperature register; none where there are no readings.
     rows_read, rows_kept : int
         Rows of the file, and those that became samples.
     rejected : dict of str to int
@@ -64,7 +64,7 @@ class RecordingSummary:
     @property
     def joints(self) -> tuple[int, ...]:
         """The joints that were read."""
-        return tuple(self.registers)
+        return tuple(plan.channels.joint for plan in self.planned.plans)
 
 
 def read_recording(
@@ -117,7 +117,11 @@ def read_recording(
                 return
 
     joints = [plan.channels.joint for plan in planned.plans]
-    registers = {joint: TemperatureRegister(continuous=joint in continuous) for joint in joints}
+    registers = {
+        plan.channels.joint: TemperatureRegister(continuous=plan.channels.joint in continuous)
+        for plan in planned.plans
+        if names.MOTOR_TEMPERATURE in plan.conversions
+    }
     longest = longest_change_interval(planned.period)
     kept, first, time = 0, 0.0, np.zeros(1)
     try:

@@ -29,6 +29,9 @@ from frictioncli.tables import TableWriter
 _TABLE_ROWS = 1 << 17
 """Rows of short logs are collected up to this number: one large table is faster than many."""
 
+_TABLE_PIECES = 1 << 10
+"""Logs of a few rows take more memory for each array than for its numbers: no more may wait."""
+
 _COPIED_CHANNELS = (
     names.POSITION,
     names.VELOCITY,
@@ -80,7 +83,7 @@ class _JointFile:
         self.recordings[-1].rows += len(samples.rows)
         self.waiting.append(samples)
         self.waiting_rows += len(samples.rows)
-        if self.waiting_rows >= _TABLE_ROWS:
+        if self.waiting_rows >= _TABLE_ROWS or len(self.waiting) >= _TABLE_PIECES:
             self.flush()
 
     def flush(self) -> None:
@@ -158,11 +161,13 @@ class SampleWriter:
         provenance, facts
             As for :class:`TableWriter`.
         """
+        final = self._is_final(knots)
         for file in self._files.values():
             file.flush()
-            file.writer.provenance, file.writer.facts = provenance, facts
+            if final:
+                file.writer.provenance, file.writer.facts = provenance, facts
         self._stack.close()
-        if self._is_final(knots):
+        if final:
             os.replace(self._path(next(iter(self._files))), target)
             return
         # memory that reading has freed would otherwise add to what the copy needs
@@ -223,10 +228,10 @@ def _interpolated(rows: pa.Table, knots: Knots) -> pa.Table:
 
 
 def _table(samples: Sequence[_SampleRows], joint: int) -> pa.Table:
-    """Return the samples of a joint in one table; numbers are not copied."""
+    """Return the samples of a joint in one table; numbers of a single log are not copied."""
     counts = [len(one.rows) for one in samples]
     channels = {
-        name: pa.chunked_array([_column(_values(one.rows, joint, name)) for one in samples])
+        name: _column(_joined([_values(one.rows, joint, name) for one in samples]))
         for name in _COPIED_CHANNELS
         if any((joint, name) in one.rows.columns for one in samples)
     }
@@ -237,10 +242,14 @@ def _table(samples: Sequence[_SampleRows], joint: int) -> pa.Table:
             "run": _repeated([one.run for one in samples], counts),
             "recording": _repeated([one.recording for one in samples], counts),
             "joint": pa.array(np.full(sum(counts), joint, np.int16)),
-            "time": pa.chunked_array([pa.array(one.time) for one in samples]),
+            "time": pa.array(_joined([one.time for one in samples])),
             **channels,
         }
     )
+
+
+def _joined(parts: Sequence[Array]) -> Array:
+    return parts[0] if len(parts) == 1 else np.concatenate(parts)
 
 
 def _values(rows: LogRows, joint: int, name: str) -> Array:

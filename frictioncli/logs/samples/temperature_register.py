@@ -1,7 +1,7 @@
 """Motor temperature register of a joint: its changes in one recording and over a whole run."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -24,9 +24,9 @@ class TemperatureRegister:
 
     Attributes
     ----------
-    changes : list of RegisterChanges
+    changes : tuple of RegisterChanges
         Changes in order; none where the readings are continuous.
-    levels : set of float
+    levels : tuple of float
         Distinct readings; of continuous ones only two that show it. [°C]
     first : float or None
         Time of the first reading since the recording's first sample. [s]
@@ -36,8 +36,8 @@ class TemperatureRegister:
         The readings come from no quantized register; further ones are ignored.
     """
 
-    changes: list[RegisterChanges] = field(default_factory=list)
-    levels: set[float] = field(default_factory=set)
+    changes: tuple[RegisterChanges, ...] = ()
+    levels: tuple[float, ...] = ()
     first: float | None = None
     last: tuple[float, float] | None = None
     continuous: bool = False
@@ -76,10 +76,10 @@ class TemperatureRegister:
                 self.continuous = True
                 # the two closest levels suffice to show it for the whole run
                 closest = int(np.argmin(np.diff(levels)))
-                self.levels = set(levels[closest : closest + 2].tolist())
-                self.changes.clear()
+                self.levels = tuple(levels[closest : closest + 2].tolist())
+                self.changes = ()
                 return
-        self.levels = set(levels.tolist())
+        self.levels = tuple(levels.tolist())
         if self.last is not None:
             border = np.array([[self.last[0], time[0]], [self.last[1], reading[0]]])
             self._add(find_changes(*border, longest=longest))
@@ -87,7 +87,7 @@ class TemperatureRegister:
 
     def _add(self, found: RegisterChanges) -> None:
         if len(found.time):
-            self.changes.append(found)
+            self.changes += (found,)
 
 
 def run_knots(

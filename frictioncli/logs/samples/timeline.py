@@ -87,10 +87,11 @@ class Timeline:
 
     def registers(self, joint: int) -> list[tuple[float, TemperatureRegister]]:
         """Return start [s] and motor temperature register of each recording of a joint."""
+        without = TemperatureRegister()
         return [
-            (placed.start, placed.recording.registers[joint])
+            (placed.start, placed.recording.registers.get(joint, without))
             for placed in self.placed
-            if joint in placed.recording.registers
+            if joint in placed.recording.joints
         ]
 
 
