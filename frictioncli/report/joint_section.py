@@ -1,7 +1,10 @@
 """Section of the page on one joint."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import Any
 
+from frictioncli.report.data_points import MOST_ROWS, data_points
 from frictioncli.report.diagnosis_section import DiagnosisSection, diagnosis_section
 from frictioncli.report.drawing import JointFigures
 from frictioncli.report.experiment import Experiment, experiment
@@ -70,6 +73,8 @@ class JointSection:
         Note on runs that the figures leave out.
     pairs : TextTable
         Number of pairs per speed and phase.
+    points : dict
+        Measured and simulated torque of every move, to be written as JSON.
     """
 
     number: int
@@ -95,10 +100,15 @@ class JointSection:
     figures: JointFigures
     runs_note: str
     pairs: TextTable
+    points: Mapping[str, Any]
 
 
 def joint_section(
-    results: JointResults, figures: JointFigures, counts: IngestCounts, log_files: str
+    results: JointResults,
+    figures: JointFigures,
+    counts: IngestCounts,
+    log_files: str,
+    joints: int = 1,
 ) -> JointSection:
     """Return the section of the page on one joint.
 
@@ -112,6 +122,8 @@ def joint_section(
         Rows and files of the logs that were read and rejected.
     log_files : str
         Names of the logs.
+    joints : int
+        Number of joints on the page, which share its size.
     """
     parameters = parameter_rows(results)
     document = results.diagnosis.document if results.diagnosis else None
@@ -139,4 +151,5 @@ def joint_section(
         figures=figures,
         runs_note=runs_drawn_note(results),
         pairs=pairs_table(results),
+        points=data_points(results, most_rows=MOST_ROWS // joints),
     )

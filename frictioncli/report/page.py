@@ -47,7 +47,7 @@ def write_report(work: Path, *, png: bool = False) -> Path:
     counts = ingest_counts(results)
     log_files = " ".join(str(file) for file in results.log_files["file"])
     sections = [
-        joint_section(joint, drawn, counts, log_files)
+        joint_section(joint, drawn, counts, log_files, len(results.joints))
         for joint, drawn in zip(results.joints, figures, strict=True)
     ]
     page = _page(results, sections)
@@ -69,7 +69,7 @@ def write_report(work: Path, *, png: bool = False) -> Path:
 
 def _page(results: WorkFolderResults, sections: Sequence[JointSection]) -> str:
     """Fill in the template of the page."""
-    scripts = ["figures.js"]
+    scripts = ["figures.js", "data.js"]
     if any(not section.explorer.missing for section in sections):
         scripts.append("explorer.js")
     return render(

@@ -315,3 +315,96 @@ def test_points_of_figures_tell_their_values(opened):
     first = driver.find_element("css selector", "#fig5 use > title").get_attribute("textContent")
     assert "deg/s, heating, 25.0 °C: " in first
     assert first.endswith(" N·m")
+
+
+def look(driver, name):
+    return driver.find_element("css selector", f'.look [data-part="{name}"]')
+
+
+def painted(driver):
+    """How many pixels of the chart have each of its colours."""
+    return driver.execute_async_script(
+        """
+        const [names, done] = arguments;
+        requestAnimationFrame(() => requestAnimationFrame(() => {
+          const canvas = document.querySelector(".look canvas");
+          const style = getComputedStyle(canvas);
+          const picture = canvas.getContext("2d").getImageData(0, 0, canvas.width, canvas.height);
+          const pixels = picture.data;
+          done(Object.fromEntries(names.map((name) => {
+            const [red, green, blue] = [1, 3, 5].map((at) =>
+              parseInt(style.getPropertyValue(name).trim().slice(at, at + 2), 16));
+            let count = 0;
+            for (let at = 0; at < pixels.length; at += 4) {
+              count += pixels[at] === red && pixels[at + 1] === green && pixels[at + 2] === blue;
+            }
+            return [name, count];
+          })));
+        }));
+        """,
+        ["--text", "--heating"],
+    )
+
+
+def test_the_chart_shows_what_is_chosen(opened):
+    driver = opened()
+    assert "moves." in look(driver, "told").text
+    found = painted(driver)
+    assert found["--text"] > 0
+    assert found["--heating"] > 0
+    look(driver, "base").click()
+    assert painted(driver)["--heating"] == 0
+    look(driver, "base").click()
+    look(driver, "what").send_keys("residual")
+    found = painted(driver)
+    assert found["--heating"] > 0
+    assert found["--text"] == 0
+
+
+def test_a_move_is_told_with_its_values(opened, work):
+    driver = opened()
+    points = json.loads(
+        driver.find_element("id", "joint2-points").get_attribute("textContent"),
+    )
+    look(driver, "move").send_keys("7")
+    speed = f"{points['speed'][6]:.1f} deg/s"
+    assert look(driver, "told").text.startswith("Move 7: ")
+    assert speed in look(driver, "told").text
+    canvas = look(driver, "canvas")
+    # the pointer rests on the first measured point
+    driver.execute_script("arguments[0].scrollIntoView({block: 'center'})", canvas)
+    told = driver.execute_script(
+        """
+        const canvas = arguments[0], box = canvas.getBoundingClientRect();
+        for (let x = 55; x < box.width; x += 4) for (let y = 10; y < 330; y += 8) {
+          canvas.dispatchEvent(new PointerEvent("pointermove",
+            { clientX: box.left + x, clientY: box.top + y, pointerId: 1 }));
+          const text = document.querySelector(".look [data-part=under]").textContent;
+          if (text) return text;
+        }
+        """,
+        canvas,
+    )
+    numbers = re.search(r"measured (\S+) N·m; base (\S+) \(missed by (\S+?)\)", told).groups()
+    measured, base, missed = (float(number.replace("−", "-")) for number in numbers)
+    assert measured - base == pytest.approx(missed, abs=0.011)
+    assert speed in told
+    torques = tables.read(work / "torques.parquet", schemas.TORQUES)
+    both = torques[["torque_forward", "torque_reverse"]].to_numpy()
+    assert np.abs(both - measured).min() < 0.05
+
+
+def test_the_keyboard_zooms_and_pans_the_chart(opened):
+    driver = opened()
+    canvas = look(driver, "canvas")
+    picture = "return document.querySelector('.look canvas').toDataURL()"
+    painted(driver)
+    seen = [driver.execute_script(picture)]
+    for key in ("+", "\ue014", "\ue013"):  # plus, right, up
+        canvas.send_keys(key)
+        painted(driver)
+        seen.append(driver.execute_script(picture))
+    assert len(set(seen)) == 4
+    canvas.send_keys("0")
+    painted(driver)
+    assert driver.execute_script(picture) == seen[0]
