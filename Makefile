@@ -9,7 +9,7 @@ LARGEST ?= 1e8
 export OMP_NUM_THREADS := 1
 export OPENBLAS_NUM_THREADS := 1
 
-.PHONY: reproduce test test-all lint same coverage blind comparison fleet planning wear real real-diagnoses bench fuzz fuzz-c kill clean
+.PHONY: reproduce test test-all lint docs dist same coverage blind comparison fleet planning wear real real-diagnoses bench fuzz fuzz-c kill clean
 
 reproduce: $(VENV)/installed
 	$(BIN)/frictioncli run sample_logs/kr10 -w $(RUN)
@@ -67,6 +67,15 @@ lint: $(VENV)/tested
 	$(BIN)/ruff format --check .
 	$(BIN)/mypy
 
+# site/index.html; strict: a broken link or docstring fails
+docs: $(VENV)/documented
+	NO_MKDOCS_2_WARNING=1 $(BIN)/mkdocs build --strict
+
+# dist/*.tar.gz and dist/*.whl
+dist: $(VENV)/tested
+	rm -rf dist
+	$(BIN)/python -m build
+
 $(VENV)/installed: pyproject.toml frictioncli/logs/formats/_plain_numbers.c
 	$(PYTHON) -m venv $(VENV)
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable .
@@ -76,9 +85,13 @@ $(VENV)/tested: $(VENV)/installed
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable '.[dev]'
 	touch $@
 
+$(VENV)/documented: $(VENV)/installed
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable '.[docs]'
+	touch $@
+
 $(VENV)/studied: $(VENV)/tested
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable '.[dev,study]'
 	touch $@
 
 clean:
-	rm -rf $(VENV) $(RUN)
+	rm -rf $(VENV) $(RUN) site dist build

@@ -33,7 +33,7 @@ class PlanSettings:
         Highest speed; None: the highest measured. [deg/s]
     max_temperature : float or None
         Motor temperature at which heating moves end; None: the highest measured, at least 65 °C
-       [°C].
+        [°C].
     payload : tuple of float
         Payloads that may be mounted; none: the mounted one stays. [kg]
     to : {"csv", "krl", "urscript"}
