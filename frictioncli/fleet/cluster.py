@@ -10,13 +10,18 @@ from pathlib import Path
 from typing import Any
 
 from frictioncli import __version__
-from frictioncli.errors import FrictionError, OptionError
-from frictioncli.fleet.joint import JointOutcome, JointTask, record_failure, run_joint
+from frictioncli.errors import OptionError
+from frictioncli.fleet.joint import JointOutcome, JointTask, record_unworked, run_joint
 from frictioncli.fleet.local_processes import record_timeout, record_worker_death
 
 _POLL, _RESTART = 0.05, 20  # [s]
+_CHECKED = 5
+"""Time between questions to the scheduler, and for its answer. [s]"""
 _PATIENCE = 60
 """Timeout for the scheduler and its first worker. [s]"""
+
+_WITHOUT_WORKERS = 300
+"""Time for which a scheduler may have no workers. [s]"""
 
 _LARGEST_BATCH = 16
 _BATCHES_PER_WORKER = 20
@@ -38,6 +43,9 @@ def run_on_cluster(
     With a timeout joints are sent one by one. One that takes longer has failed, its worker is
     restarted where a nanny watches it, and gets no further joint where none does.
 
+    If the scheduler is lost, stays silent or loses all workers for long, the joints that are not
+    done have failed.
+
     Parameters
     ----------
     tasks : sequence of JointTask
@@ -54,20 +62,19 @@ def run_on_cluster(
     OptionError
         If Dask is not installed, no scheduler answers, or a worker has several threads or another
         version of the program.
-    FrictionError
-        If the scheduler is lost.
     """
     with _client(address, tls) as client:
         from distributed import KilledWorker, as_completed
 
-        size = 1 if timeout else _batch_size(len(tasks), len(client.nthreads()))
+        scheduler = _Scheduler(client)
+        size = 1 if timeout else _batch_size(len(tasks), len(scheduler.workers()))
         waiting = [list(tasks[i : i + size]) for i in range(0, len(tasks), size)][::-1]
         running: dict[str, _Running] = {}
         stuck: set[str] = set()
         queue = as_completed(loop=client.loop)
 
         def submit() -> None:
-            workers = set(client.nthreads())
+            workers = scheduler.workers()
             free = workers - stuck
             while waiting and len(running) < max(1, len(free)) and (free or not workers):
                 batch = waiting.pop()
@@ -76,36 +83,120 @@ def run_on_cluster(
                 running[future.key] = _Running(future, batch, time.monotonic())
                 queue.add(future)
 
-        submit()
-        while running:
-            if timeout and not queue.has_ready():
-                time.sleep(_POLL)
-                for late in [one for one in running.values() if one.seconds() > timeout]:
-                    del running[late.future.key]
-                    stuck |= _ended(client, late.future)
-                    yield record_timeout(late.batch[0], timeout)
-                    submit()
-                continue
-            future = next(queue)
-            if future.key not in running:  # it was late
-                continue
-            batch = running.pop(future.key).batch
-            try:
-                yield from future.result()
-            except KilledWorker:
-                if len(batch) == 1:
-                    yield record_worker_death(batch[0])
-                else:
-                    waiting += [[task] for task in batch]
-            except CancelledError as error:
-                raise FrictionError(
-                    f"--scheduler {address}: the scheduler is gone; joints that were done stay"
-                    " done: start it and call again"
-                ) from error
+        try:
             submit()
-        for (task,) in waiting:
+            while running:
+                if not queue.has_ready():
+                    time.sleep(_POLL)
+                    scheduler.check()
+                    late = [one for one in running.values() if timeout and one.seconds() > timeout]
+                    for one in late:
+                        del running[one.future.key]
+                        yield record_timeout(one.batch[0], timeout or 0.0)
+                        stuck |= scheduler.end(one.future)
+                        submit()
+                    continue
+                future = next(queue)
+                if future.key not in running:  # it was late
+                    continue
+                batch = running[future.key].batch
+                try:
+                    outcomes = future.result()
+                except KilledWorker:
+                    outcomes = [record_worker_death(batch[0])] if len(batch) == 1 else []
+                    waiting += [[task] for task in batch] if len(batch) > 1 else []
+                except CancelledError as error:
+                    raise _SchedulerLost("the scheduler is gone") from error
+                del running[future.key]
+                yield from outcomes
+                submit()
             text = "all workers are held up by joints that took too long"
-            yield record_failure(task, text, text)
+        except _SchedulerLost as lost:
+            text = f"--scheduler {address}: {lost}: start it and call again"
+            waiting += [one.batch for one in running.values()]
+        for task in (task for batch in waiting for task in batch):
+            yield record_unworked(task, text)
+
+
+class _SchedulerLost(Exception):
+    """The scheduler, or all of its workers, do not answer."""
+
+
+class _Scheduler:
+    """Questions to the scheduler, none of which waits for ever.
+
+    Parameters
+    ----------
+    client : distributed.Client
+        Its client.
+    """
+
+    def __init__(self, client: Any) -> None:
+        self._client = client
+        self._answered = self._had_workers = self._asked = time.monotonic()
+
+    def workers(self) -> set[str]:
+        """Return the addresses of the workers.
+
+        Raises
+        ------
+        _SchedulerLost
+            If it does not answer.
+        """
+        while True:
+            try:
+                return self._workers()
+            except (OSError, AttributeError):  # the client has lost it and looks for it
+                self._check_silence()
+                time.sleep(_POLL)
+
+    def check(self) -> None:
+        """Ask now and then whether it is there and has workers.
+
+        Raises
+        ------
+        _SchedulerLost
+            If it has not answered, or has had no workers, for long.
+        """
+        if time.monotonic() - self._asked < _CHECKED:
+            return
+        try:
+            self._workers()
+        except (OSError, AttributeError):
+            self._check_silence()
+        self._asked = time.monotonic()
+        if self._asked - self._had_workers > _WITHOUT_WORKERS:
+            raise _SchedulerLost(f"it has had no workers for {_WITHOUT_WORKERS} s")
+
+    def end(self, future: Any) -> set[str]:
+        """End the work on a future; return the workers that cannot be restarted and go on."""
+        try:
+            processing = self._ask(self._client.scheduler.processing, workers=None)
+            workers = {name for name, keys in processing.items() if future.key in keys}
+            future.cancel()
+            restarted = self._client.restart_workers(
+                list(workers), timeout=_RESTART, raise_for_error=False
+            )
+        except (ValueError, TimeoutError):  # no nanny
+            return workers
+        except (OSError, AttributeError):
+            self._check_silence()
+            return set()
+        return {name for name in workers if restarted.get(name) != "OK"}
+
+    def _workers(self) -> set[str]:
+        found = set(self._ask(self._client.scheduler.ncores, workers=None))
+        self._answered = time.monotonic()
+        if found:
+            self._had_workers = self._answered
+        return found
+
+    def _ask(self, question: Any, **more: Any) -> Any:
+        return self._client.sync(question, callback_timeout=_CHECKED, **more)
+
+    def _check_silence(self) -> None:
+        if self._client.status == "closed" or time.monotonic() - self._answered > _PATIENCE:
+            raise _SchedulerLost("the scheduler is gone")
 
 
 @dataclass(frozen=True, slots=True)
@@ -118,17 +209,6 @@ class _Running:
 
     def seconds(self) -> float:
         return time.monotonic() - self.began
-
-
-def _ended(client: Any, future: Any) -> set[str]:
-    """End the work on a future; return the workers that cannot be restarted and go on with it."""
-    workers = {name for name, keys in client.processing().items() if future.key in keys}
-    future.cancel()
-    try:
-        restarted = client.restart_workers(list(workers), timeout=_RESTART, raise_for_error=False)
-    except (ValueError, TimeoutError):  # no nanny
-        return workers
-    return {name for name in workers if restarted.get(name) != "OK"}
 
 
 @contextmanager

@@ -112,14 +112,7 @@ def _run_joint(task: JointTask) -> JointOutcome:
         key = _key(inputs, settings_document(settings, report=task.report))
         with locked(task.work):
             record = read_record(task.work)
-            # what is damaged, or was made by a version that kept no digests, is made again
-            if (
-                not task.redo
-                and record is not None
-                and record.key == key
-                and record.outputs
-                and record.outputs == output_digests(task.work)
-            ):
+            if not task.redo and record is not None and _is_whole(task.work, record, key):
                 return _outcome(task, UNCHANGED, record.row)
             reset_folder(task.work, _status_columns(task, FAILED, "not finished"))
             left_out = _run_stages(task, runs, settings)
@@ -133,6 +126,40 @@ def _run_joint(task: JointTask) -> JointOutcome:
     except Exception as bug:
         text = f"a bug: {type(bug).__name__}: {bug}"
         return record_failure(task, text, "".join(traceback.format_exception(bug)))
+
+
+def _is_whole(work: Path, record: JointRecord, key: str) -> bool:
+    """Return whether outputs are of these inputs and as they were made.
+
+    What is damaged, or was made by a version that kept no digests, is made again.
+    """
+    has_outputs = record.key == key and bool(record.outputs)
+    return has_outputs and record.outputs == output_digests(work)
+
+
+def record_unworked(task: JointTask, message: str) -> JointOutcome:
+    """Record that nobody works on a joint any more; what is done stays done.
+
+    Parameters
+    ----------
+    task : JointTask
+        The joint.
+    message : str
+        Why nobody works on it.
+    """
+    try:
+        with locked(task.work):
+            record = read_record(task.work)
+            if record is not None and record.key is not None:
+                settings = _joint_settings(task)
+                inputs = _log_hashes(task.logs.runs(), settings)
+                key = _key(inputs, settings_document(settings, report=task.report))
+                if _is_whole(task.work, record, key):
+                    return _outcome(task, DONE, record.row)
+            return record_failure(task, message, message)
+    except (FrictionError, OSError) as fault:
+        # a worker that is cut off may still write there: the row in its folder says so
+        return _outcome(task, FAILED, {"message": f"{message} ({fault})"})
 
 
 def record_failure(task: JointTask, message: str, details: str) -> JointOutcome:

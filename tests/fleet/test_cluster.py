@@ -3,14 +3,18 @@
 import os
 import signal
 import sys
+from dataclasses import replace
 
 import pytest
 
 from frictioncli.errors import FrictionError, OptionError
 from frictioncli.fleet.cluster import run_on_cluster
-from frictioncli.fleet.joint import JointTask
+from frictioncli.fleet.joint import JointTask, record_unworked
 from frictioncli.fleet.joint_logs import find_joints
+from frictioncli.fleet.joint_record import read_row
+from frictioncli.fleet.local_processes import run_locally
 from frictioncli.stages.settings import RunSettings
+from frictioncli.workfolder import locked
 from tests.fleet.clusters import certificates, free_port, scheduler, worker
 from tests.fleet.fleets import WITHOUT, Deadly, begun, contents, done, fleet, started, until
 from tests.fleet.joints import Joint, write_joint
@@ -83,24 +87,53 @@ def test_workers_of_another_version_are_refused(logs, tmp_path):
 
 
 @pytest.mark.slow
-def test_a_scheduler_that_goes_is_one_message_and_the_next_call_goes_on(
-    undiagnosed, logs, tmp_path
+@pytest.mark.parametrize("ended_by", [signal.SIGKILL, signal.SIGSTOP])
+def test_a_scheduler_that_goes_is_told_in_the_rows_and_the_next_call_goes_on(
+    tmp_path, monkeypatch, ended_by
 ):
+    """One that is stopped keeps its connections and never answers."""
+    monkeypatch.setattr("frictioncli.fleet.cluster._PATIENCE", 10)
+    monkeypatch.setattr("frictioncli.fleet.cluster._CHECKED", 3)
     out = tmp_path / "out"
+    tasks = list(tasks_of(tmp_path / "logs", out, endless={2}))
     with scheduler() as (address, process), worker(address, tmp_path / "one"):
-        # the client looks for a lost scheduler until this has passed
-        patience = {"DASK_DISTRIBUTED__COMM__TIMEOUTS__CONNECT": "5s"}
-        words = (logs, "-w", out, "--scheduler", address, *WITHOUT)
-        running = started(*words, **patience)
-        until(lambda: done(out) and begun(out))
+        outcomes = run_on_cluster(tasks, address)
+        first = next(outcomes)
+        process.send_signal(ended_by)
+        rest = list(outcomes)
+    assert [first.joint, *(one.joint for one in rest)] == [1, 3, 2]
+    assert first.status == "done"
+    assert {one.status for one in rest} == {"failed"}
+    assert all("the scheduler is gone" in one.message for one in rest)
+    again = {one.joint: one.status for one in run_locally(tasks[::2], 1)}
+    assert again == {1: "unchanged", 3: "done"}
+
+
+@pytest.mark.slow
+def test_a_scheduler_without_workers_for_long_is_told_in_the_rows(tmp_path, monkeypatch):
+    monkeypatch.setattr("frictioncli.fleet.cluster._WITHOUT_WORKERS", 8)
+    monkeypatch.setattr("frictioncli.fleet.cluster._CHECKED", 3)
+    tasks = list(tasks_of(tmp_path / "logs", tmp_path / "out", endless=()))
+    with scheduler() as (address, _), worker(address, tmp_path / "one") as process:
+        outcomes = run_on_cluster(tasks, address)
+        assert next(outcomes).status == "done"
         process.kill()
-        _, errors = running.communicate(timeout=300)
-    assert running.returncode == 2
-    assert "the scheduler is gone; joints that were done stay done" in errors
-    assert "Traceback" not in errors
-    again = fleet(logs, "-w", out, "--workers", 1, *WITHOUT)
-    assert "of them before, unchanged" in again.stdout
-    assert contents(out) == contents(undiagnosed)
+        rest = list(outcomes)
+    assert {one.status for one in rest} == {"failed"}
+    assert all("no workers for 8 s" in one.message for one in rest)
+
+
+def test_what_is_done_stays_done_where_nobody_works_any_more(tmp_path):
+    first, second, _ = tasks_of(tmp_path / "logs", tmp_path / "out", endless=())
+    (done_before,) = run_locally([first], 1)
+    whole = contents(first.work)
+    assert record_unworked(first, "gone") == replace(done_before, seconds=0.0)
+    assert contents(first.work) == whole
+    with locked(second.work):  # by this process, which may take it again
+        assert record_unworked(second, "gone").message == "gone"
+    assert read_row(second.work)["status"] == "failed"
+    (first.work / "model.json").write_text("{}")
+    assert record_unworked(first, "gone").status == "failed"
 
 
 @pytest.mark.slow

@@ -19,6 +19,8 @@ from frictioncli.logs.samples.log_rows import LogRows, RejectedRows
 from frictioncli.logs.samples.row_checks import drop_missing_values
 
 _FIRST_BYTES = 1 << 12
+_NOTHING: Mapping[int, tuple[int, float]] = {}
+"""Shared by all logs that have none: there may be 100,000."""
 
 _MAX_OUTLIERS = 3
 _MAX_OUTLIER_SHARE = 0.01
@@ -105,7 +107,7 @@ def plan_log(log: OpenedLog, plans: Iterable[JointPlan]) -> PlannedLog:
         plans,
         first_time=float(finite[0]) * conversion.factor if len(finite) else np.nan,
         period=median(steps.tolist()) * conversion.factor if len(steps) else 1.0,
-        others=_other_positions(log.channels, plans),
+        others=_other_positions(log.channels, plans) or _NOTHING,
     )
 
 

@@ -1,6 +1,6 @@
 """One log read to its end: samples in order of time, and a summary of the recording."""
 
-from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -27,6 +27,10 @@ _MIN_ROWS = 3
 _SHORTEST_PERIOD = 1e-6
 """No controller samples faster. [s]"""
 
+_NO_REGISTERS: Mapping[int, TemperatureRegister] = {}
+_NO_COUNTS: Mapping[str, int] = {}
+"""Shared by all recordings that have none: there may be 100,000."""
+
 SampleSink = Callable[[LogRows, Array], None]
 """Takes samples of all joints, and their times since the recording's first sample [s]."""
 
@@ -39,21 +43,21 @@ class RecordingSummary:
     ----------
     planned : PlannedLog
         The log.
-    registers : dict of int to TemperatureRegister
+    registers : mapping of int to TemperatureRegister
         Joint -> its motor temperature register; none where there are no readings.
     rows_read, rows_kept : int
         Rows of the file, and those that became samples.
-    rejected : dict of str to int
+    rejected : mapping of str to int
         Reason -> number of rejected rows.
     duration : float
         Time from the first sample to the last. [s]
     """
 
     planned: PlannedLog
-    registers: dict[int, TemperatureRegister]
+    registers: Mapping[int, TemperatureRegister]
     rows_read: int
     rows_kept: int
-    rejected: dict[str, int]
+    rejected: Mapping[str, int]
     duration: float
 
     @property
@@ -138,7 +142,9 @@ def read_recording(
         return Refusal("unreadable_file", str(error))
     counts = rejected.counts()
     refusal = _refusal(planned.log, rows_read, kept, counts, rejected, float(time[-1]))
-    return refusal or RecordingSummary(planned, registers, rows_read, kept, counts, float(time[-1]))
+    return refusal or RecordingSummary(
+        planned, registers or _NO_REGISTERS, rows_read, kept, counts or _NO_COUNTS, float(time[-1])
+    )
 
 
 def _usable_rows(
