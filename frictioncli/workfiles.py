@@ -16,6 +16,7 @@ DIAGNOSIS = "diagnosis.json"
 EXTENDED = "extended-model.json"
 PLAN = "plan.json"
 COMPARISON = "comparison.json"
+CHALLENGE = "challenge.parquet"
 
 _MADE_BY = {
     "samples": "ingest LOGS",
@@ -27,6 +28,7 @@ _MADE_BY = {
     "torques": "separate",
     "schedule": "simulate",
     "evaluation": "evaluate",
+    "challenge": "challenge LOGS",
 }
 
 

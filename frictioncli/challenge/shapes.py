@@ -44,6 +44,9 @@ class LogScale:
         Duration of all runs. [s]
     travel : float
         Angle turned in all runs. [deg]
+    seen : float
+        Share of that duration in the runs from which the diagnosis learns; a change takes place in
+        them. [-]
     """
 
     speed: float
@@ -53,9 +56,10 @@ class LogScale:
     bin_width: float
     duration: float
     travel: float
+    seen: float = 1.0
 
 
-def log_scale(torques: pd.DataFrame, states: Sequence[LogState]) -> LogScale:
+def log_scale(torques: pd.DataFrame, states: Sequence[LogState], seen: Sequence[str]) -> LogScale:
     """Return what the log of a joint spans.
 
     Parameters
@@ -64,6 +68,8 @@ def log_scale(torques: pd.DataFrame, states: Sequence[LogState]) -> LogScale:
         Rows of :data:`frictioncli.schemas.TORQUES` of the joint.
     states : sequence of LogState
         Its state in each run.
+    seen : sequence of str
+        Runs from which the diagnosis learns, which come first.
     """
     speed = torques["speed"].to_numpy(float)
     motor = np.concatenate([state.motor for state in states])
@@ -78,7 +84,14 @@ def log_scale(torques: pd.DataFrame, states: Sequence[LogState]) -> LogScale:
         bin_width=float(steps[steps > 1e-6].min()) if np.any(steps > 1e-6) else 1.0,
         duration=last.earlier.total,
         travel=last.earlier.travelled + float(last.travel[-1]),
+        seen=_share_seen(states, seen),
     )
+
+
+def _share_seen(states: Sequence[LogState], seen: Sequence[str]) -> float:
+    """Return the share of the duration of all runs before the first one that is not seen."""
+    unseen = [state.operation.earlier for state in states if state.run.name not in seen]
+    return min((one.operated / one.total for one in unseen), default=1.0)
 
 
 def drawn_effect(name: str, scale: LogScale, seed: int) -> PlantedEffect:
@@ -118,6 +131,7 @@ def _draws(scale: LogScale) -> Mapping[str, Mapping[str, Draw]]:
     most = max(360.0 / (4.0 * scale.bin_width), 720.0 / stroke * 1.01)
     angle = uniform(low + 0.25 * stroke, low + 0.75 * stroke)
     warm = uniform(cold + 0.3 * warming, cold + 0.7 * warming)
+    moment = uniform(0.2 * scale.seen, 0.8 * scale.seen)
     return {
         "stribeck": {"velocity": log_uniform(0.25 * scale.speed, 0.6 * scale.speed)},
         "velocity_exponent": {"crossing": log_uniform(0.5 * scale.speed, 2.0 * scale.speed)},
@@ -131,7 +145,9 @@ def _draws(scale: LogScale) -> Mapping[str, Mapping[str, Draw]]:
         "drift": {"time_constant": log_uniform(0.1 * hours, 0.4 * hours)},
         "run_in": {"turns": log_uniform(0.1 * turns, 0.6 * turns)},
         "rest_recovery": {"travel": log_uniform(0.5 * stroke, 4.0 * stroke)},
+        "payload_change": {"moment": moment},
         "step_change": {
+            "moment": moment,
             "duration": log_uniform(1e-4 * scale.duration, 0.005 * scale.duration),
         },
         "torque_constant": {"reference": uniform(cold, cold + 0.3 * warming)},

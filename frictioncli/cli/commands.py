@@ -11,6 +11,7 @@ from typing import Annotated
 
 import typer
 
+from frictioncli.challenge.settings import ChallengeSettings
 from frictioncli.cli.application import app, command
 from frictioncli.cli.terminal import counted, say, say_result, say_stage, working
 from frictioncli.comparison.settings import ComparisonSettings
@@ -196,6 +197,26 @@ def synthesize(
     from frictioncli.simulator.synthesize import synthesize as synthesize_traces
 
     say_result("synthesize", lambda: synthesize_traces(folder, settings))
+
+
+@command(without=("schedule", "grid", "correction"), before={"min_speed": ["bin_width"]})
+def challenge(
+    logs: Logs,
+    *,
+    work: Work = WORK,
+    options: ChallengeSettings,
+    settings: RunSettings,
+) -> None:
+    """Plant effects [N·m or A] into your own logs; say which the diagnosis finds and names."""
+    from frictioncli.challenge.challenge import challenge as run_challenge
+
+    try:
+        with working("challenge") as line:
+            result = run_challenge(logs, work, settings, options, line.relabel)
+    except KeyboardInterrupt:
+        say("interrupted; what is done stays done: call again to go on", fault=True)
+        raise typer.Exit(_INTERRUPTED) from None
+    say(result)
 
 
 @command(before={"low": ["joint", "new", "seed"]})

@@ -63,6 +63,10 @@ class ProgressLine:
         """Begin to write the line."""
         self._thread.start()
 
+    def relabel(self, label: str) -> None:
+        """Say that something else is being done now."""
+        self.label = label
+
     def end(self) -> None:
         """Remove the line."""
         self._ended.set()

@@ -86,7 +86,7 @@ def analyse(
         for name in (DIAGNOSIS, EXTENDED):
             (work / name).unlink(missing_ok=True)
         progress("ingest", ingest(logs, work, settings.ingest))
-        _separate(work, settings, progress)
+        pair_and_separate(work, settings, progress)
         progress("fit", fit(work, settings.fit))
         for stage, output, call in _optional_stages(work, settings):
             try:
@@ -97,8 +97,23 @@ def analyse(
             progress(stage, result)
 
 
-def _separate(work: Path, settings: RunSettings, progress: Progress) -> None:
-    """Pair moves and separate friction; without pairs by regression of all motion."""
+def pair_and_separate(work: Path, settings: RunSettings, progress: Progress = _no_progress) -> None:
+    """Pair moves and separate friction; without pairs by regression of all motion.
+
+    Parameters
+    ----------
+    work : Path
+        Work folder with ``samples.parquet``.
+    settings : RunSettings
+        Settings of all stages.
+    progress : callable, optional
+        Called after each stage with its name and its result.
+
+    Raises
+    ------
+    NotEnoughData
+        If the motion suffices neither for pairs nor for a regression.
+    """
     separation, width = settings.separation, settings.pairing.bin_width
     try:
         progress("pair", pair(work, settings.pairing))

@@ -60,7 +60,7 @@ def states_of(frame, sign=1, unit="N·m"):
 def planted(name, frame, magnitude=2.0, *, seed=1, sign=1, **shape):
     """Samples with an effect, and the effect."""
     states = states_of(frame, sign)
-    effect = drawn_effect(name, log_scale(separated(frame, sign), states), seed)
+    effect = drawn_effect(name, log_scale(separated(frame, sign), states, ["day1"]), seed)
     effect = replace(effect, parameters={**effect.parameters, **shape}).scaled(magnitude)
     return planted_samples(frame, states, effect, sign), effect
 
@@ -123,7 +123,7 @@ def test_a_current_with_a_load_channel_gets_load_and_friction_apart():
 def test_planted_torque_is_as_late_as_the_log():
     frame = log()
     states = states_of(frame)
-    effect = drawn_effect("stroke_bump", log_scale(separated(frame), states), 1)
+    effect = drawn_effect("stroke_bump", log_scale(separated(frame), states, ["day1"]), 1)
     late = gained(frame, planted_samples(frame, states, effect, 1, LogTiming(delay=0.024)))
     prompt = gained(frame, planted_samples(frame, states, effect, 1))
     # two samples of 12 ms
@@ -133,7 +133,7 @@ def test_planted_torque_is_as_late_as_the_log():
 def test_a_filter_keeps_the_mean_and_shifts_by_its_time_constant():
     frame = log()
     states = states_of(frame)
-    effect = drawn_effect("stroke_bump", log_scale(separated(frame), states), 1)
+    effect = drawn_effect("stroke_bump", log_scale(separated(frame), states, ["day1"]), 1)
     timing = LogTiming(time_constant=0.04)
     late = gained(frame, planted_samples(frame, states, effect, 1, timing))
     prompt = gained(frame, planted_samples(frame, states, effect, 1))
@@ -201,7 +201,7 @@ def test_every_law_has_a_torque_on_a_log(name):
 
 def test_shapes_follow_from_the_log():
     frame = log()
-    scale = log_scale(separated(frame), states_of(frame))
+    scale = log_scale(separated(frame), states_of(frame), ["day1"])
     assert scale.speed == pytest.approx(np.sqrt(20 * 90), rel=1e-3)
     assert scale.temperature == pytest.approx((30.0, 33.0))
     small = replace(scale, angle=(0.0, 30.0))

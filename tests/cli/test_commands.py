@@ -32,6 +32,7 @@ COMMANDS = (
     "compare",
     "fleet",
     "synthesize",
+    "challenge",
 )
 
 

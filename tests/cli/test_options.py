@@ -253,6 +253,26 @@ COMMANDS = {
             "--no-diagnosis": ("", "run_fleet.settings.diagnosis", None),
         },
     ),
+    "challenge": Command(
+        functions=("frictioncli.challenge.challenge:challenge",),
+        words=("LOGS",),
+        options=work_folder("challenge.work")
+        | reading("challenge.settings.ingest")
+        | pairing("challenge.settings.pairing")
+        | separation("challenge.settings.separation")
+        | identification("challenge.settings.fit")
+        | {
+            "--effect": (
+                "drift --effect inertia:2",
+                "challenge.options.effects",
+                ("drift", "inertia:2"),
+            ),
+            "--share": ("5", "challenge.options.share", 5.0),
+            "--draws": ("3", "challenge.options.draws", 3),
+            "--seed": ("9", "challenge.options.seed", 9),
+            "--search": ("", "challenge.options.search", True),
+        },
+    ),
     "synthesize": Command(
         functions=("frictioncli.simulator.synthesize:synthesize",),
         words=("FOLDER",),
@@ -353,6 +373,7 @@ def test_every_case_is_of_an_option():
         ("inspect", "inspect.logs", [Path("LOGS")]),
         ("ingest", "ingest.logs", [Path("LOGS")]),
         ("run", "run.logs", [Path("LOGS")]),
+        ("challenge", "challenge.logs", [Path("LOGS")]),
         ("compare", "compare.runs", [Path("RUN1"), Path("RUN2")]),
         ("fleet", "run_fleet.fleet", Path("FLEET")),
         ("synthesize", "synthesize.folder", Path("FOLDER")),

@@ -1,0 +1,55 @@
+"""Settings of a challenge: what is planted, and how often."""
+
+from dataclasses import dataclass, field
+
+from frictioncli.errors import OptionError
+from frictioncli.options import option
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ChallengeSettings:
+    """What is planted into a log.
+
+    Attributes
+    ----------
+    effects : tuple of str
+        Effects to plant one at a time, each ``NAME`` or ``NAME:SIZE``; SIZE is the root mean square
+        of its torque over all pairs and angle bins. Without any, each effect that the log can show
+        is planted in the usual size, and the least size that is found is searched for. [torque
+        unit]
+    share : float
+        Usual size. [% of the mean friction]
+    draws : int
+        Number of shapes of its law in which each effect is planted.
+    seed : int
+        Seed of these shapes.
+    search : bool
+        Whether the least size that is found is searched for also where effects are given.
+    """
+
+    effects: tuple[str, ...] = field(
+        default=(),
+        metadata=option(
+            "Effect to plant, repeatable; SIZE is its RMS over all pairs [torque unit]. Without it"
+            " all that the log can show, and the least size of each that is found.",
+            "--effect",
+            metavar="NAME[:SIZE]",
+        ),
+    )
+    share: float = field(
+        default=10.0,
+        metadata=option("Size where none is given [% of mean friction]."),
+    )
+    draws: int = field(default=1, metadata=option("Shapes in which each effect is planted."))
+    seed: int = field(default=0, metadata=option("Seed of the shapes."))
+    search: bool = field(
+        default=False, metadata=option("Search the least size found of given effects, too.")
+    )
+
+    def __post_init__(self) -> None:
+        if not 0.0 < self.share <= 100.0:
+            raise OptionError(f"--share {self.share:g} %: expected above 0, up to 100")
+        if not 1 <= self.draws <= 100:
+            raise OptionError(f"--draws {self.draws}: expected 1 to 100")
+        if self.seed < 0:
+            raise OptionError(f"--seed {self.seed}: expected 0 or more")

@@ -1,0 +1,222 @@
+"""The command on a small log: sizes, names, rows, what is taken up again, and its faults."""
+
+import os
+import shutil
+import signal
+import time
+
+import numpy as np
+import pytest
+
+from frictioncli import schemas, tables
+from frictioncli.challenge import challenge as module
+from frictioncli.challenge import trial
+from frictioncli.challenge.challenge import challenge
+from frictioncli.challenge.settings import ChallengeSettings
+from frictioncli.errors import OptionError
+from tests.command_line import invoke
+from tests.robustness.runs import started, write_warm_up
+
+LEVELS = (25, 32, 39, 46, 53)
+
+TABLE = "challenge.parquet"
+
+
+@pytest.fixture(scope="module")
+def logs(tmp_path_factory):
+    return write_warm_up(tmp_path_factory.mktemp("small") / "day", levels=LEVELS)
+
+
+def rows_of(work):
+    return tables.read(work / TABLE, schemas.CHALLENGE)
+
+
+def one(rows, effect, purpose="given"):
+    return rows[(rows["effect"] == effect) & (rows["purpose"] == purpose)].iloc[0]
+
+
+@pytest.fixture(scope="module")
+def asymmetry(logs, tmp_path_factory):
+    """A finished challenge of one effect, and what it says."""
+    work = tmp_path_factory.mktemp("asymmetry") / "work"
+    result = invoke("challenge", logs, "-w", work, "--effect", "direction_asymmetry:2")
+    return work, result.stdout, rows_of(work)
+
+
+def test_an_asymmetry_is_found_by_its_name_and_the_log_as_it_is_has_none(asymmetry):
+    _, said, rows = asymmetry
+    logged = rows[rows["purpose"] == "as_logged"].iloc[0]
+    assert (logged["names"], logged["effect"], logged["verdict"]) == ("", "none", "no_evidence")
+    row = one(rows, "direction_asymmetry")
+    assert (row["names"], row["verdict"], row["wrong"]) == ("direction_asymmetry", "named", "")
+    assert row["right_in_set"]
+    assert row["right_alone"]
+    assert not row["already"]
+    assert "as logged: no_evidence" in said
+    assert "wrong new names: in 0 of 1 trial" in said
+
+
+def test_gain_is_of_the_diagnosis_with_the_effect(asymmetry):
+    _, _, rows = asymmetry
+    row = one(rows, "direction_asymmetry")
+    assert row["gain"] == pytest.approx(1.0 - row["rmse_after"] / row["rmse_before"], abs=1e-6)
+    # the effect shows in the load, of which the rest is noise
+    assert row["rmse_before"] > 0.5
+    assert row["gain"] > 0.5
+
+
+def test_rows_carry_inputs_and_nothing_is_left_of_the_trials(asymmetry):
+    work, _, _ = asymmetry
+    about = tables.metadata(work / TABLE)
+    assert about["stage"] == "challenge"
+    assert {"samples.parquet", "torques.parquet", "diagnosis.json"} <= set(about["inputs"])
+    assert about["facts"]["torque_unit"] == "N·m"
+    assert not [path for path in work.iterdir() if path.name.startswith(".")]
+
+
+@pytest.fixture
+def undiagnosed(monkeypatch):
+    """Trials say of every planted log what the log as it is says; the rest is as it is."""
+
+    def copied(folder, settings):
+        for name in ("diagnosis.json", "model.json"):
+            shutil.copyfile(folder.parent / name, folder / name)
+
+    monkeypatch.setattr(trial, "diagnose", copied)
+    monkeypatch.setattr(trial, "fit", lambda folder, settings: None)
+
+
+def test_each_effect_has_the_size_that_was_asked_for(logs, tmp_path, undiagnosed):
+    asked = {"position_ripple": 2.0, "drift": 1.5, "dress_pack": 0.7}
+    effects = tuple(f"{name}:{size}" for name, size in asked.items())
+    challenge([logs], tmp_path, options=ChallengeSettings(effects=effects))
+    rows = rows_of(tmp_path)
+    for effect, size in asked.items():
+        row = one(rows, effect)
+        assert row["size"] == pytest.approx(size, rel=0.02)
+        assert (row["asked"], row["unit"], row["status"]) == (size, "N·m", "done")
+
+
+def test_the_usual_size_is_a_share_of_the_mean_friction(logs, tmp_path, undiagnosed):
+    options = ChallengeSettings(effects=("drift", "inertia"), share=5.0, draws=2)
+    challenge([logs], tmp_path, options=options)
+    torques = tables.read(tmp_path / "torques.parquet", schemas.TORQUES)
+    rows = rows_of(tmp_path)
+    drift = rows[rows["effect"] == "drift"]
+    expected = 0.05 * torques["friction_torque"].mean()
+    np.testing.assert_allclose(drift["size"], expected, rtol=0.02)
+    np.testing.assert_allclose(drift["share"], 0.05, rtol=0.02)
+    assert drift["seed"].tolist() == [0, 1]
+    # an effect after reversals has it there
+    assert np.all(rows[rows["effect"] == "inertia"]["size"] < 0.9 * expected)
+
+
+def test_an_interrupted_call_goes_on_and_does_nothing_twice(
+    logs, tmp_path, undiagnosed, monkeypatch
+):
+    options = ChallengeSettings(effects=("position_ripple:2", "drift:1.5"))
+    tried = []
+    real = module.Planter.trial
+
+    def interrupted(planter, name, *rest, **how):
+        if name == "drift" and len(tried) == 1:
+            raise KeyboardInterrupt
+        tried.append(name)
+        return real(planter, name, *rest, **how)
+
+    monkeypatch.setattr(module.Planter, "trial", interrupted)
+    with pytest.raises(KeyboardInterrupt):
+        challenge([logs], tmp_path, options=options)
+    assert rows_of(tmp_path)["effect"].tolist() == ["none", "position_ripple"]
+    tried.append("interrupted")
+    challenge([logs], tmp_path, options=options)
+    assert tried == ["position_ripple", "interrupted", "drift"]
+    challenge([logs], tmp_path, options=options)
+    assert len(tried) == 3
+    assert rows_of(tmp_path)["effect"].tolist() == ["none", "position_ripple", "drift"]
+
+
+def test_rows_of_other_logs_are_dropped(logs, tmp_path, undiagnosed):
+    options = ChallengeSettings(effects=("position_ripple:2",))
+    work = tmp_path / "work"
+    challenge([logs], work, options=options)
+    challenge([logs], work, options=ChallengeSettings(effects=("drift:1",)))
+    assert rows_of(work)["effect"].tolist() == ["none", "position_ripple", "drift"]
+    other = write_warm_up(tmp_path / "other" / "day", levels=LEVELS, seed=3)
+    challenge([other], work, options=options)
+    assert rows_of(work)["effect"].tolist() == ["none", "position_ripple"]
+
+
+def test_what_these_data_cannot_show_is_told_as_such(logs, tmp_path, undiagnosed):
+    # between its recordings, an hour each, a gear takes the temperature of the motor
+    result = challenge([logs], tmp_path, options=ChallengeSettings(effects=("thermal_lag:9",)))
+    row = rows_of(tmp_path).iloc[1]
+    assert (row["status"], row["right_in_set"]) == ("cannot", False)
+    assert "cannot show it" in row["message"]
+    assert "not shown by these data" in str(result)
+
+
+@pytest.mark.parametrize("threshold", [0.8, 3.0])
+def test_the_search_brackets_the_least_size_that_is_found(
+    logs, tmp_path, monkeypatch, undiagnosed, threshold
+):
+    """A diagnosis that finds a ripple from one size on."""
+    real = module.row_of_trial
+
+    def from_threshold(subject, effect, seed, purpose, asked, made):
+        found = made.size >= threshold
+        return real(subject, effect, seed, purpose, asked, made) | {"right_in_set": found}
+
+    monkeypatch.setattr(module, "row_of_trial", from_threshold)
+    options = ChallengeSettings(effects=("drift:2",), search=True)
+    challenge([logs], tmp_path, options=options)
+    rows = rows_of(tmp_path)
+    searched = rows[rows["effect"] == "drift"]
+    assert searched["size_found"].nunique() == 1
+    low, high = (searched[f"size_found_{end}"].iloc[0] for end in ("low", "high"))
+    # planted to 2 %
+    assert low <= 1.02 * threshold
+    assert high >= 0.98 * threshold
+    assert high / low <= 1.35
+
+
+@pytest.mark.parametrize(
+    ("words", "told"),
+    [
+        (("--effect", "wobble"), "unknown"),
+        (("--effect", "drift:0"), "above 0"),
+        (("--effect", "step_change@recurring"), "lasts"),
+        (("--share", "0"), "above 0"),
+        (("--draws", "0"), "1 to 100"),
+        (("--seed", "-1"), "0 or more"),
+    ],
+)
+def test_wrong_options_are_told_before_anything_is_read(tmp_path, words, told):
+    with pytest.raises(OptionError, match=told):
+        invoke("challenge", tmp_path / "none", "-w", tmp_path / "work", *words)
+    assert not (tmp_path / "work").exists()
+
+
+@pytest.mark.slow
+def test_a_killed_call_leaves_a_whole_table_and_goes_on(logs, tmp_path):
+    work = tmp_path / "work"
+    words = ("challenge", logs, "-w", work, "--effect", "direction_asymmetry:2")
+    words += ("--effect", "stroke_bump:2")
+    process = started(*words)
+    deadline = time.monotonic() + 240
+    while not ((work / TABLE).exists() and len(rows_of(work)) >= 2):
+        assert time.monotonic() < deadline
+        assert process.poll() is None
+        time.sleep(0.05)
+    os.kill(process.pid, signal.SIGKILL)
+    process.wait()
+    before = rows_of(work)
+    again = started(*words)
+    told, faults = again.communicate(timeout=300)
+    assert again.returncode == 0, faults
+    after = rows_of(work)
+    assert after["effect"].tolist() == ["none", "direction_asymmetry", "stroke_bump"]
+    # what was done was not done again
+    np.testing.assert_array_equal(after["seconds"][: len(before)], before["seconds"])
+    assert "stroke_bump" in told
+    assert not [path for path in work.iterdir() if path.name.startswith(".")]
