@@ -20,7 +20,7 @@ LAYERS = [
     {"model", "effects"},
     {"pairs", "logs", "simulator"},
     {"workfolder"},
-    {"tables", "documents"},
+    {"tables", "documents", "challenge_schema"},
     {"schemas", "files", "provenance", "workfiles", "options", "parquet_footer"},
     {"linear_algebra"},
     {"quantities", "errors", "arrays", "plain_text", "wording", "__init__"},

@@ -7,11 +7,12 @@ from typing import Any
 
 import pandas as pd
 
-from frictioncli import schemas, tables
+from frictioncli import tables
 from frictioncli.challenge.judged import Judgement, judged
 from frictioncli.challenge.search_size import SizeFound
 from frictioncli.challenge.subject import Subject
 from frictioncli.challenge.trial import Trial
+from frictioncli.challenge_schema import CHALLENGE as CHALLENGE_TABLE
 from frictioncli.diagnosis.documents.document import DiagnosisDocument
 from frictioncli.errors import TableError
 from frictioncli.provenance import Provenance
@@ -86,12 +87,12 @@ class ChallengeTable:
 
     def write(self) -> None:
         """Write all rows."""
-        names = [column.name for column in schemas.CHALLENGE.columns]
+        names = [column.name for column in CHALLENGE_TABLE.columns]
         frame = pd.DataFrame(self.rows, columns=names)
-        for column in schemas.CHALLENGE.columns:
+        for column in CHALLENGE_TABLE.columns:
             if column.type == "double":
                 frame[column.name] = frame[column.name].astype(float)
-        tables.write(self.path, frame, schemas.CHALLENGE, self.provenance, self.facts)
+        tables.write(self.path, frame, CHALLENGE_TABLE, self.provenance, self.facts)
 
     def set_found(self, joint: int, effect: str, seed: int, found: SizeFound) -> None:
         """State the least size that was found in the rows of an effect."""
@@ -113,7 +114,7 @@ def _earlier(path: Path, provenance: Provenance) -> list[Row]:
         origin = tables.metadata(path)
         if any(origin.get(key) != value for key, value in provenance.as_dict().items()):
             return []
-        frame = tables.read(path, schemas.CHALLENGE)
+        frame = tables.read(path, CHALLENGE_TABLE)
     except TableError:
         return []
     return [
@@ -178,7 +179,7 @@ def row_refused(
 def _row(
     subject: Subject, effect: str, seed: int, purpose: str, asked: float | None, channel: str
 ) -> Row:
-    nothing: Row = {column.name: None for column in schemas.CHALLENGE.columns}
+    nothing: Row = {column.name: None for column in CHALLENGE_TABLE.columns}
     return nothing | {
         "joint": subject.joint,
         "effect": effect,

@@ -14,7 +14,7 @@ def challenge_text(rows: Sequence[Row]) -> str:
     Parameters
     ----------
     rows : sequence of dict
-        Rows of :data:`frictioncli.schemas.CHALLENGE`.
+        Rows of :data:`frictioncli.challenge_schema.CHALLENGE`.
     """
     joints = sorted({row["joint"] for row in rows})
     return "\n".join(_joint_text([row for row in rows if row["joint"] == one]) for one in joints)
@@ -55,7 +55,7 @@ def mark(row: Row) -> str:
     Parameters
     ----------
     row : dict
-        Row of :data:`frictioncli.schemas.CHALLENGE`.
+        Row of :data:`frictioncli.challenge_schema.CHALLENGE`.
     """
     if row["status"] == CANNOT:
         return "not shown by these data"

@@ -13,6 +13,7 @@ from frictioncli.challenge import challenge as module
 from frictioncli.challenge import trial
 from frictioncli.challenge.challenge import challenge
 from frictioncli.challenge.settings import ChallengeSettings
+from frictioncli.challenge_schema import CHALLENGE as CHALLENGE_TABLE
 from frictioncli.errors import OptionError
 from tests.command_line import invoke
 from tests.robustness.runs import started, write_warm_up
@@ -28,7 +29,7 @@ def logs(tmp_path_factory):
 
 
 def rows_of(work):
-    return tables.read(work / TABLE, schemas.CHALLENGE)
+    return tables.read(work / TABLE, CHALLENGE_TABLE)
 
 
 def one(rows, effect, purpose="given"):
