@@ -20,10 +20,13 @@ References
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.linalg import cho_solve_banded, cholesky_banded
+from scipy.linalg.lapack import dpbtrf, dpbtrs
 from scipy.optimize import minimize
 
 from frictioncli.arrays import Array, Indices
+
+_LEAST_DRIFT = 1e-9
+"""Least variance of the drift, relative to the mean of what is independent between pairs."""
 
 _DRIFT_TIMES = 12
 """Number of correlation times tried, from the distance of the pairs to the length of the run."""
@@ -78,8 +81,21 @@ class PairCovariance:
     def solve(self, right: Array) -> Array:
         """Return the inverse covariance times ``right``, shape (pairs, ...)."""
         weighted = (right.T / self.white).T
-        smooth = cho_solve_banded((self.factor, False), weighted)
+        smooth, _ = dpbtrs(self.factor, weighted)
         return weighted - (smooth.T / self.white).T
+
+    def inverse_diagonal(self) -> Array:
+        """Return the diagonal of the inverse covariance, shape (pairs,) [1/(N·m)²]."""
+        # pivots of the tridiagonal matrix from its start and from its end
+        pivots = np.square(self.factor[1])
+        diagonal = pivots.copy()
+        diagonal[1:] += np.square(self.factor[0, 1:])
+        reverse = np.zeros_like(self.factor)
+        reverse[0, 1:] = (self.factor[0, 1:] * self.factor[1, :-1])[::-1]
+        reverse[1] = diagonal[::-1]
+        backward, _ = dpbtrf(reverse)
+        smooth = 1 / (pivots + np.square(backward[1, ::-1]) - diagonal)
+        return np.asarray((1 - smooth / self.white) / self.white)
 
     def times(self, right: Array) -> Array:
         """Return the covariance times ``right``, shape (pairs, columns)."""
@@ -125,30 +141,53 @@ def pair_covariance(
     extra : ndarray, shape (pairs,), optional
         Further variance of the pair means, as of an uncertain temperature. [(N·m)²]
     """
+    return _covariance(noise, _Drift.of(time, run, noise.drift_time), bins, extra)
+
+
+@dataclass(frozen=True, slots=True)
+class _Drift:
+    """Drift of variance 1 with one correlation time: its tridiagonal precision."""
+
+    correlation: Array
+    diagonal: Array
+    beside: Array
+    log_determinant: float
+
+    @classmethod
+    def of(cls, time: Array, run: Indices, duration: float) -> "_Drift":
+        step = np.where(np.diff(run) == 0, np.diff(time), np.inf)
+        decay = np.exp(-np.maximum(step, 1e-3) / duration)
+        decay = np.minimum(decay, 1 - 1e-9)
+        correlation = np.concatenate([[0.0], decay])
+        innovation = 1 - np.square(correlation)
+        diagonal = 1 / innovation
+        diagonal[:-1] += np.square(decay) / innovation[1:]
+        determinant = float(np.sum(np.log(innovation)))
+        return cls(correlation, diagonal, -decay / innovation[1:], determinant)
+
+
+def _covariance(noise: Noise, drift: _Drift, bins: Array, extra: Array | float) -> PairCovariance:
+    """Return the covariance of pair means whose drift is correlated as given."""
     white = noise.pair**2 + noise.point**2 / bins + extra
     # a drift of zero would have an infinite precision: it is replaced by a negligible one
-    variance = max(noise.drift**2, 1e-9 * float(np.mean(white)))
-    step = np.where(np.diff(run) == 0, np.diff(time), np.inf)
-    decay = np.exp(-np.maximum(step, 1e-3) / noise.drift_time)
-    decay = np.minimum(decay, 1 - 1e-9)
-    innovation = 1 - np.square(np.concatenate([[0.0], decay]))
-    diagonal = 1 / innovation
-    diagonal[:-1] += np.square(decay) / innovation[1:]
-    banded = np.zeros((2, len(time)))
-    banded[0, 1:] = -decay / innovation[1:] / variance
-    banded[1] = diagonal / variance + 1 / white
-    factor = cholesky_banded(banded)
+    variance = max(noise.drift**2, _LEAST_DRIFT * float(np.mean(white)))
+    banded = np.zeros((2, len(white)))
+    banded[0, 1:] = drift.beside / variance
+    banded[1] = drift.diagonal / variance + 1 / white
+    factor, fault = dpbtrf(banded)
+    if fault:
+        raise np.linalg.LinAlgError("the covariance of the pair means is not positive definite")
     log_determinant = (
         2 * np.sum(np.log(factor[1]))
         + np.sum(np.log(white))
-        + np.sum(np.log(innovation))
-        + len(time) * np.log(variance)
+        + drift.log_determinant
+        + len(white) * np.log(variance)
     )
     return PairCovariance(
         white=white,
         factor=factor,
         log_determinant=float(log_determinant),
-        correlation=np.concatenate([[0.0], decay]),
+        correlation=drift.correlation,
         drift=noise.drift,
     )
 
@@ -165,14 +204,39 @@ def restricted_log_likelihood(covariance: PairCovariance, residual: Array, desig
     design : ndarray, shape (pairs, parameters)
         Derivatives of the model by the parameters that were fitted.
     """
-    solved = covariance.solve(np.column_stack([design, residual]))
+    return _restricted(covariance, np.column_stack([design, residual]))[0]
+
+
+def _restricted(covariance: PairCovariance, columns: Array) -> tuple[float, Array, Array, Array]:
+    """Return the restricted log likelihood, and what its derivatives need.
+
+    The columns are those of the design and the residuals. The inverse covariance times the design,
+    the precision of its parameters, and the inverse covariance times what they leave come second.
+    """
+    solved = covariance.solve(columns)
+    design, residual, own = columns[:, :-1], columns[:, -1], solved[:, -1]
     information = design.T @ solved[:, :-1]
-    projected = design.T @ solved[:, -1]
-    explained = projected @ np.linalg.solve(information, projected)
-    quadratic = residual @ solved[:, -1] - explained
-    return float(
-        -0.5 * (covariance.log_determinant + np.linalg.slogdet(information)[1] + quadratic)
-    )
+    projected = design.T @ own
+    coefficients = np.linalg.solve(information, projected)
+    quadratic = residual @ own - projected @ coefficients
+    likelihood = covariance.log_determinant + np.linalg.slogdet(information)[1] + quadratic
+    left = own - solved[:, :-1] @ coefficients
+    return float(-0.5 * likelihood), solved[:, :-1], information, left
+
+
+def _cost(noise: Noise, covariance: PairCovariance, columns: Array) -> tuple[float, Array]:
+    """Return minus the restricted log likelihood and its derivatives by ln(pair), ln(drift)."""
+    likelihood, solved, information, left = _restricted(covariance, columns)
+    residual, white = columns[:, -1], covariance.white
+    taken = np.einsum("ij,ji->i", solved, np.linalg.solve(information, solved.T))
+    diagonal = covariance.inverse_diagonal() - taken
+    pair = noise.pair**2 * (np.sum(diagonal) - left @ left)
+    if noise.drift**2 < _LEAST_DRIFT * float(np.mean(white)):
+        return -likelihood, np.array([pair, 0.0])
+    # the drift's share of the covariance is what is not white
+    square = residual @ left - left @ (white * left)
+    freedom = len(residual) - len(information) - diagonal @ white
+    return -likelihood, np.array([pair, freedom - square])
 
 
 def plausible_noise(
@@ -216,7 +280,7 @@ def plausible_noise(
     # an orthonormal basis, since columns may be collinear and their units differ widely
     length = np.linalg.norm(design, axis=0)
     basis, size, _ = np.linalg.svd(design / np.where(length > 0, length, 1.0), full_matrices=False)
-    basis = basis[:, size > 1e-9 * size[0]]
+    columns = np.column_stack([basis[:, size > 1e-9 * size[0]], residual])
     scale = max(float(np.std(residual)), 1e-9)
     gaps = np.diff(time)[np.diff(run) == 0]
     shortest = max(float(np.median(gaps)), 1e-3) if gaps.size else 1.0
@@ -227,16 +291,18 @@ def plausible_noise(
         pair, drift = np.exp(logs)
         return Noise(point=point, pair=float(pair), drift=float(drift), drift_time=duration)
 
-    def cost(logs: Array, duration: float) -> float:
+    def cost(logs: Array, drift: _Drift, duration: float) -> tuple[float, Array]:
         noise = of(logs, duration)
-        covariance = pair_covariance(noise, time=time, run=run, bins=bins, extra=extra)
-        return -restricted_log_likelihood(covariance, residual, basis)
+        return _cost(noise, _covariance(noise, drift, bins, extra), columns)
 
     bounds = [(np.log(scale * 1e-3), np.log(scale * 10))] * 2
     start = np.log([scale / 2, scale / 2])
     found = []
     for duration in np.geomspace(shortest, longest, _DRIFT_TIMES):
-        best = minimize(cost, start, args=(duration,), method="L-BFGS-B", bounds=bounds)
+        drift = _Drift.of(time, run, float(duration))
+        best = minimize(
+            cost, start, args=(drift, duration), jac=True, method="L-BFGS-B", bounds=bounds
+        )
         found.append((of(best.x, float(duration)), -float(best.fun)))
     highest = max(likelihood for _, likelihood in found)
     weights = [np.exp(likelihood - highest) for _, likelihood in found]

@@ -1,5 +1,7 @@
 """The banded algebra of the noise model against dense matrices."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -49,6 +51,12 @@ def test_restricted_likelihood_agrees_with_its_definition():
     assert found == pytest.approx(expected, rel=1e-8)
 
 
+def test_diagonal_of_the_inverse_agrees_with_the_dense_matrix():
+    covariance = pair_covariance(NOISE, time=TIME, run=RUN, bins=BINS)
+    expected = np.diag(np.linalg.inv(dense()))
+    np.testing.assert_allclose(covariance.inverse_diagonal(), expected, rtol=1e-8)
+
+
 def test_drawn_disturbances_have_the_covariance():
     covariance = pair_covariance(NOISE, time=TIME, run=RUN, bins=BINS)
     generator = np.random.default_rng(2)
@@ -63,10 +71,23 @@ def test_known_noise_is_found():
     bins = np.full(600, 30.0)
     truth = Noise(point=0.3, pair=0.3, drift=0.5, drift_time=1200.0)
     residual = pair_covariance(truth, time=time, run=run, bins=bins).draw(np.random.default_rng(3))
-    noise, weight = plausible_noise(
-        residual=residual, design=np.ones((600, 1)), time=time, run=run, bins=bins, point=0.3
-    )[0]
+    layout = {"time": time, "run": run, "bins": bins}
+    design = np.ones((600, 1))
+    noise, weight = plausible_noise(residual=residual, design=design, point=0.3, **layout)[0]
     assert noise.pair == pytest.approx(0.3, rel=0.2)
     assert noise.drift == pytest.approx(0.5, rel=0.2)
     assert noise.drift_time == pytest.approx(1200.0, rel=0.6)
     assert 0 < weight <= 1
+    # no other noise with its correlation time is likelier, to the first order
+    likelihood = [
+        restricted_log_likelihood(pair_covariance(one, **layout), residual, design)
+        for one in (
+            noise,
+            replace(noise, pair=noise.pair * 1.001),
+            replace(noise, pair=noise.pair / 1.001),
+            replace(noise, drift=noise.drift * 1.001),
+            replace(noise, drift=noise.drift / 1.001),
+        )
+    ]
+    np.testing.assert_allclose(likelihood[1:], likelihood[0], rtol=0, atol=1e-3)
+    assert max(likelihood) == likelihood[0]

@@ -63,7 +63,9 @@ class PairLayout:
         Speed level of each pair.
     pooling : sparse matrix, shape (groups, rows)
         Sums over a group of neighbouring pairs at one speed and angle, over the root of their
-        number, made white: deviations of variance 1 stay so.
+        number: white deviations of variance 1 stay so.
+    white : sparse matrix, shape (groups, groups), or None
+        Makes the sums white; None where they are so.
     noise : WithinNoise
         Noise within pairs.
     blocks : tuple of ndarray of int
@@ -78,6 +80,7 @@ class PairLayout:
     level: Indices
     speed: Array
     pooling: csr_array
+    white: csr_array | None
     noise: WithinNoise
     blocks: tuple[Indices, ...]
 
@@ -115,8 +118,7 @@ class PairLayout:
         pooling = csr_array(
             (weight[group], (group, np.arange(len(group)))), shape=(len(weight), len(group))
         )
-        if noise is not None and noise.share > 0:
-            pooling = csr_array(_white(noise, keys, speed, block) @ pooling)
+        noise = noise or WithinNoise()
         return cls(
             row_pair=row_pair,
             bins=np.bincount(row_pair).astype(float),
@@ -125,7 +127,8 @@ class PairLayout:
             level=level,
             speed=speed,
             pooling=pooling,
-            noise=noise or WithinNoise(),
+            white=_white(noise, keys, speed, block) if noise.share > 0 else None,
+            noise=noise,
             blocks=_same_bins(row_pair, block, position),
         )
 
@@ -193,7 +196,8 @@ class PairLayout:
             Sums of the deviations of each group over the root of their number.
         """
         deviations = rows - self.means(rows)[self.row_pair]
-        return np.asarray(self.pooling @ deviations)
+        pooled = self.pooling @ deviations
+        return np.asarray(pooled if self.white is None else self.white @ pooled)
 
     def means(self, rows: Array) -> Array:
         """Return the mean of each pair's rows, shape (pairs, ...)."""

@@ -198,18 +198,19 @@ def evaluate(
     gram = total(products, variances)
     count = len(gram) - 1
     ridge = weights_of(components, variances, count)
-    penalised = gram[:count, :count] + np.diag(ridge)
-    size = np.sqrt(np.diagonal(penalised))
+    size = np.sqrt(np.diagonal(gram)[:count] + ridge)
     size = np.where(size > 0, size, 1.0)
-    scaled = penalised / np.outer(size, size)
+    sizes = np.outer(size, size)
+    scaled = gram[:count, :count] / sizes
     scaled[np.diag_indices(count)] = 1.0 + _RIDGE
     factor, fault = lapack.dpotrf(scaled, lower=True)
     if fault:
         scaled[np.diag_indices(count)] = 1.0 + 1e-6
         factor, _ = lapack.dpotrf(scaled, lower=True)
-    inverse, _ = lapack.dpotri(factor, lower=True)
-    inverse = np.tril(inverse) + np.tril(inverse, -1).T
-    covariance = inverse / np.outer(size, size)
+    half, _ = lapack.dpotri(factor, lower=True)
+    inverse = half + half.T
+    inverse[np.diag_indices(count)] = np.diagonal(half)
+    covariance = inverse / sizes
     right = gram[:count, count]
     coefficients = covariance @ right
     square = max(float(gram[count, count] - coefficients @ right), 1e-300)

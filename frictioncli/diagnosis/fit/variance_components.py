@@ -126,23 +126,23 @@ def _with_likeliest_noise(components: Components, products: Products, fit: Mixed
 
     The base is fitted anew under every noise model; the other coefficients stay.
     """
-    base, count = components.base, len(fit.coefficients)
-    reduction = np.zeros((count + 1, base + 1))
-    reduction[:base, :base] = np.eye(base)
-    reduction[base:count, base] = -fit.coefficients[base:]
-    reduction[count, base] = 1.0
+    base = components.base
+    left = np.append(-fit.coefficients[base:], 1.0)
     noise, scales = [], []
     for channel in (0, 1):
-        gram = reduction.T @ products.between[channel] @ reduction
-        size = np.sqrt(np.maximum(np.diagonal(gram, axis1=1, axis2=2), 0.0))
-        size = np.where(size > 1e-12 * (1 + size.max(initial=0.0)), size, np.inf)[:, :base]
-        scaled = gram[:, :base, :base] / (size[:, :, np.newaxis] * size[:, np.newaxis, :])
+        products_with_left = products.between[channel][:, :, base:] @ left
+        own = products.between[channel][:, :base, :base]
+        whole = products_with_left[:, base:] @ left
+        size = np.sqrt(np.maximum(np.diagonal(own, axis1=1, axis2=2), 0.0))
+        most = np.sqrt(max(size.max(initial=0.0) ** 2, whole.max(initial=0.0)))
+        size = np.where(size > 1e-12 * (1 + most), size, np.inf)
+        scaled = own / (size[:, :, np.newaxis] * size[:, np.newaxis, :])
         values, vectors = np.linalg.eigh(scaled)
         kept = values > 1e-8
-        right = gram[:, :base, base] / size
+        right = products_with_left[:, :base] / size
         projected = np.einsum("nij,ni->nj", vectors, right)
         explained = np.sum(np.where(kept, projected**2 / np.where(kept, values, 1.0), 0.0), axis=1)
-        square = np.maximum(gram[:, base, base] - explained, 1e-300)
+        square = np.maximum(whole - explained, 1e-300)
         freedom = max(components.pairs - int(kept.sum(axis=1).max(initial=0)), 1)
         finite = np.where(np.isfinite(size), size, 1.0)
         determinant = np.sum(np.where(kept, np.log(np.where(kept, values, 1.0)), 0.0), axis=1)
