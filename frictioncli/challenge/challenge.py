@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from frictioncli import tables
+from frictioncli.challenge.pictures import write_pictures
 from frictioncli.challenge.rows import (
     GIVEN,
     SEARCH,
@@ -46,8 +47,9 @@ def challenge(
 ) -> StageResult:
     """Plant effects into logs and diagnose them before and after: ``challenge.parquet``.
 
-    Each row is written when it is known. A call that was killed goes on where it stopped, if logs
-    and settings are the same; rows of other effects on the same data stay.
+    Beside it the folder ``challenge`` gets a picture of each effect. Each row is written when it is
+    known. A call that was killed goes on where it stopped, if logs and settings are the same; rows
+    of other effects on the same data stay.
 
     Parameters
     ----------
@@ -89,7 +91,9 @@ def challenge(
             planter = Planter(subject, work, settings)
             _Challenge(subject, planter, table, options, progress).run(requests)
         table.write()
-    return StageResult(table.path, challenge_text(table.rows))
+        folder = write_pictures(table.path)
+    text = f"{challenge_text(table.rows)}\npictures: {folder}"
+    return StageResult(table.path, text)
 
 
 def _requests(texts: Sequence[str]) -> tuple[RequestedEffect, ...]:
@@ -143,7 +147,8 @@ class _Challenge:
                 self._trial(request.name, seed, SHARE, size)
             else:
                 self._trial(request.name, seed, GIVEN, request.size)
-        if requests and not self.options.search:
+        wanted = self.options.search
+        if not (not requests if wanted is None else wanted):
             return
         searches = dict.fromkeys((request.name, seed) for request, seed in tries)
         for number, (name, seed) in enumerate(searches, start=1):

@@ -23,8 +23,8 @@ class ChallengeSettings:
         Number of shapes of its law in which each effect is planted.
     seed : int
         Seed of these shapes.
-    search : bool
-        Whether the least size that is found is searched for also where effects are given.
+    search : bool or None
+        Whether the least size that is found is searched for; None: where no effects are given.
     """
 
     effects: tuple[str, ...] = field(
@@ -42,8 +42,12 @@ class ChallengeSettings:
     )
     draws: int = field(default=1, metadata=option("Shapes in which each effect is planted."))
     seed: int = field(default=0, metadata=option("Seed of the shapes."))
-    search: bool = field(
-        default=False, metadata=option("Search the least size found of given effects, too.")
+    search: bool | None = field(
+        default=None,
+        metadata=option(
+            "Search the least size that is found; else if no effect is given.",
+            "--search/--no-search",
+        ),
     )
 
     def __post_init__(self) -> None:

@@ -75,6 +75,13 @@ def test_rows_carry_inputs_and_nothing_is_left_of_the_trials(asymmetry):
     assert not [path for path in work.iterdir() if path.name.startswith(".")]
 
 
+def test_there_is_one_picture_per_effect(asymmetry):
+    work, said, _ = asymmetry
+    names = sorted(path.name for path in (work / "challenge").iterdir())
+    assert names == ["direction_asymmetry.png", "direction_asymmetry.svg"]
+    assert str(work / "challenge") in said
+
+
 @pytest.fixture
 def undiagnosed(monkeypatch):
     """Trials say of every planted log what the log as it is says; the rest is as it is."""

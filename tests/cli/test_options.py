@@ -271,6 +271,7 @@ COMMANDS = {
             "--draws": ("3", "challenge.options.draws", 3),
             "--seed": ("9", "challenge.options.seed", 9),
             "--search": ("", "challenge.options.search", True),
+            "--no-search": ("", "challenge.options.search", False),
         },
     ),
     "synthesize": Command(
