@@ -12,9 +12,15 @@ from frictioncli.diagnosis.documents.apply_extension import friction_beyond
 from frictioncli.diagnosis.documents.extended_model import ExtendedDocument, extended_model
 from frictioncli.diagnosis.documents.from_diagnosis import diagnosis_document, extended_document
 from frictioncli.diagnosis.documents.text import verdict_text
+from frictioncli.diagnosis.empirical.describe import described
 from frictioncli.diagnosis.empirical.estimate import empirical_term
 from frictioncli.diagnosis.empirical.random_functions import functions_of
-from frictioncli.diagnosis.empirical.term import EmpiricalTerm, SmoothFunction, validity
+from frictioncli.diagnosis.empirical.term import (
+    EmpiricalTerm,
+    FormFunction,
+    SmoothFunction,
+    validity,
+)
 from frictioncli.diagnosis.fit.columns import base_rows
 from frictioncli.diagnosis.fit.extension import extend, misfits
 from frictioncli.diagnosis.search.precomputed import Precomputed
@@ -149,6 +155,108 @@ def test_a_term_that_is_no_function_is_refused(changed):
         replace(TERM, **changed).check()
 
 
+def test_a_bump_in_a_late_torque_is_described():
+    """3 N·m at 62 deg, 7 deg wide, 40 ms late: in both channels."""
+
+    def late(way):
+        def torque(rows):
+            away = rows.position - way * 0.04 * rows.speed - 62.0
+            return 3.0 * np.exp(-np.square(away / 7.0) / 2)
+
+        return torque
+
+    both = [late(1), late(-1)]
+    data = problem(
+        3,
+        friction=lambda rows: (both[0](rows) + both[1](rows)) / 2,
+        load=lambda rows: (both[0](rows) - both[1](rows)) / 2,
+    )
+    (part,) = found(data).parts
+    assert part.form.kind == "bump"
+    assert part.form.shape["centre"] == pytest.approx(62.0, abs=0.3)
+    assert part.form.shape["width"] == pytest.approx(7.0, rel=0.05)
+    assert part.form.shape["lag"] == pytest.approx(0.04, rel=0.1)
+    assert part.form.coefficients["peak"] == pytest.approx(3.0, rel=0.05)
+    assert described(part.form, "N·m") == (
+        f"a bump of friction of {part.form.coefficients['peak']:.1f} N·m at"
+        f" {part.form.shape['centre']:.1f} deg, {part.form.shape['width']:.1f} deg wide (standard"
+        f" deviation), in a torque that is logged {1e3 * part.form.shape['lag']:.0f} ms late"
+    )
+
+
+@pytest.mark.parametrize(
+    ("law", "axes", "shape"),
+    [
+        (
+            lambda rows: -2.0 * np.exp(-np.square((np.abs(rows.load_torque) - 40.0) / 8.0) / 2),
+            ("load",),
+            {"centre": (40.0, 2.0), "width": (8.0, 2.0)},
+        ),
+        (
+            lambda rows: 5.0 * np.exp(-np.square((rows.motor_temperature - 45.0) / 3.0) / 2),
+            ("temperature",),
+            {"centre": (45.0, 1.0)},
+        ),
+    ],
+    ids=["dent in the load", "peak in the temperature"],
+)
+def test_forms_are_found_with_their_places(law, axes, shape):
+    (part,) = found(problem(3, friction=law)).parts
+    assert (part.axes, part.channel) == (axes, "friction")
+    for name, (value, within) in shape.items():
+        assert part.form.shape[name] == pytest.approx(value, abs=within)
+    low, high = part.interval
+    assert low < part.size < high
+
+
+def test_a_peak_between_four_speeds_is_located_only():
+    """Friction that falls below the fastest but one is as likely."""
+    data = problem(
+        3, friction=lambda rows: 2.0 * np.exp(-np.square(np.log(rows.speed / 70.0) / 0.3) / 2)
+    )
+    empirical = found(data)
+    assert len(np.unique(data.table.speed)) == 4
+    assert not empirical.term.forms
+    assert empirical.parts[0].axes == ("speed",)
+
+
+def test_what_no_form_describes_is_located_only():
+    """Friction that goes up and down over angle and speed in no simple way."""
+
+    def law(rows):
+        angle, speed = np.radians(rows.position), np.log(rows.speed / 40.0)
+        return 2.0 * np.sin(5 * angle) * np.sin(2.5 * speed + 0.5)
+
+    empirical = found(problem(3, friction=law))
+    assert not empirical.term.forms
+    assert empirical.parts[0].axes == ("position", "speed")
+    assert sum(part.share for part in empirical.parts) == pytest.approx(1.0)
+
+
+@pytest.mark.parametrize(
+    "changed",
+    [
+        {"kind": "spline"},
+        {"axes": ("speed",)},
+        {"channel": "torque"},
+        {"shape": {"centre": 1.0}},
+        {"coefficients": {"height": 1.0}},
+    ],
+)
+def test_a_form_that_is_unknown_is_refused(changed):
+    form = FormFunction(
+        kind="bump",
+        axes=("position",),
+        channel="friction",
+        shape={"centre": 50.0, "width": 5.0, "lag": 0.0},
+        coefficients={"peak": 1.0},
+        formula="",
+    )
+    form.check()
+    with pytest.raises(TableError, match="empirical"):
+        replace(form, **changed).check()
+
+
 @pytest.fixture(scope="module")
 def diagnosed():
     """Two days of a joint with a law that no catalogue lists, and its diagnosis."""
@@ -165,6 +273,10 @@ def test_documents_and_text_say_what_it_gains(diagnosed):
     document = diagnosis_document(diagnosis, SETTINGS)
     assert document.empirical.basis == "new_run"
     assert document.empirical.reduction > 0.25
+    (part,) = document.empirical.forms
+    assert part.axes == document.structure.axis == ("position", "temperature")
+    assert part.formula == document.structure.formula
+    assert "2 times per turn" in document.structure.description
     assert document.empirical.rmse_after < 0.8 * document.empirical.rmse_before
     assert "With an empirical term for what has no name" in verdict_text(document)
     assert "no cause" in verdict_text(document)

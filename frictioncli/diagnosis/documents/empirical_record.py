@@ -5,14 +5,17 @@ from dataclasses import dataclass
 
 import msgspec
 
+from frictioncli.diagnosis.empirical.describe import described, formula_with_numbers
 from frictioncli.diagnosis.empirical.estimate import Empirical
+from frictioncli.diagnosis.empirical.located import Located
 from frictioncli.diagnosis.empirical.term import FADING, EmpiricalTerm
 from frictioncli.diagnosis.noise.cosine_series import Range
 
 _NOTE = "empirical: what was measured and no known cause explains; not a cause"
 
 _EQUATION = (
-    "w(x) (sum_k gamma_k prod_j cos(pi k_j u_j) + du/dp b), b: base_changes and gravity_changes;"
+    "w(x) (sum of forms + sum_k gamma_k prod_j cos(pi k_j u_j) + du/dp b), gamma_k: coefficients of"
+    " functions, b: base_changes and gravity_changes;"
     " u from 0 to 1 over the range of a quantity, of the speed over that of its logarithm;"
     " w = 1 - 3 s^2 + 2 s^3 beyond an end of a range, s the distance as a share of fading times the"
     " range, w = 1 within all"
@@ -47,6 +50,36 @@ class EmpiricalRecord(EmpiricalTerm):
     size: float
 
 
+class LocatedRecord(msgspec.Struct, frozen=True, kw_only=True):
+    """A part of the empirical term: where it shows, and how large it is.
+
+    Attributes
+    ----------
+    axes : tuple of str
+        What it depends on: ``position``, ``speed``, ``temperature`` or ``load``.
+    channel : {"friction", "load"}
+        The torque in which it shows.
+    size : float
+        RMS of what the base leaves of it. [torque unit]
+    ci95 : (float, float)
+        95 % interval of that, from five parts of the pairs. [torque unit]
+    share : float
+        Its mean square relative to that of all parts.
+    description : str or None
+        What it is in words, where a form describes it.
+    formula : str or None
+        The formula with numbers: q in deg, v in deg/s, T in °C, L in N·m.
+    """
+
+    axes: tuple[str, ...]
+    channel: str
+    size: float
+    ci95: tuple[float, float]
+    share: float
+    description: str | None = None
+    formula: str | None = None
+
+
 class EmpiricalGainRecord(msgspec.Struct, frozen=True, kw_only=True):
     """What the empirical term of the extended model is worth, beyond base and causes.
 
@@ -70,6 +103,8 @@ class EmpiricalGainRecord(msgspec.Struct, frozen=True, kw_only=True):
     ranges : mapping of str to (float, float)
         Angle ``position`` [deg], ``speed`` [deg/s], ``temperature`` [°C] and amount of the ``load``
         [N·m] within which it is valid.
+    parts : tuple of LocatedRecord
+        The forms that describe it, or else its functions; the largest first.
     """
 
     size: float
@@ -81,6 +116,12 @@ class EmpiricalGainRecord(msgspec.Struct, frozen=True, kw_only=True):
     ci95: tuple[float, float]
     noise_floor: float
     ranges: Mapping[str, Range]
+    parts: tuple[LocatedRecord, ...] = ()
+
+    @property
+    def forms(self) -> tuple[LocatedRecord, ...]:
+        """The parts that a form describes."""
+        return tuple(one for one in self.parts if one.description)
 
 
 def term_record(found: Empirical, torque_unit: str) -> EmpiricalRecord:
@@ -95,6 +136,7 @@ def term_record(found: Empirical, torque_unit: str) -> EmpiricalRecord:
     """
     term = found.term
     return EmpiricalRecord(
+        forms=term.forms,
         functions=term.functions,
         ranges=term.ranges,
         base_changes=term.base_changes,
@@ -105,13 +147,15 @@ def term_record(found: Empirical, torque_unit: str) -> EmpiricalRecord:
     )
 
 
-def gain_record(found: Empirical) -> EmpiricalGainRecord:
+def gain_record(found: Empirical, torque_unit: str) -> EmpiricalGainRecord:
     """Return what an empirical term gains as ``diagnosis.json`` has it.
 
     Parameters
     ----------
     found : Empirical
         The term.
+    torque_unit : str
+        Unit of torque.
     """
     gain = found.gain
     return EmpiricalGainRecord(
@@ -124,4 +168,18 @@ def gain_record(found: Empirical) -> EmpiricalGainRecord:
         ci95=gain.interval,
         noise_floor=gain.floor,
         ranges=found.term.ranges,
+        parts=tuple(_located_record(one, torque_unit) for one in found.parts),
+    )
+
+
+def _located_record(part: Located, torque_unit: str) -> LocatedRecord:
+    form = part.form
+    return LocatedRecord(
+        axes=part.axes,
+        channel=part.channel,
+        size=part.size,
+        ci95=part.interval,
+        share=part.share,
+        description=None if form is None else described(form, torque_unit),
+        formula=None if form is None else formula_with_numbers(form),
     )

@@ -12,7 +12,6 @@ from frictioncli.diagnosis.documents.document import (
     DiagnosisDocument,
     GainRecord,
     SimulationRecord,
-    StructureRecord,
 )
 from frictioncli.diagnosis.documents.empirical_record import gain_record, term_record
 from frictioncli.diagnosis.documents.extended_model import (
@@ -30,11 +29,15 @@ from frictioncli.diagnosis.documents.parameters import (
 )
 from frictioncli.diagnosis.documents.ramps_record import ramps_record
 from frictioncli.diagnosis.documents.remainder import remainder_record
+from frictioncli.diagnosis.documents.structure_record import (
+    known_interval,
+    structure_record,
+    unnamed_record,
+)
 from frictioncli.diagnosis.documents.thermal_record import record_of_lag
 from frictioncli.diagnosis.ramps.evidence import RampEstimate
 from frictioncli.diagnosis.search.cause import Cause
 from frictioncli.diagnosis.search.effect_size import LACKING, TAKEN_BY_BASE
-from frictioncli.diagnosis.search.lack_of_fit import Structure
 from frictioncli.diagnosis.search.timing_causes import DELAY, FILTER
 from frictioncli.diagnosis.settings import DiagnosisSettings
 from frictioncli.diagnosis.thermal.refine import LAG
@@ -62,14 +65,14 @@ def diagnosis_document(diagnosis: Diagnosis, settings: DiagnosisSettings) -> Dia
         _cause_record(diagnosis, cause, number + 1) for number, cause in enumerate(diagnosis.causes)
     ]
     if diagnosis.structure is not None:
-        causes.append(_unnamed_record(diagnosis.structure))
+        causes.append(unnamed_record(diagnosis))
     gain, ramps = diagnosis.gain, diagnosis.ramps
     return DiagnosisDocument(
         joint=diagnosis.joint,
         verdict=diagnosis.verdict,
         causes=tuple(causes),
         visible=tuple(_visible_record(diagnosis, cause) for cause in diagnosis.visible),
-        structure=None if diagnosis.structure is None else _structure_record(diagnosis.structure),
+        structure=structure_record(diagnosis),
         margin=diagnosis.margin,
         load_margin=diagnosis.load_margin,
         gain=None
@@ -82,7 +85,9 @@ def diagnosis_document(diagnosis: Diagnosis, settings: DiagnosisSettings) -> Dia
             ci95=gain.interval,
             noise_floor=gain.floor,
         ),
-        empirical=None if diagnosis.empirical is None else gain_record(diagnosis.empirical),
+        empirical=None
+        if diagnosis.empirical is None
+        else gain_record(diagnosis.empirical, diagnosis.torque_unit),
         remainder=remainder_record(diagnosis),
         detectable=diagnosis.detectable,
         undetectable=_undetectable(diagnosis),
@@ -213,7 +218,7 @@ def _record(
         size=cause.size,
         size_ci95=_size_interval(cause),
         visible_size=cause.visible,
-        visible_ci95=_known(cause.visible_interval),
+        visible_ci95=known_interval(cause.visible_interval),
         p_value=cause.test.p_value,
         seen_in=effect.signature.axis,
         figure=figure,
@@ -241,55 +246,10 @@ def _size_interval(cause: Cause) -> tuple[float, float] | None:
     base leaves of them.
     """
     if len(cause.fit.coefficients) != 1:
-        return _known(cause.visible_interval)
+        return known_interval(cause.visible_interval)
     value = abs(float(cause.fit.coefficients[0]))
     reach = Z95 * float(np.sqrt(max(float(cause.fit.covariance[0, 0]), 0.0)))
     if value == 0.0:
         return None
     scale = cause.size / value
     return (scale * max(value - reach, 0.0), scale * (value + reach))
-
-
-def _known(interval: tuple[float, float]) -> tuple[float, float] | None:
-    """Return an interval, or None where it has no end."""
-    low, high = (float(end) for end in interval)
-    return (low, high) if np.isfinite(low) and np.isfinite(high) else None
-
-
-def _structure_record(structure: Structure) -> StructureRecord:
-    return StructureRecord(
-        axis=structure.axes,
-        channel=structure.channel,
-        description=_description(structure),
-        size=structure.size,
-        ci95=_known(structure.interval),
-    )
-
-
-def _description(structure: Structure) -> str:
-    return f"Residuals of the {structure.channel} have structure along {_along(structure)}."
-
-
-def _along(structure: Structure) -> str:
-    """Return the axes in words."""
-    return structure.axis.replace("position", "angle")
-
-
-def _unnamed_record(structure: Structure) -> CauseRecord:
-    """Return structure without a name in the form of a cause."""
-    return CauseRecord(
-        standing="visible",
-        reason="no effect of the catalogue explains it",
-        effects=(),
-        probabilities={},
-        channel=structure.channel,
-        claim=_description(structure),
-        equation="",
-        parameters={},
-        size=structure.size,
-        size_ci95=_known(structure.interval),
-        p_value=structure.p_value,
-        seen_in=_along(structure),
-        figure=None,
-        experiment=f"Measure more values of {_along(structure)}, in random order, on another day.",
-    )

@@ -218,11 +218,14 @@ def empirical_text(document: DiagnosisDocument) -> str:
     if found.basis == "new_run":
         on = f"on run {document.held_out}, which it has not seen"
     low, high = (f"{share:.0%}".replace("-", "−") for share in found.ci95)
+    what = ""
+    if found.forms:
+        what = f" It is {', and '.join(one.description or '' for one in found.forms)}."
     return (
         "With an empirical term for what has no name, the extended model misses the torque by"
         f" {number_text(found.rmse_after, 2)} {unit} (RMS) {on}, without by"
         f" {number_text(found.rmse_before, 2)} {unit}: {found.reduction:.0%} less ({low} to"
-        f" {high}). It is no cause, and valid only {_within_text(found)}."
+        f" {high}).{what} It is no cause, and valid only {_within_text(found)}."
     )
 
 

@@ -1,27 +1,20 @@
-r"""Estimate of the empirical term, and whether it is used.
+r"""The empirical term: how it is estimated, whether it is used, and which form describes it.
 
 The discrepancy that any model has (:mod:`frictioncli.diagnosis.noise.discrepancy`) is a sum of
-random functions with known amplitudes beside the noise. Its best estimate from the misfit *y* that
-base and causes leave is the mean given the data,
-
-.. math:: \hat\gamma = (O^\mathsf{T} W O + I)^{-1} O^\mathsf{T} W y
-
-with the functions' columns *O*, orthogonal to the base, each scaled to its amplitude, and the
-inverse *W* of the noise's covariance [1]_. Noise alone gives a small estimate.
-
-It is used only where it predicts pairs that it has not seen: the pairs are cut into blocks of
-neighbours, a fifth of the blocks at a time is kept out of the estimate, and what the estimate then
-reduces the misfit by on those,
+random functions with known amplitudes. Their best estimate from what base and causes leave
+(:mod:`frictioncli.diagnosis.empirical.normal_equations`) is used only where it predicts pairs that
+it has not seen: the pairs are cut into blocks of neighbours, a fifth of the blocks at a time is
+kept out of the estimate, and what the estimate then reduces the misfit by on those,
 
 .. math:: \sqrt{\overline{y^2} - \overline{(y - \hat y)^2}} ,
 
 must be above the smallest size worth a name, and beyond chance. Where a run was kept out of the
 diagnosis, so must what it reduces the misfit by there.
 
-References
-----------
-.. [1] G. K. Robinson, "That BLUP is a good thing: the estimation of random effects," Stat. Sci.
-   6(1), 1991, doi:10.1214/ss/1177011926.
+Up to two forms (:mod:`frictioncli.diagnosis.empirical.forms`) describe it, beside the discrepancy
+that any model has. Each must explain more than that size of the blocks kept out, and show in every
+part of the pairs alone; together they must predict the blocks as well as the free functions do.
+Otherwise, or where two forms are nearly as likely, the term has no form.
 """
 
 from collections.abc import Sequence
@@ -29,23 +22,40 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from frictioncli.arrays import Array, Indices
 from frictioncli.diagnosis.data.problem import Problem
-from frictioncli.diagnosis.empirical.random_functions import Function, functions_of, term_of
-from frictioncli.diagnosis.empirical.term import EmpiricalTerm
+from frictioncli.diagnosis.empirical.form_search import WeightedMisfit
+from frictioncli.diagnosis.empirical.forms import forms_of
+from frictioncli.diagnosis.empirical.located import Located, located, sizes_of_parts
+from frictioncli.diagnosis.empirical.normal_equations import Misfits, NormalEquations
+from frictioncli.diagnosis.empirical.random_functions import (
+    Function,
+    function_of_form,
+    functions_of,
+    term_of,
+)
+from frictioncli.diagnosis.empirical.term import EmpiricalTerm, ranges_seen
 from frictioncli.diagnosis.fit.extension import Extension, Gain, misfits, reduction_interval
-from frictioncli.diagnosis.fit.weighted_fit import Weights
+from frictioncli.diagnosis.search.axis_columns import varying_axes
 from frictioncli.diagnosis.search.step import Step
 from frictioncli.effects.base import Basis
-from frictioncli.model.noise import Noise
 
-_PARTS = 5
-"""Parts of the pairs, each of which is kept out of one estimate."""
+_MOST_FORMS = 2
+"""Greatest number of forms."""
 
-_BLOCK = 12
-"""Neighbouring pairs that are kept out together: their misfits are not independent."""
+_LEAST_SCORE = 15.0
+"""Least statistic of a form beyond the price of its parameters."""
 
-Misfits = tuple[Array, Array]
+_LEAST_LEAD = 5.0
+"""Least difference of the statistic to that of any other form: an odds ratio of twelve."""
+
+_LEAST_OF_PART = 1 / 3
+"""Share of itself with which a form must show in each part of the pairs alone."""
+
+_MOST_OF_IT = 0.75
+"""Share of what the free functions explain that forms must explain alone, as RMS."""
+
+_AS_GOOD = 1.02
+"""Misfit with forms as a multiple of that with free functions, up to which they are as good."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -56,6 +66,8 @@ class Empirical:
     ----------
     term : EmpiricalTerm
         The term.
+    parts : tuple of Located
+        Its forms, or else its random functions, with their sizes; the largest first.
     size : float
         Its RMS over the rows that it was estimated from. [N·m]
     kept_out : float
@@ -68,102 +80,11 @@ class Empirical:
     """
 
     term: EmpiricalTerm
+    parts: tuple[Located, ...]
     size: float
     kept_out: float
     gain: Gain
     beside: Extension
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class NormalEquations:
-    """Weighted inner products of the functions' columns, and with the misfit, of each part of rows.
-
-    Attributes
-    ----------
-    problem : Problem
-        The rows.
-    columns : ndarray, shape (2 * rows, columns)
-        The functions over them, friction above load. [N·m]
-    part : ndarray of int, shape (rows,)
-        The part that each row belongs to; those of a pair, and of its neighbours, to the same.
-    inner : ndarray, shape (parts, columns, columns)
-        Inner products of the columns.
-    right : ndarray, shape (parts, columns)
-        Inner products with the misfit.
-    """
-
-    problem: Problem
-    columns: Array
-    part: Indices
-    inner: Array
-    right: Array
-
-    @classmethod
-    def of(
-        cls,
-        problem: Problem,
-        functions: Sequence[Function],
-        noise: tuple[Noise, Noise],
-        misfit: Misfits,
-    ) -> "NormalEquations":
-        """Return them for a misfit of a problem's rows.
-
-        Parameters
-        ----------
-        problem : Problem
-            The rows.
-        functions : sequence of Function
-            Functions over these rows.
-        noise : (Noise, Noise)
-            Noise of friction and load.
-        misfit : (ndarray, ndarray), shape (rows,)
-            What base and causes leave of both channels. [N·m]
-        """
-        columns = np.hstack([one.columns for one in functions])
-        part = problem.layout.row_pair // _BLOCK % _PARTS
-        inner, right = [], []
-        for number in np.unique(part):
-            chosen = part == number
-            rows = problem.part(chosen)
-            extra = (rows.temperature_variance, np.zeros(len(rows.layout.time)))
-            square, product = np.zeros((columns.shape[1],) * 2), np.zeros(columns.shape[1])
-            for own, level, known, target in zip(
-                np.split(columns, 2), noise, extra, misfit, strict=True
-            ):
-                weights = Weights.of(rows.layout, level, known)
-                left = weights.weighted(own[chosen])
-                square += left.T @ left
-                product += left.T @ weights.weighted(target[chosen, np.newaxis])[:, 0]
-            inner.append(square)
-            right.append(product)
-        return cls(
-            problem=problem,
-            columns=columns,
-            part=np.unique(part, return_inverse=True)[1],
-            inner=np.array(inner),
-            right=np.array(right),
-        )
-
-    def coefficients(self, without: int | None = None) -> Array:
-        """Return the functions' best coefficients, shape (columns,).
-
-        Parameters
-        ----------
-        without : int, optional
-            Number of the part that is kept out of the estimate.
-        """
-        inner, right = self.inner.sum(axis=0), self.right.sum(axis=0)
-        if without is not None:
-            inner, right = inner - self.inner[without], right - self.right[without]
-        return np.linalg.solve(inner + np.eye(len(right)), right)
-
-    def predicted_blocks(self) -> Basis:
-        """Return what estimates predict of the rows kept out of them, shape (rows,) each [N·m]."""
-        found = np.zeros(len(self.columns))
-        for number in range(len(self.inner)):
-            out = np.tile(self.part == number, 2)
-            found[out] = self.columns[out] @ self.coefficients(without=number)
-        return Basis(*np.split(found, 2))
 
 
 def reduced_by(
@@ -199,6 +120,18 @@ def reduced_by(
     )
 
 
+@dataclass(frozen=True, slots=True, kw_only=True)
+class _Estimate:
+    """Functions with their normal equations, and what they gain on blocks kept out."""
+
+    functions: list[Function]
+    equations: NormalEquations
+    gain: Gain
+
+    def term(self) -> EmpiricalTerm:
+        return term_of(self.equations.problem, self.functions, self.equations.coefficients())
+
+
 def empirical_term(
     step: Step,
     seen: tuple[Problem, Extension],
@@ -227,24 +160,87 @@ def empirical_term(
     """
     problem, misfit = seen[0], misfits(*seen)
     components = step.precomputed.discrepancy.components
-    functions = functions_of(problem, components, step.fit.variances.amplitude)
-    if not functions:
+
+    def reduced(equations: NormalEquations) -> Gain:
+        unseen = equations.predicted_blocks()
+        return reduced_by(problem, misfit, unseen, basis="within_run", floor=floor, seed=seed)
+
+    def estimated(functions: Sequence[Function]) -> _Estimate:
+        equations = NormalEquations.of(problem, functions, step.noise(), misfit)
+        return _Estimate(functions=list(functions), equations=equations, gain=reduced(equations))
+
+    smooth = functions_of(problem, components, step.fit.variances.amplitude)
+    if not smooth:
         return None
-    equations = NormalEquations.of(problem, functions, step.noise(), misfit)
-    unseen = equations.predicted_blocks()
-    gain = reduced_by(problem, misfit, unseen, basis="within_run", floor=floor, seed=seed)
-    explained = _explained(gain)
-    if not _is_worth_using(gain, margin):
+    free = estimated(smooth)
+    if not _is_worth_using(free.gain, margin):
         return None
-    term = term_of(problem, functions, equations.coefficients())
+    small = functions_of(problem, components, step.precomputed.start.amplitude)
+    best, described, before = free, None, free.gain.before
+    forms: list[Function] = []
+    for _ in range(_MOST_FORMS):
+        beside = WeightedMisfit.of(problem, step.noise(), [*forms, *small], misfit)
+        found = beside.best(forms_of(_varying(problem)))
+        if found.score < _LEAST_SCORE or found.lead < _LEAST_LEAD:
+            break
+        forms.append(function_of_form(problem, found.form, found.shape))
+        more = estimated([*forms, *small])
+        alone = reduced(more.equations.of_forms())
+        added = float(np.sqrt(max(before**2 - alone.after**2, 0.0)))
+        if added < margin or not _recurs(more):
+            break
+        before = alone.after
+        best = min(best, more, estimated([*forms, *smooth]), key=lambda one: one.gain.after)
+        if _explained(alone) >= _MOST_OF_IT * _explained(free.gain):
+            described = more
+    if described is not None and described.gain.after <= _AS_GOOD * best.gain.after:
+        best = described
+    elif best.functions[0].is_form:
+        best = free
+    return _used(best, seen, new, margin=margin, floor=floor, seed=seed)
+
+
+def _used(
+    found: _Estimate,
+    seen: tuple[Problem, Extension],
+    new: tuple[Problem, Extension] | None,
+    *,
+    margin: float,
+    floor: float,
+    seed: int,
+) -> Empirical | None:
+    """Return an estimate as a term, if it explains enough of the run kept out, too."""
+    term, gain = found.term(), found.gain
     if new is not None:
-        added = term.at(new[0])
-        gain = reduced_by(new[0], misfits(*new), added, basis="new_run", floor=floor, seed=seed)
+        left = misfits(*new)
+        gain = reduced_by(new[0], left, term.at(new[0]), basis="new_run", floor=floor, seed=seed)
         if not _is_worth_using(gain, margin):
             return None
-    added = term.at(problem)
-    size = float(np.sqrt(np.mean(problem.squared(added.friction, added.load))))
-    return Empirical(term=term, size=size, kept_out=explained, gain=gain, beside=seen[1])
+    added = term.at(seen[0])
+    return Empirical(
+        term=term,
+        parts=located(found.functions, found.equations, term.forms),
+        size=float(np.sqrt(np.mean(seen[0].squared(added.friction, added.load)))),
+        kept_out=_explained(found.gain),
+        gain=gain,
+        beside=seen[1],
+    )
+
+
+def _varying(problem: Problem) -> dict[str, tuple[float, float]]:
+    """Return the ranges of the quantities that vary."""
+    varying = varying_axes(problem)
+    return {axis: ends for axis, ends in ranges_seen(problem.table).items() if axis in varying}
+
+
+def _recurs(found: _Estimate) -> bool:
+    """Return whether each form shows in each part of the pairs alone."""
+    sizes = sizes_of_parts(found.functions, found.equations)
+    return all(
+        shares.min() >= _LEAST_OF_PART
+        for one, (_, shares) in zip(found.functions, sizes, strict=True)
+        if one.is_form
+    )
 
 
 def _explained(gain: Gain) -> float:

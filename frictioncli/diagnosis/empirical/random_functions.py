@@ -1,4 +1,4 @@
-"""The random functions of a discrepancy over a problem's rows, and the term they add up to."""
+"""Functions of which an empirical term consists, over a problem's rows, and the term they make."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -8,8 +8,11 @@ import numpy as np
 from frictioncli.arrays import Array
 from frictioncli.diagnosis.data.gravity_document import gravity_document
 from frictioncli.diagnosis.data.problem import Problem
+from frictioncli.diagnosis.empirical.form_columns import Shape
+from frictioncli.diagnosis.empirical.forms import Form
 from frictioncli.diagnosis.empirical.term import (
     EmpiricalTerm,
+    FormFunction,
     SmoothFunction,
     in_coordinates,
     ranges_seen,
@@ -17,31 +20,43 @@ from frictioncli.diagnosis.empirical.term import (
 from frictioncli.diagnosis.fit.columns import RANK, base_rows
 from frictioncli.diagnosis.noise.cosine_series import CosineSeries
 from frictioncli.diagnosis.noise.discrepancy import FORM, Component, weight_of
+from frictioncli.effects.base import Basis
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Function:
-    """A random function of the discrepancy with its columns over a problem's rows.
+    """A random function of the discrepancy, or a form, with its columns over a problem's rows.
 
     Attributes
     ----------
-    component : Component
-        Its axes and its channel.
-    series : CosineSeries
-        Its cosines.
+    what : CosineSeries or (Form, Shape)
+        Its cosines, or the form with its shape parameters.
+    channel : {"friction", "load"}
+        The torque that it adds to.
     scale : ndarray, shape (columns,)
-        What they are multiplied by, so that coefficients have variance 1. [N·m]
+        What columns are multiplied by: those of a random function so that coefficients have
+        variance 1. [N·m]
     by_base : ndarray, shape (base parameters, columns)
         What the base takes of these columns.
     columns : ndarray, shape (2 * rows, columns)
         What it leaves of them, friction above load. [N·m]
     """
 
-    component: Component
-    series: CosineSeries
+    what: CosineSeries | tuple[Form, Shape]
+    channel: str
     scale: Array
     by_base: Array
     columns: Array
+
+    @property
+    def axes(self) -> tuple[str, ...]:
+        """The quantities that it depends on."""
+        return self.what.axes if isinstance(self.what, CosineSeries) else self.what[0].axes
+
+    @property
+    def is_form(self) -> bool:
+        """Whether it is a form, whose coefficients have no expected size."""
+        return not isinstance(self.what, CosineSeries)
 
 
 def functions_of(
@@ -61,9 +76,6 @@ def functions_of(
     amplitude : ndarray, shape (components,)
         Logarithm of the amplitude of each.
     """
-    base = np.vstack(base_rows(problem))
-    length = np.linalg.norm(base, axis=0)
-    length = np.where(length > 0, length, 1.0)
     ranges = in_coordinates(ranges_seen(problem.table))
     found = []
     for component, size in zip(components, np.exp(amplitude), strict=True):
@@ -72,9 +84,8 @@ def functions_of(
         series = CosineSeries.of(component.axes, problem.table, ranges)
         values = series.weights * series.columns(problem.table, ranges)
         zeros = np.zeros_like(values)
-        columns = np.vstack([values, zeros] if component.channel == "friction" else [zeros, values])
-        by_base = np.linalg.lstsq(base / length, columns, rcond=RANK)[0] / length[:, np.newaxis]
-        left = columns - base @ by_base
+        both = Basis(values, zeros) if component.channel == "friction" else Basis(zeros, values)
+        by_base, left = _left(problem, both)
         squares = float(np.sum(np.square(left)))
         if squares <= 0:
             continue
@@ -82,14 +93,46 @@ def functions_of(
         scale = size * weight * np.sqrt(len(values) / squares)
         found.append(
             Function(
-                component=component,
-                series=series,
+                what=series,
+                channel=component.channel,
                 scale=scale * series.weights,
                 by_base=scale * by_base,
                 columns=scale * left,
             )
         )
     return found
+
+
+def function_of_form(problem: Problem, form: Form, shape: Shape) -> Function:
+    """Return a form over a problem's rows.
+
+    Parameters
+    ----------
+    problem : Problem
+        The rows.
+    form : Form
+        The form.
+    shape : mapping of str to float
+        Its shape parameters.
+    """
+    by_base, left = _left(problem, form.columns(problem.table, shape))
+    return Function(
+        what=(form, shape),
+        channel=form.channel,
+        scale=np.ones(left.shape[1]),
+        by_base=by_base,
+        columns=left,
+    )
+
+
+def _left(problem: Problem, both: Basis) -> tuple[Array, Array]:
+    """Return what the base takes of columns, and what it leaves of them, friction above load."""
+    base = np.vstack(base_rows(problem))
+    length = np.linalg.norm(base, axis=0)
+    length = np.where(length > 0, length, 1.0)
+    columns = np.vstack(both)
+    by_base = np.linalg.lstsq(base / length, columns, rcond=RANK)[0] / length[:, np.newaxis]
+    return by_base, columns - base @ by_base
 
 
 def term_of(problem: Problem, functions: Sequence[Function], coefficients: Array) -> EmpiricalTerm:
@@ -105,19 +148,35 @@ def term_of(problem: Problem, functions: Sequence[Function], coefficients: Array
         Their coefficients.
     """
     ends = np.cumsum([len(one.scale) for one in functions])[:-1]
-    each = np.split(coefficients, ends)
+    forms, smooth = [], []
+    for one, own in zip(functions, np.split(coefficients, ends), strict=True):
+        values = (one.scale * own).tolist()
+        if isinstance(one.what, CosineSeries):
+            smooth.append(
+                SmoothFunction(
+                    axes=one.what.axes,
+                    channel=one.channel,
+                    orders=one.what.orders,
+                    coefficients=tuple(values),
+                )
+            )
+            continue
+        form, shape = one.what
+        forms.append(
+            FormFunction(
+                kind=form.kind,
+                axes=form.axes,
+                channel=form.channel,
+                shape=dict(shape),
+                coefficients=dict(zip(form.coefficients, values, strict=True)),
+                formula=form.formula,
+            )
+        )
     taken = np.hstack([one.by_base for one in functions]) @ coefficients
     friction, gravity = np.split(-taken, [len(problem.names)])
     return EmpiricalTerm(
-        functions=tuple(
-            SmoothFunction(
-                axes=one.component.axes,
-                channel=one.component.channel,
-                orders=one.series.orders,
-                coefficients=tuple((one.scale * own).tolist()),
-            )
-            for one, own in zip(functions, each, strict=True)
-        ),
+        forms=tuple(forms),
+        functions=tuple(smooth),
         ranges=ranges_seen(problem.table),
         base_changes=dict(zip(problem.names, friction.tolist(), strict=True)),
         gravity_changes=gravity_document(gravity, problem.gravity_form),

@@ -1,9 +1,12 @@
 r"""An empirical term: torque by angle, speed and temperature for which no cause is known.
 
-It is a sum of series of cosines (:mod:`frictioncli.diagnosis.noise.cosine_series`), less what the
-base model takes of them, because its parameters were fitted without them,
+It is a sum of forms that describe what was found (:mod:`frictioncli.diagnosis.empirical.forms`) and
+of series of cosines (:mod:`frictioncli.diagnosis.noise.cosine_series`), less what the base model
+takes of them, because its parameters were fitted without them,
 
-.. math:: r(x) = w(x) \left( \sum_k \gamma_k c_k(x) + \frac{\partial u}{\partial p}\, b \right) .
+.. math::
+    r(x) = w(x) \left( \sum_k a_k f_k(x) + \sum_k \gamma_k c_k(x)
+    + \frac{\partial u}{\partial p}\, b \right) .
 
 It is valid where the joint was measured: within the ranges of its inputs :math:`w = 1`; beyond an
 end it falls smoothly, and a tenth of the range further on it is nothing.
@@ -17,6 +20,8 @@ import numpy as np
 from frictioncli.arrays import Array
 from frictioncli.diagnosis.data.gravity_document import GravityCoefficients, stated_gravity
 from frictioncli.diagnosis.data.problem import Problem
+from frictioncli.diagnosis.empirical.form_columns import columns_of
+from frictioncli.diagnosis.empirical.forms import forms_of
 from frictioncli.diagnosis.noise.cosine_series import AXES, CosineSeries, Range, coordinate
 from frictioncli.effects.base import Basis, EffectTable
 from frictioncli.errors import TableError
@@ -67,13 +72,75 @@ class SmoothFunction:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
+class FormFunction:
+    """A form with its parameters.
+
+    Attributes
+    ----------
+    kind : str
+        The form, one of :mod:`frictioncli.diagnosis.empirical.forms`.
+    axes : tuple of str
+        What it depends on: ``position``, ``speed``, ``temperature``, amount of the ``load``.
+    channel : {"friction", "load"}
+        The torque that it adds to.
+    shape : mapping of str to float
+        Its shape parameters, in the units of these quantities.
+    coefficients : mapping of str to float
+        Its coefficients, in the order of its columns. [torque unit]
+    formula : str
+        Its formula: q in deg, v in deg/s, T in °C, L in N·m.
+    """
+
+    kind: str
+    axes: tuple[str, ...]
+    channel: str
+    shape: Mapping[str, float]
+    coefficients: Mapping[str, float]
+    formula: str
+
+    def at(self, table: EffectTable) -> Basis:
+        """Return the form in both channels at some rows, shape (rows,) each [torque unit].
+
+        Parameters
+        ----------
+        table : EffectTable
+            The rows.
+        """
+        columns = columns_of(self.kind, self.axes, self.channel, table, self.shape)
+        coefficients = np.array(list(self.coefficients.values()))
+        return Basis(columns.friction @ coefficients, columns.load @ coefficients)
+
+    def check(self) -> None:
+        """Raise what makes it no form.
+
+        Raises
+        ------
+        TableError
+            If there is no such form, or not with these parameters.
+        """
+        ranges = dict.fromkeys(self.axes, (1.0, 2.0))
+        known = {}
+        if set(self.axes) <= set(INPUTS):
+            known = {(one.kind, one.axes, one.channel): one for one in forms_of(ranges)}
+        form = known.get((self.kind, self.axes, self.channel))
+        if form is None:
+            raise TableError(f"empirical: unknown form {self.kind} of {' and '.join(self.axes)}")
+        if set(self.shape) != {axis.name for axis in form.shape}:
+            raise TableError(f"empirical: {self.kind} has the shape {sorted(self.shape)}")
+        if tuple(self.coefficients) != form.coefficients:
+            raise TableError(f"empirical: {self.kind} has not {form.coefficients}")
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
 class EmpiricalTerm:
     """Torque without a known cause, with the ranges in which it is valid.
 
     Attributes
     ----------
+    forms : tuple of FormFunction
+        Forms that describe what was found, if any does.
     functions : tuple of SmoothFunction
-        What it consists of.
+        What it consists of besides.
     ranges : mapping of str to (float, float)
         Least and greatest angle ``position`` [deg], ``speed`` [deg/s], ``temperature`` at which
         friction is evaluated [°C] and amount of the ``load`` [N·m] that were measured.
@@ -83,6 +150,7 @@ class EmpiricalTerm:
         What it adds to gravity.
     """
 
+    forms: tuple[FormFunction, ...] = ()
     functions: tuple[SmoothFunction, ...]
     ranges: Mapping[str, Range]
     base_changes: Mapping[str, float]
@@ -100,6 +168,8 @@ class EmpiricalTerm:
             low, high = self.ranges.get(axis, (1.0, 0.0))
             if not low <= high or (axis == "speed" and low <= 0):
                 raise TableError(f"empirical: expected a range of {axis} from low to high")
+        for form in self.forms:
+            form.check()
         for one in self.functions:
             if not set(one.axes) <= {axis for axis in AXES if np.ptp(self.ranges[axis]) > 0}:
                 raise TableError(f"empirical: function of {one.axes}, expected some of {AXES}")
@@ -127,6 +197,12 @@ class EmpiricalTerm:
         """
         within = in_coordinates(self.ranges)
         added = {"friction": np.zeros_like(problem.friction), "load": np.zeros_like(problem.load)}
+        for form in self.forms:
+            both = form.at(problem.table)
+            added = {
+                "friction": added["friction"] + both.friction,
+                "load": added["load"] + both.load,
+            }
         for one in self.functions:
             added[one.channel] = added[one.channel] + one.values(problem.table, within)
         changes = np.array([self.base_changes.get(name, 0.0) for name in problem.names])

@@ -1,0 +1,98 @@
+"""Structure without a name in ``diagnosis.json``: located, and described where a form does."""
+
+import numpy as np
+
+from frictioncli.diagnosis.diagnose import Diagnosis
+from frictioncli.diagnosis.documents.document import CauseRecord, StructureRecord
+from frictioncli.diagnosis.documents.empirical_record import LocatedRecord, gain_record
+
+
+def structure_record(diagnosis: Diagnosis) -> StructureRecord | None:
+    """Return structure that no effect explains; None where there is none.
+
+    Where forms describe it, it is the largest of these.
+
+    Parameters
+    ----------
+    diagnosis : Diagnosis
+        The diagnosis.
+    """
+    structure = diagnosis.structure
+    if structure is None:
+        return None
+    forms = _forms(diagnosis)
+    if forms:
+        return StructureRecord(
+            axis=forms[0].axes,
+            channel=forms[0].channel,
+            description=f"{_in_words(forms)}.",
+            formula=" + ".join(one.formula or "" for one in forms),
+            size=forms[0].size,
+            ci95=forms[0].ci95,
+        )
+    return StructureRecord(
+        axis=structure.axes,
+        channel=structure.channel,
+        description=_residuals(structure.channel, structure.axes),
+        size=structure.size,
+        ci95=known_interval(structure.interval),
+    )
+
+
+def unnamed_record(diagnosis: Diagnosis) -> CauseRecord:
+    """Return structure without a name in the form of a cause.
+
+    Parameters
+    ----------
+    diagnosis : Diagnosis
+        A diagnosis with such structure.
+    """
+    found, structure = structure_record(diagnosis), diagnosis.structure
+    # there is structure
+    assert found is not None
+    assert structure is not None
+    along = _along(found.axis)
+    claim = found.description
+    if found.formula is not None:
+        claim = f"{_residuals(found.channel, found.axis)} A form describes it: {claim}"
+    return CauseRecord(
+        standing="visible",
+        reason="no effect of the catalogue explains it",
+        effects=(),
+        probabilities={},
+        channel=found.channel,
+        claim=claim,
+        equation=found.formula or "",
+        parameters={},
+        size=found.size,
+        size_ci95=found.ci95,
+        p_value=structure.p_value,
+        seen_in=along,
+        figure=None,
+        experiment=f"Measure more values of {along}, in random order, on another day.",
+    )
+
+
+def known_interval(interval: tuple[float, float]) -> tuple[float, float] | None:
+    """Return an interval, or None where it has no end."""
+    low, high = (float(end) for end in interval)
+    return (low, high) if np.isfinite(low) and np.isfinite(high) else None
+
+
+def _forms(diagnosis: Diagnosis) -> tuple[LocatedRecord, ...]:
+    if diagnosis.empirical is None:
+        return ()
+    return gain_record(diagnosis.empirical, diagnosis.torque_unit).forms
+
+
+def _in_words(forms: tuple[LocatedRecord, ...]) -> str:
+    return ", and ".join(one.description or "" for one in forms)
+
+
+def _residuals(channel: str, axes: tuple[str, ...]) -> str:
+    return f"Residuals of the {channel} have structure along {_along(axes)}."
+
+
+def _along(axes: tuple[str, ...]) -> str:
+    """Return the axes in words."""
+    return " and ".join(axes).replace("position", "angle")

@@ -1,0 +1,147 @@
+"""Forms that were found, in words and as formulas with numbers."""
+
+import math
+from collections.abc import Callable, Mapping
+
+from frictioncli.diagnosis.empirical.form_columns import BUMP
+from frictioncli.diagnosis.empirical.term import FormFunction
+from frictioncli.wording import number_text
+
+_PLACES = {
+    "position": "at {} deg",
+    "speed": "at {} deg/s",
+    "temperature": "at {} °C",
+    "load": "at a load of {} N·m",
+}
+
+_UNITS = {"position": "deg", "speed": "deg/s", "temperature": "°C", "load": "N·m of load"}
+
+_LEAST_LAG = 0.001
+"""Delay from which on it is said. [s]"""
+
+
+def described(form: FormFunction, unit: str) -> str:
+    """Return a form in words, as "a bump of friction of 5.5 N·m at 86 deg, 6.8 deg wide".
+
+    The width is the standard deviation of a peak that falls like a normal distribution.
+
+    Parameters
+    ----------
+    form : FormFunction
+        The form with its parameters.
+    unit : str
+        Unit of torque.
+
+    Examples
+    --------
+    >>> from frictioncli.diagnosis.empirical.term import FormFunction
+    >>> form = FormFunction(
+    ...     kind="peak",
+    ...     axes=("temperature",),
+    ...     channel="friction",
+    ...     shape={"centre": 45.3, "width": 1.9},
+    ...     coefficients={"peak": -1.4},
+    ...     formula="peak exp(-((T - centre) / width)^2 / 2)",
+    ... )
+    >>> described(form, "N·m")
+    'a dent of friction of 1.4 N·m at 45.3 °C, 1.9 °C wide (standard deviation)'
+    """
+    return _WORDS[form.kind](form, unit)
+
+
+def formula_with_numbers(form: FormFunction) -> str:
+    """Return a form's formula with its parameters: q in deg, v in deg/s, T in °C, L in N·m.
+
+    Parameters
+    ----------
+    form : FormFunction
+        The form with its parameters.
+    """
+    values = {**form.shape, **form.coefficients}
+    return f"{form.formula}; {', '.join(f'{name} = {one:.5g}' for name, one in values.items())}"
+
+
+def _of(form: FormFunction) -> str:
+    return "friction" if form.channel == "friction" else "the load"
+
+
+def _size(value: float, unit: str) -> str:
+    return f"{number_text(abs(value), 2)} {unit}"
+
+
+def _number(value: float) -> str:
+    return number_text(value, 3)
+
+
+def _peak(form: FormFunction, unit: str) -> str:
+    (axis,), shape = form.axes, form.shape
+    height = form.coefficients["peak"]
+    what = "dent" if height < 0 else "bump" if axis == "position" else "peak"
+    place = _PLACES[axis].format(_number(shape["centre"]))
+    if axis == "speed":
+        wide = f"a factor of {number_text(math.exp(shape['width']), 2)} wide (standard deviation)"
+    else:
+        wide = f"{number_text(shape['width'], 2)} {_UNITS[axis]} wide (standard deviation)"
+    text = f"a {what} of {_of(form)} of {_size(height, unit)} {place}, {wide}"
+    if shape.get("lag", 0.0) > _LEAST_LAG:
+        text += f", in a torque that is logged {number_text(1e3 * shape['lag'], 2)} ms late"
+    return text
+
+
+def _bend(form: FormFunction, unit: str) -> str:
+    (axis,), above = form.axes, form.kind == "bend_above"
+    slope = form.coefficients["per_10"]
+    # below the bend a positive coefficient falls towards it
+    way = "rises" if (slope > 0) == above else "falls"
+    where = f"{'above' if above else 'below'} {_number(form.shape['start'])} {_UNITS[axis]}"
+    return f"friction that {way} by {_size(slope, unit)} per 10 {_UNITS[axis]} {where}"
+
+
+def _lifting(form: FormFunction, unit: str) -> str:
+    torque, exponent = form.coefficients["torque"], form.shape["exponent"]
+    more = "more" if torque > 0 else "less"
+    return (
+        f"lifting that takes {_size(torque, unit)} {more} at a load of 50 N·m, and lowering that"
+        f" gives as much less back, as the load to the power {number_text(exponent, 2)}"
+    )
+
+
+def _moving_peak(form: FormFunction, unit: str) -> str:
+    shape, height = form.shape, form.coefficients["peak"]
+    moves = 100 * math.expm1(shape["shift"])
+    way = "up" if moves > 0 else "down"
+    return (
+        f"a {'dent' if height < 0 else 'peak'} of friction of {_size(height, unit)} at"
+        f" {_number(shape['centre'])} deg/s when at 40 °C, a factor of"
+        f" {number_text(math.exp(shape['width']), 2)} wide (standard deviation), which moves {way}"
+        f" by {number_text(abs(moves), 2)} % of its speed per °C"
+    )
+
+
+def _warm_wave(form: FormFunction, unit: str) -> str:
+    growth = math.hypot(form.coefficients["cosine_per_10K"], form.coefficients["sine_per_10K"])
+    return (
+        f"friction that goes up and down {form.shape['order']:g} times per turn, by an"
+        f" amount that changes by {_size(growth, unit)} per 10 °C"
+    )
+
+
+def _turning_wave(form: FormFunction, unit: str) -> str:
+    size = math.hypot(form.coefficients["cosine"], form.coefficients["sine"])
+    return (
+        f"friction that goes up and down {form.shape['order']:g} times per turn by up to"
+        f" {_size(size, unit)}, the other way round below {_number(form.shape['turn'])} deg/s than"
+        " above"
+    )
+
+
+_WORDS: Mapping[str, Callable[[FormFunction, str], str]] = {
+    BUMP: _peak,
+    "peak": _peak,
+    "bend_above": _bend,
+    "bend_below": _bend,
+    "lifting": _lifting,
+    "moving_peak": _moving_peak,
+    "warm_wave": _warm_wave,
+    "turning_wave": _turning_wave,
+}

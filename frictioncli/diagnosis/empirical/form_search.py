@@ -1,0 +1,244 @@
+r"""Search for the form that explains most of a misfit, beside base and discrepancy.
+
+The misfit *y* has the covariance *V* of the noise and of the discrepancy that any model has. What
+columns *X* of a form explain is
+
+.. math:: t = y^\mathsf{T} V^{-1} X (X^\mathsf{T} V^{-1} X)^{-1} X^\mathsf{T} V^{-1} y ,
+
+a chi-squared variable where nothing is there. Forms are compared by *t* less the number of their
+parameters times the logarithm of the number of pairs (Schwarz's criterion [1]_). All shapes of a
+grid are tried, and those of the best forms refined.
+
+References
+----------
+.. [1] G. Schwarz, "Estimating the dimension of a model," Ann. Stat. 6(2), 1978,
+   doi:10.1214/aos/1176344136.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from scipy.optimize import minimize
+
+from frictioncli.arrays import Array
+from frictioncli.diagnosis.data.problem import Problem
+from frictioncli.diagnosis.empirical.form_columns import Shape
+from frictioncli.diagnosis.empirical.forms import Form, ShapeAxis
+from frictioncli.diagnosis.empirical.random_functions import Function
+from frictioncli.diagnosis.fit.columns import base_rows
+from frictioncli.diagnosis.fit.weighted_fit import Weights
+from frictioncli.model.noise import Noise
+
+_AT_ONCE = 60
+"""Shapes whose columns are weighted together."""
+
+_REFINED = 4
+"""Forms whose shapes are refined."""
+
+_LEAST_LEFT = 1e-4
+"""Share of the weighted square of a column that base and discrepancy leave, if it counts at all."""
+
+_FREE = 1e-9
+"""Precision of a coefficient of a unit column that is not expected to be small."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class FoundForm:
+    """A form with the shape that explains most.
+
+    Attributes
+    ----------
+    form : Form
+        The form.
+    shape : dict of str to float
+        Its shape parameters.
+    score : float
+        Chi-squared statistic, less the price of its parameters.
+    lead : float
+        By how much the score is above that of the best other kind of form.
+    """
+
+    form: Form
+    shape: dict[str, float]
+    score: float
+    lead: float = 0.0
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class WeightedMisfit:
+    """A weighted misfit with the columns of base, discrepancy and forms that are known.
+
+    Attributes
+    ----------
+    problem : Problem
+        The rows.
+    weights : (Weights, Weights)
+        Weights of friction and load.
+    columns : ndarray, shape (weighted rows, columns)
+        Base, discrepancy and forms, weighted.
+    root : ndarray, shape (columns, columns)
+        Lower Cholesky factor of their inner products with the precision of their coefficients.
+    misfit : ndarray, shape (weighted rows,)
+        The misfit, weighted.
+    """
+
+    problem: Problem
+    weights: tuple[Weights, Weights]
+    columns: Array
+    root: Array
+    misfit: Array
+
+    @classmethod
+    def of(
+        cls,
+        problem: Problem,
+        noise: tuple[Noise, Noise],
+        functions: Sequence[Function],
+        misfit: tuple[Array, Array],
+    ) -> "WeightedMisfit":
+        """Return a misfit with what is known beside it.
+
+        Parameters
+        ----------
+        problem : Problem
+            The rows.
+        noise : (Noise, Noise)
+            Noise of friction and load.
+        functions : sequence of Function
+            Random functions of the discrepancy, and forms.
+        misfit : (ndarray, ndarray), shape (rows,)
+            What base and causes leave of both channels. [N·m]
+        """
+        extra = (problem.temperature_variance, np.zeros(len(problem.layout.time)))
+        friction, load = (
+            Weights.of(problem.layout, level, known)
+            for level, known in zip(noise, extra, strict=True)
+        )
+
+        def weighted(both: Array) -> Array:
+            upper, lower = np.split(both, 2)
+            return np.vstack([friction.weighted(upper), load.weighted(lower)])
+
+        smooth = [one.columns for one in functions if not one.is_form]
+        forms = [one.columns for one in functions if one.is_form]
+        columns = weighted(np.hstack([np.vstack(base_rows(problem)), *forms, *smooth]))
+        free = columns.shape[1] - sum(one.shape[1] for one in smooth)
+        length = np.linalg.norm(columns[:, :free], axis=0)
+        columns[:, :free] /= np.where(length > 0, length, 1.0)
+        precision = np.ones(columns.shape[1])
+        precision[:free] = _FREE
+        return cls(
+            problem=problem,
+            weights=(friction, load),
+            columns=columns,
+            root=np.asarray(np.linalg.cholesky(columns.T @ columns + np.diag(precision)), float),
+            misfit=weighted(np.concatenate(misfit)[:, np.newaxis])[:, 0],
+        )
+
+    def statistics(self, form: Form, shapes: Sequence[Shape]) -> Array:
+        """Return what a form explains at each shape, shape (shapes,).
+
+        Parameters
+        ----------
+        form : Form
+            The form.
+        shapes : sequence of mapping of str to float
+            Its shapes.
+        """
+        width = len(form.coefficients)
+        parts = [form.columns(self.problem.table, shape) for shape in shapes]
+        friction = np.hstack([one.friction for one in parts])
+        load = np.hstack([one.load for one in parts])
+        upper = self.weights[0].weighted(friction) if friction.any() else friction[:0]
+        lower = self.weights[1].weighted(load) if load.any() else load[:0]
+        weighted = np.vstack([upper, lower])
+        rows = slice(None)
+        if not load.any():
+            rows = slice(0, len(upper))
+        elif not friction.any():
+            rows = slice(len(self.misfit) - len(lower), None)
+        hidden = np.linalg.solve(self.root, self.columns[rows].T @ weighted)
+        known = np.linalg.solve(self.root, self.columns.T @ self.misfit)
+        right = weighted.T @ self.misfit[rows] - hidden.T @ known
+        found = np.zeros(len(shapes))
+        for number in range(len(shapes)):
+            place = slice(number * width, (number + 1) * width)
+            whole = weighted[:, place].T @ weighted[:, place]
+            left = whole - hidden[:, place].T @ hidden[:, place]
+            size = np.diag(whole)
+            own = np.flatnonzero(np.diag(left) > _LEAST_LEFT * size)
+            if len(own):
+                product = right[place][own]
+                inner = left[np.ix_(own, own)] + _FREE * np.diag(size[own])
+                found[number] = product @ np.linalg.solve(inner, product)
+        return found
+
+    def best(self, forms: Sequence[Form]) -> FoundForm:
+        """Return the form that explains most for its number of parameters.
+
+        Parameters
+        ----------
+        forms : sequence of Form
+            The forms.
+        """
+        price = np.log(len(self.problem.layout.time))
+        tried = []
+        for form in forms:
+            shapes = form.shapes()
+            statistics = np.concatenate(
+                [
+                    self.statistics(form, shapes[first : first + _AT_ONCE])
+                    for first in range(0, len(shapes), _AT_ONCE)
+                ]
+            )
+            number = int(np.argmax(statistics))
+            score = float(statistics[number] - form.parameters * price)
+            tried.append(FoundForm(form=form, shape=shapes[number], score=score))
+        tried.sort(key=lambda one: -one.score)
+        refined = [self._refined(one) for one in tried[:_REFINED]]
+        first, second, *_ = sorted(refined, key=lambda one: -one.score)
+        return replace(first, lead=first.score - second.score)
+
+    def _refined(self, found: FoundForm) -> FoundForm:
+        """Return a form with its shape optimised between the values of the grid."""
+        form, axes = found.form, [one for one in found.form.shape if one.name != "order"]
+        if not axes:
+            return found
+        low, high = (
+            np.array([_measure(axis, axis.values[end]) for axis in axes]) for end in (0, -1)
+        )
+
+        def shape_at(place: Array) -> dict[str, float]:
+            values = low + np.clip(place, 0.0, 1.0) * (high - low)
+            return found.shape | {
+                axis.name: float(np.exp(value) if axis.logarithmic else value)
+                for axis, value in zip(axes, values, strict=True)
+            }
+
+        at = np.array([_measure(axis, found.shape[axis.name]) for axis in axes])
+        start = (at - low) / (high - low)
+        step = np.array([0.5 / len(axis.values) for axis in axes])
+        search = minimize(
+            lambda place: -float(self.statistics(form, [shape_at(place)])[0]),
+            start,
+            method="Nelder-Mead",
+            bounds=[(0.0, 1.0)] * len(axes),
+            options={
+                "initial_simplex": np.vstack(
+                    [start, start + np.diag(np.where(start > 0.5, -step, step))]
+                ),
+                "maxfev": 25 * len(axes),
+                "xatol": 2e-3,
+                "fatol": 0.1,
+            },
+        )
+        price = form.parameters * np.log(len(self.problem.layout.time))
+        score = float(-search.fun - price)
+        if score <= found.score:
+            return found
+        return FoundForm(form=form, shape=shape_at(search.x), score=score)
+
+
+def _measure(axis: ShapeAxis, value: float) -> float:
+    return float(np.log(value)) if axis.logarithmic else value

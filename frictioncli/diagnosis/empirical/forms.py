@@ -1,0 +1,251 @@
+r"""Forms by which structure without a name may be described: what varies, how, and in which units.
+
+A form has columns that are linear in its coefficients, once its shape parameters are given,
+
+.. math:: f(x) = \sum_k a_k c_k(x; \theta) .
+
+Its shape parameters stay between bounds that the data can tell apart: a peak can lie anywhere in
+the range that was measured, and is as wide as a bin or two, or as a quarter of that range.
+"""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from itertools import product
+
+import numpy as np
+
+from frictioncli.diagnosis.empirical.form_columns import BUMP, Shape, columns_of
+from frictioncli.diagnosis.noise.cosine_series import Range
+from frictioncli.effects.base import Basis, EffectTable
+
+UNITS = {"position": "deg", "speed": "deg/s", "temperature": "°C", "load": "N·m"}
+"""Units of the quantities."""
+
+SYMBOLS = {"position": "q", "speed": "v", "temperature": "T", "load": "|L|"}
+"""Symbols of the quantities in formulas; of the load its amount."""
+
+_PEAKS = 24
+"""Places of a peak that are tried over a range."""
+
+_WIDTHS = 6
+"""Widths of a peak that are tried."""
+
+_NARROWEST = {"position": 0.012, "speed": 0.05, "temperature": 0.02, "load": 0.03}
+_WIDEST = 0.25
+"""Standard deviation of a peak as a share of the range."""
+
+_LAGS = (0.0, 0.025, 0.05, 0.075, 0.1)
+"""Delays of a torque behind the angle. [s]"""
+
+_SHIFTS = (-0.06, -0.04, -0.02, 0.02, 0.04, 0.06)
+"""Changes of the logarithm of the speed of a peak with temperature. [1/°C]"""
+
+_ORDERS = (1.0, 2.0, 3.0, 4.0)
+"""Waves per turn of the joint."""
+
+_EXPONENTS = (0.25, 0.5, 0.75, 1.25, 1.5, 2.0, 2.5, 3.0)
+"""Powers of the load."""
+
+
+@dataclass(frozen=True, slots=True)
+class ShapeAxis:
+    """A shape parameter of a form.
+
+    Attributes
+    ----------
+    name, unit : str
+        Its name and unit.
+    values : tuple of float
+        Values that are tried first, ascending; it stays between the ends.
+    logarithmic : bool
+        Whether steps of it are ratios.
+    """
+
+    name: str
+    unit: str
+    values: tuple[float, ...]
+    logarithmic: bool = False
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Form:
+    """A form of structure.
+
+    Attributes
+    ----------
+    kind : str
+        Its name, :data:`BUMP` or one of
+        :data:`frictioncli.diagnosis.empirical.form_columns.COLUMNS`.
+    axes : tuple of str
+        What it depends on.
+    channel : {"friction", "load"}
+        The torque in which it shows.
+    shape : tuple of ShapeAxis
+        Its shape parameters.
+    coefficients : tuple of str
+        Names of the coefficients, all in units of torque.
+    formula : str
+        The formula.
+    """
+
+    kind: str
+    axes: tuple[str, ...]
+    channel: str
+    shape: tuple[ShapeAxis, ...]
+    coefficients: tuple[str, ...]
+    formula: str
+
+    @property
+    def parameters(self) -> int:
+        """Number of all parameters."""
+        return len(self.shape) + len(self.coefficients)
+
+    def shapes(self) -> list[dict[str, float]]:
+        """Return the shapes that are tried first."""
+        names = [one.name for one in self.shape]
+        return [
+            dict(zip(names, values, strict=True))
+            for values in product(*(one.values for one in self.shape))
+        ]
+
+    def columns(self, table: EffectTable, shape: Shape) -> Basis:
+        """Return the columns of both channels at rows, shape (rows, coefficients) each.
+
+        Parameters
+        ----------
+        table : EffectTable
+            The rows.
+        shape : mapping of str to float
+            The shape parameters.
+        """
+        return columns_of(self.kind, self.axes, self.channel, table, shape)
+
+
+def forms_of(ranges: Mapping[str, Range]) -> list[Form]:
+    """Return the forms that data can show, for the ranges that were measured.
+
+    Parameters
+    ----------
+    ranges : mapping of str to (float, float)
+        Ranges of ``position`` [deg], ``speed`` [deg/s], ``temperature`` [°C] and amount of the
+        ``load`` [N·m], of those that vary.
+    """
+    found: list[Form] = []
+    for axis, within in ranges.items():
+        found.append(_peak(axis, "friction", within))
+        if axis == "position":
+            (plain,) = found
+            found = [_late(plain)]
+        if axis != "load":
+            found.append(_peak(axis, "load", within))
+        if axis != "position":
+            found += [_bend(axis, way, within) for way in ("above", "below")]
+    if "load" in ranges:
+        found.append(
+            Form(
+                kind="lifting",
+                axes=("load",),
+                channel="load",
+                shape=(ShapeAxis("exponent", "1", _EXPONENTS),),
+                coefficients=("torque",),
+                formula="torque sign(L) (|L| / 50)^exponent",
+            )
+        )
+    if {"speed", "temperature"} <= ranges.keys():
+        found.append(_moving_peak(ranges["speed"]))
+    if {"position", "temperature"} <= ranges.keys():
+        found.append(
+            Form(
+                kind="warm_wave",
+                axes=("position", "temperature"),
+                channel="friction",
+                shape=(ShapeAxis("order", "1", _ORDERS),),
+                coefficients=("cosine", "sine", "cosine_per_10K", "sine_per_10K"),
+                formula="(cosine + cosine_per_10K (T - 40) / 10) cos(order q)"
+                " + (sine + sine_per_10K (T - 40) / 10) sin(order q)",
+            )
+        )
+    if {"position", "speed"} <= ranges.keys():
+        speeds = tuple(np.geomspace(*ranges["speed"], 8)[1:-1].tolist())
+        found.append(
+            Form(
+                kind="turning_wave",
+                axes=("position", "speed"),
+                channel="friction",
+                shape=(
+                    ShapeAxis("order", "1", _ORDERS),
+                    ShapeAxis("turn", "deg/s", speeds, logarithmic=True),
+                ),
+                coefficients=("cosine", "sine"),
+                formula="(cosine cos(order q) + sine sin(order q)) (v^2 - turn^2) / (v^2 + turn^2)",
+            )
+        )
+    return found
+
+
+def _peak(axis: str, channel: str, within: Range) -> Form:
+    """Return a peak, or a dent, at one value of a quantity; of the speed in its logarithm."""
+    low, high = within
+    if axis == "speed":
+        span, unit, centres = float(np.log(high / low)), "1", np.geomspace(low, high, _PEAKS)
+        distance = "ln(v / centre)"
+    else:
+        span, unit, centres = high - low, UNITS[axis], np.linspace(low, high, _PEAKS)
+        distance = f"({SYMBOLS[axis]} - centre)"
+    widths = np.geomspace(_NARROWEST[axis] * span, _WIDEST * span, _WIDTHS)
+    return Form(
+        kind="peak",
+        axes=(axis,),
+        channel=channel,
+        shape=(
+            ShapeAxis("centre", UNITS[axis], tuple(centres.tolist()), axis == "speed"),
+            ShapeAxis("width", unit, tuple(widths.tolist()), logarithmic=True),
+        ),
+        coefficients=("peak",),
+        formula=f"peak exp(-({distance} / width)^2 / 2)",
+    )
+
+
+def _late(plain: Form) -> Form:
+    """Return a peak at one angle in a torque that is logged late."""
+    return Form(
+        kind=BUMP,
+        axes=plain.axes,
+        channel=plain.channel,
+        shape=(*plain.shape, ShapeAxis("lag", "s", _LAGS)),
+        coefficients=plain.coefficients,
+        formula=f"{plain.formula}, at q - v lag forward and at q + v lag in reverse",
+    )
+
+
+def _bend(axis: str, way: str, within: Range) -> Form:
+    """Return friction that grows, or falls, linearly on one side of a value of a quantity."""
+    inner = np.linspace(*within, _PEAKS + 2)[1:-1]
+    beyond = f"{SYMBOLS[axis]} - start" if way == "above" else f"start - {SYMBOLS[axis]}"
+    return Form(
+        kind=f"bend_{way}",
+        axes=(axis,),
+        channel="friction",
+        shape=(ShapeAxis("start", UNITS[axis], tuple(inner.tolist())),),
+        coefficients=("per_10",),
+        formula=f"per_10 max(0, {beyond}) / 10",
+    )
+
+
+def _moving_peak(within: Range) -> Form:
+    """Return a peak at a speed that goes with temperature."""
+    low, high = within
+    span = float(np.log(high / low))
+    widths = np.geomspace(0.05 * span, _WIDEST * span, 4)
+    return Form(
+        kind="moving_peak",
+        axes=("speed", "temperature"),
+        channel="friction",
+        shape=(
+            ShapeAxis("centre", "deg/s", tuple(np.geomspace(low, high, 12).tolist()), True),
+            ShapeAxis("width", "1", tuple(widths.tolist()), logarithmic=True),
+            ShapeAxis("shift", "1/°C", _SHIFTS),
+        ),
+        coefficients=("peak",),
+        formula="peak exp(-((ln(v / centre) - shift (T - 40)) / width)^2 / 2)",
+    )
