@@ -1,5 +1,7 @@
 """Schema of the table of planted effects."""
 
+from typing import Any
+
 import pyarrow as pa
 
 from frictioncli.schemas import Column, Table
@@ -51,3 +53,15 @@ CHALLENGE = Table(
         _nullable("seconds", _REAL, "s", "processor time"),
     ),
 )
+
+AS_LOGGED, GIVEN, SHARE, SEARCH = "as_logged", "given", "share", "search"
+"""Why something is planted in this size: nothing is planted; asked for; the usual share of the mean
+friction; tried by the search for the least size."""
+
+DONE, CANNOT = "done", "cannot"
+
+NOTHING = "none"
+"""Stands for an effect where nothing is planted."""
+
+Row = dict[str, Any]
+"""A row of the table: None where a value is missing."""

@@ -7,11 +7,7 @@ from pathlib import Path
 from frictioncli import tables
 from frictioncli.challenge.pictures import write_pictures
 from frictioncli.challenge.rows import (
-    GIVEN,
-    SEARCH,
-    SHARE,
     ChallengeTable,
-    Row,
     row_as_logged,
     row_of_trial,
     row_refused,
@@ -21,6 +17,7 @@ from frictioncli.challenge.settings import ChallengeSettings
 from frictioncli.challenge.subject import Subject, read_subjects
 from frictioncli.challenge.text import challenge_text
 from frictioncli.challenge.trial import Planter
+from frictioncli.challenge_schema import GIVEN, SEARCH, SHARE, Row
 from frictioncli.errors import NotEnoughData, OptionError
 from frictioncli.logs.runs.discovery import Logs
 from frictioncli.provenance import Provenance, input_hashes

@@ -12,24 +12,21 @@ from frictioncli.challenge.judged import Judgement, judged
 from frictioncli.challenge.search_size import SizeFound
 from frictioncli.challenge.subject import Subject
 from frictioncli.challenge.trial import Trial
+from frictioncli.challenge_schema import (
+    AS_LOGGED,
+    CANNOT,
+    DONE,
+    NOTHING,
+    Row,
+)
 from frictioncli.challenge_schema import CHALLENGE as CHALLENGE_TABLE
 from frictioncli.diagnosis.documents.document import DiagnosisDocument
 from frictioncli.errors import TableError
 from frictioncli.provenance import Provenance
-
-AS_LOGGED, GIVEN, SHARE, SEARCH = "as_logged", "given", "share", "search"
-"""Why something is planted in this size: nothing is planted; asked for; the usual share of the mean
-friction; tried by the search for the least size."""
-
-DONE, CANNOT = "done", "cannot"
-
-NOTHING = "none"
-"""Stands for an effect where nothing is planted."""
+from frictioncli.report.challenge_words import rows_of_table
 
 SEPARATOR = "; "
 """Between the names of two causes."""
-
-Row = dict[str, Any]
 
 
 @dataclass(slots=True)
@@ -117,10 +114,7 @@ def _earlier(path: Path, provenance: Provenance) -> list[Row]:
         frame = tables.read(path, CHALLENGE_TABLE)
     except TableError:
         return []
-    return [
-        {name: None if value is None or value != value else value for name, value in row.items()}
-        for row in frame.astype(object).to_dict("records")
-    ]
+    return rows_of_table(frame)
 
 
 def row_as_logged(subject: Subject) -> Row:

@@ -5,6 +5,7 @@ from pathlib import Path
 
 from frictioncli.errors import TableError
 from frictioncli.workfiles import (
+    CHALLENGE,
     DIAGNOSIS,
     EVALUATION,
     EXTENDED,
@@ -25,6 +26,7 @@ _RESULTS = {
     SCHEDULE: "simulated corrections",
     EVALUATION: "comparison of corrections",
     PLAN: "next experiment",
+    CHALLENGE: "planted effects",
 }
 """Files made from torques and model, and what the page shows of them."""
 

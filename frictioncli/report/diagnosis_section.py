@@ -1,7 +1,7 @@
 """Section of the page on the diagnosis: text, tables, and the list of its figures."""
 
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import partial
 
 from matplotlib.figure import Figure
@@ -12,6 +12,7 @@ from frictioncli.diagnosis.documents.sentences import (
     remainder_text,
     settling_text,
 )
+from frictioncli.report.challenge_section import PlantedText, planted_text
 from frictioncli.report.diagnosis_captions import (
     cause_title,
     evidence_caption,
@@ -61,6 +62,8 @@ class DiagnosisSection:
         What was left out because the torque had not settled; may be empty.
     worst, detectable : TextTable or None
         Largest misfits of the simulation; smallest size at which each effect would be found.
+    planted : PlantedText
+        What the diagnosis said of effects that were planted into these logs.
     """
 
     missing: str = ""
@@ -74,6 +77,7 @@ class DiagnosisSection:
     gain: str = ""
     worst: TextTable | None = None
     detectable: TextTable | None = None
+    planted: PlantedText = field(default_factory=PlantedText)
 
 
 def diagnosis_section(results: JointResults) -> DiagnosisSection:
@@ -103,6 +107,7 @@ def diagnosis_section(results: JointResults) -> DiagnosisSection:
         gain=gain_sentence(document, unit),
         worst=worst if worst.rows else None,
         detectable=detectable_table(document, unit),
+        planted=planted_text(results.challenge),
     )
 
 

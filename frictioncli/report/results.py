@@ -11,6 +11,7 @@ from numpy.typing import ArrayLike
 
 from frictioncli import schemas, tables
 from frictioncli.arrays import Array
+from frictioncli.challenge_schema import CHALLENGE
 from frictioncli.design.document import PlanDocument
 from frictioncli.diagnosis.documents.document import DiagnosisDocument
 from frictioncli.diagnosis.documents.extended_model import ExtendedDocument, ExtendedModel
@@ -72,6 +73,8 @@ class JointResults:
         Why there is no diagnosis of these runs; empty if there is one.
     plan : PlanDocument or None
         The next experiment.
+    challenge : DataFrame
+        Effects planted into these logs; empty if none were.
     """
 
     model: FrictionModel
@@ -87,6 +90,7 @@ class JointResults:
     diagnosis: Reloaded | None = None
     diagnosis_missing: str = ""
     plan: PlanDocument | None = None
+    challenge: pd.DataFrame = field(default_factory=pd.DataFrame)
 
     @property
     def joint(self) -> int:
@@ -233,6 +237,7 @@ def read_results(work: Path) -> WorkFolderResults:
     extended_models, extensions = (
         read_extended_models(work) if EXTENDED in belonging.files else ({}, {})
     )
+    planted = read_if_present(work, CHALLENGE, belonging.files)
     plan = read_plan(work) if PLAN in belonging.files else None
     metadata = dict(read_metadata(work, belonging.files))
     simulated_extended = bool(_settings(metadata, SCHEDULE).get("extended"))
@@ -255,6 +260,7 @@ def read_results(work: Path) -> WorkFolderResults:
                 diagnosis=diagnosis,
                 diagnosis_missing=missing,
                 plan=plan if plan is not None and plan.joint == model.joint else None,
+                challenge=_rows_of(planted, model.joint),
             )
         )
     return WorkFolderResults(

@@ -1,6 +1,7 @@
 """The command on a small log: sizes, names, rows, what is taken up again, and its faults."""
 
 import os
+import re
 import shutil
 import signal
 import time
@@ -14,7 +15,10 @@ from frictioncli.challenge import trial
 from frictioncli.challenge.challenge import challenge
 from frictioncli.challenge.settings import ChallengeSettings
 from frictioncli.challenge_schema import CHALLENGE as CHALLENGE_TABLE
+from frictioncli.diagnosis.settings import DiagnosisSettings
 from frictioncli.errors import OptionError
+from frictioncli.stages.diagnose import diagnose
+from frictioncli.stages.report import report
 from tests.command_line import invoke
 from tests.robustness.runs import started, write_warm_up
 
@@ -80,6 +84,22 @@ def test_there_is_one_picture_per_effect(asymmetry):
     names = sorted(path.name for path in (work / "challenge").iterdir())
     assert names == ["direction_asymmetry.png", "direction_asymmetry.svg"]
     assert str(work / "challenge") in said
+
+
+def test_the_page_shows_planted_effects_as_long_as_they_are_of_these_data(asymmetry, tmp_path):
+    work = shutil.copytree(asymmetry[0], tmp_path / "work")
+    report(work)
+    page = (work / "report" / "index.html").read_text(encoding="utf-8")
+    table = page.split("Effects planted into these logs")[1].split("</table>")[0]
+    cells = re.findall(r"<t[dh][^>]*>(.*?)</t[dh]>", table.split("<tbody>")[-1])
+    assert cells[:3] == ["direction asymmetry", "direction asymmetry", "found"]
+    assert "Wrong new names: in 0 of 1 trial." in page
+    # another diagnosis than the one that was challenged
+    diagnose(work, DiagnosisSettings(alpha=0.01))
+    report(work)
+    page = (work / "report" / "index.html").read_text(encoding="utf-8")
+    assert "Effects planted into these logs" not in page
+    assert "Left out, the planted effects" in page
 
 
 @pytest.fixture

@@ -1,0 +1,115 @@
+"""What became of effects that were planted into a log, in words and figures."""
+
+from collections.abc import Sequence
+
+import pandas as pd
+
+from frictioncli.challenge_schema import AS_LOGGED, CANNOT, DONE, SHARE, Row
+from frictioncli.wording import count_text
+
+
+def rows_of_table(frame: pd.DataFrame) -> list[Row]:
+    """Return the rows of a table that was read; None where a value is missing.
+
+    Parameters
+    ----------
+    frame : DataFrame
+        Rows of :data:`frictioncli.challenge_schema.CHALLENGE`.
+    """
+    return [
+        {name: None if value is None or value != value else value for name, value in row.items()}
+        for row in frame.astype(object).to_dict("records")
+    ]
+
+
+def mark(row: Row) -> str:
+    """Return in a few words what a trial came to.
+
+    Parameters
+    ----------
+    row : dict
+        Row of :data:`frictioncli.challenge_schema.CHALLENGE`.
+    """
+    if row["status"] == CANNOT:
+        return "not shown by these data"
+    told = []
+    if row["already"]:
+        told.append("there already")
+    elif row["right_alone"]:
+        told.append("found")
+    elif row["right_in_set"]:
+        told.append("found in a set")
+    else:
+        told.append("not found")
+    if row["wrong"]:
+        told.append(f"WRONG: {row['wrong']}")
+    return ", ".join(told)
+
+
+def found_text(row: Row) -> str:
+    """Return between which sizes the least one lies that is found; empty if it was not searched.
+
+    Parameters
+    ----------
+    row : dict
+        Row of :data:`frictioncli.challenge_schema.CHALLENGE`.
+    """
+    if row["size_found_high"] is None:
+        return "" if row["size_found_low"] is None else f"above {row['size_found_low']:.2g}"
+    low, high = row["size_found_low"], row["size_found_high"]
+    return f"below {high:.2g}" if low is None else f"{low:.2g} to {high:.2g}"
+
+
+def summary(rows: Sequence[Row]) -> list[str]:
+    """Return the figures of a joint: shares found in the usual size, wrong names, claims that held.
+
+    Parameters
+    ----------
+    rows : sequence of dict
+        Rows of one joint.
+    """
+    done = [row for row in rows if row["status"] == DONE and row["purpose"] != AS_LOGGED]
+    usual = [row for row in done if row["purpose"] == SHARE and not row["already"]]
+    lines = []
+    shown = [row for row in usual if can_show(row)]
+    if shown:
+        found = sum(bool(row["right_in_set"]) for row in shown)
+        lines.append(
+            f"in the usual size: {found} of {count_text(len(shown), 'effect')} found that the"
+            " diagnosis calls detectable in it"
+        )
+    wrong = sum(bool(row["wrong"]) for row in done)
+    if done:
+        lines.append(f"wrong new names: in {wrong} of {count_text(len(done), 'trial')}")
+    ratios = claim_ratios(rows)
+    if ratios:
+        within = sum(1 / 1.5 <= one <= 1.5 for one in ratios.values())
+        lines.append(
+            f"claimed detectable size within a factor of 1.5 of the one found: {within} of"
+            f" {count_text(len(ratios), 'effect')}"
+        )
+    return lines
+
+
+def can_show(row: Row) -> bool:
+    """Return whether the diagnosis of the log calls an effect detectable in its planted size."""
+    return row["claimed"] is not None and row["size"] is not None and row["claimed"] <= row["size"]
+
+
+def claim_ratios(rows: Sequence[Row]) -> dict[tuple[str, int], float]:
+    """Return the claimed size over the size found, of each effect and shape that was searched.
+
+    An effect of which every size tried was found, or none, has the ratio to the outermost size
+    tried, which is a bound of it.
+
+    Parameters
+    ----------
+    rows : sequence of dict
+        Rows of one joint.
+    """
+    ratios = {}
+    for row in rows:
+        size = row["size_found"] if row["size_found"] is not None else row["size_found_low"]
+        if size is not None and row["claimed"] is not None:
+            ratios[row["effect"], row["seed"]] = float(row["claimed"] / size)
+    return ratios
