@@ -14,6 +14,7 @@ import typer
 from mkdocs.structure.files import File, Files
 
 from frictioncli import schemas
+from frictioncli.challenge_schema import CHALLENGE
 from frictioncli.cli.commands import app
 
 ROOT = Path(__file__).parents[1]
@@ -123,6 +124,7 @@ def tables() -> str:
         " the file hold version, settings and the SHA-256 of its inputs.",
     ]
     known = [one for one in vars(schemas).values() if isinstance(one, schemas.Table)]
+    known.append(CHALLENGE)
     for table in known:
         rows = "\n".join(
             f"| `{one.name}` | {one.type} | {one.unit} | {'yes' if one.nullable else ''}"
