@@ -6,6 +6,7 @@ from textwrap import fill
 
 from frictioncli.deployment import c_template as c
 from frictioncli.deployment.deployed_model import DeployedModel
+from frictioncli.deployment.empirical import c_functions
 from frictioncli.deployment.extension import DeployedExtension
 from frictioncli.deployment.gear_temperature import GearLag
 from frictioncli.diagnosis.documents.extended_model import FittedEffect
@@ -43,6 +44,8 @@ def c_header(joint: DeployedModel, remarks: Sequence[str]) -> str:
         parts += [c.GEAR, c.BEYOND]
     if joint.can_correct:
         parts.append(c.CORRECT)
+    if extension and extension.empirical is not None:
+        parts.append(c_functions(extension.empirical))
     values = _placeholder_values(joint, extension)
     names = {"prefix": prefix, "PREFIX": prefix.upper(), **_units(joint)}
     # the values may themselves contain names of the joint

@@ -13,6 +13,7 @@ from frictioncli.deployment.deployed_model import DeployedModel, default_correct
 from frictioncli.deployment.extension import DeployedExtension
 from frictioncli.deployment.gear_temperature import GearLag
 from frictioncli.diagnosis.documents.extended_model import FittedEffect
+from frictioncli.diagnosis.empirical.term import EmpiricalTerm
 from frictioncli.errors import FrictionError, TableError
 from frictioncli.model.document import FrictionModel
 from frictioncli.model.friction import FrictionParameters
@@ -95,6 +96,8 @@ class ExtensionRecord(msgspec.Struct, frozen=True, kw_only=True):
         Effects without memory.
     left_out : mapping of str to str
         Effects that cannot be carried, and why.
+    empirical : EmpiricalTerm or None
+        Torque without a known cause, linear about the same base.
     """
 
     linear_about: FrictionParameters
@@ -102,6 +105,7 @@ class ExtensionRecord(msgspec.Struct, frozen=True, kw_only=True):
     thermal_lag: GearLag | None
     effects: tuple[DeployedEffectRecord, ...]
     left_out: Mapping[str, str]
+    empirical: EmpiricalTerm | None = None
 
 
 class ProgramRecord(msgspec.Struct, frozen=True, kw_only=True):
@@ -246,16 +250,20 @@ def _extension_record(extension: DeployedExtension) -> ExtensionRecord:
         thermal_lag=extension.gear,
         effects=tuple(effects),
         left_out=extension.left_out,
+        empirical=extension.empirical,
     )
 
 
 def _extension(record: ExtensionRecord) -> DeployedExtension:
+    if record.empirical is not None:
+        record.empirical.check()
     return DeployedExtension(
         about=record.linear_about,
         parameters=record.parameters,
         gear=record.thermal_lag,
         terms=tuple(_fitted(effect) for effect in record.effects),
         left_out=record.left_out,
+        empirical=record.empirical,
     )
 
 

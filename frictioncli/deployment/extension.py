@@ -21,12 +21,14 @@ import pandas as pd
 from numpy.typing import ArrayLike
 
 from frictioncli.arrays import Array
+from frictioncli.deployment.empirical import empirical_torque
 from frictioncli.deployment.gear_temperature import GearLag
 from frictioncli.diagnosis.data.build_problem import simulated
 from frictioncli.diagnosis.data.gravity_document import stated_gravity
 from frictioncli.diagnosis.data.hidden_temperature import HiddenTemperature
 from frictioncli.diagnosis.documents.extended_model import ExtendedModel, FittedEffect
-from frictioncli.effects.base import EffectTable
+from frictioncli.diagnosis.empirical.term import EmpiricalTerm
+from frictioncli.effects.base import Basis, EffectTable
 from frictioncli.model.friction import FrictionParameters, friction_torque
 
 LAG = "thermal_lag"
@@ -71,6 +73,8 @@ class DeployedExtension:
         Effects without memory.
     left_out : mapping of str to str
         Reason for each effect that cannot be deployed.
+    empirical : EmpiricalTerm or None
+        Torque without a known cause. It goes with the angle, so that it is evaluated by itself.
     """
 
     about: FrictionParameters
@@ -78,6 +82,41 @@ class DeployedExtension:
     gear: GearLag | None
     terms: tuple[FittedEffect, ...]
     left_out: Mapping[str, str]
+    empirical: EmpiricalTerm | None = None
+
+    def empirical_torque(
+        self, *, position: ArrayLike, load: ArrayLike, speed: ArrayLike, temperature: ArrayLike
+    ) -> Basis:
+        """Return the friction and load torque without a known cause; zeros where none is modelled.
+
+        Parameters
+        ----------
+        position : array_like, shape (rows,)
+            Joint angle. [deg]
+        load : array_like, shape (rows,)
+            Load torque. [N·m]
+        speed : array_like, shape (rows,)
+            Absolute velocity. [deg/s]
+        temperature : array_like, shape (rows,)
+            Temperature of the gear. [°C]
+
+        Returns
+        -------
+        Basis
+            Friction and load torque, shape (rows,) each. [torque unit]
+        """
+        if self.empirical is None:
+            rows = np.atleast_1d(np.broadcast_arrays(position, load, speed, temperature)[0])
+            return Basis(np.zeros(rows.shape), np.zeros(rows.shape))
+        return empirical_torque(
+            self.empirical,
+            self.about,
+            _table,
+            position=position,
+            load=load,
+            speed=speed,
+            temperature=temperature,
+        )
 
     def added_friction(
         self, *, load: ArrayLike, speed: ArrayLike, temperature: ArrayLike, excess: ArrayLike
@@ -138,9 +177,9 @@ def deployable_extension(
     Returns
     -------
     DeployedExtension or None
-        Gear temperature, effects without memory, and what is left out.
+        Gear temperature, effects without memory, the empirical term, and what is left out.
     """
-    if not model.effects:
+    if model.adds_nothing:
         return None
     effects = {fitted.effect.name: fitted for fitted in model.effects}
     lag = effects.get(LAG)
@@ -156,6 +195,7 @@ def deployable_extension(
             for name, fitted in effects.items()
             if name != LAG and name not in MEMORYLESS
         },
+        empirical=model.empirical,
     )
 
 
@@ -187,7 +227,13 @@ def _gear_lag(
     )
 
 
-def _table(about: FrictionParameters, load: Array, speed: Array, temperature: Array) -> EffectTable:
+def _table(
+    about: FrictionParameters,
+    load: Array,
+    speed: Array,
+    temperature: Array,
+    position: Array | None = None,
+) -> EffectTable:
     """Return instants without history as an effect table."""
     rows = np.arange(len(load))
     decay = np.exp(-about.delta * temperature)
@@ -198,7 +244,7 @@ def _table(about: FrictionParameters, load: Array, speed: Array, temperature: Ar
         time=unknown,
         clock=unknown,
         speed=speed,
-        position=unknown,
+        position=unknown if position is None else position,
         load=load,
         load_gradient=unknown,
         load_curvature=unknown,
