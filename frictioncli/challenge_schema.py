@@ -41,7 +41,7 @@ CHALLENGE = Table(
         Column("right_in_set", _FLAG, "", "it is named, alone or among others"),
         Column("right_alone", _FLAG, "", "it is named alone"),
         Column("wrong", _TEXT, "", "names that are neither right nor those of the log as it is"),
-        _nullable("gain", _REAL, "", "share of the misfit that the extended model takes"),
+        _nullable("gain", _REAL, "", "share of the misfit that the extended model removes"),
         _nullable("gain_low", _REAL, "", "gain: lower end of its 95 % interval"),
         _nullable("gain_high", _REAL, "", "gain: upper end of its 95 % interval"),
         _nullable("gain_basis", _LABEL, "", "new_run, or within_run where the gain is optimistic"),

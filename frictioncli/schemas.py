@@ -301,7 +301,7 @@ FLEET = Table(
         _nullable("corrections_cooling", _REAL, "", "corrections per run, cool-down"),
         _nullable("verdict", _LABEL, "", "verdict of the diagnosis"),
         _nullable("causes", _TEXT, "", "its causes, strongest first"),
-        *_interval("gain", "", "share of the misfit that the extended model takes"),
+        *_interval("gain", "", "share of the misfit that the extended model removes"),
         _nullable("gain_basis", _LABEL, "", "new_run, or within_run where the gain is optimistic"),
         _nullable("reference_speed", _REAL, "deg/s", "middle of the speeds of the data"),
         *(

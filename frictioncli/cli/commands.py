@@ -214,7 +214,7 @@ def challenge(
         with working("challenge") as line:
             result = run_challenge(logs, work, settings, options, line.relabel)
     except KeyboardInterrupt:
-        say("interrupted; what is done stays done: call again to go on", fault=True)
+        say("interrupted; finished work is kept: run the command again to continue", fault=True)
         raise typer.Exit(_INTERRUPTED) from None
     say(result)
 
@@ -305,7 +305,7 @@ def fleet(
     try:
         summary = run_fleet(logs, out, settings, options, counted)
     except KeyboardInterrupt:
-        say("interrupted; joints that are done stay done: call again to go on", fault=True)
+        say("interrupted; finished joints are kept: run the command again to continue", fault=True)
         raise typer.Exit(_INTERRUPTED) from None
     say(summary)
     if fail_on and has_failed(summary):

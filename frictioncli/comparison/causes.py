@@ -29,7 +29,7 @@ _CLAIMS = {
     ): "Friction changed steadily over the runs, as by wear or ageing grease.",
     ("step_change", "friction"): "Friction changed once, between two runs, and stayed.",
     ("run_in", "friction"): "Friction fell fast at first and then ever slower, as in running in.",
-    ("payload_change", "load"): "The load torque changed once, as by another payload or tool.",
+    ("payload_change", "load"): "The load torque changed once, as with another payload or tool.",
     ("drift", "load"): "The load torque changed steadily from run to run.",
     ("torque_constant", "load"): (
         "Friction and load torque changed by the same share: the scale of the logged torque did."

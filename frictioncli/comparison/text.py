@@ -80,7 +80,7 @@ def _cause_text(comparison: Comparison, cause: CauseOfChange) -> str:
 
 def _conditions_text(comparison: Comparison, unit: str) -> list[str]:
     if not comparison.conditions:
-        return ["  change at other conditions: not told; measure more speeds or temperatures"]
+        return ["  change at other conditions: not determined; measure more speeds or temperatures"]
     load = f"{comparison.conditions[0].load:.3g} {load_unit(comparison)}"
     lines = [f"  friction [{unit}] at a load of {load}, and its change, first run to last"]
     for one in comparison.conditions:
@@ -98,7 +98,7 @@ def _parameters_text(comparison: Comparison) -> list[str]:
     if not comparison.parameters:
         return []
     lines = [
-        "  parameters of the first and the last folder's model; they make up for each other, so"
+        "  parameters of the first and the last folder's model; they compensate each other:"
         " rely on the friction above"
     ]
     for one in comparison.parameters:

@@ -82,7 +82,7 @@ def _as_urdf(joint: DeployedModel, settings: ExportSettings) -> tuple[str, tuple
 
 def _as_mjcf(joint: DeployedModel, settings: ExportSettings) -> tuple[str, tuple[str, ...]]:
     friction, notes = _simplified(joint, settings)
-    notes += ("no armature: logs of constant speed do not tell the rotor's inertia",)
+    notes += ("no armature: logs at constant speed do not determine the rotor's inertia",)
     remarks = (*_origin(joint), *notes)
     return mjcf_text(friction, f"friction_joint{joint.model.joint}", remarks), notes
 
@@ -93,7 +93,7 @@ def _as_csv(joint: DeployedModel, settings: ExportSettings) -> tuple[str, tuple[
     unit = joint.model.torque_unit
     shape = " x ".join(str(len(axis)) for axis in table.axes)
     notes = (
-        f"{shape} knots of speed, temperature and load's amount: linear interpolation misses"
+        f"{shape} knots of speed, temperature and absolute load: linear interpolation misses"
         f" equation (16) by at most {table.error:.3g} {unit} ({table.tolerance:.3g} allowed)",
         "lost: everything outside these speeds, temperatures and loads",
         "lost: the correction of the temperature",
@@ -141,7 +141,9 @@ def _left_out(joint: DeployedModel) -> tuple[str, ...]:
     """Return notes on the parts of the model that a format with a state leaves out."""
     notes = []
     if not joint.can_correct:
-        notes.append(f"left out: temperature's correction, as {no_correction_reason(joint.model)}")
+        notes.append(
+            f"left out: the temperature correction, as {no_correction_reason(joint.model)}"
+        )
     if joint.extension:
         notes += [
             f"left out: effect {name}, which {reason}"

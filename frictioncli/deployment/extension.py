@@ -46,14 +46,14 @@ MEMORYLESS = (
 """Effects that depend only on present load, speed and temperature."""
 
 _REASONS = {
-    "velocity_exponent": "refers to the mean speed of the log",
-    "drift": "goes with the time since the first log",
-    "run_in": "goes with the hours since the first log",
-    "rest_recovery": "goes with the rests between the log's series",
+    "velocity_exponent": "depends on the mean speed of the log",
+    "drift": "depends on the time since the first log",
+    "run_in": "depends on the hours since the first log",
+    "rest_recovery": "depends on the rests between the log's series",
     "step_change": "came and went with the hours of the log",
-    "reversal_transient": "goes with the angle since the joint turned",
+    "reversal_transient": "depends on the angle since the last reversal",
     "position_ripple": "goes with the angle",
-    "inertia": "goes with acceleration, and is no friction",
+    "inertia": "depends on acceleration, and is not friction",
 }
 _MEASUREMENT_REASON = "is a property of the log, not of the joint"
 _LOAD_REASON = "shows in the load, not in friction"

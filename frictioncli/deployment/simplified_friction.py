@@ -72,7 +72,7 @@ class SimplifiedFriction:
             f"lost there: {self.rms:.3g} N·m RMS, at most {self.worst:.3g} N·m at"
             f" {self.worst_speed:.3g} deg/s",
             f"lost over all loads and temperatures of the data: {self.rms_in_range:.3g} N·m RMS,"
-            f" up to {self.worst_in_range:.3g} N·m, as this form knows neither",
+            f" up to {self.worst_in_range:.3g} N·m, since this form has neither",
         ]
 
 

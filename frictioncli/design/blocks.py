@@ -88,7 +88,7 @@ def slow_sweep(limits: Limits, seed: int) -> tuple[Block, ...]:
     return (
         Block(
             name="slow sweep",
-            reason="many speeds at nearly one temperature: the law of speed, and its slow end",
+            reason="many speeds at nearly one temperature: the speed law, and its slow end",
             steps=(SeriesStep(speeds=speeds, low=limits.low, high=limits.high),),
         ),
     )
@@ -101,7 +101,7 @@ def shuffled_speeds(limits: Limits, seed: int) -> tuple[Block, ...]:
     return (
         Block(
             name="random order of speeds",
-            reason="speeds out of order: parts what goes with speed from what goes with time",
+            reason="speeds out of order: separates effects of speed from effects of time",
             steps=(SeriesStep(speeds=tuple(speeds), low=limits.low, high=limits.high),),
         ),
     )
@@ -117,7 +117,7 @@ def even_speeds(limits: Limits, seed: int) -> tuple[Block, ...]:
     return (
         Block(
             name="even speeds",
-            reason="ten speeds in equal steps, half of them fast: how friction bows over speed",
+            reason="ten speeds in equal steps, half of them fast: how friction curves over speed",
             steps=(SeriesStep(speeds=tuple(speeds), low=limits.low, high=limits.high),),
         ),
     )
@@ -135,7 +135,7 @@ def extreme_speeds(limits: Limits, seed: int) -> tuple[Block, ...]:
     return (
         Block(
             name="both ends of speed",
-            reason="slowest and highest speeds in turn: laws of speed part most at the ends",
+            reason="slowest and highest speeds in turn: speed laws differ most at the ends",
             steps=(
                 SeriesStep(
                     speeds=tuple(sorted(slow)), low=middle - part / 2, high=middle + part / 2
@@ -173,7 +173,8 @@ def travel_without_heat(limits: Limits, seed: int) -> tuple[Block, ...]:
     return (
         Block(
             name="way without heat",
-            reason="much way in a short time with little heat: parts way from time and temperature",
+            reason="much travel in a short time with little heat: separates travel from time and"
+            " temperature",
             steps=(
                 SeriesStep(speeds=(speed,) * 12, low=limits.low, high=limits.high),
                 short_series(limits),
@@ -187,7 +188,7 @@ def static_hold(limits: Limits, seed: int) -> tuple[Block, ...]:
     return tuple(
         Block(
             name=f"hold still {minutes} min",
-            reason="time and cooling without way; what a rest brings back, and how fast it goes",
+            reason="time and cooling without travel; what a rest restores, and how fast it fades",
             steps=(RestStep(60.0 * minutes), short_series(limits)),
         )
         for minutes in _MINUTES
@@ -214,7 +215,8 @@ def other_turning_points(limits: Limits, seed: int) -> tuple[Block, ...]:
     return (
         Block(
             name="turning points elsewhere",
-            reason="the moves turn at other angles: parts angle from the way since the reversal",
+            reason="the moves reverse at other angles: separates angle from distance since the"
+            " reversal",
             steps=tuple(SeriesStep(speeds=speeds, low=start, high=stop) for start, stop in parts),
         ),
     )
@@ -225,7 +227,8 @@ def other_payloads(limits: Limits, seed: int) -> tuple[Block, ...]:
     return tuple(
         Block(
             name=f"payload {mass:g} kg",
-            reason="another load at the same angles: parts load from angle, and load from friction",
+            reason="another load at the same angles: separates load from angle, and load from"
+            " friction",
             steps=(short_series(limits, payload=mass),),
         )
         for mass in limits.payloads

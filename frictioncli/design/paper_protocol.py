@@ -60,7 +60,7 @@ def new_limits(settings: PlanSettings) -> Limits:
     missing = [name for name, value in needed if value is None]
     if missing:
         raise OptionError(
-            f"--new needs {', '.join(missing)}: without data nothing tells what is safe"
+            f"--new needs {', '.join(missing)}: without data nothing says what is safe"
         )
     low, high, fastest = settings.low, settings.high, settings.max_speed
     assert low is not None

@@ -148,7 +148,7 @@ def plan_joint(
     if not blocks:
         raise NotEnoughData(
             f"joint {_joint_number(torques)}: no block fits into {settings.minutes:g} min, or none"
-            " tells anything new; give more time with --minutes"
+            " would add information; give more time with --minutes"
         )
     rest = budget - seconds_of(blocks, payload)
     check = choose_check(criterion, blocks, rest, payload, settings.seed)

@@ -81,7 +81,7 @@ class PlanSettings:
         given = (self.low, self.high, self.max_speed, self.max_temperature, self.rated_speed)
         numbers = [self.minutes, *self.payload, *(one for one in given if one is not None)]
         if not all(map(math.isfinite, numbers)):
-            raise OptionError("an option of the plan is no number; expected finite numbers")
+            raise OptionError("an option of the plan is not a number; expected finite numbers")
         if not 5.0 <= self.minutes <= 24 * 60.0:
             raise OptionError(f"--minutes {self.minutes:g}: expected 5 to 1440")
         for name, angle in (("from", self.low), ("to-angle", self.high)):

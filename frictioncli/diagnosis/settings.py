@@ -31,7 +31,7 @@ class DiagnosisSettings:
     margin: float | None = field(
         default=None,
         metadata=option(
-            "Smallest size worth a name [torque unit]; else 0.5 % of the mean friction and"
+            "Smallest size worth naming [torque unit]; else 0.5 % of the mean friction and"
             " 0.1 N·m at least."
         ),
     )

@@ -24,7 +24,7 @@ def basis(table: EffectTable) -> Basis:
 
 EFFECT = Effect(
     name="backlash",
-    summary="The logged position is another in each direction of motion.",
+    summary="The logged position depends on the direction of motion.",
     equation="dtau = -b/2*dL/dq, dL = -b/2*dtau/dL*dL/dq",
     source="Taylor series of gravity over the play between encoder and link",
     channel="friction",

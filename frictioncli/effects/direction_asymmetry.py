@@ -94,7 +94,7 @@ EFFECT = Effect(
     confounders=("dress_pack", "reversal_transient", "torque_constant"),
     experiment=(
         "Measure where gravity does not load the joint, or with the arm mounted the other way"
-        " round: gravity turns its sign, asymmetry does not. Read the torque with motors off for"
+        " round: gravity changes its sign, asymmetry does not. The torque with the motors off is"
         " its zero."
     ),
 )

@@ -33,7 +33,7 @@ EFFECT = Effect(
     needs=("speed",),
     signature=Signature(
         axis="speed",
-        claim="Friction bends up with speed, equally when cold and when hot.",
+        claim="Friction curves upward with speed, equally when cold and when hot.",
     ),
     statement="Friction has a part proportional to speed, of {viscous_coefficient}.",
     confounders=("quadratic_drag", "velocity_exponent", "stribeck"),

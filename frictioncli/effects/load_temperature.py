@@ -34,7 +34,7 @@ def basis(table: EffectTable, *, bend: float) -> Basis:
 
 EFFECT = Effect(
     name="load_temperature",
-    summary="The load's part of friction changes with temperature.",
+    summary="The load-dependent part of friction changes with temperature.",
     equation="dtau = aT*(L/10)^2*(1 - exp(-b*(T - 25)))/(10*b)",
     source=(
         "Product of the load and temperature terms of equation (16) of Nevmerzhitskiy et al. 2019,"
@@ -70,7 +70,7 @@ EFFECT = Effect(
         claim="The parabola of friction over load is flatter when hot than when cold.",
     ),
     statement=(
-        "The load's part of friction changes with temperature, by"
+        "The load-dependent part of friction changes with temperature, by"
         " {load_temperature_coefficient} at load torque 10."
     ),
     confounders=("torque_constant", "load_velocity", "coulomb_temperature"),

@@ -16,7 +16,7 @@ def basis(table: EffectTable) -> Basis:
 
 EFFECT = Effect(
     name="load_velocity",
-    summary="The load's part of friction differs from speed to speed.",
+    summary="The load-dependent part of friction differs from speed to speed.",
     equation="dtau = av*(L/10)^2*sqrt(v/100)",
     source=(
         "Product of the load and speed terms of equation (16) of Nevmerzhitskiy et al. 2019,"
@@ -41,7 +41,7 @@ EFFECT = Effect(
         claim="The parabola of friction over load opens differently at each speed.",
     ),
     statement=(
-        "The load's part of friction grows with speed, by {load_speed_coefficient} at"
+        "The load-dependent part of friction grows with speed, by {load_speed_coefficient} at"
         " load torque 10 and 100 deg/s."
     ),
     confounders=("inertia", "load_linear", "quadratic_drag"),

@@ -33,7 +33,7 @@ def basis(table: EffectTable, **shape: float) -> Basis:
 
 EFFECT = Effect(
     name="payload_change",
-    summary="The payload was another for a while, or is from one moment on.",
+    summary="The payload differed for a while, or changed for good.",
     equation="dL = (Pc*cos(q) + Ps*sin(q))*(1 from m to e, else 0), dtau = 2*alpha*L*dL",
     source="Gravity torque of a point mass; equation (3) of Nevmerzhitskiy et al. 2019, "
     "doi:10.1155/2019/6931563",

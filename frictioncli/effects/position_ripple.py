@@ -41,7 +41,7 @@ def basis(table: EffectTable, *, order: float) -> Basis:
 
 EFFECT = Effect(
     name="position_ripple",
-    summary="Friction goes up and down with the angle.",
+    summary="Friction varies periodically with the angle.",
     equation="dtau = As*sin(N*q) + Ac*cos(N*q) + Bs*sin(2*N*q) + Bc*cos(2*N*q)",
     source="Angle-periodic friction of gears and bearings; size is an engineering estimate",
     channel="friction",
@@ -96,7 +96,7 @@ EFFECT = Effect(
         axis="position",
         claim="Residuals repeat over the angle, with the same phase at all speeds.",
     ),
-    statement="Friction goes up and down with the angle, of order {order}.",
+    statement="Friction varies periodically with the angle, of order {order}.",
     confounders=("load_linear", "reversal_transient", "inertia"),
     experiment=(
         "Sample the angle finely, without bins, at two speeds: a ripple of the gear keeps its"

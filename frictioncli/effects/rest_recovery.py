@@ -91,7 +91,7 @@ EFFECT = Effect(
             unit="torque",
             lower=-30.0,
             upper=30.0,
-            description="Half of what the first move has more than the one back, as load torque",
+            description="Half the excess of the first move over the one back, as load torque",
             of_load=True,
         ),
     ),

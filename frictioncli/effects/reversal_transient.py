@@ -38,7 +38,7 @@ def basis(table: EffectTable, *, distance: float, side: float) -> Basis:
 
 EFFECT = Effect(
     name="reversal_transient",
-    summary="Friction is not yet built up just after a reversal.",
+    summary="Friction has not built up yet just after a reversal.",
     equation=(
         "dtau = -b*(exp(-(q - q_lo)/s) + exp(-(q_hi - q)/s))/2,"
         " dL = -z*b*(exp(-(q - q_lo)/s) - exp(-(q_hi - q)/s))/2, z = +1 or -1"
@@ -85,12 +85,12 @@ EFFECT = Effect(
         claim="Friction is below the model just after each reversal, equally at all speeds.",
     ),
     statement=(
-        "Just after a reversal friction lacks {lack}; 37 % of that are left after {distance}."
+        "Just after a reversal friction is {lack} too low; 37 % of that remains after {distance}."
     ),
     confounders=("inertia", "position_ripple", "direction_asymmetry"),
     experiment=(
-        "Approach the same angles from the same side after a longer way, at the slowest speed:"
-        " the lack goes with the reversal, inertia is then too small to matter."
+        "Approach the same angles from the same side after a longer distance, at the slowest"
+        " speed: the lack depends on the reversal, and inertia is too small to matter."
     ),
     mirror="The lack in the load torque must equal that in friction, but for its sign.",
 )

@@ -32,7 +32,7 @@ def basis(table: EffectTable, *, distance: float) -> Basis:
 
 EFFECT = Effect(
     name="run_in",
-    summary="Friction falls with the way travelled and then stays.",
+    summary="Friction falls with the distance travelled and then levels off.",
     equation="dtau = A*exp(-s/s0), s: way of all runs",
     source="Exponential running-in of lubricated contacts; size is an engineering estimate",
     channel="friction",
@@ -61,15 +61,16 @@ EFFECT = Effect(
     needs=("travel",),
     signature=Signature(
         axis="travel",
-        claim="Friction starts above the model and falls with the way travelled, not with time.",
+        claim="Friction starts above the model and falls with the distance travelled, not with"
+        " time.",
     ),
     statement=(
         "Friction was {initial_excess} above the settled one at the start and falls with"
-        " the way travelled."
+        " the distance travelled."
     ),
     confounders=("drift", "thermal_lag", "rest_recovery"),
     experiment=(
         "Compare two stretches of equal duration, one with much motion and one at rest:"
-        " running-in goes on only with motion, and does not come back on the next day."
+        " running-in continues only with motion, and does not return on the next day."
     ),
 )

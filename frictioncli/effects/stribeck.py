@@ -84,7 +84,7 @@ EFFECT = Effect(
     uses=("temperature",),
     signature=Signature(
         axis="speed",
-        claim="Friction is above the model only at the lowest speeds, and the more the slower.",
+        claim="Friction is above the model only at the lowest speeds, more so the slower.",
     ),
     statement=(
         "Boundary friction of {boundary_torque} at standstill has fallen to 37 % at {velocity}."

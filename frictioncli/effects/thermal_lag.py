@@ -148,7 +148,7 @@ def basis(table: EffectTable, *, time_constant: float) -> Basis:
 
 EFFECT = Effect(
     name="thermal_lag",
-    summary="The gear warms and cools at another pace than the sensor.",
+    summary="The gear warms and cools at a different rate than the sensor.",
     equation=(
         "dtau = tau(T + E) - tau(T), E = a*(F(Tm) - T) + b*F(P/P0) + h*(Tc - T)"
         " + hF*(F(Tc) - T), F: first-order filter with theta*dF(u)/dt = u - F(u),"

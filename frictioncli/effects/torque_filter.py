@@ -90,8 +90,8 @@ EFFECT = Effect(
     ),
     confounders=("torque_delay", "torque_constant", "direction_asymmetry", "inertia"),
     experiment=(
-        "Reverse the motion at high acceleration and look at the torque of single samples: a delay"
-        " shifts the step of friction, a filter smears it exponentially."
+        "Reverse the motion at high acceleration and look at single samples of the torque: a delay"
+        " shifts the step of friction, a filter smooths it."
     ),
     mirror="Friction must lag as the torque_delay says, by the filter's time constant or more.",
 )

@@ -34,7 +34,7 @@ def basis(table: EffectTable, *, exponent: float) -> Basis:
 
 EFFECT = Effect(
     name="velocity_exponent",
-    summary="Viscous friction grows with another power of speed than 1/2.",
+    summary="Viscous friction follows a power of speed other than 1/2.",
     equation="dtau = s*(beta + gamma*exp(-delta*T))*sqrt(v)*((v/v0)^(p - 1/2) - 1)",
     source=(
         "Equation (13) of Nevmerzhitskiy et al. 2019, doi:10.1155/2019/6931563, where the exponent"
@@ -68,8 +68,8 @@ EFFECT = Effect(
     signature=Signature(
         axis="speed",
         claim=(
-            "Over the logarithm of speed the residuals form an even bow,"
-            " and the bow flattens as the joint warms."
+            "Over the logarithm of speed the residuals form a smooth"
+            " arc, which flattens as the joint warms."
         ),
     ),
     statement=(

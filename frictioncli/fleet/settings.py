@@ -37,23 +37,19 @@ class FleetSettings:
     )
     scheduler: str | None = field(
         default=None,
-        metadata=option(
-            "Dask scheduler whose workers do it, as tls://host:8786.", metavar="ADDRESS"
-        ),
+        metadata=option("Dask scheduler to use, as tls://host:8786.", metavar="ADDRESS"),
     )
     timeout: float | None = field(
         default=None,
-        metadata=option("A joint that takes longer has failed; no limit [s]."),
+        metadata=option("Time limit per joint, beyond which it has failed [s]; none."),
     )
     tls_ca: Path | None = field(
-        default=None, metadata=option("Authority that the scheduler's certificate is of, PEM.")
+        default=None, metadata=option("Certificate authority of the scheduler, PEM.")
     )
-    tls_cert: Path | None = field(
-        default=None, metadata=option("Certificate for the scheduler, PEM.")
-    )
+    tls_cert: Path | None = field(default=None, metadata=option("Client certificate, PEM."))
     tls_key: Path | None = field(default=None, metadata=option("Key of that certificate, PEM."))
-    redo: bool = field(default=False, metadata=option("Do joints again that are done."))
-    report: bool = field(default=True, metadata=option("Write a page per joint."))
+    redo: bool = field(default=False, metadata=option("Process finished joints again."))
+    report: bool = field(default=True, metadata=option("Write a report for each joint."))
 
     def __post_init__(self) -> None:
         if self.workers is not None and self.workers < 1:

@@ -116,7 +116,9 @@ def joint_summary(
         is_doubtful = stages[-1].suffices == IN_PART
         stages += [_doubtful(stage) if is_doubtful else stage for stage in later]
     if not len(pairs):
-        regression = "without pairs, 'separate' regresses all motion, and says whether it suffices"
+        regression = (
+            "without pairs, 'separate' regresses all motion, and says whether the result suffices"
+        )
         stages.append(StageVerdict("separate", IN_PART, regression))
         stages += [StageVerdict(name, IN_PART, _AS_FAR) for name in STAGES[len(stages) :]]
     missing = STAGES[len(stages) :]
@@ -238,7 +240,7 @@ def _diagnose(pairs: pd.DataFrame, recordings: RecordingCounts) -> StageVerdict:
         return StageVerdict("diagnose", NO, text)
     limitations = []
     if len(runs) == 1:
-        limitations.append("one run only: no day that it has not seen, gains flatter")
+        limitations.append("one run only: gains are measured on training data (optimistic)")
     if not recordings.time_known:
         limitations.append(
             "start times are not known: effects of time and temperature history cannot be judged"

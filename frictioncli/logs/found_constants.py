@@ -137,7 +137,8 @@ def _constant(
     except NotEnoughData as why:
         return Refusal(
             NO_CONSTANT,
-            f"joint {joint}: {current} and {torque} do not tell a torque constant: {why}; {hint}",
+            f"joint {joint}: {current} and {torque} do not determine a torque constant: {why};"
+            f" {hint}",
         )
     reason = f"from the {found.seen_by} that {current} and {torque} share in {found.rows} rows"
     if _TARGET.search(torque):

@@ -70,7 +70,8 @@ class IngestSettings:
     torque_constant: float | str | None = field(
         default=None,
         metadata=option(
-            "Torque at the joint per motor current [N·m/A], or auto: from a torque beside it.",
+            "Torque at the joint per motor current [N·m/A], or auto: from a torque in the same"
+            " log.",
             typed=str,
             metavar="auto|VALUE",
             convert=torque_constant,

@@ -91,7 +91,7 @@ def determined_fit(observed: Observations) -> tuple[Estimate, Determination]:
 def at_bound(estimate: Estimate) -> dict[str, str]:
     """Return the fitted parameters that lie at a physical bound, with the reason."""
     flags = {
-        name: "at its lower bound 0: the data would rather have it negative"
+        name: "at its lower bound, 0: the best fit would be negative"
         for name in estimate.names
         if name != "delta" and getattr(estimate.parameters, name) <= 0
     }
@@ -133,7 +133,7 @@ def _by_excitation(observed: Observations) -> Determination:
         speeds = f"{slowest:.3g} to {fastest:.3g} deg/s"
         chosen = chosen.without(
             "beta",
-            f"speeds of {speeds} do not tell viscous from Coulomb friction; merged into tau_c",
+            f"speeds of {speeds} do not separate viscous from Coulomb friction; merged into tau_c",
             "tau_c",
             f"holds Coulomb friction and the viscous part that stays when hot, at {speeds}",
         )
@@ -176,7 +176,7 @@ def _by_interval(
         if "beta" in chosen.terms:
             return chosen.without(
                 "beta",
-                "the fall with temperature is too little curved to tell beta from gamma;"
+                "the fall with temperature is too weakly curved to separate beta from gamma;"
                 " fixed at 0",
                 "gamma",
                 "holds the whole viscous coefficient",
@@ -192,7 +192,7 @@ def _by_interval(
         if half_width["beta"] * float(np.ptp(root_speed)) > _VAGUE * friction * 2:
             return chosen.without(
                 "beta",
-                "too uncertain to be told from Coulomb friction; merged into tau_c",
+                "too uncertain to be separated from Coulomb friction; merged into tau_c",
                 "tau_c",
                 "holds Coulomb and viscous friction",
             )

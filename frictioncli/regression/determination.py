@@ -30,7 +30,7 @@ _LEAST_SPEED_RATIO = 1.5
 _LEAST_ANGLE_SPAN = 20.0
 """Angles that span less do not tell gravity's amplitude, but its torque there. [deg]"""
 
-_STRAIGHT = "the fall with temperature is too little curved to tell beta from gamma; fixed at 0"
+_STRAIGHT = "the fall with temperature is too weakly curved to separate beta from gamma; fixed at 0"
 
 _LEAST_LOAD_SPREAD = 0.05
 """Spread of the squared load, as a share of its mean, below which its term is Coulomb friction."""
@@ -169,7 +169,7 @@ def _by_excitation(prepared: PreparedJoint) -> tuple[EquationTerms, dict[str, st
         terms = terms.without("gamma")
     low, high = np.quantile(np.abs(equations.velocity), [0.05, 0.95]).tolist()
     if high < _LEAST_SPEED_RATIO * low:
-        reason = f"speeds of {low:.3g} to {high:.3g} deg/s do not tell viscous friction"
+        reason = f"speeds of {low:.3g} to {high:.3g} deg/s do not determine viscous friction"
         undetermined["beta"] = f"{reason}; merged into tau_c"
         terms = terms.without("beta")
     if not terms.offset:

@@ -202,12 +202,12 @@ def _against(cause: CauseRecord, document: DiagnosisDocument) -> list[str]:
     if cause.holds_on_new_run is None:
         found.append("It could not be tested on a run that the diagnosis has not seen.")
     elif not cause.holds_on_new_run:
-        found.append(f"It is not there on the run kept out ({document.held_out}).")
+        found.append(f"It does not appear on the held-out run ({document.held_out}).")
     if doubt := poorly_determined(dict(cause.parameters)):
         found.append(f"Its parameters are not all well determined: {doubt}.")
     gain = document.gain
     if gain is not None and gain.ci95[0] <= 0:
-        found.append("The extended model is not surely better than the base model.")
+        found.append("The extended model is not clearly better than the base model.")
     left = document.remainder
     if left is not None and left.channel == cause.channel:
         found.append(
@@ -250,11 +250,11 @@ def gain_sentence(document: DiagnosisDocument, unit: str) -> str:
     )
     if gain.basis != "new_run":
         further = "a second" if document.held_out is None else "another"
-        text += f" A gain on its own training data is optimistic; log {further} run to know it."
+        text += f" A gain on its own training data is optimistic; log {further} run to measure it."
     if high < 0:
         text += " The extended model is worse than the base model: do not use it."
     elif low <= 0:
-        text += " The interval holds zero: it is not sure that the extended model is better."
+        text += " The interval includes zero: the extended model may be no better."
     return text
 
 

@@ -131,8 +131,8 @@ def time_rating(counts: IngestCounts) -> QualityRating:
         return QualityRating(
             level=POOR,
             name="Time",
-            reason="The logs do not tell when each recording began, so effects of time and of"
-            " temperature history cannot be judged. A manifest.csv tells it.",
+            reason="The logs do not say when each recording began, so effects of time and of"
+            " temperature history cannot be judged. A manifest.csv can say it.",
         )
     if counts.warnings:
         return QualityRating(
@@ -157,8 +157,8 @@ def runs_rating(results: JointResults) -> QualityRating:
     return QualityRating(
         level=FAIR,
         name="Runs",
-        reason="One run only: a slow drift cannot be told from an offset, and no other run is left"
-        " to try the model on.",
+        reason="One run only: a slow drift cannot be told apart from an offset, and no other run is"
+        " left to try the model on.",
     )
 
 
@@ -204,7 +204,7 @@ def temperature_rating(results: JointResults) -> QualityRating:
         return QualityRating(
             level=POOR,
             name="Temperature",
-            reason=f"{fault}: what temperature does to friction stays unknown.",
+            reason=f"{fault}: the effect of temperature on friction stays unknown.",
         )
     span = float(warm.max() - warm.min())
     found = [phase for phase in PHASES if (results.thermal_pairs["phase"] == phase).any()]
@@ -237,8 +237,8 @@ def parameters_rating(results: JointResults) -> QualityRating:
         return QualityRating(
             level=FAIR,
             name="Parameters",
-            reason=f"All determined, but {list_text(imprecise)} only to within more than"
-            f" ±{100 * _IMPRECISE:.0f} %.",
+            reason=f"All determined, but {list_text(imprecise)} with an interval wider"
+            f" than ±{100 * _IMPRECISE:.0f} %.",
         )
     return QualityRating(
         level=GOOD,

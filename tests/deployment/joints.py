@@ -86,7 +86,7 @@ def extended(terms=TERMS, gear=LAG):
         parameters=replace(PUBLISHED, tau_c=9.9, alpha=0.0015, beta=3.0, gamma=20.0, delta=0.07),
         gear=gear,
         terms=terms,
-        left_out={"drift": "goes with the time since the first log"},
+        left_out={"drift": "depends on the time since the first log"},
     )
 
 

@@ -127,7 +127,7 @@ def test_effects_that_need_the_past_are_named_and_left_out():
     )
     assert [term.effect.name for term in extension.terms] == ["load_linear"]
     assert extension.left_out == {
-        "drift": "goes with the time since the first log",
+        "drift": "depends on the time since the first log",
         "position_ripple": "goes with the angle",
         "dress_pack": "shows in the load, not in friction",
     }

@@ -194,7 +194,7 @@ def test_structure_without_a_name_gets_blocks_that_spread_over_all_inputs(copy):
 @pytest.mark.parametrize(
     ("asked", "reason"),
     [
-        ({}, "nothing tells what is safe"),
+        ({}, "nothing says what is safe"),
         ({"low": 0.0, "high": 5.0, "max_speed": 50.0}, "at least"),
         ({"low": 0.0, "high": 90.0, "max_speed": 150.0, "rated_speed": 100.0}, "at most"),
     ],

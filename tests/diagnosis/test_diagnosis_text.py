@@ -59,7 +59,7 @@ def test_what_is_not_named_is_listed_with_its_reason():
     said = lines(sets=[["stribeck"]], visible=(small,), margin=0.23)
     assert said[-3] == (
         "not named: drift, 0.12 N·m RMS in the friction, chance 1e−09; smaller than what is worth"
-        " a name: below 0.23 N·m"
+        " naming: below 0.23 N·m"
     )
     assert said[-2] == "Sizes below 0.23 N·m are not named (--margin)."
     assert "no cause is named" in lines(verdict="no_evidence", visible=(small,))
@@ -97,6 +97,8 @@ def test_detectable_sizes_are_said():
 def test_what_the_base_takes_entirely_is_said():
     why = {"run_in": TAKEN_BY_BASE, "load_linear": LACKING, "velocity_exponent": TAKEN_BY_BASE}
     sizes = {"stribeck": 0.2} | dict.fromkeys(why)
-    said = "Cannot be told from the base on these data: run in and velocity exponent."
+    said = (
+        "Cannot be distinguished from the base model with these data: run in and velocity exponent."
+    )
     assert lines(detectable=sizes, undetectable=why)[-1].endswith(f"N·m (stribeck). {said}")
     assert lines(detectable=dict.fromkeys(why), undetectable=why)[-1].endswith(f"effects. {said}")

@@ -95,7 +95,7 @@ def test_ctrl_c_leaves_what_is_done_and_the_next_call_goes_on(undiagnosed, logs,
     os.killpg(process.pid, signal.SIGINT)
     _, errors = process.communicate(timeout=300)
     assert process.returncode == 130
-    assert errors == "interrupted; joints that are done stay done: call again to go on\n"
+    assert errors == "interrupted; finished joints are kept: run the command again to continue\n"
     assert not (out / "fleet.parquet").exists()
     before = len(done(out))
     result = fleet(logs, "-w", out, "--workers", 1, *WITHOUT)

@@ -156,7 +156,9 @@ DIAGNOSIS_DOCUMENT = {
         "noise_floor": 0.7,
     },
     "detectable": {"stribeck": 0.4, "run_in": None, "payload_change": None},
-    "undetectable": {"payload_change": "cannot be told from the base on these data"},
+    "undetectable": {
+        "payload_change": "cannot be distinguished from the base model with these data"
+    },
     "simulation": {
         "rmse": 2.1,
         "worst": [

@@ -86,14 +86,17 @@ def test_section_says_what_was_found(diagnosed):
     assert (seen.effects, seen.kind, seen.p_value) == ("inertia", "load", "below 1e−300")
     assert seen.size == "0.05 N·m (0.03 to 0.07) RMS in the friction"
     assert seen.standing == (
-        "smaller than what is worth a name: the base leaves 0.05 N·m, less than 0.10 N·m"
+        "smaller than what is worth naming: the base leaves 0.05 N·m, less than 0.10 N·m"
     )
     assert section.margin == "Sizes below 0.10 N·m are not named (--margin)."
     assert "run day-2, which the diagnosis has not seen" in section.gain
     assert "50 % less (95 % interval: 40 % less to 60 % less)" in section.gain
     assert section.detectable.rows[0][2] == "0.40"
     assert section.detectable.rows[1][2] == UNDETECTABLE
-    assert section.detectable.rows[2][2] == "cannot be told from the base on these data"
+    assert (
+        section.detectable.rows[2][2]
+        == "cannot be distinguished from the base model with these data"
+    )
     assert section.worst.rows[0] == (
         "temperature 25.0 to 31.0 °C",
         "rising",
@@ -122,7 +125,7 @@ def test_a_gain_that_is_none_is_said_to_be_none():
     assert "30 % more" in sentence(**worse)
     assert "worse than the base model" in sentence(**worse)
     unsure = {"reduction": -0.3, "ci95": (-0.5, 0.1)}
-    assert "The interval holds zero" in sentence(**unsure)
+    assert "The interval includes zero" in sentence(**unsure)
     unsure |= {"basis": "within_run"}
     assert "optimistic" in sentence(**unsure)
     assert " A " in sentence(**unsure)

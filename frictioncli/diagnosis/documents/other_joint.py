@@ -20,7 +20,7 @@ from frictioncli.wording import count_text, list_text, number_text, thousands_te
 
 _CLAIM = (
     "While another joint moves, its inertia and the weight that it carries load this joint, too:"
-    " that is no friction, and no load that comes back with the angle."
+    " that is neither friction nor a load that depends on the angle."
 )
 _EXPERIMENT = (
     "Let the other joints stand while this one moves: begin the log when they have arrived, or move"

@@ -9,7 +9,7 @@ from frictioncli.wording import in_words, list_text, number_text, quantity_text
 _STANDING = {
     "named": "named",
     "visible": "detectable, but not named",
-    "negligible": "smaller than what is worth a name",
+    "negligible": "smaller than what is worth naming",
     "undetermined": "its size is not known well enough",
 }
 

@@ -17,7 +17,7 @@ _FORM = 0.05
 """Standard deviation of what the form of an effect misses, relative to its size: no joint follows
 the equation of an entry exactly, nor does the base take as much of it as of that."""
 
-TAKEN_BY_BASE = "cannot be told from the base on these data"
+TAKEN_BY_BASE = "cannot be distinguished from the base model with these data"
 """Reason why an effect has no detectable size: larger than all friction it could not be named."""
 
 LACKING = "these data lack what it needs"

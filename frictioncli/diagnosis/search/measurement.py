@@ -73,7 +73,7 @@ def corrected_without_name(
 ) -> tuple[Cause, ...]:
     """Return effects of the measurement that are corrected though they are not named.
 
-    They may be smaller than what is worth a name, and a prediction without them is worse. Without
+    They may be smaller than what is worth naming, and a prediction without them is worse. Without
     causes there is no extended model that could correct them.
 
     Parameters

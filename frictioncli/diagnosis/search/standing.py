@@ -138,7 +138,7 @@ def _impossible(cause: Cause, problem: Problem) -> str:
     if reason:
         return reason
     if cause.shown < _SHOWN:
-        return "the residuals do not show it at face value: something else would have to cancel it"
+        return "the residuals alone do not show it: another effect would have to cancel it"
     if not errors.any():
         return "its coefficients lie on the bounds of what is physically possible"
     if len(errors) == 1 and abs(cause.fit.coefficients[0]) <= _Z95 * errors[0]:

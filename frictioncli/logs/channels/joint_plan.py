@@ -106,8 +106,8 @@ def plan_joint(
         if without_gear is None:
             return Refusal(
                 "no_gear_ratio",
-                f"{channels.position.name} is the motor's position and nothing tells the gear"
-                " ratio; give it with --gear-ratio or [joint] gear_ratio in --map",
+                f"{channels.position.name} is the motor's position and nothing determines the"
+                " gear ratio; give it with --gear-ratio or [joint] gear_ratio in --map",
             )
         channels, motion = without_gear
     found = motion.units
@@ -222,7 +222,7 @@ def _without_gear(
         motion = JointMotion(swapped, np.inf, motion.units.position)
     if velocity is not None and velocity.meaning.side == names.MOTOR_SIDE:
         remarks.notes.append(
-            f"{velocity.name} is not used, as nothing tells the gear ratio: velocity is"
+            f"{velocity.name} is not used, as nothing determines the gear ratio: velocity is"
             " differentiated from position"
         )
         channels = replace(channels, velocity=None)

@@ -232,7 +232,7 @@ def _remark_velocity(
         remarks.notes.append(f"{velocity.name} {says}, {found.evidence}: read as {found.velocity}")
     if found.reversed_velocity:
         remarks.warnings.append(
-            f"{velocity.name} has the sign opposite to the change of position: turned round"
+            f"{velocity.name} has the sign opposite to the change of position: sign reversed"
         )
 
 
