@@ -52,7 +52,7 @@ _REASONS = {
     "rest_recovery": "depends on the rests between the log's series",
     "step_change": "came and went with the hours of the log",
     "reversal_transient": "depends on the angle since the last reversal",
-    "position_ripple": "goes with the angle",
+    "position_ripple": "depends on the angle",
     "inertia": "depends on acceleration, and is not friction",
 }
 _MEASUREMENT_REASON = "is a property of the log, not of the joint"

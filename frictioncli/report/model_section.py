@@ -103,7 +103,7 @@ def _values(effect: EffectRecord) -> list[tuple[str, str, str]]:
 
 def _term(effect: EffectRecord) -> tuple[str, str, str]:
     values = "; ".join(
-        f"{in_words(name)} {value} {unit if unit != '1' else ''}".rstrip()
+        f"{in_words(name)} {number_text(float(value), 4)} {unit if unit != '1' else ''}".rstrip()
         for name, value, unit in _values(effect)
     )
     return in_words(effect.name), effect.equation, values

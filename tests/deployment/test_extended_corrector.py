@@ -128,7 +128,7 @@ def test_effects_that_need_the_past_are_named_and_left_out():
     assert [term.effect.name for term in extension.terms] == ["load_linear"]
     assert extension.left_out == {
         "drift": "depends on the time since the first log",
-        "position_ripple": "goes with the angle",
+        "position_ripple": "depends on the angle",
         "dress_pack": "shows in the load, not in friction",
     }
     assert deployable_extension(two_days(), model_with(), None) is None

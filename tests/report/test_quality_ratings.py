@@ -95,7 +95,7 @@ def test_parameters(two_runs, without_temperature):
     model = two_runs.model
     rough = replace(model, parameters=dict(model.parameters) | {"tau_c": wide})
     rating = parameters_rating(replace(two_runs, model=rough))
-    assert (rating.level, "but τc only" in rating.reason) == (FAIR, True)
+    assert (rating.level, "but τc with an interval wider" in rating.reason) == (FAIR, True)
     rating = parameters_rating(without_temperature)
     assert (rating.level, rating.reason) == (POOR, "The data do not determine γ and δ.")
 
