@@ -8,8 +8,13 @@ from frictioncli.deployment.deployed_model import DeployedModel, no_correction_r
 from frictioncli.deployment.document import deployed_document
 from frictioncli.deployment.lookup_table import csv_text, lookup_table
 from frictioncli.deployment.operating_conditions import operating_conditions
+from frictioncli.deployment.polynomial_damping import polynomial_friction
 from frictioncli.deployment.settings import ExportSettings
-from frictioncli.deployment.simplified_friction import SimplifiedFriction, simplified_friction
+from frictioncli.deployment.simplified_friction import (
+    SimplifiedFriction,
+    simplified_friction,
+    to_newton_metres,
+)
 from frictioncli.deployment.xml_forms import mjcf_text, urdf_text
 from frictioncli.documents import to_json
 from frictioncli.model.friction import FORM
@@ -82,6 +87,12 @@ def _as_urdf(joint: DeployedModel, settings: ExportSettings) -> tuple[str, tuple
 
 def _as_mjcf(joint: DeployedModel, settings: ExportSettings) -> tuple[str, tuple[str, ...]]:
     friction, notes = _simplified(joint, settings)
+    polynomial = polynomial_friction(
+        joint,
+        operating_conditions(joint, settings),
+        to_newton_metres(joint, settings.torque_constant),
+    )
+    notes += () if polynomial is None else (polynomial.describe(),)
     notes += ("no armature: logs at constant speed do not determine the rotor's inertia",)
     remarks = (*_origin(joint), *notes)
     return mjcf_text(friction, f"friction_joint{joint.model.joint}", remarks), notes

@@ -100,7 +100,7 @@ def simplified_friction(
     OptionError
         If the log's torque is not in N·m at the joint and no constant is given.
     """
-    factor = _to_newton_metres(joint, torque_constant)
+    factor = to_newton_metres(joint, torque_constant)
     speed = np.linspace(*conditions.speeds, _POINTS)
 
     def model_torque(load: float, temperature: float) -> Array:
@@ -138,8 +138,21 @@ def simplified_friction(
     )
 
 
-def _to_newton_metres(joint: DeployedModel, torque_constant: float | None) -> float:
-    """Return the torque at the joint [N·m] per unit of the log's torque."""
+def to_newton_metres(joint: DeployedModel, torque_constant: float | None) -> float:
+    """Return the torque at the joint [N·m] per unit of the log's torque.
+
+    Parameters
+    ----------
+    joint : DeployedModel
+        The joint.
+    torque_constant : float or None
+        The value that was given. [N·m/A]
+
+    Raises
+    ------
+    OptionError
+        If it is given without need, or needed and not given.
+    """
     model = joint.model
     found = f"{model.torque_unit} at the {model.torque_side}"
     if found == "N·m at the joint":

@@ -57,14 +57,14 @@
   }
 
   function fill(cell, column, value, row) {
+    if (["number", "count", "interval"].includes(column.kind)) cell.className = "number";
     if (value === null) { cell.textContent = "–"; return; }
     if (column.kind === "spark") spark(cell, value);
-    else if (column.kind === "number") { cell.textContent = number(value); cell.className = "number"; }
-    else if (column.kind === "count") { cell.textContent = value; cell.className = "number"; }
+    else if (column.kind === "number") cell.textContent = number(value);
+    else if (column.kind === "count") cell.textContent = value;
     else if (column.kind === "interval") {
       const [estimate, low, high] = value;
       const digits = Math.max(1 - Math.floor(Math.log10(0.55 * (high - low))), 0);
-      cell.className = "number";
       add(cell, low > 0 || high < 0 ? "b" : "span", change(estimate, digits));
       add(cell, "span", ` (${change(low, digits)} to ${change(high, digits)})`, "fine");
     } else if (column.key === "joint" && row[place.page]) {
@@ -121,7 +121,7 @@
   data.collator = new Intl.Collator("en", { numeric: true });
   for (const column of data.columns) {
     if (!column.title) continue;
-    const head = add(part("heads"), "th", undefined, ["number", "count"].includes(column.kind) ? "number" : "");
+    const head = add(part("heads"), "th", undefined, ["number", "count", "interval"].includes(column.kind) ? "number" : "");
     head.scope = "col";
     const button = add(head, "button", column.title, "sort");
     button.type = "button";

@@ -1,5 +1,6 @@
 """URDF and MJCF load in the real simulators and give there the friction that was promised."""
 
+import re
 import xml.etree.ElementTree as ET
 
 import numpy as np
@@ -48,6 +49,31 @@ def test_mujoco_s_inverse_dynamics_need_the_friction_promised(pendulum):
             mujoco.mj_inverse(model, data)
             assert data.qfrc_inverse[0] == pytest.approx(sign * wanted, rel=1e-4)
     assert model.dof_armature[0] == 0.0
+
+
+def test_the_polynomial_of_mujoco_4_is_nearer_to_the_law():
+    mujoco = pytest.importorskip("mujoco", minversion="4.0")
+    done = export(joint(), ExportSettings(to="mjcf", **AT))
+    (note,) = (note for note in done.notes if note.startswith("MuJoCo 4"))
+    attributes = " ".join(re.findall(r'\w+="[^"]*"', note))
+    model = mujoco.MjModel.from_xml_string(
+        f'<mujoco><worldbody><body><joint axis="0 0 1" {attributes}/>'
+        '<inertial pos="0 0 0" mass="5" diaginertia="5 5 5"/></body></worldbody></mujoco>'
+    )
+    data = mujoco.MjData(model)
+    speeds = np.linspace(2.3, 101.2, 400)
+    missed = []
+    for speed in speeds:
+        data.qvel[0], data.qacc[0] = np.radians(speed), 0.0
+        mujoco.mj_inverse(model, data)
+        law = float(friction_torque(PUBLISHED, speed=speed, **AT))
+        missed.append(data.qfrc_inverse[0] - law)
+    rms = np.sqrt(np.mean(np.square(missed)))
+    stated = float(re.search(r"loses ([\d.]+) N·m", note)[1])
+    assert rms == pytest.approx(stated, rel=0.01)
+    assert rms < 0.3 * np.sqrt(
+        np.mean(np.square(promised(speeds) - friction_torque(PUBLISHED, speed=speeds, **AT)))
+    )
 
 
 @pytest.mark.parametrize("speed", [10.0, 67.5])
