@@ -10,8 +10,8 @@ import json
 from collections.abc import Iterator, Mapping
 from concurrent.futures import Future, ThreadPoolExecutor
 from contextlib import ExitStack, contextmanager
+from dataclasses import replace
 from pathlib import Path
-from types import TracebackType
 from typing import TYPE_CHECKING, Any, Self
 
 import pyarrow as pa
@@ -116,12 +116,7 @@ class TableWriter:
         """Finish the file; leaving the block then has no further effect."""
         self.__exit__(None, None, None)
 
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        trace: TracebackType | None,
-    ) -> None:
+    def __exit__(self, kind: object, error: BaseException | None, trace: object) -> None:
         with self._stack:
             if error is not None:
                 raise error
@@ -239,8 +234,8 @@ def read(path: Path, table: Table) -> "pd.DataFrame":
         If the file is missing, is no Parquet file, or lacks a column.
     """
     with _opened(path, table) as file:
-        present = [name for name in table.names if name in file.schema_arrow.names]
-        frame = file.read(columns=present).to_pandas()
+        present = _present(table, file.schema_arrow)
+        frame = _conformed(file.read(columns=list(present.names)), present, path).to_pandas()
     for column in table.columns:
         if column.name not in frame:
             frame[column.name] = pa.nulls(len(frame), pa.float64()).to_pandas()
@@ -260,24 +255,26 @@ def batches(path: Path, table: Table, rows: int = _BATCH_ROWS) -> Iterator[pa.Re
     for part in sorted(path.glob("*.parquet")) if path.is_dir() else [path]:
         for groups in row_groups(part):
             with _opened(part, table, groups) as file:
-                present = [name for name in table.names if name in file.schema_arrow.names]
+                present = _present(table, file.schema_arrow).names
                 # passing columns to other threads costs half as much as decoding them
-                for batch in file.iter_batches(rows, columns=present, use_threads=False):
-                    yield batch if _conforms(batch, table) else _converted(batch, table, part)
+                for batch in file.iter_batches(rows, columns=list(present), use_threads=False):
+                    if not _conforms(batch, table):
+                        batch = _conformed(batch, table, part).combine_chunks().to_batches()[0]
+                    yield batch
 
 
 def _conforms(batch: pa.RecordBatch, table: Table) -> bool:
-    expected = {column.name: column for column in table.columns}
-    return all(
-        values.type.equals(expected[name].type)
-        and (expected[name].nullable or not values.null_count)
-        for name, values in zip(batch.schema.names, batch.columns, strict=True)
-    )
+    columns = ((one, batch.column(one.name)) for one in _present(table, batch.schema).columns)
+    return all(v.type.equals(one.type) and (one.nullable or not v.null_count) for one, v in columns)
 
 
-def _converted(batch: pa.RecordBatch, table: Table, path: Path) -> pa.RecordBatch:
+def _present(table: Table, schema: pa.Schema) -> Table:
+    return replace(table, columns=tuple(c for c in table.columns if c.name in schema.names))
+
+
+def _conformed(rows: pa.RecordBatch | pa.Table, table: Table, path: Path) -> pa.Table:
     try:
-        return conform(batch, table, bare_schema(table)).combine_chunks().to_batches()[0]
+        return conform(rows, table, bare_schema(table))
     except TableError as error:
         raise TableError(f"{path}: {error}") from error
 

@@ -4,6 +4,8 @@ Heavy libraries are imported inside the commands, so that ``--help`` answers at 
 """
 
 import os
+import sys
+import warnings
 
 from frictioncli.errors import FrictionError
 
@@ -15,6 +17,9 @@ def main() -> None:
     from frictioncli.cli.commands import app
     from frictioncli.cli.terminal import say
 
+    if not sys.warnoptions:
+        # a library's remark on damaged input means nothing to the user; `python -W` shows it
+        warnings.simplefilter("ignore")
     try:
         app()
     except FrictionError as fault:

@@ -108,7 +108,9 @@ def _run_joint(task: JointTask) -> JointOutcome:
     try:
         runs = task.logs.runs()
         settings = _joint_settings(task)
-        inputs = _log_hashes(runs, settings)
+        files = _log_files(runs, settings)
+        states = _states(files)
+        inputs = _hashes(files)
         key = _key(inputs, settings_document(settings, report=task.report))
         with locked(task.work):
             record = read_record(task.work)
@@ -116,6 +118,7 @@ def _run_joint(task: JointTask) -> JointOutcome:
                 return _outcome(task, UNCHANGED, record.row)
             reset_folder(task.work, _status_columns(task, FAILED, "not finished"))
             left_out = _run_stages(task, runs, settings)
+            _check_unchanged(files, states)
             row = _status_columns(task, DONE, left_out) | {"runs": len(runs)} | table_row(task.work)
             row["inputs_sha256"] = _digest(inputs)
             outputs = output_digests(task.work)
@@ -152,7 +155,7 @@ def record_unworked(task: JointTask, message: str) -> JointOutcome:
             record = read_record(task.work)
             if record is not None and record.key is not None:
                 settings = _joint_settings(task)
-                inputs = _log_hashes(task.logs.runs(), settings)
+                inputs = _hashes(_log_files(task.logs.runs(), settings))
                 key = _key(inputs, settings_document(settings, report=task.report))
                 if _is_whole(task.work, record, key):
                     return _outcome(task, DONE, record.row)
@@ -239,21 +242,42 @@ def _joint_settings(task: JointTask) -> RunSettings:
     return replace(task.settings, ingest=ingest)
 
 
-def _log_hashes(runs: Mapping[str, Path], settings: RunSettings) -> dict[str, str]:
-    """Return the SHA-256 of all files of all runs and of the mapping file, by name."""
-    hashes: dict[str, str] = {}
+def _log_files(runs: Mapping[str, Path], settings: RunSettings) -> dict[str, Path]:
+    """Return all files of all runs and the mapping file, by name."""
+    found: dict[str, Path] = {}
     for name, path in runs.items():
         if not path.exists():
             raise LogError(f"{path}: no such file or folder; expected the logs of run {name}")
         files = sorted(p for p in path.rglob("*") if p.is_file()) if path.is_dir() else [path]
         base = path if path.is_dir() else path.parent
-        hashes |= {f"{name}/{file.relative_to(base).as_posix()}": sha256(file) for file in files}
+        found |= {f"{name}/{file.relative_to(base).as_posix()}": file for file in files}
     map_file = settings.ingest.map_file
     if map_file is not None:
         if not map_file.is_file():
             raise LogError(f"{map_file}: no such file; expected a mapping file")
-        hashes[map_file.name] = sha256(map_file)
-    return hashes
+        found[map_file.name] = map_file
+    return found
+
+
+def _hashes(files: Mapping[str, Path]) -> dict[str, str]:
+    return {name: sha256(file) for name, file in files.items()}
+
+
+def _states(files: Mapping[str, Path]) -> dict[str, tuple[int, int, int]]:
+    """Return what changes with a file: the file itself, its size, and when it was written."""
+    found = {name: file.stat() for name, file in files.items()}
+    return {name: (one.st_ino, one.st_size, one.st_mtime_ns) for name, one in found.items()}
+
+
+def _check_unchanged(files: Mapping[str, Path], states: Mapping[str, tuple[int, int, int]]) -> None:
+    """Raise if a file is not what it was: the outputs would be of other logs than the record."""
+    now = _states(files)
+    changed = [str(files[name]) for name in files if now[name] != states[name]]
+    if changed:
+        raise LogError(
+            f"{changed[0]} was written while it was read ({len(changed)} of {len(files)} files);"
+            " call again when the logs are complete"
+        )
 
 
 def _key(inputs: Mapping[str, str], settings: Mapping[str, Any]) -> str:

@@ -7,8 +7,10 @@ process that started them closes, whatever has ended it.
 import multiprocessing
 import os
 import signal
+import sys
 import threading
 import time
+import warnings
 from collections.abc import Generator, Iterable, Iterator
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass
@@ -174,6 +176,8 @@ def _interrupt_held() -> Iterator[None]:
 
 def _work(connection: Connection) -> None:
     """Work on joints until the connection closes, and end at once when it does."""
+    if not sys.warnoptions:
+        warnings.simplefilter("ignore")
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     tasks: SimpleQueue[JointTask] = SimpleQueue()
 

@@ -149,7 +149,10 @@ class SynthesisSettings:
             (self.joint >= 1, f"joint is {self.joint}, expected 1 or more"),
             (self.sign in (-1, 1), f"sign is {self.sign}, expected 1 or -1"),
             (self.payload >= 0.0, f"payload is {self.payload} kg, expected 0 or more"),
-            (self.noise_scale >= 0.0, f"noise scale is {self.noise_scale}, expected 0 or more"),
+            (
+                0.0 <= self.noise_scale <= 1e6,
+                f"noise scale is {self.noise_scale}, expected 0 to 1e6",
+            ),
             (1 <= self.thin <= 20, f"thin is {self.thin}, expected 1 to 20"),
             (
                 self.lowest < self.highest,

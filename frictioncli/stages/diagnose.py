@@ -47,6 +47,8 @@ def diagnose(work: Path, settings: DiagnosisSettings | None = None) -> StageResu
     for model in read_models(work / MODEL):
         rows = torques[torques["joint"] == model.joint]
         try:
+            if rows.empty:
+                raise NotEnoughData(f"{work / TORQUES} has no rows of joint {model.joint}")
             diagnosis = diagnose_joint(
                 rows, model.temperature, unit, settings, ramps=ramps.get(model.joint)
             )
@@ -58,7 +60,7 @@ def diagnose(work: Path, settings: DiagnosisSettings | None = None) -> StageResu
             diagnoses[model.joint] = with_other_joint(found, moving)
             extended[model.joint] = extended_document(diagnosis, model)
     if not diagnoses:
-        raise NotEnoughData("; ".join(faults))
+        raise NotEnoughData("; ".join(faults) or f"{work / MODEL} has no models")
     provenance = Provenance("diagnose", asdict(settings), input_hashes(inputs))
     main_joint = max(extended, key=lambda joint: extended[joint].n_pairs)
     write_joints(work / DIAGNOSIS, diagnoses, main_joint, provenance)

@@ -42,6 +42,6 @@ def fit(work: Path, settings: FitSettings | None = None) -> StageResult:
         except NotEnoughData as fault:
             faults.append(str(fault))
     if not models:
-        raise NotEnoughData("; ".join(faults))
+        raise NotEnoughData("; ".join(faults) or f"{source} has no rows")
     write_models(work / MODEL, models, Provenance("fit", asdict(settings), input_hashes([source])))
     return StageResult(work / MODEL, "\n".join([*(model.table() for model in models), *faults]))

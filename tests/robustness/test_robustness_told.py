@@ -1,6 +1,8 @@
 """Damaged maps, manifests, tables of contents and options: one message, no traceback."""
 
 import itertools
+import subprocess
+import sys
 from contextlib import suppress
 from pathlib import Path
 
@@ -16,6 +18,7 @@ from frictioncli.logs.ingest import IngestSettings, ingest
 from frictioncli.logs.runs.discovery import natural_key
 from frictioncli.logs.runs.manifest import read_manifest
 from tests.command_line import invoke
+from tests.fleet.fleets import ENVIRONMENT
 
 HEADER = "Zeit[sec];AxisPos_Act2[deg];GearTorq_Act2[Nm]\n"
 ROWS = "".join(f"{i * 0.012:.3f};{i * 0.1:.4f};{i % 7 * 0.3:.3f}\n" for i in range(300))
@@ -215,3 +218,28 @@ def test_the_fast_parser_takes_only_what_it_can_tell_apart(sign):
     for pair in ((sign, ord(".")), (ord(";"), sign)):
         with pytest.raises(ValueError, match="expected characters"):
             parser.columns(b"1;2\n", *pair, np.ones(2, np.uint8).data, np.empty((2, 1)).data)
+
+
+def test_warnings_of_libraries_do_not_reach_the_terminal(tmp_path):
+    """As a user calls it: without the tests' filter of warnings."""
+    call = (
+        "import warnings; from frictioncli.cli import main; from frictioncli.logs import ingest\n"
+        "ingest.discover = lambda *_, **__: warnings.warn('from a library', RuntimeWarning) or ()\n"
+        "main()"
+    )
+    words = ["ingest", str(tmp_path), "-w", str(tmp_path / "work")]
+
+    def said(*python):
+        done = subprocess.run(
+            [sys.executable, *python, "-c", call, *words],
+            env=ENVIRONMENT,
+            capture_output=True,
+            text=True,
+            check=False,
+        )
+        assert done.returncode == 2
+        return done.stderr
+
+    assert "from a library" not in said()
+    assert "no usable log" in said()
+    assert "from a library" in said("-W", "default")

@@ -1,28 +1,37 @@
-"""Damaged logs by the hundred thousand: each is read or refused, and what is read is true.
+"""Damaged inputs by the hundred thousand: each is read or refused, and what is read is true.
 
-Input ``n`` is made from the number n alone (:mod:`tests.studies.fuzz_damage`). Counts are kept in
-``build/fuzz.json``; a second call goes on where the first one stopped, and begins anew when the
-program has changed. Writes its table into docs/robustness.md.
+Input ``n`` of a form is made from the number n alone (:mod:`tests.studies.fuzz_damage` for logs,
+:mod:`tests.studies.fuzz_forms` for all others). Counts are kept in ``build/fuzz*.json``; a second
+call goes on where the first one stopped, and begins anew when the program has changed. Inputs that
+something was found with are kept as files and tried first. Writes its tables into
+docs/robustness.md.
 
-Usage: python -m tests.studies.fuzz [--inputs N] [--minutes M] [--processes P] [--only NUMBER]
+Usage: python -m tests.studies.fuzz [FORM...] [--inputs N] [--minutes M] [--processes P]
+       [--only NUMBER]
+
+``--inputs`` and ``--minutes`` hold for each form; without a form all are tried.
 """
 
 import argparse
 import hashlib
 import json
 import os
+import tempfile
 import time
 from collections import Counter
 from dataclasses import dataclass, field
 from itertools import chain
 from pathlib import Path
 
+from tests.studies.fuzz_corpus import corpus, tried_again
+from tests.studies.fuzz_forms import FORMS, prepare
 from tests.studies.fuzz_layouts import layouts
 from tests.studies.fuzz_process import GOOD, Finding, examine_here, examined
 from tests.studies.robustness_page import put
 
 ROOT = Path(__file__).parents[2]
-STORE = ROOT / "build" / "fuzz.json"
+LOGS = "logs"
+ALL = (LOGS, *FORMS)
 ROUND = 1_000
 INPUTS = 100_000
 
@@ -36,32 +45,37 @@ class Tally:
     findings: list[Finding] = field(default_factory=list)
 
 
-def sources() -> str:
-    """Return what the results depend on: all that reads and inspects logs, and the study."""
+def store_of(form: str) -> Path:
+    """Return the file with the counts of a form."""
+    return ROOT / "build" / ("fuzz.json" if form == LOGS else f"fuzz-{form}.json")
+
+
+def sources(form: str) -> str:
+    """Return what the results depend on: of logs, all that reads and inspects; and the study."""
     digest = hashlib.sha256()
     package = ROOT / "frictioncli"
     files = [*package.glob("*.py"), *(ROOT / "tests" / "studies").glob("fuzz*.py")]
-    for part in ("logs", "inspection", "pairs"):
+    for part in ("logs", "inspection", "pairs") if form == LOGS else ("",):
         files += chain((package / part).rglob("*.py"), (package / part).rglob("*.c"))
     for path in sorted(files):
         digest.update(path.read_bytes())
     return digest.hexdigest()
 
 
-def stored(digest: str) -> Tally:
-    """Return the tally of these sources; an empty one where there is none."""
-    if not STORE.exists():
+def stored(form: str, digest: str | None = None) -> Tally:
+    """Return the tally of a form, an empty one where there is none of these sources."""
+    if not store_of(form).exists():
         return Tally()
-    kept = json.loads(STORE.read_text(encoding="utf-8"))
-    if kept["sources"] != digest:
+    kept = json.loads(store_of(form).read_text(encoding="utf-8"))
+    if digest is not None and kept["sources"] != digest:
         return Tally()
     counts = Counter({(layout, outcome): n for layout, outcome, n in kept["counts"]})
     return Tally(kept["inputs"], counts, [Finding(*one) for one in kept["findings"]])
 
 
-def store(tally: Tally, digest: str) -> None:
+def store(form: str, tally: Tally, digest: str) -> None:
     """Keep the tally."""
-    STORE.parent.mkdir(exist_ok=True)
+    store_of(form).parent.mkdir(exist_ok=True)
     counts = [[*key, n] for key, n in sorted(tally.counts.items())]
     kept = {
         "sources": digest,
@@ -69,7 +83,7 @@ def store(tally: Tally, digest: str) -> None:
         "counts": counts,
         "findings": [[f.number, f.layout, f.damage, f.outcome, f.text] for f in tally.findings],
     }
-    STORE.write_text(json.dumps(kept, indent=1), encoding="utf-8")
+    store_of(form).write_text(json.dumps(kept, indent=1), encoding="utf-8")
 
 
 def table(tally: Tally) -> str:
@@ -90,32 +104,62 @@ def table(tally: Tally) -> str:
     return "\n".join(lines)
 
 
+def forms_table() -> str:
+    """Return the counts of all forms but logs as Markdown."""
+    lines = ["| form | inputs | read or done | refused | findings |", "|---|---:|---:|---:|---:|"]
+    for form in FORMS:
+        tally = stored(form)
+        good = [tally.counts[form, outcome] for outcome in GOOD]
+        cells = [tally.inputs, *good, len(tally.findings)]
+        lines.append(f"| {form} | " + " | ".join(f"{count:,}" for count in cells) + " |")
+    return "\n".join(lines)
+
+
+def tried(form: str, inputs: int, minutes: float, processes: int, base: Path) -> Tally:
+    """Try inputs of a form until they or the minutes are used up."""
+    digest = sources(form)
+    tally = stored(form, digest)
+    until = time.monotonic() + 60 * minutes
+    while tally.inputs < inputs and time.monotonic() < until:
+        end = min(tally.inputs + (ROUND if form == LOGS else ROUND // 10), inputs)
+        for one in examined(range(tally.inputs, end), processes, form, base):
+            tally.counts[one.layout, one.outcome] += 1
+            if one.outcome not in GOOD:
+                tally.findings.append(one)
+                print(f"{form} {one.number} {one.damage}: {one.outcome}\n  {one.text[-900:]}")
+        tally.inputs = end
+        store(form, tally, digest)
+        print(f"{form}: {tally.inputs:,} inputs, {len(tally.findings)} findings", flush=True)
+    return tally
+
+
 def main() -> None:
-    """Run until the inputs or the minutes are used up."""
+    """Try what is kept, then every form."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("forms", nargs="*", choices=[*ALL, []], default=ALL)
     parser.add_argument("--inputs", type=int, default=INPUTS)
     parser.add_argument("--minutes", type=float, default=float("inf"))
     parser.add_argument("--processes", type=int, default=os.cpu_count() or 1)
     parser.add_argument("--only", type=int, help="examine one input and show what happens")
     asked = parser.parse_args()
-    if asked.only is not None:
-        print(examine_here(asked.only))
-        return
-    digest = sources()
-    tally = stored(digest)
-    until = time.monotonic() + 60 * asked.minutes
-    while tally.inputs < asked.inputs and time.monotonic() < until:
-        end = min(tally.inputs + ROUND, asked.inputs)
-        for one in examined(range(tally.inputs, end), asked.processes):
-            tally.counts[one.layout, one.outcome] += 1
-            if one.outcome not in GOOD:
-                tally.findings.append(one)
-                print(f"{one.number} {one.layout}, {one.damage}: {one.outcome}\n  {one.text}")
-        tally.inputs = end
-        store(tally, digest)
-        print(f"{tally.inputs:,} inputs, {len(tally.findings)} findings", flush=True)
-    put("fuzz", table(tally))
-    if tally.findings:
+    wrong = [text for text in map(tried_again, corpus()) if text]
+    print(f"{len(corpus())} inputs of former findings, {len(wrong)} findings", *wrong, sep="\n")
+    with tempfile.TemporaryDirectory(prefix="fuzz-base-") as name:
+        base = Path(name)
+        if set(asked.forms) - {LOGS}:
+            prepare(base)
+        if asked.only is not None:
+            for form in asked.forms:
+                print(examine_here(asked.only, form, base))
+            return
+        found = 0
+        for form in asked.forms:
+            tally = tried(form, asked.inputs, asked.minutes, asked.processes, base)
+            found += len(tally.findings)
+            if form == LOGS:
+                put("fuzz", table(tally))
+    put("forms", forms_table())
+    if found or wrong:
         raise SystemExit(1)
 
 

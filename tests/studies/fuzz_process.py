@@ -1,4 +1,4 @@
-"""Processes that examine damaged logs under a limit of memory and time."""
+"""Processes that examine damaged inputs under a limit of memory and time."""
 
 import multiprocessing
 import resource
@@ -11,7 +11,9 @@ from dataclasses import dataclass, replace
 from multiprocessing.connection import Connection, wait
 from pathlib import Path
 
+from tests.studies.fuzz_corpus import keep
 from tests.studies.fuzz_damage import Case, case
+from tests.studies.fuzz_forms import examine
 from tests.studies.fuzz_layouts import layouts
 from tests.studies.fuzz_truth import contradiction
 
@@ -23,7 +25,7 @@ MEMORY = 500
 
 _INSPECTED = 4  # one in so many is inspected too, which takes longer than reading
 _ADDRESSES = 4 << 30
-_SECONDS = 30.0
+_SECONDS = 120.0
 _PROCESSES = multiprocessing.get_context("forkserver")
 _LAYOUTS = layouts()
 # in memory where there is such a folder: waiting for a disk is not what is tried here
@@ -41,13 +43,26 @@ class Finding:
     text: str = ""
 
 
-def examined(numbers: Sequence[int], processes: int) -> Iterator[Finding]:
+def examined(
+    numbers: Sequence[int], processes: int, form: str = "logs", base: Path | None = None
+) -> Iterator[Finding]:
     """Yield what became of each input, as they come.
 
     A process that takes too long over an input is killed, and so is one that took too much memory.
+
+    Parameters
+    ----------
+    numbers : sequence of int
+        The inputs.
+    processes : int
+        How many work at a time.
+    form : str
+        ``logs``, or one of :data:`tests.studies.fuzz_forms.FORMS`.
+    base : Path, optional
+        What inputs of such a form begin with, see :func:`tests.studies.fuzz_forms.prepare`.
     """
     waiting = iter(numbers)
-    workers = [_Worker(waiting) for _ in range(min(processes, len(numbers)))]
+    workers = [_Worker(waiting, form, base) for _ in range(min(processes, len(numbers)))]
     while workers:
         ready = wait([worker.results for worker in workers], timeout=_SECONDS)
         for worker in list(workers):
@@ -61,14 +76,15 @@ def examined(numbers: Sequence[int], processes: int) -> Iterator[Finding]:
 class _Worker:
     """One process and the input that it is at."""
 
-    def __init__(self, numbers: Iterator[int]) -> None:
-        self._numbers = numbers
+    def __init__(self, numbers: Iterator[int], form: str, base: Path | None) -> None:
+        self._numbers, self._form, self._base = numbers, form, base
         self._start()
         self.next()
 
     def _start(self) -> None:
         self.results, theirs = _PROCESSES.Pipe()
-        self._process = _PROCESSES.Process(target=_work, args=(theirs,), daemon=True)
+        what = (theirs, self._form, self._base)
+        self._process = _PROCESSES.Process(target=_work, args=what, daemon=True)
         self._process.start()
         theirs.close()
 
@@ -103,23 +119,33 @@ class _Worker:
         if self._process.is_alive():
             self._process.kill()
         self._start()
+        if found is None and self._form != "logs":
+            return Finding(self._number, self._form, "", outcome)
         one = case(self._number, _LAYOUTS)
         return found or Finding(self._number, one.layout.name, one.damage, outcome)
 
 
-def _work(connection: Connection) -> None:
+def _work(connection: Connection, form: str, base: Path | None) -> None:
     resource.setrlimit(resource.RLIMIT_AS, (_ADDRESSES, _ADDRESSES))
     while (number := connection.recv()) is not None:
-        found = examine_here(number)
-        # this process has done nothing else, so what it took at most is of these inputs
+        found = examine_here(number, form, base)
+        # this process has done nothing else, so what it took at most is of these inputs; pages of
+        # reports take more, whatever the input
         peak = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1000
-        if found.outcome in GOOD and peak > MEMORY:
+        if form == "logs" and found.outcome in GOOD and peak > MEMORY:
             found = replace(found, outcome="memory", text=f"{peak:.0f} MB")
         connection.send(found)
 
 
-def examine_here(number: int) -> Finding:
-    """Examine one input in this process."""
+def examine_here(number: int, form: str = "logs", base: Path | None = None) -> Finding:
+    """Examine one input in this process; parameters as of :func:`examined`."""
+    if form != "logs":
+        assert base is not None
+        with tempfile.TemporaryDirectory(prefix="fuzz-", dir=_DISK) as folder:
+            input_, outcome, text = examine(form, number, Path(folder), base)
+            if outcome not in GOOD:
+                keep(form, number, Path(folder), input_.words)
+        return Finding(number, form, input_.damage, outcome, text)
     one = case(number, _LAYOUTS)
     with tempfile.TemporaryDirectory(prefix="fuzz-", dir=_DISK) as folder:
         outcome, text = _outcome(one, Path(folder), inspected=number % _INSPECTED == 0)

@@ -18,6 +18,7 @@ _MAX_VALUES = 4_000_000
 _MAX_BAD_ROWS = 100_000
 _MAX_BATCHES = 64
 _BATCH_BYTES = 1 << 20
+_LARGEST = 1e100
 _LEAST_MOTION = 0.01
 """Position range above which an axis counts as moving. [raw]"""
 
@@ -101,8 +102,8 @@ def _head(
                 break
             continue
         has_moved = has_moved or moves
-        good = np.isfinite(batch.values[time])
-        kept.append({column: values[good] for column, values in batch.values.items()})
+        good = np.isfinite(_known(batch.values[time]))
+        kept.append({column: _known(values[good]) for column, values in batch.values.items()})
         rows += int(good.sum())
         if rows >= least_rows and has_moved:
             break
@@ -117,6 +118,14 @@ def _readable_batches(source: LogSource, wanted: list[int]) -> Iterator[RawBatch
         yield from source.batches(wanted, _BATCH_BYTES)
 
 
+def _known(values: Array) -> Array:
+    """Return values, NaN for those that measure nothing: sums and squares would be infinite."""
+    if not len(values) or -_LARGEST < values.min() <= values.max() < _LARGEST:
+        return values
+    return np.where(np.abs(values) < _LARGEST, values, np.nan)
+
+
 def _moves(values: Array) -> bool:
+    values = _known(values)
     finite = values[np.isfinite(values)]
     return bool(len(finite)) and float(np.ptp(finite)) > _LEAST_MOTION

@@ -76,15 +76,19 @@ def _window_ratios(motion: RawMotion) -> Array:
     steps = np.diff(motion.time)
     if not np.any(steps > 0):
         return np.empty(0)
-    increments = steps * (motion.velocity[1:] + motion.velocity[:-1]) / 2
-    integral = np.concatenate(([0.0], np.cumsum(increments)))
+    with np.errstate(over="ignore", invalid="ignore"):  # damaged times of 1e300 are left out below
+        increments = steps * (motion.velocity[1:] + motion.velocity[:-1]) / 2
+        integral = np.concatenate(([0.0], np.cumsum(increments)))
     period = float(np.median(steps))
     width = 1 if len(steps) < 200 else 8
-    by_velocity = integral[width:] - integral[:-width]
-    by_position = motion.position[width:] - motion.position[:-width]
-    elapsed = motion.time[width:] - motion.time[:-width]
-    without_gap = (elapsed > 0) & (elapsed < 2 * width * period)
-    moving = np.abs(by_velocity) > 0.3 * np.max(np.abs(by_velocity), initial=0.0)
+    with np.errstate(over="ignore", invalid="ignore"):
+        by_velocity = integral[width:] - integral[:-width]
+        by_position = motion.position[width:] - motion.position[:-width]
+        elapsed = motion.time[width:] - motion.time[:-width]
+    known = np.isfinite(by_velocity) & np.isfinite(by_position)
+    without_gap = known & (elapsed > 0) & (elapsed < 2 * width * period)
+    fastest = np.max(np.abs(by_velocity), initial=0.0, where=known)
+    moving = np.abs(by_velocity) > 0.3 * fastest
     return by_position[without_gap & moving] / by_velocity[without_gap & moving]
 
 

@@ -100,7 +100,8 @@ def plan_log(log: OpenedLog, plans: Iterable[JointPlan]) -> PlannedLog:
         if first is not None:
             finite = first.values[time_column][np.isfinite(first.values[time_column])]
             time = first.values[time_column][np.isfinite(first.values[position_column])]
-    steps = np.diff(np.where(np.isinf(time), np.nan, time))
+    with np.errstate(over="ignore"):
+        steps = np.diff(np.where(np.isinf(time), np.nan, time))
     steps = steps[steps > 0]
     return PlannedLog(
         log,

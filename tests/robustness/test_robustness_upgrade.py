@@ -1,0 +1,56 @@
+"""Work folders that the first version 0.1.0 has made are read, or refused in a sentence.
+
+``data/work-0.1.0.zip`` was made by the program as it was at commit 2832135, from four recordings of
+friction by equation (16) with the parameters of :data:`tests.robustness.runs.TRUTH`.
+"""
+
+import json
+import shutil
+import zipfile
+from pathlib import Path
+
+import pytest
+
+from tests.robustness.runs import TRUTH
+from tests.studies.fuzz_call import call
+
+STORED = Path(__file__).with_name("data") / "work-0.1.0.zip"
+
+
+@pytest.fixture
+def old(tmp_path):
+    with zipfile.ZipFile(STORED) as packed:
+        packed.extractall(tmp_path / "work")
+    return tmp_path / "work"
+
+
+@pytest.mark.parametrize(
+    "words",
+    [
+        *(["pair"], ["separate"], ["fit"], ["simulate"], ["evaluate"], ["export", "--to", "json"]),
+        pytest.param(["diagnose"], marks=pytest.mark.slow),
+        pytest.param(["report"], marks=pytest.mark.slow),
+        pytest.param(["plan"], marks=pytest.mark.slow),
+        *(["simulate", "--extended"], ["compare"]),
+    ],
+    ids=lambda words: " ".join(words),
+)
+def test_every_stage_reads_what_the_first_version_made_or_says_why_not(old, words):
+    arguments = [*words, "-w", str(old)]
+    if words == ["compare"]:
+        shutil.copytree(old, old.with_name("other"))
+        arguments = [*words, str(old), str(old.with_name("other")), "-w", str(old.with_name("out"))]
+    status, said = call(arguments)
+    assert status in (0, 2), said
+    if status == 2:
+        assert 1 <= len(said.splitlines()) <= 2
+        assert any(word in said for word in ("again", "expected", "once")), said
+
+
+def test_its_torques_give_the_parameters_that_they_were_made_with(old):
+    status, said = call(["fit", "-w", str(old)])
+    assert status == 0, said
+    model = json.loads((old / "model.json").read_text(encoding="utf-8"))
+    for name in ("tau_c", "beta", "gamma", "delta"):
+        low, high = model["parameters"][name]["ci95"]
+        assert low <= TRUTH[name] <= high

@@ -1,0 +1,223 @@
+"""A fleet of small joints under everything at once; it must end as if nothing had happened.
+
+Call after call of ``fleet`` on one folder is disturbed: workers and the call itself are killed,
+files may not grow beyond a limit as on a full disk, logs are overwritten while they are read and
+put back, outputs are damaged, and on Dask the scheduler is killed. After each call every output of
+a joint that is done is compared with that of an undisturbed call; the last call, left alone, must
+give all of its bytes. Writes its counts into docs/robustness.md.
+
+Usage: python -m tests.studies.soak [JOINTS] [--calls N] [--minutes M] [--seed SEED]
+"""
+
+import argparse
+import os
+import random
+import resource
+import shutil
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+from collections import Counter
+from contextlib import ExitStack, suppress
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from tests.fleet.clusters import scheduler, worker
+from tests.fleet.fleets import ENVIRONMENT, PROGRAM, WITHOUT, all_records, children, contents
+from tests.fleet.joints import Joint, write_joint
+from tests.studies.robustness_page import put
+
+WORKERS = 2
+
+
+@dataclass(slots=True)
+class Soak:
+    """The world of a soak.
+
+    Attributes
+    ----------
+    folder : Path
+        Its place: ``logs``, ``calm`` with the outputs of an undisturbed call, ``out``.
+    draw : random.Random
+        Where, when and what.
+    counts : Counter of str
+        What was done.
+    whole : dict of str to bytes
+        All files that the undisturbed call made.
+    seconds, pause : float
+        What that took, and the longest time between two disturbances. [s]
+    """
+
+    folder: Path
+    draw: random.Random
+    counts: Counter[str] = field(default_factory=Counter)
+    whole: dict[str, bytes] = field(default_factory=dict)
+    seconds: float = 0.0
+    pause: float = 0.0
+
+    def build(self, joints: int) -> None:
+        """Write the logs, and run the undisturbed call."""
+        for number in range(joints):
+            place = self.folder / "logs" / f"robot={number // 6:03d}" / f"joint={number % 6 + 1}"
+            write_joint(place, Joint(seed=number, runs=1, cycle=4), axis=number % 6 + 1)
+        began = time.monotonic()
+        status, said = self._ended(self._started("calm"))
+        assert (status, f"{joints} done, 0 failed" in said) == (0, True), said
+        self.seconds = time.monotonic() - began
+        self.pause = 4 * WORKERS * self.seconds / joints
+        self.whole = contents(self.folder / "calm")
+
+    def disturbed_call(self) -> None:
+        """Call once, with one kind of disturbance from begin to end."""
+        kind = self.draw.choice(("workers", "workers", "parent", "disk", "logs", "outputs", "dask"))
+        self.counts[f"calls: {kind}"] += 1
+        with ExitStack() as stack:
+            more: list[str] = []
+            limit = self.draw.choice((20_000, 60_000, 200_000)) if kind == "disk" else None
+            if kind == "outputs":
+                self._damage_outputs()
+            if kind == "dask":
+                address, process = stack.enter_context(scheduler())
+                for name in "ab":
+                    stack.enter_context(worker(address, self.folder / name))
+                more = ["--scheduler", address]
+            else:
+                process = None
+            call = self._started("out", *more, limit=limit)
+            until = time.monotonic() + self.draw.uniform(0.2, 1.0) * self.seconds
+            while call.poll() is None and time.monotonic() < until:
+                time.sleep(self.draw.uniform(0.1, 1.0) * self.pause)
+                if kind == "workers":
+                    self._kill_worker(call)
+                elif kind == "logs":
+                    self._overwrite_log()
+            if kind == "parent" and call.poll() is None:
+                number = self.draw.choice((signal.SIGKILL, signal.SIGTERM, signal.SIGINT))
+                call.send_signal(number)
+                self.counts[f"parents ended by {number.name}"] += 1
+            elif process is not None and call.poll() is None:
+                process.send_signal(self.draw.choice((signal.SIGKILL, signal.SIGSTOP)))
+                self.counts["schedulers killed or stopped"] += 1
+            status, said = self._ended(call)
+        assert "Traceback" not in said, said
+        assert status in (0, 2, 130, -signal.SIGKILL, -signal.SIGTERM), (status, said)
+        self.check()
+
+    def check(self) -> None:
+        """Compare every joint that is done with the undisturbed one."""
+        out = self.folder / "out"
+        records = all_records(out) if out.exists() else {}
+        for work, record in records.items():
+            if record is not None and record.key is not None:
+                place = work.relative_to(out).as_posix()
+                for name in record.outputs:
+                    found = (work / name).read_bytes()
+                    assert found == self.whole[f"{place}/{name}"], f"{place}/{name} is another"
+                self.counts["joints compared"] += 1
+
+    def last_call(self) -> None:
+        """Call undisturbed; everything must be as in the calm."""
+        status, said = self._ended(self._started("out"))
+        assert status == 0, said
+        found = contents(self.folder / "out")
+        wrong = [n for n in {*found, *self.whole} if found.get(n) != self.whole.get(n)]
+        assert not wrong, f"{sorted(wrong)[:9]}\n{said}"
+
+    def _started(self, out: str, *more: str, limit: int | None = None) -> subprocess.Popen[str]:
+        def prepare() -> None:
+            for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
+                signal.signal(number, signal.SIG_DFL)
+            if limit is not None:
+                resource.setrlimit(resource.RLIMIT_FSIZE, (limit, limit))
+
+        where = more or ("--workers", str(WORKERS))
+        words = ["fleet", "logs", "-w", out, *WITHOUT, *where]
+        return subprocess.Popen(
+            [sys.executable, "-c", PROGRAM, *words],
+            stdout=subprocess.PIPE,
+            stderr=subprocess.STDOUT,
+            text=True,
+            encoding="utf-8",
+            cwd=self.folder,
+            env=ENVIRONMENT | {"DASK_DISTRIBUTED__COMM__TIMEOUTS__CONNECT": "5s"},
+            preexec_fn=prepare,
+        )
+
+    @staticmethod
+    def _ended(call: subprocess.Popen[str]) -> tuple[int, str]:
+        said, _ = call.communicate(timeout=3600)
+        return call.returncode, said
+
+    def _kill_worker(self, call: subprocess.Popen[str]) -> None:
+        for pid in children(call.pid):
+            with suppress(OSError):
+                if b"spawn_main" in Path(f"/proc/{pid}/cmdline").read_bytes():
+                    os.kill(pid, signal.SIGKILL)
+                    self.counts["workers killed"] += 1
+                    return
+
+    def _overwrite_log(self) -> None:
+        """Overwrite a log, for a moment or for longer, and put it back."""
+        path = self.draw.choice(sorted((self.folder / "logs").rglob("*.csv")))
+        content = path.read_bytes()
+        lines = content.split(b"\n")
+        path.write_bytes(b"\n".join(lines[: self.draw.randrange(2, len(lines))]))
+        time.sleep(self.draw.choice((0.0, 0.1, 1.0)))
+        path.write_bytes(content)
+        self.counts["logs overwritten and put back"] += 1
+
+    def _damage_outputs(self) -> None:
+        """Cut, change or remove outputs."""
+        out = self.folder / "out"
+        files = sorted(path for path in out.glob("*/*/*") if path.is_file())
+        for path in self.draw.sample(files, min(len(files), 5)):
+            content = bytearray(path.read_bytes())
+            if not content or self.draw.random() < 0.2:
+                path.unlink()
+            else:
+                content[self.draw.randrange(len(content))] ^= 0xFF
+                path.write_bytes(content)
+            self.counts["outputs damaged"] += 1
+
+
+def soaked(joints: int, calls: int, minutes: float, seed: int) -> Soak:
+    """Run a soak to its end, and return what was done."""
+    until = time.monotonic() + 60 * minutes
+    folder = Path(tempfile.mkdtemp(prefix="soak-"))
+    try:
+        soak = Soak(folder, random.Random(seed))
+        soak.build(joints)
+        for number in range(calls):
+            if time.monotonic() > until:
+                break
+            soak.disturbed_call()
+            print(f"call {number + 1}: {dict(soak.counts)}", flush=True)
+        soak.last_call()
+    finally:
+        shutil.rmtree(folder, ignore_errors=True)
+    return soak
+
+
+def main() -> None:
+    """Soak, and tell."""
+    parser = argparse.ArgumentParser(description=__doc__.partition("\n")[0])
+    parser.add_argument("joints", type=int, nargs="?", default=300)
+    parser.add_argument("--calls", type=int, default=40)
+    parser.add_argument("--minutes", type=float, default=float("inf"))
+    parser.add_argument("--seed", type=int, default=0)
+    asked = parser.parse_args()
+    soak = soaked(asked.joints, asked.calls, asked.minutes, asked.seed)
+    files, done = len(soak.whole), sorted(soak.counts.items())
+    put(
+        "soak",
+        f"{asked.joints} joints, seed {asked.seed}. "
+        + "; ".join(f"{what} {count:,}" for what, count in done)
+        + f". The last call, left alone, gave all {files:,} files of an undisturbed one, byte for"
+        " byte.",
+    )
+
+
+if __name__ == "__main__":
+    main()
