@@ -27,6 +27,7 @@ _INSPECTED = 4  # one in so many is inspected too, which takes longer than readi
 _ADDRESSES = 4 << 30
 _SECONDS = 120.0
 _PROCESSES = multiprocessing.get_context("forkserver")
+_PROCESSES.set_forkserver_preload(["tests.studies.fuzz_process"])
 _LAYOUTS = layouts()
 # in memory where there is such a folder: waiting for a disk is not what is tried here
 _DISK = "/dev/shm" if Path("/dev/shm").is_dir() else None
