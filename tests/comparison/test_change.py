@@ -69,6 +69,8 @@ def test_with_one_earlier_run_the_noise_within_the_two_is_the_measure():
 def test_without_noise_it_is_the_shift_less_the_mean_of_the_others():
     found = change(torques([0.3, 0.6, 0.9, -1.4], pair_noise=0, point_noise=1e-4))
     assert found.estimate == pytest.approx(-1.4 - 0.6, abs=1e-3)
+    # the mean of all four is 0.1
+    assert found.by_run == pytest.approx([0.2, 0.5, 0.8, -1.5], abs=1e-3)
 
 
 def test_other_temperatures_on_the_last_day_are_no_change():

@@ -1,5 +1,6 @@
 """A fleet on this machine: one worker or two, workers that die, a user who interrupts."""
 
+import json
 import os
 import re
 import signal
@@ -50,6 +51,31 @@ def test_one_row_per_joint_bad_ones_too(alone):
     assert "joints    6: 4 done, 2 failed" in said
     assert "verdicts  " in said
     assert "failed    robot B, joint 5" in said
+
+
+def test_the_page_holds_the_rows_of_the_table(alone):
+    """Friction by run agrees with the change: the last run less the mean of the earlier ones."""
+    rows = tables.read(alone[0] / "fleet.parquet", schemas.FLEET)
+    html = (alone[0] / "fleet.html").read_text(encoding="utf-8")
+    data = json.loads(re.search(r'id="fleet">(.*?)</script>', html, re.DOTALL)[1])
+    keys = [column["key"] for column in data["columns"]]
+    shown = [dict(zip(keys, row, strict=True)) for row in data["rows"]]
+    assert len(shown) == len(rows)
+    compared = 0
+    for row in rows.itertuples():
+        (own,) = (
+            one for one in shown if (one["robot"], one["joint"]) == (row.robot, str(row.joint))
+        )
+        if row.status == "failed":
+            assert own["verdict"] == "failed"
+            continue
+        by_run = row.friction_by_run
+        if by_run is not None and own["change"]:
+            assert own["change"][0] == pytest.approx(row.change, rel=1e-6)
+            assert by_run[-1] - by_run[:-1].mean() == pytest.approx(row.change, abs=1e-9)
+            assert own["friction_by_run"][0] == pytest.approx(list(by_run), rel=1e-6)
+            compared += 1
+    assert compared >= 2
 
 
 def test_units_of_the_columns(alone):
