@@ -245,6 +245,7 @@ def _table(
         clock=unknown,
         speed=speed,
         position=unknown if position is None else position,
+        angle=unknown if position is None else position,
         load=load,
         load_gradient=unknown,
         load_curvature=unknown,

@@ -33,7 +33,7 @@ from frictioncli.diagnosis.search.new_run_changes import changes_on_new_run, wit
 from frictioncli.diagnosis.search.new_run_misfit import NewRunMisfit
 from frictioncli.diagnosis.search.search_result import SearchResult, given_up_causes
 from frictioncli.diagnosis.search.standing import with_standing
-from frictioncli.diagnosis.search.timing_causes import DELAY, judged_by_timing
+from frictioncli.diagnosis.search.timing_causes import DELAY, judged_by_timing, late_torque
 from frictioncli.diagnosis.search.understood import understood
 from frictioncli.diagnosis.search.verdict import verdict_of, visible_causes
 from frictioncli.diagnosis.settings import DiagnosisSettings
@@ -172,7 +172,10 @@ def diagnose_joint(
             " noise from structure; log more moves there and back"
         )
     rows = settled_problems(torques, temperature, held_out, ramps, LEAST_PAIRS)
-    base, base_new, starts = rows.problem, rows.new, rows.timing
+    starts = rows.timing
+    late = late_torque(rows.problem, starts)
+    base = replace(rows.problem, late=late)
+    base_new = rows.new and replace(rows.new, late=late)
     margin = margin_of(base, torque_unit, settings)
     evidence = ramp_evidence(ramps, base, temperature) if ramps else None
 

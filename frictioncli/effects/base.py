@@ -53,6 +53,8 @@ class EffectTable:
         Time on one clock for all runs, where dates are known; else runs follow each other. [s]
     speed, position : ndarray, shape (rows,)
         Speed of the pair and centre of the angle bin. [deg/s], [deg]
+    angle : ndarray, shape (rows,)
+        Angle at which the logged torque acted: the position, unless the torque is late. [deg]
     load : ndarray, shape (rows,)
         Load torque of the base model at that angle. [N·m]
     load_gradient, load_curvature : ndarray, shape (rows,)
@@ -84,6 +86,7 @@ class EffectTable:
     clock: Array
     speed: Array
     position: Array
+    angle: Array
     load: Array
     load_gradient: Array
     load_curvature: Array

@@ -26,7 +26,7 @@ def basis(table: EffectTable, *, rest: float, stiffening: float) -> Basis:
         Coefficient of the cubic term. [1/rad²]
     """
     middle = (np.min(table.position) + np.max(table.position)) / 2
-    angle = np.radians(table.position - middle - rest)
+    angle = np.radians(table.angle - middle - rest)
     return load_only(angle + stiffening * angle**3)
 
 
@@ -68,6 +68,7 @@ EFFECT = Effect(
     ),
     basis=basis,
     needs=("position",),
+    uses=("angle",),
     signature=Signature(
         axis="position",
         claim="The load torque is not a sine of the angle: a straight line adds to it.",

@@ -209,7 +209,21 @@ def stroke_ends(table: EffectTable, *, distance: Array | float) -> tuple[Array, 
     """
     heads = pair_heads(table)
     ends = heads.minimum(table.position), heads.maximum(table.position)
-    return _decays(table, heads, ends, distance)
+    return _decays(table.position, heads, ends, distance)
+
+
+def since_start(table: EffectTable) -> tuple[Array, Array]:
+    """Return the time since the first bin of a pair forward, and in reverse, shape (rows,) [s].
+
+    Parameters
+    ----------
+    table : EffectTable
+        Pairs and angle bins.
+    """
+    heads = pair_heads(table)
+    ends = heads.minimum(table.position), heads.maximum(table.position)
+    low, high = (heads.spread(end) for end in ends)
+    return (table.position - low) / table.speed, (high - table.position) / table.speed
 
 
 def turning_points(table: EffectTable, *, distance: float) -> tuple[Array, Array]:
@@ -232,7 +246,7 @@ def turning_points(table: EffectTable, *, distance: float) -> tuple[Array, Array
         1 at the reversal. [-]
     """
     heads = pair_heads(table)
-    return _decays(table, heads, reversals(table, heads), distance)
+    return _decays(table.angle, heads, reversals(table, heads), distance)
 
 
 def reversals(table: EffectTable, heads: PairHeads) -> tuple[Array, Array]:
@@ -262,9 +276,9 @@ def reversals(table: EffectTable, heads: PairHeads) -> tuple[Array, Array]:
 
 
 def _decays(
-    table: EffectTable, heads: PairHeads, ends: tuple[Array, Array], distance: Array | float
+    angle: Array, heads: PairHeads, ends: tuple[Array, Array], distance: Array | float
 ) -> tuple[Array, Array]:
     """Return exponentials that decay from the low and from the high of each pair's two angles."""
-    low = table.position - heads.spread(ends[0])
-    high = heads.spread(ends[1]) - table.position
+    low = np.maximum(angle - heads.spread(ends[0]), 0.0)
+    high = np.maximum(heads.spread(ends[1]) - angle, 0.0)
     return np.exp(-low / distance), np.exp(-high / distance)

@@ -26,7 +26,7 @@ def basis(table: EffectTable, **shape: float) -> Basis:
         Its history: ``moment`` and ``end``, and further stretches.
     """
     there = presence(table, shape)
-    angle = np.radians(table.position)
+    angle = np.radians(table.angle)
     load = np.column_stack([there * np.cos(angle), there * np.sin(angle)])
     return Basis(table.load_slope[:, np.newaxis] * load, load)
 
@@ -59,7 +59,7 @@ EFFECT = Effect(
     ),
     basis=basis,
     moments=histories,
-    needs=("clock", "position"),
+    needs=("clock", "angle"),
     uses=("load_slope",),
     signature=Signature(
         axis="clock",

@@ -33,7 +33,7 @@ def basis(table: EffectTable, *, order: float) -> Basis:
     long_enough = order * float(np.ptp(angles)) / 360.0 >= _LEAST_PERIODS
     columns = []
     for harmonic in (order, 2 * order):
-        phase = harmonic * np.radians(table.position)
+        phase = harmonic * np.radians(table.angle)
         resolved = 1.0 if long_enough and harmonic <= 180.0 / finest else 0.0
         columns += [resolved * np.sin(phase), resolved * np.cos(phase)]
     return friction_only(*columns)
@@ -92,6 +92,7 @@ EFFECT = Effect(
     ),
     basis=basis,
     needs=("position",),
+    uses=("angle",),
     signature=Signature(
         axis="position",
         claim="Residuals repeat over the angle, with the same phase at all speeds.",

@@ -80,6 +80,7 @@ EFFECT = Effect(
     ),
     basis=basis,
     needs=("position",),
+    uses=("angle",),
     signature=Signature(
         axis="position",
         claim="Friction is below the model just after each reversal, equally at all speeds.",

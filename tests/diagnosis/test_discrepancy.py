@@ -8,7 +8,7 @@ import pytest
 from frictioncli.diagnosis.fit.columns import base_rows
 from frictioncli.diagnosis.fit.left_by_base import span_of
 from frictioncli.diagnosis.fit.mixed_model import Products, evaluate, weights_of
-from frictioncli.diagnosis.noise.discrepancy import discrepancy_of
+from frictioncli.diagnosis.noise.discrepancy import UNSTEADY, discrepancy_of
 from frictioncli.diagnosis.search.precomputed import Precomputed
 from frictioncli.diagnosis.search.step import Step
 from tests.diagnosis.dense_noise import problem
@@ -48,9 +48,15 @@ def test_what_the_base_leaves_of_each_function_has_its_size(joint):
 
 
 def test_all_together_are_about_one_per_cent_of_the_friction_beforehand(joint):
-    """The RMS over rows of 300 draws with the expected amplitudes, both channels."""
+    """The RMS over rows of 300 draws with the expected amplitudes, both channels.
+
+    Inertia where the speed is not constant comes beside that.
+    """
     smooth = smooth_of(joint)
     gamma = np.random.default_rng(0).normal(size=(smooth.rows.shape[1], 300))
+    for one in smooth.components:
+        if one.axes in UNSTEADY:
+            gamma[one.columns] = 0.0
     square = 2 * np.mean(np.square(smooth.rows @ gamma))
     found = smooth.amplitude * np.sqrt(square)
     assert found / np.mean(joint.friction) == pytest.approx(0.01, rel=0.1)
@@ -66,7 +72,9 @@ def test_functions_depend_on_their_axes_and_on_the_base_alone(joint):
     for one in smooth.components:
         if "form" in one.axes:
             continue
-        keys = np.column_stack([getattr(joint.table, axis) for axis in one.axes])
+        # how long ago the move began goes with its end, which is the same at one speed
+        axes = ("position", "speed") if one.axes in UNSTEADY else one.axes
+        keys = np.column_stack([getattr(joint.table, axis) for axis in axes])
         place = np.unique(keys, axis=0, return_inverse=True)[1].ravel()
         own = slice(0, half) if one.channel == "friction" else slice(half, None)
 
@@ -80,6 +88,22 @@ def test_functions_depend_on_their_axes_and_on_the_base_alone(joint):
         columns, known = within(smooth.rows[:, one.columns]), within(base)
         fitted = known @ np.linalg.lstsq(known, columns, rcond=1e-12)[0]
         np.testing.assert_allclose(columns, fitted, atol=1e-5)
+
+
+def test_a_ripple_of_the_speed_grows_with_its_square(joint):
+    """The acceleration of the fastest pairs and of the slowest, at the same angle.
+
+    Less what is the base's: gravity, the same at all speeds.
+    """
+    smooth = smooth_of(joint)
+    (one,) = (one for one in smooth.components if one.axes == ("speed ripple",))
+    table = joint.table
+    order = 6 * np.radians(table.position)
+    torque = np.concatenate([np.zeros(len(order)), np.square(table.speed / 100.0) * np.cos(order)])
+    span, own = span_of(joint), smooth.rows[:, one.columns]
+    torque -= span @ (span.T @ torque)
+    left = torque - own @ np.linalg.lstsq(own, torque, rcond=None)[0]
+    assert np.linalg.norm(left) < 0.1 * np.linalg.norm(torque)
 
 
 def test_errors_of_form_are_those_of_the_exponents_and_of_coulomb_friction(joint):

@@ -10,11 +10,12 @@ COLUMNS = tuple(EffectTable.__dataclass_fields__)
 
 
 def small(**columns) -> EffectTable:
-    """Return a table of the given columns; the others are ones, one run, a pair per row."""
+    """Return a table of the given columns; others are ones; a pair per row, no delay."""
     rows = max(np.size(values) for values in columns.values())
     filled = {name: np.ones(rows) for name in COLUMNS}
     filled |= {"run": np.zeros(rows, int), "pair": np.arange(rows)}
     filled |= {name: np.broadcast_to(values, rows) for name, values in columns.items()}
+    filled["angle"] = np.broadcast_to(columns.get("angle", filled["position"]), rows)
     return EffectTable(**filled)
 
 
@@ -61,6 +62,7 @@ def two_days(*, bins: int = 13, series: int = 12) -> EffectTable:
         **rows,
         pair=np.repeat(np.arange(len(per_pair)), bins),
         position=position,
+        angle=position,
         load=load,
         load_gradient=-60.0 * np.radians(1.0) * np.sin(np.radians(position)),
         load_curvature=-np.square(np.radians(1.0)) * load,

@@ -13,8 +13,10 @@ from frictioncli.diagnosis.data.gravity import (
     carried_load,
     differs,
     form_of,
+    gravity_in_torque,
     known_payload,
     known_pose,
+    sign_convention,
 )
 from frictioncli.diagnosis.data.hidden_temperature import HiddenTemperature
 from frictioncli.diagnosis.data.motion_history import clock_of, series, travel_of
@@ -190,7 +192,8 @@ def _assembled(
     if hidden is not None:
         reference_power = hidden.reference_power
     rest, order = series(layout, motor[heads])
-    in_torque = gravity if rows["load"].isna().all() else _gravity_in_torque(rows, columns)
+    counted = sign_convention(rows)
+    in_torque = gravity if rows["load"].isna().all() else gravity_in_torque(rows, columns)
     table = EffectTable(
         run=run,
         pair=pair,
@@ -198,8 +201,9 @@ def _assembled(
         clock=clock_of(layout)[pair],
         speed=speed,
         position=position,
+        angle=position,
         load=load,
-        load_gradient=_counted(rows) * (by_angle(columns) @ in_torque),
+        load_gradient=counted * (by_angle(columns) @ in_torque),
         load_curvature=by_angle(by_angle(columns)) @ in_torque,
         temperature=known_temperature,
         measured_temperature=known_temperature,
@@ -230,28 +234,12 @@ def _assembled(
         gravity=gravity,
         gravity_form=form,
         reference_power=reference_power,
+        counted=counted,
         has_load_channel=bool(rows["load"].notna().any()),
         temperature_error=_RECONSTRUCTED if reconstructed else _REGISTERED,
         runs=tuple(str(name) for name in run_names),
     )
     return at_temperature(without_friction, parameters, hidden)
-
-
-def _counted(rows: pd.DataFrame) -> float:
-    """Return the sign convention of separated torques: +1 where forward is load plus friction."""
-    if not {"torque_forward", "torque_reverse"} <= set(rows):
-        return 1.0
-    difference = rows["torque_forward"].to_numpy(float) - rows["torque_reverse"].to_numpy(float)
-    return -1.0 if np.nansum(difference * rows["friction_torque"].to_numpy(float)) < 0 else 1.0
-
-
-def _gravity_in_torque(rows: pd.DataFrame, columns: Array) -> Array:
-    """Return gravity as it stands in the logged torque, which may have another unit than load."""
-    if not {"torque_forward", "torque_reverse"} <= set(rows):
-        return np.full(columns.shape[1], np.nan)
-    mean = (rows["torque_forward"] + rows["torque_reverse"]).to_numpy(float) / 2
-    known = np.isfinite(mean)
-    return np.asarray(np.linalg.lstsq(columns[known], mean[known], rcond=None)[0])
 
 
 def at_temperature(

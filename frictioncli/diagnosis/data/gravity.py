@@ -216,3 +216,20 @@ def carried_load(columns: Array, gravity: Array) -> Array:
 def form_of(gravity: Array) -> GravityForm:
     """Return the form of three or five coefficients in one pose."""
     return GravityForm(payloads=len(gravity) > len(NAMES))
+
+
+def sign_convention(rows: pd.DataFrame) -> float:
+    """Return the sign convention of separated torques: +1 where forward is load plus friction."""
+    if not {"torque_forward", "torque_reverse"} <= set(rows):
+        return 1.0
+    difference = rows["torque_forward"].to_numpy(float) - rows["torque_reverse"].to_numpy(float)
+    return -1.0 if np.nansum(difference * rows["friction_torque"].to_numpy(float)) < 0 else 1.0
+
+
+def gravity_in_torque(rows: pd.DataFrame, columns: Array) -> Array:
+    """Return gravity as it stands in the logged torque, which may have another unit than load."""
+    if not {"torque_forward", "torque_reverse"} <= set(rows):
+        return np.full(columns.shape[1], np.nan)
+    mean = (rows["torque_forward"] + rows["torque_reverse"]).to_numpy(float) / 2
+    known = np.isfinite(mean)
+    return np.asarray(np.linalg.lstsq(columns[known], mean[known], rcond=None)[0])

@@ -24,6 +24,7 @@ import numpy as np
 from frictioncli.arrays import Array, Flags, Indices
 from frictioncli.diagnosis.data.gravity import GravityForm
 from frictioncli.diagnosis.data.hidden_temperature import HiddenTemperature
+from frictioncli.diagnosis.data.late_torque import LateTorque, late_basis
 from frictioncli.diagnosis.data.pair_layout import PairLayout
 from frictioncli.effects.base import Basis, Effect, EffectTable
 from frictioncli.effects.pair_series import rows_of
@@ -98,6 +99,10 @@ class Problem:
         Names of the runs, in order.
     hidden : HiddenTemperature or None
         Temperature of the gear about which friction is linear; none where that is the measured one.
+    counted : float
+        Sign convention of the torques: +1 where forward is load plus friction, else -1.
+    late : LateTorque or None
+        Response behind which the torque was logged; none where it is not known to be late.
     """
 
     table: EffectTable
@@ -117,10 +122,23 @@ class Problem:
     temperature_error: float
     runs: tuple[str, ...]
     hidden: HiddenTemperature | None = None
+    counted: float = 1.0
+    late: LateTorque | None = None
 
     def basis(self, effect: Effect, shape: Mapping[str, float]) -> Basis:
-        """Return an effect's columns at these rows, evaluated on all runs."""
-        friction, load = effect.evaluate(self.all_runs, shape)
+        """Return an effect's columns as the log shows them, evaluated on all runs."""
+        if self.late is None or effect.measurement:
+            friction, load = effect.evaluate(self.all_runs, shape)
+        else:
+            friction, load = late_basis(
+                effect,
+                self.all_runs,
+                shape,
+                self.late,
+                counted=self.counted,
+                alpha=self.parameters.alpha,
+                separate_load=self.has_load_channel,
+            )
         return Basis(friction[self.rows], load[self.rows])
 
     @property

@@ -13,6 +13,7 @@ from frictioncli.arrays import Array
 from frictioncli.diagnosis.data.build_problem import at_temperature
 from frictioncli.diagnosis.data.gravity_document import GravityCoefficients, stated_gravity
 from frictioncli.diagnosis.data.hidden_temperature import HiddenTemperature
+from frictioncli.diagnosis.data.late_torque import LateTorque
 from frictioncli.diagnosis.data.problem import Problem
 from frictioncli.diagnosis.documents.empirical_record import EmpiricalRecord
 from frictioncli.diagnosis.empirical.term import EmpiricalTerm
@@ -147,6 +148,9 @@ class ExtendedDocument(FrictionModel):
         one.
     empirical : EmpiricalRecord
         Torque without a known cause; absent where a term for it is not worth using.
+    late_torque : LateTorque
+        Response behind which the torque was logged, and with it the effects; absent where it is not
+        known to be late.
     """
 
     effects: tuple[EffectRecord, ...]
@@ -155,6 +159,7 @@ class ExtendedDocument(FrictionModel):
     gravity: GravityCoefficients | UnsetType = UNSET
     hidden_temperature: HiddenTemperature | UnsetType = UNSET
     empirical: EmpiricalRecord | UnsetType = UNSET
+    late_torque: LateTorque | UnsetType = UNSET
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -198,6 +203,8 @@ class ExtendedModel:
         Temperature of the gear about which it is linear; none for the measured one.
     empirical : EmpiricalTerm or None
         Torque without a known cause.
+    late : LateTorque or None
+        Response behind which the torque was logged.
     """
 
     temperature: str
@@ -208,6 +215,7 @@ class ExtendedModel:
     effects: tuple[FittedEffect, ...]
     hidden: HiddenTemperature | None = None
     empirical: EmpiricalTerm | None = None
+    late: LateTorque | None = None
 
     @property
     def adds_nothing(self) -> bool:
@@ -226,9 +234,9 @@ class ExtendedModel:
         if self.adds_nothing:
             return Beyond(friction=friction, load=load, terms=())
         # about the base that the extension started from, at the temperature of the gear
-        base = problem
+        base = replace(problem, late=self.late)
         if self.hidden is not None:
-            base = at_temperature(problem, self.about, self.hidden)
+            base = at_temperature(base, self.about, self.hidden)
         terms = tuple(self._term(effect, base) for effect in self.effects)
         changes = [
             getattr(self.parameters, name) - getattr(base.parameters, name) for name in base.names
@@ -313,4 +321,5 @@ def extended_model(document: ExtendedDocument) -> ExtendedModel:
         effects=tuple(one.fitted() for one in document.effects),
         hidden=document.hidden_temperature or None,
         empirical=empirical,
+        late=document.late_torque or None,
     )

@@ -160,6 +160,7 @@ def extended_document(diagnosis: Diagnosis, model: FrictionModel) -> ExtendedDoc
         empirical=term_record(diagnosis.empirical, diagnosis.torque_unit)
         if diagnosis.empirical
         else UNSET,
+        late_torque=diagnosis.base.late or UNSET,
     )
 
 

@@ -40,6 +40,9 @@ _REGULAR = 0.02
 _DISTANCES = (0.3, 3.0)
 """Angles over which friction may still build up after that. [deg]"""
 
+_SHORTEST_RIPPLE = 24.0
+"""Shortest period of what friction may vary with along the angle. [deg]"""
+
 _SAME_SPEED = 0.03
 """Relative width of a speed level."""
 
@@ -188,9 +191,22 @@ def _assembled(grid: _Grid, sign: int, problem: Problem, temperature: str) -> St
         gravity=smooth(gravity, 2),
         friction=sign * smooth(friction, 1),
         inertial=tuple(inertial),
-        frictional=tuple(smooth(one, 1) for one in (*built_up, moving * np.abs(velocity))),
+        frictional=tuple(
+            smooth(one, 1)
+            for one in (*built_up, moving * np.abs(velocity), *_along_angle(grid, moving))
+        ),
         conditions=pd.factorize(conditions)[0],
     )
+
+
+def _along_angle(grid: _Grid, moving: Array) -> list[Array]:
+    """Return friction that varies with the angle, as a sum of cosines, columns of each [-]."""
+    low, high = np.min(grid.position[grid.known]), np.max(grid.position[grid.known])
+    if high - low <= 0:
+        return []
+    way = np.pi * (grid.position - low) / (high - low)
+    count = int(2 * (high - low) / _SHORTEST_RIPPLE)
+    return [moving * np.cos(number * way) for number in range(1, count + 1)]
 
 
 def _gravity(grid: _Grid, mass: Array, problem: Problem) -> Array:

@@ -25,14 +25,14 @@ from frictioncli.diagnosis.search.catalogue import Catalogue
 from frictioncli.diagnosis.search.cause import CONVINCING, Cause
 from frictioncli.diagnosis.search.effect_size import left_size, shown_share, sizes_of
 from frictioncli.diagnosis.search.margin import channel_margin, strength
-from frictioncli.diagnosis.search.measurement import measurement_causes, possible_effects
+from frictioncli.diagnosis.search.measurement import beside_base, measurement_causes
 from frictioncli.diagnosis.search.precomputed import Precomputed
 from frictioncli.diagnosis.search.rivals import rival_log_bayes_factors
 from frictioncli.diagnosis.search.search_result import SearchResult
 from frictioncli.diagnosis.search.standing import beyond_bounds
 from frictioncli.diagnosis.search.step import Step, free_coefficients
 from frictioncli.diagnosis.settings import DiagnosisSettings
-from frictioncli.effects import BY_NAME, MEASUREMENT_EFFECTS
+from frictioncli.effects import BY_NAME
 from frictioncli.effects.base import Effect, applicable
 from frictioncli.wording import in_words
 
@@ -76,11 +76,7 @@ def find_causes(
     discrepancy : float, optional
         RMS of the discrepancy that is expected, relative to the mean friction; 0 for none.
     """
-    beside = applicable(MEASUREMENT_EFFECTS, problem.table)
-    precomputed = Precomputed.of(problem, beside, discrepancy)
-    while len(possible := possible_effects(precomputed, beside)) < len(beside):
-        beside = possible
-        precomputed = Precomputed.of(problem, beside, discrepancy)
+    precomputed, beside = beside_base(problem, discrepancy)
     tried = applicable(effects, problem.table)
     hypotheses = [hypothesis_of(effect, problem) for effect in tried]
     catalogue = Catalogue.of(precomputed, hypotheses)

@@ -10,27 +10,45 @@ from frictioncli.diagnosis.data.problem import Problem
 from frictioncli.diagnosis.fit.extension import beside_unfitted
 from frictioncli.diagnosis.fit.hypotheses import EffectFit, HypothesisTest
 from frictioncli.diagnosis.fit.weighted_fit import WeightedFit
+from frictioncli.diagnosis.noise.discrepancy import SHARE
 from frictioncli.diagnosis.noise.significance import NullDistribution
 from frictioncli.diagnosis.search.cause import Cause
 from frictioncli.diagnosis.search.effect_size import sizes_of
 from frictioncli.diagnosis.search.precomputed import Precomputed
 from frictioncli.diagnosis.search.standing import beyond_bounds
 from frictioncli.diagnosis.search.step import Step
-from frictioncli.effects.base import Effect
+from frictioncli.effects import MEASUREMENT_EFFECTS
+from frictioncli.effects.base import Effect, applicable
 
 CLEAR = 0.01
 """Greatest p-value of an effect of the measurement that is listed and corrected without a name."""
 
 
-def possible_effects(precomputed: Precomputed, effects: Sequence[Effect]) -> tuple[Effect, ...]:
-    """Return the effects of the measurement whose coefficients are physically possible.
+def beside_base(
+    problem: Problem, discrepancy: float = SHARE
+) -> tuple[Precomputed, tuple[Effect, ...]]:
+    """Return what is computed once, with the effects of the measurement that stand beside the base.
 
-    One that is not explains something else, as a payload that goes with speed, and would hide it.
+    They are those whose coefficients are physically possible. One that is not explains something
+    else, as a payload that goes with speed, and would hide it.
+
+    Parameters
+    ----------
+    problem : Problem
+        One joint's measurements and base model.
+    discrepancy : float, optional
+        RMS of the discrepancy that is expected, relative to the mean friction; 0 for none.
     """
-    causes = measurement_causes(Step.of(precomputed, []), effects)
-    return tuple(
-        cause.fit.effect for cause in causes if not beyond_bounds(cause.fit, precomputed.problem)
-    )
+    beside = applicable(MEASUREMENT_EFFECTS, problem.table)
+    while True:
+        precomputed = Precomputed.of(problem, beside, discrepancy)
+        causes = measurement_causes(Step.of(precomputed, []), beside)
+        possible = tuple(
+            cause.fit.effect for cause in causes if not beyond_bounds(cause.fit, problem)
+        )
+        if len(possible) == len(beside):
+            return precomputed, beside
+        beside = possible
 
 
 def measurement_causes(step: Step, effects: Sequence[Effect]) -> tuple[Cause, ...]:

@@ -5,6 +5,9 @@ finds the mean time *D* by which the torque is late, whatever the reason. What t
 the variance *S* of that time: to second order at constant velocity, :math:`S = 2 s_2 - D^2` with
 the second moment of ``torque_filter``, and much better where moves start
 (:mod:`frictioncli.diagnosis.ramps.timing`).
+
+Once it is known by how much the torque is late, every effect of the joint is looked for where such
+a log shows it (:mod:`frictioncli.diagnosis.data.late_torque`).
 """
 
 from collections.abc import Sequence
@@ -12,16 +15,51 @@ from dataclasses import replace
 
 import numpy as np
 
+from frictioncli.diagnosis.data.late_torque import LateTorque
+from frictioncli.diagnosis.data.problem import Problem
 from frictioncli.diagnosis.noise.significance import credible_set, posterior_probabilities
 from frictioncli.diagnosis.ramps.timing import TorqueTiming
 from frictioncli.diagnosis.ramps.timing_rivals import TimingRivals
 from frictioncli.diagnosis.search.cause import CONVINCING, Cause
+from frictioncli.diagnosis.search.measurement import CLEAR, beside_base, measurement_causes
+from frictioncli.diagnosis.search.step import Step
 
 DELAY, FILTER = "torque_delay", "torque_filter"
 
 _TOLERANCE = (0.001, 2e-4)
 _SHARE = (0.05, 0.25)
 """Errors of *D* and *S* by other structure in the pairs: at least [s], [s²], and as a share."""
+
+
+def late_torque(problem: Problem, starts: TorqueTiming | None) -> LateTorque | None:
+    """Return by how much the torque is late, from the starts of moves or else from the pairs.
+
+    Parameters
+    ----------
+    problem : Problem
+        One joint's measurements and base model.
+    starts : TorqueTiming or None
+        Delay and filter by the starts of moves.
+
+    Returns
+    -------
+    LateTorque or None
+        None where it is not clearly late.
+    """
+    if starts is not None:
+        if starts.shift.low <= 0:
+            return None
+        return LateTorque(delay=starts.shift.value, variance=max(starts.smear.value, 0.0))
+    precomputed, beside = beside_base(problem)
+    causes = measurement_causes(Step.of(precomputed, []), beside)
+    by_name = {cause.fit.effect.name: cause for cause in causes}
+    late, smeared = by_name.get(DELAY), by_name.get(FILTER)
+    if late is None or late.test.p_value >= CLEAR or late.fit.coefficients[0] <= 0:
+        return None
+    delay = float(late.fit.coefficients[0])
+    if smeared is None or (rivals := _of_pairs(late, smeared)).log_odds < CONVINCING:
+        return LateTorque(delay=delay)
+    return LateTorque(delay=delay, variance=max(float(rivals.point[1]), 0.0))
 
 
 def judged_by_timing(

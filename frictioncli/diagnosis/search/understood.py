@@ -15,6 +15,7 @@ _AXES = {
     "order": "time",
     "travel": "time",
     "motor_temperature": "temperature",
+    "angle": "position",
     "load": "position",
 }
 """Axes of structure along which an effect shows that needs these columns. With one payload the

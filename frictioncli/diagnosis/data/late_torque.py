@@ -1,0 +1,137 @@
+r"""Effects as a log shows them whose torque belongs to an earlier moment than its position.
+
+Behind a delay and a filter the torque that stands beside the angle *q* of a move with velocity
+:math:`\sigma v` is the mean of the torques at :math:`q - \sigma v t` over the times *t* that the
+response remembers, with mean *D* and variance *S*. An effect that adds
+:math:`\sigma\varphi(q) + \lambda(q)` shows in the separated torques as
+
+.. math::
+    \Delta\tau(q) = \sum_k w_k \left[\frac{\varphi(q - v t_k) + \varphi(q + v t_k)}{2}
+        + \frac{\lambda(q - v t_k) - \lambda(q + v t_k)}{2}\right], \quad
+    \Delta L(q) = \sum_k w_k \left[\frac{\lambda(q - v t_k) + \lambda(q + v t_k)}{2}
+        + \frac{\varphi(q - v t_k) - \varphi(q + v t_k)}{2}\right]
+
+with nodes :math:`t_k` and weights :math:`w_k` of the Gauss rule of two points for a delay and an
+exponential response, which are exact up to the third moment. The base model needs none of this:
+gravity varies so slowly with the angle that the effects ``torque_delay`` and ``torque_filter``,
+the moments of the response, are enough. A ripple of friction does not.
+"""
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from frictioncli.arrays import Array
+from frictioncli.effects.base import Basis, Effect, EffectTable
+
+_ROOT2 = math.sqrt(2.0)
+_NODES = (2.0 - _ROOT2, 2.0 + _ROOT2)
+_WEIGHTS = ((2.0 + _ROOT2) / 4.0, (2.0 - _ROOT2) / 4.0)
+"""Gauss-Laguerre rule of two points."""
+
+_MOVING = frozenset({"angle", "load", "load_slope", "friction"})
+"""Columns of the table that change along a move."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class LateTorque:
+    """Response behind which the torque was logged.
+
+    Attributes
+    ----------
+    delay : float
+        Mean time by which the torque is late. [s]
+    variance : float
+        Variance of that time: the square of the filter's time constant. [s²]
+    """
+
+    delay: float
+    variance: float = 0.0
+
+    def nodes(self) -> tuple[tuple[float, float], ...]:
+        """Return weights [-] and times [s] of what the log remembers.
+
+        Examples
+        --------
+        >>> nodes = LateTorque(delay=0.05, variance=0.0016).nodes()
+        >>> round(sum(weight * time for weight, time in nodes), 9)
+        0.05
+        """
+        if self.variance <= 0.0:
+            return ((1.0, self.delay),)
+        time_constant = math.sqrt(self.variance)
+        begin = self.delay - time_constant
+        return tuple(
+            (weight, begin + time_constant * node)
+            for weight, node in zip(_WEIGHTS, _NODES, strict=True)
+        )
+
+
+def late_basis(
+    effect: Effect,
+    table: EffectTable,
+    shape: Mapping[str, float],
+    late: LateTorque,
+    *,
+    counted: float,
+    alpha: float,
+    separate_load: bool,
+) -> Basis:
+    """Return the columns of an effect of the joint in separated torques that are late.
+
+    Parameters
+    ----------
+    effect : Effect
+        An effect that is no property of the measurement.
+    table : EffectTable
+        Pairs and angle bins.
+    shape : mapping of str to float
+        Its shape parameters.
+    late : LateTorque
+        Response behind which the torque was logged.
+    counted : float
+        Sign convention of the torques: +1 where forward is load plus friction, else -1.
+    alpha : float
+        Coefficient of the squared load in friction. [1/(N·m)]
+    separate_load : bool
+        Whether the load was measured apart, and is not late with the torque.
+    """
+    if _MOVING.isdisjoint((*effect.needs, *effect.uses)):
+        return effect.evaluate(table, shape)
+    friction: Array | float = 0.0
+    load: Array | float = 0.0
+    for weight, time in late.nodes():
+        forward, reverse = (
+            effect.evaluate(_earlier(table, way * time, counted, alpha, separate_load), shape)
+            for way in (1.0, -1.0)
+        )
+        friction = friction + weight / 2 * (forward.friction + reverse.friction)
+        load = load + weight / 2 * (forward.load + reverse.load)
+        if not separate_load:
+            friction = friction + counted * weight / 2 * (forward.load - reverse.load)
+            load = load + counted * weight / 2 * (forward.friction - reverse.friction)
+    return Basis(np.asarray(friction), np.asarray(load))
+
+
+def _earlier(
+    table: EffectTable, time: float, counted: float, alpha: float, separate_load: bool
+) -> EffectTable:
+    """Return a table at the angles of a forward move that long before, of a reverse move after."""
+    way = table.speed * time
+    moved = replace(table, angle=table.position - way)
+    if separate_load:
+        return moved
+    # gravity is a sine of the angle beside a constant
+    turn = np.radians(way)
+    gradient, curvature = counted * table.load_gradient, table.load_curvature
+    change = np.degrees(1.0) ** 2 * curvature * (1.0 - np.cos(turn))
+    change -= np.degrees(1.0) * gradient * np.sin(turn)
+    load = table.load + change
+    return replace(
+        moved,
+        load=load,
+        load_slope=table.load_slope + 2 * alpha * change,
+        friction=table.friction + alpha * (np.square(load) - np.square(table.load)),
+    )
