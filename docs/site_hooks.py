@@ -48,7 +48,7 @@ MODULES = {
 DOCUMENTS = {
     "model.json": "frictioncli.model.document.FrictionModel",
     "diagnosis.json": "frictioncli.diagnosis.documents.document.DiagnosisDocument",
-    "extended-model.json": "frictioncli.diagnosis.documents.extended_model.ExtendedDocument",
+    "extended-model.json": "frictioncli.diagnosis.documents.extended_document.ExtendedDocument",
     "plan.json": "frictioncli.design.document.PlanDocument",
     "comparison.json": "frictioncli.comparison.document.ComparisonDocument",
 }

@@ -16,7 +16,7 @@ from frictioncli.deployment.document import DeployedDocument
 from frictioncli.design.document import PlanDocument
 from frictioncli.diagnosis.data.gravity_document import GravityCoefficients
 from frictioncli.diagnosis.documents.document import DiagnosisDocument
-from frictioncli.diagnosis.documents.extended_model import ExtendedDocument
+from frictioncli.diagnosis.documents.extended_document import ExtendedDocument
 from frictioncli.diagnosis.settings import DiagnosisSettings
 from frictioncli.errors import TableError
 from frictioncli.fleet.joint_record import JointRecord

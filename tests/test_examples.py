@@ -14,7 +14,7 @@ from frictioncli import schemas, tables
 from frictioncli.deployment.document import load_deployed
 from frictioncli.deployment.settings import ExportSettings
 from frictioncli.diagnosis.documents.apply_extension import friction_beyond
-from frictioncli.diagnosis.documents.extended_model import read_extended
+from frictioncli.diagnosis.documents.extended_document import read_extended
 from frictioncli.model.document import read_models
 from frictioncli.stages.diagnose import diagnose
 from frictioncli.stages.export import deployed, export

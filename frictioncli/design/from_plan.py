@@ -27,7 +27,7 @@ from frictioncli.design.plan import Expectation, Plan
 from frictioncli.design.predicted_rows import Timing
 from frictioncli.design.rivals import Question
 from frictioncli.design.steps import HeatStep, SeriesStep, Step
-from frictioncli.diagnosis.documents.extended_model import ExtendedDocument
+from frictioncli.diagnosis.documents.extended_document import ExtendedDocument
 from frictioncli.quantities import TORQUE
 
 _NOTABLE = 0.1

@@ -3,7 +3,7 @@
 from dataclasses import dataclass, replace
 
 from frictioncli.diagnosis.documents.document import CauseRecord, DiagnosisDocument
-from frictioncli.diagnosis.documents.extended_model import ParameterRecord
+from frictioncli.diagnosis.documents.extended_document import ParameterRecord
 from frictioncli.diagnosis.documents.sentences import (
     alternatives_text,
     chance_text,

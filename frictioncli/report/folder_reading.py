@@ -8,11 +8,8 @@ import pandas as pd
 
 from frictioncli import documents, schemas, tables
 from frictioncli.design.document import PlanDocument
-from frictioncli.diagnosis.documents.extended_model import (
-    ExtendedDocument,
-    ExtendedModel,
-    extended_model,
-)
+from frictioncli.diagnosis.documents.extended_document import ExtendedDocument, extended_model
+from frictioncli.diagnosis.documents.extended_model import ExtendedModel
 from frictioncli.workfiles import DIAGNOSIS, EXTENDED, MODEL, PLAN
 
 _TABLES = ("samples", "recordings", "rejected", "pairs", "torques", "schedule", "evaluation")

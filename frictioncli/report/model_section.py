@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 from markupsafe import Markup
 
-from frictioncli.diagnosis.documents.extended_model import EffectRecord, ParameterRecord
+from frictioncli.diagnosis.documents.extended_document import EffectRecord, ParameterRecord
 from frictioncli.effects import BY_NAME
 from frictioncli.model.document import PARAMETERS, FrictionModel
 from frictioncli.report.formula import friction_formula

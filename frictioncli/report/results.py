@@ -14,7 +14,8 @@ from frictioncli.arrays import Array
 from frictioncli.challenge_schema import CHALLENGE
 from frictioncli.design.document import PlanDocument
 from frictioncli.diagnosis.documents.document import DiagnosisDocument
-from frictioncli.diagnosis.documents.extended_model import ExtendedDocument, ExtendedModel
+from frictioncli.diagnosis.documents.extended_document import ExtendedDocument
+from frictioncli.diagnosis.documents.extended_model import ExtendedModel
 from frictioncli.diagnosis.documents.reload import Reloaded, is_current, read_documents, reload
 from frictioncli.errors import TableError
 from frictioncli.model.document import FrictionModel, read_models

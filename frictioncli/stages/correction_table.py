@@ -8,7 +8,7 @@ import pandas as pd
 
 from frictioncli import schemas, tables
 from frictioncli.diagnosis.documents.apply_extension import with_effects, without_effects
-from frictioncli.diagnosis.documents.extended_model import read_extended
+from frictioncli.diagnosis.documents.extended_document import read_extended
 from frictioncli.errors import NotEnoughData, TableError
 from frictioncli.model.document import FrictionModel, read_models
 from frictioncli.provenance import Provenance, input_hashes

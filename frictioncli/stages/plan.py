@@ -17,7 +17,7 @@ from frictioncli.design.programs import FORMS
 from frictioncli.design.programs.robot_program import SAFETY_NOTE, RobotProgram
 from frictioncli.design.settings import PlanSettings
 from frictioncli.design.text import plan_text
-from frictioncli.diagnosis.documents.extended_model import ExtendedDocument
+from frictioncli.diagnosis.documents.extended_document import ExtendedDocument
 from frictioncli.diagnosis.documents.reload import is_current, read_documents
 from frictioncli.documents import read_joints
 from frictioncli.documents import write as write_document

@@ -10,7 +10,7 @@ import pytest
 from frictioncli import schemas, tables
 from frictioncli.design.from_plan import interval_records, stated_half_widths
 from frictioncli.design.settings import PlanSettings
-from frictioncli.diagnosis.documents.extended_model import EffectRecord, ParameterRecord
+from frictioncli.diagnosis.documents.extended_document import EffectRecord, ParameterRecord
 from frictioncli.diagnosis.settings import DiagnosisSettings
 from frictioncli.errors import FrictionError
 from frictioncli.provenance import Provenance

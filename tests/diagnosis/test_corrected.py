@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from frictioncli.diagnosis.diagnose import diagnose_joint
-from frictioncli.diagnosis.documents.extended_model import extended_model
+from frictioncli.diagnosis.documents.extended_document import extended_model
 from frictioncli.diagnosis.documents.from_diagnosis import diagnosis_document, extended_document
 from frictioncli.diagnosis.documents.reload import reload
 from frictioncli.diagnosis.fit.hypotheses import EffectFit

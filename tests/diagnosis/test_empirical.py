@@ -9,7 +9,7 @@ from frictioncli import documents
 from frictioncli.diagnosis.data.gravity_document import GravityCoefficients
 from frictioncli.diagnosis.diagnose import diagnose_joint
 from frictioncli.diagnosis.documents.apply_extension import friction_beyond
-from frictioncli.diagnosis.documents.extended_model import ExtendedDocument, extended_model
+from frictioncli.diagnosis.documents.extended_document import ExtendedDocument, extended_model
 from frictioncli.diagnosis.documents.from_diagnosis import diagnosis_document, extended_document
 from frictioncli.diagnosis.documents.text import verdict_text
 from frictioncli.diagnosis.empirical.describe import described

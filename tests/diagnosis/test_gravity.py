@@ -13,7 +13,7 @@ from frictioncli.diagnosis.data.gravity import GravityForm, gravity_columns
 from frictioncli.diagnosis.data.gravity_document import gravity_document, stated_gravity
 from frictioncli.diagnosis.diagnose import diagnose_joint
 from frictioncli.diagnosis.documents.apply_extension import without_effects
-from frictioncli.diagnosis.documents.extended_model import read_extended
+from frictioncli.diagnosis.documents.extended_document import read_extended
 from frictioncli.diagnosis.documents.reload import read_documents, reload
 from frictioncli.diagnosis.settings import DiagnosisSettings
 from frictioncli.errors import TableError

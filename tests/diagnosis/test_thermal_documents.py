@@ -8,11 +8,8 @@ from frictioncli.diagnosis.data.build_problem import simulated
 from frictioncli.diagnosis.data.gravity_document import stated_gravity
 from frictioncli.diagnosis.diagnose import Diagnosis, diagnose_joint
 from frictioncli.diagnosis.documents.document import DiagnosisDocument
-from frictioncli.diagnosis.documents.extended_model import (
-    ExtendedDocument,
-    ExtendedModel,
-    extended_model,
-)
+from frictioncli.diagnosis.documents.extended_document import ExtendedDocument, extended_model
+from frictioncli.diagnosis.documents.extended_model import ExtendedModel
 from frictioncli.diagnosis.documents.from_diagnosis import diagnosis_document, extended_document
 from frictioncli.diagnosis.documents.reload import reload
 from frictioncli.diagnosis.settings import DiagnosisSettings

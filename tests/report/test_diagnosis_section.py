@@ -11,7 +11,7 @@ import pytest
 from msgspec import convert, structs
 
 from frictioncli.diagnosis.documents.document import DiagnosisDocument
-from frictioncli.diagnosis.documents.extended_model import ExtendedDocument, extended_model
+from frictioncli.diagnosis.documents.extended_document import ExtendedDocument, extended_model
 from frictioncli.diagnosis.documents.reload import is_current, read_documents, reload
 from frictioncli.diagnosis.documents.sentences import p_value_text
 from frictioncli.errors import TableError

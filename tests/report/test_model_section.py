@@ -5,7 +5,7 @@ from dataclasses import replace
 
 from msgspec import structs
 
-from frictioncli.diagnosis.documents.extended_model import ParameterRecord
+from frictioncli.diagnosis.documents.extended_document import ParameterRecord
 from frictioncli.report.diagnosis_section import diagnosis_section
 from frictioncli.report.model_section import (
     formula_text,

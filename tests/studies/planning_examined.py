@@ -11,7 +11,7 @@ from frictioncli.design.selection import steps_of
 from frictioncli.design.settings import PlanSettings
 from frictioncli.diagnosis.data.build_problem import build_problems
 from frictioncli.diagnosis.diagnose import Diagnosis, diagnose_joint
-from frictioncli.diagnosis.documents.extended_model import extended_model
+from frictioncli.diagnosis.documents.extended_document import extended_model
 from frictioncli.diagnosis.documents.from_diagnosis import diagnosis_document, extended_document
 from frictioncli.diagnosis.search.cause_search import find_causes
 from frictioncli.diagnosis.search.margin import margin_of

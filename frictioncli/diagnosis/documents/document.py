@@ -9,7 +9,7 @@ import msgspec
 from frictioncli import documents
 from frictioncli.diagnosis.data.problem import Misfit
 from frictioncli.diagnosis.documents.empirical_record import EmpiricalGainRecord
-from frictioncli.diagnosis.documents.extended_model import ParameterRecord
+from frictioncli.diagnosis.documents.extended_document import ParameterRecord
 from frictioncli.diagnosis.documents.ramps_record import RampsRecord
 from frictioncli.diagnosis.ramps.settling import Settling
 from frictioncli.diagnosis.settings import DiagnosisSettings

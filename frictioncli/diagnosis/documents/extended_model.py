@@ -1,29 +1,21 @@
-"""The extended model as ``extended-model.json`` holds it: read once, evaluated in one place."""
+"""The extended model: its effects, and what it adds to the torque of a problem's rows."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
-from pathlib import Path
 
-import msgspec
 import numpy as np
-from msgspec import UNSET, UnsetType
 
-from frictioncli import documents
 from frictioncli.arrays import Array
 from frictioncli.diagnosis.data.build_problem import at_temperature
 from frictioncli.diagnosis.data.gravity_document import GravityCoefficients, stated_gravity
 from frictioncli.diagnosis.data.hidden_temperature import HiddenTemperature
 from frictioncli.diagnosis.data.late_torque import LateTorque
 from frictioncli.diagnosis.data.problem import Problem
-from frictioncli.diagnosis.documents.empirical_record import EmpiricalRecord
 from frictioncli.diagnosis.empirical.term import EmpiricalTerm
 from frictioncli.effects import BY_NAME, thermal_lag
 from frictioncli.effects.base import Basis, Effect
 from frictioncli.errors import TableError
-from frictioncli.model.document import FrictionModel
 from frictioncli.model.friction import FrictionParameters, friction_torque
-
-_NO_GRAVITY = GravityCoefficients(cosine=0.0, sine=0.0, offset=0.0)
 
 
 @dataclass(frozen=True, slots=True)
@@ -83,83 +75,6 @@ class FittedEffect:
         """Return what it adds to a problem's rows."""
         basis = problem.basis(self.effect, self.shape)
         return Term(self.effect, basis.friction @ self.coefficients, basis.load @ self.coefficients)
-
-
-class ParameterRecord(msgspec.Struct, frozen=True, kw_only=True):
-    """A fitted parameter.
-
-    Attributes
-    ----------
-    estimate : float
-        Its value. [unit]
-    ci95 : (float, float) or None
-        95 % confidence interval. [unit]
-    unit : str
-        Its unit.
-    """
-
-    estimate: float
-    ci95: tuple[float, float] | None
-    unit: str
-
-
-class EffectRecord(msgspec.Struct, frozen=True, kw_only=True):
-    """An effect of the extended model.
-
-    Attributes
-    ----------
-    name, equation : str
-        Its name in the catalogue, and its equation.
-    channel : {"friction", "load"}
-        The torque that it adds to.
-    shape : mapping of str to float
-        Its shape parameters, in the units of the catalogue.
-    coefficients : mapping of str to ParameterRecord
-        Its coefficients.
-    """
-
-    name: str
-    equation: str
-    channel: str
-    shape: Mapping[str, float]
-    coefficients: Mapping[str, ParameterRecord]
-
-    def fitted(self) -> FittedEffect:
-        """Return the effect of the catalogue with these parameters."""
-        estimates = {name: one.estimate for name, one in self.coefficients.items()}
-        return FittedEffect.of(self.name, self.shape, estimates)
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class ExtendedDocument(FrictionModel):
-    """One joint of ``extended-model.json``: the model with the effects found, all refitted.
-
-    Attributes
-    ----------
-    effects : tuple of EffectRecord
-        The effects, in the order of the causes, then effects of the measurement that are corrected
-        without a name. Without any the following fields are absent.
-    linear_about : FrictionParameters
-        Parameters of the base about which the extended model is linear.
-    gravity_about, gravity : GravityCoefficients
-        Gravity of the base, and as refitted.
-    hidden_temperature : HiddenTemperature
-        Temperature of the gear at which friction is evaluated; absent where that is the measured
-        one.
-    empirical : EmpiricalRecord
-        Torque without a known cause; absent where a term for it is not worth using.
-    late_torque : LateTorque
-        Response behind which the torque was logged, and with it the effects; absent where it is not
-        known to be late.
-    """
-
-    effects: tuple[EffectRecord, ...]
-    linear_about: FrictionParameters | UnsetType = UNSET
-    gravity_about: GravityCoefficients | UnsetType = UNSET
-    gravity: GravityCoefficients | UnsetType = UNSET
-    hidden_temperature: HiddenTemperature | UnsetType = UNSET
-    empirical: EmpiricalRecord | UnsetType = UNSET
-    late_torque: LateTorque | UnsetType = UNSET
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -273,53 +188,4 @@ def _at_measured(problem: Problem) -> Array:
         load=table.load,
         speed=table.speed,
         temperature=table.measured_temperature,
-    )
-
-
-def read_extended(path: Path) -> dict[int, ExtendedModel]:
-    """Return the extended model of each joint, by number.
-
-    Raises
-    ------
-    TableError
-        If the file is missing, damaged, or names an effect that the catalogue does not have.
-    """
-    stated = documents.read_joints(path, ExtendedDocument, "diagnose")
-    with documents.locate_faults(path, "diagnose"):
-        return {one.joint: extended_model(one) for one in stated}
-
-
-def extended_model(document: ExtendedDocument) -> ExtendedModel:
-    """Return a joint's extended model from its document.
-
-    Raises
-    ------
-    TableError
-        If it names an effect that the catalogue does not have, or with other parameters, lacks
-        what the effects are refitted with, or has an empirical term that is no function.
-    """
-    if not document.effects and not document.empirical:
-        return ExtendedModel(
-            temperature=document.temperature,
-            parameters=document.friction,
-            about=document.friction,
-            gravity=_NO_GRAVITY,
-            gravity_about=_NO_GRAVITY,
-            effects=(),
-        )
-    if not (document.linear_about and document.gravity and document.gravity_about):
-        raise TableError("expected linear_about, gravity and gravity_about beside the rest")
-    empirical = document.empirical or None
-    if empirical is not None:
-        empirical.check()
-    return ExtendedModel(
-        temperature=document.temperature,
-        parameters=document.friction,
-        about=document.linear_about,
-        gravity=document.gravity,
-        gravity_about=document.gravity_about,
-        effects=tuple(one.fitted() for one in document.effects),
-        hidden=document.hidden_temperature or None,
-        empirical=empirical,
-        late=document.late_torque or None,
     )

@@ -14,7 +14,7 @@ from frictioncli.diagnosis.documents.document import (
     SimulationRecord,
 )
 from frictioncli.diagnosis.documents.empirical_record import gain_record, term_record
-from frictioncli.diagnosis.documents.extended_model import (
+from frictioncli.diagnosis.documents.extended_document import (
     EffectRecord,
     ExtendedDocument,
     ParameterRecord,

@@ -15,7 +15,7 @@ from frictioncli.diagnosis.documents.document import (
     CauseRecord,
     DiagnosisDocument,
 )
-from frictioncli.diagnosis.documents.extended_model import ParameterRecord
+from frictioncli.diagnosis.documents.extended_document import ParameterRecord
 from frictioncli.wording import count_text, list_text, number_text, thousands_text
 
 _CLAIM = (

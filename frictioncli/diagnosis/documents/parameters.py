@@ -6,7 +6,7 @@ from typing import NamedTuple
 import numpy as np
 
 from frictioncli.arrays import Array
-from frictioncli.diagnosis.documents.extended_model import ParameterRecord
+from frictioncli.diagnosis.documents.extended_document import ParameterRecord
 from frictioncli.diagnosis.fit.extension import Extension
 from frictioncli.diagnosis.fit.hypotheses import EffectFit
 from frictioncli.effects.base import Effect

@@ -2,7 +2,7 @@
 
 import msgspec
 
-from frictioncli.diagnosis.documents.extended_model import ParameterRecord
+from frictioncli.diagnosis.documents.extended_document import ParameterRecord
 from frictioncli.diagnosis.ramps.evidence import RampEvidence
 
 

@@ -15,7 +15,8 @@ from frictioncli.diagnosis.documents.document import (
     DiagnosisDocument,
     read_diagnoses,
 )
-from frictioncli.diagnosis.documents.extended_model import ExtendedModel, Term, read_extended
+from frictioncli.diagnosis.documents.extended_document import read_extended
+from frictioncli.diagnosis.documents.extended_model import ExtendedModel, Term
 from frictioncli.errors import TableError
 from frictioncli.workfiles import DIAGNOSIS, EXTENDED
 

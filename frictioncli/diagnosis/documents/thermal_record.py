@@ -3,7 +3,7 @@
 from msgspec import structs
 
 from frictioncli.diagnosis.documents.document import CauseRecord
-from frictioncli.diagnosis.documents.extended_model import ParameterRecord
+from frictioncli.diagnosis.documents.extended_document import ParameterRecord
 from frictioncli.diagnosis.thermal.estimate import ThermalEstimate
 from frictioncli.diagnosis.thermal.statement import temperature_statement
 
