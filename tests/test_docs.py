@@ -2,8 +2,6 @@
 
 import re
 import shlex
-import subprocess
-import sys
 from pathlib import Path
 
 import pytest
@@ -11,6 +9,7 @@ import pytest
 from docs import folders
 from docs.compare_with_paper import comparison, markdown
 from frictioncli.cli.commands import app
+from tests.sample_run import WORDS, command
 
 ROOT = Path(__file__).parents[1]
 PAGES = [ROOT / "README.md", *sorted((ROOT / "docs").rglob("*.md"))]
@@ -27,24 +26,20 @@ def quick_start():
 
 
 @pytest.fixture(scope="module")
-def work(tmp_path_factory):
-    """The work folder that the commands of the quick start leave."""
-    folder = tmp_path_factory.mktemp("quick") / "friction-run"
-    for line in quick_start():
+def work(tmp_path_factory, sample_run):
+    """The work folder that the commands of the quick start leave.
+
+    The paper's method is tried on one day; its comparison below has both.
+    """
+    folder = sample_run(tmp_path_factory.mktemp("quick") / "friction-run")
+    first, *others = quick_start()
+    assert shlex.split(first, comments=True)[1:] == [*WORDS, folder.name]
+    for line in others:
         words = shlex.split(line, comments=True)[1:]
         words = [str(folder.with_name(word)) if word.endswith("-run") else word for word in words]
-        done = subprocess.run(
-            [sys.executable, "-m", "frictioncli", *words],
-            cwd=ROOT,
-            capture_output=True,
-            text=True,
-            encoding="utf-8",
-            check=False,
-        )
-        assert done.returncode == 0, f"{line}: {done.stderr}"
-        if words[0] == "run" and str(folder) in words:
-            published = markdown(comparison(folder))
-    return folder, published
+        words = [f"{word}/day1" if word == "sample_logs/kr10" else word for word in words]
+        command(*words)
+    return folder, markdown(comparison(folder))
 
 
 def test_quick_start_leaves_a_report(work):

@@ -1,8 +1,6 @@
 """The command line end to end, and what it says when the input is at fault."""
 
 import json
-import subprocess
-import sys
 from pathlib import Path
 
 import numpy as np
@@ -12,7 +10,7 @@ import pytest
 from frictioncli import schemas, tables
 from frictioncli.cli.commands import app
 from frictioncli.stages.settings import RunSettings
-from tests.command_line import invoke
+from tests.command_line import called, invoke
 from tests.equation_16 import friction, write_recording
 from tests.moves import move_sequence
 
@@ -36,18 +34,6 @@ COMMANDS = (
 )
 
 
-def frictioncli(*arguments, cwd=None):
-    """Run the program as a user would, in a process of its own."""
-    return subprocess.run(
-        [sys.executable, "-c", "from frictioncli.cli import main; main()", *map(str, arguments)],
-        capture_output=True,
-        text=True,
-        encoding="utf-8",
-        cwd=cwd,
-        check=False,
-    )
-
-
 def write_log(
     path, *, turns=(0, 170, 0, 170, 0, 170, 0), speeds=(20, 20, 50, 50, 90, 90), **columns
 ):
@@ -67,7 +53,7 @@ def finished(tmp_path_factory):
     """A finished run over one short log without temperature."""
     folder = tmp_path_factory.mktemp("finished")
     write_log(folder / "logs" / "trace.csv")
-    result = frictioncli("run", folder / "logs", "-w", folder / "work")
+    result = called("run", folder / "logs", "-w", folder / "work")
     assert result.returncode == 0, result.stderr
     return folder, result.stdout
 
@@ -115,7 +101,7 @@ def test_tables_carry_units_and_the_columns_of_the_contract(finished):
 def test_each_stage_works_alone(finished):
     folder, _ = finished
     for stage in ("pair", "separate", "fit", "report"):
-        result = frictioncli(stage, "-w", folder / "work")
+        result = called(stage, "-w", folder / "work")
         assert (result.returncode, result.stderr) == (0, "")
 
 
@@ -145,7 +131,7 @@ def test_a_second_run_gives_the_same_bytes(finished, tmp_path):
     former = [tmp_path / "again" / name for name in ("diagnosis.json", "extended-model.json")]
     for path in former:
         path.write_text("of other data", encoding="utf-8")
-    assert frictioncli("run", folder / "logs", "-w", tmp_path / "again").returncode == 0
+    assert called("run", folder / "logs", "-w", tmp_path / "again").returncode == 0
     assert not any(path.exists() for path in former)
     for path in sorted((tmp_path / "again").rglob("*")):
         if path.is_file():
@@ -155,7 +141,7 @@ def test_a_second_run_gives_the_same_bytes(finished, tmp_path):
 
 def test_simulate_without_temperature_says_why(finished):
     folder, _ = finished
-    result = frictioncli("simulate", "-w", folder / "work", "--k", 5, "--tmax", 60)
+    result = called("simulate", "-w", folder / "work", "--k", 5, "--tmax", 60)
     assert result.returncode == 2
     assert "does not know how friction falls with temperature" in result.stderr
     assert not (folder / "work" / "schedule.parquet").exists()
@@ -222,7 +208,7 @@ def wrong_delimiter(path):
 def test_bad_input_gives_one_message_and_nothing_half_written(tmp_path, spoil, told):
     path = write_log(tmp_path / "logs" / "trace.csv")
     spoil(path)
-    result = frictioncli("run", tmp_path / "logs", "-w", tmp_path / "work")
+    result = called("run", tmp_path / "logs", "-w", tmp_path / "work")
     assert result.returncode == 2
     assert told in result.stderr
     assert "Traceback" not in result.stderr
@@ -233,7 +219,7 @@ def test_bad_input_gives_one_message_and_nothing_half_written(tmp_path, spoil, t
 
 def test_inspect_shows_units_and_writes_nothing(tmp_path):
     write_log(tmp_path / "logs" / "trace.csv", **{"Motortemperatur2[K]": 313})
-    result = frictioncli("inspect", "logs", cwd=tmp_path)
+    result = called("inspect", "logs", cwd=tmp_path)
     assert result.returncode == 0
     assert "AxisPos_Act2[°]: 0 to 170 deg" in result.stdout
     assert "read as deg: as the header says" in result.stdout
@@ -244,31 +230,31 @@ def test_inspect_shows_units_and_writes_nothing(tmp_path):
 
 def test_inspect_as_json_and_as_a_mapping_file(tmp_path):
     path = write_log(tmp_path / "logs" / "trace.csv")
-    found = json.loads(frictioncli("inspect", "logs", "--json", cwd=tmp_path).stdout)
+    found = json.loads(called("inspect", "logs", "--json", cwd=tmp_path).stdout)
     assert found["files"][0]["rows_kept"] == path.read_bytes().count(b"\n") - 1
-    suggested = frictioncli("inspect", "logs", "--suggest-map", cwd=tmp_path)
+    suggested = called("inspect", "logs", "--suggest-map", cwd=tmp_path)
     (tmp_path / "channels.toml").write_text(suggested.stdout, encoding="utf-8")
-    again = frictioncli("inspect", "logs", "--json", "--map", "channels.toml", cwd=tmp_path)
+    again = called("inspect", "logs", "--json", "--map", "channels.toml", cwd=tmp_path)
     assert json.loads(again.stdout)["joints"][0]["pairs"] == found["joints"][0]["pairs"] == 3
-    both = frictioncli("inspect", "logs", "--json", "--suggest-map", cwd=tmp_path)
+    both = called("inspect", "logs", "--json", "--suggest-map", cwd=tmp_path)
     assert (both.returncode, both.stderr.count("\n")) == (2, 1)
 
 
 def test_inspect_of_unusable_files_is_done_all_the_same(tmp_path):
     (tmp_path / "empty.csv").write_text("")
-    result = frictioncli("inspect", tmp_path)
+    result = called("inspect", tmp_path)
     assert result.returncode == 0
     assert "not usable: empty file" in result.stdout
 
 
 def test_a_missing_folder_is_named(tmp_path):
-    result = frictioncli("run", tmp_path / "nowhere", "-w", tmp_path / "work")
+    result = called("run", tmp_path / "nowhere", "-w", tmp_path / "work")
     assert result.returncode == 2
     assert "nowhere" in result.stderr
 
 
 def test_a_stage_without_its_input_names_the_missing_table(tmp_path):
-    result = frictioncli("fit", "-w", tmp_path)
+    result = called("fit", "-w", tmp_path)
     assert result.returncode == 2
     assert "torques.parquet" in result.stderr
 
@@ -277,7 +263,7 @@ def test_a_stage_without_its_input_names_the_missing_table(tmp_path):
 def test_a_damaged_table_is_named(tmp_path, name):
     (tmp_path / name).write_bytes(b"PAR1 and then nothing")
     stage = {"pairs.parquet": "separate", "samples.parquet": "pair"}[name]
-    result = frictioncli(stage, "-w", tmp_path)
+    result = called(stage, "-w", tmp_path)
     assert result.returncode == 2
     assert name in result.stderr
     assert "Traceback" not in result.stderr
@@ -297,7 +283,7 @@ def test_a_damaged_table_is_named(tmp_path, name):
     ],
 )
 def test_bad_options_name_what_is_allowed(tmp_path, arguments, told):
-    result = frictioncli(*arguments, "-w", tmp_path)
+    result = called(*arguments, "-w", tmp_path)
     assert result.returncode == 2
     assert told in result.stderr
     assert "Traceback" not in result.stderr
@@ -305,7 +291,7 @@ def test_bad_options_name_what_is_allowed(tmp_path, arguments, told):
 
 def test_help_names_units():
     for command in COMMANDS:
-        text = frictioncli(command, "--help").stdout
+        text = called(command, "--help").stdout
         assert any(unit in text for unit in ("deg", "N·m", "°C", "min")), command
 
 
@@ -316,7 +302,7 @@ def test_commands_are_those_listed_here():
 def test_option_defaults_are_the_settings_defaults():
     """What ``run --help`` shows as default is what the library does."""
     settings = RunSettings()
-    text = " ".join(frictioncli("run", "--help").stdout.split())
+    text = " ".join(called("run", "--help").stdout.split())
     steady, pairing = settings.pairing.steady, settings.pairing
     for option, value in {
         "bin-width": pairing.bin_width,
@@ -334,11 +320,11 @@ def test_option_defaults_are_the_settings_defaults():
 
 
 def test_version_is_told():
-    assert frictioncli("--version").stdout.startswith("frictioncli 0.")
+    assert called("--version").stdout.startswith("frictioncli 0.")
 
 
 def test_synthesize_makes_what_run_reads(tmp_path):
-    made = frictioncli(
+    made = called(
         "synthesize",
         tmp_path / "made",
         *("--seed", 4, "--runs", 1, "--thin", 8),
@@ -346,7 +332,7 @@ def test_synthesize_makes_what_run_reads(tmp_path):
     )
     assert made.returncode == 0, made.stderr
     assert (tmp_path / "made" / "truth.json").exists()
-    result = frictioncli("run", tmp_path / "made", "-w", tmp_path / "work")
+    result = called("run", tmp_path / "made", "-w", tmp_path / "work")
     assert result.returncode == 0, result.stderr
     for name in ("diagnosis.json", "extended-model.json", "schedule.parquet"):
         assert (tmp_path / "work" / name).exists()

@@ -5,15 +5,13 @@ import signal
 import subprocess
 import sys
 import time
-from contextlib import redirect_stderr, redirect_stdout
 from dataclasses import dataclass
-from io import StringIO
 from pathlib import Path
 from unittest.mock import patch
 
-from frictioncli.cli import main
 from frictioncli.fleet.joint_logs import JointLogs
 from frictioncli.fleet.joint_record import read_record
+from tests.command_line import called
 from tests.fleet.joints import Joint, write_joint
 
 WITHOUT = ("--no-report", "--no-diagnosis")
@@ -58,19 +56,8 @@ def started(*arguments, **environment):
 
 def fleet(*arguments):
     """Run the command to its end, in this process; its workers are processes of their own."""
-    words = ["frictioncli", "fleet", *map(str, arguments)]
-    output, errors, status = StringIO(), StringIO(), 0
-    with (
-        patch.dict(os.environ, ENVIRONMENT),
-        patch.object(sys, "argv", words),
-        redirect_stdout(output),
-        redirect_stderr(errors),
-    ):
-        try:
-            main()
-        except SystemExit as ended:
-            status = ended.code
-    return subprocess.CompletedProcess(words, status, output.getvalue(), errors.getvalue())
+    with patch.dict(os.environ, ENVIRONMENT):
+        return called("fleet", *arguments)
 
 
 def children(pid):
