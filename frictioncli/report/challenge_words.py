@@ -99,8 +99,7 @@ def can_show(row: Row) -> bool:
 def claim_ratios(rows: Sequence[Row]) -> dict[tuple[str, int], float]:
     """Return the claimed size over the size found, of each effect and shape that was searched.
 
-    An effect of which every size tried was found, or none, has the ratio to the outermost size
-    tried, which is a bound of it.
+    It is 0 where no size that was tried was found; where all were, the true ratio is larger.
 
     Parameters
     ----------
@@ -109,7 +108,8 @@ def claim_ratios(rows: Sequence[Row]) -> dict[tuple[str, int], float]:
     """
     ratios = {}
     for row in rows:
-        size = row["size_found"] if row["size_found"] is not None else row["size_found_low"]
-        if size is not None and row["claimed"] is not None:
-            ratios[row["effect"], row["seed"]] = float(row["claimed"] / size)
+        claimed, size = row["claimed"], row["size_found"]
+        if claimed is None or (size is None and row["size_found_low"] is None):
+            continue
+        ratios[row["effect"], row["seed"]] = 0.0 if size is None else float(claimed / size)
     return ratios
