@@ -237,7 +237,7 @@ def test_a_killed_call_leaves_a_whole_table_and_goes_on(logs, tmp_path):
         assert process.poll() is None
         time.sleep(0.05)
     os.kill(process.pid, signal.SIGKILL)
-    process.wait()
+    process.communicate()
     before = rows_of(work)
     again = started(*words)
     told, faults = again.communicate(timeout=300)

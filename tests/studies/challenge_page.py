@@ -101,7 +101,7 @@ def wrong_names(cases: dict[str, list[Row]]) -> str:
             f"| {case} | {row['effect']} | {number_text(row['size'])} {row['unit']}"
             f" ({row['share']:.0%}) | {row['wrong']} | {row['names']} |"
         )
-    return "\n".join([*lines, ""]) + "\n" if wrong else "## Wrong names\n\nNone.\n"
+    return "\n".join([*lines, ""]) if wrong else "## Wrong names\n\nNone.\n"
 
 
 def section(case: str, rows: Sequence[Row]) -> str:
