@@ -24,6 +24,7 @@ from frictioncli.design.rivals import OpenQuestions
 from frictioncli.design.steps import Step
 from frictioncli.diagnosis.data.build_problem import simulated
 from frictioncli.diagnosis.data.problem import Problem
+from frictioncli.diagnosis.data.within_noise import WithinNoise
 from frictioncli.diagnosis.fit.columns import main_channel, residual_of_base
 from frictioncli.model.document import PARAMETERS
 
@@ -125,7 +126,9 @@ class DesignCriterion:
             for number, steps in enumerate(days, 1)
         ]
         new = pd.concat([run for run in runs if len(run)] or runs[:1], ignore_index=True)
-        problem = _problem(self.joint, append_run(self.joint.torques, new))
+        # planned rows hold no noise that could be estimated from them
+        noise = self.observed.problem.layout.noise
+        problem = _problem(self.joint, append_run(self.joint.torques, new), noise)
         travel = problem.all_runs.travel.copy()
         if len(new):
             travel[-len(new) :] = new["travel"]
@@ -227,8 +230,10 @@ def _discriminations(
     return tuple(found)
 
 
-def _problem(joint: PlannedJoint, torques: pd.DataFrame) -> Problem:
-    return simulated(torques, joint.temperature, joint.parameters, joint.gravity)[1]
+def _problem(
+    joint: PlannedJoint, torques: pd.DataFrame, noise: WithinNoise | None = None
+) -> Problem:
+    return simulated(torques, joint.temperature, joint.parameters, joint.gravity, noise=noise)[1]
 
 
 def _precision(

@@ -23,6 +23,7 @@ from frictioncli.diagnosis.data.motion_history import clock_of, series, travel_o
 from frictioncli.diagnosis.data.pair_layout import PairLayout
 from frictioncli.diagnosis.data.pose_gravity import gravities_by_pose
 from frictioncli.diagnosis.data.problem import Problem
+from frictioncli.diagnosis.data.within_noise import WithinNoise
 from frictioncli.effects.base import EffectTable
 from frictioncli.effects.pair_series import rows_of
 from frictioncli.model.document import PARAMETERS
@@ -68,11 +69,10 @@ def build_problems(
     unseen = _unseen_gravity(rows, new, load - columns @ gravity, form)
     smooth = carried_load(columns, gravity) + unseen if rows["load"].isna().all() else load
     rows["load_torque"] -= unseen
+    by_gravity = (form, columns, gravity)
     problem = min(
         (
-            _assembled(
-                rows, temperature, smooth, (form, columns, gravity), base.parameters, base.names
-            )
+            _assembled(rows, temperature, smooth, by_gravity, base.parameters, base.names)
             for base in candidate_bases(rows.assign(load_torque=smooth)[~new], temperature)
         ),
         key=lambda problem: _typical_misfit(problem, ~new),
@@ -118,6 +118,7 @@ def simulated(
     gravity: Array,
     hidden: HiddenTemperature | None = None,
     form: GravityForm | None = None,
+    noise: WithinNoise | None = None,
 ) -> tuple[pd.Index, Problem]:
     """Return the problem of rows simulated with a given base model, and its order of the rows.
 
@@ -136,6 +137,8 @@ def simulated(
         Temperature of the gear at which friction is simulated; by default the measured one.
     form : GravityForm, optional
         What the gravity depends on; by default that of three or five coefficients.
+    noise : WithinNoise, optional
+        Noise within pairs; by default it is estimated from the rows.
 
     Returns
     -------
@@ -147,16 +150,8 @@ def simulated(
     columns = form.columns(rows)
     smooth = rows["load"].isna().all()
     load = carried_load(columns, gravity) if smooth else rows["load_torque"].to_numpy(float)
-    problem = _assembled(
-        rows.reset_index(drop=True),
-        temperature,
-        load,
-        (form, columns, gravity),
-        parameters,
-        PARAMETERS,
-        hidden,
-    )
-    return rows.index, problem
+    given = (rows.reset_index(drop=True), temperature, load, (form, columns, gravity))
+    return rows.index, _assembled(*given, parameters, PARAMETERS, hidden, noise)
 
 
 def _assembled(
@@ -167,6 +162,7 @@ def _assembled(
     parameters: FrictionParameters,
     names: tuple[str, ...],
     hidden: HiddenTemperature | None = None,
+    noise: WithinNoise | None = None,
 ) -> Problem:
     """Return the problem of all rows, with friction simulated by the base model.
 
@@ -185,7 +181,11 @@ def _assembled(
         time=rows["time"].to_numpy(float)[heads],
         speed=speed[heads],
         position=position,
-    ).with_noise_from(rows[["friction_torque", "load_torque"]].to_numpy(float), position)
+        noise=noise,
+    )
+    if noise is None:
+        channels = rows[["friction_torque", "load_torque"]].to_numpy(float)
+        layout = layout.with_noise_from(channels, position)
     motor = rows["motor_temperature"].to_numpy(float)
     friction = rows["friction_torque"].to_numpy(float)
     reference_power = 100.0 * max(float(np.mean(np.abs(friction))), 1e-12)

@@ -120,16 +120,35 @@ def within_noise_of(blocks: list[tuple[float, Array, Array]]) -> WithinNoise:
     total = sum(one[3] * (len(one[1]) - 1) for one in products.values())
     if total < LEAST_FREEDOM:
         return WithinNoise()
-    tried = [WithinNoise(), *(WithinNoise(time, share) for time in TIMES for share in SHARES)]
-    return min(tried, key=lambda noise: _cost(noise, list(products.values())))
+    groups = list(products.values())
+    found = [(_costs(TIMES[0], (0.0,), groups)[0], WithinNoise())]
+    for time in TIMES:
+        costs = _costs(time, SHARES, groups)
+        found += [
+            (cost, WithinNoise(time, share)) for cost, share in zip(costs, SHARES, strict=True)
+        ]
+    return min(found, key=lambda one: one[0])[1]
 
 
-def _cost(noise: WithinNoise, products: list[tuple[float, Array, Array, float]]) -> float:
-    """Return -2 ln of the likelihood, the variance at each speed maximised over."""
-    cost = 0.0
-    for speed, position, inner, count in products:
-        matrix, values = whitening(noise.correlation(position, speed))
+def _costs(
+    time: float, shares: tuple[float, ...], groups: list[tuple[float, Array, Array, float]]
+) -> list[float]:
+    """Return -2 ln of the likelihood of each share, the variance at each speed maximised over.
+
+    The deviations of all shares have the same eigenvectors: white noise has any.
+    """
+    costs = [0.0] * len(shares)
+    for speed, position, inner, count in groups:
+        projection = np.eye(len(position)) - 1 / len(position)
+        correlation = WithinNoise(time, 1.0).correlation(position, speed)
+        values, vectors = np.linalg.eigh(projection @ correlation @ projection)
+        # the first is the constant, which deviations do not hold
+        values, vectors = values[1:], vectors[:, 1:]
+        powers = np.einsum("ij,ij->j", inner @ vectors, vectors)
         freedom = count * len(values)
-        square = max(float(np.sum((matrix @ matrix) * inner)), 1e-300)
-        cost += freedom * np.log(square / freedom) + count * float(np.sum(np.log(values)))
-    return cost
+        for number, share in enumerate(shares):
+            mixed = 1 - share + share * values
+            square = max(float(np.sum(powers / mixed)), 1e-300)
+            costs[number] += freedom * np.log(square / freedom)
+            costs[number] += count * float(np.sum(np.log(mixed)))
+    return costs
