@@ -2,6 +2,7 @@
 
 import hashlib
 import json
+from functools import cache
 
 import numpy as np
 import pandas as pd
@@ -44,6 +45,12 @@ def diagnosed(rows):
     return diagnose_joint(rows, "motor", "N·m", DiagnosisSettings())
 
 
+@cache
+def clean(seed):
+    """Return the diagnosis of days with nothing hidden."""
+    return diagnosed(days(seed))
+
+
 def said(diagnosis):
     """Return what the terminal says."""
     return verdict_text(diagnosis_document(diagnosis, DiagnosisSettings()))
@@ -55,7 +62,7 @@ def undetectable(diagnosis):
 
 @pytest.mark.parametrize("seed", range(3))
 def test_nothing_is_found_where_nothing_is_hidden(seed):
-    diagnosis = diagnosed(days(seed))
+    diagnosis = clean(seed)
     assert diagnosis.verdict == "no_evidence"
     assert diagnosis.causes == ()
     assert diagnosis.gain is None
@@ -165,8 +172,7 @@ def test_one_day_only_says_that_its_gain_is_optimistic():
 
 
 def test_detectable_sizes_cover_the_catalogue():
-    rows = days(1)
-    diagnosis = diagnosed(rows)
+    diagnosis = clean(1)
     assert set(diagnosis.detectable) == {effect.name for effect in EFFECTS}
     known = [size for size in diagnosis.detectable.values() if size is not None]
     # a name needs more than the margin, whatever the noise
@@ -174,7 +180,7 @@ def test_detectable_sizes_cover_the_catalogue():
     # of a ripple the base leaves nearly all
     assert diagnosis.detectable["position_ripple"] < 2 * diagnosis.margin
     settings = DiagnosisSettings(margin=0.0)
-    whatever = diagnose_joint(rows, "motor", "N·m", settings).detectable
+    whatever = diagnose_joint(days(1), "motor", "N·m", settings).detectable
     # a ripple is averaged over 160 pairs of 34 bins of 0.3 N·m: about 0.3 * sqrt(2 * 25 / 5440),
     # and the discrepancy has as much again along the same axis
     assert 0.01 < whatever["position_ripple"] < 0.2

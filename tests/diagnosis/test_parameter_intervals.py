@@ -14,6 +14,7 @@ from frictioncli.model.friction import PUBLISHED
 from frictioncli.simulator.nuisances.catalogue import requested_nuisances
 from frictioncli.simulator.settings import SynthesisSettings
 from tests.diagnosis.dense_noise import problem
+from tests.diagnosis.rules_of_names import keeps_the_rules
 from tests.simulation.torque_table import simulate_torques
 
 Z95 = 1.96
@@ -64,14 +65,16 @@ def test_a_delay_that_is_not_named_is_an_error_of_what_it_moves(joint, weighted_
 
 
 @pytest.mark.slow
-def test_intervals_hold_the_truth_under_all_nuisances():
-    """Ten joints with nothing hidden: of 50 intervals of the base and the offset's, 92 %."""
-    held, offset = [], []
+def test_joints_with_nothing_hidden_under_all_nuisances():
+    """Ten joints: of 50 intervals of the base 92 % hold the truth; one name at the most."""
+    held, offset, named = [], [], []
     for seed in range(60, 70):
         settings = SynthesisSettings(
             seed=seed, joint_kind="plain", nuisances=("all", "friction_zones:0.02")
         )
         diagnosis = diagnose_joint(simulate_torques(settings), "motor", "N·m", DiagnosisSettings())
+        keeps_the_rules(diagnosis)
+        named += [one.effects for one in diagnosis.causes if not one.fit.effect.measurement][:1]
         extension, base = diagnosis.extension, diagnosis.base
         if extension is None:
             continue
@@ -87,6 +90,7 @@ def test_intervals_hold_the_truth_under_all_nuisances():
             if one.effect.name == "load_offset":
                 offset.append(abs(one.coefficients[0] - truth) <= errors[place])
             place += len(one.coefficients)
+    assert len(named) <= 1, named
     assert len(held) >= 40
     assert np.mean(held) >= 0.92
     assert offset

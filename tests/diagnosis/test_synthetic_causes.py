@@ -15,6 +15,7 @@ from frictioncli.diagnosis.diagnose import Diagnosis, diagnose_joint
 from frictioncli.diagnosis.settings import DiagnosisSettings
 from frictioncli.effects import BY_NAME, EFFECTS
 from frictioncli.simulator.settings import SynthesisSettings
+from tests.diagnosis.rules_of_names import keeps_the_rules
 from tests.simulation.torque_table import simulate_torques
 
 SIZES = {
@@ -74,7 +75,7 @@ def diagnosed(
     noise: str = "default",
     days: int = 2,
 ) -> Diagnosis:
-    """Simulate days, hide effects in them, and diagnose them blind."""
+    """Simulate days, hide effects in them, and diagnose them blind; names keep their rules."""
     settings = SynthesisSettings(
         seed=seed,
         joint_kind="plain",
@@ -83,7 +84,9 @@ def diagnosed(
         effects=effects,
         runs=days,
     )
-    return diagnose_joint(simulate_torques(settings), "motor", "N·m", DiagnosisSettings())
+    diagnosis = diagnose_joint(simulate_torques(settings), "motor", "N·m", DiagnosisSettings())
+    keeps_the_rules(diagnosis)
+    return diagnosis
 
 
 def hidden(name: str) -> tuple[str, int]:
