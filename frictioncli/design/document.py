@@ -255,6 +255,21 @@ class ThermalRecord(msgspec.Struct, frozen=True, kw_only=True):
     time_constant_s: float
 
 
+class UnnamedRecord(msgspec.Struct, frozen=True, kw_only=True):
+    """Structure that no effect explains, and what would show its nature.
+
+    Attributes
+    ----------
+    description : str
+        Where it shows, and which form describes it, if one does.
+    experiment : str
+        What to measure around it.
+    """
+
+    description: str
+    experiment: str
+
+
 class PlanDocument(msgspec.Struct, frozen=True, kw_only=True):
     """``plan.json``: the next experiment of one joint.
 
@@ -275,6 +290,8 @@ class PlanDocument(msgspec.Struct, frozen=True, kw_only=True):
         The programme of the next day.
     questions : tuple of QuestionRecord
         Open questions of the diagnosis.
+    unnamed : UnnamedRecord
+        Structure that no effect explains; absent where there is none.
     intervals : tuple of IntervalRecord
         Intervals of the parameters.
     thermal : ThermalRecord or None
@@ -290,6 +307,7 @@ class PlanDocument(msgspec.Struct, frozen=True, kw_only=True):
     programme: ProgrammeRecord
     check: CheckRecord | UnsetType = UNSET
     questions: tuple[QuestionRecord, ...] | UnsetType = UNSET
+    unnamed: UnnamedRecord | UnsetType = UNSET
     intervals: tuple[IntervalRecord, ...] | UnsetType = UNSET
     thermal: ThermalRecord | UnsetType | None = UNSET
     budget_min: float

@@ -21,6 +21,7 @@ from frictioncli.design.document import (
     RestRecord,
     SeriesRecord,
     ThermalRecord,
+    UnnamedRecord,
 )
 from frictioncli.design.limits import Limits
 from frictioncli.design.plan import Expectation, Plan
@@ -84,6 +85,9 @@ def plan_document(
             ),
         ),
         questions=tuple(_question(plan, one, number) for number, one in enumerate(questions)),
+        unnamed=UNSET
+        if plan.unnamed is None
+        else UnnamedRecord(description=plan.unnamed.claim, experiment=plan.unnamed.experiment),
         intervals=tuple(interval_records(plan, units, stated)),
         thermal=None
         if thermal is None

@@ -18,7 +18,7 @@ from frictioncli.design.steps import Step
 from frictioncli.design.thermal_model import thermal_model_of
 from frictioncli.diagnosis.data.build_problem import build_problems
 from frictioncli.diagnosis.data.problem import Problem
-from frictioncli.diagnosis.documents.document import DiagnosisDocument
+from frictioncli.diagnosis.documents.document import CauseRecord, DiagnosisDocument
 from frictioncli.diagnosis.documents.extended_model import ExtendedModel
 from frictioncli.errors import NotEnoughData
 from frictioncli.model.friction import PUBLISHED, FrictionParameters
@@ -86,6 +86,8 @@ class Plan:
         Before the programme, and after each of its blocks.
     after_check : Expectation
         After programme and check.
+    unnamed : CauseRecord or None
+        Structure that no effect explains, with what would show its nature.
     """
 
     joint: int
@@ -99,6 +101,7 @@ class Plan:
     check_timings: tuple[Timing, ...]
     expected: tuple[Expectation, ...]
     after_check: Expectation
+    unnamed: CauseRecord | None = None
 
 
 def plan_joint(
@@ -153,6 +156,7 @@ def plan_joint(
     rest = budget - seconds_of(blocks, payload)
     check = choose_check(criterion, blocks, rest, payload, settings.seed)
     return Plan(
+        unnamed=next((cause for cause in document.causes if not cause.effects), None),
         joint=_joint_number(torques),
         verdict=document.verdict,
         torque_unit=torque_unit,

@@ -29,6 +29,9 @@ def plan_text(
         lines.append(f"    {_chance(after)} after it{checked}{_too_little(last)}")
     if plan.verdict == "unnamed":
         lines.append("  no known effect explains the structure: blocks that spread over all inputs")
+    if plan.unnamed is not None:
+        lines.append(f"  without a name: {plan.unnamed.claim}")
+        lines.append(f"    to learn its nature: {plan.unnamed.experiment}")
     told: set[str] = set()
     for first, last in _alike(plan):
         lines += _blocks_text(plan, first, last, tell=plan.blocks[first].name not in told)

@@ -12,7 +12,7 @@ from frictioncli.diagnosis.documents.apply_extension import friction_beyond
 from frictioncli.diagnosis.documents.extended_document import ExtendedDocument, extended_model
 from frictioncli.diagnosis.documents.from_diagnosis import diagnosis_document, extended_document
 from frictioncli.diagnosis.documents.text import verdict_text
-from frictioncli.diagnosis.empirical.describe import described
+from frictioncli.diagnosis.empirical.describe import described, experiment
 from frictioncli.diagnosis.empirical.estimate import empirical_term
 from frictioncli.diagnosis.empirical.random_functions import functions_of
 from frictioncli.diagnosis.empirical.term import (
@@ -177,6 +177,8 @@ def test_a_bump_in_a_late_torque_is_described():
     assert part.form.shape["width"] == pytest.approx(7.0, rel=0.05)
     assert part.form.shape["lag"] == pytest.approx(0.04, rel=0.1)
     assert part.form.coefficients["peak"] == pytest.approx(3.0, rel=0.05)
+    assert "Pass 41" in experiment(part.form)
+    assert "to 82" in experiment(part.form)
     assert described(part.form, "N·m") == (
         f"a bump of friction of {part.form.coefficients['peak']:.1f} N·m at"
         f" {part.form.shape['centre']:.1f} deg, {part.form.shape['width']:.1f} deg wide (standard"
@@ -277,6 +279,8 @@ def test_documents_and_text_say_what_it_gains(diagnosed):
     assert part.axes == document.structure.axis == ("position", "temperature")
     assert part.formula == document.structure.formula
     assert "2 times per turn" in document.structure.description
+    (unnamed,) = [cause for cause in document.causes if not cause.effects]
+    assert "three temperatures" in unnamed.experiment
     assert document.empirical.rmse_after < 0.8 * document.empirical.rmse_before
     assert "With an empirical term for what has no name" in verdict_text(document)
     assert "no cause" in verdict_text(document)

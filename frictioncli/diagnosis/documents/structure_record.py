@@ -5,6 +5,7 @@ import numpy as np
 from frictioncli.diagnosis.diagnose import Diagnosis
 from frictioncli.diagnosis.documents.document import CauseRecord, StructureRecord
 from frictioncli.diagnosis.documents.empirical_record import LocatedRecord, gain_record
+from frictioncli.diagnosis.empirical.describe import experiment
 
 
 def structure_record(diagnosis: Diagnosis) -> StructureRecord | None:
@@ -69,7 +70,8 @@ def unnamed_record(diagnosis: Diagnosis) -> CauseRecord:
         p_value=structure.p_value,
         seen_in=along,
         figure=None,
-        experiment=f"Measure more values of {along}, in random order, on another day.",
+        experiment=_experiment(diagnosis)
+        or f"Measure more values of {along}, in random order, on another day.",
     )
 
 
@@ -83,6 +85,13 @@ def _forms(diagnosis: Diagnosis) -> tuple[LocatedRecord, ...]:
     if diagnosis.empirical is None:
         return ()
     return gain_record(diagnosis.empirical, diagnosis.torque_unit).forms
+
+
+def _experiment(diagnosis: Diagnosis) -> str:
+    """Return what to measure next about the largest form; empty without one."""
+    found = diagnosis.empirical
+    form = found.parts[0].form if found is not None else None
+    return "" if form is None else experiment(form)
 
 
 def _in_words(forms: tuple[LocatedRecord, ...]) -> str:

@@ -61,6 +61,55 @@ def formula_with_numbers(form: FormFunction) -> str:
     return f"{form.formula}; {', '.join(f'{name} = {one:.5g}' for name, one in values.items())}"
 
 
+def experiment(form: FormFunction) -> str:
+    """Return what to measure next to learn what a form is.
+
+    Parameters
+    ----------
+    form : FormFunction
+        The form with its parameters.
+    """
+    axis = form.axes[0]
+    if form.kind in ("peak", BUMP):
+        centre, width = form.shape["centre"], form.shape["width"]
+        if axis == "speed":
+            low, high = (_number(centre * math.exp(way * 2 * width)) for way in (-1, 1))
+        else:
+            low, high = (_number(centre + way * 3 * width) for way in (-1, 1))
+        return _AROUND[axis].format(low=low, high=high, bins=number_text(width / 2, 2))
+    return _NEXT[form.kind]
+
+
+_AROUND = {
+    "position": "Pass {low} to {high} deg at three speeds, slow ones among them, cold and warm,"
+    " with and without a payload, in bins of no more than {bins} deg: damage of gear or bearing"
+    " stays at its angle at all speeds, and what the load does grows with it.",
+    "speed": "Measure at six speeds or more from {low} to {high} deg/s in random order, cold and"
+    " warm: a resonance stays at its speed, a change of lubrication moves with temperature.",
+    "temperature": "Pass {low} to {high} °C twice, warming and cooling, at another pace and on"
+    " another day: what goes with temperature comes back at the same one, what goes with time does"
+    " not.",
+    "load": "Measure with another payload, or in another pose, so that loads of {low} to {high} N·m"
+    " are met at other angles: what goes with the load moves there.",
+}
+"""What to measure around a peak."""
+
+_BEND = "Measure more values on both sides of the bend, in random order, on another day."
+
+_NEXT = {
+    "bend_above": _BEND,
+    "bend_below": _BEND,
+    "lifting": "Measure with two payloads: a loss of lifting grows with the load by its power, an"
+    " error of the mass in proportion.",
+    "moving_peak": "Measure at six speeds or more about the peak, at three temperatures that are"
+    " held.",
+    "warm_wave": "Pass the whole stroke at one slow speed at three temperatures that are held.",
+    "turning_wave": "Pass the whole stroke at six speeds or more, in random order, at one"
+    " temperature.",
+}
+"""What to measure about other forms."""
+
+
 def _of(form: FormFunction) -> str:
     return "friction" if form.channel == "friction" else "the load"
 

@@ -1,8 +1,9 @@
 r"""Where structure without a name shows: the parts of an empirical term with their sizes.
 
 The term is a sum of functions of one quantity or two in either channel. The size of each is the RMS
-of what the base leaves of it; the interval comes from its estimates from each part of the pairs
-alone,
+of what the base leaves of it, of a form together with the random function of the same quantities,
+which holds what the form does not: of a load that of the angle. The interval comes from estimates
+from each part of the pairs alone,
 
 .. math:: s \left( 1 \pm t_{0.975} \, \sigma_r / \sqrt{n} \right) ,
 
@@ -51,7 +52,7 @@ class Located:
 
 
 def sizes_of_parts(
-    functions: Sequence[Function], equations: NormalEquations
+    functions: Sequence[Function], equations: NormalEquations, *, together: bool = False
 ) -> list[tuple[float, Array]]:
     """Return the RMS of each function, and its ratio in each part of the pairs alone.
 
@@ -61,6 +62,8 @@ def sizes_of_parts(
         The functions.
     equations : NormalEquations
         Their normal equations.
+    together : bool, optional
+        Whether a form counts with the random function of the same quantities.
 
     Returns
     -------
@@ -69,13 +72,22 @@ def sizes_of_parts(
     """
     whole = equations.coefficients()
     alone = [equations.by_part(number) for number in range(len(equations.inner))]
-    found, first = [], 0
-    for one in functions:
-        place = slice(first, first + len(one.scale))
-        first = place.stop
-        torque = one.columns @ whole[place]
+    numbers = np.repeat(np.arange(len(functions)), [len(one.scale) for one in functions])
+    found = []
+    for number, one in enumerate(functions):
+        belonging = [number]
+        if together and one.is_form:
+            axes = {"position" if axis == "load" else axis for axis in one.axes}
+            belonging += [
+                other
+                for other, two in enumerate(functions)
+                if not two.is_form and set(two.axes) == axes and two.channel == one.channel
+            ]
+        chosen = np.isin(numbers, belonging)
+        columns = equations.columns[:, chosen]
+        torque = columns @ whole[chosen]
         square = max(float(torque @ torque), 1e-300)
-        ratios = np.array([one.columns @ own[place] @ torque / square for own in alone])
+        ratios = np.array([columns @ own[chosen] @ torque / square for own in alone])
         found.append((float(np.sqrt(square / (len(torque) / 2))), ratios))
     return found
 
@@ -94,7 +106,7 @@ def located(
     forms : sequence of FormFunction
         The forms, in this order.
     """
-    sizes = sizes_of_parts(functions, equations)
+    sizes = sizes_of_parts(functions, equations, together=True)
     squares = sum(size**2 for size, _ in sizes)
     found = []
     for number, (one, (size, ratios)) in enumerate(zip(functions, sizes, strict=True)):
