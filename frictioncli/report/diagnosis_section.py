@@ -8,6 +8,7 @@ from matplotlib.figure import Figure
 
 from frictioncli.diagnosis.documents.reload import Reloaded
 from frictioncli.diagnosis.documents.sentences import (
+    empirical_text,
     margin_text,
     remainder_text,
     settling_text,
@@ -53,6 +54,8 @@ class DiagnosisSection:
         The verdict and the gain by the extended model, in words.
     remainder : str
         What the extended model leaves on a new run, in words; empty where that is noise.
+    empirical : str
+        What its empirical term gains and where it is valid, in words; empty without one.
     causes, unnamed, visible : tuple of CauseText
         Causes that are named, structure that no effect of the catalogue explains, and what was
         found and is not named.
@@ -72,6 +75,7 @@ class DiagnosisSection:
     unnamed: tuple[CauseText, ...] = ()
     visible: tuple[CauseText, ...] = ()
     remainder: str = ""
+    empirical: str = ""
     margin: str = ""
     settling: str = ""
     gain: str = ""
@@ -102,6 +106,7 @@ def diagnosis_section(results: JointResults) -> DiagnosisSection:
         unnamed=tuple(unnamed_texts(document)),
         visible=tuple(visible_texts(document)),
         remainder=remainder_text(document),
+        empirical=empirical_text(document),
         margin=margin_text(document),
         settling=settling_text(document),
         gain=gain_sentence(document, unit),

@@ -124,7 +124,7 @@ def truth_of(world: World) -> Truth:
     quiet = _same(torques, world, world.settings((), noise_scale=0.0))
     seen, new = problems(torques)
     judged = new or seen
-    base = _base_and_measurement(seen)
+    base = base_and_measurement(seen)
     simulated_base = np.concatenate([seen.table.friction, seen.load_base @ seen.gravity])
     planted = {one.effect.name: one.effect for one in simulated.planted.effects}
     return Truth(
@@ -255,7 +255,7 @@ def _rms(both: Array) -> float:
     return float(np.sqrt(2.0 * np.mean(np.square(both))))
 
 
-def _base_and_measurement(problem: Problem) -> Array:
+def base_and_measurement(problem: Problem) -> Array:
     """Return the columns of base and measurement, friction above load, each of length 1."""
     columns = [np.vstack(base_rows(problem))]
     for effect in applicable(MEASUREMENT_EFFECTS, problem.table):
