@@ -9,7 +9,7 @@ LARGEST ?= 1e8
 export OMP_NUM_THREADS := 1
 export OPENBLAS_NUM_THREADS := 1
 
-.PHONY: reproduce test test-all lint docs dist same coverage blind comparison fleet planning wear real real-diagnoses bench fuzz fuzz-c kill clean
+.PHONY: reproduce test test-all lint docs dist same coverage blind comparison fleet planning wear real real-diagnoses bench fuzz fuzz-c kill soak memory clean
 
 reproduce: $(VENV)/installed
 	$(BIN)/frictioncli run sample_logs/kr10 -w $(RUN)
@@ -58,6 +58,12 @@ fuzz-c: $(VENV)/tested
 
 kill: $(VENV)/tested
 	$(BIN)/python -m tests.studies.kill
+
+soak: $(VENV)/tested
+	$(BIN)/python -m tests.studies.soak $(SOAK)
+
+memory: $(VENV)/tested
+	$(BIN)/python -m tests.studies.memory $(MEMORY)
 
 same: $(VENV)/tested
 	$(BIN)/python -m tests.studies.same

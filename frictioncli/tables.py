@@ -35,6 +35,9 @@ _READ_BYTES = 1 << 20
 _GROUP_BYTES = 1 << 23
 """Rows are written this many bytes at a time: small groups make a file slow to read."""
 
+_MORE_ROWS = 50_000_000
+"""Groups grow with the table, up to four times: their descriptions stay in memory."""
+
 _WRITTEN_ROWS = 1 << 16
 """Rows that are encoded at once: pyarrow's default, 1024, takes a third longer."""
 
@@ -109,7 +112,7 @@ class TableWriter:
         self.rows += rows.num_rows
         self._buffer.append(rows)
         self._buffer_bytes += rows.nbytes
-        if self._buffer_bytes >= _GROUP_BYTES:
+        if self._buffer_bytes >= _GROUP_BYTES * min(1 + self.rows // _MORE_ROWS, 4):
             self._flush()
 
     def close(self) -> None:

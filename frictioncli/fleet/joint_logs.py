@@ -208,7 +208,8 @@ def _parquet_rows(path: Path) -> tuple[list[str], Iterable[tuple[int, Mapping[st
         rows = pq.read_table(path, columns=known, partitioning=None).to_pylist()
     # ValueError also: text that is not UTF-8, dates that Python has not
     except (OSError, ValueError, OverflowError, pa.ArrowException) as error:
-        raise MappingError(f"{path}: cannot be read as Parquet ({error})") from error
+        why = (str(error).splitlines() or [type(error).__name__])[0]
+        raise MappingError(f"{path}: cannot be read as Parquet ({why})") from error
     return names, enumerate(rows, start=1)
 
 

@@ -148,7 +148,7 @@ class SynthesisSettings:
             (self.runs >= 1, f"runs is {self.runs}, expected 1 or more"),
             (self.joint >= 1, f"joint is {self.joint}, expected 1 or more"),
             (self.sign in (-1, 1), f"sign is {self.sign}, expected 1 or -1"),
-            (self.payload >= 0.0, f"payload is {self.payload} kg, expected 0 or more"),
+            (0.0 <= self.payload <= 1e4, f"payload is {self.payload} kg, expected 0 to 10,000"),
             (
                 0.0 <= self.noise_scale <= 1e6,
                 f"noise scale is {self.noise_scale}, expected 0 to 1e6",

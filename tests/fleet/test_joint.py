@@ -167,3 +167,25 @@ def test_causes_in_words():
     sets = [["thermal_lag"], ["drift", "run_in"], []]
     causes = [SimpleNamespace(effects=names) for names in sets]
     assert causes_text(causes) == "thermal_lag; drift or run_in; unnamed"
+
+
+def test_logs_that_change_while_they_are_read_are_refused(task, tmp_path, monkeypatch):
+    """Cut and put back in between: the hashes before and after are the same."""
+    folder = shutil.copytree(task.logs.folder, tmp_path / "joint=2")
+    task = replace(task, logs=replace(task.logs, folder=folder))
+    path, run_stages = sorted(folder.rglob("*.csv"))[0], joints._run_stages
+
+    def disturbed(*arguments):
+        content = path.read_bytes()
+        path.write_bytes(content[: len(content) // 2])
+        try:
+            return run_stages(*arguments)
+        finally:
+            path.write_bytes(content)
+
+    with monkeypatch.context() as patched:
+        patched.setattr(joints, "_run_stages", disturbed)
+        outcome = run_joint(task)
+    assert outcome.status == "failed"
+    assert f"{path} was written while it was read (1 of 7 files)" in outcome.message
+    assert run_joint(task).status == "done"

@@ -24,6 +24,7 @@ from contextlib import ExitStack, suppress
 from dataclasses import dataclass, field
 from pathlib import Path
 
+from frictioncli.fleet.joint_record import RECORD
 from tests.fleet.clusters import scheduler, worker
 from tests.fleet.fleets import ENVIRONMENT, PROGRAM, WITHOUT, all_records, children, contents
 from tests.fleet.joints import Joint, write_joint
@@ -85,6 +86,9 @@ class Soak:
                 more = ["--scheduler", address]
             else:
                 process = None
+            if self.draw.random() < 0.5:
+                more.append("--redo")
+                self.counts["calls with --redo"] += 1
             call = self._started("out", *more, limit=limit)
             until = time.monotonic() + self.draw.uniform(0.2, 1.0) * self.seconds
             while call.poll() is None and time.monotonic() < until:
@@ -132,8 +136,8 @@ class Soak:
             if limit is not None:
                 resource.setrlimit(resource.RLIMIT_FSIZE, (limit, limit))
 
-        where = more or ("--workers", str(WORKERS))
-        words = ["fleet", "logs", "-w", out, *WITHOUT, *where]
+        where = () if "--scheduler" in more else ("--workers", str(WORKERS))
+        words = ["fleet", "logs", "-w", out, *WITHOUT, *where, *more]
         return subprocess.Popen(
             [sys.executable, "-c", PROGRAM, *words],
             stdout=subprocess.PIPE,
@@ -171,7 +175,8 @@ class Soak:
     def _damage_outputs(self) -> None:
         """Cut, change or remove outputs."""
         out = self.folder / "out"
-        files = sorted(path for path in out.glob("*/*/*") if path.is_file())
+        # a folder without its record is never emptied: the call would end there
+        files = sorted(p for p in out.glob("*/*/*") if p.is_file() and p.name != RECORD)
         for path in self.draw.sample(files, min(len(files), 5)):
             content = bytearray(path.read_bytes())
             if not content or self.draw.random() < 0.2:
