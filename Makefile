@@ -87,9 +87,11 @@ $(VENV)/installed: pyproject.toml frictioncli/logs/formats/_plain_numbers.c
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable .
 	touch $@
 
-$(VENV)/tested: $(VENV)/installed
+# one installation for both: each builds the C extensions anew
+$(VENV)/tested: pyproject.toml frictioncli/logs/formats/_plain_numbers.c
+	$(PYTHON) -m venv $(VENV)
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable '.[dev]'
-	touch $@
+	touch $(VENV)/installed $@
 
 $(VENV)/documented: $(VENV)/installed
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable '.[docs]'
