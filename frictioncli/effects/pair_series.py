@@ -212,20 +212,6 @@ def stroke_ends(table: EffectTable, *, distance: Array | float) -> tuple[Array, 
     return _decays(table.position, heads, ends, distance)
 
 
-def since_start(table: EffectTable) -> tuple[Array, Array]:
-    """Return the time since the first bin of a pair forward, and in reverse, shape (rows,) [s].
-
-    Parameters
-    ----------
-    table : EffectTable
-        Pairs and angle bins.
-    """
-    heads = pair_heads(table)
-    ends = heads.minimum(table.position), heads.maximum(table.position)
-    low, high = (heads.spread(end) for end in ends)
-    return (table.position - low) / table.speed, (high - table.position) / table.speed
-
-
 def turning_points(table: EffectTable, *, distance: float) -> tuple[Array, Array]:
     """Return exponentials that decay from the low and from the high reversal of each pair.
 

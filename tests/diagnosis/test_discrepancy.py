@@ -8,7 +8,7 @@ import pytest
 from frictioncli.diagnosis.fit.columns import base_rows
 from frictioncli.diagnosis.fit.left_by_base import span_of
 from frictioncli.diagnosis.fit.mixed_model import Products, evaluate, weights_of
-from frictioncli.diagnosis.noise.discrepancy import UNSTEADY, discrepancy_of
+from frictioncli.diagnosis.noise.discrepancy import SPEED_RIPPLE, discrepancy_of
 from frictioncli.diagnosis.search.precomputed import Precomputed
 from frictioncli.diagnosis.search.step import Step
 from tests.diagnosis.dense_noise import problem
@@ -55,7 +55,7 @@ def test_all_together_are_about_one_per_cent_of_the_friction_beforehand(joint):
     smooth = smooth_of(joint)
     gamma = np.random.default_rng(0).normal(size=(smooth.rows.shape[1], 300))
     for one in smooth.components:
-        if one.axes in UNSTEADY:
+        if one.axes == SPEED_RIPPLE:
             gamma[one.columns] = 0.0
     square = 2 * np.mean(np.square(smooth.rows @ gamma))
     found = smooth.amplitude * np.sqrt(square)
@@ -72,8 +72,7 @@ def test_functions_depend_on_their_axes_and_on_the_base_alone(joint):
     for one in smooth.components:
         if "form" in one.axes:
             continue
-        # how long ago the move began goes with its end, which is the same at one speed
-        axes = ("position", "speed") if one.axes in UNSTEADY else one.axes
+        axes = ("position", "speed") if one.axes == SPEED_RIPPLE else one.axes
         keys = np.column_stack([getattr(joint.table, axis) for axis in axes])
         place = np.unique(keys, axis=0, return_inverse=True)[1].ravel()
         own = slice(0, half) if one.channel == "friction" else slice(half, None)
@@ -96,7 +95,7 @@ def test_a_ripple_of_the_speed_grows_with_its_square(joint):
     Less what is the base's: gravity, the same at all speeds.
     """
     smooth = smooth_of(joint)
-    (one,) = (one for one in smooth.components if one.axes == ("speed ripple",))
+    (one,) = (one for one in smooth.components if one.axes == SPEED_RIPPLE)
     table = joint.table
     order = 6 * np.radians(table.position)
     torque = np.concatenate([np.zeros(len(order)), np.square(table.speed / 100.0) * np.cos(order)])

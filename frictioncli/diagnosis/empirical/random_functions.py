@@ -19,7 +19,7 @@ from frictioncli.diagnosis.empirical.term import (
 )
 from frictioncli.diagnosis.fit.columns import RANK, base_rows
 from frictioncli.diagnosis.noise.cosine_series import CosineSeries
-from frictioncli.diagnosis.noise.discrepancy import FORM, UNSTEADY, Component, weight_of
+from frictioncli.diagnosis.noise.discrepancy import FORM, SPEED_RIPPLE, Component, weight_of
 from frictioncli.effects.base import Basis
 
 
@@ -79,7 +79,7 @@ def functions_of(
     ranges = in_coordinates(ranges_seen(problem.table))
     found = []
     for component, size in zip(components, np.exp(amplitude), strict=True):
-        if component.axes == FORM or component.axes in UNSTEADY:
+        if component.axes == FORM or component.axes == SPEED_RIPPLE:
             continue
         series = CosineSeries.of(component.axes, problem.table, ranges)
         values = series.weights * series.columns(problem.table, ranges)

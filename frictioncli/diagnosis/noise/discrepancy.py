@@ -10,8 +10,8 @@ over the range of its quantity, with :math:`s_k` falling with *k*, so that it is
 coefficients of the base model are free, so that only the part of a function that is orthogonal to
 the base counts [2]_; it is this part that has the amplitude. The amplitude :math:`\omega` of
 each function is at least its share of 0.75 % of the mean friction; above that it has a lognormal
-prior, and is estimated with each rival in place. Two more functions in load stand for inertia: the
-speed of a move may ripple with the angle, and the servo settles after its start.
+prior, and is estimated with each rival in place. One more function in load stands for the
+inertia of a speed that ripples with the angle.
 
 Errors of the base's parameters are what a function adds along the base's columns, where no data
 show it. There its amplitude is known as well as beforehand only: its mean square under the
@@ -34,7 +34,6 @@ from frictioncli.diagnosis.data.problem import Problem
 from frictioncli.diagnosis.fit.columns import ModelColumns, reduced
 from frictioncli.diagnosis.noise.cosine_series import HALF, CosineSeries, ranges_of
 from frictioncli.effects.base import Channel, EffectTable
-from frictioncli.effects.pair_series import since_start
 
 SHARE = 0.0075
 """RMS of the whole discrepancy that is expected beforehand, relative to the mean friction.
@@ -61,9 +60,6 @@ _RANK = 1e-3
 _LEAST_LEFT = 1e-4
 """Least share of the mean square of a function that the base leaves."""
 
-_SETTLED, _SETTLING_ORDERS = 0.3, 5
-"""Time in which the servo settles after the start of a move [s], and functions of it."""
-
 
 @dataclass(frozen=True, slots=True)
 class Component:
@@ -72,8 +68,8 @@ class Component:
     Attributes
     ----------
     axes : tuple of str
-        The quantities that it depends on: ``position``, ``speed``, ``temperature``; or one of
-        :data:`UNSTEADY`.
+        The quantities that it depends on: ``position``, ``speed``, ``temperature``; or
+        :data:`SPEED_RIPPLE`.
     channel : {"friction", "load"}
         The channel in which it shows.
     columns : slice
@@ -171,7 +167,7 @@ def discrepancy_of(problem: Problem, span: Array, share: float = SHARE) -> Discr
         parts += [("friction", *one) for one in _functions(problem.table, _FRICTION)]
     if share > 0 and not problem.has_load_channel:
         parts += [("load", *one) for one in _functions(problem.table, _LOAD)]
-        parts += [("load", *one) for one in _of_unsteady_speed(problem.table)]
+        parts += [("load", *one) for one in _of_speed_ripple(problem.table)]
     components: list[Component] = []
     left, whole, first, squares = [np.zeros((2 * rows, 0))], [], 0, 0.0
     for channel, axes, values in parts:
@@ -188,7 +184,7 @@ def discrepancy_of(problem: Problem, span: Array, share: float = SHARE) -> Discr
         whole.append((_FORM_ERRORS if axes == FORM else weight) * _of_errors(axes, columns))
         components.append(Component(axes, channel, slice(first, first + orthogonal.shape[1])))
         first += orthogonal.shape[1]
-        squares += 0.0 if axes in UNSTEADY else weight**2
+        squares += 0.0 if axes == SPEED_RIPPLE else weight**2
     together = np.hstack(left)
     friction, load = np.split(together, 2)
     mean = float(np.mean(np.abs(problem.friction)))
@@ -242,8 +238,7 @@ def _orthonormal_combination(columns: Array) -> Array:
 
 FORM = ("speed", "temperature", "form")
 
-UNSTEADY = (("speed ripple",), ("start",))
-"""Axes of the functions that a speed which is not quite constant needs."""
+SPEED_RIPPLE = ("speed ripple",)
 
 _FRICTION = (
     ("position",),
@@ -276,26 +271,17 @@ def _functions(
     return found
 
 
-def _of_unsteady_speed(table: EffectTable) -> list[tuple[tuple[str, ...], Array]]:
-    r"""Return the inertial torque of a speed that is not quite constant, where speeds differ.
+def _of_speed_ripple(table: EffectTable) -> list[tuple[tuple[str, ...], Array]]:
+    r"""Return the inertial torque of a speed that ripples, where speeds differ.
 
-    A ripple of the speed over the angle that is a share of it has the acceleration
-    :math:`v\,dv/dq`, which grows with its square. After the start of a move the servo settles, at
-    the low end forward and at the high end in reverse.
+    A ripple over the angle that is a share of the speed has the acceleration
+    :math:`v\,dv/dq`, which grows with its square.
     """
     if not {"position", "speed"} <= set(ranges_of(table)):
         return []
     ((_, along),) = _functions(table, (("position",),))
     squared = np.square(table.speed / np.max(table.speed))[:, np.newaxis]
-    low, high = (_settling(since) for since in since_start(table))
-    return list(zip(UNSTEADY, (squared * along, low - high), strict=True))
-
-
-def _settling(since: Array) -> Array:
-    """Return half cosines over the time in which a servo settles, zero after it."""
-    order = np.arange(1, _SETTLING_ORDERS + 1) - 0.5
-    wave = np.cos(np.pi * order * np.minimum(since / _SETTLED, 1.0)[:, np.newaxis])
-    return np.asarray(wave * (since < _SETTLED)[:, np.newaxis])
+    return [(SPEED_RIPPLE, squared * along)]
 
 
 def _form(table: EffectTable) -> Array:

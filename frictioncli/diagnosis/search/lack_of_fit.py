@@ -31,6 +31,7 @@ from frictioncli.diagnosis.fit.left_by_base import Z95, left_by, span_of
 from frictioncli.diagnosis.fit.mixed_model import Components, MixedFit, Variances
 from frictioncli.diagnosis.fit.transformed_columns import Part
 from frictioncli.diagnosis.fit.variance_components import fit_variances
+from frictioncli.diagnosis.noise.discrepancy import SPEED_RIPPLE
 from frictioncli.diagnosis.search.axis_columns import axis_columns
 from frictioncli.diagnosis.search.margin import channel_margin
 from frictioncli.diagnosis.search.step import Step
@@ -168,12 +169,16 @@ _Found = tuple[tuple[str, ...], Channel, float, float, tuple[float, float]]
 
 
 def _expected(step: Step) -> Components:
-    """Return the variance components with the discrepancy and the drift that any joint has."""
+    """Return the variance components with the discrepancy and the drift that any joint has.
+
+    A speed that is not constant is no structure of the joint, however much it is.
+    """
     components = step.components
     most = _DRIFT * float(np.mean(np.abs(step.problem.friction)))
-    return replace(
-        components, spread=np.full_like(components.spread, _PINNED), most_drift=(most**2, most**2)
-    )
+    functions = step.precomputed.discrepancy.components
+    free = np.array([one.axes == SPEED_RIPPLE for one in functions], bool)
+    spread = np.where(free, components.spread, _PINNED)
+    return replace(components, spread=spread, most_drift=(most**2, most**2))
 
 
 def _beside_function(
