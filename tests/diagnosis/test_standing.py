@@ -14,6 +14,7 @@ from tests.diagnosis.dense_noise import problem
 from tests.diagnosis.wave_effects import A, B, effect
 
 MARGIN, ALPHA = 0.2, 0.05
+GRADUAL = ("drift", "run_in", "coulomb_temperature", "torque_constant")
 WAVE = effect("a", [(1.0, A)], lower=0.0)
 
 
@@ -172,3 +173,28 @@ def test_half_a_difference_of_torques_of_one_sign_is_at_most_their_mean(
     one = cause(BY_NAME["inertia"], (inertial, unequal), (0.1, 0.1), shape=shape)
     ((_, reason),) = standing(joint, one)
     assert ("unequal_braking is physically impossible" in reason) != possible
+
+
+def one_way(joint, share):
+    """Return a joint that warms up over time, or that does so in a share of the pairs only."""
+    means = joint.layout.means(np.column_stack([joint.table.clock, joint.table.temperature]))
+    order = np.argsort(np.argsort(means[:, 0]))
+    warm = 20.0 + 30.0 * order / order.max()
+    cooling = order > share * order.max()
+    warm = np.where(cooling, 2 * warm[~cooling].max() - warm, warm)[joint.layout.row_pair]
+    table = replace(joint.table, temperature=warm, measured_temperature=warm)
+    return replace(joint, table=table)
+
+
+@pytest.mark.parametrize("name", GRADUAL)
+def test_temperature_and_time_that_go_one_way_give_no_name(joint, name):
+    effect = BY_NAME[name]
+    lower, upper = physical_bounds(effect, joint)
+    middle = tuple(0.3 * low + 0.7 * high for low, high in zip(lower, upper, strict=True))
+    errors = tuple(0.01 * abs(one) for one in middle)
+    shape = {axis.name: axis.lower for axis in effect.shape}
+    one = cause(effect, middle, errors, shape=shape)
+    ((apart, _),) = standing(one_way(joint, 0.5), one)
+    ((together, reason),) = standing(one_way(joint, 1.0), one)
+    assert (apart, together) == ("named", "undetermined")
+    assert "temperature and time go one way" in reason

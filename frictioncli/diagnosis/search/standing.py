@@ -4,6 +4,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
+from scipy import stats
 
 from frictioncli.arrays import Array
 from frictioncli.diagnosis.data.problem import Problem
@@ -26,6 +27,12 @@ looks like a change at some moment or other much more often than p-values say.""
 
 _SHOWN = 0.5
 """Least share of a cause that the residuals show at face value."""
+
+_ONE_WAY = 0.95
+"""Rank correlation of temperature and time above which no data tell one from the other."""
+
+_GRADUAL = frozenset({"temperature", "motor_temperature", "clock", "travel"})
+"""Inputs that change gradually with the temperature or with time."""
 
 _CANCELLING = 0.5
 """Two causes cancel each other if their sum has less than this share of the smaller one's RMS."""
@@ -78,9 +85,9 @@ def _judged(cause: Cause, problem: Problem, margin: float, alpha: float) -> Caus
         alpha *= _OF_CHANGES
     if not (cause.test.p_value < alpha and cause.test.log_bayes_factor > CONVINCING):
         return replace(cause, standing="undetermined", reason="noise may be the reason")
-    impossible = _impossible(cause, problem)
-    if impossible:
-        return replace(cause, standing="undetermined", reason=impossible)
+    doubt = _impossible(cause, problem) or _one_way(cause, problem)
+    if doubt:
+        return replace(cause, standing="undetermined", reason=doubt)
     if low > margin:
         return replace(cause, standing="named", reason="")
     if high < margin:
@@ -144,6 +151,24 @@ def _impossible(cause: Cause, problem: Problem) -> str:
     if len(errors) == 1 and abs(cause.fit.coefficients[0]) <= _Z95 * errors[0]:
         return "its coefficient may be zero"
     return ""
+
+
+def _one_way(cause: Cause, problem: Problem) -> str:
+    """Return why temperature and time cannot be told apart; empty if they can, or need not be.
+
+    Where the joint only warms up, all that goes with temperature goes with time as well: a drift
+    looks like friction that depends on temperature. A change at a moment does not.
+    """
+    effect, layout, table = cause.fit.effect, problem.layout, problem.table
+    if effect.measurement or effect.moments is not None or _GRADUAL.isdisjoint(effect.needs):
+        return ""
+    known = np.column_stack([table.measured_temperature, table.clock])
+    temperature, clock = layout.means(known).T
+    if not (np.ptp(temperature) > 0 and np.ptp(clock) > 0):
+        return ""
+    if abs(float(stats.spearmanr(temperature, clock).statistic)) < _ONE_WAY:
+        return ""
+    return "temperature and time go one way in these data: it could be an effect of the other"
 
 
 def _errors(fit: EffectFit) -> Array:
