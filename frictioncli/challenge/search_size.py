@@ -53,8 +53,8 @@ def search_size(
     Examples
     --------
     >>> result = search_size(lambda size: size >= 1.3, 1.0, least=0.1, most=10.0)
-    >>> result.low, round(result.high, 2)
-    (1.1892071150027208, 1.41)
+    >>> round(result.low, 2), round(result.high, 2)
+    (1.19, 1.41)
     """
     low, high = _bracket(found, min(max(start, least), most), least, most)
     while low is not None and high is not None and high / low > _CLOSE:

@@ -157,7 +157,7 @@ def test_without_a_thermal_cycle_it_says_why(tmp_path, write_work):
     assert "no motor temperature" in found.missing
     page = write_report(folder).read_text(encoding="utf-8")
     assert f"<b>No explorer.</b> {found.missing}" in page
-    assert '<script type="application/json"' not in page
+    assert "joint2-grid" not in page
 
 
 def test_a_large_grid_stays_small(copied):
@@ -176,10 +176,11 @@ def test_names_in_the_data_are_harmless(tmp_path, write_work):
     folder = write_work(tmp_path, runs=(hostile,), schedule=False)
     evaluate(folder, GRID)
     page = write_report(folder).read_text(encoding="utf-8")
-    blocks = re.findall(r'<script type="application/json" id="joint2-grid">(.*?)</script>', page)
-    assert len(blocks) == 1
-    assert not set("<>&'\u202e") & set(blocks[0])
+    named = re.findall(r'<script type="application/json" id="(.*?)">(.*?)</script>', page)
+    assert [name for name, _ in named] == ["joint2-grid", "joint2-points"]
+    blocks = [block for _, block in named]
+    assert not set("<>&'\u202e") & set("".join(blocks))
     names = {phase["run"] for phase in json.loads(blocks[0])["models"]["base"]}
     assert names == {hostile.replace("\u202e", "\N{REPLACEMENT CHARACTER}")}
-    # the numbers, and the page's own two scripts
-    assert page.count("<script") == 3
+    # the numbers, and the page's own three scripts
+    assert page.count("<script") == len(blocks) + 3

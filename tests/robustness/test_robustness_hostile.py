@@ -45,9 +45,12 @@ def test_hostile_names_are_harmless_in_the_report(tmp_path):
     for path in (page, *page.parent.glob("*.svg")):
         found = Elements()
         found.feed(path.read_text(encoding="utf-8"))
-        # the page's own: the explorer's numbers, and scripts that the policy names by their hashes
-        numbers = ("script", [("type", "application/json"), ("id", "joint2-grid")])
-        own = [numbers, ("script", []), ("script", [])]
+        # the page's own: numbers, and scripts that the policy names by their hashes
+        numbers = [
+            ("script", [("type", "application/json"), ("id", f"joint2-{name}")])
+            for name in ("grid", "points")
+        ]
+        own = [*numbers, *[("script", [])] * 3]
         assert found.active == (own if path == page else []), path
 
 
