@@ -175,7 +175,7 @@ def test_half_a_difference_of_torques_of_one_sign_is_at_most_their_mean(
     assert ("unequal_braking is physically impossible" in reason) != possible
 
 
-def one_way(joint, share):
+def warming(joint, share):
     """Return a joint that warms up over time, or that does so in a share of the pairs only."""
     means = joint.layout.means(np.column_stack([joint.table.clock, joint.table.temperature]))
     order = np.argsort(np.argsort(means[:, 0]))
@@ -187,14 +187,14 @@ def one_way(joint, share):
 
 
 @pytest.mark.parametrize("name", GRADUAL)
-def test_temperature_and_time_that_go_one_way_give_no_name(joint, name):
+def test_temperature_and_time_that_go_together_give_no_name(joint, name):
     effect = BY_NAME[name]
     lower, upper = physical_bounds(effect, joint)
     middle = tuple(0.3 * low + 0.7 * high for low, high in zip(lower, upper, strict=True))
     errors = tuple(0.01 * abs(one) for one in middle)
     shape = {axis.name: axis.lower for axis in effect.shape}
     one = cause(effect, middle, errors, shape=shape)
-    ((apart, _),) = standing(one_way(joint, 0.5), one)
-    ((together, reason),) = standing(one_way(joint, 1.0), one)
+    ((apart, _),) = standing(warming(joint, 0.5), one)
+    ((together, reason),) = standing(warming(joint, 1.0), one)
     assert (apart, together) == ("named", "undetermined")
-    assert "temperature and time go one way" in reason
+    assert "temperature and time go together" in reason

@@ -28,8 +28,8 @@ looks like a change at some moment or other much more often than p-values say.""
 _SHOWN = 0.5
 """Least share of a cause that the residuals show at face value."""
 
-_ONE_WAY = 0.95
-"""Rank correlation of temperature and time above which no data tell one from the other."""
+_TOGETHER = 0.8
+"""Rank correlation of temperature and time above which few data tell one from the other."""
 
 _GRADUAL = frozenset({"temperature", "motor_temperature", "clock", "travel"})
 """Inputs that change gradually with the temperature or with time."""
@@ -85,7 +85,7 @@ def _judged(cause: Cause, problem: Problem, margin: float, alpha: float) -> Caus
         alpha *= _OF_CHANGES
     if not (cause.test.p_value < alpha and cause.test.log_bayes_factor > CONVINCING):
         return replace(cause, standing="undetermined", reason="noise may be the reason")
-    doubt = _impossible(cause, problem) or _one_way(cause, problem)
+    doubt = _impossible(cause, problem) or _together(cause, problem)
     if doubt:
         return replace(cause, standing="undetermined", reason=doubt)
     if low > margin:
@@ -153,10 +153,10 @@ def _impossible(cause: Cause, problem: Problem) -> str:
     return ""
 
 
-def _one_way(cause: Cause, problem: Problem) -> str:
+def _together(cause: Cause, problem: Problem) -> str:
     """Return why temperature and time cannot be told apart; empty if they can, or need not be.
 
-    Where the joint only warms up, all that goes with temperature goes with time as well: a drift
+    Where the joint mostly warms up, what goes with temperature goes with time as well: a drift
     looks like friction that depends on temperature. A change at a moment does not.
     """
     effect, layout, table = cause.fit.effect, problem.layout, problem.table
@@ -166,9 +166,9 @@ def _one_way(cause: Cause, problem: Problem) -> str:
     temperature, clock = layout.means(known).T
     if not (np.ptp(temperature) > 0 and np.ptp(clock) > 0):
         return ""
-    if abs(float(stats.spearmanr(temperature, clock).statistic)) < _ONE_WAY:
+    if abs(float(stats.spearmanr(temperature, clock).statistic)) < _TOGETHER:
         return ""
-    return "temperature and time go one way in these data: it could be an effect of the other"
+    return "temperature and time go together in these data: it could be an effect of the other"
 
 
 def _errors(fit: EffectFit) -> Array:
