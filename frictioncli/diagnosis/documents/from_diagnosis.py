@@ -38,11 +38,12 @@ from frictioncli.diagnosis.documents.thermal_record import record_of_lag
 from frictioncli.diagnosis.ramps.evidence import RampEstimate
 from frictioncli.diagnosis.search.cause import Cause
 from frictioncli.diagnosis.search.effect_size import LACKING, TAKEN_BY_BASE
+from frictioncli.diagnosis.search.standing import GOES_WITH_TIME, goes_with_time
 from frictioncli.diagnosis.search.timing_causes import DELAY, FILTER
 from frictioncli.diagnosis.settings import DiagnosisSettings
 from frictioncli.diagnosis.thermal.refine import LAG
 from frictioncli.effects import BY_NAME, torque_delay, torque_filter
-from frictioncli.effects.base import missing_columns
+from frictioncli.effects.base import Effect, missing_columns
 from frictioncli.effects.history_text import history_text
 from frictioncli.model.document import PARAMETERS, FrictionModel
 from frictioncli.model.friction import FrictionParameters
@@ -104,11 +105,14 @@ def diagnosis_document(diagnosis: Diagnosis, settings: DiagnosisSettings) -> Dia
 
 def _undetectable(diagnosis: Diagnosis) -> dict[str, str]:
     """Return why effects have no detectable size."""
-    return {
-        name: LACKING if missing_columns(BY_NAME[name], diagnosis.base.table) else TAKEN_BY_BASE
-        for name, size in diagnosis.detectable.items()
-        if size is None
-    }
+
+    def reason(effect: Effect) -> str:
+        if missing_columns(effect, diagnosis.base.table):
+            return LACKING
+        return GOES_WITH_TIME if goes_with_time(effect, diagnosis.base) else TAKEN_BY_BASE
+
+    unknown = [name for name, size in diagnosis.detectable.items() if size is None]
+    return {name: reason(BY_NAME[name]) for name in unknown}
 
 
 def extended_document(diagnosis: Diagnosis, model: FrictionModel) -> ExtendedDocument:

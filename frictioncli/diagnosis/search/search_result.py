@@ -7,6 +7,7 @@ from frictioncli.diagnosis.fit.hypotheses import HypothesisTest
 from frictioncli.diagnosis.search.cause import Cause
 from frictioncli.diagnosis.search.effect_size import other_form, sizes_of
 from frictioncli.diagnosis.search.margin import channel_margin, whole_torque
+from frictioncli.diagnosis.search.standing import goes_with_time
 from frictioncli.diagnosis.search.step import Step
 from frictioncli.effects import BY_NAME
 from frictioncli.effects.base import Effect
@@ -53,14 +54,15 @@ class SearchResult:
         Returns
         -------
         dict of str to (float or None)
-            Sizes [N·m]; None where the data lack what the effect needs, and where the base takes so
-            much of it that it would have to be larger than the torque that there is.
+            Sizes [N·m]; None where the data lack what the effect needs or cannot tell temperature
+            from time, and where the base takes so much of it that it would have to be larger than
+            the torque that there is.
         """
         count = max(len(self.rejected) + len(self.causes), 1)
         tests = self.rejected | {cause.fit.effect.name: cause.test for cause in self.causes}
         found: dict[str, float | None] = dict.fromkeys(effect.name for effect in effects)
         for effect in effects:
-            if effect.name in tests:
+            if effect.name in tests and not goes_with_time(effect, self.step.problem):
                 expected = replace(tests[effect.name].effect_fit(effect), variances=None)
                 smooth = other_form(self.step.precomputed, expected)
                 least = channel_margin(self.step.problem, effect.channel, margin)

@@ -12,6 +12,7 @@ from frictioncli.diagnosis.fit.columns import main_channel
 from frictioncli.diagnosis.fit.hypotheses import EffectFit, physical_bounds
 from frictioncli.diagnosis.search.cause import CONVINCING, Cause
 from frictioncli.diagnosis.search.margin import channel_margin
+from frictioncli.effects.base import Effect
 
 _Z95 = 1.96
 
@@ -30,6 +31,11 @@ _SHOWN = 0.5
 
 _TOGETHER = 0.8
 """Rank correlation of temperature and time above which few data tell one from the other."""
+
+GOES_WITH_TIME = (
+    "temperature and time go together in these data: it could be an effect of the other"
+)
+"""Reason why an effect of temperature or time has no name."""
 
 _GRADUAL = frozenset({"temperature", "motor_temperature", "clock", "travel"})
 """Inputs that change gradually with the temperature or with time."""
@@ -85,7 +91,8 @@ def _judged(cause: Cause, problem: Problem, margin: float, alpha: float) -> Caus
         alpha *= _OF_CHANGES
     if not (cause.test.p_value < alpha and cause.test.log_bayes_factor > CONVINCING):
         return replace(cause, standing="undetermined", reason="noise may be the reason")
-    doubt = _impossible(cause, problem) or _together(cause, problem)
+    doubt = _impossible(cause, problem)
+    doubt = doubt or (GOES_WITH_TIME if goes_with_time(cause.fit.effect, problem) else "")
     if doubt:
         return replace(cause, standing="undetermined", reason=doubt)
     if low > margin:
@@ -153,22 +160,27 @@ def _impossible(cause: Cause, problem: Problem) -> str:
     return ""
 
 
-def _together(cause: Cause, problem: Problem) -> str:
-    """Return why temperature and time cannot be told apart; empty if they can, or need not be.
+def goes_with_time(effect: Effect, problem: Problem) -> bool:
+    """Return whether an effect is of temperature or of time, which go together in these data.
 
     Where the joint mostly warms up, what goes with temperature goes with time as well: a drift
     looks like friction that depends on temperature. A change at a moment does not.
+
+    Parameters
+    ----------
+    effect : Effect
+        Entry of the catalogue.
+    problem : Problem
+        The joint's rows.
     """
-    effect, layout, table = cause.fit.effect, problem.layout, problem.table
     if effect.measurement or effect.moments is not None or _GRADUAL.isdisjoint(effect.needs):
-        return ""
+        return False
+    table = problem.table
     known = np.column_stack([table.measured_temperature, table.clock])
-    temperature, clock = layout.means(known).T
+    temperature, clock = problem.layout.means(known).T
     if not (np.ptp(temperature) > 0 and np.ptp(clock) > 0):
-        return ""
-    if abs(float(stats.spearmanr(temperature, clock).statistic)) < _TOGETHER:
-        return ""
-    return "temperature and time go together in these data: it could be an effect of the other"
+        return False
+    return abs(float(stats.spearmanr(temperature, clock).statistic)) >= _TOGETHER
 
 
 def _errors(fit: EffectFit) -> Array:
