@@ -10,7 +10,7 @@ _STANDING = {
     "named": "named",
     "visible": "detectable, but not named",
     "negligible": "smaller than what is worth naming",
-    "undetermined": "its size is not known well enough",
+    "undetermined": "it is not determined",
 }
 
 _AXES = {
