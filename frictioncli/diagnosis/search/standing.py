@@ -164,7 +164,8 @@ def goes_with_time(effect: Effect, problem: Problem) -> bool:
     """Return whether an effect is of temperature or of time, which go together in these data.
 
     Where the joint mostly warms up, what goes with temperature goes with time as well: a drift
-    looks like friction that depends on temperature. A change at a moment does not.
+    looks like friction that depends on temperature. A change at a moment does not, nor does a lag,
+    which shows at each speed by how friction falls with temperature there.
 
     Parameters
     ----------
@@ -174,6 +175,8 @@ def goes_with_time(effect: Effect, problem: Problem) -> bool:
         The joint's rows.
     """
     if effect.measurement or effect.moments is not None or _GRADUAL.isdisjoint(effect.needs):
+        return False
+    if "temperature_slope" in effect.needs:
         return False
     table = problem.table
     known = np.column_stack([table.measured_temperature, table.clock])
