@@ -73,29 +73,19 @@ def empirical_torque(
         np.atleast_1d(np.asarray(one, float)) for one in np.broadcast_arrays(*inputs)
     )
     table = table_of(about, load, speed, temperature, position)
-    within = in_coordinates(term.ranges)
     angle, gravity = np.radians(position), term.gravity_changes
     moved = gravity.cosine * np.cos(angle) + gravity.sine * np.sin(angle) + gravity.offset
     change = {name: term.base_changes.get(name, 0.0) for name in PARAMETERS}
     decay = np.exp(-about.delta * temperature)
     falling = change["gamma"] - about.gamma * temperature * change["delta"]
-    added = {
-        "friction": change["tau_c"]
+    friction = (
+        change["tau_c"]
         + change["alpha"] * np.square(load)
         + (change["beta"] + decay * falling) * np.sqrt(speed)
-        + 2 * about.alpha * load * moved,
-        "load": moved,
-    }
-    for form in term.forms:
-        both = form.at(table)
-        added = {
-            "friction": added["friction"] + both.friction,
-            "load": added["load"] + both.load,
-        }
-    for one in term.functions:
-        added[one.channel] = added[one.channel] + one.values(table, within)
-    valid = validity(table, term.ranges)
-    return Basis(valid * added["friction"], valid * added["load"])
+        + 2 * about.alpha * load * moved
+    )
+    added, valid = term.functions_at(table), validity(table, term.ranges)
+    return Basis(valid * (added.friction + friction), valid * (added.load + moved))
 
 
 def c_functions(term: EmpiricalTerm) -> str:

@@ -15,7 +15,8 @@ import pandas as pd
 from frictioncli.diagnosis.data.problem import Misfit, Problem
 from frictioncli.diagnosis.data.worst_misfits import worst_misfits
 from frictioncli.diagnosis.empirical.estimate import Empirical, empirical_term
-from frictioncli.diagnosis.fit.extension import Extension, Gain, extend, measured_gain
+from frictioncli.diagnosis.fit.extension import Extension, extend, measured_gain
+from frictioncli.diagnosis.fit.gain import Gain
 from frictioncli.diagnosis.ramps.evidence import RampEvidence, RampLog, ramp_evidence
 from frictioncli.diagnosis.ramps.settling import Settling, settled_problems
 from frictioncli.diagnosis.ramps.timing_rivals import TimingRivals

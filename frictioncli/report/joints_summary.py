@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from frictioncli.report.joint_section import JointSection
-from frictioncli.report.quality_ratings import FAIR, POOR
+from frictioncli.report.quality_ratings import FAIR, POOR, worst_level
 from frictioncli.wording import count_text
 
 
@@ -56,11 +56,10 @@ def joints_summary(sections: Sequence[JointSection]) -> JointsSummary | None:
 
 def _line(section: JointSection) -> JointLine:
     levels = [rating.level for rating in section.ratings]
-    worst = POOR if POOR in levels else FAIR if FAIR in levels else "good"
     counts = [count_text(levels.count(level), level, level) for level in (POOR, FAIR)]
     return JointLine(
         number=section.number,
         answers=tuple((answer.value, answer.text) for answer in section.answers),
-        level=worst,
+        level=worst_level(*levels),
         quality=", ".join(text for text in counts if not text.startswith("0 ")) or "all good",
     )

@@ -177,7 +177,7 @@ def speeds_rating(results: JointResults) -> QualityRating:
     """Rate whether the speeds can separate Coulomb from viscous friction."""
     # as the text of ``pair`` counts them
     speeds = sorted({round(speed, 1) for speed in results.styles})
-    level = _worst(
+    level = worst_level(
         _at_least(len(speeds), _SPEEDS), _at_least(speeds[-1] / speeds[0], _SPEED_RATIOS)
     )
     measured = (
@@ -211,7 +211,7 @@ def temperature_rating(results: JointResults) -> QualityRating:
     level = _at_least(span, _TEMPERATURE_SPANS)
     alone = ""
     if len(found) == 1:
-        level = _worst(level, FAIR)
+        level = worst_level(level, FAIR)
         alone = f" Only {PHASE_WORDS[found[0]]} was measured, so a lag cannot be seen."
     return QualityRating(
         level=level,
@@ -314,5 +314,6 @@ def _at_most(value: float, limits: tuple[float, float]) -> str:
     return GOOD if value <= good else FAIR if value <= fair else POOR
 
 
-def _worst(*levels: str) -> str:
+def worst_level(*levels: str) -> str:
+    """Return the worst of some levels."""
     return max(levels, key=(GOOD, FAIR, POOR).index)

@@ -26,7 +26,7 @@ from tests.simulation.torque_table import simulate_world
 from tests.studies.blind_diagnosed import SETTINGS
 from tests.studies.blind_truth import TEMPERATURE, base_and_measurement, problems
 from tests.studies.blind_worlds import World
-from tests.studies.unnamed_page import write_page
+from tests.studies.unnamed_page import Case, write_page
 
 SIZE = 1.0
 """RMS of each law over both days. [N·m]"""
@@ -52,38 +52,6 @@ class Law:
     axes: tuple[frozenset[str], ...]
     channel: str
     torque: Callable[[pd.DataFrame, Array], Array]
-
-
-@dataclass(frozen=True)
-class Case:
-    """What is true of a joint, and what was said."""
-
-    law: str
-    protocol: str
-    left: float
-    left_by_base: float
-    margin: float
-    verdict: str
-    axes: tuple[tuple[str, ...], ...]
-    is_right: bool
-    size: float
-    described: str
-    before: float
-    after: float
-    known: float
-    bare_gain: float
-    wrong_names: tuple[str, ...]
-    seconds: float
-
-    @property
-    def can_be_seen(self) -> bool:
-        """Whether base and measurement leave more of it than the margin."""
-        return self.left >= self.margin
-
-    @property
-    def gain(self) -> float:
-        """Share of the gain of knowing the law."""
-        return (self.before - self.after) / max(self.before - self.known, 1e-9)
 
 
 def _hump(values: Array, centre: float, half: float) -> Array:

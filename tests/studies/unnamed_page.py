@@ -1,8 +1,8 @@
 """The page of the study of what has no name: ``docs/unnamed.md``."""
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 from pathlib import Path
-from typing import Protocol
 
 PAGE = Path(__file__).parents[2] / "docs" / "unnamed.md"
 
@@ -49,13 +49,16 @@ _HEAD = (
 )
 
 
-class CaseLike(Protocol):
-    """What the page needs of a case; see :class:`tests.studies.unnamed.Case`."""
+@dataclass(frozen=True)
+class Case:
+    """What is true of a joint, and what was said."""
 
     law: str
     protocol: str
     left: float
     left_by_base: float
+    margin: float
+    verdict: str
     axes: tuple[tuple[str, ...], ...]
     is_right: bool
     size: float
@@ -65,15 +68,20 @@ class CaseLike(Protocol):
     known: float
     bare_gain: float
     wrong_names: tuple[str, ...]
+    seconds: float
 
     @property
-    def can_be_seen(self) -> bool: ...
+    def can_be_seen(self) -> bool:
+        """Whether base and measurement leave more of it than the margin."""
+        return self.left >= self.margin
 
     @property
-    def gain(self) -> float: ...
+    def gain(self) -> float:
+        """Share of the gain of knowing the law."""
+        return (self.before - self.after) / max(self.before - self.known, 1e-9)
 
 
-def write_page(cases: Sequence[CaseLike]) -> None:
+def write_page(cases: Sequence[Case]) -> None:
     """Write the page of some cases."""
     visible = [one for one in cases if one.can_be_seen]
     located = [one for one in visible if one.is_right]
@@ -118,7 +126,7 @@ def write_page(cases: Sequence[CaseLike]) -> None:
     )
 
 
-def _row(one: CaseLike) -> str:
+def _row(one: Case) -> str:
     said = "; ".join(" and ".join(axes) for axes in one.axes).replace("position", "angle")
     seen = "" if one.can_be_seen else " (below the margin)"
     right = "" if one.is_right else " (**wrong**)" if said else "nothing"

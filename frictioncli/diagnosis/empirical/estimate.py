@@ -34,7 +34,8 @@ from frictioncli.diagnosis.empirical.random_functions import (
     term_of,
 )
 from frictioncli.diagnosis.empirical.term import EmpiricalTerm, ranges_seen
-from frictioncli.diagnosis.fit.extension import Extension, Gain, misfits, reduction_interval
+from frictioncli.diagnosis.fit.extension import Extension, misfits
+from frictioncli.diagnosis.fit.gain import Gain, gain_of
 from frictioncli.diagnosis.search.axis_columns import varying_axes
 from frictioncli.diagnosis.search.step import Step
 from frictioncli.effects.base import Basis
@@ -109,15 +110,7 @@ def reduced_by(
     """
     before = problem.squared(*misfit)
     after = problem.squared(misfit[0] - term.friction, misfit[1] - term.load)
-    first, last = float(np.sqrt(np.mean(before))), float(np.sqrt(np.mean(after)))
-    return Gain(
-        basis=basis,
-        before=first,
-        after=last,
-        reduction=1 - last / max(first, 1e-300),
-        interval=reduction_interval(problem, before, after, seed),
-        floor=floor,
-    )
+    return gain_of(problem, before, after, basis=basis, floor=floor, seed=seed)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

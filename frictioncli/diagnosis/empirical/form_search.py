@@ -19,7 +19,6 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-from scipy.optimize import minimize
 
 from frictioncli.arrays import Array
 from frictioncli.diagnosis.data.problem import Problem
@@ -27,6 +26,7 @@ from frictioncli.diagnosis.empirical.form_columns import Shape
 from frictioncli.diagnosis.empirical.forms import Form, ShapeAxis
 from frictioncli.diagnosis.empirical.random_functions import Function
 from frictioncli.diagnosis.fit.columns import base_rows
+from frictioncli.diagnosis.fit.simplex_search import simplex_minimum
 from frictioncli.diagnosis.fit.weighted_fit import Weights
 from frictioncli.model.noise import Noise
 
@@ -219,25 +219,18 @@ class WeightedMisfit:
         at = np.array([_measure(axis, found.shape[axis.name]) for axis in axes])
         start = (at - low) / (high - low)
         step = np.array([0.5 / len(axis.values) for axis in axes])
-        search = minimize(
+        place, least = simplex_minimum(
             lambda place: -float(self.statistics(form, [shape_at(place)])[0]),
             start,
-            method="Nelder-Mead",
-            bounds=[(0.0, 1.0)] * len(axes),
-            options={
-                "initial_simplex": np.vstack(
-                    [start, start + np.diag(np.where(start > 0.5, -step, step))]
-                ),
-                "maxfev": 25 * len(axes),
-                "xatol": 2e-3,
-                "fatol": 0.1,
-            },
+            step,
+            evaluations=25,
+            tolerance=(2e-3, 0.1),
         )
         price = form.parameters * np.log(len(self.problem.layout.time))
-        score = float(-search.fun - price)
+        score = float(-least - price)
         if score <= found.score:
             return found
-        return FoundForm(form=form, shape=shape_at(search.x), score=score)
+        return FoundForm(form=form, shape=shape_at(place), score=score)
 
 
 def _measure(axis: ShapeAxis, value: float) -> float:

@@ -22,15 +22,13 @@ import numpy as np
 from frictioncli.arrays import Array, Flags, Indices
 from frictioncli.diagnosis.data.problem import Problem
 from frictioncli.diagnosis.empirical.random_functions import Function
+from frictioncli.diagnosis.fit.gain import BLOCK
 from frictioncli.diagnosis.fit.weighted_fit import Weights
 from frictioncli.effects.base import Basis
 from frictioncli.model.noise import Noise
 
 _PARTS = 5
 """Parts of the pairs, each of which is kept out of one estimate."""
-
-_BLOCK = 12
-"""Neighbouring pairs that are kept out together: their misfits are not independent."""
 
 Misfits = tuple[Array, Array]
 
@@ -90,7 +88,7 @@ class NormalEquations:
         columns = np.hstack([one.columns for one in functions])
         widths = [len(one.scale) for one in functions]
         mean = float(np.mean(np.abs(problem.friction)))
-        part = problem.layout.row_pair // _BLOCK % _PARTS
+        part = problem.layout.row_pair // BLOCK % _PARTS
         inner, right = [], []
         for number in np.unique(part):
             chosen = part == number

@@ -195,24 +195,35 @@ class EmpiricalTerm:
         Basis
             Friction and load torque. [torque unit]
         """
-        within = in_coordinates(self.ranges)
-        added = {"friction": np.zeros_like(problem.friction), "load": np.zeros_like(problem.load)}
-        for form in self.forms:
-            both = form.at(problem.table)
-            added = {
-                "friction": added["friction"] + both.friction,
-                "load": added["load"] + both.load,
-            }
-        for one in self.functions:
-            added[one.channel] = added[one.channel] + one.values(problem.table, within)
+        added = self.functions_at(problem.table)
         changes = np.array([self.base_changes.get(name, 0.0) for name in problem.names])
         gravity = stated_gravity(self.gravity_changes, problem.gravity_form)
         friction = problem.friction_base @ changes + problem.friction_by_gravity @ gravity
         valid = validity(problem.table, self.ranges)
         return Basis(
-            valid * (added["friction"] + friction),
-            valid * (added["load"] + problem.load_base @ gravity),
+            valid * (added.friction + friction),
+            valid * (added.load + problem.load_base @ gravity),
         )
+
+    def functions_at(self, table: EffectTable) -> Basis:
+        """Return the sum of forms and functions alone, shape (rows,) each [torque unit].
+
+        Parameters
+        ----------
+        table : EffectTable
+            The rows.
+        """
+        within, nothing = in_coordinates(self.ranges), np.zeros_like(table.speed)
+        added = {"friction": nothing, "load": nothing}
+        for form in self.forms:
+            both = form.at(table)
+            added = {
+                "friction": added["friction"] + both.friction,
+                "load": added["load"] + both.load,
+            }
+        for one in self.functions:
+            added[one.channel] = added[one.channel] + one.values(table, within)
+        return Basis(added["friction"], added["load"])
 
 
 def in_coordinates(ranges: Mapping[str, Range]) -> dict[str, Range]:

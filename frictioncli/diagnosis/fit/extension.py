@@ -1,13 +1,10 @@
-r"""The base model extended by the causes found, refitted together, and its hold-out gain.
+r"""The base model extended by the causes found, refitted together.
 
 The extended friction and load are linear about the base model: the simulated torque, plus its
 derivatives by the base's parameters times their changes, plus the columns of each effect times its
 coefficients,
 
 .. math:: u = u_0 + \frac{\partial u}{\partial p}\, \Delta p + \sum_k X_k(\theta_k)\, c_k .
-
-The gain is the relative reduction of the RMS misfit on rows of a new run, where there is one, with
-a block-bootstrap interval.
 """
 
 from collections.abc import Sequence
@@ -18,17 +15,12 @@ import numpy as np
 from frictioncli.arrays import Array
 from frictioncli.diagnosis.data.problem import Problem
 from frictioncli.diagnosis.fit.columns import base_rows
+from frictioncli.diagnosis.fit.gain import Gain, gain_of
 from frictioncli.diagnosis.fit.hypotheses import EffectFit
 from frictioncli.diagnosis.fit.left_by_base import Z95
 from frictioncli.diagnosis.fit.weighted_fit import WeightedFit
 from frictioncli.effects.base import Basis
 from frictioncli.effects.parameter import Parameter
-
-_BLOCK = 12
-"""Pairs per block of the bootstrap: the misfits of neighbouring pairs are not independent."""
-
-_DRAWS = 1000
-"""Bootstrap samples."""
 
 _STEP = 0.01
 """Share of a shape parameter's range over which its derivative is taken."""
@@ -94,32 +86,6 @@ class Extension(Refit):
         """
         coefficients, errors = self.effects[number].coefficients, self.errors[self.place(number)]
         return len(coefficients) == 1 and abs(coefficients[0]) <= Z95 * errors[0]
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Gain:
-    """Reduction of the misfit by an extension.
-
-    Attributes
-    ----------
-    basis : {"new_run", "within_run"}
-        Whether the data were new to the extension.
-    before, after : float
-        RMS misfit of the simulated torque without and with it. [N·m]
-    reduction : float
-        Relative reduction of the RMS misfit.
-    interval : (float, float)
-        95 % interval of the reduction.
-    floor : float
-        RMS of point and pair noise, which no model can predict. [N·m]
-    """
-
-    basis: str
-    before: float
-    after: float
-    reduction: float
-    interval: tuple[float, float]
-    floor: float
 
 
 def refit(problem: Problem, weighted_fit: WeightedFit, effects: Sequence[EffectFit]) -> Refit:
@@ -274,39 +240,4 @@ def measured_gain(
     """
     before = base.squared(base.friction_misfit, base.load_misfit)
     after = problem.squared(*misfits(problem, extension))
-    low, high = reduction_interval(problem, before, after, seed)
-    rms_before, rms_after = float(np.sqrt(np.mean(before))), float(np.sqrt(np.mean(after)))
-    return Gain(
-        basis=basis,
-        before=rms_before,
-        after=rms_after,
-        reduction=1 - rms_after / max(rms_before, 1e-300),
-        interval=(low, high),
-        floor=floor,
-    )
-
-
-def reduction_interval(
-    problem: Problem, before: Array, after: Array, seed: int
-) -> tuple[float, float]:
-    """Return the 95 % interval of the relative reduction of RMS misfit, by block bootstrap.
-
-    Blocks of neighbouring pairs are drawn together, the same ones before and after.
-
-    Parameters
-    ----------
-    problem : Problem
-        The rows.
-    before, after : ndarray, shape (rows,)
-        Squared misfit without and with the extension. [(N·m)²]
-    seed : int
-        Seed of the block bootstrap.
-    """
-    pair = problem.layout.row_pair
-    sums = np.column_stack([np.bincount(pair, weights=values) for values in (before, after)])
-    blocks = np.add.reduceat(sums, np.arange(0, len(sums), _BLOCK), axis=0)
-    generator = np.random.default_rng(seed)
-    drawn = blocks[generator.integers(0, len(blocks), (_DRAWS, len(blocks)))].sum(axis=1)
-    share = 1 - np.sqrt(drawn[:, 1] / np.maximum(drawn[:, 0], 1e-300))
-    low, high = np.quantile(share, [0.025, 0.975])
-    return float(low), float(high)
+    return gain_of(problem, before, after, basis=basis, floor=floor, seed=seed)

@@ -4,7 +4,6 @@ from collections.abc import Collection, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-from scipy.optimize import minimize
 
 from frictioncli.arrays import Array, Indices
 from frictioncli.diagnosis.data.problem import Problem
@@ -21,6 +20,7 @@ from frictioncli.diagnosis.fit.mixed_model import (
     Variances,
     evaluate,
 )
+from frictioncli.diagnosis.fit.simplex_search import simplex_minimum
 from frictioncli.diagnosis.fit.transformed_columns import Part, TransformedColumns
 from frictioncli.diagnosis.fit.variance_components import fit_variances
 from frictioncli.diagnosis.fit.weighted_fit import WeightedFit, Weights
@@ -208,21 +208,14 @@ class Step:
         def shape_at(unit: Array) -> dict[str, float]:
             return {axis.name: axis.at(float(u)) for axis, u in zip(axes, unit, strict=True)}
 
-        search = minimize(
+        place, _ = simplex_minimum(
             lambda unit: -self._gain(effect, shape_at(unit), null),
             start,
-            method="Nelder-Mead",
-            bounds=[(0.0, 1.0)] * len(axes),
-            options={
-                "initial_simplex": np.vstack(
-                    [start, start + np.diag(np.where(start > 0.5, -step, step))]
-                ),
-                "maxfev": 16 * len(axes),
-                "xatol": 5e-3,
-                "fatol": 5e-2,
-            },
+            step,
+            evaluations=16,
+            tolerance=(5e-3, 5e-2),
         )
-        return self.fitted(effect, shape_at(search.x))
+        return self.fitted(effect, shape_at(place))
 
     def _refined_change(self, found: EffectFit) -> EffectFit:
         """Return a change with its moments moved to single pairs.

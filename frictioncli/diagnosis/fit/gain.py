@@ -1,0 +1,95 @@
+"""By how much the RMS of a misfit is reduced, with a block-bootstrap interval."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from frictioncli.arrays import Array
+from frictioncli.diagnosis.data.problem import Problem
+
+BLOCK = 12
+"""Pairs per block of the bootstrap: the misfits of neighbouring pairs are not independent."""
+
+_DRAWS = 1000
+"""Bootstrap samples."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Gain:
+    """Reduction of the misfit by an extension.
+
+    Attributes
+    ----------
+    basis : {"new_run", "within_run"}
+        Whether the data were new to the extension.
+    before, after : float
+        RMS misfit of the simulated torque without and with it. [N·m]
+    reduction : float
+        Relative reduction of the RMS misfit.
+    interval : (float, float)
+        95 % interval of the reduction.
+    floor : float
+        RMS of point and pair noise, which no model can predict. [N·m]
+    """
+
+    basis: str
+    before: float
+    after: float
+    reduction: float
+    interval: tuple[float, float]
+    floor: float
+
+
+def gain_of(
+    problem: Problem, before: Array, after: Array, *, basis: str, floor: float, seed: int
+) -> Gain:
+    """Return by how much a squared misfit is reduced.
+
+    Parameters
+    ----------
+    problem : Problem
+        The rows.
+    before, after : ndarray, shape (rows,)
+        Squared misfit without and with what is judged. [(N·m)²]
+    basis : {"new_run", "within_run"}
+        Whether these rows were new to it.
+    floor : float
+        RMS of point and pair noise. [N·m]
+    seed : int
+        Seed of the block bootstrap.
+    """
+    first, last = float(np.sqrt(np.mean(before))), float(np.sqrt(np.mean(after)))
+    return Gain(
+        basis=basis,
+        before=first,
+        after=last,
+        reduction=1 - last / max(first, 1e-300),
+        interval=reduction_interval(problem, before, after, seed),
+        floor=floor,
+    )
+
+
+def reduction_interval(
+    problem: Problem, before: Array, after: Array, seed: int
+) -> tuple[float, float]:
+    """Return the 95 % interval of the relative reduction of RMS misfit, by block bootstrap.
+
+    Blocks of neighbouring pairs are drawn together, the same ones before and after.
+
+    Parameters
+    ----------
+    problem : Problem
+        The rows.
+    before, after : ndarray, shape (rows,)
+        Squared misfit without and with the extension. [(N·m)²]
+    seed : int
+        Seed of the block bootstrap.
+    """
+    pair = problem.layout.row_pair
+    sums = np.column_stack([np.bincount(pair, weights=values) for values in (before, after)])
+    blocks = np.add.reduceat(sums, np.arange(0, len(sums), BLOCK), axis=0)
+    generator = np.random.default_rng(seed)
+    drawn = blocks[generator.integers(0, len(blocks), (_DRAWS, len(blocks)))].sum(axis=1)
+    share = 1 - np.sqrt(drawn[:, 1] / np.maximum(drawn[:, 0], 1e-300))
+    low, high = np.quantile(share, [0.025, 0.975])
+    return float(low), float(high)
