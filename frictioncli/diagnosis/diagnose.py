@@ -259,7 +259,7 @@ def diagnose_joint(
     empirical = empirical_term(
         found.step,
         (problem, beside),
-        (new, predicting(beside, causes)) if new else None,
+        (new, lambda one: predicting(one, causes)) if new else None,
         margin=margin,
         floor=_floor(found),
         seed=settings.seed,

@@ -35,6 +35,7 @@ from frictioncli.diagnosis.documents.structure_record import (
     unnamed_record,
 )
 from frictioncli.diagnosis.documents.thermal_record import record_of_lag
+from frictioncli.diagnosis.fit.extension import Extension
 from frictioncli.diagnosis.ramps.evidence import RampEstimate
 from frictioncli.diagnosis.search.cause import Cause
 from frictioncli.diagnosis.search.effect_size import LACKING, TAKEN_BY_BASE
@@ -126,9 +127,7 @@ def extended_document(diagnosis: Diagnosis, model: FrictionModel) -> ExtendedDoc
         The joint's model.
     """
     stated = {field.name: getattr(model, field.name) for field in fields(model)}
-    extension = diagnosis.extension
-    if diagnosis.empirical is not None:
-        extension = diagnosis.empirical.beside
+    extension = _stated(diagnosis)
     if extension is None:
         return ExtendedDocument(**stated, effects=())
     base, form = diagnosis.base.parameters, diagnosis.base.gravity_form
@@ -168,9 +167,14 @@ def extended_document(diagnosis: Diagnosis, model: FrictionModel) -> ExtendedDoc
     )
 
 
+def _stated(diagnosis: Diagnosis) -> Extension | None:
+    """Return the extension whose parameters are stated: fitted beside the empirical term."""
+    return diagnosis.extension if diagnosis.empirical is None else diagnosis.empirical.beside
+
+
 def _cause_record(diagnosis: Diagnosis, cause: Cause, number: int) -> CauseRecord:
     """Return a named cause; its parameters are those of the extended model."""
-    effect, extension = cause.fit.effect, diagnosis.extension
+    effect, extension = cause.fit.effect, _stated(diagnosis)
     assert extension is not None  # there is one wherever there is a cause
     parameters = extension_parameters(extension, effect.name, _units(diagnosis))
     record = _record(diagnosis, cause, parameters, f"diagnosis-{number}.svg")

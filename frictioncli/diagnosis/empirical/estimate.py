@@ -17,12 +17,13 @@ part of the pairs alone; together they must predict the blocks as well as the fr
 Otherwise, or where two forms are nearly as likely, the term has no form.
 """
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
 from frictioncli.diagnosis.data.problem import Problem
+from frictioncli.diagnosis.empirical.fitted_columns import FittedColumns, refitted_beside
 from frictioncli.diagnosis.empirical.form_search import WeightedMisfit
 from frictioncli.diagnosis.empirical.forms import forms_of
 from frictioncli.diagnosis.empirical.located import Located, located, sizes_of_parts
@@ -77,7 +78,7 @@ class Empirical:
         Reduction of the misfit that base and causes leave, on the run kept out of the diagnosis, or
         on the blocks kept out of the estimate.
     beside : Extension
-        Base and causes that it was estimated beside.
+        Base and causes beside it: refitted beside its forms.
     """
 
     term: EmpiricalTerm
@@ -88,8 +89,12 @@ class Empirical:
     beside: Extension
 
 
+NewRun = tuple[Problem, Callable[[Extension], Extension]]
+"""Rows of a run that was kept out, and what of base and causes holds there."""
+
+
 def reduced_by(
-    problem: Problem, misfit: Misfits, term: Basis, *, basis: str, floor: float, seed: int
+    problem: Problem, before: Misfits, after: Misfits, *, basis: str, floor: float, seed: int
 ) -> Gain:
     """Return by how much a term reduces a misfit.
 
@@ -97,10 +102,8 @@ def reduced_by(
     ----------
     problem : Problem
         The rows.
-    misfit : (ndarray, ndarray), shape (rows,)
-        What base and causes leave of both channels. [N·m]
-    term : Basis
-        The term at these rows. [N·m]
+    before, after : (ndarray, ndarray), shape (rows,)
+        What is left of both channels without and with the term. [N·m]
     basis : {"new_run", "within_run"}
         Whether these rows were new to base and causes.
     floor : float
@@ -108,9 +111,13 @@ def reduced_by(
     seed : int
         Seed of the block bootstrap.
     """
-    before = problem.squared(*misfit)
-    after = problem.squared(misfit[0] - term.friction, misfit[1] - term.load)
-    return gain_of(problem, before, after, basis=basis, floor=floor, seed=seed)
+    squares = problem.squared(*before), problem.squared(*after)
+    return gain_of(problem, *squares, basis=basis, floor=floor, seed=seed)
+
+
+def _without(misfit: Misfits, term: Basis) -> Misfits:
+    """Return what a term leaves of a misfit."""
+    return misfit[0] - term.friction, misfit[1] - term.load
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -124,11 +131,24 @@ class _Estimate:
     def term(self) -> EmpiricalTerm:
         return term_of(self.equations.problem, self.functions, self.equations.coefficients())
 
+    def refitted(self, extension: Extension) -> Extension:
+        """Return base and causes refitted beside the forms."""
+        taken = [one.taken for one in self.functions if one.is_form]
+        if not taken:
+            return extension
+        chosen = self.equations.of_form
+        return refitted_beside(
+            extension,
+            np.hstack(taken),
+            self.equations.coefficients()[chosen],
+            self.equations.covariance()[np.ix_(chosen, chosen)],
+        )
+
 
 def empirical_term(
     step: Step,
     seen: tuple[Problem, Extension],
-    new: tuple[Problem, Extension] | None,
+    new: NewRun | None,
     *,
     margin: float,
     floor: float,
@@ -142,8 +162,8 @@ def empirical_term(
         The last step of the search: noise, and amplitudes of the discrepancy.
     seen : (Problem, Extension)
         Rows to learn from, and base with causes fitted to them.
-    new : (Problem, Extension) or None
-        Rows of a run that was kept out, and base with the causes that hold there.
+    new : (Problem, callable) or None
+        Rows of a run that was kept out, and what of base with causes holds there.
     margin : float
         Smallest size worth a name. [N·m]
     floor : float
@@ -155,8 +175,8 @@ def empirical_term(
     components = step.precomputed.discrepancy.components
 
     def reduced(equations: NormalEquations) -> Gain:
-        unseen = equations.predicted_blocks()
-        return reduced_by(problem, misfit, unseen, basis="within_run", floor=floor, seed=seed)
+        left = _without(misfit, equations.predicted_blocks())
+        return reduced_by(problem, misfit, left, basis="within_run", floor=floor, seed=seed)
 
     def estimated(functions: Sequence[Function]) -> _Estimate:
         equations = NormalEquations.of(problem, functions, step.noise(), misfit)
@@ -168,15 +188,16 @@ def empirical_term(
     free = estimated(smooth)
     if not _is_worth_using(free.gain, margin):
         return None
+    fitted = FittedColumns.of(problem, step.predicting_fit(), seen[1].effects)
     small = functions_of(problem, components, step.precomputed.start.amplitude)
     best, described, before = free, None, free.gain.before
     forms: list[Function] = []
     for _ in range(_MOST_FORMS):
-        beside = WeightedMisfit.of(problem, step.noise(), [*forms, *small], misfit)
+        beside = WeightedMisfit.of(fitted, step.noise(), [*forms, *small], misfit)
         found = beside.best(forms_of(_varying(problem)))
         if found.score < _LEAST_SCORE or found.lead < _LEAST_LEAD:
             break
-        forms.append(function_of_form(problem, found.form, found.shape))
+        forms.append(function_of_form(fitted, found.form, found.shape))
         more = estimated([*forms, *small])
         alone = reduced(more.equations.of_forms())
         added = float(np.sqrt(max(before**2 - alone.after**2, 0.0)))
@@ -196,17 +217,19 @@ def empirical_term(
 def _used(
     found: _Estimate,
     seen: tuple[Problem, Extension],
-    new: tuple[Problem, Extension] | None,
+    new: NewRun | None,
     *,
     margin: float,
     floor: float,
     seed: int,
 ) -> Empirical | None:
     """Return an estimate as a term, if it explains enough of the run kept out, too."""
-    term, gain = found.term(), found.gain
+    term, gain, beside = found.term(), found.gain, found.refitted(seen[1])
     if new is not None:
-        left = misfits(*new)
-        gain = reduced_by(new[0], left, term.at(new[0]), basis="new_run", floor=floor, seed=seed)
+        rows, holding = new
+        before, left = (misfits(rows, holding(one)) for one in (seen[1], beside))
+        after = _without(left, term.at(rows))
+        gain = reduced_by(rows, before, after, basis="new_run", floor=floor, seed=seed)
         if not _is_worth_using(gain, margin):
             return None
     added = term.at(seen[0])
@@ -216,7 +239,7 @@ def _used(
         size=float(np.sqrt(np.mean(seen[0].squared(added.friction, added.load)))),
         kept_out=_explained(found.gain),
         gain=gain,
-        beside=seen[1],
+        beside=beside,
     )
 
 

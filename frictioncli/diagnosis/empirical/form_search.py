@@ -22,10 +22,10 @@ import numpy as np
 
 from frictioncli.arrays import Array
 from frictioncli.diagnosis.data.problem import Problem
+from frictioncli.diagnosis.empirical.fitted_columns import FittedColumns
 from frictioncli.diagnosis.empirical.form_columns import Shape
 from frictioncli.diagnosis.empirical.forms import Form, ShapeAxis
 from frictioncli.diagnosis.empirical.random_functions import Function
-from frictioncli.diagnosis.fit.columns import base_rows
 from frictioncli.diagnosis.fit.simplex_search import simplex_minimum
 from frictioncli.diagnosis.fit.weighted_fit import Weights
 from frictioncli.model.noise import Noise
@@ -67,7 +67,7 @@ class FoundForm:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class WeightedMisfit:
-    """A weighted misfit with the columns of base, discrepancy and forms that are known.
+    """A weighted misfit with the columns of base, causes, discrepancy and forms that are known.
 
     Attributes
     ----------
@@ -76,7 +76,7 @@ class WeightedMisfit:
     weights : (Weights, Weights)
         Weights of friction and load.
     columns : ndarray, shape (weighted rows, columns)
-        Base, discrepancy and forms, weighted.
+        Base, causes, discrepancy and forms, weighted.
     root : ndarray, shape (columns, columns)
         Lower Cholesky factor of their inner products with the precision of their coefficients.
     misfit : ndarray, shape (weighted rows,)
@@ -92,7 +92,7 @@ class WeightedMisfit:
     @classmethod
     def of(
         cls,
-        problem: Problem,
+        fitted: FittedColumns,
         noise: tuple[Noise, Noise],
         functions: Sequence[Function],
         misfit: tuple[Array, Array],
@@ -101,8 +101,8 @@ class WeightedMisfit:
 
         Parameters
         ----------
-        problem : Problem
-            The rows.
+        fitted : FittedColumns
+            Columns of base and causes.
         noise : (Noise, Noise)
             Noise of friction and load.
         functions : sequence of Function
@@ -110,6 +110,7 @@ class WeightedMisfit:
         misfit : (ndarray, ndarray), shape (rows,)
             What base and causes leave of both channels. [N·m]
         """
+        problem = fitted.problem
         extra = (problem.temperature_variance, np.zeros(len(problem.layout.time)))
         friction, load = (
             Weights.of(problem.layout, level, known)
@@ -122,7 +123,7 @@ class WeightedMisfit:
 
         smooth = [one.columns for one in functions if not one.is_form]
         forms = [one.columns for one in functions if one.is_form]
-        columns = weighted(np.hstack([np.vstack(base_rows(problem)), *forms, *smooth]))
+        columns = weighted(np.hstack([fitted.rows, *forms, *smooth]))
         free = columns.shape[1] - sum(one.shape[1] for one in smooth)
         length = np.linalg.norm(columns[:, :free], axis=0)
         columns[:, :free] /= np.where(length > 0, length, 1.0)

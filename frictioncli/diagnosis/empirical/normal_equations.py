@@ -142,6 +142,10 @@ class NormalEquations:
         """
         return self._solved(self.inner[number], self.right[number])
 
+    def covariance(self) -> Array:
+        """Return the covariance of these coefficients, shape (columns, columns)."""
+        return np.linalg.inv(self.inner.sum(axis=0) + np.diag(self.precision))
+
     def _solved(self, inner: Array, right: Array) -> Array:
         return np.asarray(np.linalg.solve(inner + np.diag(self.precision), right), float)
 

@@ -8,6 +8,7 @@ import numpy as np
 from frictioncli.arrays import Array
 from frictioncli.diagnosis.data.gravity_document import gravity_document
 from frictioncli.diagnosis.data.problem import Problem
+from frictioncli.diagnosis.empirical.fitted_columns import FittedColumns
 from frictioncli.diagnosis.empirical.form_columns import Shape
 from frictioncli.diagnosis.empirical.forms import Form
 from frictioncli.diagnosis.empirical.term import (
@@ -36,8 +37,9 @@ class Function:
     scale : ndarray, shape (columns,)
         What columns are multiplied by: those of a random function so that coefficients have
         variance 1. [N·m]
-    by_base : ndarray, shape (base parameters, columns)
-        What the base takes of these columns.
+    taken : ndarray, shape (parameters, columns)
+        What the base takes of the columns of a random function; what base and causes take of those
+        of a form, which are fitted beside it.
     columns : ndarray, shape (2 * rows, columns)
         What it leaves of them, friction above load. [N·m]
     """
@@ -45,7 +47,7 @@ class Function:
     what: CosineSeries | tuple[Form, Shape]
     channel: str
     scale: Array
-    by_base: Array
+    taken: Array
     columns: Array
 
     @property
@@ -85,7 +87,7 @@ def functions_of(
         values = series.weights * series.columns(problem.table, ranges)
         zeros = np.zeros_like(values)
         both = Basis(values, zeros) if component.channel == "friction" else Basis(zeros, values)
-        by_base, left = _left(problem, both)
+        taken, left = _left(problem, both)
         squares = float(np.sum(np.square(left)))
         if squares <= 0:
             continue
@@ -96,31 +98,31 @@ def functions_of(
                 what=series,
                 channel=component.channel,
                 scale=scale * series.weights,
-                by_base=scale * by_base,
+                taken=scale * taken,
                 columns=scale * left,
             )
         )
     return found
 
 
-def function_of_form(problem: Problem, form: Form, shape: Shape) -> Function:
-    """Return a form over a problem's rows.
+def function_of_form(fitted: FittedColumns, form: Form, shape: Shape) -> Function:
+    """Return a form over a problem's rows, beside base and causes.
 
     Parameters
     ----------
-    problem : Problem
-        The rows.
+    fitted : FittedColumns
+        Columns of base and causes.
     form : Form
         The form.
     shape : mapping of str to float
         Its shape parameters.
     """
-    by_base, left = _left(problem, form.columns(problem.table, shape))
+    taken, left = fitted.taken_and_left(form.columns(fitted.problem.table, shape))
     return Function(
         what=(form, shape),
         channel=form.channel,
         scale=np.ones(left.shape[1]),
-        by_base=by_base,
+        taken=taken,
         columns=left,
     )
 
@@ -131,12 +133,15 @@ def _left(problem: Problem, both: Basis) -> tuple[Array, Array]:
     length = np.linalg.norm(base, axis=0)
     length = np.where(length > 0, length, 1.0)
     columns = np.vstack(both)
-    by_base = np.linalg.lstsq(base / length, columns, rcond=RANK)[0] / length[:, np.newaxis]
-    return by_base, columns - base @ by_base
+    taken = np.linalg.lstsq(base / length, columns, rcond=RANK)[0] / length[:, np.newaxis]
+    return taken, columns - base @ taken
 
 
 def term_of(problem: Problem, functions: Sequence[Function], coefficients: Array) -> EmpiricalTerm:
     """Return the term that coefficients of functions make.
+
+    What the base takes of random functions is a part of it; what it takes of forms is not, since
+    the base is refitted beside them.
 
     Parameters
     ----------
@@ -149,9 +154,11 @@ def term_of(problem: Problem, functions: Sequence[Function], coefficients: Array
     """
     ends = np.cumsum([len(one.scale) for one in functions])[:-1]
     forms, smooth = [], []
+    taken = np.zeros(len(problem.names) + len(problem.gravity))
     for one, own in zip(functions, np.split(coefficients, ends), strict=True):
         values = (one.scale * own).tolist()
         if isinstance(one.what, CosineSeries):
+            taken += one.taken @ own
             smooth.append(
                 SmoothFunction(
                     axes=one.what.axes,
@@ -172,7 +179,6 @@ def term_of(problem: Problem, functions: Sequence[Function], coefficients: Array
                 formula=form.formula,
             )
         )
-    taken = np.hstack([one.by_base for one in functions]) @ coefficients
     friction, gravity = np.split(-taken, [len(problem.names)])
     return EmpiricalTerm(
         forms=tuple(forms),

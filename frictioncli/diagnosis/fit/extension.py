@@ -100,7 +100,7 @@ def refit(problem: Problem, weighted_fit: WeightedFit, effects: Sequence[EffectF
     effects : sequence of EffectFit
         Effects with the shapes found.
     """
-    friction, load = _columns(problem, effects)
+    friction, load = fitted_rows(problem, effects)
     step = weighted_fit.coefficients(friction, load, (problem.friction_misfit, problem.load_misfit))
     widths = [len(one.effect.coefficients) for one in effects]
     ends = np.cumsum([len(problem.names), len(problem.gravity), *widths])
@@ -123,7 +123,7 @@ def extend(problem: Problem, weighted_fit: WeightedFit, effects: Sequence[Effect
     are further columns of the error covariance.
     """
     fitted = refit(problem, weighted_fit, effects)
-    columns = _columns(problem, fitted.effects)
+    columns = fitted_rows(problem, fitted.effects)
     derivatives = [
         _shape_derivative(problem, one, axis) for one in fitted.effects for axis in one.effect.shape
     ]
@@ -172,8 +172,16 @@ def beside_unfitted(
     return weighted_fit
 
 
-def _columns(problem: Problem, effects: Sequence[EffectFit]) -> tuple[Array, Array]:
-    """Return the columns of base and effects in friction and load, shape (rows, columns) each."""
+def fitted_rows(problem: Problem, effects: Sequence[EffectFit]) -> tuple[Array, Array]:
+    """Return the columns of base and effects in friction and load, shape (rows, columns) each.
+
+    Parameters
+    ----------
+    problem : Problem
+        The rows.
+    effects : sequence of EffectFit
+        Effects with their shapes.
+    """
     bases = [base_rows(problem), *(problem.basis(one.effect, one.shape) for one in effects)]
     friction, load = (np.hstack([basis[channel] for basis in bases]) for channel in (0, 1))
     return friction, load

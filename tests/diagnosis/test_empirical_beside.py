@@ -1,0 +1,101 @@
+"""Base and causes beside the forms of what has no name: as if it were not there."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from frictioncli.diagnosis.empirical.estimate import empirical_term
+from frictioncli.diagnosis.fit.extension import extend, misfits
+from frictioncli.diagnosis.search.precomputed import Precomputed
+from frictioncli.diagnosis.search.step import Step
+from frictioncli.effects import BY_NAME
+from tests.diagnosis.dense_noise import problem
+
+
+def warm_peak(rows):
+    """Friction that is higher about 45 °C."""
+    return 5.0 * np.exp(-np.square((rows.motor_temperature - 45.0) / 3.0) / 2)
+
+
+def carried(rows):
+    """Friction that grows with the load: an effect of the catalogue."""
+    return 0.05 * np.abs(rows.load_torque)
+
+
+def found(data, names=(), new=None):
+    """Return the empirical term beside effects, and base and effects without it."""
+    precomputed, fits = Precomputed.of(data), []
+    for name in names:
+        fits.append(Step.of(precomputed, fits).fitted(BY_NAME[name], {}))
+    step = Step.of(precomputed, fits)
+    beside = extend(data, step.predicting_fit(), fits)
+    judged = None if new is None else (new, lambda one: one)
+    term = empirical_term(step, (data, beside), judged, margin=0.2, floor=0.3, seed=0)
+    return term, beside
+
+
+def test_the_base_beside_a_form_is_that_of_the_joint_without_it():
+    """The same noise without the peak: its parameters are the other route."""
+    empirical, biased = found(problem(3, friction=warm_peak))
+    _, plain = found(problem(3))
+    (form,) = empirical.term.forms
+    assert form.axes == ("temperature",)
+    names = plain.names
+    far = np.abs(biased.changes - plain.changes)
+    near = np.abs(empirical.beside.changes - plain.changes)
+    chosen = [names.index(name) for name in ("gamma", "delta", "beta")]
+    assert (near[chosen] < 0.3 * far[chosen]).all()
+    assert (near < 2 * empirical.beside.errors[: len(names)]).all()
+    # the term itself has no part of the base but that of its small random functions
+    changes = np.array([empirical.term.base_changes[name] for name in names])
+    assert (np.abs(changes) < 0.3 * far)[chosen].all()
+
+
+def test_causes_beside_a_form_are_those_of_the_joint_without_it():
+    def both(rows):
+        hump = 4.0 * np.exp(-np.square((np.abs(rows.load_torque) - 70.0) / 9.0) / 2)
+        return hump + carried(rows)
+
+    empirical, biased = found(problem(3, friction=both), ["load_linear"])
+    _, plain = found(problem(3, friction=carried), ["load_linear"])
+    assert empirical.term.forms
+    true, before, after = (
+        one.effects[0].coefficients[0] for one in (plain, biased, empirical.beside)
+    )
+    assert abs(after - true) < 0.3 * abs(before - true)
+    assert empirical.beside.effects[0].effect.name == "load_linear"
+
+
+def test_base_and_form_together_predict_another_day():
+    """From the parameters that are stated, by hand: no worse than the noise of that day."""
+    seen, new, without = problem(3, friction=warm_peak), problem(4, friction=warm_peak), problem(4)
+    empirical, _ = found(seen, new=new)
+    left = misfits(new, empirical.beside)
+    added = empirical.term.at(new)
+    rms = np.sqrt(np.mean(new.squared(left[0] - added.friction, left[1] - added.load)))
+    assert rms == pytest.approx(empirical.gain.after, rel=1e-9)
+    best = np.sqrt(np.mean(without.squared(without.friction_misfit, without.load_misfit)))
+    assert rms < 1.05 * best
+
+
+def test_a_run_in_which_a_cause_does_not_hold_is_predicted_without_it():
+    """What of base and causes holds there is asked of the refitted ones."""
+    data, new = problem(3, friction=warm_peak), problem(4, friction=warm_peak)
+    precomputed = Precomputed.of(data)
+    fit = Step.of(precomputed, []).fitted(BY_NAME["load_linear"], {})
+    step = Step.of(precomputed, [fit])
+    beside = extend(data, step.predicting_fit(), [fit])
+    asked = []
+
+    def holding(one):
+        asked.append(one)
+        return replace(one, effects=())
+
+    empirical = empirical_term(step, (data, beside), (new, holding), margin=0.2, floor=0.3, seed=0)
+    assert asked[0] is beside
+    assert asked[1] is empirical.beside
+    left = misfits(new, replace(empirical.beside, effects=()))
+    added = empirical.term.at(new)
+    rms = np.sqrt(np.mean(new.squared(left[0] - added.friction, left[1] - added.load)))
+    assert rms == pytest.approx(empirical.gain.after, rel=1e-9)
