@@ -223,23 +223,6 @@ def test_a_size_is_the_torque_of_its_white_length(name, channel):
     assert np.mean(statistics) == pytest.approx(101, abs=24)
 
 
-def test_a_size_of_the_smallest_detectable_is_significant_and_above_the_margin():
-    """By the definition of both: noncentral chi squared, and a lower bound above the margin."""
-    _, found = run_tests(problem(0), ["load_linear"], discrepancy=0)
-    one = found["load_linear"]
-    level = 0.05 / 26
-    least = one.detectable_size(level)
-    passed = stats.ncx2.sf(one.null.critical_value(level), 1, (least / one.size_scale) ** 2)
-    assert passed == pytest.approx(0.8, abs=1e-6)
-    margin = 20 * least
-    above = one.detectable_size(level, margin)
-    left, error = above * one.left_share, one.size_scale * one.left_share
-    assert stats.norm.sf(margin, left - 1.96 * error, error) == pytest.approx(0.8, abs=0.005)
-    assert one.detectable_size(level, margin / 1e6) == least
-    none = replace(one, freedom=0)
-    assert none.detectable_size(level) is None
-
-
 @pytest.mark.parametrize("name", ["load_linear", "linear_viscous", "run_in"])
 def test_what_physics_forbids_explains_nothing(name):
     """Friction that falls where the effect can only add some; the base leaves 1.5 N·m of it."""

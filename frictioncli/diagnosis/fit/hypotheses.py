@@ -4,8 +4,6 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from scipy import stats
-from scipy.optimize import brentq
 
 from frictioncli.arrays import Array
 from frictioncli.diagnosis.data.problem import Problem
@@ -20,15 +18,6 @@ from frictioncli.quantities import TORQUE
 _USUAL_FRICTION = 20.0
 """Mean friction torque up to which the catalogue's bounds in units of torque hold; the bounds of a
 joint with more friction grow in proportion. [N·m]"""
-
-_POWER = 0.8
-"""Probability with which an effect of the smallest detectable size is found."""
-
-_Z95 = 1.96
-
-_ABOVE = _Z95 + 0.84
-"""Standard errors by which a size must exceed the margin for its lower bound to do so four times in
-five."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -74,7 +63,7 @@ def hypothesis_of(
     shapes : sequence of dict, optional
         Shape parameters to try instead of the grid.
     """
-    tried = _informative_shapes(effect, problem) if shapes is None else list(shapes)
+    tried = informative_shapes(effect, problem) if shapes is None else list(shapes)
     bases = [problem.basis(effect, shape) for shape in tried]
     rms = [np.sqrt(np.mean(np.square(main_channel(basis, effect)), axis=0)) for basis in bases]
     columns = reduced(
@@ -111,8 +100,16 @@ def physical_bounds(effect: Effect, problem: Problem) -> tuple[Array, Array]:
     return lower * factors, upper * factors
 
 
-def _informative_shapes(effect: Effect, problem: Problem) -> list[dict[str, float]]:
-    """Return the shapes to try first; of histories those that differ in the problem's runs."""
+def informative_shapes(effect: Effect, problem: Problem) -> list[dict[str, float]]:
+    """Return the shapes to try first; of histories those that differ in the problem's runs.
+
+    Parameters
+    ----------
+    effect : Effect
+        Entry of the catalogue.
+    problem : Problem
+        The joint's rows.
+    """
     tried = effect.shapes(problem.all_runs)
     if effect.moments is None:
         return tried
@@ -213,42 +210,3 @@ class HypothesisTest:
             The effect at its refined shape.
         """
         return self.log_bayes_factor + max(fit.statistic - self.statistic, 0.0) / 2
-
-    def detectable_size(
-        self, level: float, margin: float = 0.0, smooth: float = 0.0
-    ) -> float | None:
-        r"""Return the RMS size that would be named four times in five [N·m].
-
-        Under the alternative hypothesis the statistic is noncentral chi-squared. The noncentrality
-        with which it exceeds the critical value with a probability of 80 % is the squared whitened
-        length of the torque. Besides, the lower bound of what the base leaves must exceed the
-        margin.
-
-        Parameters
-        ----------
-        level : float
-            Significance level of this one test.
-        margin : float, optional
-            Smallest size worth a name. [N·m]
-        smooth : float, optional
-            Standard deviation of discrepancy that the covariance does not contain. [N·m]
-
-        Returns
-        -------
-        float or None
-            None where the data determine none of the coefficients.
-        """
-        if self.freedom == 0:
-            return None
-        threshold = self.null.critical_value(level)
-        if not np.isfinite(threshold):
-            return None
-        needed = brentq(
-            lambda noncentrality: stats.ncx2.sf(threshold, self.freedom, noncentrality) - _POWER,
-            1e-6,
-            1e5,
-        )
-        # a size of one standard error has a whitened length of 1
-        error = self.size_scale * self.left_share
-        above = (margin + np.hypot(_Z95 * smooth, _ABOVE * error)) / max(self.left_share, 1e-3)
-        return float(max(np.sqrt(needed) * self.size_scale, above if margin > 0 else 0.0))

@@ -158,6 +158,28 @@ def log_bayes_factor(grid: Array, freedom: int) -> float:
     return float(np.logaddexp.reduce(logs) - np.log(len(logs)))
 
 
+def statistic_of(log_factor: float, freedom: int, shapes: float = 1.0) -> float:
+    """Return the test statistic at one shape that gives an effect a log Bayes factor.
+
+    Parameters
+    ----------
+    log_factor : float
+        Logarithm of the Bayes factor, averaged over the shapes.
+    freedom : int
+        Number of coefficients that the data determine.
+    shapes : float, optional
+        Effective number of shapes; the others explain nothing.
+
+    Examples
+    --------
+    >>> round(statistic_of(log_bayes_factor(np.array([20.0]), 1), 1), 6)
+    20.0
+    """
+    share = _PRIOR_VARIANCE / (1 + _PRIOR_VARIANCE)
+    penalty = freedom / 2 * float(np.log1p(_PRIOR_VARIANCE)) + float(np.log(shapes))
+    return 2 * (log_factor + penalty) / share
+
+
 def posterior_probabilities(log_bayes_factors: Mapping[str, float]) -> dict[str, float]:
     """Return the probability of each effect if exactly one of them is at work, greatest first.
 

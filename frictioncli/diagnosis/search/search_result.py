@@ -1,12 +1,12 @@
 """What a search for causes found: causes, tests of all others, and what was given up again."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 from frictioncli.diagnosis.fit.hypotheses import HypothesisTest
 from frictioncli.diagnosis.search.cause import Cause
-from frictioncli.diagnosis.search.effect_size import other_form, sizes_of
-from frictioncli.diagnosis.search.margin import channel_margin, whole_torque
+from frictioncli.diagnosis.search.detectable_size import detectable_size
+from frictioncli.diagnosis.search.effect_size import sizes_of
 from frictioncli.diagnosis.search.standing import goes_with_time
 from frictioncli.diagnosis.search.step import Step
 from frictioncli.effects import BY_NAME
@@ -59,17 +59,20 @@ class SearchResult:
             the torque that there is.
         """
         count = max(len(self.rejected) + len(self.causes), 1)
-        tests = self.rejected | {cause.fit.effect.name: cause.test for cause in self.causes}
         found: dict[str, float | None] = dict.fromkeys(effect.name for effect in effects)
         for effect in effects:
-            if effect.name in tests and not goes_with_time(effect, self.step.problem):
-                expected = replace(tests[effect.name].effect_fit(effect), variances=None)
-                smooth = other_form(self.step.precomputed, expected)
-                least = channel_margin(self.step.problem, effect.channel, margin)
-                size = tests[effect.name].detectable_size(alpha / count, least, smooth)
-                if size is not None and size <= whole_torque(self.step.problem, effect.channel):
-                    found[effect.name] = size
+            step, test = self._beside_others(effect)
+            if test is not None and not goes_with_time(effect, step.problem):
+                found[effect.name] = detectable_size(step, effect, test, alpha / count, margin)
         return found
+
+    def _beside_others(self, effect: Effect) -> tuple[Step, HypothesisTest | None]:
+        """Return the base with all causes but an effect, and the test of that effect there."""
+        for cause in self.causes:
+            if cause.fit.effect is effect:
+                others = [one for one in self.step.accepted if one.effect is not effect]
+                return Step.of(self.step.precomputed, others), cause.test
+        return self.step, self.rejected.get(effect.name)
 
 
 def given_up_causes(found: SearchResult, alpha: float) -> tuple[Cause, ...]:

@@ -87,8 +87,7 @@ def _judged(cause: Cause, problem: Problem, margin: float, alpha: float) -> Caus
     if cause.fit.effect.measurement and cause.visible > 0:
         low, high = (cause.size / cause.visible * bound for bound in (low, high))
         left = "there is"
-    if cause.fit.effect.moments is not None:
-        alpha *= _OF_CHANGES
+    alpha = level_of(cause.fit.effect, alpha)
     if not (cause.test.p_value < alpha and cause.test.log_bayes_factor > CONVINCING):
         return replace(cause, standing="undetermined", reason="noise may be the reason")
     doubt = _impossible(cause, problem)
@@ -103,6 +102,19 @@ def _judged(cause: Cause, problem: Problem, margin: float, alpha: float) -> Caus
     reason = f"{left.replace('leaves', 'may leave').replace('is', 'may be')} less of it than"
     reason += f" the margin of {margin:.2g}"
     return replace(cause, standing="visible" if low > 0 else "undetermined", reason=reason)
+
+
+def level_of(effect: Effect, alpha: float) -> float:
+    """Return the significance level that a name of an effect needs.
+
+    Parameters
+    ----------
+    effect : Effect
+        Entry of the catalogue.
+    alpha : float
+        Significance level of the other effects.
+    """
+    return alpha * _OF_CHANGES if effect.moments is not None else alpha
 
 
 def beyond_bounds(fit: EffectFit, problem: Problem, errors: float = _Z95) -> str:
