@@ -245,6 +245,11 @@ def _c_bend(form: FormFunction) -> list[str]:
     return [f"fmax({away}, 0.0) / 10.0"]
 
 
+def _c_step(form: FormFunction) -> list[str]:
+    away = f"({_c_amount(form.axes[0])} - ({form.shape['centre']!r})) / {form.shape['width']!r}"
+    return [f"0.5 * erfc(-({away}) * {float(np.sqrt(0.5))!r})"]
+
+
 def _c_lifting(form: FormFunction) -> list[str]:
     return [f"copysign(pow(fabs(load / 50.0), {form.shape['exponent']!r}), load)"]
 
@@ -275,6 +280,7 @@ _C_COLUMNS: Mapping[str, Callable[[FormFunction], list[str]]] = {
     "peak": _c_peak,
     "bend_above": _c_bend,
     "bend_below": _c_bend,
+    "step": _c_step,
     "lifting": _c_lifting,
     "moving_peak": _c_moving_peak,
     "warm_wave": _c_warm_wave,

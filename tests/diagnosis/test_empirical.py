@@ -23,6 +23,7 @@ from frictioncli.diagnosis.empirical.term import (
 )
 from frictioncli.diagnosis.fit.columns import base_rows
 from frictioncli.diagnosis.fit.extension import extend, misfits
+from frictioncli.diagnosis.noise.discrepancy import SHARE
 from frictioncli.diagnosis.search.precomputed import Precomputed
 from frictioncli.diagnosis.search.step import Step
 from frictioncli.diagnosis.settings import DiagnosisSettings
@@ -207,6 +208,53 @@ def test_forms_are_found_with_their_places(law, axes, shape):
         assert part.form.shape[name] == pytest.approx(value, abs=within)
     low, high = part.interval
     assert low < part.size < high
+
+
+def test_a_switch_at_a_temperature_is_described():
+    """A logistic step of 3 N·m at 42 °C, as where a fan goes on."""
+    data = problem(
+        3, friction=lambda rows: -3.0 / (1 + np.exp(-(rows.motor_temperature - 42.0) / 0.8))
+    )
+    (part,) = found(data).parts
+    assert part.form.kind == "step"
+    assert part.form.shape["centre"] == pytest.approx(42.0, abs=0.5)
+    assert part.form.coefficients["step"] == pytest.approx(-3.0, rel=0.15)
+    assert "friction that falls by" in described(part.form, "N·m")
+    assert "switches" in experiment(part.form)
+
+
+@pytest.mark.parametrize("sizes", [(3.0, 6.0), (5.0, 5.0)])
+def test_two_laws_at_once_are_described_one_after_the_other(sizes):
+    """A narrow bump at 57 deg, whose place lies between those tried, and a peak at 45 °C."""
+
+    def law(rows):
+        away = np.clip(np.abs(rows.position - 57.0) / 13.0, 0, 1)
+        warm = 1 / np.cosh((rows.motor_temperature - 45.0) / 2.5)
+        return sizes[0] * (1 + np.cos(np.pi * away)) / 2 + sizes[1] * warm
+
+    parts = found(problem(3, friction=law)).parts
+    by_axes = {part.axes: part.form for part in parts}
+    assert set(by_axes) == {("position",), ("temperature",)}
+    assert by_axes["position",].shape["centre"] == pytest.approx(57.0, abs=0.6)
+    assert by_axes["position",].coefficients["peak"] == pytest.approx(sizes[0], rel=0.15)
+    assert by_axes["temperature",].shape["centre"] == pytest.approx(45.0, abs=0.6)
+    # so few pairs hardly tell a broad peak from drift, but that it rises
+    assert by_axes["temperature",].coefficients["peak"] > 0.4 * sizes[1]
+
+
+@pytest.mark.parametrize(("size", "used"), [(0.8, False), (2.0, True)])
+def test_free_functions_no_larger_than_any_joint_has_are_not_used(size, used):
+    """On two days alike, of an RMS of 0.7 % of friction and of 1.8 %; what any has is 0.75 %."""
+
+    def law(rows):
+        angle, speed = np.radians(rows.position), np.log(rows.speed / 40.0)
+        return size * np.sin(5 * angle) * np.sin(2.5 * speed + 0.5)
+
+    seen, new = problem(3, friction=law), problem(4, friction=law)
+    planted = seen.friction - problem(3).friction
+    share = np.sqrt(np.mean(np.square(planted))) / np.mean(seen.friction)
+    assert (share < SHARE) is not used
+    assert (found(seen, new) is not None) is used
 
 
 def test_a_peak_between_four_speeds_is_located_only():

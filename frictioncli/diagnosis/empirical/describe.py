@@ -99,6 +99,8 @@ _BEND = "Measure more values on both sides of the bend, in random order, on anot
 _NEXT = {
     "bend_above": _BEND,
     "bend_below": _BEND,
+    "step": "Pass the temperature twice, warming and cooling, at another pace and on another day,"
+    " with what switches there (a fan, a heater) once on and once off.",
     "lifting": "Measure with two payloads: a loss of lifting grows with the load by its power, an"
     " error of the mass in proportion.",
     "moving_peak": "Measure at six speeds or more about the peak, at three temperatures that are"
@@ -146,6 +148,15 @@ def _bend(form: FormFunction, unit: str) -> str:
     return f"friction that {way} by {_size(slope, unit)} per 10 {_UNITS[axis]} {where}"
 
 
+def _step(form: FormFunction, unit: str) -> str:
+    step = form.coefficients["step"]
+    return (
+        f"friction that {'rises' if step > 0 else 'falls'} by {_size(step, unit)} at"
+        f" {_number(form.shape['centre'])} °C, within about"
+        f" {number_text(4 * form.shape['width'], 2)} °C"
+    )
+
+
 def _lifting(form: FormFunction, unit: str) -> str:
     torque, exponent = form.coefficients["torque"], form.shape["exponent"]
     more = "more" if torque > 0 else "less"
@@ -189,6 +200,7 @@ _WORDS: Mapping[str, Callable[[FormFunction, str], str]] = {
     "peak": _peak,
     "bend_above": _bend,
     "bend_below": _bend,
+    "step": _step,
     "lifting": _lifting,
     "moving_peak": _moving_peak,
     "warm_wave": _warm_wave,

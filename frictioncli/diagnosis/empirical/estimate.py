@@ -11,10 +11,15 @@ kept out of the estimate, and what the estimate then reduces the misfit by on th
 must be above the smallest size worth a name, and beyond chance. Where a run was kept out of the
 diagnosis, so must what it reduces the misfit by there.
 
-Up to two forms (:mod:`frictioncli.diagnosis.empirical.forms`) describe it, beside the discrepancy
-that any model has. Each must explain more than that size of the blocks kept out, and show in every
-part of the pairs alone; together they must predict the blocks as well as the free functions do.
-Otherwise, or where two forms are nearly as likely, the term has no form.
+Up to two forms (:mod:`frictioncli.diagnosis.empirical.forms`) describe it, one after the other,
+each judged on what the former leaves, beside the discrepancy that any model has. Each must explain
+more than that size of the blocks kept out, and show in every part of the pairs alone; together they
+must explain most of what the free functions do, and predict the blocks as well. Otherwise, or where
+another form may be there instead that is nearly as likely, the term has no form.
+
+A form is evidence beyond that discrepancy. Free functions are not: any joint has some, which recur
+on every run. Without a form a term is used only where it surely explains more than the root sum of
+squares of the smallest size worth a name and of the discrepancy that is expected of any joint.
 """
 
 from collections.abc import Callable, Sequence
@@ -24,7 +29,7 @@ import numpy as np
 
 from frictioncli.diagnosis.data.problem import Problem
 from frictioncli.diagnosis.empirical.fitted_columns import FittedColumns, refitted_beside
-from frictioncli.diagnosis.empirical.form_search import WeightedMisfit
+from frictioncli.diagnosis.empirical.form_search import LEAST_SCORE, WeightedMisfit
 from frictioncli.diagnosis.empirical.forms import forms_of
 from frictioncli.diagnosis.empirical.located import Located, located, sizes_of_parts
 from frictioncli.diagnosis.empirical.normal_equations import Misfits, NormalEquations
@@ -37,6 +42,7 @@ from frictioncli.diagnosis.empirical.random_functions import (
 from frictioncli.diagnosis.empirical.term import EmpiricalTerm, ranges_seen
 from frictioncli.diagnosis.fit.extension import Extension, misfits
 from frictioncli.diagnosis.fit.gain import Gain, gain_of
+from frictioncli.diagnosis.noise.discrepancy import SHARE
 from frictioncli.diagnosis.search.axis_columns import varying_axes
 from frictioncli.diagnosis.search.step import Step
 from frictioncli.effects.base import Basis
@@ -44,17 +50,15 @@ from frictioncli.effects.base import Basis
 _MOST_FORMS = 2
 """Greatest number of forms."""
 
-_LEAST_SCORE = 15.0
-"""Least statistic of a form beyond the price of its parameters."""
-
 _LEAST_LEAD = 5.0
 """Least difference of the statistic to that of any other form: an odds ratio of twelve."""
 
 _LEAST_OF_PART = 1 / 3
 """Share of itself with which a form must show in each part of the pairs alone."""
 
-_MOST_OF_IT = 0.75
-"""Share of what the free functions explain that forms must explain alone, as RMS."""
+_MOST_OF_IT = 2 / 3
+"""Share of what the free functions explain that forms must explain alone, as RMS: the rest may be
+the discrepancy of any joint."""
 
 _AS_GOOD = 1.02
 """Misfit with forms as a multiple of that with free functions, up to which they are as good."""
@@ -185,17 +189,18 @@ def empirical_term(
     smooth = functions_of(problem, components, step.fit.variances.amplitude)
     if not smooth:
         return None
-    free = estimated(smooth)
+    free, described = estimated(smooth), None
+    least = float(np.hypot(margin, SHARE * np.mean(np.abs(problem.friction))))
     if not _is_worth_using(free.gain, margin):
         return None
     fitted = FittedColumns.of(problem, step.predicting_fit(), seen[1].effects)
     small = functions_of(problem, components, step.precomputed.start.amplitude)
-    best, described, before = free, None, free.gain.before
+    best, before = free, free.gain.before
     forms: list[Function] = []
     for _ in range(_MOST_FORMS):
         beside = WeightedMisfit.of(fitted, step.noise(), [*forms, *small], misfit)
         found = beside.best(forms_of(_varying(problem)))
-        if found.score < _LEAST_SCORE or found.lead < _LEAST_LEAD:
+        if found.score < LEAST_SCORE or found.lead < _LEAST_LEAD:
             break
         forms.append(function_of_form(fitted, found.form, found.shape))
         more = estimated([*forms, *small])
@@ -207,11 +212,13 @@ def empirical_term(
         best = min(best, more, estimated([*forms, *smooth]), key=lambda one: one.gain.after)
         if _explained(alone) >= _MOST_OF_IT * _explained(free.gain):
             described = more
+    chosen = free
     if described is not None and described.gain.after <= _AS_GOOD * best.gain.after:
-        best = described
-    elif best.functions[0].is_form:
-        best = free
-    return _used(best, seen, new, margin=margin, floor=floor, seed=seed)
+        chosen = described
+    used = _used(chosen, seen, new, margin=margin, floor=floor, seed=seed)
+    if used is not None and chosen is free and min(_sure(free.gain), _sure(used.gain)) < least:
+        return None
+    return used
 
 
 def _used(
@@ -262,6 +269,11 @@ def _recurs(found: _Estimate) -> bool:
 def _explained(gain: Gain) -> float:
     """Return the RMS of what a term explains of rows that it has not seen [N·m]."""
     return float(np.sqrt(max(gain.before**2 - gain.after**2, 0.0)))
+
+
+def _sure(gain: Gain) -> float:
+    """Return the lower end of the 95 % interval of what a term explains, as RMS [N·m]."""
+    return gain.before * float(np.sqrt(max(1 - (1 - max(gain.interval[0], 0.0)) ** 2, 0.0)))
 
 
 def _is_worth_using(gain: Gain, margin: float) -> bool:

@@ -3,6 +3,7 @@
 from collections.abc import Callable, Mapping
 
 import numpy as np
+from scipy.special import ndtr
 
 from frictioncli.arrays import Array
 from frictioncli.effects.base import Basis, EffectTable
@@ -68,6 +69,11 @@ def _below(axes: tuple[str, ...], table: EffectTable, shape: Shape) -> Array:
     return np.maximum(shape["start"] - _amount(axes[0], table), 0.0)[:, np.newaxis] / 10.0
 
 
+def _step(axes: tuple[str, ...], table: EffectTable, shape: Shape) -> Array:
+    away = (_amount(axes[0], table) - shape["centre"]) / shape["width"]
+    return np.asarray(ndtr(away)[:, np.newaxis])
+
+
 def _lifting(axes: tuple[str, ...], table: EffectTable, shape: Shape) -> Array:
     power = np.sign(table.load) * np.abs(table.load / 50.0) ** shape["exponent"]
     return np.asarray(power[:, np.newaxis])
@@ -103,6 +109,7 @@ COLUMNS: Mapping[str, Callable[[tuple[str, ...], EffectTable, Shape], Array]] = 
     "peak": _peak_columns,
     "bend_above": _above,
     "bend_below": _below,
+    "step": _step,
     "lifting": _lifting,
     "moving_peak": _moving_peak_columns,
     "warm_wave": _warm_wave,

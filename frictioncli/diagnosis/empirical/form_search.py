@@ -7,7 +7,7 @@ columns *X* of a form explain is
 
 a chi-squared variable where nothing is there. Forms are compared by *t* less the number of their
 parameters times the logarithm of the number of pairs (Schwarz's criterion [1]_). All shapes of a
-grid are tried, and those of the best forms refined.
+grid are tried, those of the best forms at more places, and then refined.
 
 References
 ----------
@@ -28,13 +28,20 @@ from frictioncli.diagnosis.empirical.forms import Form, ShapeAxis
 from frictioncli.diagnosis.empirical.random_functions import Function
 from frictioncli.diagnosis.fit.simplex_search import simplex_minimum
 from frictioncli.diagnosis.fit.weighted_fit import Weights
+from frictioncli.effects.base import Basis
 from frictioncli.model.noise import Noise
+
+LEAST_SCORE = 15.0
+"""Least statistic of a form beyond the price of its parameters."""
 
 _AT_ONCE = 60
 """Shapes whose columns are weighted together."""
 
 _REFINED = 4
 """Forms whose shapes are refined."""
+
+_FINER = 4
+"""Places of a peak that are tried for each of the grid, once it is among the best forms."""
 
 _LEAST_LEFT = 1e-4
 """Share of the weighted square of a column that base and discrepancy leave, if it counts at all."""
@@ -56,13 +63,18 @@ class FoundForm:
     score : float
         Chi-squared statistic, less the price of its parameters.
     lead : float
-        By how much the score is above that of the best other kind of form.
+        By how much the score is above that of any form that may be there instead.
     """
 
     form: Form
     shape: dict[str, float]
     score: float
     lead: float = 0.0
+
+    @property
+    def places(self) -> frozenset[str]:
+        """What it depends on; with one payload the angle tells the load."""
+        return frozenset("position" if axis == "load" else axis for axis in self.form.axes)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -148,7 +160,26 @@ class WeightedMisfit:
             Its shapes.
         """
         width = len(form.coefficients)
-        parts = [form.columns(self.problem.table, shape) for shape in shapes]
+        right, left, size = self._beside([form.columns(self.problem.table, one) for one in shapes])
+        places = (slice(number * width, (number + 1) * width) for number in range(len(shapes)))
+        return np.array([_statistic(right[one], left[one, one], size[one]) for one in places])
+
+    def together(self, forms: Sequence[tuple[Form, Shape]]) -> float:
+        """Return what several forms explain together.
+
+        Parameters
+        ----------
+        forms : sequence of (Form, mapping of str to float)
+            The forms with their shapes.
+        """
+        parts = [form.columns(self.problem.table, shape) for form, shape in forms]
+        return _statistic(*self._beside(parts))
+
+    def _beside(self, parts: Sequence[Basis]) -> tuple[Array, Array, Array]:
+        """Return inner products of columns beside what is known, and their own squares.
+
+        With the misfit, shape (columns,); with each other, shape (columns, columns).
+        """
         friction = np.hstack([one.friction for one in parts])
         load = np.hstack([one.load for one in parts])
         upper = self.weights[0].weighted(friction) if friction.any() else friction[:0]
@@ -162,18 +193,8 @@ class WeightedMisfit:
         hidden = np.linalg.solve(self.root, self.columns[rows].T @ weighted)
         known = np.linalg.solve(self.root, self.columns.T @ self.misfit)
         right = weighted.T @ self.misfit[rows] - hidden.T @ known
-        found = np.zeros(len(shapes))
-        for number in range(len(shapes)):
-            place = slice(number * width, (number + 1) * width)
-            whole = weighted[:, place].T @ weighted[:, place]
-            left = whole - hidden[:, place].T @ hidden[:, place]
-            size = np.diag(whole)
-            own = np.flatnonzero(np.diag(left) > _LEAST_LEFT * size)
-            if len(own):
-                product = right[place][own]
-                inner = left[np.ix_(own, own)] + _FREE * np.diag(size[own])
-                found[number] = product @ np.linalg.solve(inner, product)
-        return found
+        whole = weighted.T @ weighted
+        return right, whole - hidden.T @ hidden, np.diag(whole)
 
     def best(self, forms: Sequence[Form]) -> FoundForm:
         """Return the form that explains most for its number of parameters.
@@ -186,20 +207,59 @@ class WeightedMisfit:
         price = np.log(len(self.problem.layout.time))
         tried = []
         for form in forms:
-            shapes = form.shapes()
-            statistics = np.concatenate(
-                [
-                    self.statistics(form, shapes[first : first + _AT_ONCE])
-                    for first in range(0, len(shapes), _AT_ONCE)
-                ]
-            )
-            number = int(np.argmax(statistics))
-            score = float(statistics[number] - form.parameters * price)
-            tried.append(FoundForm(form=form, shape=shapes[number], score=score))
+            shape, statistic = self._best_of(form, form.shapes())
+            score = statistic - form.parameters * price
+            tried.append(FoundForm(form=form, shape=shape, score=score))
         tried.sort(key=lambda one: -one.score)
-        refined = [self._refined(one) for one in tried[:_REFINED]]
-        first, second, *_ = sorted(refined, key=lambda one: -one.score)
-        return replace(first, lead=first.score - second.score)
+        refined = [self._refined(self._in_place(one)) for one in tried[:_REFINED]]
+        first, *others = sorted(refined, key=lambda one: -one.score)
+        rivals = [one for one in others if self._is_rival(one, first)]
+        return replace(first, lead=min((first.score - one.score for one in rivals), default=np.inf))
+
+    def _is_rival(self, other: FoundForm, first: FoundForm) -> bool:
+        """Return whether a form may be there instead of another one, rather than beside it.
+
+        It is none where it depends on something else and leaves the other one to be explained.
+        """
+        if other.places & first.places:
+            return True
+        both = self.together([(one.form, one.shape) for one in (first, other)])
+        beside = both - self.together([(other.form, other.shape)])
+        price = first.form.parameters * float(np.log(len(self.problem.layout.time)))
+        return beside - price < LEAST_SCORE
+
+    def _best_of(
+        self, form: Form, shapes: Sequence[dict[str, float]]
+    ) -> tuple[dict[str, float], float]:
+        """Return the shape at which a form explains most, and what it explains there."""
+        statistics = np.concatenate(
+            [
+                self.statistics(form, shapes[first : first + _AT_ONCE])
+                for first in range(0, len(shapes), _AT_ONCE)
+            ]
+        )
+        number = int(np.argmax(statistics))
+        return shapes[number], float(statistics[number])
+
+    def _in_place(self, found: FoundForm) -> FoundForm:
+        """Return a form at the best of more places over the whole range, at all widths.
+
+        Beside smooth functions a narrow peak explains something two widths beside its place, too:
+        between coarse places that may look best.
+        """
+        axes = {axis.name: axis for axis in found.form.shape}
+        if not {"centre", "width"} <= axes.keys():
+            return found
+        places = axes["centre"].values
+        between = np.linspace(0, len(places) - 1, _FINER * (len(places) - 1) + 1)
+        shapes = [
+            found.shape | {"centre": float(centre), "width": width}
+            for centre in np.interp(between, np.arange(len(places)), places)
+            for width in axes["width"].values
+        ]
+        shape, statistic = self._best_of(found.form, shapes)
+        score = statistic - found.form.parameters * float(np.log(len(self.problem.layout.time)))
+        return found if score <= found.score else replace(found, shape=shape, score=score)
 
     def _refined(self, found: FoundForm) -> FoundForm:
         """Return a form with its shape optimised between the values of the grid."""
@@ -236,3 +296,12 @@ class WeightedMisfit:
 
 def _measure(axis: ShapeAxis, value: float) -> float:
     return float(np.log(value)) if axis.logarithmic else value
+
+
+def _statistic(right: Array, left: Array, size: Array) -> float:
+    """Return what columns explain, from their inner products with the misfit and each other."""
+    own = np.flatnonzero(np.diag(left) > _LEAST_LEFT * size)
+    if not len(own):
+        return 0.0
+    inner = left[np.ix_(own, own)] + _FREE * np.diag(size[own])
+    return float(right[own] @ np.linalg.solve(inner, right[own]))

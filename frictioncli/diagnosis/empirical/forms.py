@@ -34,6 +34,9 @@ _NARROWEST = {"position": 0.012, "speed": 0.05, "temperature": 0.02, "load": 0.0
 _WIDEST = 0.25
 """Standard deviation of a peak as a share of the range."""
 
+_STEEPEST = 0.1
+"""Greatest width of a step as a share of the range: wider ones look like the base."""
+
 _LAGS = (0.0, 0.025, 0.05, 0.075, 0.1)
 """Delays of a torque behind the angle. [s]"""
 
@@ -140,6 +143,8 @@ def forms_of(ranges: Mapping[str, Range]) -> list[Form]:
             found.append(_peak(axis, "load", within))
         if axis != "position":
             found += [_bend(axis, way, within) for way in ("above", "below")]
+    if "temperature" in ranges:
+        found.append(_step(ranges["temperature"]))
     if "load" in ranges:
         found.append(
             Form(
@@ -229,6 +234,24 @@ def _bend(axis: str, way: str, within: Range) -> Form:
         shape=(ShapeAxis("start", UNITS[axis], tuple(inner.tolist())),),
         coefficients=("per_10",),
         formula=f"per_10 max(0, {beyond}) / 10",
+    )
+
+
+def _step(within: Range) -> Form:
+    """Return friction that is another one above a temperature, as where a fan goes on."""
+    low, high = within
+    inner = np.linspace(low, high, _PEAKS + 2)[1:-1]
+    widths = np.geomspace(_NARROWEST["temperature"] * (high - low), _STEEPEST * (high - low), 4)
+    return Form(
+        kind="step",
+        axes=("temperature",),
+        channel="friction",
+        shape=(
+            ShapeAxis("centre", "°C", tuple(inner.tolist())),
+            ShapeAxis("width", "°C", tuple(widths.tolist()), logarithmic=True),
+        ),
+        coefficients=("step",),
+        formula="step Phi((T - centre) / width), Phi: cumulative normal distribution",
     )
 
 
