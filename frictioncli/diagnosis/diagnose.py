@@ -217,7 +217,7 @@ def diagnose_joint(
     names = {one.fit.effect.name for one in corrected}
     rest = [one for one in judged if one.fit.effect.name not in names]
     visible = visible_causes(
-        (*rest, *corrected, *given_up, *refuted), named, causes, unnamed, problem
+        (*rest, *corrected, *given_up, *refuted, *found.refused), named, causes, unnamed, problem
     )
     extension = gain = None
     if lag is not None and not any(cause.fit.effect.name == LAG for cause in causes):

@@ -34,6 +34,7 @@ EFFECT = Effect(
             name="play",
             symbol="b",
             unit="deg",
+            # robot gears are specified in minutes of arc; a degree is one that is worn out
             lower=-1.0,
             upper=1.0,
             description="Logged position forward less that in reverse, at the same true position",

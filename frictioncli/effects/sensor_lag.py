@@ -65,6 +65,7 @@ EFFECT = Effect(
             name="time_constant",
             symbol="theta_s",
             unit="s",
+            # seconds in the winding, minutes on a housing; more is heat on its way, thermal_lag
             lower=0.0,
             upper=300.0,
             description="Time constant with which the sensor follows",

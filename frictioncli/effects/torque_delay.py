@@ -41,6 +41,7 @@ EFFECT = Effect(
             name="delay",
             symbol="d",
             unit="s",
+            # a filter of up to 0.2 s and a bus that is late by 0.1 s; or positions late by that
             lower=-0.1,
             upper=0.3,
             description="Delay of the logged torque against the logged position",

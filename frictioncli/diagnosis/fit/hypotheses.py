@@ -86,6 +86,8 @@ def hypothesis_of(
 def physical_bounds(effect: Effect, problem: Problem) -> tuple[Array, Array]:
     """Return the bounds of an effect's coefficients on a joint, shape (coefficients,) each.
 
+    A part of the load, as that which does not load the gear, is no more than the greatest load.
+
     Parameters
     ----------
     effect : Effect
@@ -97,7 +99,9 @@ def physical_bounds(effect: Effect, problem: Problem) -> tuple[Array, Array]:
     factors = np.array([factor if TORQUE in one.unit else 1.0 for one in effect.coefficients])
     lower = np.array([parameter.lower for parameter in effect.coefficients])
     upper = np.array([parameter.upper for parameter in effect.coefficients])
-    return lower * factors, upper * factors
+    of_load = effect.measurement & np.array([one.of_load for one in effect.coefficients])
+    whole = np.where(of_load, np.max(np.abs(problem.table.load), initial=0.0), np.inf)
+    return np.maximum(lower * factors, -whole), np.minimum(upper * factors, whole)
 
 
 def informative_shapes(effect: Effect, problem: Problem) -> list[dict[str, float]]:

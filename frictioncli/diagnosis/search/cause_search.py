@@ -26,10 +26,10 @@ from frictioncli.diagnosis.search.cause import CONVINCING, Cause
 from frictioncli.diagnosis.search.effect_size import left_size, shown_share, sizes_of
 from frictioncli.diagnosis.search.margin import channel_margin, strength
 from frictioncli.diagnosis.search.measurement import beside_base, measurement_causes
+from frictioncli.diagnosis.search.possible import beyond_bounds
 from frictioncli.diagnosis.search.precomputed import Precomputed
 from frictioncli.diagnosis.search.rivals import rival_log_bayes_factors
 from frictioncli.diagnosis.search.search_result import SearchResult
-from frictioncli.diagnosis.search.standing import beyond_bounds
 from frictioncli.diagnosis.search.step import Step, free_coefficients
 from frictioncli.diagnosis.settings import DiagnosisSettings
 from frictioncli.effects import BY_NAME
@@ -76,11 +76,12 @@ def find_causes(
     discrepancy : float, optional
         RMS of the discrepancy that is expected, relative to the mean friction; 0 for none.
     """
-    precomputed, beside = beside_base(problem, discrepancy)
+    beside = beside_base(problem, discrepancy)
+    precomputed = beside.precomputed
     tried = applicable(effects, problem.table)
     hypotheses = [hypothesis_of(effect, problem) for effect in tried]
     catalogue = Catalogue.of(precomputed, hypotheses)
-    search = _Search(precomputed, catalogue, settings, margin, ramps, beside)
+    search = _Search(precomputed, catalogue, settings, margin, ramps, beside.effects)
     accepted: list[EffectFit] = []
     dropped: dict[str, str] = {}
     impossible: set[str] = set()
@@ -132,7 +133,8 @@ def find_causes(
 
     return SearchResult(
         causes=tuple(sorted(causes, key=share, reverse=True)),
-        measurement=measurement_causes(step, beside),
+        measurement=measurement_causes(step, beside.effects),
+        refused=beside.refused,
         rejected=tests,
         dropped={name: why for name, why in dropped.items() if name not in _names(accepted)},
         step=step,

@@ -1,7 +1,13 @@
-"""Effects of the measurement that stand beside the base: which are possible, and their tests."""
+"""Effects of the measurement that stand beside the base: which are possible, and their tests.
+
+References
+----------
+.. [1] J. A. Hausman, "Specification tests in econometrics," Econometrica 46(6), 1978,
+   doi:10.2307/1913827.
+"""
 
 from collections.abc import Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 from scipy import stats
@@ -14,23 +20,56 @@ from frictioncli.diagnosis.noise.discrepancy import SHARE
 from frictioncli.diagnosis.noise.significance import NullDistribution
 from frictioncli.diagnosis.search.cause import Cause
 from frictioncli.diagnosis.search.effect_size import sizes_of
+from frictioncli.diagnosis.search.possible import (
+    beyond_bounds,
+    impossible,
+    standard_errors,
+    times_its_range,
+    undetermined,
+)
 from frictioncli.diagnosis.search.precomputed import Precomputed
-from frictioncli.diagnosis.search.standing import beyond_bounds
 from frictioncli.diagnosis.search.step import Step
 from frictioncli.effects import MEASUREMENT_EFFECTS
 from frictioncli.effects.base import Effect, applicable
+from frictioncli.effects.torque_filter import EFFECT as TORQUE_FILTER
+from frictioncli.wording import in_words
 
 CLEAR = 0.01
 """Greatest p-value of an effect of the measurement that is listed and corrected without a name."""
 
+_HAUSMAN = 3.0
+"""Standard errors by which an estimate may change when another effect is given up [1]_."""
 
-def beside_base(
-    problem: Problem, discrepancy: float = SHARE
-) -> tuple[Precomputed, tuple[Effect, ...]]:
+_UNCHANGED = 0.05
+"""Share of an estimate by which it may change besides, and by its standard error."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class BesideBase:
+    """What stands beside the base from the start, and what was refused.
+
+    Attributes
+    ----------
+    precomputed : Precomputed
+        What is computed once, with the effects.
+    effects : tuple of Effect
+        Effects of the measurement that are possible.
+    refused : tuple of Cause
+        Those that are not, each with the reason, as it came out when it was refused.
+    """
+
+    precomputed: Precomputed
+    effects: tuple[Effect, ...]
+    refused: tuple[Cause, ...]
+
+
+def beside_base(problem: Problem, discrepancy: float = SHARE) -> BesideBase:
     """Return what is computed once, with the effects of the measurement that stand beside the base.
 
-    They are those whose coefficients are physically possible. One that is not explains something
-    else, as a payload that goes with speed, and would hide it.
+    One that is physically impossible explains something else, as friction along angle and speed,
+    and would hide it: impossible ones are given up one at a time, and with each those whose
+    estimates hang on it. Then those that the data do not determine are given up together: which of
+    two that they cannot tell apart is there, is not for bounds to say.
 
     Parameters
     ----------
@@ -40,15 +79,62 @@ def beside_base(
         RMS of the discrepancy that is expected, relative to the mean friction; 0 for none.
     """
     beside = applicable(MEASUREMENT_EFFECTS, problem.table)
+    refused: list[Cause] = []
+    before: tuple[Cause, ...] = ()
     while True:
         precomputed = Precomputed.of(problem, beside, discrepancy)
         causes = measurement_causes(Step.of(precomputed, []), beside)
-        possible = tuple(
-            cause.fit.effect for cause in causes if not beyond_bounds(cause.fit, problem)
+        against = _moved(before, causes, refused[-1:])
+        against = (
+            against
+            or sorted(
+                _first([(one, impossible(one.fit, problem)) for one in causes]),
+                key=lambda one: -times_its_range(one[0].fit, problem),
+            )[:1]
         )
-        if len(possible) == len(beside):
-            return precomputed, beside
-        beside = possible
+        before = causes if against else ()
+        against = against or _first([(one, undetermined(one.fit, problem)) for one in causes])
+        if not against:
+            return BesideBase(precomputed=precomputed, effects=beside, refused=tuple(refused))
+        refused += [replace(one, standing="undetermined", reason=why) for one, why in against]
+        gone = {one.fit.effect.name for one, _ in against}
+        beside = tuple(one for one in beside if one.name not in gone)
+
+
+def _first(doubted: Sequence[tuple[Cause, str]]) -> list[tuple[Cause, str]]:
+    """Return which of those with a reason are given up next: of higher order before the others."""
+    against = [(one, why) for one, why in doubted if why]
+    higher = [(one, why) for one, why in against if one.fit.effect.name == TORQUE_FILTER.name]
+    return higher or against
+
+
+def _moved(
+    before: Sequence[Cause], causes: Sequence[Cause], refused: Sequence[Cause]
+) -> list[tuple[Cause, str]]:
+    """Return the effects whose estimates hang on one that was refused, with the reason.
+
+    By the test of Hausman: of an estimate that does not hang on it, the change has the variance by
+    which that of the estimate falls.
+    """
+    old = {one.fit.effect.name: one.fit for one in before}
+    found = []
+    for one in causes if old else ():
+        first, fit = old[one.fit.effect.name], one.fit
+        freed = np.maximum(np.diag(first.covariance) - np.diag(fit.covariance), 0.0)
+        reach = _HAUSMAN * np.sqrt(freed) + _UNCHANGED * np.abs(first.coefficients)
+        reach += standard_errors(fit)
+        for parameter, was, value, most in zip(
+            fit.effect.coefficients, first.coefficients, fit.coefficients, reach, strict=True
+        ):
+            if abs(value - was) > most:
+                other = in_words(refused[0].fit.effect.name)
+                why = (
+                    f"{parameter.name} of {was:.3g} {parameter.unit} beside a {other} that is"
+                    f" physically impossible, of {value:.3g} {parameter.unit} without it"
+                )
+                found.append((one, why))
+                break
+    return found
 
 
 def measurement_causes(step: Step, effects: Sequence[Effect]) -> tuple[Cause, ...]:

@@ -22,7 +22,9 @@ class SearchResult:
     causes : tuple of Cause
         Causes found, strongest first.
     measurement : tuple of Cause
-        Effects of the measurement that stand beside the base, and are significant.
+        Effects of the measurement that stand beside the base.
+    refused : tuple of Cause
+        Effects of the measurement that are impossible or not determined, with the reason.
     rejected : dict of str to HypothesisTest
         Tests of all other effects at the last step.
     dropped : dict of str to str
@@ -33,6 +35,7 @@ class SearchResult:
 
     causes: tuple[Cause, ...]
     measurement: tuple[Cause, ...]
+    refused: tuple[Cause, ...]
     rejected: dict[str, HypothesisTest]
     dropped: dict[str, str]
     step: Step

@@ -9,18 +9,16 @@ from scipy import stats
 from frictioncli.arrays import Array
 from frictioncli.diagnosis.data.problem import Problem
 from frictioncli.diagnosis.fit.columns import main_channel
-from frictioncli.diagnosis.fit.hypotheses import EffectFit, physical_bounds
+from frictioncli.diagnosis.fit.left_by_base import Z95
 from frictioncli.diagnosis.search.cause import CONVINCING, Cause
 from frictioncli.diagnosis.search.margin import channel_margin
+from frictioncli.diagnosis.search.possible import (
+    beyond_bounds,
+    impossible,
+    standard_errors,
+    undetermined,
+)
 from frictioncli.effects.base import Effect
-
-_Z95 = 1.96
-
-_BEYOND = 0.25
-"""How far a share may be below 0 or above 1."""
-
-_EXCEEDING = 1.5
-"""By how many times a coefficient may exceed one that it cannot exceed: no form is exactly true."""
 
 _OF_CHANGES = 0.02
 """Significance level of a change, relative to that of other effects: drift over a few dozen pairs
@@ -117,57 +115,18 @@ def level_of(effect: Effect, alpha: float) -> float:
     return alpha * _OF_CHANGES if effect.moments is not None else alpha
 
 
-def beyond_bounds(fit: EffectFit, problem: Problem, errors: float = _Z95) -> str:
-    """Return which coefficient of an effect is physically impossible; empty if none is.
-
-    It may be beyond its bounds by its error; a share of 0 to 1 by a quarter besides, since no form
-    is exactly true.
-
-    Parameters
-    ----------
-    fit : EffectFit
-        The effect.
-    problem : Problem
-        The joint's rows, with whose friction bounds in units of torque grow.
-    errors : float, optional
-        By how many standard errors it must be beyond them.
-    """
-    lower, upper = physical_bounds(fit.effect, problem)
-    is_share = (lower == 0.0) & (upper == 1.0)
-    reach = errors * _errors(fit) + np.where(is_share, _BEYOND, 0.0)
-    beyond = (fit.coefficients < lower - reach) | (fit.coefficients > upper + reach)
-    parameters = fit.effect.coefficients
-    for parameter, value, outside in zip(parameters, fit.coefficients, beyond, strict=True):
-        if outside:
-            return f"{parameter.name} of {value:.3g} {parameter.unit} is physically impossible"
-    return _larger_than_whole(fit, errors)
-
-
-def _larger_than_whole(fit: EffectFit, errors: float) -> str:
-    """Return which coefficient surely exceeds one that it cannot exceed; empty if none does."""
-    names = [one.name for one in fit.effect.coefficients]
-    for number, parameter in enumerate(fit.effect.coefficients):
-        if not parameter.within:
-            continue
-        whole = names.index(parameter.within)
-        signs = np.zeros(len(names))
-        signs[[number, whole]] = np.sign(fit.coefficients[[number, whole]]) * [1, -_EXCEEDING]
-        excess = float(np.sum(signs * fit.coefficients))
-        if excess > errors * float(np.sqrt(max(float(signs @ fit.covariance @ signs), 0.0))):
-            return f"{parameter.name} is physically impossible: greater than {parameter.within}"
-    return ""
-
-
 def _impossible(cause: Cause, problem: Problem) -> str:
     """Return why a cause is physically impossible or not determined; empty if it is not."""
-    reason, errors = beyond_bounds(cause.fit, problem), _errors(cause.fit)
+    reason, errors = beyond_bounds(cause.fit, problem), standard_errors(cause.fit)
+    if cause.fit.effect.measurement:
+        reason = impossible(cause.fit, problem) or undetermined(cause.fit, problem)
     if reason:
         return reason
     if cause.shown < _SHOWN:
         return "the residuals alone do not show it: another effect would have to cancel it"
     if not errors.any():
         return "its coefficients lie on the bounds of what is physically possible"
-    if len(errors) == 1 and abs(cause.fit.coefficients[0]) <= _Z95 * errors[0]:
+    if len(errors) == 1 and abs(cause.fit.coefficients[0]) <= Z95 * errors[0]:
         return "its coefficient may be zero"
     return ""
 
@@ -196,10 +155,6 @@ def goes_with_time(effect: Effect, problem: Problem) -> bool:
     if not (np.ptp(temperature) > 0 and np.ptp(clock) > 0):
         return False
     return abs(float(stats.spearmanr(temperature, clock).statistic)) >= _TOGETHER
-
-
-def _errors(fit: EffectFit) -> Array:
-    return np.sqrt(np.maximum(np.diag(fit.covariance), 0.0))
 
 
 def _cancel(problem: Problem, one: Cause, other: Cause) -> bool:

@@ -50,8 +50,8 @@ def late_torque(problem: Problem, starts: TorqueTiming | None) -> LateTorque | N
         if starts.shift.low <= 0:
             return None
         return LateTorque(delay=starts.shift.value, variance=max(starts.smear.value, 0.0))
-    precomputed, beside = beside_base(problem)
-    causes = measurement_causes(Step.of(precomputed, []), beside)
+    beside = beside_base(problem)
+    causes = measurement_causes(Step.of(beside.precomputed, []), beside.effects)
     by_name = {cause.fit.effect.name: cause for cause in causes}
     late, smeared = by_name.get(DELAY), by_name.get(FILTER)
     if late is None or late.test.p_value >= CLEAR or late.fit.coefficients[0] <= 0:

@@ -1,0 +1,125 @@
+"""Which fitted effects are physically possible, and determined by the data."""
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from frictioncli.arrays import Array
+from frictioncli.diagnosis.data.problem import Problem
+from frictioncli.diagnosis.fit.hypotheses import EffectFit, physical_bounds
+from frictioncli.diagnosis.fit.left_by_base import Z95
+from frictioncli.effects.parameter import Parameter
+from frictioncli.wording import in_words
+
+_BEYOND = 0.25
+"""How far a share may be below 0 or above 1."""
+
+_EXCEEDING = 1.5
+"""By how many times a coefficient may exceed one that it cannot exceed: no form is exactly true."""
+
+_OF_UNIFORM = float(np.sqrt(12.0))
+"""Range of a uniform distribution in standard deviations: physics alone tells that much."""
+
+
+def beyond_bounds(fit: EffectFit, problem: Problem, errors: float = Z95) -> str:
+    """Return which coefficient of an effect is physically impossible; empty if none is.
+
+    It may be beyond its bounds by its error; a share of 0 to 1 by a quarter besides, since no form
+    is exactly true.
+
+    Parameters
+    ----------
+    fit : EffectFit
+        The effect.
+    problem : Problem
+        The joint's rows, with whose friction bounds in units of torque grow.
+    errors : float, optional
+        By how many standard errors it must be beyond them.
+    """
+    lower, upper = physical_bounds(fit.effect, problem)
+    is_share = (lower == 0.0) & (upper == 1.0)
+    reach = errors * standard_errors(fit) + np.where(is_share, _BEYOND, 0.0)
+    beyond = (fit.coefficients < lower - reach) | (fit.coefficients > upper + reach)
+    parameters = fit.effect.coefficients
+    for parameter, value, outside in zip(parameters, fit.coefficients, beyond, strict=True):
+        if outside:
+            return f"{parameter.name} of {value:.3g} {parameter.unit} is physically impossible"
+    return _larger_than_whole(fit, errors)
+
+
+def _larger_than_whole(fit: EffectFit, errors: float) -> str:
+    """Return which coefficient surely exceeds one that it cannot exceed; empty if none does."""
+    names = [one.name for one in fit.effect.coefficients]
+    for number, parameter in enumerate(fit.effect.coefficients):
+        if not parameter.within:
+            continue
+        whole = names.index(parameter.within)
+        signs = np.zeros(len(names))
+        signs[[number, whole]] = np.sign(fit.coefficients[[number, whole]]) * [1, -_EXCEEDING]
+        excess = float(np.sum(signs * fit.coefficients))
+        if excess > errors * float(np.sqrt(max(float(signs @ fit.covariance @ signs), 0.0))):
+            return f"{parameter.name} is physically impossible: greater than {parameter.within}"
+    return ""
+
+
+def impossible(fit: EffectFit, problem: Problem) -> str:
+    """Return which coefficient of an effect of the measurement is impossible; empty if none is.
+
+    It is beyond its bounds by more than its error, or beyond them and surely not zero: what is left
+    of it within them would be another estimate.
+
+    Parameters
+    ----------
+    fit : EffectFit
+        The effect, fitted beside the base.
+    problem : Problem
+        The joint's rows.
+    """
+    outside = (
+        f"{parameter.name} of {value:.3g} {parameter.unit} is physically impossible"
+        for parameter, value, error, low, high in _coefficients(fit, problem)
+        if not low <= value <= high and abs(value) > Z95 * error
+    )
+    return beyond_bounds(fit, problem) or next(outside, "")
+
+
+def undetermined(fit: EffectFit, problem: Problem) -> str:
+    """Return which coefficient of an effect of the measurement no data tell; empty if none.
+
+    Its standard error is more than that of a value anywhere between its bounds: what is possible
+    does nothing that these data would show.
+
+    Parameters
+    ----------
+    fit : EffectFit
+        The effect, fitted beside the base.
+    problem : Problem
+        The joint's rows.
+    """
+    unknown = (
+        f"these data tell its {in_words(parameter.name)} to {error:.2g} {parameter.unit} only,"
+        f" and nothing beyond {low:.3g} to {high:.3g} {parameter.unit} is possible"
+        for parameter, _, error, low, high in _coefficients(fit, problem)
+        if _OF_UNIFORM * error > high - low
+    )
+    return next(unknown, "")
+
+
+def times_its_range(fit: EffectFit, problem: Problem) -> float:
+    """Return how many times its possible range a coefficient is, at most."""
+    return max(abs(value) / (high - low) for _, value, _, low, high in _coefficients(fit, problem))
+
+
+def _coefficients(
+    fit: EffectFit, problem: Problem
+) -> Iterator[tuple[Parameter, float, float, float, float]]:
+    """Yield each coefficient with its value, standard error and bounds."""
+    bounds = physical_bounds(fit.effect, problem)
+    yield from zip(
+        fit.effect.coefficients, fit.coefficients, standard_errors(fit), *bounds, strict=True
+    )
+
+
+def standard_errors(fit: EffectFit) -> Array:
+    """Return the standard errors of the coefficients of an effect, shape (coefficients,)."""
+    return np.sqrt(np.maximum(np.diag(fit.covariance), 0.0))

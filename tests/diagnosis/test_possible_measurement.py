@@ -1,0 +1,136 @@
+"""Effects of the measurement beyond what drives, loggers and gears do, or that no data tell."""
+
+import numpy as np
+import pandas as pd
+import pytest
+
+from frictioncli.diagnosis.data.build_problem import build_problems
+from frictioncli.diagnosis.diagnose import diagnose_joint
+from frictioncli.diagnosis.fit.hypotheses import physical_bounds
+from frictioncli.diagnosis.search.measurement import beside_base, measurement_causes
+from frictioncli.diagnosis.search.step import Step
+from frictioncli.diagnosis.search.timing_causes import late_torque
+from frictioncli.diagnosis.settings import DiagnosisSettings
+from frictioncli.effects import BY_NAME, MEASUREMENT_EFFECTS
+from tests.equation_16 import TRUTH, friction, table
+
+SPEEDS = (25.0, 40.0)
+WEIGHT = 13.4
+
+
+def coarse(
+    seed=0,
+    *,
+    delay=0.0,
+    play=0.0,
+    turning=0.0,
+    speeds=SPEEDS,
+    pairs=60,
+    noise=0.3,
+    weight=WEIGHT,
+):
+    """Return a joint at two slow speeds, its torque known every 20 deg.
+
+    Torque is late by ``delay`` [s], the position logged forward exceeds that in reverse by ``play``
+    [deg], and friction goes up and down with the angle by ``turning`` [N·m], at the faster speed
+    the other way round than at the slower.
+    """
+    generator = np.random.default_rng(seed)
+    position = np.arange(-110.0, 111.0, 20.0)
+    speed = np.resize(speeds, pairs)[:, np.newaxis]
+    warm = np.linspace(28.0, 40.0, pairs)[:, np.newaxis]
+    ways = []
+    for way in (1, -1):
+        angle = np.radians(position - way * (speed * delay + play / 2))
+        load = weight * np.cos(angle)
+        torque = friction(TRUTH, load=load, speed=speed, temperature=warm)
+        torque = torque + turning * np.sign(speed - np.mean(speeds)) * np.sin(angle)
+        ways.append(load + way * torque + noise * generator.normal(size=load.shape))
+    half, mean = (ways[0] - ways[1]) / 2, (ways[0] + ways[1]) / 2
+    half = half + 0.1 * generator.normal(size=speed.shape)
+    columns = {
+        "speed": speed[:, 0],
+        "time": 30.0 * np.arange(pairs),
+        "phase": np.full(pairs, "heat-up"),
+        "motor_temperature": warm[:, 0],
+        "housing_temperature": np.full(pairs, np.nan),
+        "motor_temperature_reading": warm[:, 0] + 0.1,
+    }
+    rows = table(columns, position=position, friction_torque=half, load_torque=mean[0])
+    return rows.assign(
+        load_torque=mean.ravel(),
+        torque_forward=(mean + half).ravel(),
+        torque_reverse=(mean - half).ravel(),
+        load=np.nan,
+        payload=np.nan,
+    )
+
+
+def problem_of(rows: pd.DataFrame):
+    return build_problems(rows, "motor")[0]
+
+
+def stands(problem):
+    """Return the first coefficients of what stands beside the base, and why others do not."""
+    beside = beside_base(problem)
+    causes = measurement_causes(Step.of(beside.precomputed, []), beside.effects)
+    return (
+        {one.fit.effect.name: one.fit.coefficients[0] for one in causes},
+        {one.fit.effect.name: one.reason for one in beside.refused},
+    )
+
+
+@pytest.mark.parametrize("seed", range(2))
+@pytest.mark.parametrize("turning", [0.3, 1.0])
+def test_friction_that_turns_over_with_speed_is_no_delay_beside_a_play(turning, seed):
+    """A delay of 0.17 or 0.56 s beside a play of -11 or -37 deg would do the same: no log does."""
+    problem = problem_of(coarse(seed, turning=turning))
+    beside, refused = stands(problem)
+    assert {"backlash", "torque_delay"}.isdisjoint(beside)
+    assert "physically impossible" in refused["backlash"]
+    assert "beside a backlash that is physically impossible" in refused["torque_delay"]
+    assert late_torque(problem, None) is None
+
+
+def test_what_is_refused_is_listed_with_the_reason_and_never_named():
+    diagnosis = diagnose_joint(coarse(turning=1.0), "motor", "N·m", DiagnosisSettings())
+    names = {name for cause in diagnosis.causes for name in cause.effects}
+    assert names.isdisjoint(one.name for one in MEASUREMENT_EFFECTS)
+    assert diagnosis.structure is not None
+    reasons = {one.fit.effect.name: one.reason for one in diagnosis.visible}
+    assert "impossible" in reasons["backlash"]
+    assert {one.fit.effect.name for one in diagnosis.corrected} == set()
+
+
+@pytest.mark.parametrize("speeds", [SPEEDS, (10.0, 30.0, 60.0, 100.0)])
+def test_a_delay_of_a_drive_is_measured_beside_bins_of_20_degrees(speeds):
+    """At two slow speeds too; a play of 1 deg at most cannot be told there and is not."""
+    problem = problem_of(coarse(1, delay=0.06, speeds=speeds, noise=0.1))
+    beside, refused = stands(problem)
+    assert beside["torque_delay"] == pytest.approx(0.06, abs=0.012)
+    assert "only, and nothing beyond -1 to 1 deg is possible" in refused.get("backlash", "only,")
+    assert late_torque(problem, None).delay == pytest.approx(0.06, abs=0.012)
+
+
+def test_a_play_is_measured_where_the_data_tell_it():
+    """0.8 deg of the slope of 150 N·m, from slow to fast."""
+    rows = coarse(2, play=0.8, speeds=(5.0, 15.0, 40.0, 100.0), noise=0.1, weight=150.0)
+    beside, _ = stands(problem_of(rows))
+    assert beside["backlash"] == pytest.approx(0.8, abs=0.3)
+
+
+def test_a_part_of_the_load_is_no_more_than_the_greatest_load():
+    problem = problem_of(coarse())
+    lower, upper = physical_bounds(BY_NAME["load_offset"], problem)
+    assert upper[0] == -lower[0] == pytest.approx(np.abs(problem.table.load).max())
+    assert upper[0] < 1.1 * WEIGHT
+
+
+def test_every_bound_of_the_measurement_is_of_a_log_that_there_is():
+    """Drives filter for a tenth of a second, loggers are late by a few cycles; no gear has a play
+    of more than a degree; sensors in motors follow within minutes."""
+    most = {"delay": 0.3, "second_moment": 0.1, "third_moment": 0.03, "play": 1.0}
+    most |= {"time_constant": 300.0, "not_carried": 30.0}
+    for effect in MEASUREMENT_EFFECTS:
+        for one in effect.coefficients:
+            assert max(abs(one.lower), abs(one.upper)) <= most[one.name]
