@@ -14,8 +14,10 @@ from frictioncli.design.decision_probability import (
 )
 from frictioncli.design.discrimination import Discrimination, discrimination_of
 from frictioncli.design.information import Information
+from frictioncli.design.located_forms import form_basis
 from frictioncli.design.precision import (
     Precision,
+    information_on,
     precision,
     response_surface_log_determinants,
 )
@@ -25,7 +27,9 @@ from frictioncli.design.steps import Step
 from frictioncli.diagnosis.data.build_problem import simulated
 from frictioncli.diagnosis.data.problem import Problem
 from frictioncli.diagnosis.data.within_noise import WithinNoise
+from frictioncli.diagnosis.empirical.term import EmpiricalTerm, FormFunction
 from frictioncli.diagnosis.fit.columns import main_channel, residual_of_base
+from frictioncli.diagnosis.noise.cosine_series import Range
 from frictioncli.model.document import PARAMETERS
 
 PLANNED = "~"
@@ -71,6 +75,10 @@ class DesignCriterion:
         Settled causes, open questions and noise.
     unnamed : bool
         Whether there is structure that no effect explains.
+    forms : tuple of FormFunction
+        Forms that describe it.
+    ranges : mapping of str to (float, float)
+        Ranges of the quantities in which they were found.
     observed : Information
         The observed rows.
     observed_discriminations : tuple of Discrimination
@@ -84,6 +92,8 @@ class DesignCriterion:
     joint: PlannedJoint
     open_questions: OpenQuestions
     unnamed: bool
+    forms: tuple[FormFunction, ...]
+    ranges: Mapping[str, Range]
     observed: Information
     observed_discriminations: tuple[Discrimination, ...]
     precision: Precision
@@ -91,7 +101,12 @@ class DesignCriterion:
 
     @classmethod
     def of(
-        cls, joint: PlannedJoint, open_questions: OpenQuestions, *, unnamed: bool
+        cls,
+        joint: PlannedJoint,
+        open_questions: OpenQuestions,
+        *,
+        unnamed: bool,
+        empirical: EmpiricalTerm | None = None,
     ) -> "DesignCriterion":
         """Return the criterion for one joint, given its observed rows."""
         problem = _problem(joint, joint.torques)
@@ -107,6 +122,8 @@ class DesignCriterion:
             joint=joint,
             open_questions=open_questions,
             unnamed=unnamed,
+            forms=() if empirical is None else empirical.forms,
+            ranges={} if empirical is None else empirical.ranges,
             observed=observed,
             observed_discriminations=_discriminations(observed, open_questions),
             precision=covariance,
@@ -156,7 +173,8 @@ class DesignCriterion:
         """Return the value of steps, day after day.
 
         With open questions it is mainly the expected number of decided questions; without, the gain
-        in precision; with unexplained structure, the gain in input coverage.
+        in precision; with unexplained structure, what is learned of the forms that describe it, or
+        else the gain in input coverage.
         """
         if not any(days):
             return 0.0
@@ -167,11 +185,14 @@ class DesignCriterion:
             [self.observed.problem.table, information.problem.table]
         )
         coverage_gain = after_coverage - before_coverage
+        small = _PRECISION_WEIGHT * precision_gain + _COVERAGE_WEIGHT * coverage_gain
+        if self.forms and (self.unnamed or not self.open_questions.questions):
+            return self._of_forms(information) - self._of_forms(self.observed) + small
         if self.unnamed:
             return coverage_gain + _PRECISION_WEIGHT * precision_gain
         if not self.open_questions.questions:
             return precision_gain + _COVERAGE_WEIGHT_ALONE * coverage_gain
-        total = _PRECISION_WEIGHT * precision_gain + _COVERAGE_WEIGHT * coverage_gain
+        total = small
         discriminations = _discriminations(information, self.open_questions)
         for question, before, after in zip(
             self.open_questions.questions,
@@ -185,6 +206,13 @@ class DesignCriterion:
             total += _MARGIN_WEIGHT * float(share @ margin) / _MARGIN_BOUND
         return total
 
+    def _of_forms(self, information: Information) -> float:
+        """Return what some rows tell of the forms [nat]."""
+        problem = information.problem
+        prior = _prior_precision(self.joint, self.open_questions, problem)
+        further = form_basis(self.forms, problem.table, self.ranges)
+        return information_on(information, self.open_questions, prior, further)
+
     def lack_of_fit(self, steps: Sequence[Step]) -> float:
         """Return the expected lack of fit of the base model in steps, by the likely causes.
 
@@ -196,8 +224,8 @@ class DesignCriterion:
         Returns
         -------
         float
-            RMS of the torque that the base model cannot fit, summed over causes [N·m]. Without a
-            likely cause it is the number of pairs: then the base model itself is checked.
+            RMS of the torque that the base model cannot fit, summed over causes and forms [N·m].
+            Without any it is the number of pairs: then the base model itself is checked.
         """
         problem = self.information_after(steps).problem
         new = slice(len(self.observed.problem.friction), None)
@@ -205,9 +233,13 @@ class DesignCriterion:
         for question in self.open_questions.questions:
             share = question.probabilities
             weighted += [(share[rival.name], rival.fit) for rival in question.rivals]
-        if not weighted:
+        if not weighted and not self.forms:
             return float(len(problem.layout.bins))
         total = 0.0
+        for form in self.forms:
+            torque = getattr(form.at(problem.table), form.channel)
+            residual = residual_of_base(problem, torque, form.channel)[new]
+            total += float(np.sqrt(np.mean(np.square(residual))))
         for weight, fit in weighted:
             basis = problem.basis(fit.effect, fit.shape)
             torque = main_channel(basis, fit.effect) @ fit.coefficients

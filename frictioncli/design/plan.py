@@ -10,6 +10,7 @@ from frictioncli.design.blocks import Block, all_blocks
 from frictioncli.design.decision_probability import decision_probability
 from frictioncli.design.design_criterion import DesignCriterion
 from frictioncli.design.limits import Limits, limits_of
+from frictioncli.design.place_blocks import blocks_about
 from frictioncli.design.predicted_rows import PlannedJoint, Timing, planning_columns, predict_rows
 from frictioncli.design.rivals import open_questions_of
 from frictioncli.design.selection import choose_blocks, seconds_of, steps_of
@@ -140,7 +141,8 @@ def plan_joint(
     """
     limits = limits_of(torques, settings)
     criterion = criterion_of(torques, document, extended, limits)
-    candidates = all_blocks(limits, settings.seed)
+    about = blocks_about(criterion.forms, limits, settings.seed)
+    candidates = (*all_blocks(limits, settings.seed), *about)
     if criterion.joint.thermal_model is None:  # the effect of heating could not be predicted
         candidates = tuple(block for block in candidates if not block.name.startswith("heat"))
     payload = criterion.joint.payload
@@ -187,6 +189,7 @@ def criterion_of(
         joint,
         open_questions_of(problem, document, extended),
         unnamed=document.verdict == "unnamed",
+        empirical=extended.empirical,
     )
 
 

@@ -18,7 +18,7 @@ from frictioncli.design.information import Information
 from frictioncli.design.rivals import OpenQuestions
 from frictioncli.diagnosis.data.problem import Problem
 from frictioncli.diagnosis.fit.columns import ModelColumns, base_columns, basis_columns, joined
-from frictioncli.effects.base import EffectTable
+from frictioncli.effects.base import Basis, EffectTable
 from frictioncli.linear_algebra import scaled_gram_inverse
 
 
@@ -81,6 +81,34 @@ def precision(
     covariance = scaled_gram_inverse(total, tolerance=1e-13)
     chosen = [list(names).index(name) for name in reported]
     return Precision(tuple(reported), covariance[np.ix_(chosen, chosen)])
+
+
+def information_on(
+    information: Information, open_questions: OpenQuestions, prior: Array, further: Basis
+) -> float:
+    """Return what rows tell of further columns beside base and causes [nat].
+
+    Parameters
+    ----------
+    information : Information
+        Rows and noise.
+    open_questions : OpenQuestions
+        Causes that are fitted together with the base model.
+    prior : ndarray, shape (columns,)
+        Prior precision of the coefficients of base model and causes.
+    further : Basis
+        The further columns, with coefficients of variance 1 beforehand. [N·m]
+    """
+    problem = information.problem
+    model = _model(problem, open_questions)
+    gram = information.matrix(joined([model, basis_columns(problem, further)]))
+    total = gram + np.diag(np.append(prior, np.ones(gram.shape[0] - len(prior))))
+    # columns of unlike units
+    scale = 1 / np.sqrt(np.diag(total))
+    total = total * np.outer(scale, scale)
+    known = slice(0, len(prior))
+    whole, part = (float(np.linalg.slogdet(one)[1]) for one in (total, total[known, known]))
+    return 0.5 * (whole - part) - float(np.sum(np.log(scale[len(prior) :])))
 
 
 def _model(problem: Problem, open_questions: OpenQuestions) -> ModelColumns:

@@ -24,7 +24,7 @@ from frictioncli.design.thermal_model import ThermalModel
 from frictioncli.diagnosis.data.gravity import form_of, known_payload
 from frictioncli.model.friction import FrictionParameters, friction_torque
 
-_SETTLING = 0.2
+SETTLING = 0.2
 """Time after a ramp until the speed is constant. [s]"""
 
 _LEAST_COVERAGE = 0.6
@@ -178,7 +178,7 @@ def constant_speed_bins(speed: float, low: float, high: float, width: float) -> 
     >>> constant_speed_bins(20.0, low=0.0, high=30.0, width=5.0)
     array([ 7.5, 12.5, 17.5, 22.5])
     """
-    trimmed = speed**2 / (2 * ACCELERATION) + _SETTLING * speed
+    trimmed = speed**2 / (2 * ACCELERATION) + SETTLING * speed
     edges = np.arange(np.floor(low / width), np.ceil(high / width)) * width
     passed = np.minimum(edges + width, high - trimmed) - np.maximum(edges, low + trimmed)
     return np.asarray(edges[passed >= _LEAST_COVERAGE * width] + width / 2)

@@ -28,7 +28,8 @@ def plan_text(
         checked = f", {_chance(last)} with the check" if plan.check else ""
         lines.append(f"    {_chance(after)} after it{checked}{_too_little(last)}")
     if plan.verdict == "unnamed":
-        lines.append("  no known effect explains the structure: blocks that spread over all inputs")
+        way = "about where it shows" if plan.criterion.forms else "that spread over all inputs"
+        lines.append(f"  no known effect explains the structure: blocks {way}")
     if plan.unnamed is not None:
         lines.append(f"  without a name: {plan.unnamed.claim}")
         lines.append(f"    to learn its nature: {plan.unnamed.experiment}")

@@ -9,8 +9,12 @@ import pytest
 
 from frictioncli import schemas, tables
 from frictioncli.design.from_plan import interval_records, stated_half_widths
+from frictioncli.design.plan import plan_joint
+from frictioncli.design.predicted_rows import predict_rows
+from frictioncli.design.selection import steps_of
 from frictioncli.design.settings import PlanSettings
 from frictioncli.diagnosis.documents.extended_document import EffectRecord, ParameterRecord
+from frictioncli.diagnosis.documents.reload import read_documents
 from frictioncli.diagnosis.settings import DiagnosisSettings
 from frictioncli.errors import FrictionError
 from frictioncli.provenance import Provenance
@@ -171,14 +175,32 @@ def test_a_payload_that_there_is_no_time_to_mount_is_left_out(copy):
     assert all("payload" not in one["name"] for one in document(copy)["programme"]["blocks"])
 
 
-def test_structure_without_a_name_gets_blocks_that_spread_over_all_inputs(copy):
+def without_a_name(work, form=None):
+    """Say of a work folder that what was found has no name, or that a form describes it."""
+    ranges = {"position": [0.0, 180.0], "speed": [20.0, FASTEST], "temperature": [16.0, 37.0]}
+    empirical = {
+        "forms": [{"kind": "peak", "channel": "friction", "formula": ""} | (form or {})],
+        "functions": [],
+        "ranges": ranges | {"load": [0.0, 95.0]},
+        "base_changes": {},
+        "gravity_changes": {"cosine": 0.0, "sine": 0.0, "offset": 0.0},
+        "torque_unit": "N·m",
+        "units": {},
+        "size": 1.0,
+    }
     for name, key in (("diagnosis.json", "causes"), ("extended-model.json", "effects")):
-        told = json.loads((copy / name).read_text(encoding="utf-8"))
+        told = json.loads((work / name).read_text(encoding="utf-8"))
         for part in (told, *told.get("joints", {}).values()):
             part[key] = []
             if key == "causes":
                 part["verdict"] = "unnamed"
-        (copy / name).write_text(json.dumps(told), encoding="utf-8")
+            elif form is not None:
+                part["empirical"] = empirical
+        (work / name).write_text(json.dumps(told), encoding="utf-8")
+
+
+def test_structure_without_a_name_gets_blocks_that_spread_over_all_inputs(copy):
+    without_a_name(copy)
     said = str(plan(copy, PlanSettings(minutes=25.0)))
     assert "no known effect explains" in said
     blocks = document(copy)["programme"]["blocks"]
@@ -190,6 +212,61 @@ def test_structure_without_a_name_gets_blocks_that_spread_over_all_inputs(copy):
     assert len(speeds) >= 6
     assert speeds.min() < 20.0 / 2
     assert len({(step["low_deg"], step["high_deg"]) for step in series}) >= 2
+
+
+@pytest.fixture
+def rows_planned(copy):
+    """Speeds, angles and motor temperatures of the rows that a plan would add, by its form."""
+
+    def planned(form):
+        without_a_name(copy, form)
+        torques = tables.read(copy / TORQUES, schemas.TORQUES)
+        (diagnosed, extended) = next(iter(read_documents(copy).values()))
+        experiment = plan_joint(torques, "N·m", diagnosed, extended, PlanSettings(minutes=25.0))
+        steps = steps_of(experiment.blocks)
+        return predict_rows(experiment.criterion.joint, steps, "planned")[0], experiment
+
+    return planned
+
+
+def errors(rows, column, centre, width):
+    """Return the errors of height and place of a peak from rows with white noise alone.
+
+    Beside what friction and gravity are made of, by ordinary least squares.
+    """
+    angle, speed, warm = (rows[name] for name in ("position", "speed", "motor_temperature"))
+    away = np.log(speed / centre) if column == "speed" else rows[column] - centre
+    peak = np.exp(-np.square(away / width) / 2)
+    base = [angle**0, rows.load_torque**2, speed**0.5, speed**0.5 * warm, np.cos(np.radians(angle))]
+    columns = np.column_stack([*base, peak, peak * away / width])
+    return np.sqrt(np.diag(np.linalg.inv(columns.T @ columns)))[-2:]
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ("axis", "column", "kind", "shape", "least"),
+    [
+        ("speed", "speed", "peak", {"centre": 40.0, "width": 0.15}, 1.5),
+        ("position", "position", "bump", {"centre": 50.0, "width": 4.0, "lag": 0.0}, 1.1),
+        ("temperature", "motor_temperature", "peak", {"centre": 22.0, "width": 1.0}, 1.5),
+    ],
+    ids=["speed", "angle", "temperature"],
+)
+def test_blocks_concentrate_where_structure_was_located(
+    rows_planned, axis, column, kind, shape, least
+):
+    """Height and place are better known than after as long a plan that knows of no place."""
+    spread, _ = rows_planned(None)
+    form = {"kind": kind, "axes": [axis], "shape": shape, "coefficients": {"peak": 2.0}}
+    rows, experiment = rows_planned(form)
+    place = column, shape["centre"], shape["width"]
+    ratio = errors(spread, *place) / errors(rows, *place)
+    assert (ratio > least).all()
+    near = [block for block in experiment.blocks if f"about {shape['centre']:.3g}" in block.name]
+    assert len(near) >= 2 or axis == "temperature"
+    assert experiment.check
+    # what changes it is asked, too
+    assert rows.speed.max() > 2 * rows.speed.min()
 
 
 @pytest.mark.parametrize(
