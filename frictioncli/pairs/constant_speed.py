@@ -12,6 +12,7 @@ from numpy.lib.stride_tricks import as_strided
 
 from frictioncli.arrays import Array, Numbers
 from frictioncli.pairs.moves import SMOOTHING, half_window
+from frictioncli.pairs.ringing import HOLD, ringing_ends
 from frictioncli.pairs.settings import SteadySettings
 from frictioncli.pairs.slices import (
     fill_slices,
@@ -23,7 +24,7 @@ from frictioncli.pairs.slices import (
 )
 from frictioncli.pairs.speed_steps import flat_parts, is_step, parts_left, window_samples
 
-REASONS = ("standing", "accelerating", "settling", "constant speed too short")
+REASONS = ("standing", "accelerating", "settling", "ringing", "constant speed too short")
 """Reasons why samples are in no constant-speed segment."""
 
 _SMOOTHED_SHARE = 0.02
@@ -117,6 +118,13 @@ def constant_speed_segments(
     )
     # from samples of moves end to end to samples of the recording
     shift = (move_start - slice_offsets(length))[move]
+    step = (time[move_stop - 1] - time[move_start]) / np.maximum(length - 1, 1)
+    hold = (HOLD / np.maximum(step, 1e-9)).astype(np.int64)[move[candidate]]
+    first = slice_offsets(length)
+    change = np.abs(np.diff(speed, append=0.0))
+    last = first + np.maximum(length - 1, 1)
+    ramp = reduce_slices(np.maximum, change, first, last) / np.maximum(step, 1e-9)
+    quiet = ringing_ends(speed, begin, end, hold, ramp[move[candidate]]) + shift[candidate]
     low, high = _bounds(start + shift, stop + shift, move, move_start, move_stop)
     begin, end, move = begin + shift[candidate], end + shift[candidate], move[candidate]
     # the steps of a staircase have no ramps from rest and to rest
@@ -124,12 +132,15 @@ def constant_speed_segments(
     low = np.where(several, begin, low[candidate])
     high = np.where(several, end, high[candidate])
     settled, margin = _trimmed(time, begin, end, width[move], settings)
-    long_enough = margin - settled >= settings.min_samples
+    rung = _after_ringing(time, np.where(several, begin, quiet), settled, (begin, end), settings)
+    long_enough = margin - rung >= settings.min_samples
     held = int(np.sum(end - begin))
     too_short = int(np.sum((end - begin)[~long_enough]))
-    settled, margin, low, high = (x[long_enough] for x in (settled, margin, low, high))
+    ringing = int(np.sum((rung - settled)[long_enough]))
+    settled, margin, low, high = (x[long_enough] for x in (rung, margin, low, high))
     steady = int(np.sum(margin - settled))
-    lost = (0, int(length.sum()) - held, held - too_short - steady, too_short)
+    settling = held - too_short - ringing - steady
+    lost = (0, int(length.sum()) - held, settling, ringing, too_short)
     return ConstantSpeedSegments(
         start=settled,
         stop=margin,
@@ -277,3 +288,22 @@ def _trimmed(
     settled = np.searchsorted(time, time[begin] + np.minimum(settings.settling, quarter))
     margin = np.minimum(half_window(time, begin, end, width), (end - begin) // 4)
     return np.minimum(settled, end), end - margin
+
+
+def _after_ringing(
+    time: Array,
+    quiet: Numbers,
+    settled: Numbers,
+    plateau: tuple[Numbers, Numbers],
+    settings: SteadySettings,
+) -> Numbers:
+    """Return where plateaus begin that have settled and do not ring any more.
+
+    Where it still rings when it should have settled, the settling is waited for once more: ringing
+    that the speed no longer shows still accelerates.
+    """
+    begin, end = plateau
+    quarter = (time[end - 1] - time[begin]) / 4
+    later = time[np.minimum(quiet, end - 1)] + np.minimum(settings.settling, quarter)
+    after = np.minimum(np.searchsorted(time, later), end)
+    return np.where(quiet > settled, np.maximum(after, settled), settled)

@@ -19,7 +19,8 @@ class SteadySettings:
         Greatest deviation from the speed of a segment, relative to it; more is allowed where the
         noise of the velocity is larger. [-]
     settling : float
-        Time dropped after an acceleration, at most a quarter of the segment. [s]
+        Time dropped after an acceleration, at most a quarter of the segment, and once more after
+        the ringing of a servo that goes on beyond it. [s]
     min_samples : int
         Least number of samples of a constant-speed segment.
     """

@@ -10,7 +10,7 @@ from frictioncli.diagnosis.fit.hypotheses import EffectFit
 from frictioncli.diagnosis.fit.mixed_model import MixedFit, Products
 from frictioncli.diagnosis.fit.transformed_columns import Part
 from frictioncli.diagnosis.fit.variance_components import fit_variances
-from frictioncli.diagnosis.search.standing import beyond_bounds
+from frictioncli.diagnosis.search.possible import beyond_bounds
 from frictioncli.diagnosis.search.step import Step
 from frictioncli.effects.base import Basis, Effect
 
