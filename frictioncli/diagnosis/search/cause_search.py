@@ -270,12 +270,16 @@ def _cause(
     own = tests[one.effect.name]
     factor = own.refined_log_bayes_factor(fit)
     possible = {name: test for name, test in tests.items() if name not in impossible}
-    share = posterior_probabilities(rival_log_bayes_factors(step, fit, factor, possible))
+    sizes = sizes_of(step.precomputed, fit)
+    left_share = sizes["visible"] / max(sizes["size"], 1e-300)
+    share = posterior_probabilities(
+        rival_log_bayes_factors(step, fit, factor, possible, left_share)
+    )
     return Cause(
         fit=fit,
         test=own,
         effects=credible_set(share),
         probabilities={name: value for name, value in share.items() if value >= 1e-3},
         shown=shown_share(step.precomputed, fit, others),
-        **sizes_of(step.precomputed, fit),
+        **sizes,
     )

@@ -9,17 +9,32 @@ from frictioncli.effects import BY_NAME
 _NEARLY = 5.0
 """Log Bayes factor below that of a cause at which another effect is too improbable to matter."""
 
+_FORM = 0.1
+"""What the form of an entry may miss of an effect, relative to its size: two standard
+deviations."""
+
+_MOST_MISSED = 0.1
+"""Greatest share of the evidence of a cause that its form may account for."""
+
 _KEPT = 0.5
 """Share of its test statistic that a cause keeps beside an effect that explains something else."""
 
 
 def rival_log_bayes_factors(
-    step: Step, own: EffectFit, factor: float, tests: Mapping[str, HypothesisTest]
+    step: Step,
+    own: EffectFit,
+    factor: float,
+    tests: Mapping[str, HypothesisTest],
+    left_share: float = 1.0,
 ) -> dict[str, float]:
     """Return the log Bayes factors of a cause and of the effects that may stand for it, by name.
 
     Another effect that is as certain is no rival if the cause is needed beside it, too: it explains
     something else.
+
+    No form is exactly true. What it misses is a greater part of what the base leaves of an effect
+    than of the whole, and by the square of that part a rival may fall behind though it is the
+    cause.
 
     Parameters
     ----------
@@ -31,12 +46,19 @@ def rival_log_bayes_factors(
         Its log Bayes factor.
     tests : mapping of str to HypothesisTest
         Tests of all effects there.
+    left_share : float, optional
+        Share of its RMS that the base leaves of the cause.
     """
-    return {own.effect.name: factor} | {
-        name: one.log_bayes_factor
+    missed = min((_FORM / max(left_share, _FORM)) ** 2, _MOST_MISSED) * own.statistic / 2
+    near = {
+        name: min(one.log_bayes_factor + missed, max(factor, one.log_bayes_factor))
         for name, one in tests.items()
         if name != own.effect.name
-        and (one.log_bayes_factor < factor - _NEARLY or _explains(step, own, one))
+    }
+    return {own.effect.name: factor} | {
+        name: value
+        for name, value in near.items()
+        if value < factor - _NEARLY or _explains(step, own, tests[name])
     }
 
 

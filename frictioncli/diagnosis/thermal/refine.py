@@ -115,7 +115,8 @@ def search_with_lag(
     Where a hidden temperature explains most of the misfit, friction is linear about it from the
     start: about the measured one, a lag of many degrees would look like other effects as well. Else
     it is estimated beside the causes once the lag is one of them, and the search repeated. Where
-    the measured temperature then explains friction as well, the lag is left out.
+    the measured temperature then explains friction as well, the lag is left out; where a lag
+    was found about the first temperature and none about the second, the first one stays.
 
     Parameters
     ----------
@@ -143,8 +144,9 @@ def search_with_lag(
         if _has_lag(found) and len(found.causes) == 1:
             return _as_refined(found, first), first
         if not _has_lag(found):
-            found = search(problem, effects)
+            first, found = None, search(problem, effects)
     else:
+        first = None
         found = search(problem, effects)
     if not _has_lag(found) or _left_of_lag(found) <= margin:
         return found, None
@@ -153,6 +155,9 @@ def search_with_lag(
         again = search(refined.problem, effects)
         if _has_lag(again):
             return _as_refined(again, refined), refined
+        if first is not None:
+            # estimated beside a cause that looks like it, the temperature may be far off
+            return _as_refined(found, first), first
     without = search(problem, [one for one in effects if one.name != LAG])
     dropped = without.dropped | {LAG: "the measured temperature explains friction as well"}
     return replace(without, dropped=dropped), None
