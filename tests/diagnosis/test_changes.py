@@ -1,5 +1,7 @@
 """Changes that last, recur or vanish: the whole diagnosis of simulated joints that have one."""
 
+import json
+
 import numpy as np
 import pytest
 
@@ -15,6 +17,8 @@ from frictioncli.model.settings import FitSettings
 from frictioncli.simulator.settings import SynthesisSettings
 from tests.simulation.changed_table import hours, middle, with_friction_step, with_payload
 from tests.simulation.torque_table import simulate_torques
+from tests.studies.blind_examined import examined
+from tests.studies.blind_worlds import World
 
 pytestmark = pytest.mark.slow
 
@@ -140,3 +144,18 @@ def test_nothing_is_said_of_days_without_a_change():
         diagnosis = diagnose_joint(table, "motor", "N·m", DiagnosisSettings())
         assert diagnosis.causes == ()
         assert np.isfinite(diagnosis.floor)
+
+
+def test_a_step_in_noise_that_drifts_may_be_a_drift():
+    """Friction steps by 1.7 N·m on the run kept out, in noise that drifts by 0.5 N·m RMS.
+
+    A friction that changes gradually explains the run nearly as well.
+    """
+    world = World("single", "step_change", 1, size=1.0, protocol="enriched")
+    row = examined(world, "")
+    friction = [one for one in json.loads(str(row["causes_json"])) if one["kind"] == "friction"]
+    (cause,) = friction
+    assert row["verdict"] == "ambiguous"
+    assert cause["effects"] == ["step_change", "drift"]
+    assert 0.5 < cause["probabilities"]["step_change"] < 0.999
+    assert float(str(row["after"])) < 1.25 * float(str(row["floor"]))

@@ -78,6 +78,18 @@ def test_a_step_of_friction(torques, after):
     assert left < 1.25 * FLOOR
 
 
+def test_friction_that_steps_in_proportion_is_a_step(torques):
+    """8 % more friction from noon on: within a run whatever friction depends on steps."""
+    there = second(torques, 3.6)
+    more = np.where(there, 0.08 * torques["friction_torque"], 0.0)
+    (cause,), _, _ = found(torques.assign(friction_torque=torques["friction_torque"] + more))
+    assert cause.effects == ("step_change",)
+    mean = float(more[there].mean())
+    assert cause.fit.coefficients == pytest.approx([mean], rel=0.15)
+    ((begin, _),) = stretches(cause.fit.shape)
+    assert begin == pytest.approx(moment(torques, there), abs=0.01)
+
+
 def test_the_effect_stands_at_its_place(torques):
     """Effects that are corrected without a name follow the causes."""
     problem, _ = build_problems(torques, "motor", "day2")

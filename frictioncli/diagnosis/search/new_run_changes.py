@@ -13,14 +13,17 @@ to its absence are, with the precision *M* of *r* without *z*,
 
 Another day always differs a little, and anything else that the model lacks there is larger than
 noise too. So a change is accepted only where it is beyond doubt, is a single stretch, explains
-nearly all that is left and more than other torque with the same history, or than a slow one; and
-where it begins with the run, only if it is more than days differ by.
+nearly all that is left and more than other torque with the same history; and where it begins with
+the run, only if it is more than days differ by. A step that explains hardly more than friction that
+changes slowly may be a drift.
 """
 
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
+from scipy.special import expit
 
 from frictioncli.arrays import Array
 from frictioncli.diagnosis.data.problem import Problem
@@ -32,7 +35,8 @@ from frictioncli.diagnosis.search.cause import CONVINCING, Cause
 from frictioncli.diagnosis.search.cause_selection import BEYOND_DOUBT
 from frictioncli.diagnosis.search.new_run import parts_of
 from frictioncli.diagnosis.search.new_run_misfit import NewRunMisfit
-from frictioncli.effects.base import Basis, Effect
+from frictioncli.effects.base import Basis, Channel, Effect
+from frictioncli.effects.drift import EFFECT as DRIFT
 from frictioncli.effects.history import (
     Shape,
     distinct,
@@ -95,7 +99,7 @@ def changes_on_new_run(
     for effect in tried:
         if effect.moments is None:
             continue
-        cause = _change(residual, effect, len(tried), margin)
+        cause = _change(residual, effect, tried, margin)
         if cause is None:
             continue
         torque = residual.new.basis(effect, cause.fit.shape)
@@ -129,11 +133,14 @@ def with_effect(extension: Extension, fit: EffectFit, place: int) -> Extension:
         extension,
         effects=(*before, fit, *extension.effects[place:]),
         errors=np.insert(extension.errors, coefficients, errors),
+        fixed_shape_errors=np.insert(extension.fixed_shape_errors, coefficients, errors),
         shape_errors=np.insert(extension.shape_errors, shapes, np.zeros(len(fit.effect.shape))),
     )
 
 
-def _change(residual: NewRunMisfit, effect: Effect, count: int, margin: float) -> Cause | None:
+def _change(
+    residual: NewRunMisfit, effect: Effect, tried: Sequence[Effect], margin: float
+) -> Cause | None:
     """Return a change on the new run as a cause, if it is beyond doubt."""
     new = residual.new
     table = new.all_runs
@@ -141,30 +148,40 @@ def _change(residual: NewRunMisfit, effect: Effect, count: int, margin: float) -
     span = next(one for one in run_spans(table) if present(share, history([one])).all())
     shapes = [history([span])]
     shapes += distinct((history([part]) for part in parts_of(share, span)), share)
+
+    def score(under: NewRunMisfit, shape: Shape) -> float:
+        return under.fitted(new.basis(effect, shape))[2] / 2
+
     quiet = residual.without_drift()
-
-    def score(shape: Shape) -> float:
-        return quiet.fitted(new.basis(effect, shape))[2] / 2
-
-    scores = [score(shape) for shape in shapes]
-    best = refined_history(shapes[int(np.argmax(scores))], table, new.rows, score)
+    scores = [score(quiet, shape) for shape in shapes]
+    first = shapes[int(np.argmax(scores))]
+    best = refined_history(first, table, new.rows, partial(score, quiet))
     there = present(share, best)
     few = min(np.mean(there), np.mean(~there)) < _LEAST_PRESENT
-    if few or score(best) - scores[0] < CONVINCING + np.log(len(shapes)):
+    if few or score(quiet, best) - scores[0] < CONVINCING + np.log(len(shapes)):
         best = shapes[0]
+    else:
+        # beside slow noise only the right pair shows the change
+        noisy = residual.with_own_noise(new.basis(effect, best))
+        best = refined_history(best, table, new.rows, partial(score, noisy))
     if len(stretches(best)) != 1:
         return None
     columns = new.basis(effect, best)
     own = residual.with_own_noise(columns)
     coefficients, covariance, statistic = own.fitted(columns)
-    rivals = max(own.fitted(one)[2] for one in _rivals(new, best))
+    rivals = max(own.fitted(one)[2] for one in _rivals(new, best, effect))
+    slow = max(own.fitted(one)[2] for one in _slow(new, best, effect))
+    clearly = max(_CLEARLY, _CLEAR_SHARE * statistic)
+    gradual = [
+        one.name for one in tried if one.name == DRIFT.name and effect.channel == one.channel
+    ]
     lower, upper = physical_bounds(effect, new)
     null = NullDistribution(
         coefficients=len(coefficients),
         freedom=max(len(new.layout.time) - base_rows(new)[0].shape[1], 1),
         shapes=len(shapes),
     )
-    p_value = min(1.0, count * null.p_value(statistic))
+    p_value = min(1.0, len(tried) * null.p_value(statistic))
     factor = log_bayes_factor(np.array([2 * one for one in scores]), len(coefficients))
     present_rows = presence(table, best)[new.rows] > 0
     size, error = _size(main_channel(columns, effect)[present_rows], coefficients, covariance)
@@ -176,10 +193,15 @@ def _change(residual: NewRunMisfit, effect: Effect, count: int, margin: float) -
         p_value > BEYOND_DOUBT
         or factor < CONVINCING
         or low < needed
-        or statistic - rivals < max(_CLEARLY, _CLEAR_SHARE * statistic)
+        or statistic - rivals < clearly
+        or statistic - slow < (0.0 if gradual else clearly)
         or np.any((coefficients < lower) | (coefficients > upper))
     ):
         return None
+    probabilities = {effect.name: 1.0}
+    if statistic - slow < clearly:
+        slower = float(expit((slow - statistic) / 2))
+        probabilities = {effect.name: 1 - slower, **dict.fromkeys(gradual, slower)}
     of_run = float(np.sqrt(np.mean(present_rows)))
     fit = EffectFit(effect, best, coefficients, covariance, statistic)
     test = HypothesisTest(
@@ -197,8 +219,8 @@ def _change(residual: NewRunMisfit, effect: Effect, count: int, margin: float) -
     return Cause(
         fit=fit,
         test=test,
-        effects=(effect.name,),
-        probabilities={effect.name: 1.0},
+        effects=tuple(probabilities),
+        probabilities=probabilities,
         size=of_run * size,
         visible=of_run * size,
         visible_interval=(of_run * low, of_run * high),
@@ -215,28 +237,46 @@ def _size(columns: Array, coefficients: Array, covariance: Array) -> tuple[float
     return size, float(np.sqrt(max(float(slope @ covariance @ slope), 0.0)))
 
 
-def _rivals(new: Problem, shape: Mapping[str, float]) -> list[Basis]:
-    """Return other torque that might be left: with the history of a change, and slow ones."""
+def _rivals(new: Problem, shape: Mapping[str, float], effect: Effect) -> list[Basis]:
+    """Return other torque with the history of a change that might be left.
+
+    Days differ in everything that friction depends on. Within a run a step of it is a step,
+    whatever it depends on.
+    """
     table = new.table
     there = presence(new.all_runs, shape)[new.rows]
-    nothing = np.zeros((len(there), 1))
-
-    def friction(values: Array) -> Basis:
-        return Basis(values[:, np.newaxis], nothing)
-
-    since = table.time - table.time.min()
-    duration = max(float(np.ptp(since)), 1e-9)
-    after = np.maximum(table.time - float(np.min(table.time[there > 0])), 0.0)
-    slow = [since, *(1 - np.exp(-since / (lag * duration)) for lag in _LAGS)]
-    slow += [after, *(1 - np.exp(-after / (lag * duration)) for lag in _LAGS)]
-    gain = (there * table.friction)[:, np.newaxis], (there * table.load)[:, np.newaxis]
-    return [
-        Basis(*gain),
-        friction(there * table.friction),
-        friction(there * np.sqrt(table.speed)),
-        friction(there * table.temperature_slope),
-        friction(there * np.square(table.load)),
-        Basis(nothing, there[:, np.newaxis]),
-        *(friction(one) for one in slow),
-        *(Basis(nothing, one[:, np.newaxis]) for one in slow),
+    found = [
+        Basis((there * table.friction)[:, np.newaxis], (there * table.load)[:, np.newaxis]),
+        _in_channel("load", there),
     ]
+    if effect.channel != "friction" or there.all():
+        found += [
+            _in_channel("friction", there * one)
+            for one in (
+                table.friction,
+                np.sqrt(table.speed),
+                table.temperature_slope,
+                np.square(table.load),
+            )
+        ]
+    return found
+
+
+def _slow(new: Problem, shape: Mapping[str, float], effect: Effect) -> list[Basis]:
+    """Return torque in the channel of a change that grows slowly, with the run or after it."""
+    time = new.table.time
+    there = presence(new.all_runs, shape)[new.rows]
+    since = time - time.min()
+    after = np.maximum(time - float(np.min(time[there > 0])), 0.0)
+    duration = max(float(np.ptp(since)), 1e-9)
+    slow = [
+        one
+        for run in (since, after)
+        for one in (run, *(1 - np.exp(-run / (lag * duration)) for lag in _LAGS))
+    ]
+    return [_in_channel(effect.channel, one) for one in slow]
+
+
+def _in_channel(channel: Channel, torque: Array) -> Basis:
+    values, nothing = torque[:, np.newaxis], np.zeros((len(torque), 1))
+    return Basis(values, nothing) if channel == "friction" else Basis(nothing, values)
