@@ -1,5 +1,7 @@
 """Intervals of the extended model hold the truth, whatever joint and log do besides."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -47,6 +49,29 @@ def shift(joint, weighted_fit, delay):
         np.hstack([zeros, joint.load_base]),
     )
     return weighted_fit.coefficients(*columns, (late, late * carried))
+
+
+def test_what_compensates_the_shape_is_not_zero(joint, weighted_fit):
+    """Far above the Stribeck velocity only size times exp(-v/vs) shows: the size of a friction
+    that is there beyond doubt has an upper bound that is far away, and a lower one above zero.
+    """
+    effect, shape = BY_NAME["stribeck"], {"velocity": 8.0, "exponent": 1.0, "shift": 0.0}
+    there = np.array([12.0])
+    torque = joint.basis(effect, shape).friction @ there
+    more = replace(joint, friction=joint.friction + torque)
+    start = EffectFit(effect, shape, there, np.array([[1.0]]), 0.0)
+    extension = extend(more, weighted_fit, [start])
+    ((low,), (high,)) = extension.intervals(0)
+    place = extension.place(0)
+    assert extension.effects[0].coefficients == pytest.approx(there, abs=1.0)
+    # if the shape were known the size would be, too; it is not
+    assert Z95 * extension.fixed_shape_errors[place][0] < 12.0 < Z95 * extension.errors[place][0]
+    assert not extension.may_be_zero(0)
+    assert 0 < low < 12.0 < high
+    # without any, it may be zero
+    nothing = extend(joint, weighted_fit, [start])
+    assert nothing.may_be_zero(0)
+    assert nothing.intervals(0)[0] < 0 < nothing.intervals(0)[1]
 
 
 def test_a_delay_that_is_not_named_is_an_error_of_what_it_moves(joint, weighted_fit):

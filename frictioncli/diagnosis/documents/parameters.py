@@ -40,8 +40,9 @@ def fitted_parameters(fit: EffectFit, units: TorqueUnits) -> dict[str, Parameter
     units : TorqueUnits
         Units of torque.
     """
-    errors = np.sqrt(np.maximum(np.diag(np.atleast_2d(fit.covariance)), 0.0))
-    return _shape(fit) | _coefficients(fit.effect, fit.coefficients, errors, units)
+    reach = Z95 * np.sqrt(np.maximum(np.diag(np.atleast_2d(fit.covariance)), 0.0))
+    interval = fit.coefficients - reach, fit.coefficients + reach
+    return _shape(fit) | _coefficients(fit, interval, units)
 
 
 def extension_parameters(
@@ -78,9 +79,7 @@ def extension_coefficients(
     units : TorqueUnits
         Units of torque.
     """
-    one = extension.effects[number]
-    errors = extension.errors[extension.place(number)]
-    return _coefficients(one.effect, one.coefficients, errors, units)
+    return _coefficients(extension.effects[number], extension.intervals(number), units)
 
 
 def statement(
@@ -104,20 +103,18 @@ def statement(
 
 
 def _coefficients(
-    effect: Effect, values: Array, errors: Array, units: TorqueUnits
+    fit: EffectFit, interval: tuple[Array, Array], units: TorqueUnits
 ) -> dict[str, ParameterRecord]:
     return {
-        parameter.name: _coefficient(value, error, units.of(effect, parameter))
-        for parameter, value, error in zip(effect.coefficients, values, errors, strict=True)
+        parameter.name: ParameterRecord(
+            estimate=float(value),
+            ci95=(float(low), float(high)),
+            unit=units.of(fit.effect, parameter),
+        )
+        for parameter, value, low, high in zip(
+            fit.effect.coefficients, fit.coefficients, *interval, strict=True
+        )
     }
-
-
-def _coefficient(value: float, error: float, unit: str) -> ParameterRecord:
-    return ParameterRecord(
-        estimate=float(value),
-        ci95=(float(value - Z95 * error), float(value + Z95 * error)),
-        unit=unit,
-    )
 
 
 def _shapes(extension: Extension, number: int) -> dict[str, ParameterRecord]:

@@ -56,12 +56,15 @@ class Extension(Refit):
     ----------
     errors : ndarray, shape (parameters,)
         Standard errors of the changes, the gravity and the effects' coefficients, in this order.
+    fixed_shape_errors : ndarray, shape (parameters,)
+        The same if the shapes were known.
     shape_errors : ndarray, shape (shape parameters,)
         Standard errors of the effects' shape parameters, effect after effect; 0 where the data
         do not determine it.
     """
 
     errors: Array
+    fixed_shape_errors: Array
     shape_errors: Array
 
     def place(self, number: int) -> slice:
@@ -77,15 +80,39 @@ class Extension(Refit):
         return slice(start, start + len(self.effects[number].effect.coefficients))
 
     def may_be_zero(self, number: int) -> bool:
-        """Return whether the 95 % interval of an effect's only coefficient holds zero.
+        """Return whether an effect's only coefficient may be zero.
+
+        At the shape found: an effect of size zero has no shape (Davies 1977,
+        doi:10.1093/biomet/64.2.247), so that its uncertainty says nothing about zero. That a shape
+        was searched for is accounted for by the p-value of the search.
 
         Parameters
         ----------
         number : int
             Number of the effect, from 0.
         """
-        coefficients, errors = self.effects[number].coefficients, self.errors[self.place(number)]
-        return len(coefficients) == 1 and abs(coefficients[0]) <= Z95 * errors[0]
+        values, errors = self.effects[number].coefficients, self.fixed_shape_errors
+        return len(values) == 1 and abs(values[0]) <= Z95 * errors[self.place(number)][0]
+
+    def intervals(self, number: int) -> tuple[Array, Array]:
+        r"""Return the 95 % intervals of an effect's coefficients, shape (coefficients,) each.
+
+        Shape and size of an effect may compensate each other over the range measured, as at speeds
+        far above the Stribeck velocity. Where an only coefficient is not zero at the shape found,
+        its interval :math:`c\, e^{\pm 1.96 \sigma / |c|}` is therefore one of its logarithm if that
+        of itself held zero.
+
+        Parameters
+        ----------
+        number : int
+            Number of the effect, from 0.
+        """
+        values, errors = self.effects[number].coefficients, self.errors[self.place(number)]
+        low, high = values - Z95 * errors, values + Z95 * errors
+        if len(values) == 1 and low[0] * high[0] <= 0 and not self.may_be_zero(number):
+            factor = np.exp(Z95 * errors / np.abs(values))
+            low, high = np.sort([values / factor, values * factor], axis=0)
+        return low, high
 
 
 def refit(problem: Problem, weighted_fit: WeightedFit, effects: Sequence[EffectFit]) -> Refit:
@@ -131,9 +158,12 @@ def extend(problem: Problem, weighted_fit: WeightedFit, effects: Sequence[Effect
         np.column_stack([columns[channel], *(one[channel] for one in derivatives)])
         for channel in (0, 1)
     )
-    errors = np.sqrt(
-        np.maximum(np.diag(weighted_fit.error_covariance(friction, load, whole=True)), 0.0)
-    )
+
+    def errors_of(friction: Array, load: Array) -> Array:
+        covariance = weighted_fit.error_covariance(friction, load, whole=True)
+        return np.asarray(np.sqrt(np.maximum(np.diag(covariance), 0.0)))
+
+    errors = errors_of(friction, load)
     count = columns[0].shape[1]
     return Extension(
         names=fitted.names,
@@ -141,6 +171,7 @@ def extend(problem: Problem, weighted_fit: WeightedFit, effects: Sequence[Effect
         gravity=fitted.gravity,
         effects=fitted.effects,
         errors=errors[:count],
+        fixed_shape_errors=errors_of(*columns) if derivatives else errors,
         shape_errors=errors[count:],
     )
 
