@@ -166,7 +166,7 @@ def examined(law: Law, protocol: str) -> Case:
         verdict=diagnosis.verdict,
         axes=said,
         is_right=set(map(frozenset, said)) == set(law.axes),
-        size=gain.parts[0].size if gain else (document.structure.size if document.structure else 0),
+        size=_size(document),
         described="; ".join(one.description or "" for one in gain.forms) if gain else "",
         before=before,
         after=gain.rmse_after if gain else before,
@@ -196,6 +196,15 @@ def _said(document: DiagnosisDocument) -> tuple[tuple[str, ...], ...]:
     if document.structure is not None:
         return (tuple(document.structure.axis),)
     return (gain.parts[0].axes,) if gain is not None else ()
+
+
+def _size(document: DiagnosisDocument) -> float:
+    """Return how large what has no name is said to be: of several forms, all together [N·m]."""
+    gain, structure = document.empirical, document.structure
+    if gain is not None:
+        parts = gain.forms or gain.parts[:1]
+        return float(np.sqrt(sum(one.size**2 for one in parts)))
+    return structure.size if structure is not None else 0.0
 
 
 def _left(rows: pd.DataFrame, bare: pd.DataFrame) -> tuple[float, float]:

@@ -87,6 +87,8 @@ def write_page(cases: Sequence[Case]) -> None:
     """Write the page of some cases."""
     visible = [one for one in cases if one.can_be_seen]
     located = [one for one in visible if one.is_right]
+    hidden = [one for one in cases if not one.can_be_seen]
+    silent = [one for one in hidden if not one.axes]
     sized = [one for one in located if abs(one.size / one.left_by_base - 1) <= WITHIN]
     gained = [one for one in visible if one.gain >= GAINED]
     quiet = [one for one in cases if abs(one.bare_gain) <= NOTHING]
@@ -94,6 +96,7 @@ def write_page(cases: Sequence[Case]) -> None:
     rows = [
         ("right axis, all laws", ">= 90 %", [one for one in cases if one.is_right], cases, RIGHT),
         ("right axis, laws that leave the margin or more", ">= 90 %", located, visible, RIGHT),
+        ("nothing said of laws that leave less", "all", silent, hidden, 1.0),
         ("size within 20 %, of those located", ">= 90 %", sized, located, RIGHT),
         ("gain at least 0.8 of knowing the law", ">= 90 %", gained, visible, RIGHT),
         ("the same joints without the law: gain within ±0.5 %", "all", quiet, cases, 1.0),
