@@ -55,7 +55,7 @@ def left_size(known: Precomputed, fit: EffectFit) -> tuple[float, float, float]:
     size, low, high = visible_size(left, fit.coefficients, fit.covariance)
     if fit.effect.measurement:
         return size, low, high
-    beyond = Z95 * float(np.hypot(other_form(known, fit), _FORM * size))
+    beyond = Z95 * float(np.hypot(_other_form(known, fit, left), _FORM * size))
     below, above = np.hypot([size - low, high - size], beyond)
     return size, max(float(size - below), 0.0), float(size + above)
 
@@ -84,12 +84,11 @@ def shown_share(known: Precomputed, fit: EffectFit, others: Sequence[EffectFit])
     return float(misfit @ torque) / length if length > 0 else 1.0
 
 
-def other_form(known: Precomputed, fit: EffectFit) -> float:
+def _other_form(known: Precomputed, fit: EffectFit, left: Array) -> float:
     """Return the standard deviation of discrepancy of another form than assumed [N·m].
 
     Along an effect, as the RMS of what the base leaves of it.
     """
-    left = _left(known, fit)
     torque = left @ fit.coefficients if fit.coefficients.any() else left.sum(axis=1)
     variances = known.start if fit.variances is None else fit.variances
     return _OTHER_FORM * known.discrepancy.along(torque, variances.amplitude)
