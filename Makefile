@@ -5,6 +5,9 @@ BIN := $(VENV)/bin
 RUN ?= friction-run
 LARGEST ?= 1e8
 
+# three processes on two cores: some tests wait for schedulers, kills and time limits
+SHARED := -n 3 --dist loadgroup --no-loadscope-reorder
+
 # tests and studies share the cores out among processes: one thread of linear algebra each
 export OMP_NUM_THREADS := 1
 export OPENBLAS_NUM_THREADS := 1
@@ -16,10 +19,10 @@ reproduce: $(VENV)/installed
 	$(BIN)/python docs/compare_with_paper.py $(RUN)
 
 test: $(VENV)/tested
-	$(BIN)/pytest -n 2 --dist worksteal -m "not slow"
+	$(BIN)/pytest $(SHARED) -m "not slow"
 
 test-all: $(VENV)/tested
-	$(BIN)/pytest -n 2 --dist worksteal --durations 20
+	$(BIN)/pytest $(SHARED) --durations 40
 
 coverage: $(VENV)/tested
 	$(BIN)/python -m tests.studies.coverage

@@ -15,10 +15,46 @@ settings.register_profile("fixed", deadline=None, derandomize=True)
 settings.load_profile("fixed")
 
 
+LONGEST = (
+    *("test_a_disturbed_fleet", "test_parameter_intervals", "test_cluster", "test_docs"),
+    *("test_challenge", "test_false_alarms", "test_processes", "test_robustness_kill"),
+    *("test_plan", "test_named_causes", "test_fleet", "test_page_in_chromium", "test_commands"),
+)
+"""Tests and modules that take longest, the longest first."""
+
+OWN = {"tmp_path_factory", "worker_id", "testrun_uid", "one_thread", "doctest_namespace"}
+"""Fixtures of a session that cost nothing to make again."""
+
+
+@pytest.hookimpl(tryfirst=True)
 def pytest_collection_modifyitems(items):
-    """Put modules with slow tests first: at the end all processes have something short to do."""
+    """Say which tests stay in one process, and put the longest first, slow modules next.
+
+    Tests stay together that share a fixture of their module or of the session, since each process
+    makes it anew; slow ones that share nothing go where there is room. At the end all processes
+    have something short to do.
+    """
     slow = {item.path for item in items if item.get_closest_marker("slow")}
-    items.sort(key=lambda item: item.path not in slow)
+
+    def rank(item):
+        places = [place for place, name in enumerate(LONGEST) if name in item.nodeid]
+        return (item.path not in slow, min(places, default=len(LONGEST)))
+
+    items.sort(key=rank)
+    for item in items:
+        alone = item.get_closest_marker("slow") and not _shared(item)
+        together = item.path.parent if "chromium" in item.fixturenames else item.path
+        item.add_marker(pytest.mark.xdist_group(item.nodeid if alone else str(together)))
+
+
+def _shared(item):
+    """Return the fixtures of a test that others have with it."""
+    definitions = item._fixtureinfo.name2fixturedefs
+    return {
+        name
+        for name, found in definitions.items()
+        if name not in OWN and found[-1].scope in ("module", "session") and found[-1].baseid
+    }
 
 
 @pytest.fixture(scope="session")

@@ -88,9 +88,10 @@ def test_a_payload(count, there, holds, text):
     assert diagnosis.gain.after < 1.25 * diagnosis.floor
 
 
-@with_history
+@pytest.mark.parametrize(("count", "there", "holds", "text"), [HELD[2], HELD[4]])
 def test_a_step_of_friction(count, there, holds, text):
-    """2 N·m, whose moments are resolved to a pair or two."""
+    """2 N·m, whose moments are resolved to a pair or two: a change that ends, and moments that
+    differ. Histories are the payload's: every kind of them is above."""
     table = days(count)
     diagnosis, cause, when = found(with_friction_step(table, there(table), 2.0))
     assert (diagnosis.verdict, cause.effects) == ("named", ("step_change",))

@@ -17,14 +17,12 @@ from frictioncli.diagnosis.settings import DiagnosisSettings
 from frictioncli.effects import EFFECTS
 from frictioncli.errors import NotEnoughData, OptionError, TableError
 from frictioncli.provenance import Provenance
-from frictioncli.simulator.settings import SynthesisSettings
 from frictioncli.stages.diagnose import diagnose
 from frictioncli.stages.evaluate import evaluate
 from frictioncli.stages.fit import fit
 from frictioncli.stages.simulate import simulate
 from frictioncli.workfiles import DIAGNOSIS, EVALUATION, EXTENDED, RAMPS, TORQUES
 from tests.equation_16 import cycle_temperatures, torques
-from tests.simulation.torque_table import simulate_torques
 
 
 def days(seed, **columns):
@@ -155,13 +153,6 @@ def test_a_lag_does_not_hide_a_ripple():
     names = [cause.effects for cause in diagnosis.causes]
     assert ("thermal_lag",) in names
     assert ("position_ripple",) in names
-
-
-@pytest.mark.slow
-def test_a_planted_effect_of_the_simulator_is_found_blind():
-    settings = SynthesisSettings(seed=11, joint_kind="plain", effects=("torque_constant:2.0",))
-    diagnosis = diagnosed(simulate_torques(settings))
-    assert any("torque_constant" in cause.effects for cause in diagnosis.causes)
 
 
 def test_one_day_only_says_that_its_gain_is_optimistic():

@@ -63,6 +63,9 @@ BESIDE_A_LAG = ("torque_constant", "payload_change", "position_ripple")
 """One effect of each channel, and one of the stroke; docs/blind.md has them all."""
 
 
+ELSEWHERE = ("step_change", "payload_change")
+"""Effects that test_changes.py finds with size and history; the second stands beside a lag here."""
+
 QUICK = ("thermal_lag", "position_ripple")
 """One effect that goes with temperature, and one of the stroke."""
 
@@ -103,6 +106,7 @@ def sets(diagnosis: Diagnosis) -> list[tuple[str, ...]]:
     [
         effect.name if effect.name in QUICK else pytest.param(effect.name, marks=pytest.mark.slow)
         for effect in EFFECTS
+        if effect.name not in ELSEWHERE
     ],
 )
 def test_a_hidden_effect_is_in_a_set_of_few(name):

@@ -12,7 +12,7 @@ from frictioncli.stages.pair import pair
 from tests.robustness.kills import Worlds, killed_before_change, killed_run
 from tests.robustness.runs import digests
 
-KILLS = 3
+KILLS = 2
 STAGES = {
     "ingest": lambda logs, work: partial(ingest, [logs], work),
     "pair": lambda logs, work: partial(pair, work),
