@@ -2,14 +2,20 @@
 
 import io
 import re
+from collections.abc import Iterator
 
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.backends.backend_svg import FigureCanvasSVG
-from matplotlib.figure import Figure
+from matplotlib.figure import Figure, FigureBase, SubFigure
+from matplotlib.layout_engine import ConstrainedLayoutEngine
+from matplotlib.transforms import Bbox
 
 from frictioncli.report.tooltips import tooltips_as_titles
 
 _DPI = 200
+
+_DIGITS = 9
+"""Digits of positions as shares of the figure: fewer than the layout's last ones."""
 
 
 def svg(figure: Figure, name: str, title: str) -> str:
@@ -25,6 +31,8 @@ def svg(figure: Figure, name: str, title: str) -> str:
         Text for screen readers, with markup already escaped.
     """
     stream = io.StringIO()
+    if isinstance(figure.get_layout_engine(), ConstrainedLayoutEngine):
+        figure.set_layout_engine(_RoundedLayout())
     # printing by the canvas draws once, where Figure.savefig draws twice
     FigureCanvasSVG(figure).print_svg(
         stream, metadata={"Date": None, "Creator": None, "Format": None, "Type": None}
@@ -38,6 +46,28 @@ def svg(figure: Figure, name: str, title: str) -> str:
     text = re.sub(r'\bid="', f'id="{name}-', text)
     text = text.replace("url(#", f"url(#{name}-").replace('href="#', f'href="#{name}-')
     return text.replace("<svg ", f'<svg role="img" aria-label="{title}" ', 1)
+
+
+class _RoundedLayout(ConstrainedLayoutEngine):
+    """Constrained layout whose last digits do not depend on where its variables are in memory.
+
+    The solver orders them by address, so that positions differ by 4e-16 from one call to another.
+    """
+
+    def execute(self, fig: Figure) -> None:
+        """Lay a figure out, and round its positions."""
+        super().execute(fig)
+        for part in _parts_of(fig):
+            corners = part.bbox_relative.get_points().round(_DIGITS)
+            part.bbox_relative.p0, part.bbox_relative.p1 = corners
+        for axes in fig.axes:
+            axes.set_position(Bbox(axes.get_position(original=True).get_points().round(_DIGITS)))
+
+
+def _parts_of(figure: FigureBase) -> Iterator[SubFigure]:
+    for part in figure.subfigs:
+        yield part
+        yield from _parts_of(part)
 
 
 def svg_file(element: str) -> str:
