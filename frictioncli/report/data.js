@@ -63,7 +63,7 @@
     const points = pointsOf(data);
     const canvas = part("canvas"), brush = canvas.getContext("2d", { willReadFrequently: true });
     let view = null, kept = new Uint32Array(0), heights = {}, owners = null;
-    let width = 0, ratio = 1, pending = false, rest = 0;
+    let width = 0, ratio = 1, pending = false, rest = 0, cell = null;
 
     const chosen = () => {
       const move = data.number.indexOf(Number(part("move").value));
@@ -80,6 +80,16 @@
         : what === "residual" ? misses[name] : measured.map((value, at) => value - misses[name][at])]));
     }
 
+    /* Whether a point is in the cell of a map that was clicked. */
+    function inCell(at) {
+      return Object.entries(cell).every(([name, number]) => {
+        const { move, edges } = data.cells[name];
+        if (move) return move[points.move[at]] === number;
+        const angle = points.axes.angle[1][at];
+        return angle >= edges[number] && angle < edges[number + 1];
+      });
+    }
+
     function keep() {
       const { move } = chosen();
       const run = Number(part("run").value), trend = Number(part("trend").value);
@@ -90,6 +100,7 @@
         const own = points.move[at];
         if (move >= 0 ? own !== move : (run >= 0 && data.run[own] !== run) || (trend && data.trend[own] !== trend)) continue;
         if (direction >= 0 && (at >= points.rows) !== (direction === 1)) continue;
+        if (cell && !inCell(at)) continue;
         found[size++] = at;
       }
       kept = found.subarray(0, size);
@@ -253,6 +264,10 @@
           + Object.entries(data.temperatures).map(([name, all]) => all[move] === null ? "" : `, ${name} ${shown(all[move], 1)} °C`).join("") + ".";
       prepare(chosen());
       keep();
+      if (cell) {
+        const limits = Object.entries(cell).map(([name, number]) => data.cells[name].texts[number]);
+        part("told").textContent = `Cell of the map, ${limits.join(", ")}: ${kept.length} points. “all” shows all points again.`;
+      }
       fit();
       redraw();
     }
@@ -286,6 +301,46 @@
         + Object.entries(misses).map(([name, all]) => `${name} ${shown(measured[found] - all[found])} (missed by ${shown(all[found])})`).join("; ");
     }
 
+    /* The residual maps: a click on a cell shows its points, over what the map has across. */
+    function linkMaps() {
+      const figure = document.getElementById(box.dataset.maps);
+      if (!figure) return;
+      const maps = [...figure.querySelectorAll('[id*="-cells-"]')];
+      const under = (event) => {
+        for (const map of maps) {
+          const { left, top, width: wide, height: tall } = map.getBoundingClientRect();
+          const [x, y] = [(event.clientX - left) / wide, 1 - (event.clientY - top) / tall];
+          if (!(x >= 0 && x < 1 && y >= 0 && y < 1)) continue;
+          const [across, up] = map.id.split("-cells-")[1].split("-");
+          return { across, cell: { [across]: cellAt(across, x), [up]: cellAt(up, y) } };
+        }
+        return null;
+      };
+      figure.addEventListener("pointermove", (event) => { figure.style.cursor = under(event) ? "pointer" : ""; });
+      figure.addEventListener("click", (event) => {
+        const found = under(event);
+        if (!found) return;
+        cell = found.cell;
+        part("what").value = "residual";
+        part("move").value = "";
+        const motor = points.axes.motor[1] ? "motor" : "housing";
+        part("axis").value = { clock: "time", temperature: motor, position: "angle" }[found.across];
+        for (const name of ["run", "direction"]) part(name).value = "-1";
+        part("trend").value = "0";
+        anew();
+        box.scrollIntoView({ block: "nearest" });
+        canvas.focus({ preventScroll: true });
+      });
+    }
+
+    /* The number of the cell at a share of an axis of a map. */
+    function cellAt(name, share) {
+      const { texts, edges } = data.cells[name];
+      if (!edges) return Math.floor(share * texts.length);
+      const at = edges[0] + share * (edges[texts.length] - edges[0]);
+      return Math.max(edges.findLastIndex((edge) => edge <= at), 0);
+    }
+
     const held = new Map();
     canvas.addEventListener("pointerdown", (event) => {
       held.set(event.pointerId, [event.offsetX, event.offsetY]);
@@ -310,19 +365,21 @@
       zoom(1.0015 ** event.deltaY, ...place(event));
     }, { passive: false });
     const keys = { ArrowLeft: () => pan(-0.1, 0), ArrowRight: () => pan(0.1, 0), ArrowUp: () => pan(0, 0.1),
-      ArrowDown: () => pan(0, -0.1), "+": () => zoom(0.8), "-": () => zoom(1.25), 0: anew };
+      ArrowDown: () => pan(0, -0.1), "+": () => zoom(0.8), "-": () => zoom(1.25), 0: () => whole() };
     canvas.addEventListener("keydown", (event) => {
       if (!keys[event.key]) return;
       event.preventDefault();
       keys[event.key]();
     });
-    for (const [name, act] of [["in", () => zoom(0.7)], ["out", () => zoom(1 / 0.7)], ["whole", anew]]) {
+    const whole = () => { cell = null; anew(); };
+    for (const [name, act] of [["in", () => zoom(0.7)], ["out", () => zoom(1 / 0.7)], ["whole", whole]]) {
       part(name).addEventListener("click", act);
     }
     for (const option of [...part("axis").options]) if (!points.axes[option.value][1]) option.remove();
     for (const name of ["what", "axis", "run", "trend", "direction", "move", ...Object.keys(COLOURS)]) {
       if (part(name)) part(name).addEventListener("input", anew);
     }
+    linkMaps();
     box.hidden = false;
     anew();
     new ResizeObserver(() => redraw()).observe(canvas.parentElement);

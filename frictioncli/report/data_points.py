@@ -12,6 +12,7 @@ from frictioncli.diagnosis.documents.reload import Misfits, Reloaded
 from frictioncli.model.zero_load import PAIR_KEY, temperature_of
 from frictioncli.plain_text import without_control_characters
 from frictioncli.report.binning import is_warming
+from frictioncli.report.map_cells import map_cells, outside
 from frictioncli.report.results import JointResults
 
 MOST_ROWS = 50_000
@@ -58,6 +59,20 @@ def data_points(results: JointResults, *, most_rows: int = MOST_ROWS) -> dict[st
         "trend": [int(trend) for trend in pairs["trend"]],
         "temperatures": {name: _rounded(pairs[name].to_numpy(float), 2) for name in temperatures},
         "columns": {name: _packed(rows[name].to_numpy(float)) for name in columns},
+        "cells": _cells(results, count, step),
+    }
+
+
+def _cells(results: JointResults, count: int, step: int) -> dict[str, Any]:
+    """Return the cells of the residual maps by move; nothing without a diagnosis."""
+    if results.diagnosis is None:
+        return {}
+    seen = results.diagnosis.seen
+    cells = map_cells(seen, results.model.temperature)
+    cells = outside(cells, count - len(np.unique(seen.problem.table.pair)))
+    return {
+        name: own | ({"move": own["move"][::step]} if "move" in own else {})
+        for name, own in cells.items()
     }
 
 

@@ -36,7 +36,7 @@ def map_caption(results: JointResults, *, extended: bool) -> str:
         "Mean of measured minus simulated torque per cell, red where more was measured than"
         f" simulated, blue where less; grey: no data.{beside} Friction reverses with direction;"
         " load does not. Each has its own scale. A trend or a patch is structure; a pattern without"
-        " order is noise."
+        " order is noise. Click a cell to see its points in the chart below."
     )
 
 

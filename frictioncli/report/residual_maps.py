@@ -74,9 +74,10 @@ def residual_map_figure(results: JointResults, *, diagnosis: Reloaded) -> Figure
     models = [("base model", seen.before)]
     if seen.terms:
         models.append(("extended model", seen.after))
-    axes = _map_axes(seen.problem.table, results.model.temperature)
+    axes = map_axes(seen.problem.table, results.model.temperature)
     wanted = (("temperature", "speed"), ("clock", "position"), ("position", "speed"))
-    pairs = [(axes[across], axes[up]) for across, up in wanted if across in axes and up in axes]
+    named = [(across, up) for across, up in wanted if across in axes and up in axes]
+    pairs = [(axes[across], axes[up]) for across, up in named]
     figure = Figure(figsize=(WIDTH, 0.5 + 3.8 * len(pairs)), layout="constrained")
     grid = figure.subplots(2 * len(pairs), len(models), squeeze=False, sharey="row")
     for index, channel in enumerate(("friction", "load")):
@@ -94,6 +95,10 @@ def residual_map_figure(results: JointResults, *, diagnosis: Reloaded) -> Figure
             for row, (across, up), drawn in zip(panels, pairs, means, strict=True)
             for panel, (mean, _) in zip(row, drawn, strict=True)
         ]
+        for row, (across_name, up_name) in zip(panels, named, strict=True):
+            for panel, (model, _) in zip(row, models, strict=True):
+                # the chart that looks into the data finds the map under the pointer by it
+                panel.patch.set_gid(f"cells-{across_name}-{up_name}-{channel}-{model.split()[0]}")
         for panel, (name, _) in zip(panels[0], models, strict=True):
             panel.set_title(f"{channel}, {name}")
         for panel in panels[:, 1:].flat:
@@ -169,7 +174,21 @@ def _draw_map(panel: Axes, across: MapAxis, up: MapAxis, mean: Array, limit: flo
     return mesh
 
 
-def _map_axes(table: EffectTable, temperature: str) -> dict[str, MapAxis]:
+def map_axes(table: EffectTable, temperature: str) -> dict[str, MapAxis]:
+    """Return the axes of the maps that these data have.
+
+    Parameters
+    ----------
+    table : EffectTable
+        Rows of the runs that the maps show.
+    temperature : {"motor", "housing", "mean"}
+        Temperature input of the model.
+
+    Returns
+    -------
+    dict
+        Of ``clock``, ``temperature``, ``position`` and ``speed``, those that vary and the last two.
+    """
     symbol = TEMPERATURE_SYMBOLS[temperature]
     axes = {}
     hours = table.clock / 3600.0
