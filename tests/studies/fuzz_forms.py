@@ -23,7 +23,7 @@ import pyarrow.parquet as pq
 
 from tests.studies.fuzz_call import call, commands
 from tests.studies.fuzz_damage import _CELLS, _TEXTS, _damaged
-from tests.studies.fuzz_recordings import COLUMNS, WRITERS, recordings
+from tests.studies.fuzz_recordings import COLUMNS, RECORDINGS, WRITERS, recording
 
 WORK, LOGS = "work", "logs"
 STATUS = (0, 2, 3)
@@ -340,8 +340,8 @@ def options(folder: Path, base: Path, draw: random.Random) -> Input:
 
 def binary(folder: Path, base: Path, draw: random.Random) -> Input:
     """Return a recording in a container of measurements or messages, damaged."""
-    name, content = draw.choice(sorted(recordings().items()))
-    kind, content = _damaged(content, draw)
+    name = draw.choice(RECORDINGS)
+    kind, content = _damaged(recording(name), draw)
     (folder / LOGS / "day").mkdir(parents=True)
     (folder / LOGS / "day" / name).write_bytes(content)
     words = ["ingest", LOGS, "-w", WORK] if draw.random() < 0.75 else ["inspect", LOGS]

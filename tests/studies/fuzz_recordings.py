@@ -1,6 +1,7 @@
 """Small recordings of every binary container that is read with an optional package."""
 
 import functools
+import shutil
 import tempfile
 from collections.abc import Callable, Mapping
 from pathlib import Path
@@ -37,6 +38,57 @@ def _csv(path: Path, columns: Columns) -> None:
     path.write_text("\n".join(lines) + "\n", encoding="utf-8")
 
 
+_TYPE = "sensor_msgs/msg/JointState"
+
+
+def _ros(path: Path, columns: Columns) -> None:
+    """Write a message per row; a time that is no time of ROS becomes the nearest that is one."""
+    from rosbags.rosbag1 import Writer as Writer1
+    from rosbags.rosbag2 import StoragePlugin, Writer
+    from rosbags.typesys import Stores, get_typestore
+
+    if path.suffix == ".bag":
+        store, folder, writer = get_typestore(Stores.ROS1_NOETIC), path, Writer1(path)
+    else:
+        plugin = StoragePlugin.MCAP if path.suffix == ".mcap" else StoragePlugin.SQLITE3
+        store, folder = get_typestore(Stores.ROS2_HUMBLE), path.with_suffix("")
+        writer = Writer(folder, version=9, storage_plugin=plugin)
+    stamps = np.clip(np.nan_to_num(columns["time"]), 0.0, 2.0e9)
+    serialize = store.serialize_ros1 if path.suffix == ".bag" else store.serialize_cdr
+    types = store.types
+    with writer:
+        connection = writer.add_connection("/joint_states", _TYPE, typestore=store)
+        for number, seconds in enumerate(stamps.tolist()):
+            second, nanosecond = divmod(round(seconds * 1e9), 10**9)
+            stamp = types["builtin_interfaces/msg/Time"](sec=second, nanosec=nanosecond)
+            header = {"stamp": stamp, "frame_id": ""}
+            if path.suffix == ".bag":
+                header["seq"] = number
+            values = (
+                np.array([columns[f"{name}_2"][number]])
+                for name in ("position", "velocity", "torque")
+            )
+            names = ("position", "velocity", "effort")
+            message = types[_TYPE](
+                header=types["std_msgs/msg/Header"](**header),
+                name=["joint_2"],
+                **dict(zip(names, values, strict=True)),
+            )
+            writer.write(connection, 10**9 + number * 10**7, serialize(message, _TYPE))
+    if folder != path:
+        (folder / f"{folder.name}{path.suffix}").rename(path)
+        shutil.rmtree(folder)
+
+
+def _mdf(path: Path, columns: Columns) -> None:
+    import asammdf
+
+    names = [name for name in columns if name != "time"]
+    with asammdf.MDF(version="4.10") as file:
+        file.append([asammdf.Signal(columns[name], columns["time"], name=name) for name in names])
+        file.save(path, overwrite=True)
+
+
 WRITERS: dict[str, Callable[[Path, Columns], None]] = {
     "log.csv": _csv,
     "log.parquet": lambda path, columns: pq.write_table(pa.table(dict(columns)), path),
@@ -45,24 +97,29 @@ WRITERS: dict[str, Callable[[Path, Columns], None]] = {
     "log.npy": _npy,
     "log.npz": lambda path, columns: np.savez(path, **columns),
     "log.mat": lambda path, columns: savemat(path, dict(columns)),
+    "log.mcap": _ros,
+    "log.db3": _ros,
+    "log.bag": _ros,
+    "log.mf4": _mdf,
 }
 """File name -> writer of a table."""
 
 
-@functools.cache
-def recordings() -> dict[str, bytes]:
-    """Return file name -> content of a recording that is read."""
-    from tests.logs.test_ros import recorded, states
+_PACKED = "packed.mcap"
 
-    found = {}
-    with tempfile.TemporaryDirectory() as name:
-        folder = Path(name)
-        for kind in ("mcap", "db3", "bag"):
-            path = recorded(folder, kind, {"/joint_states": states()})
-            found[f"log.{kind}"] = path.read_bytes()
-        path = recorded(folder, "mcap", {"/joint_states": states()}, packed=True)
-        found["packed.mcap"] = path.read_bytes()
-        for name, write in WRITERS.items():
-            write(folder / name, COLUMNS)
-            found[name] = (folder / name).read_bytes()
-    return found
+RECORDINGS = (*sorted(WRITERS), _PACKED)
+"""Names of the recordings that are damaged byte by byte."""
+
+
+@functools.cache
+def recording(name: str) -> bytes:
+    """Return the content of a recording that is read."""
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder) / name
+        if name == _PACKED:
+            from tests.logs.test_ros import recorded, states
+
+            path = recorded(Path(folder), "mcap", {"/joint_states": states()}, packed=True)
+        else:
+            WRITERS[name](path, COLUMNS)
+        return path.read_bytes()
