@@ -21,12 +21,12 @@ def _nullable(name: str, kind: pa.DataType, unit: str, description: str) -> Colu
 
 CHALLENGE = Table(
     "challenge",
-    "effect planted into a log in one size",
+    "effect planted in a log at one size",
     (
         Column("joint", pa.int16(), "", "joint number, from 1"),
         Column("effect", _LABEL, "", "what was planted; none: the log as it is"),
         Column("seed", _COUNT, "", "seed of the shape of its law"),
-        Column("purpose", _LABEL, "", "as_logged, given, share or search: why in this size"),
+        Column("purpose", _LABEL, "", "as_logged, given, share or search: why this size"),
         Column("status", _LABEL, "", "done, or cannot: these data cannot show it, or refuse it"),
         Column("message", _TEXT, "", "why it cannot"),
         Column("unit", _LABEL, "", "unit of its sizes"),
@@ -47,9 +47,11 @@ CHALLENGE = Table(
         _nullable("gain_basis", _LABEL, "", "new_run, or within_run where the gain is optimistic"),
         _nullable("rmse_before", _REAL, _IN_UNIT, "misfit of the base model"),
         _nullable("rmse_after", _REAL, _IN_UNIT, "misfit of the extended model"),
-        _nullable("size_found", _REAL, "unit", "least size found by the search, of this effect"),
-        _nullable("size_found_low", _REAL, "unit", "greatest smaller size that was not found"),
-        _nullable("size_found_high", _REAL, "unit", "least size from which on all were found"),
+        _nullable(
+            "size_found", _REAL, "unit", "smallest size of this effect that the search found"
+        ),
+        _nullable("size_found_low", _REAL, "unit", "largest size below it that was not found"),
+        _nullable("size_found_high", _REAL, "unit", "smallest size from which all were found"),
         _nullable("seconds", _REAL, "s", "processor time"),
     ),
 )

@@ -1,4 +1,4 @@
-"""Effects planted into the logs of a joint, and what the diagnosis says of them: ``challenge``."""
+"""Effects planted in the logs of a joint, and what the diagnosis says of them: ``challenge``."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
@@ -99,8 +99,8 @@ def _requests(texts: Sequence[str]) -> tuple[RequestedEffect, ...]:
     for one in requests:
         if one.history:
             raise OptionError(
-                f"--effect {one.name}@{one.history}: expected NAME or NAME:SIZE; a planted change"
-                " lasts"
+                f"--effect {one.name}@{one.history}: expected NAME or NAME:SIZE; planted"
+                " changes are permanent"
             )
     return requests
 
@@ -149,7 +149,7 @@ class _Challenge:
             return
         searches = dict.fromkeys((request.name, seed) for request, seed in tries)
         for number, (name, seed) in enumerate(searches, start=1):
-            self._search(name, seed, f"least size, {number} of {len(searches)}")
+            self._search(name, seed, f"smallest size, {number} of {len(searches)}")
 
     def _say(self, name: str, what: str) -> None:
         self.progress(f"joint {self.subject.joint}: {name}, {what}")

@@ -8,14 +8,14 @@ from frictioncli.options import option
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ChallengeSettings:
-    """What is planted into a log.
+    """What is planted in a log.
 
     Attributes
     ----------
     effects : tuple of str
         Effects to plant one at a time, each ``NAME`` or ``NAME:SIZE``; SIZE is the root mean square
         of its torque over all pairs and angle bins. Without any, each effect that the log can show
-        is planted in the usual size, and the least size that is found is searched for. [torque
+        is planted at the usual size, and the smallest size found is searched for. [torque
         unit]
     share : float
         Usual size. [% of the mean friction]
@@ -30,22 +30,22 @@ class ChallengeSettings:
     effects: tuple[str, ...] = field(
         default=(),
         metadata=option(
-            "Effect to plant, repeatable; SIZE is its RMS over all pairs [torque unit]. Without it"
-            " all that the log can show, and the least size of each that is found.",
+            "Effect to plant, repeatable; SIZE is its RMS over all pairs [torque unit]. Without it,"
+            " every effect that the log can show, and the smallest size at which each is found.",
             "--effect",
             metavar="NAME[:SIZE]",
         ),
     )
     share: float = field(
         default=10.0,
-        metadata=option("Size where none is given [% of mean friction]."),
+        metadata=option("Size of effects given without one [% of mean friction]."),
     )
-    draws: int = field(default=1, metadata=option("Shapes in which each effect is planted."))
+    draws: int = field(default=1, metadata=option("Number of shapes to try of each effect."))
     seed: int = field(default=0, metadata=option("Seed of the shapes."))
     search: bool | None = field(
         default=None,
         metadata=option(
-            "Search the least size that is found; else if no effect is given.",
+            "Search for the smallest size that is found (default: if no --effect is given).",
             "--search/--no-search",
         ),
     )

@@ -6,11 +6,11 @@ from frictioncli.challenge_schema import AS_LOGGED, SEARCH, Row
 from frictioncli.report.challenge_words import found_text, mark, summary
 from frictioncli.wording import number_text
 
-_HEAD = ("effect", "planted", "share", "claimed", "found from", "verdict", "names given", "")
+_HEAD = ("effect", "planted", "share", "claimed", "found at", "verdict", "names given", "")
 
 
 def challenge_text(rows: Sequence[Row]) -> str:
-    """Return what was there already, which sizes are found, and names that are wrong.
+    """Return what was there already, which sizes are found, and which names are wrong.
 
     Parameters
     ----------

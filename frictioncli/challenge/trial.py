@@ -137,8 +137,8 @@ class Planter:
                 return whole, channel
             magnitude *= float(np.clip(size / counted, 1.0 / _CLOSE, _CLOSE))
         raise NotEnoughData(
-            f"{effect.name}: these data cannot show it in a size of {size:.3g}; what it adds to"
-            f" pairs is {counted:.3g}"
+            f"{effect.name}: these data cannot show it at a size of {size:.3g}; it adds"
+            f" {counted:.3g} to the pairs"
         )
 
     def _guess(self, effect: PlantedEffect, size: float) -> float:

@@ -207,7 +207,7 @@ def challenge(
     options: ChallengeSettings,
     settings: RunSettings,
 ) -> None:
-    """Plant effects [N·m or A] into your own logs; say which the diagnosis finds and names."""
+    """Plant effects [N·m or A] in your own logs; say which ones the diagnosis finds and names."""
     from frictioncli.challenge.challenge import challenge as run_challenge
 
     try:

@@ -1,4 +1,4 @@
-"""Picture of an effect that was planted into a log: chance of its right name over its size."""
+"""Picture of an effect that was planted in a log: chance of its right name against its size."""
 
 from dataclasses import dataclass
 
@@ -103,7 +103,7 @@ def challenge_figure(rows: pd.DataFrame) -> Figure:
     panel.set_ylim(-0.12, 1.12)
     panel.set_yticks([0, 0.5, 1], ["0", "50", "100"])
     panel.set_ylabel("right name [%]")
-    panel.set_xlabel(f"RMS of what is planted over all pairs [{unit}]")
+    panel.set_xlabel(f"RMS of the planted effect over all pairs [{unit}]")
     panel.set_title(in_words(str(rows["effect"].iloc[0])))
     panel.legend(loc="center left", bbox_to_anchor=(1.0, 0.5))
     return figure
@@ -155,14 +155,14 @@ def _draw_trials(panel: Axes, done: pd.DataFrame) -> None:
             "x",
             color=HEATING,
             markersize=9,
-            label="another name is wrong",
+            label="another name, wrong",
         )
 
 
 def _draw_sizes(panel: Axes, rows: pd.DataFrame) -> None:
     low, high = rows["size_found_low"].min(), rows["size_found_high"].max()
     if np.isfinite(low) and np.isfinite(high):
-        panel.axvspan(low, high, color=_FOUND, alpha=0.15, linewidth=0, label="found from here on")
+        panel.axvspan(low, high, color=_FOUND, alpha=0.15, linewidth=0, label="smallest size found")
     claimed = rows["claimed"].dropna()
     if len(claimed):
         panel.axvline(claimed.iloc[0], color=MODEL, linestyle="--", linewidth=1, label="claimed")

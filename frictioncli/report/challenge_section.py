@@ -1,4 +1,4 @@
-"""Part of the page on effects that were planted into the logs, as a test of the diagnosis."""
+"""Part of the page on effects that were planted in the logs, as a test of the diagnosis."""
 
 from dataclasses import dataclass
 
@@ -9,7 +9,7 @@ from frictioncli.report.challenge_words import found_text, mark, rows_of_table, 
 from frictioncli.report.page_tables import TextTable
 from frictioncli.wording import in_words, number_text
 
-_HEADER = ("effect", "names given", "outcome", "planted", "claimed", "found from")
+_HEADER = ("effect", "names given", "outcome", "planted", "claimed", "found at")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -29,7 +29,7 @@ class PlantedText:
 
 
 def planted_text(challenge: pd.DataFrame) -> PlantedText:
-    """Return what became of effects that were planted into the logs of a joint.
+    """Return what became of effects that were planted in the logs of a joint.
 
     Parameters
     ----------
@@ -41,7 +41,7 @@ def planted_text(challenge: pd.DataFrame) -> PlantedText:
     if not shown:
         return PlantedText()
     table = TextTable(
-        title="Effects planted into these logs, and what the diagnosis then said",
+        title="Effects planted in these logs, and what the diagnosis then said",
         header=_HEADER,
         rows=tuple(map(_cells, shown)),
         texts=3,

@@ -1,4 +1,4 @@
-"""What became of effects that were planted into a log, in words and figures."""
+"""What became of effects that were planted in a log, in words and figures."""
 
 from collections.abc import Sequence
 
@@ -31,10 +31,10 @@ def mark(row: Row) -> str:
         Row of :data:`frictioncli.challenge_schema.CHALLENGE`.
     """
     if row["status"] == CANNOT:
-        return "not shown by these data"
+        return "not visible in these data"
     told = []
     if row["already"]:
-        told.append("there already")
+        told.append("already there")
     elif row["right_alone"]:
         told.append("found")
     elif row["right_in_set"]:
@@ -61,7 +61,7 @@ def found_text(row: Row) -> str:
 
 
 def summary(rows: Sequence[Row]) -> list[str]:
-    """Return the figures of a joint: shares found in the usual size, wrong names, claims that held.
+    """Return the figures of a joint: shares found at the usual size, wrong names, claims that held.
 
     Parameters
     ----------
@@ -75,17 +75,17 @@ def summary(rows: Sequence[Row]) -> list[str]:
     if shown:
         found = sum(bool(row["right_in_set"]) for row in shown)
         lines.append(
-            f"in the usual size: {found} of {count_text(len(shown), 'effect')} found that the"
-            " diagnosis calls detectable in it"
+            f"found at the usual size: {found} of {count_text(len(shown), 'effect')} that the"
+            " diagnosis calls detectable at that size"
         )
     wrong = sum(bool(row["wrong"]) for row in done)
     if done:
-        lines.append(f"wrong new names: in {wrong} of {count_text(len(done), 'trial')}")
+        lines.append(f"trials with a wrong new name: {wrong} of {count_text(len(done), 'trial')}")
     ratios = claim_ratios(rows)
     if ratios:
         within = sum(1 / 1.5 <= one <= 1.5 for one in ratios.values())
         lines.append(
-            f"claimed detectable size within a factor of 1.5 of the one found: {within} of"
+            f"claimed detectable size within a factor of 1.5 of the size found: {within} of"
             f" {count_text(len(ratios), 'effect')}"
         )
     return lines

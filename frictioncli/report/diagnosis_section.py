@@ -66,7 +66,7 @@ class DiagnosisSection:
     worst, detectable : TextTable or None
         Largest misfits of the simulation; smallest size at which each effect would be found.
     planted : PlantedText
-        What the diagnosis said of effects that were planted into these logs.
+        What the diagnosis said of effects that were planted in these logs.
     """
 
     missing: str = ""

@@ -75,7 +75,7 @@ class JointResults:
     plan : PlanDocument or None
         The next experiment.
     challenge : DataFrame
-        Effects planted into these logs; empty if none were.
+        Effects planted in these logs; empty if none were.
     """
 
     model: FrictionModel

@@ -58,7 +58,7 @@ def test_an_asymmetry_is_found_by_its_name_and_the_log_as_it_is_has_none(asymmet
     assert row["right_alone"]
     assert not row["already"]
     assert "as logged: no_evidence" in said
-    assert "wrong new names: in 0 of 1 trial" in said
+    assert "trials with a wrong new name: 0 of 1 trial" in said
 
 
 def test_gain_is_of_the_diagnosis_with_the_effect(asymmetry):
@@ -90,15 +90,15 @@ def test_the_page_shows_planted_effects_as_long_as_they_are_of_these_data(asymme
     work = shutil.copytree(asymmetry[0], tmp_path / "work")
     report(work)
     page = (work / "report" / "index.html").read_text(encoding="utf-8")
-    table = page.split("Effects planted into these logs")[1].split("</table>")[0]
+    table = page.split("Effects planted in these logs")[1].split("</table>")[0]
     cells = re.findall(r"<t[dh][^>]*>(.*?)</t[dh]>", table.split("<tbody>")[-1])
     assert cells[:3] == ["direction asymmetry", "direction asymmetry", "found"]
-    assert "Wrong new names: in 0 of 1 trial." in page
+    assert "Trials with a wrong new name: 0 of 1 trial." in page
     # another diagnosis than the one that was challenged
     diagnose(work, DiagnosisSettings(alpha=0.01))
     report(work)
     page = (work / "report" / "index.html").read_text(encoding="utf-8")
-    assert "Effects planted into these logs" not in page
+    assert "Effects planted in these logs" not in page
     assert "Left out, the planted effects" in page
 
 
@@ -181,7 +181,7 @@ def test_what_these_data_cannot_show_is_told_as_such(logs, tmp_path, undiagnosed
     row = rows_of(tmp_path).iloc[1]
     assert (row["status"], row["right_in_set"]) == ("cannot", False)
     assert "cannot show it" in row["message"]
-    assert "not shown by these data" in str(result)
+    assert "not visible in these data" in str(result)
 
 
 @pytest.mark.parametrize("threshold", [0.8, 3.0])

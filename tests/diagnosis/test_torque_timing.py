@@ -1,4 +1,4 @@
-"""Delay and filter of the torque: planted into moves by formulas, and into a real log."""
+"""Delay and filter of the torque: planted in moves by formulas, and into a real log."""
 
 from dataclasses import replace
 from types import SimpleNamespace

@@ -48,12 +48,12 @@ def test_the_figure_shows_each_trial_the_claim_and_the_size_found():
     table["size_found_low"], table["size_found_high"] = 0.5, 1.0
     panel = challenge_figure(table).axes[0]
     labels = {text.get_text() for text in panel.get_legend().get_texts()}
-    assert {"named", "named in a set", "not named", "another name is wrong", "claimed"} <= labels
+    assert {"named", "named in a set", "not named", "another name, wrong", "claimed"} <= labels
     marks = {line.get_label(): line.get_xydata().tolist() for line in panel.lines}
     assert marks["named"] == [[2.0, 1.0]]
     assert marks["named in a set"] == [[1.0, 1.0]]
     assert marks["not named"] == [[0.5, 0.0]]
-    assert marks["another name is wrong"] == [[0.5, 0.0]]
+    assert marks["another name, wrong"] == [[0.5, 0.0]]
     assert panel.get_xlabel().endswith("[A]")
 
 

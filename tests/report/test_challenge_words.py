@@ -44,9 +44,9 @@ def row(**changes):
         ({}, "not found"),
         (FOUND, "found"),
         (FOUND | {"right_alone": False}, "found in a set"),
-        (FOUND | {"already": True}, "there already"),
+        (FOUND | {"already": True}, "already there"),
         (FOUND | {"wrong": "inertia"}, "found, WRONG: inertia"),
-        ({"status": "cannot"}, "not shown by these data"),
+        ({"status": "cannot"}, "not visible in these data"),
     ],
 )
 def test_outcome_in_words(changes, told):
@@ -78,8 +78,8 @@ def test_shares_count_what_the_log_can_show_and_has_not_already():
     ]
     assert [can_show(one) for one in rows[:3]] == [True, True, False]
     told = summary(rows)
-    assert told[0].startswith("in the usual size: 1 of 2 effects found")
-    assert told[1] == "wrong new names: in 1 of 5 trials"
+    assert told[0].startswith("found at the usual size: 1 of 2 effects")
+    assert told[1] == "trials with a wrong new name: 1 of 5 trials"
 
 
 def test_claims_are_compared_with_the_size_found_and_fail_where_none_was():

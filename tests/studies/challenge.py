@@ -1,4 +1,4 @@
-"""Which effects does the diagnosis find that are planted into logs, and which names are wrong?
+"""Which effects does the diagnosis find that are planted in logs, and which names are wrong?
 
 Usage: python -m tests.studies.challenge FOLDER WORK [NAME...] [--search]
 

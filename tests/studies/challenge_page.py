@@ -60,20 +60,20 @@ def gates(cases: dict[str, list[Row]]) -> str:
             [bool(row["right_in_set"]) for row in shown],
         ),
         _gate(
-            "a wrong name that was not there before, in all trials",
+            "trials with a wrong name that was not there before",
             WRONG,
             [bool(row["wrong"]) for row in done],
             most=True,
         ),
         _gate(
-            f"claimed detectable size within a factor of {CLOSE} of the one found",
+            f"claimed detectable size within a factor of {CLOSE} of the size found",
             CLAIMED,
             [1 / CLOSE <= one <= CLOSE for one in ratios],
         ),
         "",
-        f"Beside these, {count_text(len(beyond), 'trial')} in the usual size where the diagnosis"
+        f"Beside these, {count_text(len(beyond), 'trial')} at the usual size where the diagnosis"
         " says that it is too small for these data:"
-        f" {sum(bool(row['right_in_set']) for row in beyond)} found all the same.\n",
+        f" {sum(bool(row['right_in_set']) for row in beyond)} were found all the same.\n",
     ]
     return "\n".join(lines)
 
@@ -111,11 +111,11 @@ def section(case: str, rows: Sequence[Row]) -> str:
         own = [row for row in rows if row["joint"] == logged["joint"]]
         names = logged["names"] or logged["structure"] or "nothing"
         lines.append(f"Joint {logged['joint']} as logged: {logged['verdict']}; {names}.\n")
-        lines.append("| planted | size | share | claimed | found from | names given | |")
+        lines.append("| planted | size | share | claimed | found at | names given | |")
         lines.append("|---|---|---|---|---|---|---|")
         lines += [_line(row) for row in own if row["purpose"] not in (AS_LOGGED, SEARCH)]
         seconds = sum(row["seconds"] or 0.0 for row in own)
-        lines.append(f"\n{count_text(len(own) - 1, 'trial')}, {seconds:.0f} s of processor.\n")
+        lines.append(f"\n{count_text(len(own) - 1, 'trial')}, {seconds:.0f} s of CPU time.\n")
     return "\n".join(lines)
 
 

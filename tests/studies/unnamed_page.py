@@ -13,17 +13,17 @@ _TEXT = """# What has no name
 
 **{reached} of {gates} gates are reached.{missed}**
 
-Laws that the catalogue does not hold, added to the torques of simulated joints with all nuisances
+Laws that are not in the catalogue, added to the torques of simulated joints with all nuisances
 (those of the [blind study](blind.md)), 1 N·m RMS each over two days; the second day is kept out.
-No formula is one by which the analysis describes: bumps are raised cosines or Lorentz curves, peaks
-hyperbolic secants. `python -m tests.studies.unnamed --write` makes this page. Each law is planted
-once in each programme listed, which is few: shares are of so many joints.
+None of the formulas is one that the analysis uses for its descriptions: bumps are raised cosines or
+Lorentz curves, peaks hyperbolic secants. `python -m tests.studies.unnamed --write` makes this page.
+Each law is planted once in each programme listed, so that shares rest on few joints.
 
-*Left* is what base and measurement leave of a law on the day seen; less than the *margin*, 0.5 % of
-the friction, is not looked for. The *size* that is said is compared with what the base alone
-leaves. *Gain* is that of the empirical term on the day kept out, as a share of what knowing the law
-would give: the same joint diagnosed without it. It can be above 1, since the term holds what the
-nuisances leave, too.
+*Left* is what base model and measurement effects leave of a law on the day seen; less than the
+*margin*, 0.5 % of the friction, is not looked for. The *size* stated is compared with what the base
+model alone leaves. *Gain* is that of the empirical term on the day kept out, as a share of what
+knowing the law would give: the same joint diagnosed without it. It can exceed 1, since the term
+also takes up what the nuisances leave.
 
 Nuisances may leave more than the margin. A form that leads is evidence beyond what they leave; free
 functions are not, and are used only where they surely explain more than the root sum of squares of
@@ -46,7 +46,7 @@ as the free function.
 """
 
 _HEAD = (
-    *("law", "programme", "left [N·m]", "said to be along", "size said / left by the base [N·m]"),
+    *("law", "programme", "left [N·m]", "stated axis", "size stated / left by the base [N·m]"),
     *("day kept out [N·m]: without, with, law known", "gain", "described as"),
 )
 
