@@ -15,7 +15,8 @@ Up to two forms (:mod:`frictioncli.diagnosis.empirical.forms`) describe it, one 
 each judged on what the former leaves, beside the discrepancy that any model has. Each must explain
 more than that size of the blocks kept out, and show in every part of the pairs alone; together they
 must explain most of what the free functions do, and predict the blocks as well. Otherwise, or where
-another form may be there instead that is nearly as likely, the term has no form.
+another form may be there instead that is nearly as likely, the term has no form. A form that
+explains too little of the blocks makes way for the next.
 
 A form is evidence beyond that discrepancy. Free functions are not: any joint has some, which recur
 on every run. Without a form a term is used only where it surely explains more than the root sum of
@@ -49,6 +50,9 @@ from frictioncli.effects.base import Basis
 
 _MOST_FORMS = 2
 """Greatest number of forms."""
+
+_MOST_TRIED = 4
+"""Greatest number of forms that are tried: one that explains too little makes way for the next."""
 
 _LEAST_LEAD = 5.0
 """Least difference of the statistic to that of any other form: an odds ratio of twelve."""
@@ -197,21 +201,26 @@ def empirical_term(
     small = functions_of(problem, components, step.precomputed.start.amplitude)
     best, before = free, free.gain.before
     forms: list[Function] = []
-    for _ in range(_MOST_FORMS):
+    candidates = forms_of(_varying(problem))
+    for _ in range(_MOST_TRIED):
         beside = WeightedMisfit.of(fitted, step.noise(), [*forms, *small], misfit)
-        found = beside.best(forms_of(_varying(problem)))
+        found = beside.best(candidates)
         if found.score < LEAST_SCORE or found.lead < _LEAST_LEAD:
             break
-        forms.append(function_of_form(fitted, found.form, found.shape))
-        more = estimated([*forms, *small])
+        tried = [*forms, function_of_form(fitted, found.form, found.shape)]
+        more = estimated([*tried, *small])
         alone = reduced(more.equations.of_forms())
         added = float(np.sqrt(max(before**2 - alone.after**2, 0.0)))
         if added < margin or not _recurs(more):
-            break
+            candidates.remove(found.form)
+            continue
+        forms = tried
         before = alone.after
         best = min(best, more, estimated([*forms, *smooth]), key=lambda one: one.gain.after)
         if _explained(alone) >= _MOST_OF_IT * _explained(free.gain):
             described = more
+        if len(forms) == _MOST_FORMS:
+            break
     chosen = free
     if described is not None and described.gain.after <= _AS_GOOD * best.gain.after:
         chosen = described

@@ -122,5 +122,11 @@ def refitted_beside(
             replace(one, coefficients=one.coefficients - values)
             for one, values in zip(extension.effects, of_effects, strict=True)
         ),
-        errors=np.sqrt(np.square(extension.errors) + np.maximum(variance, 0.0)),
+        errors=_with(extension.errors, variance),
+        fixed_shape_errors=_with(extension.fixed_shape_errors, variance),
     )
+
+
+def _with(errors: Array, variance: Array) -> Array:
+    """Return standard errors with more variance."""
+    return np.asarray(np.sqrt(np.square(errors) + np.maximum(variance, 0.0)))
