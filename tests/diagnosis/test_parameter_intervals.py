@@ -91,9 +91,9 @@ def test_a_delay_that_is_not_named_is_an_error_of_what_it_moves(joint, weighted_
 
 @pytest.mark.slow
 def test_joints_with_nothing_hidden_under_all_nuisances():
-    """Six joints: of 30 intervals of the base 92 % hold the truth; one name at the most."""
+    """Ten joints: of 50 intervals of the base 92 % hold the truth; one name at the most."""
     held, offset, named = [], [], []
-    for seed in range(61, 67):
+    for seed in range(60, 70):
         settings = SynthesisSettings(
             seed=seed, joint_kind="plain", nuisances=("all", "friction_zones:0.02")
         )
@@ -116,7 +116,7 @@ def test_joints_with_nothing_hidden_under_all_nuisances():
                 offset.append(abs(one.coefficients[0] - truth) <= errors[place])
             place += len(one.coefficients)
     assert len(named) <= 1, named
-    assert len(held) >= 24
+    assert len(held) >= 40
     assert np.mean(held) >= 0.92
     assert offset
     assert np.mean(offset) >= 0.75
