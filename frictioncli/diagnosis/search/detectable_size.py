@@ -21,7 +21,7 @@ from scipy.optimize import brentq
 from frictioncli.diagnosis.fit.hypotheses import EffectFit, HypothesisTest, informative_shapes
 from frictioncli.diagnosis.noise.significance import statistic_of
 from frictioncli.diagnosis.search.cause import CONVINCING
-from frictioncli.diagnosis.search.effect_size import left_size
+from frictioncli.diagnosis.search.effect_size import left_share, left_size
 from frictioncli.diagnosis.search.margin import channel_margin, whole_torque
 from frictioncli.diagnosis.search.planted_fit import PlantedFit
 from frictioncli.diagnosis.search.standing import level_of
@@ -35,17 +35,21 @@ _ABOVE = 1 + float(stats.norm.isf(1 - POWER)) / 1.96
 """By how many of its half-widths below the size the lower bound must be above the margin for it to
 be so four times in five."""
 
-_STEP = 1.5
-"""Factor between two sizes until one would be named."""
+_STEP = 1.25
+"""Factor to which the size is resolved, and by which it grows at least until it would be named."""
 
-_CLOSER = 2
-"""Bisections of that factor."""
+_LEAP = 3.0
+"""Factor by which it grows at most."""
 
-_SHAPES = 3
-"""Number of shapes of an effect at which it is planted."""
+_NEVER = float("inf")
+"""Size of what is never named, and factor by which a physically impossible size is too small."""
 
-_TRIED = 32
-"""Greatest number of shapes among which those are looked for that the data show."""
+_SHAPES = 9
+"""Number of shapes of an effect of which it is planted in the middle one."""
+
+_HISTORIES = 3
+"""Number of histories of a change with which it is planted: what drift takes of it depends on them
+by more than what the base does."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -120,7 +124,7 @@ def detectable_size(
 ) -> float | None:
     """Return the smallest RMS size of an effect that would be named four times in five [N·m].
 
-    The median over shapes of the effect.
+    Of an average shape of the effect; of a change the median over some histories.
 
     Parameters
     ----------
@@ -152,46 +156,61 @@ def detectable_size(
 
 
 def _planted(step: Step, effect: Effect, needed: Needed) -> list[PlantedFit]:
-    """Return an effect in some shapes that the data show; a change in some that last."""
-    shapes = informative_shapes(effect, step.problem)
+    """Return an effect in the shape of which the base leaves an average share.
+
+    A change with several histories that last. Those of which a size worth a name is possible.
+    """
+    shapes, wanted = informative_shapes(effect, step.problem), 1
     if effect.moments is not None:
-        shapes = [one for one in shapes if one["end"] >= 1.0] or shapes
-    places = stats.qmc.Halton(1, scramble=False).random(_TRIED + 1)[1:, 0] * len(shapes)
+        shapes, wanted = [one for one in shapes if one["end"] >= 1.0] or shapes, _HISTORIES
+    places = stats.qmc.Halton(1, scramble=False).random(_SHAPES + 1)[1:, 0] * len(shapes)
+    some = [shapes[place] for place in dict.fromkeys(places.astype(int).tolist())]
+    if effect.moments is None:
+        shares = np.array([left_share(step.precomputed, effect, shape) for shape in some])
+        order = np.argsort(np.abs(shares - np.median(shares)), kind="stable")
+        some = [some[place] for place in order]
     found: list[PlantedFit] = []
-    for place in dict.fromkeys(places.astype(int).tolist()):
-        one = PlantedFit.of(step, effect, shapes[place])
-        # as much of it as is worth a name must be physically possible
+    for shape in some:
+        one = PlantedFit.of(step, effect, shape)
         if one is not None and one.is_possible(needed.margin):
             found.append(one)
-        if len(found) == _SHAPES:
+        if len(found) == wanted:
             break
     return found
 
 
 def _least(planted: PlantedFit, needed: Needed, test: HypothesisTest) -> float:
     """Return the least size of a planted effect that is named; infinity where none is."""
-    size = max(float(np.sqrt(needed.statistic)) * test.size_scale, needed.margin)
-    size = min(size, needed.most)
-    while not _is_named(planted, needed, size):
-        size *= _STEP
+    size = min(max(float(np.sqrt(needed.statistic)) * test.size_scale, needed.margin), needed.most)
+    below, factor = size, _missing(planted, needed, size)
+    while factor > 1:
+        below, size = size, size * float(np.clip(factor, _STEP, _LEAP))
         if size > needed.most:
-            return float("inf")
-    low = size / _STEP
-    for _ in range(_CLOSER):
-        middle = float(np.sqrt(low * size))
-        if _is_named(planted, needed, middle):
-            size = middle
+            return _NEVER
+        factor = _missing(planted, needed, size)
+    while size > _STEP * below:
+        middle = float(np.sqrt(below * size))
+        if _missing(planted, needed, middle) > 1:
+            below = middle
         else:
-            low = middle
+            size = middle
     return size
 
 
-def _is_named(planted: PlantedFit, needed: Needed, size: float) -> bool:
-    """Return whether a size passes every gate; those first that take no further fit."""
-    if not planted.is_possible(size) or not _is_large(planted, planted.alone(size), needed):
-        return False
+def _missing(planted: PlantedFit, needed: Needed, size: float) -> float:
+    """Return by about which factor a size would have to be larger to pass every gate; 1 if none.
+
+    Those gates first that take no further fit. What is impossible at one size is so at a larger.
+    """
+    if not planted.is_possible(size):
+        return _NEVER
+    if not _is_large(planted, planted.alone(size), needed):
+        return _STEP
     fit = planted.expected(size)
-    return fit.statistic >= needed.statistic and _is_large(planted, fit, needed)
+    if fit.statistic < needed.statistic:
+        # the statistic grows at most with the square of the size
+        return max(float(np.sqrt(needed.statistic / max(fit.statistic, 1e-9))), _STEP)
+    return 1.0 if _is_large(planted, fit, needed) else _STEP
 
 
 def _is_large(planted: PlantedFit, fit: EffectFit, needed: Needed) -> bool:

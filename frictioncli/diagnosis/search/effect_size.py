@@ -1,6 +1,6 @@
 """Sizes of fitted effects: their torque, and what the base leaves of it, with intervals."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -9,6 +9,7 @@ from frictioncli.arrays import Array
 from frictioncli.diagnosis.fit.hypotheses import EffectFit
 from frictioncli.diagnosis.fit.left_by_base import Z95, left_by, span_of, visible_size
 from frictioncli.diagnosis.search.precomputed import Precomputed
+from frictioncli.effects.base import Effect
 
 _OTHER_FORM = 0.5
 """Share of the discrepancy along an effect that the assumed covariance does not account for."""
@@ -58,6 +59,23 @@ def left_size(known: Precomputed, fit: EffectFit) -> tuple[float, float, float]:
     beyond = Z95 * float(np.hypot(_other_form(known, fit, left), _FORM * size))
     below, above = np.hypot([size - low, high - size], beyond)
     return size, max(float(size - below), 0.0), float(size + above)
+
+
+def left_share(known: Precomputed, effect: Effect, shape: Mapping[str, float]) -> float:
+    """Return the share of an effect's torque that the base leaves [-].
+
+    Parameters
+    ----------
+    known : Precomputed
+        The data.
+    effect : Effect
+        The effect.
+    shape : mapping of str to float
+        Its shape.
+    """
+    basis = known.problem.basis(effect, shape)
+    whole = float(np.linalg.norm(np.vstack(basis)))
+    return float(np.linalg.norm(left_by(known.span, basis))) / whole if whole > 0 else 0.0
 
 
 def shown_share(known: Precomputed, fit: EffectFit, others: Sequence[EffectFit]) -> float:

@@ -156,6 +156,9 @@ def _change(
     scores = [score(quiet, shape) for shape in shapes]
     first = shapes[int(np.argmax(scores))]
     best = refined_history(first, table, new.rows, partial(score, quiet))
+    if 2 * score(quiet, best) < _CLEARLY:
+        # not even if no drift could take it
+        return None
     there = present(share, best)
     few = min(np.mean(there), np.mean(~there)) < _LEAST_PRESENT
     if few or score(quiet, best) - scores[0] < CONVINCING + np.log(len(shapes)):
