@@ -5,7 +5,7 @@ What has no fixed form stands in a row as JSON.
 
 import json
 import time
-from collections.abc import Iterable, Mapping
+from collections.abc import Collection, Iterable, Mapping
 from dataclasses import asdict
 from typing import Any
 
@@ -67,6 +67,7 @@ def examined(world: World, digest: str) -> dict[str, object]:
         row |= _true(truth)
         said = said_of_logs(world) if world.path == "logs" else said_of_torques(truth.torques)
         row |= _said(said, with_sizes=world.kind == "clean")
+        row["hidden_json"] = _json(_hidden(truth, _given_up(said)))
         if world.kind == "clean" and world.seed % POWER == 0:
             row["without_discrepancy_json"] = _json(sizes_without_discrepancy(truth.torques))
     except OptionError as error:
@@ -79,9 +80,29 @@ def examined(world: World, digest: str) -> dict[str, object]:
     return row
 
 
+def _hidden(truth: Truth, given_up: Collection[str]) -> list[dict[str, object]]:
+    """Return what is true of each effect, and what is left beside what the diagnosis set there."""
+    left = truth.left_beside(given_up)
+    return [
+        asdict(one) | {"left_beside": size} for one, size in zip(truth.hidden, left, strict=True)
+    ]
+
+
+def _given_up(said: Said) -> set[str]:
+    """Return effects of the measurement that the diagnosis did not set beside the base."""
+    return {
+        name
+        for cause in said.diagnosis.get("visible", ())
+        for name in cause["effects"]
+        if cause["kind"] == "measurement"
+        and cause["standing"] == "undetermined"
+        and any(text in cause["reason"] for text in ("physically impossible", "these data tell"))
+    }
+
+
 def _true(truth: Truth) -> dict[str, object]:
     return {
-        "hidden_json": _json([asdict(one) for one in truth.hidden]),
+        "hidden_json": _json(_hidden(truth, ())),
         "nuisances_json": _json(truth.nuisances),
         "margin": f"{truth.margin:.4g}",
         "share_seen": f"{truth.share_seen:.5g}",

@@ -129,14 +129,18 @@ def coefficient_intervals(joints: Sequence[Joint]) -> list[bool]:
 
 
 def size_intervals(joints: Sequence[Joint]) -> list[bool]:
-    """Return whether intervals of what is left of an effect hold what is left of it."""
+    """Return whether intervals of what is left of an effect hold what is left of it.
+
+    Left by the base and by those effects of the measurement that the diagnosis set beside it: what
+    it gave up leaves more.
+    """
     found = []
     for joint in of_kind(joints, "single", "pair"):
         for one in joint.hidden:
             for cause in joint.causes:
                 if one["name"] in cause["effects"]:
                     known = cause.get("visible_ci95")
-                    found.append(held_by(known or (None, None), one["left"]))
+                    found.append(held_by(known or (None, None), one["left_beside"]))
     return [one for one in found if one is not None]
 
 

@@ -1,6 +1,6 @@
 """What is true of a joint of the blind study, and what of it can be seen at all."""
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -100,6 +100,10 @@ class Truth:
         RMS misfit of the base on the day kept out. [N·m]
     floor : float
         RMS of the noise on that day, which no model can predict. [N·m]
+    seen : Problem
+        The runs seen.
+    signals : tuple of ndarray, shape (2 * rows,)
+        Torque of each effect there, friction above load. [N·m]
     """
 
     torques: pd.DataFrame
@@ -110,6 +114,19 @@ class Truth:
     share_seen: float
     before: float
     floor: float
+    seen: Problem
+    signals: tuple[Array, ...]
+
+    def left_beside(self, given_up: Collection[str]) -> list[float]:
+        """Return what the base and the measurement leave of each effect [N·m].
+
+        Parameters
+        ----------
+        given_up : collection of str
+            Effects of the measurement that the diagnosis did not set beside the base.
+        """
+        span = base_and_measurement(self.seen, given_up)
+        return [_rms(_off(span, signal)) for signal in self.signals]
 
 
 def truth_of(world: World) -> Truth:
@@ -127,10 +144,14 @@ def truth_of(world: World) -> Truth:
     base = base_and_measurement(seen)
     simulated_base = np.concatenate([seen.table.friction, seen.load_base @ seen.gravity])
     planted = {one.effect.name: one.effect for one in simulated.planted.effects}
+    signals = {name: _signal(seen, one) for name, one in without.items()}
     return Truth(
         torques=torques,
         hidden=tuple(
-            _hidden(world, seen, base, torques, one, planted[name]) for name, one in without.items()
+            _hidden(
+                world, _rms(signal), _rms(_off(base, signal)), torques, without[name], planted[name]
+            )
+            for name, signal in signals.items()
         ),
         nuisances=_nuisances(simulated.nuisances),
         nuisance=_rms(_off(base, _torque(seen, quiet) - simulated_base)),
@@ -138,28 +159,29 @@ def truth_of(world: World) -> Truth:
         share_seen=_pairs(seen) / (_pairs(seen) + (0 if new is None else _pairs(new))),
         before=_rms_misfit(judged),
         floor=_rms(_torque(judged, bare) - _torque(judged, quiet)),
+        seen=seen,
+        signals=tuple(signals.values()),
     )
 
 
 def _hidden(
     world: World,
-    seen: Problem,
-    base: Array,
+    raw: float,
+    left: float,
     torques: pd.DataFrame,
     without: pd.DataFrame,
     planted: PlantedEffect,
 ) -> Hidden:
     """Return what is true of one effect, from the torques with and without it."""
     name = planted.name
-    signal = _signal(seen, without)
     coefficient, value = "", None
     if name in COUNTERPARTS and not world.history:
         coefficient, counterpart = COUNTERPARTS[name]
         value = counterpart(planted)
     return Hidden(
         name=name,
-        raw=_rms(signal),
-        left=_rms(_off(base, signal)),
+        raw=raw,
+        left=left,
         coefficient=coefficient,
         value=value,
         stretches=_stretches(torques, without) if name in CHANGES else (),
@@ -255,10 +277,12 @@ def _rms(both: Array) -> float:
     return float(np.sqrt(2.0 * np.mean(np.square(both))))
 
 
-def base_and_measurement(problem: Problem) -> Array:
+def base_and_measurement(problem: Problem, given_up: Collection[str] = ()) -> Array:
     """Return the columns of base and measurement, friction above load, each of length 1."""
     columns = [np.vstack(base_rows(problem))]
     for effect in applicable(MEASUREMENT_EFFECTS, problem.table):
+        if effect.name in given_up:
+            continue
         shapes = effect.shapes(problem.table)
         columns.append(np.vstack(problem.basis(effect, shapes[len(shapes) // 2])))
     found = np.hstack(columns)
