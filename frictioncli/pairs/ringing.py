@@ -24,8 +24,9 @@ _LATER = (0.5, 0.75)
 _BEYOND = 1.5
 """By how many times the greatest deviation there ringing exceeds it."""
 
-_SHARE = 0.015
-"""Share of the ramp's torque below which the torque of ringing does not count."""
+_SHARE = 0.05
+"""Share of the ramp's torque below which the torque of ringing does not count: less would leave
+nothing of the short plateaus of fast moves, whose servo settles as any does."""
 
 _USUAL = 5.0
 """Frequency at which servos of arms ring, or a higher one. [Hz]"""
