@@ -213,7 +213,7 @@ def test_the_search_brackets_the_least_size_that_is_found(
     [
         (("--effect", "wobble"), "unknown"),
         (("--effect", "drift:0"), "above 0"),
-        (("--effect", "step_change@recurring"), "lasts"),
+        (("--effect", "step_change@recurring"), "permanent"),
         (("--share", "0"), "above 0"),
         (("--draws", "0"), "1 to 100"),
         (("--seed", "-1"), "0 or more"),
@@ -225,7 +225,7 @@ def test_wrong_options_are_told_before_anything_is_read(tmp_path, words, told):
     assert not (tmp_path / "work").exists()
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_a_killed_call_leaves_a_whole_table_and_goes_on(logs, tmp_path):
     work = tmp_path / "work"
     words = ("challenge", logs, "-w", work, "--effect", "direction_asymmetry:2")
