@@ -71,8 +71,7 @@ class Diagnosis:
     gain : Gain or None
         Reduction of the misfit by the extension; none where no cause was found.
     corrected : tuple of Cause
-        Effects of the measurement that are not named, and that the extension corrects all the same:
-        noise alone is hardly the reason for them.
+        Effects of the measurement that are not named, and that the extension corrects all the same.
     extension : Extension or None
         The base with the causes and what is corrected, refitted.
     base : Problem
@@ -81,8 +80,8 @@ class Diagnosis:
         The rows on which the gain is measured: those of the hold-out run where there is one.
     floor : float
         RMS of point and pair noise, which no model can predict. [N·m]
-    detectable : dict of str to (float or None)
-        Smallest RMS size that would be found four times in five, by effect. [N·m]
+    search, tried : SearchResult, tuple of Effect
+        The last search and the catalogue, for the sizes that would have been named.
     margin : float
         Smallest size worth a name. [N·m]
     rmse : float
@@ -90,7 +89,7 @@ class Diagnosis:
     worst : tuple of Misfit
         The greatest mean misfits.
     runs, held_out : tuple of str, str or None
-        Runs of the diagnosis, and the hold-out run on which the gain is measured.
+        Runs of the diagnosis, and the hold-out run.
     ramps : RampEvidence or None
         Evidence of the ramps of the moves, where the log has them.
     thermal : ThermalEstimate or None
@@ -117,7 +116,8 @@ class Diagnosis:
     base: Problem
     judged: Problem
     floor: float
-    detectable: dict[str, float | None]
+    search: SearchResult
+    tried: tuple[Effect, ...]
     margin: float
     rmse: float
     worst: tuple[Misfit, ...]
@@ -160,7 +160,7 @@ def diagnose_joint(
     Raises
     ------
     NotEnoughData
-        If there are too few pairs to distinguish noise from structure.
+        If there are too few pairs.
     """
     joint = int(torques["joint"].iloc[0])
     runs = sorted(torques["run"].unique())
@@ -264,7 +264,6 @@ def diagnose_joint(
         floor=_floor(found),
         seed=settings.seed,
     )
-    squared = base.squared(base.friction_misfit, base.load_misfit)
     return Diagnosis(
         joint=joint,
         torque_unit=torque_unit,
@@ -278,10 +277,11 @@ def diagnose_joint(
         base=problem,
         judged=new or problem,
         floor=_floor(found),
-        detectable=found.detectable_sizes(effects, settings.alpha, margin),
+        search=found,
+        tried=tuple(effects),
         margin=margin,
         load_margin=channel_margin(base, "load", margin) if base.has_load_channel else None,
-        rmse=float(np.sqrt(np.mean(squared))),
+        rmse=float(np.sqrt(np.mean(base.squared(base.friction_misfit, base.load_misfit)))),
         worst=worst_misfits(base),
         runs=problem.runs,
         held_out=held_out,

@@ -162,16 +162,21 @@ def test_one_day_only_says_that_its_gain_is_optimistic():
     assert "optimistic" in said(diagnosis)
 
 
+def detectable_sizes(diagnosis):
+    return diagnosis.search.detectable_sizes(diagnosis.tried, 0.05, diagnosis.margin)
+
+
 def test_detectable_sizes_cover_the_catalogue():
     diagnosis = clean(1)
-    assert set(diagnosis.detectable) == {effect.name for effect in EFFECTS}
-    known = [size for size in diagnosis.detectable.values() if size is not None]
+    detectable = detectable_sizes(diagnosis)
+    assert set(detectable) == {effect.name for effect in EFFECTS}
+    known = [size for size in detectable.values() if size is not None]
     # a name needs more than the margin, whatever the noise
     assert all(size > diagnosis.margin for size in known)
     # of a ripple the base leaves nearly all
-    assert diagnosis.detectable["position_ripple"] < 2 * diagnosis.margin
+    assert detectable["position_ripple"] < 2 * diagnosis.margin
     settings = DiagnosisSettings(margin=0.0)
-    whatever = diagnose_joint(days(1), "motor", "N·m", settings).detectable
+    whatever = detectable_sizes(diagnose_joint(days(1), "motor", "N·m", settings))
     # a ripple is averaged over 160 pairs of 34 bins of 0.3 N·m: about 0.3 * sqrt(2 * 25 / 5440),
     # and the discrepancy has as much again along the same axis
     assert 0.01 < whatever["position_ripple"] < 0.2
@@ -184,15 +189,16 @@ def test_no_detectable_size_is_larger_than_the_friction():
     fast = rows[rows["speed"].isin(speeds[-2:])]
     two = diagnosed(fast)
     whole = fast["friction_torque"].abs().mean()
-    assert all(size < 1.1 * whole for size in two.detectable.values() if size is not None)
-    assert two.detectable["position_ripple"] < 1
+    sizes = detectable_sizes(two)
+    assert all(size < 1.1 * whole for size in sizes.values() if size is not None)
+    assert sizes["position_ripple"] < 1
     for name in ("linear_viscous", "quadratic_drag"):
-        assert two.detectable[name] is None
+        assert sizes[name] is None
         assert undetectable(two)[name] == TAKEN_BY_BASE
     one = diagnosed(rows[rows["speed"] == speeds[-1]])
     assert undetectable(one)["linear_viscous"] == LACKING
     for found in (one, two):
-        missing = {name for name, size in found.detectable.items() if size is None}
+        missing = {name for name, size in detectable_sizes(found).items() if size is None}
         assert set(undetectable(found)) == missing
 
 

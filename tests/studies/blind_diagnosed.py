@@ -55,9 +55,10 @@ def said_of_torques(torques: pd.DataFrame) -> Said:
     model = fit_joint(torques, {}, FIT)
     began = time.process_time()
     diagnosis = diagnose_joint(torques, TEMPERATURE, "N·m", SETTINGS)
+    document = diagnosis_document(diagnosis, SETTINGS)
     seconds = time.process_time() - began
     return Said(
-        _plain(diagnosis_document(diagnosis, SETTINGS)),
+        _plain(document),
         _plain(extended_document(diagnosis, model)),
         seconds,
     )

@@ -1,5 +1,6 @@
 """``diagnosis.json`` and ``extended-model.json`` of a diagnosis."""
 
+from collections.abc import Mapping
 from dataclasses import fields, replace
 
 import numpy as np
@@ -69,6 +70,7 @@ def diagnosis_document(diagnosis: Diagnosis, settings: DiagnosisSettings) -> Dia
     if diagnosis.structure is not None:
         causes.append(unnamed_record(diagnosis))
     gain, ramps = diagnosis.gain, diagnosis.ramps
+    detectable = _detectable(diagnosis, settings)
     return DiagnosisDocument(
         joint=diagnosis.joint,
         verdict=diagnosis.verdict,
@@ -91,8 +93,8 @@ def diagnosis_document(diagnosis: Diagnosis, settings: DiagnosisSettings) -> Dia
         if diagnosis.empirical is None
         else gain_record(diagnosis.empirical, diagnosis.torque_unit),
         remainder=remainder_record(diagnosis),
-        detectable=diagnosis.detectable,
-        undetectable=_undetectable(diagnosis),
+        detectable=detectable,
+        undetectable=_undetectable(diagnosis, detectable),
         simulation=SimulationRecord(rmse=diagnosis.rmse, worst=diagnosis.worst),
         ramps=None if ramps is None else ramps_record(ramps, diagnosis.torque_unit),
         settling=diagnosis.settling,
@@ -104,7 +106,11 @@ def diagnosis_document(diagnosis: Diagnosis, settings: DiagnosisSettings) -> Dia
     )
 
 
-def _undetectable(diagnosis: Diagnosis) -> dict[str, str]:
+def _detectable(diagnosis: Diagnosis, settings: DiagnosisSettings) -> dict[str, float | None]:
+    return diagnosis.search.detectable_sizes(diagnosis.tried, settings.alpha, diagnosis.margin)
+
+
+def _undetectable(diagnosis: Diagnosis, detectable: Mapping[str, float | None]) -> dict[str, str]:
     """Return why effects have no detectable size."""
 
     def reason(effect: Effect) -> str:
@@ -112,7 +118,7 @@ def _undetectable(diagnosis: Diagnosis) -> dict[str, str]:
             return LACKING
         return GOES_WITH_TIME if goes_with_time(effect, diagnosis.base) else TAKEN_BY_BASE
 
-    unknown = [name for name, size in diagnosis.detectable.items() if size is None]
+    unknown = [name for name, size in detectable.items() if size is None]
     return {name: reason(BY_NAME[name]) for name in unknown}
 
 
