@@ -12,17 +12,20 @@ SHARED := -n 3 --dist loadgroup --no-loadscope-reorder
 export OMP_NUM_THREADS := 1
 export OPENBLAS_NUM_THREADS := 1
 
-.PHONY: reproduce test test-all lint docs dist same coverage blind comparison fleet planning wear real real-diagnoses bench fuzz fuzz-c kill soak memory clean
+.PHONY: reproduce test test-all test-long lint docs dist same coverage blind comparison fleet planning wear real real-diagnoses bench fuzz fuzz-c kill soak memory clean
 
 reproduce: $(VENV)/installed
 	$(BIN)/frictioncli run sample_logs/kr10 -w $(RUN)
 	$(BIN)/python docs/compare_with_paper.py $(RUN)
 
 test: $(VENV)/tested
-	$(BIN)/pytest $(SHARED) -m "not slow"
+	$(BIN)/pytest $(SHARED) -m "not slow and not long"
 
 test-all: $(VENV)/tested
-	$(BIN)/pytest $(SHARED) --durations 40
+	$(BIN)/pytest $(SHARED) -m "not long" --durations 40
+
+test-long: $(VENV)/tested
+	$(BIN)/pytest $(SHARED) -m long
 
 coverage: $(VENV)/tested
 	$(BIN)/python -m tests.studies.coverage

@@ -16,8 +16,8 @@ settings.load_profile("fixed")
 
 
 LONGEST = (
-    *("test_a_disturbed_fleet", "test_parameter_intervals", "test_cluster", "test_docs"),
-    *("test_challenge", "test_false_alarms", "test_processes", "test_robustness_kill"),
+    *("test_docs", "test_cluster", "test_synthetic_causes", "test_changes", "test_processes"),
+    *("test_challenge", "test_robustness_kill"),
     *("test_plan", "test_named_causes", "test_fleet", "test_page_in_chromium", "test_commands"),
 )
 """Tests and modules that take longest, the longest first."""
@@ -34,7 +34,7 @@ def pytest_collection_modifyitems(items):
     makes it anew; slow ones that share nothing go where there is room. At the end all processes
     have something short to do.
     """
-    slow = {item.path for item in items if item.get_closest_marker("slow")}
+    slow = {item.path for item in items if _is_slow(item)}
 
     def rank(item):
         places = [place for place, name in enumerate(LONGEST) if name in item.nodeid]
@@ -42,9 +42,13 @@ def pytest_collection_modifyitems(items):
 
     items.sort(key=rank)
     for item in items:
-        alone = item.get_closest_marker("slow") and not _shared(item)
+        alone = _is_slow(item) and not _shared(item)
         together = item.path.parent if "chromium" in item.fixturenames else item.path
         item.add_marker(pytest.mark.xdist_group(item.nodeid if alone else str(together)))
+
+
+def _is_slow(item):
+    return any(item.get_closest_marker(name) for name in ("slow", "long"))
 
 
 def _shared(item):

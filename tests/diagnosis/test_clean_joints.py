@@ -48,7 +48,7 @@ def test_no_cause_of_friction_or_load_is_named(name):
     assert diagnosis.verdict in ("no_evidence", "named")
 
 
-@pytest.mark.slow
+@pytest.mark.long
 @pytest.mark.parametrize(("seed", "name"), list(enumerate(WORLDS)))
 def test_nor_with_other_noise(name, seed):
     """Sizes of the disturbances drawn anew each time; single runs and two in turns."""

@@ -117,7 +117,7 @@ def test_what_would_be_impossible_has_no_size():
     assert detectable_size(step, little, test, LEVEL, MARGIN) is None
 
 
-@pytest.mark.slow
+@pytest.mark.long
 @pytest.mark.parametrize("name", ["load_linear", "step_change", "position_ripple"])
 def test_the_claimed_size_is_named_and_half_of_it_is_not(name):
     """The whole search on ten joints each, whose noise the claim has not seen."""

@@ -46,7 +46,7 @@ def p_values(every, discrepancy, worlds):
     return np.array(found)
 
 
-@pytest.mark.slow
+@pytest.mark.long
 @pytest.mark.parametrize("every", [8, 40])
 def test_five_per_cent_are_five_per_cent(every):
     """100 joints without a discrepancy expected; drift of 20 min is estimated with each rival."""
@@ -59,7 +59,7 @@ def test_five_per_cent_are_five_per_cent(every):
     assert shares[steps] <= 0.25
 
 
-@pytest.mark.slow
+@pytest.mark.long
 @pytest.mark.parametrize("every", [8, 40])
 def test_a_discrepancy_that_is_not_there_makes_tests_stricter(every):
     found = p_values(every, 0.01, 60)

@@ -32,7 +32,7 @@ def test_causes_named_keep_the_rules(name):
     keeps_the_rules(diagnosed_under_nuisances(HIDDEN[name], 31))
 
 
-@pytest.mark.slow
+@pytest.mark.long
 @pytest.mark.parametrize("name", ["a changed torque constant"])
 def test_causes_named_on_another_joint_keep_the_rules(name):
     keeps_the_rules(diagnosed_under_nuisances(HIDDEN[name], 32))

@@ -89,7 +89,7 @@ def test_a_delay_that_is_not_named_is_an_error_of_what_it_moves(joint, weighted_
     )
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_joints_with_nothing_hidden_under_all_nuisances():
     """Ten joints: of 50 intervals of the base 92 % hold the truth; one name at the most."""
     held, offset, named = [], [], []

@@ -130,11 +130,11 @@ def test_a_lag_and_another_effect_are_both_found(name):
     ("noise", "protocol"),
     [
         ("default", "paper"),
-        pytest.param("white", "paper", marks=pytest.mark.slow),
-        pytest.param("drift97", "paper", marks=pytest.mark.slow),
+        pytest.param("white", "paper", marks=pytest.mark.long),
+        pytest.param("drift97", "paper", marks=pytest.mark.long),
         ("outliers", "paper"),
         ("default", "enriched"),
-        pytest.param("heteroscedastic", "enriched", marks=pytest.mark.slow),
+        pytest.param("heteroscedastic", "enriched", marks=pytest.mark.long),
     ],
 )
 def test_nothing_is_found_in_a_clean_joint(noise, protocol):
@@ -143,7 +143,7 @@ def test_nothing_is_found_in_a_clean_joint(noise, protocol):
     assert sets(diagnosis) == []
 
 
-@pytest.mark.parametrize("seed", [73, pytest.param(74, marks=pytest.mark.slow)])
+@pytest.mark.parametrize("seed", [73, pytest.param(74, marks=pytest.mark.long)])
 def test_what_the_catalogue_does_not_list_gets_no_name(seed):
     """Unless its angle of greatest friction is that of the greatest load."""
     diagnosis = diagnosed(("position_temperature:1",), seed)

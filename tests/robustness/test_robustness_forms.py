@@ -61,7 +61,7 @@ def test_the_study_sees_a_row_that_is_lost(base, tmp_path):
     assert lost_rows(tmp_path / "work", count)
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_a_disturbed_fleet_ends_as_an_undisturbed_one():
     soak = soaked(joints=2, calls=2, minutes=10, seed=5)
     assert soak.counts["joints compared"] > 0
