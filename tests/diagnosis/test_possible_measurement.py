@@ -1,5 +1,7 @@
 """Effects of the measurement beyond what drives, loggers and gears do, or that no data tell."""
 
+import json
+
 import numpy as np
 import pandas as pd
 import pytest
@@ -13,6 +15,8 @@ from frictioncli.diagnosis.search.timing_causes import late_torque
 from frictioncli.diagnosis.settings import DiagnosisSettings
 from frictioncli.effects import BY_NAME, MEASUREMENT_EFFECTS
 from tests.equation_16 import TRUTH, friction, table
+from tests.studies.blind_examined import examined
+from tests.studies.blind_worlds import World
 
 SPEEDS = (25.0, 40.0)
 WEIGHT = 13.4
@@ -134,3 +138,14 @@ def test_every_bound_of_the_measurement_is_of_a_log_that_there_is():
     for effect in MEASUREMENT_EFFECTS:
         for one in effect.coefficients:
             assert max(abs(one.lower), abs(one.upper)) <= most[one.name]
+
+
+@pytest.mark.slow
+def test_what_the_model_lacks_gives_up_no_delay():
+    """A lag of the gear makes the sensor's lag impossible; without that one a precise delay moves
+    by more than its error, and is there all the same. Given up, its torque would become friction.
+    """
+    world = World("pair", "thermal_lag+stribeck", 0, size=1.0, protocol="enriched")
+    row = examined(world, "")
+    named = {tuple(one["effects"]) for one in json.loads(str(row["causes_json"]))}
+    assert named == {("torque_delay",), ("thermal_lag",), ("stribeck",)}
