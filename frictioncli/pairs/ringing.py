@@ -58,14 +58,14 @@ def ringing_ends(
 
     Examples
     --------
-    Ringing by 4 % of the speed is within 0.2 % after 31 samples, a ripple of 0.1 % goes on:
+    Ringing by 4 % of the speed is within 0.6 % after 13 samples, a ripple of 0.1 % goes on:
 
     >>> sample = np.arange(400)
     >>> ringing = 2.0 * np.exp(-sample / 10) * np.cos(sample / 3)
     >>> speed = 50.0 + 0.05 * np.sin(sample) + ringing
     >>> one = np.array([0]), np.array([400]), np.array([15])
     >>> ringing_ends(speed, *one, acceleration=np.array([200.0]))
-    array([31])
+    array([13])
     """
     later = [begin + (share * (end - begin)).astype(np.int64) for share in _LATER]
     known = np.flatnonzero((hold >= _LEAST_HOLD) & (later[1] > later[0]))

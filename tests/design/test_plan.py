@@ -247,8 +247,14 @@ def errors(rows, column, centre, width):
     ("axis", "column", "kind", "shape", "least"),
     [
         ("speed", "speed", "peak", {"centre": 40.0, "width": 0.15}, 1.5),
-        ("position", "position", "bump", {"centre": 50.0, "width": 4.0, "lag": 0.0}, 1.1),
-        ("temperature", "motor_temperature", "peak", {"centre": 22.0, "width": 1.0}, 1.5),
+        pytest.param(
+            *("position", "position", "bump", {"centre": 50.0, "width": 4.0, "lag": 0.0}, 1.1),
+            marks=pytest.mark.long,
+        ),
+        pytest.param(
+            *("temperature", "motor_temperature", "peak", {"centre": 22.0, "width": 1.0}, 1.5),
+            marks=pytest.mark.long,
+        ),
     ],
     ids=["speed", "angle", "temperature"],
 )

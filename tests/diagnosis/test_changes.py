@@ -64,7 +64,9 @@ HELD = [
 """Days, when the change is there, whether it holds on the last day, and what is said of it."""
 
 with_history = pytest.mark.parametrize(
-    ("count", "there", "holds", "text"), HELD, ids=lambda value: getattr(value, "__name__", "")
+    ("count", "there", "holds", "text"),
+    [*HELD[:-1], pytest.param(*HELD[-1], marks=pytest.mark.long)],
+    ids=lambda value: getattr(value, "__name__", ""),
 )
 
 
@@ -88,7 +90,9 @@ def test_a_payload(count, there, holds, text):
     assert diagnosis.gain.after < 1.25 * diagnosis.floor
 
 
-@pytest.mark.parametrize(("count", "there", "holds", "text"), [HELD[2], HELD[4]])
+@pytest.mark.parametrize(
+    ("count", "there", "holds", "text"), [HELD[2], pytest.param(*HELD[4], marks=pytest.mark.long)]
+)
 def test_a_step_of_friction(count, there, holds, text):
     """2 N·m, whose moments are resolved to a pair or two: a change that ends, and moments that
     differ. Histories are the payload's: every kind of them is above."""
@@ -102,6 +106,7 @@ def test_a_step_of_friction(count, there, holds, text):
     assert diagnosis.gain.after < 1.4 * diagnosis.floor
 
 
+@pytest.mark.long
 def test_a_payload_on_the_second_of_three_days():
     table = days(3)
     diagnosis, cause, when = found(with_payload(table, on_the_second_day(table), 10.0, 2.0))
@@ -147,6 +152,7 @@ def test_nothing_is_said_of_days_without_a_change():
         assert np.isfinite(diagnosis.floor)
 
 
+@pytest.mark.long
 def test_a_step_in_noise_that_drifts_may_be_a_drift():
     """Friction steps by 1.7 N·m on the run kept out, in noise that drifts by 0.5 N·m RMS.
 

@@ -140,7 +140,7 @@ def test_every_bound_of_the_measurement_is_of_a_log_that_there_is():
             assert max(abs(one.lower), abs(one.upper)) <= most[one.name]
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_what_the_model_lacks_gives_up_no_delay():
     """A lag of the gear makes the sensor's lag impossible; without that one a precise delay moves
     by more than its error, and is there all the same. Given up, its torque would become friction.

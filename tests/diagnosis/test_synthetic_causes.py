@@ -67,6 +67,9 @@ ELSEWHERE = ("step_change", "payload_change")
 """Effects that test_changes.py finds with size and history; the second stands beside a lag here."""
 
 QUICK = ("thermal_lag", "position_ripple")
+
+LONG = ("load_linear", "quadratic_drag", "linear_viscous", "coulomb_temperature")
+"""Effects of which the base leaves little; docs/blind.md has them with the others."""
 """One effect that goes with temperature, and one of the stroke."""
 
 
@@ -104,7 +107,11 @@ def sets(diagnosis: Diagnosis) -> list[tuple[str, ...]]:
 @pytest.mark.parametrize(
     "name",
     [
-        effect.name if effect.name in QUICK else pytest.param(effect.name, marks=pytest.mark.slow)
+        effect.name
+        if effect.name in QUICK
+        else pytest.param(
+            effect.name, marks=pytest.mark.long if effect.name in LONG else pytest.mark.slow
+        )
         for effect in EFFECTS
         if effect.name not in ELSEWHERE
     ],
@@ -118,7 +125,10 @@ def test_a_hidden_effect_is_in_a_set_of_few(name):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("name", BESIDE_A_LAG)
+@pytest.mark.parametrize(
+    "name",
+    [BESIDE_A_LAG[0], *(pytest.param(one, marks=pytest.mark.long) for one in BESIDE_A_LAG[1:])],
+)
 def test_a_lag_and_another_effect_are_both_found(name):
     effect, seed = hidden(name)
     diagnosis = diagnosed(("thermal_lag:1", effect), seed, days=DAYS.get(name, 2))

@@ -25,7 +25,7 @@ def worlds(tmp_path_factory):
     return Worlds(tmp_path_factory.mktemp("kill"), levels=(25, 39, 53, 67))
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_a_run_killed_at_random_times(worlds):
     draw = random.Random(7)
     hits = 0
