@@ -2,18 +2,18 @@
 
 The footer describes every column of every row group, and pyarrow takes eight times its size to hold
 it. Of a large one only the ends of the row groups are found here, and pyarrow is given footers of a
-few row groups each. Format: https://parquet.apache.org/docs/file-format/metadata, in the compact
+few row groups each. The file is read, not mapped: the system ends a process that touches what was
+cut off a mapped file. Format: https://parquet.apache.org/docs/file-format/metadata, in the compact
 protocol of Apache Thrift.
 """
 
-import mmap
 import re
 from array import array
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from itertools import pairwise
 from pathlib import Path
-from typing import BinaryIO
+from typing import BinaryIO, TypeVar
 
 import pyarrow as pa
 import pyarrow.parquet as pq
@@ -30,12 +30,17 @@ _LARGE_BYTES = 1 << 23
 _PART_BYTES = 1 << 22
 """Description of the row groups that are parsed at a time. [byte]"""
 
+_MOST_PART_BYTES = 1 << 26
+"""Longest description of one row group that is looked at. [byte]"""
+
 _TRUE, _FALSE, _BYTE, _I16, _I32, _I64, _DOUBLE, _BINARY, _LIST, _SET, _MAP, _STRUCT = range(1, 13)
 _INTEGERS = (_I16, _I32, _I64)
 _ROW_GROUPS = 4
 """Number of the field with the row groups."""
 
 _DEEPEST = 32
+
+_Found = TypeVar("_Found")
 
 
 def _headers(*kinds: int) -> bytes:
@@ -118,13 +123,7 @@ def large_footer(path: Path) -> LargeFooter | None:
         if tail[4:] != _MAGIC or not _LARGE_BYTES < length <= size - _TAIL_BYTES:
             return None  # pyarrow tells what is wrong
         end = size - _TAIL_BYTES
-        with mmap.mmap(stream.fileno(), 0, access=mmap.ACCESS_READ) as file:
-            try:
-                header, ends = _row_groups(file, end - length)
-            except (AttributeError, IndexError, ValueError) as error:
-                raise ValueError("its footer is damaged") from error
-    if ends[-1] > end:
-        raise ValueError("its footer is damaged")
+        header, ends = _row_groups(_FooterParts(stream, end), end - length)
     return LargeFooter(path, end - length, header, ends, end)
 
 
@@ -151,8 +150,61 @@ def row_groups(path: Path) -> Iterator[pq.FileMetaData | None]:
         yield from footer.parts()
 
 
-def _row_groups(file: mmap.mmap, at: int) -> tuple[int, "array[int]"]:
+@dataclass(slots=True)
+class _FooterParts:
+    """A footer that is read part by part.
+
+    Attributes
+    ----------
+    stream : file
+        The file.
+    end : int
+        End of the footer. [byte]
+    content : bytes
+        The part that was read last.
+    begin : int
+        Location of the part in the file. [byte]
+    """
+
+    stream: BinaryIO
+    end: int
+    content: bytes = b""
+    begin: int = 0
+
+    def found(self, find: Callable[[bytes, int], _Found], at: int) -> _Found:
+        """Return what is found at a location, by its distance from the part's ``begin``.
+
+        Raises
+        ------
+        ValueError
+            If the footer is damaged, or one of its row groups is too long.
+        """
+        size = 0
+        while True:
+            try:
+                return find(self.content, at - self.begin)
+            except (AttributeError, IndexError, ValueError) as error:
+                if size >= self.end - at:
+                    raise ValueError("its footer is damaged") from error
+                if size >= _MOST_PART_BYTES:
+                    raise ValueError("its footer has a row group of too many columns") from error
+            # begun, and perhaps not ended, in this part
+            size = 4 * size or _PART_BYTES
+            self.begin, self.content = at, b""
+            self.content = _read(self.stream, at, min(at + size, self.end))
+
+
+def _row_groups(parts: _FooterParts, at: int) -> tuple[int, "array[int]"]:
     """Return the location of the list of row groups, of the first and of the end of each."""
+    header, count, first = parts.found(_list_of_row_groups, at)
+    header, ends = header + parts.begin, array("Q", [first + parts.begin])
+    for _ in range(count):
+        ends.append(parts.found(_struct_end, ends[-1]) + parts.begin)
+    return header, ends
+
+
+def _list_of_row_groups(file: bytes, at: int) -> tuple[int, int, int]:
+    """Return the location of the list, the number of row groups, the location of the first."""
     number = 0
     while head := file[at]:
         at += 1
@@ -164,21 +216,13 @@ def _row_groups(file: mmap.mmap, at: int) -> tuple[int, "array[int]"]:
         at = _value_end(file, at, head & 15, 0)
     else:
         raise ValueError("no row groups")
-    header = at
-    count, kind, at = _list_of(file, at)
+    count, kind, first = _list_of(file, at)
     if kind != _STRUCT or not count:
         raise ValueError("no row groups")
-    ends = array("Q", [at])
-    released = 0
-    for _ in range(count):
-        ends.append(_struct_end(file, ends[-1], 0))
-        if ends[-1] - released > _PART_BYTES and hasattr(file, "madvise"):  # not on Windows
-            file.madvise(mmap.MADV_DONTNEED)
-            released = ends[-1]
-    return header, ends
+    return at, count, first
 
 
-def _struct_end(file: mmap.mmap, at: int, depth: int) -> int:
+def _struct_end(file: bytes, at: int, depth: int = 0) -> int:
     if depth > _DEEPEST:
         raise ValueError("too deep")
     while True:
@@ -192,7 +236,7 @@ def _struct_end(file: mmap.mmap, at: int, depth: int) -> int:
         at = _value_end(file, at, head & 15, depth)
 
 
-def _value_end(file: mmap.mmap, at: int, kind: int, depth: int) -> int:
+def _value_end(file: bytes, at: int, kind: int, depth: int) -> int:
     if kind in _INTEGERS:
         return _VARINT.match(file, at).end()  # type: ignore[union-attr]
     if kind == _BINARY:
@@ -214,7 +258,7 @@ def _value_end(file: mmap.mmap, at: int, kind: int, depth: int) -> int:
     raise ValueError(f"a value of kind {kind}")
 
 
-def _list_of(file: mmap.mmap, at: int) -> tuple[int, int, int]:
+def _list_of(file: bytes, at: int) -> tuple[int, int, int]:
     """Return number and kind of the elements of a list, and where the first one is."""
     head = file[at]
     if head >> 4 < 15:
@@ -234,7 +278,7 @@ def _list_header(count: int) -> bytes:
     return bytes([15 << 4 | _STRUCT, *digits, count])
 
 
-def _number(file: mmap.mmap, at: int) -> tuple[int, int]:
+def _number(file: bytes, at: int) -> tuple[int, int]:
     """Return an unsigned number, and where it ends."""
     end = _VARINT.match(file, at).end()  # type: ignore[union-attr]
     return sum((byte & 127) << 7 * n for n, byte in enumerate(file[at:end])), end

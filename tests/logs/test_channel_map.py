@@ -113,13 +113,13 @@ def test_a_map_says_which_channels_are_at_the_motor(names_columns, torque_side, 
     np.testing.assert_allclose(table["velocity"], columns["AxisVel_Act2[°/s]"], atol=1e-7)
     factor = -80.0 if torque_side == "motor" else 1.0
     np.testing.assert_allclose(table["torque"], factor * columns["GearTorq_Act2[Nm]"], atol=1e-6)
-    assert not any("has no use" in text for text in summary.warnings)
+    assert not any("is not used" in text for text in summary.warnings)
 
 
 def test_a_gear_ratio_without_use_is_warned_of(tmp_path):
     log, _ = motor_log(tmp_path, 80.0)
     summary = ingest([log], tmp_path / "work", IngestSettings(gear_ratio=80.0))
-    assert any("gear ratio 80 of joint 1 has no use" in text for text in summary.warnings)
+    assert any("gear ratio 80 of joint 1 is not used" in text for text in summary.warnings)
 
 
 def test_a_side_that_is_none(tmp_path):

@@ -187,7 +187,7 @@ DAMAGE = [
     (changed(f"220,{N}".encode(), b"220,999999999999999"), "holds"),
     (changed(f"220,{N}".encode(), b"220,1e300"), "holds"),
     (changed(f"220,{N}".encode(), b"220,-4"), "'-4'; expected a whole number"),
-    (changed(f"220,{N}".encode(), b"220,0"), "promises no samples"),
+    (changed(f"220,{N}".encode(), b"220,0"), "declares no samples"),
     (changed(b"241,1.000000e+00", b"241,NaN"), "key 241 of channel 3 is 'NaN'"),
     (changed(b"241,1.000000e+00", b"241,0"), "expected a factor other than 0"),
     (changed(b"241,1.000000e+00", b"241,1e999"), "expected a number"),

@@ -1,6 +1,10 @@
 """ASAM MDF measurements as logs."""
 
+import json
+import struct
+import subprocess
 import sys
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -191,3 +195,28 @@ def test_without_the_package_the_message_says_how_to_get_it(tmp_path, monkeypatc
     path = saved(tmp_path / "log.mf4", motion())
     monkeypatch.setitem(sys.modules, "asammdf", None)
     assert "pip install 'frictioncli[mdf]'" in refused(path).text
+
+
+@pytest.mark.slow
+def test_a_block_that_names_itself_as_the_next_ends(tmp_path):
+    """asammdf would follow it for ever; the process that uses it has a limit of time."""
+    path = tmp_path / "log.mf4"
+    saved(path, [signal("position", "deg", POSITION)])
+    content = bytearray(path.read_bytes())
+    group = content.index(b"##CG")
+    struct.pack_into("<Q", content, group + 24, group)
+    path.write_bytes(content)
+    call = (
+        "import frictioncli.logs.formats.mdf_process as process; process._TIME_LIMIT = 5;"
+        "process.main()"
+    )
+    done = subprocess.run(
+        [sys.executable, "-c", call],
+        input=json.dumps({"path": str(path)}).encode(),
+        capture_output=True,
+        cwd=Path(__file__).parents[2],
+        timeout=120,
+        check=False,
+    )
+    assert done.returncode < 0
+    assert done.stdout == b""

@@ -139,7 +139,7 @@ def test_a_payload_told_for_some_recordings_is_taken_for_none(tmp_path):
     (tmp_path / "run" / "a_PROG.TXT").write_text(PROGRAM)
     summary, _ = read(tmp_path / "run", tmp_path / "work", joints=(3,))
     assert recordings(tmp_path / "work")["payload"].isna().all()
-    assert any("1 of 2 recordings: taken for none" in text for text in summary.warnings)
+    assert any("1 of 2 recordings: not used" in text for text in summary.warnings)
 
 
 @settings(max_examples=60)

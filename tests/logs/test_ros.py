@@ -130,6 +130,16 @@ def test_a_folder_of_a_bag_is_a_run(tmp_path):
     assert summary.rows_kept == len(TIME)
 
 
+@pytest.mark.parametrize("name", ["a#b.db3", "a%31.db3", "a?mode=memory.db3", "a b.db3"])
+def test_names_that_mean_something_in_a_uri(tmp_path, name):
+    """The library names the database in a URI: of 'a%31.db3' it would read 'a1.db3'."""
+    log = recorded(tmp_path, "db3", {"/joint_states": states()})
+    expected = open_log(log, CsvHints()).columns
+    found = open_log(log.rename(tmp_path / name), CsvHints())
+    assert found.columns == expected
+    assert len(next(found.batches([0], 1 << 20)).lines)
+
+
 def test_messages_compressed_one_by_one(tmp_path):
     log = recorded(tmp_path, "db3", {"/joint_states": states()}, packed=True)
     table = joint_2(log, tmp_path / "work")

@@ -194,7 +194,7 @@ def test_a_constant_without_a_current_is_told_to_have_no_use(tmp_path):
     time, angle, _, torque = channels(share=1.0)
     path = write(tmp_path / "log.csv", {"time": time, "q_2 [deg]": angle, "torque_2 [Nm]": torque})
     summary = ingest([path], tmp_path / "work", IngestSettings(torque_constant=3.0))
-    assert any("torque constant of joint 2 has no use" in one for one in summary.warnings)
+    assert any("torque constant of joint 2 is not used" in one for one in summary.warnings)
     summary = ingest([path], tmp_path / "work", IngestSettings(torque_constant="auto"))
     assert "no torque constant is needed: no torque is a motor current" in summary.notes
 

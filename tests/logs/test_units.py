@@ -146,7 +146,7 @@ def test_a_forced_unit_wins_with_a_warning(tmp_path):
     summary = ingest([log], tmp_path / "work", IngestSettings(position_unit="rad"))
     position = samples(tmp_path / "work")["position"]
     np.testing.assert_allclose(position, np.degrees(columns["AxisPos_Act2[°]"]), atol=1e-6)
-    assert any("as told, but values reach" in text for text in summary.warnings)
+    assert any("as specified, but values reach" in text for text in summary.warnings)
 
 
 def test_later_positions_that_contradict_radians_stop(tmp_path):

@@ -1,5 +1,7 @@
 """Names and cells that try something: they are shown as they are, and do nothing."""
 
+import base64
+import hashlib
 import os
 import re
 from html.parser import HTMLParser
@@ -50,8 +52,13 @@ def test_hostile_names_are_harmless_in_the_report(tmp_path):
             ("script", [("type", "application/json"), ("id", f"joint2-{name}")])
             for name in ("grid", "points")
         ]
-        own = [*numbers, *[("script", [])] * 3]
+        scripts = re.findall("<script>(.*?)</script>", text, re.DOTALL)
+        own = [*numbers, *[("script", [])] * len(scripts)]
         assert found.active == (own if path == page else []), path
+    assert len(scripts) == text.count("'sha256-")
+    for script in scripts:
+        digest = base64.b64encode(hashlib.sha256(script.encode()).digest()).decode()
+        assert f"'sha256-{digest}'" in text
 
 
 @pytest.mark.parametrize("command", ["inspect", "ingest"])
@@ -84,7 +91,7 @@ def test_a_file_name_that_is_no_text_is_refused(tmp_path):
     with open(os.fsencode(run) + b"/\xff\xfe.csv", "w", encoding="utf-8") as stream:
         stream.write(text_of(kuka_columns()))
     for command in (("inspect", run), ("ingest", run, "-w", tmp_path / "work")):
-        assert "its name is no text" in refused(finished(*command))
+        assert "its name is not UTF-8" in refused(finished(*command))
 
 
 def test_a_terminal_that_knows_few_characters(tmp_path):

@@ -16,7 +16,8 @@ from frictioncli.logs.formats.containers import (
     first_names,
     unreadable_on_error,
 )
-from frictioncli.logs.log_source import CsvHints, Refusal
+from frictioncli.logs.formats.matlab_check import check_matlab
+from frictioncli.logs.log_source import CsvHints, Refusal, UnreadableLog
 
 _NPY = b"\x93NUMPY"
 _ZIP = b"PK\x03\x04"
@@ -24,6 +25,8 @@ _MAT = b"MATLAB 5.0 MAT-file"
 _NUMBER_KINDS = "iufb"
 _MAX_WIDTH = 64
 """Most columns of one array."""
+_MOST_BYTES = 1 << 30
+"""Most that a packed file may unpack to: all of it is loaded at once. [byte]"""
 
 
 def read_array_file(path: Path, head: bytes, hints: CsvHints) -> ContainerLog | Refusal | None:
@@ -45,6 +48,7 @@ def read_array_file(path: Path, head: bytes, hints: CsvHints) -> ContainerLog | 
     else:
         return None
     with unreadable_on_error(f"cannot be read as {what}"):
+        _check(path, head)
         arrays = _arrays(path)
     lengths = Counter(len(values) for values in arrays.values() if len(values) > 1)
     if not lengths:
@@ -66,6 +70,20 @@ def _holds_arrays(path: Path) -> bool:
     return bool(names) and all(name.endswith(".npy") for name in names)
 
 
+def _check(path: Path, head: bytes) -> None:
+    """Raise if a file unpacks to too much, or has too many arrays in one another."""
+    if head.startswith(_MAT):
+        check_matlab(path, _MOST_BYTES)
+    elif head.startswith(_ZIP):
+        with zipfile.ZipFile(path) as archive:
+            length = sum(part.file_size for part in archive.infolist())
+        if length > _MOST_BYTES:
+            raise UnreadableLog(
+                f"NumPy arrays that unpack to {length >> 20} MiB, which are loaded at once, more"
+                f" than {_MOST_BYTES >> 20}; save them as Parquet or CSV"
+            )
+
+
 def _arrays(path: Path) -> dict[str, NDArray]:
     """Return the columns of numbers in a file by name."""
     with path.open("rb") as stream:
@@ -81,15 +99,17 @@ def _arrays(path: Path) -> dict[str, NDArray]:
     if isinstance(content, np.ndarray):
         return _columns({"": content})
     with content:
-        return _columns({name: content[name] for name in content.files if _is_plain(content, name)})
+        found = {name: _plain(content, name) for name in content.files}
+    return _columns({name: array for name, array in found.items() if array is not None})
 
 
-def _is_plain(content: Any, name: str) -> bool:
-    """Return whether an array of an archive can be loaded: it holds no objects."""
+def _plain(content: Any, name: str) -> NDArray | None:
+    """Return an array of an archive; None where it holds objects, which are not loaded."""
     try:
-        return bool(content[name].dtype.kind != "O")
+        array = content[name]
     except ValueError:
-        return False
+        return None
+    return array if isinstance(array, np.ndarray) else None
 
 
 def _columns(content: Mapping[str, Any]) -> dict[str, NDArray]:

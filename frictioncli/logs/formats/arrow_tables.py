@@ -1,6 +1,5 @@
 """Parquet, Feather and Arrow files: columns of numbers, times and lists, streamed with pyarrow."""
 
-import mmap
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import partial
@@ -12,6 +11,7 @@ import pyarrow.compute as pc
 import pyarrow.parquet as pq
 
 from frictioncli.arrays import Array
+from frictioncli.logs.formats.arrow_batches import batches_of, column
 from frictioncli.logs.formats.compression import refuse_compressed
 from frictioncli.logs.formats.containers import (
     ContainerLog,
@@ -86,7 +86,7 @@ def read_arrow(path: Path, head: bytes, hints: CsvHints) -> ContainerLog | Refus
     if head.startswith(_PARQUET):
         what, batches = "a Parquet table", _parquet_batches
     elif head.startswith(_ARROW):
-        what, batches = "an Arrow table", _arrow_batches
+        what, batches = "an Arrow table", batches_of
     else:
         return None
     compressed = refuse_compressed(path, what)
@@ -96,28 +96,29 @@ def read_arrow(path: Path, head: bytes, hints: CsvHints) -> ContainerLog | Refus
         footer = _large_footer(path) if batches is _parquet_batches else None
         if footer is not None:
             batches = partial(_footer_batches, footer)
-        schema = _schema(path, footer)
+        metadata = next(footer.parts()) if footer is not None else None
+        schema = _schema(path, metadata)
         if _OWN_METADATA in (schema.metadata or {}):
             return Refusal(
                 "not_a_log",
-                "a table that frictioncli wrote, no log; name the logs it was made from, or go on"
-                " from it with -w and its folder",
+                "a table written by frictioncli, not a log; name the original logs, or continue"
+                " with -w and its folder",
             )
         fields = list(dict.fromkeys(schema.names))
         leaves: list[_Leaf] = []
         texts: list[str] = []
-        for some in _few_at_a_time(fields):
-            first = next(batches(path, some, _INSPECTED_ROWS), None)
+        for some, first in _first_rows(path, fields, metadata):
             if first is None or not first.num_rows:
                 return Refusal("too_few_rows", f"{what} without rows; expected rows of numbers")
-            leaves += [leaf for name in some for leaf in _leaves(_column(first, name), (name,))]
-            texts += [name for name in some if _holds_numbers_as_text(_column(first, name))]
+            leaves += [leaf for name in some for leaf in _leaves(column(first, name), (name,))]
+            texts += [name for name in some if _holds_numbers_as_text(column(first, name))]
     if texts:
         return Refusal(
             "not_a_number",
             f"{what} whose columns {first_names(texts)} hold numbers as text; save them as numbers",
         )
-    columns = tuple(with_unit(leaf.name, _unit(schema, leaf)) for leaf in leaves)
+    known = {field.name: field for field in reversed(schema)}  # the first of several of a name
+    columns = tuple(with_unit(leaf.name, _unit(known[leaf.path[0]], leaf)) for leaf in leaves)
     return ContainerLog(path, columns, what, partial(_rows, path, batches, tuple(leaves)))
 
 
@@ -131,28 +132,56 @@ def _large_footer(path: Path) -> LargeFooter | None:
     return footer
 
 
-def _schema(path: Path, footer: LargeFooter | None) -> pa.Schema:
-    if footer is not None:
-        with pq.ParquetFile(path, metadata=next(footer.parts())) as file:
-            return file.schema_arrow
+def _schema(path: Path, metadata: pq.FileMetaData | None) -> pa.Schema:
+    if metadata is not None:
+        return metadata.schema.to_arrow_schema()
+    if _is_parquet(path):
+        return pq.read_schema(path)
+    with pa.OSFile(str(path)) as source:
+        return pa.ipc.open_file(source).schema
+
+
+def _is_parquet(path: Path) -> bool:
     with path.open("rb") as stream:
-        is_parquet = stream.read(len(_PARQUET)) == _PARQUET
-    return pq.read_schema(path) if is_parquet else pa.ipc.open_file(_mapped(path)).schema
+        return stream.read(len(_PARQUET)) == _PARQUET
 
 
-def _few_at_a_time(fields: Sequence[str]) -> Iterator[list[str]]:
-    """Yield the fields in groups: every one that is read holds a page and a buffer."""
-    for begin in range(0, max(len(fields), 1), _INSPECTED_FIELDS):
-        yield list(fields[begin : begin + _INSPECTED_FIELDS])
+def _first_rows(
+    path: Path, fields: Sequence[str], metadata: pq.FileMetaData | None
+) -> Iterator[tuple[Sequence[str], pa.RecordBatch | None]]:
+    """Yield a few fields after the other with their first rows: each holds a page and a buffer."""
+    if not _is_parquet(path):
+        yield fields, next(batches_of(path, fields, _INSPECTED_ROWS), None)
+        return
+    # opened once: that takes a time proportional to the number of all columns
+    with _opened(path, _INSPECTED_FIELDS, metadata) as file:
+        for begin in range(0, max(len(fields), 1), _INSPECTED_FIELDS):
+            some = fields[begin : begin + _INSPECTED_FIELDS]
+            yield some, next(_some_batches(file, some, _INSPECTED_ROWS), None)
+
+
+def _opened(path: Path, fields: int, metadata: pq.FileMetaData | None = None) -> pq.ParquetFile:
+    buffer = max(_BUFFER_BYTES // max(fields // _FULLY_BUFFERED, 1), _LEAST_BUFFER)
+    # pre_buffer would hold the bytes of a whole row group in addition to its values
+    return pq.ParquetFile(path, metadata=metadata, pre_buffer=False, buffer_size=buffer)
+
+
+def _some_batches(
+    file: pq.ParquetFile, fields: Sequence[str], rows: int
+) -> Iterator[pa.RecordBatch]:
+    left = sum(file.metadata.row_group(i).num_rows for i in range(file.num_row_groups))
+    for batch in file.iter_batches(batch_size=rows, columns=list(fields), use_threads=False):
+        left -= batch.num_rows
+        yield batch
+    if left:  # pyarrow takes the end of the file for that of a column
+        raise ValueError(f"its last {left} rows are missing")
 
 
 def _parquet_batches(
     path: Path, fields: Sequence[str], rows: int, metadata: pq.FileMetaData | None = None
 ) -> Iterator[pa.RecordBatch]:
-    buffer = max(_BUFFER_BYTES // max(len(fields) // _FULLY_BUFFERED, 1), _LEAST_BUFFER)
-    # pre_buffer would hold the bytes of a whole row group in addition to its values
-    with pq.ParquetFile(path, metadata=metadata, pre_buffer=False, buffer_size=buffer) as file:
-        yield from file.iter_batches(batch_size=rows, columns=list(fields), use_threads=False)
+    with _opened(path, len(fields), metadata) as file:
+        yield from _some_batches(file, fields, rows)
 
 
 def _footer_batches(
@@ -160,28 +189,6 @@ def _footer_batches(
 ) -> Iterator[pa.RecordBatch]:
     for part in footer.parts():
         yield from _parquet_batches(path, fields, rows, part)
-
-
-def _arrow_batches(path: Path, fields: Sequence[str], rows: int) -> Iterator[pa.RecordBatch]:
-    # a batch may be as large as the file; of a mapped file only the slice in use is loaded
-    memory = _mapped(path)
-    file = pa.ipc.open_file(memory)
-    for number in range(file.num_record_batches):
-        batch = file.get_batch(number)
-        for begin in range(0, batch.num_rows, rows):
-            yield batch.slice(begin, rows)
-            if hasattr(memory, "madvise"):  # not on Windows
-                memory.madvise(mmap.MADV_DONTNEED)
-
-
-def _mapped(path: Path) -> mmap.mmap:
-    with path.open("rb") as stream:
-        return mmap.mmap(stream.fileno(), 0, access=mmap.ACCESS_READ)
-
-
-def _column(batch: pa.RecordBatch, name: str) -> pa.Array:
-    """Return a column by its name; the first where several have the same name."""
-    return batch.column(batch.schema.get_all_field_indices(name)[0])
 
 
 def _leaves(array: pa.Array, path: tuple[str, ...]) -> Iterator[_Leaf]:
@@ -231,9 +238,8 @@ def _holds_numbers_as_text(array: pa.Array) -> bool:
     return len(pc.unique(cells)) > 1 and pc.all(pc.match_substring_regex(cells, _NUMBER)).as_py()
 
 
-def _unit(schema: pa.Schema, leaf: _Leaf) -> str:
+def _unit(field: pa.Field, leaf: _Leaf) -> str:
     """Return the unit in a field's metadata; "s" for times, which are converted to seconds."""
-    field = schema.field(schema.names.index(leaf.path[0]))
     for name in leaf.path[1:]:
         field = field.type.field(name)
     if _is_time(field.type):
@@ -262,7 +268,7 @@ def _rows(
 
 
 def _values(batch: pa.RecordBatch, leaf: _Leaf) -> Array:
-    array = _column(batch, leaf.path[0])
+    array = column(batch, leaf.path[0])
     if len(leaf.path) > 1:
         array = pc.struct_field(array, list(leaf.path[1:]))
     if not leaf.length:

@@ -16,6 +16,7 @@ from frictioncli.logs.log_source import (
     SequentialSource,
     UnreadableLog,
 )
+from frictioncli.plain_text import printable
 
 Rows = dict[int, Array]
 """Values of consecutive rows by column index, NaN where a value is missing."""
@@ -148,4 +149,5 @@ def first_names(names: Sequence[str], count: int = 6) -> str:
     'a, b and 1 more'
     """
     rest = len(names) - count
-    return ", ".join(names[:count]) + (f" and {rest} more" if rest > 0 else "")
+    shown = ", ".join(printable(name) for name in names[:count])
+    return shown + (f" and {rest} more" if rest > 0 else "")

@@ -161,7 +161,7 @@ class DiademRecording:
     def refusal(self) -> Refusal | None:
         """Return which samples are missing, None where all are present."""
         if self.n < 1:
-            return Refusal("too_few_rows", "the DIAdem header promises no samples (key 220 is 0)")
+            return Refusal("too_few_rows", "the DIAdem header declares no samples (key 220 is 0)")
         for file in self.files[1:]:
             if not is_file(file):
                 return Refusal(
@@ -175,7 +175,7 @@ class DiademRecording:
             if size < needed or (stored[0].in_rows and size > needed):
                 return Refusal(
                     "samples_incomplete",
-                    f"{file.name} holds {size} bytes; the header tells of {self.n} samples in"
+                    f"{file.name} holds {size} bytes; the header states {self.n} samples in"
                     f" {len(stored)} channels, {needed} bytes: copy both files again",
                 )
         return None
@@ -242,7 +242,9 @@ class DiademRecording:
         except OSError as error:
             raise UnreadableLog(f"samples cannot be read ({error}); copy both files") from error
         if len(numbers) < stop - start:
-            raise UnreadableLog(f"samples end before number {stop}; expected {self.n}: copy again")
+            raise UnreadableLog(
+                f"samples end before number {stop}; expected {self.n}: copy it again"
+            )
         with np.errstate(over="ignore", invalid="ignore"):
             values = numbers * channel.factor + channel.offset
             if channel.location is not None:

@@ -144,7 +144,7 @@ def _samples_file(header: Path, section: HeaderSection) -> Path:
     Raises
     ------
     DamagedHeader
-        If the name leads out of the folder.
+        If the name leads outside the folder.
     """
     named = PureWindowsPath(section.text(_FILE))
     if ".." in named.parts or "\0" in named.name:

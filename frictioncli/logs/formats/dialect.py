@@ -275,4 +275,4 @@ def _refuse_no_table(filled: Sequence[str], hints: CsvHints) -> Refusal:
             "no ';', tab, ',' or blank separates the numbers; the first line is"
             f" {filled[0][:120]!r}; save the log as CSV",
         )
-    return Refusal("not_a_log", "text that is no table of numbers")
+    return Refusal("not_a_log", "text, but not a table of numbers")

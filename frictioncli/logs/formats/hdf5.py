@@ -1,5 +1,6 @@
 """HDF5 files: the datasets of one group, streamed with h5py (optional extra ``hdf5``)."""
 
+import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import partial
@@ -34,6 +35,11 @@ _MAX_WIDTH = 64
 """Most numbers per row of one dataset."""
 _MAX_CHUNK = 1 << 24
 """Largest chunk of a dataset, which is decompressed at once. [byte]"""
+_MOST_OBJECTS, _DEEPEST = 50_000, 32
+"""Most groups and datasets of a file, and most groups in one another."""
+_EMPTY_BYTES, _LARGEST_RATIO = 1 << 26, 2048
+"""A larger dataset must not be larger than what is stored of it by more than this factor, twice
+what gzip can reach: a file of 2 kB can promise 1e13 rows that were never written. [byte, -]"""
 _MATLAB_ATTRIBUTE = "MATLAB_class"
 _MAX_UNIT = 40
 """Longest text that is taken as a unit. [characters]"""
@@ -84,6 +90,11 @@ class _Table:
     leaves: tuple[_DatasetColumn, ...]
 
     @property
+    def length(self) -> int:
+        """Number of rows."""
+        return self.leaves[0].length
+
+    @property
     def columns(self) -> tuple[str, ...]:
         """Column names."""
         return tuple(leaf.name_in(self.group) for leaf in self.leaves)
@@ -111,45 +122,62 @@ def read_hdf5(path: Path, head: bytes, hints: CsvHints) -> ContainerLog | Refusa
         return refuse_without_package(_WHAT, "hdf5")
     with unreadable_on_error(f"cannot be read as {_WHAT}"), h5py.File(path, "r") as file:
         tables = _tables(file)
+        if isinstance(tables, Refusal):
+            return tables
         table = _choose_table(tables)
         if isinstance(table, Refusal):
             return table
-        names = {leaf.dataset for leaf in table.leaves}
-        large = sorted(name for name in names if _chunk_bytes(file[name]) > _MAX_CHUNK)
-        if large:
-            return Refusal(
-                "format_not_read",
-                f"{_WHAT} whose dataset {large[0]} is stored in parts of more than"
-                f" {_MAX_CHUNK >> 20} MiB; store it in smaller chunks: h5repack -l CHUNK=4096",
-            )
-    others = sorted({leaf.dataset for t in tables for leaf in t.leaves if leaf not in table.leaves})
+        names = sorted({leaf.dataset for leaf in table.leaves})
+        refused = next(filter(None, (_unreadable(file[name]) for name in names)), None)
+        if refused is not None:
+            return refused
+    used = set(table.leaves)
+    others = sorted({leaf.dataset for t in tables for leaf in t.leaves if leaf not in used})
     form = f"{_WHAT}, group {table.group}" if table.group != "/" else _WHAT
     if others:
         form += f" (left out: {first_names(others)})"
     return ContainerLog(path, table.columns, form, partial(_rows, path, table.leaves))
 
 
-def _tables(file: "h5py.File") -> list[_Table]:
+def _tables(file: "h5py.File") -> list[_Table] | Refusal:
     """Return the columns of each group by their length, outer groups first."""
     import h5py
 
     groups = ["/"]
     leaves: list[_DatasetColumn] = []
+    visited = 0
 
-    def visit(name: str, item: Any) -> None:
+    def visit(name: str, item: Any) -> bool | None:
+        nonlocal visited
+        visited += 1
         if isinstance(item, h5py.Group):
             groups.append(f"/{name}")
         elif isinstance(item, h5py.Dataset):
             leaves.extend(_leaves(item))
+        return True if visited > _MOST_OBJECTS or name.count("/") > _DEEPEST else None  # the end
 
     # follows hard links only, so that it never reaches another file
-    file.visititems(visit)
-    tables = []
-    for group in groups:
-        below = [leaf for leaf in leaves if leaf.dataset.startswith(f"{group.rstrip('/')}/")]
-        for length in sorted({leaf.length for leaf in below}, reverse=True):
-            tables.append(_Table(group, tuple(leaf for leaf in below if leaf.length == length)))
-    return tables
+    if file.visititems(visit):
+        return Refusal(
+            "format_not_read",
+            f"{_WHAT} of more than {_MOST_OBJECTS} groups and datasets, or {_DEEPEST} groups in one"
+            " another; save one recording alone",
+        )
+    below: dict[str, dict[int, list[_DatasetColumn]]] = {group: {} for group in groups}
+    for leaf in leaves:
+        for group in _groups_above(leaf.dataset):
+            below[group].setdefault(leaf.length, []).append(leaf)
+    return [
+        _Table(group, tuple(of_length[length]))
+        for group, of_length in below.items()
+        for length in sorted(of_length, reverse=True)
+    ]
+
+
+def _groups_above(path: str) -> list[str]:
+    """Return the groups that a dataset or group lies in, outer ones first."""
+    parts = path.strip("/").split("/")[:-1]
+    return ["/", *("/" + "/".join(parts[:depth]) for depth in range(1, len(parts) + 1))]
 
 
 def _leaves(dataset: "h5py.Dataset") -> Iterator[_DatasetColumn]:
@@ -202,10 +230,12 @@ def _choose_table(tables: Sequence[_Table]) -> _Table | Refusal:
         if {TIME, POSITION, TORQUE} <= recognised_quantities(table.columns)
     ]
     # the columns of a group are also columns of the groups that contain it
+    known = {(table.group, table.length) for table in complete}
     outer = [
         table
-        for index, table in enumerate(complete)
-        if not any(set(table.leaves) <= set(earlier.leaves) for earlier in complete[:index])
+        for table in complete
+        if table.group == "/"
+        or not any((group, table.length) in known for group in _groups_above(table.group))
     ]
     if len(outer) > 1:
         return Refusal(
@@ -216,9 +246,23 @@ def _choose_table(tables: Sequence[_Table]) -> _Table | Refusal:
     return outer[0] if outer else max(tables, key=lambda table: len(table.leaves))
 
 
-def _chunk_bytes(dataset: "h5py.Dataset") -> int:
-    """Return the size of a dataset's chunks, which are decompressed at once [byte]."""
-    return int(np.prod(dataset.chunks or ())) * dataset.dtype.itemsize
+def _unreadable(dataset: "h5py.Dataset") -> Refusal | None:
+    """Return why the rows of a dataset cannot be read part by part, None where they can."""
+    if math.prod(dataset.chunks or ()) * dataset.dtype.itemsize > _MAX_CHUNK:
+        return Refusal(
+            "format_not_read",
+            f"{_WHAT} whose dataset {dataset.name} is stored in parts of more than"
+            f" {_MAX_CHUNK >> 20} MiB; store it in smaller chunks: h5repack -l CHUNK=4096",
+        )
+    promised = math.prod(dataset.shape) * dataset.dtype.itemsize
+    stored = dataset.id.get_storage_size()
+    if promised > max(_EMPTY_BYTES, _LARGEST_RATIO * stored):
+        return Refusal(
+            "format_not_read",
+            f"{_WHAT} whose dataset {dataset.name} declares {promised} bytes and stores {stored};"
+            " save only the rows that were written",
+        )
+    return None
 
 
 def _rows(

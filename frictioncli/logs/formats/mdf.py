@@ -109,13 +109,13 @@ def _answer(request: dict[str, Any]) -> Iterator[tuple[dict[str, Any], IO[bytes]
         try:
             process.stdin.write(json.dumps(request).encode())
             process.stdin.close()
-            first = json.loads(process.stdout.readline() or '{"error": "asammdf broke down"}')
+            first = json.loads(process.stdout.readline() or '{"error": "asammdf crashed"}')
             if "error" in first:
                 raise UnreadableLog(f"cannot be read as {_WHAT} ({first['error']})")
             yield first, process.stdout
             # an Arrow stream that ends between two batches looks complete
             if process.wait() != 0:
-                raise UnreadableLog(f"cannot be read to its end as {_WHAT}: asammdf broke down")
+                raise UnreadableLog(f"cannot be read to its end as {_WHAT}: asammdf crashed")
         finally:
             # the process ends by itself when its output is closed, and removes its temporary files
             process.stdout.close()

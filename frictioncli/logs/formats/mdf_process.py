@@ -34,6 +34,9 @@ _TOLERANCE = 1.001
 """Factor by which the hold time may exceed the longest sampling interval: rounding errors."""
 _MEMORY_LIMIT = 4 << 30
 """Memory limit of the process; a damaged file may request any amount. [byte]"""
+_TIME_LIMIT, _TIME_PER_BYTE = 30, 2 / (1 << 20)
+"""Limit of its processor time: blocks of a damaged file may name each other as the next, in a
+circle. Packed samples take a tenth of that. [s, s/byte]"""
 
 
 @dataclass(frozen=True, slots=True)
@@ -66,8 +69,9 @@ def main() -> None:
     # asammdf prints to stdout; only the answer may reach the pipe
     with os.fdopen(os.dup(sys.stdout.fileno()), "wb") as answer:
         os.dup2(sys.stderr.fileno(), sys.stdout.fileno())
-        _limit_memory()
         request = json.load(sys.stdin)
+        with suppress(OSError):
+            _limit(os.stat(request["path"]).st_size)
         try:
             with opened(Path(request["path"])) as file:
                 if "signals" in request:
@@ -79,11 +83,14 @@ def main() -> None:
             raise
 
 
-def _limit_memory() -> None:
+def _limit(size: int) -> None:
+    """Limit memory and processor time, for a file of that size."""
+    seconds = _TIME_LIMIT + int(size * _TIME_PER_BYTE)
     with suppress(ImportError, ValueError):  # not available on Windows
         import resource
 
         resource.setrlimit(resource.RLIMIT_AS, (_MEMORY_LIMIT, _MEMORY_LIMIT))
+        resource.setrlimit(resource.RLIMIT_CPU, (seconds, seconds))
 
 
 def _send(answer: BinaryIO, document: dict[str, Any]) -> None:

@@ -10,6 +10,7 @@ from dataclasses import dataclass, field
 from functools import partial
 from pathlib import Path
 from typing import Any
+from urllib.parse import quote
 
 import numpy as np
 import pyarrow as pa
@@ -262,6 +263,8 @@ class _Bag:
         else:
             # by the content, not by the suffix of the name
             kind = ".mcap" if magic.startswith(_MCAP) else ".db3"
+            if kind == ".db3":  # its reader puts the name into a URI as it is
+                path = Path(quote(str(path), safe="/:\\"))
             self._reader = rosbag2.Reader.STORAGE_PLUGINS[kind](path)
             self._decode = get_typestore(Stores.LATEST).deserialize_cdr
 

@@ -57,5 +57,5 @@ def refuse_unsupported(path: Path, head: bytes, hints: CsvHints) -> Refusal | No
                 f"samples of a DIAdem recording; its header {path.stem}.dat is missing or cannot"
                 " be read: give both",
             )
-        return Refusal(_NOT_A_LOG, "binary file, no text")
+        return Refusal(_NOT_A_LOG, "binary file, not text")
     return None
