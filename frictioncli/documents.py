@@ -15,7 +15,7 @@ from typing import Any, TypeVar
 import msgspec
 
 from frictioncli.errors import TableError
-from frictioncli.files import write_text
+from frictioncli.files import is_there, write_text
 from frictioncli.provenance import Provenance
 
 Record = TypeVar("Record")
@@ -198,7 +198,7 @@ def locate_faults(path: Path, command: str) -> Iterator[None]:
 
 
 def _content(path: Path, command: str) -> bytes:
-    if not path.exists():
+    if not is_there(path):
         raise TableError(f"{path} is missing; run 'frictioncli {command}' first")
     try:
         return path.read_bytes()

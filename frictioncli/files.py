@@ -57,6 +57,17 @@ def atomic_write(target: Path) -> Iterator[Path]:
         shutil.rmtree(temporary, ignore_errors=True)
 
 
+def is_there(path: Path) -> bool:
+    """Return whether there is a file or folder that can be read; no pipe, which has no end.
+
+    Parameters
+    ----------
+    path : Path
+        A file or folder of a work folder.
+    """
+    return path.is_file() or path.is_dir()
+
+
 def write_text(target: Path, text: str) -> None:
     """Write a UTF-8 text file with plain line feeds, completely or not at all."""
     with atomic_write(target) as draft:

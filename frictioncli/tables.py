@@ -18,7 +18,7 @@ import pyarrow as pa
 import pyarrow.parquet as pq
 
 from frictioncli.errors import TableError
-from frictioncli.files import atomic_write
+from frictioncli.files import atomic_write, is_there
 from frictioncli.parquet_footer import row_groups
 from frictioncli.provenance import Provenance
 from frictioncli.quantities import TORQUE
@@ -289,7 +289,7 @@ def facts(path: Path) -> dict[str, Any]:
 
 def metadata(path: Path) -> dict[str, Any]:
     """Return the provenance and facts of a table; empty for a file that another program wrote."""
-    if not path.exists():
+    if not is_there(path):
         raise TableError(missing_text(path))
     if path.is_dir():
         path = next(iter(sorted(path.glob("*.parquet"))), path)
@@ -305,7 +305,7 @@ def metadata(path: Path) -> dict[str, Any]:
 def _opened(
     path: Path, table: Table, groups: pq.FileMetaData | None = None
 ) -> Iterator[pq.ParquetFile]:
-    if not path.exists():
+    if not is_there(path):
         raise TableError(missing_text(path))
     try:
         # otherwise the bytes of a whole row group would be held beside its values

@@ -11,7 +11,7 @@ from filelock import FileLock, Timeout
 
 from frictioncli import documents, tables
 from frictioncli.errors import FrictionError, TableError
-from frictioncli.files import DRAFT_PREFIX, cannot_write
+from frictioncli.files import DRAFT_PREFIX, cannot_write, is_there
 from frictioncli.provenance import sha256
 
 _LOCK = ".lock"
@@ -131,7 +131,7 @@ def origin_of(output: Path) -> Origin:
         replaced=tuple(
             name
             for name, digest in inputs.items()
-            if (path := output.with_name(name)).exists() and _is_replaced(path, output, digest)
+            if is_there(path := output.with_name(name)) and _is_replaced(path, output, digest)
         ),
     )
 

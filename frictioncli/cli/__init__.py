@@ -3,6 +3,7 @@
 Heavy libraries are imported inside the commands, so that ``--help`` answers at once.
 """
 
+import gc
 import os
 import sys
 import warnings
@@ -14,6 +15,11 @@ def main() -> None:
     """Run the command line; a fault of the input ends it with one message and status 2."""
     # matrices here are small: more threads cost more than they give, and change last digits
     os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
+    # pandas imports numexpr, which fails where OMP_NUM_THREADS is a list, as OpenMP allows
+    os.environ.setdefault("NUMEXPR_NUM_THREADS", "1")
+    _open_closed_streams()
+    # nearly all objects live as long as the command: fewer searches for those that do not
+    gc.set_threshold(50_000, 20, 100)
     from frictioncli.cli.commands import app
     from frictioncli.cli.terminal import say
 
@@ -30,3 +36,10 @@ def main() -> None:
         where = f"{fault.filename}: " if fault.filename else ""
         say(f"frictioncli: {where}cannot be used ({fault.strerror or fault})", fault=True)
         raise SystemExit(2) from None
+
+
+def _open_closed_streams() -> None:
+    """Let output that the caller has closed go nowhere, and never into the next opened file."""
+    for name, mode in (("stdin", "r"), ("stdout", "w"), ("stderr", "w")):
+        if getattr(sys, name) is None:
+            setattr(sys, name, open(os.devnull, mode, encoding="utf-8"))  # noqa: SIM115

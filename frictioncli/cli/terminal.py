@@ -1,15 +1,17 @@
 """Printing on the terminal, with control characters from logs replaced, and progress."""
 
 import io
+import os
 import sys
 import threading
 import time
 from collections.abc import Callable, Iterable, Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from typing import TextIO, TypeVar
 
 import typer
 
+from frictioncli.errors import FrictionError
 from frictioncli.plain_text import without_control_characters
 
 _PATIENCE = 2.0
@@ -18,16 +20,43 @@ _PATIENCE = 2.0
 _PERIOD = 0.5
 """Time between two updates of the line. [s]"""
 
+_NOBODY_READS = 141
+"""Exit status of a program that writes into a pipe which nobody reads any more."""
+
 _CLEAR_LINE = "\r\x1b[K"
 
 
 def say(what: object, *, fault: bool = False) -> None:
-    """Print something, on stderr if it is a fault."""
+    """Print something, on stderr if it is a fault.
+
+    Raises
+    ------
+    FrictionError
+        If the system does not allow it, as on a full disk.
+    SystemExit
+        If nobody reads the output any more, as in ``frictioncli run LOGS -w RUN | head -1``.
+    """
     stream = sys.stderr if fault else sys.stdout
     if isinstance(stream, io.TextIOWrapper):
         # characters missing from the terminal's encoding are written as escapes
         stream.reconfigure(errors="backslashreplace")
-    typer.echo(without_control_characters(str(what)), err=fault)
+    try:
+        typer.echo(without_control_characters(str(what)), err=fault)
+    except BrokenPipeError:
+        _redirect_to_nowhere(stream)
+        raise SystemExit(_NOBODY_READS) from None
+    except OSError as error:
+        _redirect_to_nowhere(stream)
+        if not fault:  # a fault is told by the status alone
+            raise FrictionError(f"output cannot be written ({error.strerror or error})") from None
+
+
+def _redirect_to_nowhere(stream: TextIO) -> None:
+    """Drop what is still in the buffer of a stream: Python would try again when it ends."""
+    with suppress(OSError, ValueError):
+        nowhere = os.open(os.devnull, os.O_WRONLY)
+        os.dup2(nowhere, stream.fileno())
+        os.close(nowhere)
 
 
 def say_result(label: str, call: Callable[[], object]) -> None:

@@ -1,6 +1,7 @@
 """Damaged maps, manifests, tables of contents and options: one message, no traceback."""
 
 import itertools
+import os
 import subprocess
 import sys
 from contextlib import suppress
@@ -11,12 +12,15 @@ import pyarrow as pa
 import pyarrow.parquet as pq
 import pytest
 
-from frictioncli.errors import FrictionError, LogError, MappingError, OptionError
+from frictioncli.errors import FrictionError, LogError, MappingError, OptionError, TableError
 from frictioncli.fleet.joint_logs import find_joints
 from frictioncli.logs.channels.channel_map import read_map
 from frictioncli.logs.ingest import IngestSettings, ingest
 from frictioncli.logs.runs.discovery import natural_key
 from frictioncli.logs.runs.manifest import read_manifest
+from frictioncli.model.document import read_models
+from frictioncli.stages.fit import fit
+from frictioncli.stages.pair import pair
 from tests.command_line import invoke
 from tests.fleet.fleets import ENVIRONMENT
 
@@ -215,9 +219,9 @@ def test_the_fast_parser_takes_only_what_it_can_tell_apart(sign):
     built = Path(parser.__file__)
     if built.stat().st_mtime < built.with_name("_plain_numbers.c").stat().st_mtime:
         pytest.skip("built from an older source")
-    for pair in ((sign, ord(".")), (ord(";"), sign)):
+    for signs in ((sign, ord(".")), (ord(";"), sign)):
         with pytest.raises(ValueError, match="expected characters"):
-            parser.columns(b"1;2\n", *pair, np.ones(2, np.uint8).data, np.empty((2, 1)).data)
+            parser.columns(b"1;2\n", *signs, np.ones(2, np.uint8).data, np.empty((2, 1)).data)
 
 
 def test_warnings_of_libraries_do_not_reach_the_terminal(tmp_path):
@@ -243,3 +247,15 @@ def test_warnings_of_libraries_do_not_reach_the_terminal(tmp_path):
     assert "from a library" not in said()
     assert "no usable log" in said()
     assert "from a library" in said("-W", "default")
+
+
+@pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="no pipes with names")
+def test_a_pipe_in_the_place_of_an_output_is_not_waited_for(tmp_path):
+    """A pipe that nobody writes into has no end."""
+    for stage, name in ((pair, "samples.parquet"), (fit, "torques.parquet")):
+        os.mkfifo(tmp_path / name)
+        with pytest.raises(TableError, match=f"{name} is missing"):
+            stage(tmp_path)
+    os.mkfifo(tmp_path / "model.json")
+    with pytest.raises(TableError, match=r"model\.json is missing"):
+        read_models(tmp_path / "model.json")
