@@ -2,11 +2,12 @@
 
 import logging
 import time
-from collections.abc import Generator, Iterator, Sequence
+from collections.abc import Callable, Generator, Iterator, Sequence
 from concurrent.futures import CancelledError
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
+from threading import Thread
 from typing import Any
 
 from frictioncli import __version__
@@ -106,7 +107,7 @@ def run_on_cluster(
                     outcomes = [record_worker_death(batch[0])] if len(batch) == 1 else []
                     waiting += [[task] for task in batch] if len(batch) > 1 else []
                 except CancelledError as error:
-                    raise _SchedulerLost("the scheduler is gone") from error
+                    raise _SchedulerLost("the scheduler stopped answering") from error
                 del running[future.key]
                 yield from outcomes
                 submit()
@@ -196,7 +197,7 @@ class _Scheduler:
 
     def _check_silence(self) -> None:
         if self._client.status == "closed" or time.monotonic() - self._answered > _PATIENCE:
-            raise _SchedulerLost("the scheduler is gone")
+            raise _SchedulerLost("the scheduler stopped answering")
 
 
 @dataclass(frozen=True, slots=True)
@@ -221,21 +222,50 @@ def _client(address: str, tls: Sequence[Path]) -> Iterator[Any]:
         ) from error
     try:
         options = {"security": _security(tls)} if tls else {}
-        client = Client(address, timeout=_PATIENCE, set_as_default=False, **options)
+        client = _connected(Client, address, options)
     except (OSError, ValueError, TypeError) as error:
         raise OptionError(
             f"--scheduler {address}: no Dask scheduler answers ({error}); expected an address such"
             " as tls://host:8786, with the files of --tls-ca, --tls-cert and --tls-key"
         ) from error
     with _no_logging("distributed.client"), client:
-        try:
-            client.wait_for_workers(1, timeout=_PATIENCE)
-        except TimeoutError as error:
-            raise OptionError(
-                f"--scheduler {address}: the scheduler has no workers; start some with"
-                f" 'dask worker {address} --nthreads 1'"
-            ) from error
+        _wait_for_workers(client, address)
         yield client
+
+
+def _connected(kind: Callable[..., Any], address: str, options: dict[str, Any]) -> Any:
+    """Return a client; Dask would wait for ever for the greeting of a scheduler that is stopped."""
+    found: list[Any] = []
+
+    def connect() -> None:
+        try:
+            found.append(kind(address, timeout=_PATIENCE, set_as_default=False, **options))
+        except Exception as error:  # raised again below
+            found.append(error)
+
+    # nothing waits for a daemon when the program ends
+    thread = Thread(target=connect, daemon=True)
+    thread.start()
+    thread.join(2 * _PATIENCE)
+    if not found:
+        raise TimeoutError(f"it is silent for {2 * _PATIENCE} s")
+    if isinstance(found[0], Exception):
+        raise found[0]
+    return found[0]
+
+
+def _wait_for_workers(client: Any, address: str) -> None:
+    scheduler, began = _Scheduler(client), time.monotonic()
+    try:
+        while not scheduler.workers():
+            if time.monotonic() - began > _PATIENCE:
+                raise OptionError(
+                    f"--scheduler {address}: the scheduler has no workers; start some with"
+                    f" 'dask worker {address} --nthreads 1'"
+                )
+            time.sleep(_POLL)
+    except _SchedulerLost as lost:
+        raise OptionError(f"--scheduler {address}: {lost}: start it and call again") from lost
 
 
 def _security(tls: Sequence[Path]) -> Any:

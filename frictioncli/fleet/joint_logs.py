@@ -279,7 +279,8 @@ def _absolute_path(base: Path, text: str, where: str) -> Path:
         raise MappingError(f"{where}: path {text!r} holds a NUL character")
     if not os.path.isabs(text) and os.path.normpath(text).split(os.sep)[0] == os.pardir:
         raise MappingError(
-            f"{where}: path {text} leads out of the folder of the table; expected one inside it, or"
+            f"{where}: path {text} leads outside the folder of the table; expected one inside"
+            " it, or"
             " an absolute path"
         )
     return Path(os.path.normpath(base / text))

@@ -33,7 +33,7 @@ class FleetSettings:
     """
 
     workers: int | None = field(
-        default=None, metadata=option("Processes on this machine; one per processor.")
+        default=None, metadata=option("Processes on this machine; default: one per processor.")
     )
     scheduler: str | None = field(
         default=None,
@@ -41,7 +41,9 @@ class FleetSettings:
     )
     timeout: float | None = field(
         default=None,
-        metadata=option("Time limit per joint, beyond which it has failed [s]; none."),
+        metadata=option(
+            "Time limit per joint, after which it counts as failed [s]; default: none."
+        ),
     )
     tls_ca: Path | None = field(
         default=None, metadata=option("Certificate authority of the scheduler, PEM.")

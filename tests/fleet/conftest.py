@@ -4,6 +4,7 @@ import pytest
 from threadpoolctl import threadpool_limits
 
 from tests.fleet.fleets import WITHOUT, fleet, write_fleet
+from tests.sample_run import made_once, shared_folder
 
 
 @pytest.fixture(autouse=True, scope="session")
@@ -14,24 +15,36 @@ def one_thread():
 
 
 @pytest.fixture(scope="session")
-def logs(tmp_path_factory):
+def shared(tmp_path_factory, worker_id):
+    """The folder that all processes of the tests share; tests must not change what is in it."""
+    return shared_folder(tmp_path_factory.getbasetemp(), worker_id)
+
+
+@pytest.fixture(scope="session")
+def logs(shared):
     """The logs of the small fleet."""
-    return write_fleet(tmp_path_factory.mktemp("fleet") / "logs")
+    return made_once(shared, "fleet-logs", write_fleet)
 
 
 @pytest.fixture(scope="session")
-def alone(logs, tmp_path_factory):
+def alone(logs, shared):
     """The small fleet by one worker: its folder, and what the command has said."""
-    out = tmp_path_factory.mktemp("alone") / "out"
-    result = fleet(logs, "-w", out, "--workers", 1, "--no-report")
-    assert result.returncode == 0, result.stderr
-    return out, result.stdout
+
+    def make(out):
+        result = fleet(logs, "-w", out, "--workers", 1, "--no-report")
+        assert result.returncode == 0, result.stderr
+        said.write_text(result.stdout, encoding="utf-8")
+
+    said = shared / "fleet-alone.txt"
+    return made_once(shared, "fleet-alone", make), said.read_text(encoding="utf-8")
 
 
 @pytest.fixture(scope="session")
-def undiagnosed(logs, tmp_path_factory):
+def undiagnosed(logs, shared):
     """The small fleet without diagnoses: its folder, for what does not depend on them."""
-    out = tmp_path_factory.mktemp("undiagnosed") / "out"
-    result = fleet(logs, "-w", out, "--workers", 1, *WITHOUT)
-    assert result.returncode == 0, result.stderr
-    return out
+
+    def make(out):
+        result = fleet(logs, "-w", out, "--workers", 1, *WITHOUT)
+        assert result.returncode == 0, result.stderr
+
+    return made_once(shared, "fleet-undiagnosed", make)

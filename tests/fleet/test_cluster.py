@@ -2,6 +2,7 @@
 
 import os
 import signal
+import subprocess
 import sys
 from dataclasses import replace
 
@@ -16,7 +17,17 @@ from frictioncli.fleet.local_processes import run_locally
 from frictioncli.stages.settings import RunSettings
 from frictioncli.workfolder import locked
 from tests.fleet.clusters import certificates, free_port, scheduler, worker
-from tests.fleet.fleets import WITHOUT, Deadly, begun, contents, done, fleet, started, until
+from tests.fleet.fleets import (
+    ENVIRONMENT,
+    WITHOUT,
+    Deadly,
+    begun,
+    contents,
+    done,
+    fleet,
+    started,
+    until,
+)
 from tests.fleet.joints import Joint, write_joint
 from tests.fleet.test_processes import tasks_of
 
@@ -104,7 +115,7 @@ def test_a_scheduler_that_goes_is_told_in_the_rows_and_the_next_call_goes_on(
     assert [first.joint, *(one.joint for one in rest)] == [1, 3, 2]
     assert first.status == "done"
     assert {one.status for one in rest} == {"failed"}
-    assert all("the scheduler is gone" in one.message for one in rest)
+    assert all("the scheduler stopped answering" in one.message for one in rest)
     again = {one.joint: one.status for one in run_locally(tasks[::2], 1)}
     assert again == {1: "unchanged", 3: "done"}
 
@@ -190,6 +201,23 @@ def test_no_scheduler_at_the_address(tmp_path, monkeypatch):
     address = f"tcp://127.0.0.1:{free_port()}"
     with pytest.raises(OptionError, match="no Dask scheduler answers"):
         list(run_on_cluster([], address))
+
+
+def test_a_scheduler_that_is_stopped_before_the_call(tmp_path):
+    """The system still accepts connections for it; Dask would wait for its greeting for ever."""
+    call = (
+        "import socket; from frictioncli.errors import OptionError;"
+        "from frictioncli.fleet import cluster; cluster._PATIENCE = 1;"
+        "silent = socket.create_server(('127.0.0.1', 0)); port = silent.getsockname()[1]\n"
+        "try:\n"
+        "    list(cluster.run_on_cluster([], f'tcp://127.0.0.1:{port}'))\n"
+        "except OptionError as error:\n"
+        "    print(error)"
+    )
+    done = subprocess.run(
+        [sys.executable, "-c", call], env=ENVIRONMENT, capture_output=True, text=True, timeout=120
+    )
+    assert "no Dask scheduler answers (it is silent for 2 s)" in done.stdout
 
 
 def test_no_dask(monkeypatch):
