@@ -6,6 +6,7 @@ directions the columns determine.
 """
 
 import numpy as np
+from scipy.linalg.lapack import dpotrf, dpotri
 
 from frictioncli.arrays import Array
 
@@ -165,6 +166,32 @@ def orthonormal_basis(columns: Array, *, tolerance: float) -> Array:
         return np.empty((len(columns), 0))
     left, strength, _ = np.linalg.svd(kept, full_matrices=False)
     return np.asarray(left[:, strength > tolerance * strength[0]])
+
+
+def inverse_and_determinant(gram: Array) -> tuple[Array, float]:
+    """Return the inverse of a symmetric, positive definite matrix and its log determinant.
+
+    By a Cholesky factor; where rounding spoils that, by elimination.
+
+    Parameters
+    ----------
+    gram : ndarray, shape (columns, columns)
+        The matrix.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> inverse, determinant = inverse_and_determinant(np.array([[4.0, 2.0], [2.0, 2.0]]))
+    >>> print(inverse, round(determinant, 6))
+    [[ 0.5 -0.5]
+     [-0.5  1. ]] 1.386294
+    """
+    factor, fault = dpotrf(gram, lower=True) if len(gram) else (gram, 1)
+    if fault:
+        return np.asarray(np.linalg.inv(gram), float), float(np.linalg.slogdet(gram)[1])
+    half, _ = dpotri(factor, lower=True)
+    inverse = half + np.tril(half, -1).T
+    return np.asarray(inverse), 2 * float(np.sum(np.log(np.diagonal(factor))))
 
 
 def _outer(size: Array) -> Array:

@@ -8,6 +8,7 @@ where there is one.
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 
 import numpy as np
 import pandas as pd
@@ -23,7 +24,7 @@ from frictioncli.diagnosis.ramps.timing_rivals import TimingRivals
 from frictioncli.diagnosis.search.cause import Cause
 from frictioncli.diagnosis.search.cause_search import find_causes
 from frictioncli.diagnosis.search.cause_selection import (
-    judged_on_new_run,
+    judged_together,
     refuted_by_new_run,
     uncertain_causes,
 )
@@ -32,6 +33,7 @@ from frictioncli.diagnosis.search.margin import channel_margin, margin_of
 from frictioncli.diagnosis.search.measurement import beside_the_rest, corrected_without_name
 from frictioncli.diagnosis.search.new_run_changes import changes_on_new_run, with_effect
 from frictioncli.diagnosis.search.new_run_misfit import NewRunMisfit
+from frictioncli.diagnosis.search.preparation import Preparation
 from frictioncli.diagnosis.search.search_result import SearchResult, given_up_causes
 from frictioncli.diagnosis.search.standing import with_standing
 from frictioncli.diagnosis.search.timing_causes import DELAY, judged_by_timing, late_torque
@@ -165,35 +167,33 @@ def diagnose_joint(
     joint = int(torques["joint"].iloc[0])
     runs = sorted(torques["run"].unique())
     held_out = str(runs[-1]) if len(runs) > 1 else None
-    seen = torques[torques["run"] != held_out]
-    pairs = seen.groupby(["run", "pair"], observed=True).ngroups
+    pairs = torques[torques["run"] != held_out].groupby(["run", "pair"], observed=True).ngroups
     if pairs < LEAST_PAIRS:
         raise NotEnoughData(
             f"joint {joint}: {pairs} pairs to learn from, expected at least {LEAST_PAIRS}, to tell"
             " noise from structure; log more moves there and back"
         )
     rows = settled_problems(torques, temperature, held_out, ramps, LEAST_PAIRS)
-    starts = rows.timing
-    late = late_torque(rows.problem, starts)
+    known = Preparation()
+    late = late_torque(rows.problem, rows.timing, known.beside)
     base = replace(rows.problem, late=late)
     base_new = rows.new and replace(rows.new, late=late)
     margin = margin_of(base, torque_unit, settings)
     evidence = ramp_evidence(ramps, base, temperature) if ramps else None
-
-    def search(rows: Problem, tried: Sequence[Effect]) -> SearchResult:
-        return find_causes(rows, tried, settings, margin, evidence)
-
+    search = partial(
+        find_causes, settings=settings, margin=margin, ramps=evidence, preparation=known
+    )
     refuted: tuple[Cause, ...] = ()
     while True:
         tried = [one for one in effects if one.name not in {no.fit.effect.name for no in refuted}]
         found, lag = search_with_lag(base, base_new, tried, search, margin)
         problem, new = (base, base_new) if lag is None else (lag.problem, lag.new)
         judged = with_standing((*found.measurement, *found.causes), problem, margin, settings.alpha)
-        judged, timing = judged_by_timing(judged, starts)
+        judged, timing = judged_by_timing(judged, rows.timing)
         named = [cause for cause in judged if cause.standing == "named"]
+        named = list(judged_together(named, found.step, problem, new))
         if new is None:
             break
-        named = list(judged_on_new_run(named, found.step, new))
         worse = refuted_by_new_run(named, found.step, new)
         if not worse:
             break
@@ -250,7 +250,7 @@ def diagnose_joint(
             new or problem,
             predicting(extension, causes),
             base=base_new or base,
-            # a change that begins on the run kept out was fitted there
+            # a change that begins on the held-out run was fitted there
             basis="new_run" if new and not appeared else "within_run",
             floor=_floor(found),
             seed=settings.seed,

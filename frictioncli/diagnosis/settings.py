@@ -24,15 +24,16 @@ class DiagnosisSettings:
     """
 
     alpha: float = field(
-        default=0.05, metadata=option("Chance of finding a cause where there is none.")
+        default=0.05,
+        metadata=option("Significance level: probability of finding a cause where there is none."),
     )
     seed: int = field(default=0, metadata=option("Seed of the simulated noise."))
-    most: int = field(default=4, metadata=option("Greatest number of causes, up to 4."))
+    most: int = field(default=4, metadata=option("Maximum number of causes, up to 4."))
     margin: float | None = field(
         default=None,
         metadata=option(
-            "Smallest size worth naming [torque unit]; else 0.5 % of the mean friction and"
-            " 0.1 N·m at least."
+            "Smallest size worth naming [torque unit]; default: 0.5 % of the mean friction, at"
+            " least 0.1 N·m."
         ),
     )
 

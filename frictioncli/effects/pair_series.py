@@ -3,6 +3,7 @@
 from dataclasses import dataclass, fields
 
 import numpy as np
+from scipy.linalg.lapack import dtbtrs
 
 from frictioncli.arrays import Array, Flags, Indices
 from frictioncli.effects.base import EffectTable
@@ -160,14 +161,11 @@ def first_order_response(
 
 def _accumulated(decay: Array, gain: Array, restart: Flags) -> Array:
     """Return x with ``x[i + 1] = decay[i] x[i] + gain[i]``, and 0 at each restart."""
-    state = 0.0
-    states = [state]
-    for factor, added, reset in zip(
-        decay.tolist(), gain.tolist(), restart[1:].tolist(), strict=True
-    ):
-        state = 0.0 if reset else factor * state + added
-        states.append(state)
-    return np.array(states)
+    banded = np.empty((2, len(restart)))
+    banded[0] = 1.0
+    banded[1, :-1] = np.where(restart[1:], 0.0, -decay)
+    right = np.concatenate([np.zeros(min(1, len(restart))), np.where(restart[1:], 0.0, gain)])
+    return np.asarray(dtbtrs(banded, right, uplo="L", diag="U")[0])
 
 
 def measured_share(table: EffectTable) -> Array:

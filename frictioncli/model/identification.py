@@ -13,9 +13,9 @@ confidence intervals hold when the experiment is repeated.
 from dataclasses import dataclass
 
 import numpy as np
-from scipy import stats
 
 from frictioncli.arrays import Array
+from frictioncli.distributions import t_quantile
 from frictioncli.model.equations import Equations, jacobian
 from frictioncli.model.friction import FrictionParameters, friction_torque
 from frictioncli.model.noise import Noise, pair_covariance, plausible_noise
@@ -67,7 +67,7 @@ class Estimate:
             Confidence level.
         """
         index = self.names.index(name)
-        half_width = stats.t.ppf(0.5 + level / 2, self.freedom) * np.sqrt(
+        half_width = t_quantile(0.5 + level / 2, self.freedom) * np.sqrt(
             self.covariance[index, index]
         )
         centre = getattr(self.parameters, name)

@@ -24,6 +24,7 @@ from scipy.linalg.lapack import dpbtrf, dpbtrs
 from scipy.optimize import minimize
 
 from frictioncli.arrays import Array, Indices
+from frictioncli.linear_algebra import inverse_and_determinant
 
 _LEAST_DRIFT = 1e-9
 """Least variance of the drift, relative to the mean of what is independent between pairs."""
@@ -211,31 +212,32 @@ def _restricted(covariance: PairCovariance, columns: Array) -> tuple[float, Arra
     """Return the restricted log likelihood, and what its derivatives need.
 
     The columns are those of the design and the residuals. The inverse covariance times the design,
-    the precision of its parameters, and the inverse covariance times what they leave come second.
+    the covariance of its parameters, and the inverse covariance times what they leave come second.
     """
     solved = covariance.solve(columns)
-    design, residual, own = columns[:, :-1], columns[:, -1], solved[:, -1]
-    information = design.T @ solved[:, :-1]
-    projected = design.T @ own
-    coefficients = np.linalg.solve(information, projected)
-    quadratic = residual @ own - projected @ coefficients
-    likelihood = covariance.log_determinant + np.linalg.slogdet(information)[1] + quadratic
+    own = solved[:, -1]
+    products = columns.T @ solved
+    information, projected = products[:-1, :-1], products[:-1, -1]
+    inverse, determinant = inverse_and_determinant(information)
+    coefficients = inverse @ projected
+    quadratic = products[-1, -1] - projected @ coefficients
+    likelihood = covariance.log_determinant + determinant + quadratic
     left = own - solved[:, :-1] @ coefficients
-    return float(-0.5 * likelihood), solved[:, :-1], information, left
+    return float(-0.5 * likelihood), solved[:, :-1], inverse, left
 
 
 def _cost(noise: Noise, covariance: PairCovariance, columns: Array) -> tuple[float, Array]:
     """Return minus the restricted log likelihood and its derivatives by ln(pair), ln(drift)."""
-    likelihood, solved, information, left = _restricted(covariance, columns)
+    likelihood, solved, inverse, left = _restricted(covariance, columns)
     residual, white = columns[:, -1], covariance.white
-    taken = np.einsum("ij,ji->i", solved, np.linalg.solve(information, solved.T))
+    taken = np.sum((solved @ inverse) * solved, axis=1)
     diagonal = covariance.inverse_diagonal() - taken
     pair = noise.pair**2 * (np.sum(diagonal) - left @ left)
     if noise.drift**2 < _LEAST_DRIFT * float(np.mean(white)):
         return -likelihood, np.array([pair, 0.0])
     # the drift's share of the covariance is what is not white
     square = residual @ left - left @ (white * left)
-    freedom = len(residual) - len(information) - diagonal @ white
+    freedom = len(residual) - len(inverse) - diagonal @ white
     return -likelihood, np.array([pair, freedom - square])
 
 

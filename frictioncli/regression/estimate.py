@@ -4,9 +4,9 @@ from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
-from scipy import stats
 
 from frictioncli.arrays import Array, Numbers
+from frictioncli.distributions import t_quantile
 from frictioncli.regression.equation import EquationTerms
 
 TOLERANCE = 1e-11
@@ -79,7 +79,7 @@ class RegressionEstimate:
 
     def quantile(self, level: float = 0.95) -> float:
         """Return Student's quantile for the blocks."""
-        return float(stats.t.ppf(0.5 + level / 2, max(self.blocks - 1, 1)))
+        return t_quantile(0.5 + level / 2, max(self.blocks - 1, 1))
 
 
 def left_out_changes(columns: Array, derivatives: Array, target: Array, block: Numbers) -> Array:

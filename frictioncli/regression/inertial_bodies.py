@@ -25,9 +25,9 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from scipy import stats
 
 from frictioncli.arrays import Array
+from frictioncli.distributions import chi2_tail
 
 _PER_BODY = 10
 _RANK = 1e-6
@@ -174,7 +174,7 @@ def fit_bodies(joints: Sequence[JointTorques], start: Array) -> BodyFit:
         rows += len(one.torque)
     excess = float(np.sum(np.square(known @ (best - solution))))
     # whitened rows have a variance of one
-    chance = float(stats.chi2.sf(excess, rank))
+    chance = chi2_tail(excess, rank)
     return BodyFit(
         rmse=float(np.sqrt(left / rows)),
         excess=float(np.sqrt(more / rows)),

@@ -211,7 +211,7 @@ def test_a_cause_beside_which_the_measurement_would_be_impossible_is_given_up(
     data = problem(8, friction=lambda rows: 0.5 * A(rows) + 1.0 * C(rows))
     found = find_causes(data, effects, SETTINGS, MARGIN)
     assert names(found) == ["a"]
-    assert found.dropped["c"].startswith("beside it backlash")
+    assert found.dropped["c"].startswith("with it, the fitted backlash")
 
 
 def test_what_the_base_leaves_little_of_is_not_searched_for(catalogue):

@@ -122,7 +122,7 @@ def test_a_payload_on_the_second_of_three_days():
     [(with_payload, "payload_change", [6.0, 0.0]), (with_friction_step, "step_change", [3.0])],
 )
 def test_a_change_on_the_last_day_only(change, name, size):
-    """It is found on the run kept out, so that the gain is no gain on data never seen."""
+    """It is found on the held-out run, so that the gain is no gain on data never seen."""
     table = days(2)
     table = change(table, on_the_second_day(table) & middle(table), size[0])
     diagnosis, cause, when = found(table)
@@ -136,7 +136,7 @@ def test_a_change_on_the_last_day_only(change, name, size):
     document = diagnosis_document(diagnosis, settings)
     (record,) = document.causes
     assert lasting_text(record, document) == (
-        "There in run day2 from 3.6 h on only: found and fitted on the run kept out (day2)."
+        "Present in run day2 from 3.6 h on only: found and fitted on the held-out run (day2)."
     )
     extended = extended_document(diagnosis, fit_joint(table, {}, FitSettings(temperature="motor")))
     again = reload(table, document, extended_model(extended)).new
@@ -154,7 +154,7 @@ def test_nothing_is_said_of_days_without_a_change():
 
 @pytest.mark.long
 def test_a_step_in_noise_that_drifts_may_be_a_drift():
-    """Friction steps by 1.7 N·m on the run kept out, in noise that drifts by 0.5 N·m RMS.
+    """Friction steps by 1.7 N·m on the held-out run, in noise that drifts by 0.5 N·m RMS.
 
     A friction that changes gradually explains the run nearly as well.
     """

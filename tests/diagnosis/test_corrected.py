@@ -46,7 +46,7 @@ def test_what_noise_hardly_explains_is_corrected_where_there_is_a_cause():
     impossible = replace(clear, fit=replace(clear.fit, coefficients=np.array([-9.0])))
     assert corrected((named, impossible), [named]) == []
     (one,) = corrected_without_name(judged, [named], DATA)
-    assert one.reason == "small; corrected all the same"
+    assert one.reason == "small; corrected nonetheless"
 
 
 @pytest.mark.slow
@@ -64,7 +64,7 @@ def test_what_is_corrected_follows_the_causes_and_counts_for_the_prediction():
     causes = [one.fit.effect.name for one in diagnosis.causes]
     assert [one.name for one in extended.effects] == [*causes, *names]
     assert all(
-        one.reason.endswith("corrected all the same")
+        one.reason.endswith("corrected nonetheless")
         for one in document.visible
         if one.effects[0] in names
     )

@@ -8,9 +8,11 @@ from scipy import stats
 
 from frictioncli.diagnosis.data.problem import Problem
 from frictioncli.diagnosis.fit.hypotheses import hypothesis_of
+from frictioncli.diagnosis.search import detectable_size as module
 from frictioncli.diagnosis.search.catalogue import Catalogue
 from frictioncli.diagnosis.search.cause_search import find_causes
 from frictioncli.diagnosis.search.detectable_size import Needed, detectable_size, noncentrality
+from frictioncli.diagnosis.search.effect_size import left_share
 from frictioncli.diagnosis.search.planted_fit import PlantedFit
 from frictioncli.diagnosis.search.precomputed import Precomputed
 from frictioncli.diagnosis.search.standing import with_standing
@@ -117,8 +119,19 @@ def test_what_would_be_impossible_has_no_size():
     assert detectable_size(step, little, test, LEVEL, MARGIN) is None
 
 
+def test_no_size_is_claimed_where_the_base_leaves_no_more_than_a_form_misses(monkeypatch):
+    """The base leaves a tenth of a load's amount; a form misses a twentieth, give or take two."""
+    step = step_of(problem(0))
+    effect = BY_NAME["load_linear"]
+    test = the_test(step, effect.name)
+    assert left_share(step.precomputed, effect, {}) == pytest.approx(0.1, abs=0.02)
+    assert detectable_size(step, effect, test, LEVEL, MARGIN) is None
+    monkeypatch.setattr(module, "FORM", 0.0)
+    assert detectable_size(step, effect, test, LEVEL, MARGIN) > 10 * MARGIN
+
+
 @pytest.mark.long
-@pytest.mark.parametrize("name", ["load_linear", "step_change", "position_ripple"])
+@pytest.mark.parametrize("name", ["load_temperature", "step_change", "position_ripple"])
 def test_the_claimed_size_is_named_and_half_of_it_is_not(name):
     """The whole search on ten joints each, whose noise the claim has not seen."""
     settings = DiagnosisSettings()

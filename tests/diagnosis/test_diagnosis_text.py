@@ -9,7 +9,7 @@ from tests.report.diagnosis_documents import cause, diagnosis
 DELAY = cause(
     ["torque_delay"],
     kind="measurement",
-    statement="The torque in these logs is 12 ms (11 to 13) late.",
+    statement="The torque in these logs lags the position by 12 ms (11 to 13).",
     size=0.9,
     size_ci95=(0.8, 1.0),
 )
@@ -23,22 +23,24 @@ def lines(**changed):
 def test_a_property_of_the_log_is_said_to_be_corrected():
     said = lines(causes=(DELAY,))
     assert said[1].startswith("measurement: torque_delay")
-    assert said[1].endswith("The torque in these logs is 12 ms (11 to 13) late; corrected.")
-    assert said[2] == "size: 0.9 N·m (0.8 to 1.0) RMS in the friction; chance 1e−09"
+    assert said[1].endswith(
+        "The torque in these logs lags the position by 12 ms (11 to 13); corrected."
+    )
+    assert said[2] == "size: 0.9 N·m (0.8 to 1.0) RMS in the friction; p-value 1e−09"
 
 
 def test_a_change_that_did_not_last_says_when_it_was_there():
     document = diagnosis(sets=[["step_change"]])
     lost = cause(["step_change"], holds_on_new_run=False, when="in run day-1 from 3.1 h on")
     assert lasting_text(lost, document) == (
-        "A change that did not last: there in run day-1 from 3.1 h on, not on the run kept out"
+        "A change that did not last: present in run day-1 from 3.1 h on, absent on the held-out run"
         " (day-2)."
     )
     without = cause(["step_change"], holds_on_new_run=False)
-    assert "there in run day-1, not on" in lasting_text(without, document)
+    assert "present in run day-1, absent on" in lasting_text(without, document)
     kept = cause(["step_change"], holds_on_new_run=True, when="from 4.0 h on in every run")
     assert lasting_text(kept, document) == (
-        "There from 4.0 h on in every run: it is there on the run kept out (day-2) too."
+        "Present from 4.0 h on in every run, and also on the held-out run (day-2)."
     )
     assert lasting_text(STEP, document) == ""
 
@@ -47,7 +49,7 @@ def test_size_says_what_the_base_model_leaves():
     both = cause(["drift"], size=1.9, size_ci95=(1.5, 2.3), visible_size=0.8)
     document = diagnosis(torque_unit="A", load_unit="N·m")
     assert size_text(both, document) == (
-        "1.9 A (1.5 to 2.3) RMS in the friction, of which the base model leaves 0.80 A"
+        "1.9 A (1.5 to 2.3) RMS in the friction, of which refitting the base model leaves 0.80 A"
     )
     assert "leaves" not in size_text(cause(["drift"], size=1.0, visible_size=0.99), document)
     # a load channel is in N·m where the torque is a current
@@ -58,10 +60,10 @@ def test_what_is_not_named_is_listed_with_its_reason():
     small = cause(["drift"], standing="negligible", reason="below 0.23 N·m", size=0.12)
     said = lines(sets=[["stribeck"]], visible=(small,), margin=0.23)
     assert said[-3] == (
-        "not named: drift, 0.12 N·m RMS in the friction, chance 1e−09; smaller than what is worth"
-        " naming: below 0.23 N·m"
+        "not named: drift, 0.12 N·m RMS in the friction, p-value 1e−09; too small to"
+        " name: below 0.23 N·m"
     )
-    assert said[-2] == "Sizes below 0.23 N·m are not named (--margin)."
+    assert said[-2] == "Effects below 0.23 N·m are not named (--margin)."
     assert "no cause is named" in lines(verdict="no_evidence", visible=(small,))
     assert "no cause found" in lines(verdict="no_evidence")
 
@@ -78,7 +80,8 @@ def test_what_is_left_is_said_with_size_and_axis():
     )
     said = "\n".join(lines(sets=[["coulomb_temperature"]], remainder=left))
     assert (
-        "Something is left: on run day-2 the extended model misses the torque by 1.4 N·m (RMS),"
+        "Unexplained structure remains: on run day-2 the extended model misses the torque by"
+        " 1.4 N·m (RMS),"
         " where noise alone is 0.67 N·m. That leaves 1.2 N·m, most of it along time, in the"
         " friction (0.95 N·m)."
     ) in said
@@ -88,7 +91,7 @@ def test_what_is_left_is_said_with_size_and_axis():
 def test_detectable_sizes_are_said():
     said = lines(sets=[["drift"]], detectable={"stribeck": 0.2, "run_in": None, "drift": 1.5})
     assert said[-1] == (
-        "Smallest sizes that would be named four times in five: 0.20 N·m RMS (stribeck) to 1.5 N·m"
+        "Smallest effects that would be named in 80 % of cases: 0.20 N·m RMS (stribeck) to 1.5 N·m"
         " (drift)."
     )
     assert lines(detectable={"run_in": None})[-1] == "These data can show none of the effects."

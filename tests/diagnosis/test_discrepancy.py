@@ -7,7 +7,8 @@ import pytest
 
 from frictioncli.diagnosis.fit.columns import base_rows
 from frictioncli.diagnosis.fit.left_by_base import span_of
-from frictioncli.diagnosis.fit.mixed_model import Products, evaluate, weights_of
+from frictioncli.diagnosis.fit.mixed_model import evaluate, weights_of
+from frictioncli.diagnosis.fit.products import Products
 from frictioncli.diagnosis.noise.discrepancy import SPEED_RIPPLE, discrepancy_of
 from frictioncli.diagnosis.search.precomputed import Precomputed
 from frictioncli.diagnosis.search.step import Step
@@ -181,9 +182,29 @@ def test_the_unit_of_speed_does_not_matter_for_errors_of_form(joint):
     assert middle == pytest.approx(np.exp(np.mean(np.log(table.speed))))
 
 
-def test_a_load_channel_of_its_own_has_no_discrepancy(joint):
-    smooth = smooth_of(replace(joint, has_load_channel=True))
-    assert {component.channel for component in smooth.components} == {"friction"}
+def test_a_load_that_is_measured_apart_has_its_share_of_discrepancy_in_its_own_unit(joint):
+    """As large a share of the load as of the friction, in whatever unit that is."""
+    apart = smooth_of(replace(joint, has_load_channel=True))
+    assert {component.channel for component in apart.components} == {"friction", "load"}
+    share = np.mean(np.abs(joint.load)) / np.mean(joint.friction)
+    for one in apart.components:
+        square = sum(np.sum(np.mean(part**2, axis=0)) for part in parts(apart, one))
+        unit = share if one.channel == "load" else 1.0
+        assert square == pytest.approx((unit * weight(one)) ** 2)
+    milli = smooth_of(
+        replace(
+            joint,
+            has_load_channel=True,
+            load=1000 * joint.load,
+            gravity=1000 * joint.gravity,
+        )
+    )
+    assert milli.amplitude == pytest.approx(apart.amplitude)
+    scale = np.repeat(np.array([[1.0], [1000.0]]), len(joint.load), axis=0)
+    np.testing.assert_allclose(milli.rows / scale, apart.rows, rtol=1e-9, atol=1e-9)
+
+
+def test_no_share_is_no_discrepancy(joint):
     assert smooth_of(joint, 0.0).components == ()
 
 

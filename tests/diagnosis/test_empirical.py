@@ -176,7 +176,7 @@ def test_a_bump_in_a_late_torque_is_described():
     assert part.form.shape["width"] == pytest.approx(7.0, rel=0.05)
     assert part.form.shape["lag"] == pytest.approx(0.04, rel=0.1)
     assert part.form.coefficients["peak"] == pytest.approx(3.0, rel=0.05)
-    assert "Pass 41" in experiment(part.form)
+    assert "Move through 41" in experiment(part.form)
     assert "to 82" in experiment(part.form)
     assert described(part.form, "N·m") == (
         f"a bump of friction of {part.form.coefficients['peak']:.1f} N·m at"
@@ -326,9 +326,9 @@ def test_documents_and_text_say_what_it_gains(diagnosed):
     assert part.formula == document.structure.formula
     assert "2 times per turn" in document.structure.description
     (unnamed,) = [cause for cause in document.causes if not cause.effects]
-    assert "three temperatures" in unnamed.experiment
+    assert "three constant temperatures" in unnamed.experiment
     assert document.empirical.rmse_after < 0.8 * document.empirical.rmse_before
-    assert "With an empirical term for what has no name" in verdict_text(document)
+    assert "An empirical term for the unexplained part" in verdict_text(document)
     assert "no cause" in verdict_text(document)
     low, high = document.empirical.ranges["temperature"]
     assert low == rows.loc[rows["run"] != diagnosis.held_out, "motor_temperature"].min()

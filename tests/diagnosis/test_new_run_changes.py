@@ -1,4 +1,4 @@
-"""Changes that begin on the run kept out, and what else such a run may have."""
+"""Changes that begin on the held-out run, and what else such a run may have."""
 
 import numpy as np
 import pytest

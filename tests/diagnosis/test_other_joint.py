@@ -116,13 +116,13 @@ def test_it_says_how_much_was_left_out_and_which_joints_moved(disturbed):
     assert amount["moves"] >= sum(seconds > 0 for seconds in disturbed.turned.values())
     assert cause["statement"].startswith("Joints 1 and 4 move during ")
     assert cause["statement"].endswith(": left out.")
-    assert "Let the other joints stand" in cause["experiment"]
+    assert "Keep the other joints still" in cause["experiment"]
 
 
 def test_terminal_and_page_say_it(disturbed):
     (cause,) = found_in(disturbed.document)
-    assert f"measurement: other_joint (other_joint 100%): {cause['statement']}" in disturbed.text
-    assert "RMS while they move; chance" in disturbed.text
+    assert f"measurement: other_joint (100%): {cause['statement']}" in disturbed.text
+    assert "RMS while they move; p-value" in disturbed.text
     report(disturbed.work)
     page = (disturbed.work / "report" / "index.html").read_text(encoding="utf-8")
     assert cause["statement"] in page
@@ -148,10 +148,10 @@ def motion(**changed):
         (
             {"torque": None, "ci95": None, "p_value": 1.0},
             "undetermined",
-            "of unknown size, chance not known;",
+            "of unknown size, p-value not known;",
         ),
         ({"joints": [6], "left_out": False}, "undetermined", "Joint 6 moves during 5.0 % of"),
-        ({"ci95": [0.31, 0.5], "p_value": 0.3}, "undetermined", "chance 0.3"),
+        ({"ci95": [0.31, 0.5], "p_value": 0.3}, "undetermined", "p-value 0.3"),
     ],
 )
 def test_little_is_not_named_but_said(changed, standing, said):

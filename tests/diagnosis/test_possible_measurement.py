@@ -28,6 +28,7 @@ def coarse(
     delay=0.0,
     play=0.0,
     turning=0.0,
+    along=0.0,
     speeds=SPEEDS,
     pairs=60,
     noise=0.3,
@@ -36,8 +37,8 @@ def coarse(
     """Return a joint at two slow speeds, its torque known every 20 deg.
 
     Torque is late by ``delay`` [s], the position logged forward exceeds that in reverse by ``play``
-    [deg], and friction goes up and down with the angle by ``turning`` [N·m], at the faster speed
-    the other way round than at the slower.
+    [deg], and friction goes up and down with the angle by ``along`` [N·m], and by ``turning`` at
+    the faster speed the other way round than at the slower.
     """
     generator = np.random.default_rng(seed)
     position = np.arange(-110.0, 111.0, 20.0)
@@ -48,7 +49,7 @@ def coarse(
         angle = np.radians(position - way * (speed * delay + play / 2))
         load = weight * np.cos(angle)
         torque = friction(TRUTH, load=load, speed=speed, temperature=warm)
-        torque = torque + turning * np.sign(speed - np.mean(speeds)) * np.sin(angle)
+        torque = torque + (along + turning * np.sign(speed - np.mean(speeds))) * np.sin(angle)
         ways.append(load + way * torque + noise * generator.normal(size=load.shape))
     half, mean = (ways[0] - ways[1]) / 2, (ways[0] + ways[1]) / 2
     half = half + 0.1 * generator.normal(size=speed.shape)
@@ -92,8 +93,28 @@ def test_friction_that_turns_over_with_speed_is_no_delay_beside_a_play(turning, 
     beside, refused = stands(problem)
     assert {"backlash", "torque_delay"}.isdisjoint(beside)
     assert "physically impossible" in refused["backlash"]
-    assert "beside a backlash that is physically impossible" in refused["torque_delay"]
+    assert "depends on a physically impossible backlash" in refused["torque_delay"]
     assert late_torque(problem, None) is None
+
+
+@pytest.mark.parametrize("noise", [0.03, 0.1])
+def test_friction_along_the_angle_is_no_delay_once_the_play_is_refused(noise):
+    """A play of 9 deg would do the same, and beside it there is no evidence of a delay."""
+    problem = problem_of(coarse(3, along=1.0, speeds=(40.0, 50.0), noise=noise))
+    beside, refused = stands(problem)
+    assert {"backlash", "torque_delay"}.isdisjoint(beside)
+    assert "physically impossible" in refused["backlash"]
+    assert "depends on a physically impossible backlash" in refused["torque_delay"]
+    assert late_torque(problem, None) is None
+
+
+def test_a_filter_of_the_torque_is_not_looked_for_in_a_load_that_is_measured_apart():
+    """Its first term, the delay, shows in friction all the same."""
+    rows = coarse(1, delay=0.06, noise=0.1)
+    apart = problem_of(rows.assign(load=rows["load_torque"]))
+    beside, refused = stands(apart)
+    assert "torque_filter" not in beside | refused
+    assert beside["torque_delay"] == pytest.approx(0.06, abs=0.012)
 
 
 def test_what_is_refused_is_listed_with_the_reason_and_never_named():
@@ -112,7 +133,7 @@ def test_a_delay_of_a_drive_is_measured_beside_bins_of_20_degrees(speeds):
     problem = problem_of(coarse(1, delay=0.06, speeds=speeds, noise=0.1))
     beside, refused = stands(problem)
     assert beside["torque_delay"] == pytest.approx(0.06, abs=0.012)
-    assert "only, and nothing beyond -1 to 1 deg is possible" in refused.get("backlash", "only,")
+    assert "; possible is -1 to 1 deg" in refused.get("backlash", "only,")
     assert late_torque(problem, None).delay == pytest.approx(0.06, abs=0.012)
 
 

@@ -8,7 +8,7 @@ import pytest
 from frictioncli.diagnosis.fit.hypotheses import EffectFit, HypothesisTest, physical_bounds
 from frictioncli.diagnosis.noise.significance import NullDistribution
 from frictioncli.diagnosis.search.cause import Cause
-from frictioncli.diagnosis.search.standing import with_standing
+from frictioncli.diagnosis.search.standing import with_standing, without_cancelling
 from frictioncli.effects import BY_NAME
 from tests.diagnosis.dense_noise import problem
 from tests.diagnosis.wave_effects import A, B, effect
@@ -48,7 +48,8 @@ def cause(one=WAVE, coefficients=(1.0,), errors=(0.1,), interval=(0.5, 0.9), sha
 
 
 def standing(joint, *causes):
-    return [(one.standing, one.reason) for one in with_standing(causes, joint, MARGIN, ALPHA)]
+    judged = without_cancelling(with_standing(causes, joint, MARGIN, ALPHA), joint)
+    return [(one.standing, one.reason) for one in judged]
 
 
 @pytest.mark.parametrize(
@@ -77,7 +78,7 @@ def test_what_noise_may_explain_is_undetermined_whatever_its_size(joint, test):
 def test_a_change_needs_more_significance_than_another_effect(joint, p_value, expected):
     """Drift looks like a change at some moment more often than p-values say."""
     step = BY_NAME["step_change"]
-    shape = step.shapes(joint.all_runs)[0]
+    shape = {"moment": 0.3, "end": 1.0}
     ((found, _),) = standing(joint, cause(step, (1.0,), (0.1,), shape=shape, p_value=p_value))
     assert found == expected
     ((found, _),) = standing(joint, cause(p_value=p_value))
@@ -88,7 +89,7 @@ def test_what_physics_forbids_is_not_named(joint):
     """Below 0, by more than its error; on a bound alone; a coefficient that may be nothing."""
     for coefficient, error, word in (
         (-0.5, 0.1, "impossible"),
-        (0.0, 0.0, "bounds"),
+        (0.0, 0.0, "bound"),
         (0.1, 0.1, "zero"),
     ):
         ((found, reason),) = standing(joint, cause(coefficients=(coefficient,), errors=(error,)))
@@ -129,6 +130,24 @@ def test_two_causes_that_cancel_are_not_both_named(joint):
     assert [one[0] for one in found] == ["undetermined", "named", "named"]
     assert "cancel" in found[0][1]
     assert strong.fit.effect.name in found[0][1]
+
+
+@pytest.mark.parametrize(
+    ("held", "expected"),
+    [
+        ((True, True), "named"),
+        ((True, None), "undetermined"),
+        ((None, True), "undetermined"),
+        ((False, True), "undetermined"),
+    ],
+)
+def test_two_causes_that_cancel_are_both_named_if_both_hold_on_the_run_kept_out(
+    joint, held, expected
+):
+    against = effect("against", [(-1.0, A), (0.3, B)])
+    both = (cause(against, statistic=40.0), cause(statistic=90.0))
+    judged = [replace(one, holds_on_new_run=own) for one, own in zip(both, held, strict=True)]
+    assert [one[0] for one in standing(joint, *judged)] == [expected, "named"]
 
 
 def test_causes_that_only_overlap_in_part_keep_their_names(joint):
@@ -172,7 +191,7 @@ def test_half_a_difference_of_torques_of_one_sign_is_at_most_their_mean(
     shape = {"distance": 10.0, "growth": 0.0}
     one = cause(BY_NAME["inertia"], (inertial, unequal), (0.1, 0.1), shape=shape)
     ((_, reason),) = standing(joint, one)
-    assert ("unequal_braking is physically impossible" in reason) != possible
+    assert ("its unequal braking would exceed" in reason) != possible
 
 
 def warming(joint, share):
@@ -197,4 +216,24 @@ def test_temperature_and_time_that_go_together_give_no_name(joint, name):
     ((apart, _),) = standing(warming(joint, 0.5), one)
     ((together, reason),) = standing(warming(joint, 1.0), one)
     assert (apart, together) == ("named", "undetermined")
-    assert "temperature and time go together" in reason
+    assert "temperature and time change together" in reason
+
+
+@pytest.mark.parametrize("name", ["load_velocity", "torque_delay", "linear_viscous"])
+def test_an_effect_of_a_speed_that_differs_between_runs_only_has_no_name(joint, name):
+    """The day, the payload or the pose may be what differs; what needs no speed has its name."""
+    pairs = len(joint.layout.time)
+    run = (np.arange(pairs) >= pairs // 2).astype(int)
+    effect = BY_NAME[name]
+    coefficients = tuple(0.5 * min(one.upper, 1.0) for one in effect.coefficients)
+    shape = {axis.name: axis.at(0.5) for axis in effect.shape}
+    told = cause(effect, coefficients, tuple(0.01 * one for one in coefficients), shape=shape)
+    ((found, _),) = standing(joint, told)
+    assert found == "named"
+    for speed, expected in ((20.0 + 20.0 * run, "undetermined"), (joint.layout.speed, "named")):
+        apart = replace(joint, layout=replace(joint.layout, run=run, speed=speed))
+        ((found, reason),) = standing(apart, told)
+        assert found == expected
+        assert ("every run has its own speed" in reason) == (expected != "named")
+        ((found, _),) = standing(apart, cause())
+        assert found == "named"

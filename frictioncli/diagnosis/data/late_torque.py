@@ -35,6 +35,10 @@ _MOVING = frozenset({"angle", "load", "load_slope", "friction"})
 """Columns of the table that change along a move."""
 
 
+EarlierTables = dict[float, EffectTable]
+"""Tables at the angles of a forward move so long before, of a reverse move after. [s]"""
+
+
 @dataclass(frozen=True, slots=True, kw_only=True)
 class LateTorque:
     """Response behind which the torque was logged.
@@ -78,6 +82,7 @@ def late_basis(
     counted: float,
     alpha: float,
     separate_load: bool,
+    known: EarlierTables | None = None,
 ) -> Basis:
     """Return the columns of an effect of the joint in separated torques that are late.
 
@@ -97,16 +102,19 @@ def late_basis(
         Coefficient of the squared load in friction. [1/(N·m)]
     separate_load : bool
         Whether the load was measured apart, and is not late with the torque.
+    known : dict, optional
+        Tables at earlier moments, by time: those of earlier calls are used, new ones added.
     """
+    known = {} if known is None else known
     if _MOVING.isdisjoint((*effect.needs, *effect.uses)):
         return effect.evaluate(table, shape)
     friction: Array | float = 0.0
     load: Array | float = 0.0
     for weight, time in late.nodes():
-        forward, reverse = (
-            effect.evaluate(_earlier(table, way * time, counted, alpha, separate_load), shape)
-            for way in (1.0, -1.0)
-        )
+        for moment in (time, -time):
+            if moment not in known:
+                known[moment] = _earlier(table, moment, counted, alpha, separate_load)
+        forward, reverse = (effect.evaluate(known[way], shape) for way in (time, -time))
         friction = friction + weight / 2 * (forward.friction + reverse.friction)
         load = load + weight / 2 * (forward.load + reverse.load)
         if not separate_load:

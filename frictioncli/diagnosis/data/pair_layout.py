@@ -61,9 +61,13 @@ class PairLayout:
         Middle of each pair. [s]
     level : ndarray of int, shape (pairs,)
         Speed level of each pair.
+    averaging : sparse matrix, shape (pairs, rows)
+        Means of pairs.
     pooling : sparse matrix, shape (groups, rows)
         Sums over a group of neighbouring pairs at one speed and angle, over the root of their
         number: white deviations of variance 1 stay so.
+    pooled_means : sparse matrix, shape (groups, pairs)
+        The same sums of means of pairs.
     white : sparse matrix, shape (groups, groups), or None
         Makes the sums white; None where they are so.
     noise : WithinNoise
@@ -79,7 +83,9 @@ class PairLayout:
     time: Array
     level: Indices
     speed: Array
+    averaging: csr_array
     pooling: csr_array
+    pooled_means: csr_array
     white: csr_array | None
     noise: WithinNoise
     blocks: tuple[Indices, ...]
@@ -119,14 +125,19 @@ class PairLayout:
             (weight[group], (group, np.arange(len(group)))), shape=(len(weight), len(group))
         )
         noise = noise or WithinNoise()
+        bins = np.bincount(row_pair).astype(float)
+        place = np.arange(len(row_pair)), row_pair
+        of_pair = csr_array((np.ones(len(row_pair)), place), shape=(len(row_pair), len(bins)))
         return cls(
             row_pair=row_pair,
-            bins=np.bincount(row_pair).astype(float),
+            bins=bins,
             run=run,
             time=time,
             level=level,
             speed=speed,
+            averaging=csr_array((of_pair / bins).T),
             pooling=pooling,
+            pooled_means=csr_array(pooling @ of_pair),
             white=_white(noise, keys, speed, block) if noise.share > 0 else None,
             noise=noise,
             blocks=_same_bins(row_pair, block, position),
@@ -195,15 +206,26 @@ class PairLayout:
         ndarray, shape (groups, columns)
             Sums of the deviations of each group over the root of their number.
         """
-        deviations = rows - self.means(rows)[self.row_pair]
-        pooled = self.pooling @ deviations
-        return np.asarray(pooled if self.white is None else self.white @ pooled)
+        return self.contrasts_and_means(rows)[0]
+
+    def contrasts_and_means(self, rows: Array) -> tuple[Array, Array]:
+        """Return what :meth:`contrasts` and :meth:`means` do.
+
+        Parameters
+        ----------
+        rows : ndarray, shape (rows, columns)
+            Values of each angle bin.
+        """
+        if not rows.any():
+            shape = rows.shape[1:]
+            return np.zeros((self.pooling.shape[0], *shape)), np.zeros((len(self.bins), *shape))
+        means = self.means(rows)
+        pooled = self.pooling @ rows - self.pooled_means @ means
+        return np.asarray(pooled if self.white is None else self.white @ pooled), means
 
     def means(self, rows: Array) -> Array:
         """Return the mean of each pair's rows, shape (pairs, ...)."""
-        starts = np.concatenate([[0], np.cumsum(self.bins[:-1])]).astype(np.intp)
-        total = np.add.reduceat(rows, starts, axis=0)
-        return np.asarray((total.T / self.bins).T)
+        return np.asarray(self.averaging @ rows)
 
     @property
     def within_freedom(self) -> int:

@@ -96,8 +96,7 @@ def _differ(load: Array, columns: Array, own: Flags, pair: Indices) -> bool:
 
     A Wald test with the covariance of pairs, or of rows where there are few pairs.
     """
-    # not needed to read a log
-    from scipy import stats
+    from frictioncli.distributions import f_tail  # not needed to read a log
 
     more = columns[:, :2] * own[:, np.newaxis]
     all_columns = np.hstack([columns, more])
@@ -120,4 +119,4 @@ def _differ(load: Array, columns: Array, own: Flags, pair: Indices) -> bool:
     tested = slice(int(kept[:-2].sum()), None)
     change, spread = solution[tested], covariance[tested, tested]
     wald = float(change @ np.linalg.pinv(spread, rcond=_TOLERANCE, hermitian=True) @ change)
-    return bool(stats.f.sf(wald / max(len(change), 1), len(change), freedom) < _ALPHA)
+    return bool(f_tail(wald / max(len(change), 1), len(change), freedom) < _ALPHA)

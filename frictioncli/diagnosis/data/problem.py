@@ -17,14 +17,14 @@ about the hidden one.
 """
 
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
 from frictioncli.arrays import Array, Flags, Indices
 from frictioncli.diagnosis.data.gravity import GravityForm
 from frictioncli.diagnosis.data.hidden_temperature import HiddenTemperature
-from frictioncli.diagnosis.data.late_torque import LateTorque, late_basis
+from frictioncli.diagnosis.data.late_torque import EarlierTables, LateTorque, late_basis
 from frictioncli.diagnosis.data.pair_layout import PairLayout
 from frictioncli.effects.base import Basis, Effect, EffectTable
 from frictioncli.effects.pair_series import rows_of
@@ -124,6 +124,7 @@ class Problem:
     hidden: HiddenTemperature | None = None
     counted: float = 1.0
     late: LateTorque | None = None
+    _earlier: EarlierTables = field(default_factory=EarlierTables, init=False, repr=False)
 
     def basis(self, effect: Effect, shape: Mapping[str, float]) -> Basis:
         """Return an effect's columns as the log shows them, evaluated on all runs."""
@@ -138,6 +139,7 @@ class Problem:
                 counted=self.counted,
                 alpha=self.parameters.alpha,
                 separate_load=self.has_load_channel,
+                known=self._earlier,
             )
         return Basis(friction[self.rows], load[self.rows])
 

@@ -39,8 +39,8 @@ from frictioncli.diagnosis.documents.thermal_record import record_of_lag
 from frictioncli.diagnosis.fit.extension import Extension
 from frictioncli.diagnosis.ramps.evidence import RampEstimate
 from frictioncli.diagnosis.search.cause import Cause
+from frictioncli.diagnosis.search.confounded import unclaimed
 from frictioncli.diagnosis.search.effect_size import LACKING, TAKEN_BY_BASE
-from frictioncli.diagnosis.search.standing import GOES_WITH_TIME, goes_with_time
 from frictioncli.diagnosis.search.timing_causes import DELAY, FILTER
 from frictioncli.diagnosis.settings import DiagnosisSettings
 from frictioncli.diagnosis.thermal.refine import LAG
@@ -116,7 +116,7 @@ def _undetectable(diagnosis: Diagnosis, detectable: Mapping[str, float | None]) 
     def reason(effect: Effect) -> str:
         if missing_columns(effect, diagnosis.base.table):
             return LACKING
-        return GOES_WITH_TIME if goes_with_time(effect, diagnosis.base) else TAKEN_BY_BASE
+        return unclaimed(effect, diagnosis.base) or TAKEN_BY_BASE
 
     unknown = [name for name, size in detectable.items() if size is None]
     return {name: reason(BY_NAME[name]) for name in unknown}

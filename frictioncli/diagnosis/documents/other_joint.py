@@ -23,8 +23,8 @@ _CLAIM = (
     " that is neither friction nor a load that depends on the angle."
 )
 _EXPERIMENT = (
-    "Let the other joints stand while this one moves: begin the log when they have arrived, or move"
-    " one joint after another."
+    "Keep the other joints still while this one moves: start the log when they have arrived, or"
+    " move one joint at a time."
 )
 
 
@@ -95,7 +95,7 @@ def _standing(
     """Return what may be said of the torque that is added, and why it is not named."""
     if interval is None:
         return "undetermined", (
-            "too few moves during which others move lie between equal ones during which none does"
+            "too few moves with another joint moving lie between equal moves without"
         )
     low, high = interval
     if low > margin and p_value < alpha:

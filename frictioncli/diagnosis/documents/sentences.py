@@ -9,8 +9,8 @@ from frictioncli.wording import in_words, list_text, number_text, quantity_text
 _STANDING = {
     "named": "named",
     "visible": "detectable, but not named",
-    "negligible": "smaller than what is worth naming",
-    "undetermined": "it is not determined",
+    "negligible": "too small to name",
+    "undetermined": "not determined",
 }
 
 _AXES = {
@@ -69,11 +69,12 @@ def size_text(cause: CauseRecord, document: DiagnosisDocument) -> str:
     left = cause.visible_size
     if left is None or left >= _LEFT_BY_BASE * cause.size:
         return text
-    return f"{text}, of which the base model leaves {quantity_text(left, cause.visible_ci95, unit)}"
+    remaining = quantity_text(left, cause.visible_ci95, unit)
+    return f"{text}, of which refitting the base model leaves {remaining}"
 
 
 def lasting_text(cause: CauseRecord, document: DiagnosisDocument) -> str:
-    """Return whether a cause is there on the run kept out; empty where that cannot be tested.
+    """Return whether a cause is there on the held-out run; empty where that cannot be tested.
 
     Parameters
     ----------
@@ -82,16 +83,16 @@ def lasting_text(cause: CauseRecord, document: DiagnosisDocument) -> str:
     document : DiagnosisDocument
         The joint's diagnosis.
     """
-    held_out = f"the run kept out ({document.held_out})"
+    held_out = f"the held-out run ({document.held_out})"
     if cause.holds_on_new_run is None or document.held_out is None:
-        return f"There {cause.when}." if cause.when else ""
+        return f"Present {cause.when}." if cause.when else ""
     if cause.only_on_new_run:
-        return f"There {cause.when} only: found and fitted on {held_out}."
+        return f"Present {cause.when} only: found and fitted on {held_out}."
     if cause.holds_on_new_run:
-        when = f"There {cause.when}: it is there" if cause.when else "It is there"
-        return f"{when} on {held_out} too."
+        when = f"Present {cause.when}, and also" if cause.when else "Also present"
+        return f"{when} on {held_out}."
     when = cause.when or f"in {_runs_text(document.runs)}"
-    return f"A change that did not last: there {when}, not on {held_out}."
+    return f"A change that did not last: present {when}, absent on {held_out}."
 
 
 def standing_text(cause: CauseRecord) -> str:
@@ -131,9 +132,9 @@ def settling_text(document: DiagnosisDocument) -> str:
         return ""
     pairs = f", among them all of {settling.pairs} pairs" if settling.pairs else ""
     return (
-        f"left out: {settling.bins} angle bins{pairs}, passed within {settling.seconds:.2g} s of"
-        " the first bin of a segment, when the delayed or filtered torque still showed the start of"
-        " the move"
+        f"left out: {settling.bins} angle bins{pairs} in the first {settling.seconds:.2g} s of"
+        " a move at constant speed, where the delayed or filtered torque still contains the"
+        " acceleration"
     )
 
 
@@ -150,8 +151,8 @@ def margin_text(document: DiagnosisDocument) -> str:
     margin = f"{number_text(document.margin, 2)} {document.torque_unit}"
     if document.load_margin is not None:
         least = f"{number_text(document.load_margin, 2)} {document.unit_of('load')}"
-        return f"Sizes below {margin} (--margin), and {least} in the load, are not named."
-    return f"Sizes below {margin} are not named (--margin)."
+        return f"Effects below {margin} (--margin), and {least} in the load, are not named."
+    return f"Effects below {margin} are not named (--margin)."
 
 
 def detectable_text(document: DiagnosisDocument) -> str:
@@ -175,7 +176,7 @@ def detectable_text(document: DiagnosisDocument) -> str:
     unit = document.torque_unit
     (least, easiest), (most, hardest) = known[0], known[-1]
     return (
-        f"Smallest sizes that would be named four times in five: {number_text(least, 2)} {unit} RMS"
+        f"Smallest effects that would be named in 80 % of cases: {number_text(least, 2)} {unit} RMS"
         f" ({in_words(easiest)}) to {number_text(most, 2)} {unit} ({in_words(hardest)}).{hidden}"
     )
 
@@ -195,7 +196,7 @@ def remainder_text(document: DiagnosisDocument) -> str:
     model = "extended" if document.modelled_causes else "base"
     most = ", most of it" if left.axis_size**2 >= 0.5 * left.size**2 else ", mostly"
     return (
-        f"Something is left: {on} the {model} model misses the torque by"
+        f"Unexplained structure remains: {on} the {model} model misses the torque by"
         f" {number_text(left.rmse, 2)} {unit} (RMS), where noise alone is"
         f" {number_text(left.noise_floor, 2)} {unit}. That leaves {number_text(left.size, 2)}"
         f" {unit}{most} along {_AXES.get(left.axis, left.axis)}, in the {left.channel}"
@@ -214,18 +215,19 @@ def empirical_text(document: DiagnosisDocument) -> str:
     found, unit = document.empirical, document.torque_unit
     if found is None:
         return ""
-    on = "on pairs kept out of its estimate"
+    on = "on pairs not used for fitting"
     if found.basis == "new_run":
-        on = f"on run {document.held_out}, which it has not seen"
+        on = f"on run {document.held_out}, not used for fitting,"
     low, high = (f"{share:.0%}".replace("-", "−") for share in found.ci95)
     what = ""
-    if found.forms:
-        what = f" It is {', and '.join(one.description or '' for one in found.forms)}."
+    # structure that a form describes is said already
+    if found.forms and (document.structure is None or document.structure.formula is None):
+        what = f" It describes {', and '.join(one.description or '' for one in found.forms)}."
     return (
-        "With an empirical term for what has no name, the extended model misses the torque by"
-        f" {number_text(found.rmse_after, 2)} {unit} (RMS) {on}, without by"
-        f" {number_text(found.rmse_before, 2)} {unit}: {found.reduction:.0%} less ({low} to"
-        f" {high}).{what} It is no cause, and valid only {_within_text(found)}."
+        f"An empirical term for the unexplained part reduces the misfit {on} from"
+        f" {number_text(found.rmse_before, 2)} to {number_text(found.rmse_after, 2)} {unit} (RMS):"
+        f" {found.reduction:.0%} less ({low} to {high}).{what} It names no cause and is valid only"
+        f" {_within_text(found)}."
     )
 
 

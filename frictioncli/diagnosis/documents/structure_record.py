@@ -58,7 +58,7 @@ def unnamed_record(diagnosis: Diagnosis) -> CauseRecord:
         claim = f"{_residuals(found.channel, found.axis)} A form describes it: {claim}"
     return CauseRecord(
         standing="visible",
-        reason="no effect of the catalogue explains it",
+        reason="no known effect explains it",
         effects=(),
         probabilities={},
         channel=found.channel,

@@ -32,8 +32,8 @@ def verdict_text(document: DiagnosisDocument) -> str:
     """
     unit = document.torque_unit
     first = (
-        f"joint {document.joint}: {document.verdict}; the simulated torque misses the measured one"
-        f" by {document.simulation.rmse:.3g} {unit} (RMS)"
+        f"joint {document.joint}: {document.verdict}; the simulated torque differs from the"
+        f" measured one by {document.simulation.rmse:.3g} {unit} (RMS)"
     )
     lines = [line for cause in document.named_causes for line in _cause_lines(cause, document)]
     lines += [
@@ -55,10 +55,10 @@ def verdict_text(document: DiagnosisDocument) -> str:
 
 
 def _cause_lines(cause: CauseRecord, document: DiagnosisDocument) -> Iterator[str]:
-    shares = ", ".join(f"{name} {cause.probabilities.get(name, 0.0):.0%}" for name in cause.effects)
+    shares = [f"{name} ({cause.probabilities.get(name, 0.0):.0%})" for name in cause.effects]
     kind = "measurement: " if cause.is_measurement else ""
-    yield f"{kind}{' or '.join(cause.effects)} ({shares}): {finding_text(cause)}"
-    yield f"  size: {size_text(cause, document)}; chance {chance_text(cause)}"
+    yield f"{kind}{' or '.join(shares)}: {finding_text(cause)}"
+    yield f"  size: {size_text(cause, document)}; p-value {chance_text(cause)}"
     if lasting := lasting_text(cause, document):
         yield f"  when: {lasting}"
     yield f"  seen: {cause.claim}"
@@ -68,15 +68,15 @@ def _cause_lines(cause: CauseRecord, document: DiagnosisDocument) -> Iterator[st
 def _left(cause: CauseRecord, document: DiagnosisDocument) -> Iterator[str]:
     """Return the lines on structure without a name."""
     yield (
-        f"structure that no effect of the catalogue explains: {cause.claim}"
-        f" {size_text(cause, document)}; chance {chance_text(cause)}"
+        f"structure that no known effect explains: {cause.claim}"
+        f" {size_text(cause, document)}; p-value {chance_text(cause)}"
     )
     yield f"  next: {cause.experiment}"
 
 
 def _visible_lines(cause: CauseRecord, document: DiagnosisDocument) -> Iterator[str]:
     yield (
-        f"not named: {' or '.join(cause.effects)}, {size_text(cause, document)}, chance"
+        f"not named: {' or '.join(cause.effects)}, {size_text(cause, document)}, p-value"
         f" {chance_text(cause)}; {standing_text(cause)}"
     )
     if note := note_text(cause):

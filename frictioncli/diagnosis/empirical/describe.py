@@ -81,16 +81,16 @@ def experiment(form: FormFunction) -> str:
 
 
 _AROUND = {
-    "position": "Pass {low} to {high} deg at three speeds, slow ones among them, cold and warm,"
-    " with and without a payload, in bins of no more than {bins} deg: damage of gear or bearing"
-    " stays at its angle at all speeds, and what the load does grows with it.",
+    "position": "Move through {low} to {high} deg at three speeds, some of them slow, cold and"
+    " warm, with and without a payload, in bins of {bins} deg or less: damage of gear or bearing"
+    " stays at its angle at all speeds; an effect of load grows with the load.",
     "speed": "Measure at six speeds or more from {low} to {high} deg/s in random order, cold and"
-    " warm: a resonance stays at its speed, a change of lubrication moves with temperature.",
-    "temperature": "Pass {low} to {high} °C twice, warming and cooling, at another pace and on"
-    " another day: what goes with temperature comes back at the same one, what goes with time does"
-    " not.",
+    " warm: a resonance stays at its speed; a change of lubrication shifts with temperature.",
+    "temperature": "Go through {low} to {high} °C twice, heating and cooling, at another rate and"
+    " on another day: an effect of temperature returns at the same temperature; an effect of time"
+    " does not.",
     "load": "Measure with another payload, or in another pose, so that loads of {low} to {high} N·m"
-    " are met at other angles: what goes with the load moves there.",
+    " occur at other angles: an effect of load moves with them.",
 }
 """What to measure around a peak."""
 
@@ -99,14 +99,13 @@ _BEND = "Measure more values on both sides of the bend, in random order, on anot
 _NEXT = {
     "bend_above": _BEND,
     "bend_below": _BEND,
-    "step": "Pass the temperature twice, warming and cooling, at another pace and on another day,"
-    " with what switches there (a fan, a heater) once on and once off.",
-    "lifting": "Measure with two payloads: a loss of lifting grows with the load by its power, an"
-    " error of the mass in proportion.",
-    "moving_peak": "Measure at six speeds or more about the peak, at three temperatures that are"
-    " held.",
-    "warm_wave": "Pass the whole stroke at one slow speed at three temperatures that are held.",
-    "turning_wave": "Pass the whole stroke at six speeds or more, in random order, at one"
+    "step": "Go through this temperature twice, heating and cooling, at another rate and on another"
+    " day, with anything that switches there (a fan, a heater) once on and once off.",
+    "lifting": "Measure with two payloads: a loss in lifting grows with the load to its power;"
+    " an error of the mass grows in proportion.",
+    "moving_peak": "Measure at six speeds or more around the peak, at three constant temperatures.",
+    "warm_wave": "Move through the whole stroke at one slow speed, at three constant temperatures.",
+    "turning_wave": "Move through the whole stroke at six speeds or more, in random order, at one"
     " temperature.",
 }
 """What to measure about other forms."""
@@ -172,7 +171,7 @@ def _moving_peak(form: FormFunction, unit: str) -> str:
     way = "up" if moves > 0 else "down"
     return (
         f"a {'dent' if height < 0 else 'peak'} of friction of {_size(height, unit)} at"
-        f" {_number(shape['centre'])} deg/s when at 40 °C, a factor of"
+        f" {_number(shape['centre'])} deg/s (at 40 °C), a factor of"
         f" {number_text(math.exp(shape['width']), 2)} wide (standard deviation), which moves {way}"
         f" by {number_text(abs(moves), 2)} % of its speed per °C"
     )

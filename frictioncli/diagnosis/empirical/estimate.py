@@ -83,7 +83,7 @@ class Empirical:
     kept_out : float
         RMS of what it explains on blocks of pairs that were kept out of its estimate. [N·m]
     gain : Gain
-        Reduction of the misfit that base and causes leave, on the run kept out of the diagnosis, or
+        Reduction of the misfit that base and causes leave, on the held-out run of the diagnosis, or
         on the blocks kept out of the estimate.
     beside : Extension
         Base and causes beside it: refitted beside its forms.
@@ -239,7 +239,7 @@ def _used(
     floor: float,
     seed: int,
 ) -> Empirical | None:
-    """Return an estimate as a term, if it explains enough of the run kept out, too."""
+    """Return an estimate as a term, if it explains enough of the held-out run, too."""
     term, gain, beside = found.term(), found.gain, found.refitted(seen[1])
     if new is not None:
         rows, holding = new

@@ -19,6 +19,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
+from scipy.linalg import solve_triangular
 
 from frictioncli.arrays import Array
 from frictioncli.diagnosis.data.problem import Problem
@@ -87,18 +88,16 @@ class WeightedMisfit:
         The rows.
     weights : (Weights, Weights)
         Weights of friction and load.
-    columns : ndarray, shape (weighted rows, columns)
-        Base, causes, discrepancy and forms, weighted.
-    root : ndarray, shape (columns, columns)
-        Lower Cholesky factor of their inner products with the precision of their coefficients.
+    known : ndarray, shape (columns, weighted rows)
+        Base, causes, discrepancy and forms, weighted: the inverse of the lower Cholesky factor of
+        their inner products with the precision of their coefficients, times the columns.
     misfit : ndarray, shape (weighted rows,)
-        The misfit, weighted.
+        What these leave of the weighted misfit.
     """
 
     problem: Problem
     weights: tuple[Weights, Weights]
-    columns: Array
-    root: Array
+    known: Array
     misfit: Array
 
     @classmethod
@@ -141,12 +140,14 @@ class WeightedMisfit:
         columns[:, :free] /= np.where(length > 0, length, 1.0)
         precision = np.ones(columns.shape[1])
         precision[:free] = _FREE
+        root = np.linalg.cholesky(columns.T @ columns + np.diag(precision))
+        known = np.asarray(solve_triangular(root, columns.T, lower=True))
+        own = weighted(np.concatenate(misfit)[:, np.newaxis])[:, 0]
         return cls(
             problem=problem,
             weights=(friction, load),
-            columns=columns,
-            root=np.asarray(np.linalg.cholesky(columns.T @ columns + np.diag(precision)), float),
-            misfit=weighted(np.concatenate(misfit)[:, np.newaxis])[:, 0],
+            known=known,
+            misfit=own - known.T @ (known @ own),
         )
 
     def statistics(self, form: Form, shapes: Sequence[Shape]) -> Array:
@@ -161,6 +162,10 @@ class WeightedMisfit:
         """
         width = len(form.coefficients)
         right, left, size = self._beside([form.columns(self.problem.table, one) for one in shapes])
+        if width == 1:
+            own = np.diag(left)
+            shown = own > _LEAST_LEFT * size
+            return np.where(shown, right**2 / np.where(shown, own + _FREE * size, 1.0), 0.0)
         places = (slice(number * width, (number + 1) * width) for number in range(len(shapes)))
         return np.array([_statistic(right[one], left[one, one], size[one]) for one in places])
 
@@ -180,21 +185,23 @@ class WeightedMisfit:
 
         With the misfit, shape (columns,); with each other, shape (columns, columns).
         """
-        friction = np.hstack([one.friction for one in parts])
-        load = np.hstack([one.load for one in parts])
-        upper = self.weights[0].weighted(friction) if friction.any() else friction[:0]
-        lower = self.weights[1].weighted(load) if load.any() else load[:0]
-        weighted = np.vstack([upper, lower])
-        rows = slice(None)
-        if not load.any():
-            rows = slice(0, len(upper))
-        elif not friction.any():
-            rows = slice(len(self.misfit) - len(lower), None)
-        hidden = np.linalg.solve(self.root, self.columns[rows].T @ weighted)
-        known = np.linalg.solve(self.root, self.columns.T @ self.misfit)
-        right = weighted.T @ self.misfit[rows] - hidden.T @ known
+        upper, lower = (
+            weights.weighted(np.hstack([one[channel] for one in parts]))
+            if any(one[channel].any() for one in parts)
+            else None
+            for channel, weights in enumerate(self.weights)
+        )
+        if lower is None:
+            width = sum(one.friction.shape[1] for one in parts)
+            weighted = np.zeros((0, width)) if upper is None else upper
+            rows = slice(0, len(weighted))
+        elif upper is None:
+            weighted, rows = lower, slice(len(self.misfit) - len(lower), None)
+        else:
+            weighted, rows = np.vstack([upper, lower]), slice(None)
+        hidden = self.known[:, rows] @ weighted
         whole = weighted.T @ weighted
-        return right, whole - hidden.T @ hidden, np.diag(whole)
+        return weighted.T @ self.misfit[rows], whole - hidden.T @ hidden, np.diag(whole)
 
     def best(self, forms: Sequence[Form]) -> FoundForm:
         """Return the form that explains most for its number of parameters.

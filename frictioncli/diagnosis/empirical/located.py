@@ -15,12 +15,12 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from scipy import stats
 
 from frictioncli.arrays import Array
 from frictioncli.diagnosis.empirical.normal_equations import NormalEquations
 from frictioncli.diagnosis.empirical.random_functions import Function
 from frictioncli.diagnosis.empirical.term import FormFunction
+from frictioncli.distributions import t_quantile
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -110,7 +110,7 @@ def located(
     squares = sum(size**2 for size, _ in sizes)
     found = []
     for number, (one, (size, ratios)) in enumerate(zip(functions, sizes, strict=True)):
-        reach = float(stats.t.ppf(0.975, len(ratios) - 1) * np.std(ratios, ddof=1))
+        reach = float(t_quantile(0.975, len(ratios) - 1) * np.std(ratios, ddof=1))
         reach /= math.sqrt(len(ratios))
         found.append(
             Located(

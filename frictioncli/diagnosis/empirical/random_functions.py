@@ -67,7 +67,8 @@ def functions_of(
     """Return the functions of a discrepancy over a problem's rows.
 
     Errors in the form of the friction model are left out: functions of speed and temperature hold
-    them, too. So is inertia of a speed that is not constant.
+    them, too. So is inertia of a speed that is not constant, and a load that is measured, which
+    nobody simulates.
 
     Parameters
     ----------
@@ -82,6 +83,8 @@ def functions_of(
     found = []
     for component, size in zip(components, np.exp(amplitude), strict=True):
         if component.axes == FORM or component.axes == SPEED_RIPPLE:
+            continue
+        if component.channel == "load" and problem.has_load_channel:
             continue
         series = CosineSeries.of(component.axes, problem.table, ranges)
         values = series.weights * series.columns(problem.table, ranges)

@@ -49,6 +49,8 @@ def bounded_coefficients(
     """
     size = np.sqrt(np.maximum(np.diagonal(inner, axis1=1, axis2=2), 0.0))
     determined = size > 0
+    if inner.shape[1] == 1:
+        return _single(inner[:, 0, 0], right[:, 0], float(lower[0]), float(upper[0]))
     everything = np.ones(inner.shape[1], bool)
     coefficients, gain = _solved(inner, right, everything, np.zeros_like(right))
     free = determined.copy()
@@ -79,6 +81,18 @@ def bounded_coefficients(
     return coefficients, gain, free
 
 
+def _single(inner: Array, right: Array, lower: float, upper: float) -> tuple[Array, Array, Flags]:
+    """Return the same of candidates with a single coefficient."""
+    determined = inner > 0
+    free = np.where(determined, right / np.where(determined, inner, 1.0), 0.0)
+    coefficients = np.clip(free, lower, upper)
+    gain = 2 * right * coefficients - np.square(coefficients) * inner
+    inside = (free >= lower) & (free <= upper)
+    # on a bound that explains nothing there is no effect
+    coefficients = np.where(inside | (gain > 0), coefficients, 0.0)
+    return coefficients[:, np.newaxis], np.maximum(gain, 0.0), (inside & determined)[:, np.newaxis]
+
+
 def _solved(inner: Array, right: Array, free: Array, fixed: Array) -> tuple[Array, Array]:
     """Return coefficients with some of them fixed, and twice the gain in log likelihood."""
     coefficients = np.where(free, 0.0, fixed)
@@ -95,5 +109,7 @@ def pseudo_inverse(inner: Array) -> Array:
     """Return the pseudo-inverses of inner products of few columns, scaled to unit length."""
     size = np.sqrt(np.maximum(np.diagonal(inner, axis1=1, axis2=2), 0.0))
     size = np.where(size > 0, size, np.inf)
+    if inner.shape[1] == 1:
+        return np.asarray(1 / np.square(size)[:, :, np.newaxis])
     sizes = size[:, :, np.newaxis] * size[:, np.newaxis, :]
     return np.asarray(np.linalg.pinv(inner / sizes, rcond=_RANK, hermitian=True) / sizes)

@@ -85,7 +85,7 @@ def reduced(layout: PairLayout, friction: Array, load: Array) -> ModelColumns:
         The columns in both channels. [N·m]
     """
     return ModelColumns(
-        *(ChannelColumns(layout.contrasts(rows), layout.means(rows)) for rows in (friction, load))
+        *(ChannelColumns(*layout.contrasts_and_means(rows)) for rows in (friction, load))
     )
 
 

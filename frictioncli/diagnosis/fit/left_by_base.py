@@ -95,7 +95,28 @@ def visible_size(left: Array, coefficients: Array, covariance: Array) -> tuple[f
     >>> print(np.round(size, 2))
     [2.  1.8 2.2]
     """
-    inner = left.T @ left / (len(left) / 2)
+    return visible_size_of(left.T @ left / (len(left) / 2), coefficients, covariance)
+
+
+def visible_size_of(
+    inner: Array, coefficients: Array, covariance: Array
+) -> tuple[float, float, float]:
+    """Return the same from the mean inner products of the columns.
+
+    Parameters
+    ----------
+    inner : ndarray, shape (width, width)
+        Mean inner products of what the base leaves of the columns.
+    coefficients : ndarray, shape (width,)
+        Coefficients.
+    covariance : ndarray, shape (width, width)
+        Their covariance.
+
+    Returns
+    -------
+    size, low, high : float
+        As of :func:`visible_size`. [N·m]
+    """
     square = float(coefficients @ inner @ coefficients)
     product = inner @ covariance
     added = float(np.trace(product))

@@ -28,6 +28,7 @@ import numpy as np
 from scipy.linalg import lapack
 
 from frictioncli.arrays import Array
+from frictioncli.diagnosis.fit.products import AnyProducts
 
 _RIDGE = 1e-10
 """Added to the diagonal of columns of unit length: what no data determine stays finite."""
@@ -37,6 +38,59 @@ _VANISHING = 6.0
 
 LEAST_VARIANCE = 1e-18
 """Least variance, so that torques without noise can be weighted. [(N·m)²]"""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class BaseProducts:
+    """Inner products of the pair means of the base's columns under each noise model, decomposed.
+
+    Attributes
+    ----------
+    size : ndarray, shape (noise models, columns)
+        Length of each column; infinite where it is none.
+    vectors : ndarray, shape (noise models, columns, columns)
+        Eigenvectors of the products of columns of unit length.
+    inverse : ndarray, shape (noise models, columns)
+        Inverse of the eigenvalues; 0 where they count as zero.
+    rank : int
+        Greatest number of those that do not.
+    determinant : ndarray, shape (noise models,)
+        Logarithm of the determinant.
+    """
+
+    size: Array
+    vectors: Array
+    inverse: Array
+    rank: int
+    determinant: Array
+
+    @classmethod
+    def of(cls, own: Array) -> "BaseProducts":
+        """Return the decomposition of inner products, shape (noise models, columns, columns)."""
+        size = np.sqrt(np.maximum(np.diagonal(own, axis1=1, axis2=2), 0.0))
+        size = np.where(size > 1e-12 * (1 + size.max(initial=0.0)), size, np.inf)
+        values, vectors = np.linalg.eigh(own / (size[:, :, np.newaxis] * size[:, np.newaxis, :]))
+        kept = values > 1e-8
+        finite = np.where(np.isfinite(size), size, 1.0)
+        logarithms = np.sum(np.where(kept, np.log(np.where(kept, values, 1.0)), 0.0), axis=1)
+        return cls(
+            size=size,
+            vectors=vectors,
+            inverse=np.where(kept, 1 / np.where(kept, values, 1.0), 0.0),
+            rank=int(kept.sum(axis=1).max(initial=0)),
+            determinant=logarithms + 2 * np.sum(np.log(finite), axis=1),
+        )
+
+    def explained(self, right: Array) -> Array:
+        """Return what the base explains of a column, from its inner products with it.
+
+        Parameters
+        ----------
+        right : ndarray, shape (noise models, columns)
+            Inner products of the base with the column.
+        """
+        projected = ((right / self.size)[:, np.newaxis] @ self.vectors)[:, 0]
+        return np.asarray(np.sum(np.square(projected) * self.inverse, axis=1))
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -68,6 +122,9 @@ class Components:
         Variance of the drift within the runs of each noise model at scale 1.
     most_drift : (float, float)
         Greatest variance of it that is allowed, of friction and load. [(N·m)²]
+    bases : (BaseProducts, BaseProducts) or None
+        What is left of the base under each noise model, of friction and load; None where it is
+        worked out from the products.
     """
 
     base: int
@@ -81,6 +138,7 @@ class Components:
     determinants: tuple[Array, Array]
     drifts: tuple[Array, Array]
     most_drift: tuple[float, float] = (np.inf, np.inf)
+    bases: tuple[BaseProducts, BaseProducts] | None = None
 
     def beside_function(self, place: slice, amplitude: float) -> "Components":
         """Return the components with one more random function, of any amplitude.
@@ -100,22 +158,6 @@ class Components:
             spread=np.append(self.spread, np.inf),
             least=np.append(self.least, amplitude - _VANISHING),
         )
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Products:
-    """Inner products of all columns of a model, the misfit last.
-
-    Attributes
-    ----------
-    within : (ndarray, ndarray), shape (columns, columns)
-        Of the deviations within pairs in friction and load.
-    between : (ndarray, ndarray), shape (noise models, columns, columns)
-        Of the pair means under each noise model.
-    """
-
-    within: tuple[Array, Array]
-    between: tuple[Array, Array]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -163,23 +205,19 @@ class MixedFit:
 def weights_of(components: Components, variances: Variances, count: int) -> Array:
     """Return the prior precision of each column, shape (count,); 0 where it is free."""
     ridge = np.zeros(count)
-    for place, amplitude in zip(components.functions, variances.amplitude, strict=True):
-        ridge[place] = np.exp(-2 * amplitude)
+    precision = np.exp(-2 * variances.amplitude).tolist()
+    for place, value in zip(components.functions, precision, strict=True):
+        ridge[place] = value
     return ridge
 
 
-def total(products: Products, variances: Variances) -> Array:
-    """Return inner products of both channels together, shape (columns, columns)."""
-    found = products.within[0] / variances.within[0] + products.within[1] / variances.within[1]
-    for part, number, scale in zip(
-        products.between, variances.noise, variances.between, strict=True
-    ):
-        found = found + part[number] / scale
-    return np.asarray(found)
+def scales_of(variances: Variances) -> Array:
+    """Return the variances within pairs and of pair means: of friction, then of load."""
+    return np.array([variances.within, variances.between]).T.ravel()
 
 
 def evaluate(
-    components: Components, products: Products, known: int, variances: Variances
+    components: Components, products: AnyProducts, known: int, variances: Variances
 ) -> MixedFit:
     """Return the fit of a model under given variance components.
 
@@ -195,26 +233,46 @@ def evaluate(
     variances : Variances
         The variance components.
     """
-    gram = total(products, variances)
+    return evaluate_chosen(components, products.chosen(variances.noise), known, variances)
+
+
+def evaluate_chosen(
+    components: Components, chosen: Array, known: int, variances: Variances
+) -> MixedFit:
+    """Return the same from the products under the noise models that are chosen.
+
+    Parameters
+    ----------
+    components : Components
+        What the variance components belong to.
+    chosen : ndarray, shape (4, columns, columns)
+        Inner products of all columns under the noise models of the variance components.
+    known : int
+        Number of columns of the null hypothesis.
+    variances : Variances
+        The variance components.
+    """
+    gram = ((1 / scales_of(variances)) @ chosen.reshape(4, -1)).reshape(chosen.shape[1:])
     count = len(gram) - 1
     ridge = weights_of(components, variances, count)
     size = np.sqrt(np.diagonal(gram)[:count] + ridge)
     size = np.where(size > 0, size, 1.0)
-    sizes = np.outer(size, size)
-    scaled = gram[:count, :count] / sizes
+    inverse_sizes = np.outer(1 / size, 1 / size)
+    # the matrix is symmetric: what is contiguous for numpy is so for LAPACK once transposed
+    scaled = gram[:count, :count] * inverse_sizes
     scaled[np.diag_indices(count)] = 1.0 + _RIDGE
-    factor, fault = lapack.dpotrf(scaled, lower=True)
+    factor, fault = lapack.dpotrf(scaled.T, lower=True)
     if fault:
         scaled[np.diag_indices(count)] = 1.0 + 1e-6
-        factor, _ = lapack.dpotrf(scaled, lower=True)
-    half, _ = lapack.dpotri(factor, lower=True)
-    inverse = half + half.T
-    inverse[np.diag_indices(count)] = np.diagonal(half)
-    covariance = inverse / sizes
+        factor, _ = lapack.dpotrf(scaled.T, lower=True)
+    logarithms = np.log(np.diagonal(factor)) + np.log(size)
+    half, _ = lapack.dpotri(factor, lower=True, overwrite_c=True)
+    covariance = half.T + half
+    covariance[np.diag_indices(count)] = np.diagonal(half)
+    covariance *= inverse_sizes
     right = gram[:count, count]
     coefficients = covariance @ right
     square = max(float(gram[count, count] - coefficients @ right), 1e-300)
-    logarithms = np.log(np.diagonal(factor)) + np.log(size)
     objective = square + 2 * float(np.sum(logarithms[:known]))
     for channel in (0, 1):
         objective += components.within[channel] * np.log(variances.within[channel])

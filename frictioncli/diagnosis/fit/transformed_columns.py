@@ -7,7 +7,7 @@ import numpy as np
 
 from frictioncli.arrays import Array
 from frictioncli.diagnosis.fit.columns import ModelColumns
-from frictioncli.diagnosis.fit.mixed_model import Products
+from frictioncli.diagnosis.fit.products import BorderedProducts, Products
 from frictioncli.diagnosis.noise.spectra import STRENGTHS, NoiseIndex, Spectra
 
 
@@ -25,6 +25,28 @@ class NoiseModels:
 
     spectra: tuple[Spectra, Spectra]
     indices: tuple[NoiseIndex, ...]
+    _precisions: dict[tuple[int, int], tuple[list[int], Array]] = field(default_factory=dict)
+
+    def precisions(self, channel: int, time: int) -> tuple[list[int], Array]:
+        """Return the noise models of a correlation time, and the precision of each mode.
+
+        Parameters
+        ----------
+        channel : int
+            0 for friction, 1 for load.
+        time : int
+            Number of the correlation time.
+
+        Returns
+        -------
+        list of int, ndarray, shape (pairs, noise models)
+            Numbers of the noise models, and one over the variances at scale 1.
+        """
+        if (channel, time) not in self._precisions:
+            numbers = [number for number, index in enumerate(self.indices) if index[0] == time]
+            variances = [self.variance(channel, number) for number in numbers]
+            self._precisions[channel, time] = numbers, 1 / np.column_stack(variances)
+        return self._precisions[channel, time]
 
     def variance(self, channel: int, number: int) -> Array:
         """Return the variance of each mode under a noise model at scale 1, shape (pairs,)."""
@@ -58,6 +80,32 @@ class Part:
     columns: ModelColumns
     noises: NoiseModels
     _modes: dict[tuple[int, int], Array] = field(default_factory=dict)
+    _across: dict[tuple[int, int], tuple["Part", Array]] = field(default_factory=dict)
+
+    def across(self, other: "Part", channel: int) -> Array:
+        """Return inner products of pair means with those of another part.
+
+        Parameters
+        ----------
+        other : Part
+            The other part.
+        channel : int
+            0 for friction, 1 for load.
+
+        Returns
+        -------
+        ndarray, shape (noise models, columns of the other, columns)
+        """
+        key = (channel, id(other))
+        if key not in self._across:
+            # the other part lives as long as its number
+            self._across[key] = (other, _inner_products(other, self, channel))
+        return self._across[key][1]
+
+    def take(self, chosen: slice) -> "Part":
+        """Return some of the columns."""
+        modes = {key: values[:, chosen] for key, values in self._modes.items()}
+        return Part(self.columns.take(chosen), self.noises, modes)
 
     def modes(self, channel: int, time: int) -> Array:
         """Return pair means in the eigenvectors of a correlation time, shape (pairs, columns)."""
@@ -109,10 +157,13 @@ class TransformedColumns:
     def products(self) -> Products:
         """Return inner products of all columns."""
         within = [one.T @ one for one in (self.within(0), self.within(1))]
-        return Products(
-            within=(within[0], within[1]),
-            between=(_between(self, self, 0), _between(self, self, 1)),
-        )
+        between = [
+            _joined(
+                [[_inner_products(one, two, channel) for two in self.parts] for one in self.parts]
+            )
+            for channel in (0, 1)
+        ]
+        return Products(within=(within[0], within[1]), between=(between[0], between[1]))
 
     def bordered(self, products: Products, own: Sequence[Part]) -> Products:
         """Return inner products with further columns before the last one, the misfit.
@@ -124,57 +175,73 @@ class TransformedColumns:
         own : sequence of Part
             The further columns.
         """
-        if not own:
-            return products
+        return self.beside(products, own).whole() if own else products
+
+    def beside(self, products: Products, own: Sequence[Part]) -> BorderedProducts:
+        """Return the same without copying what is known, for columns that are used once.
+
+        Parameters
+        ----------
+        products : Products
+            Inner products of these columns.
+        own : sequence of Part
+            The further columns.
+        """
         new = TransformedColumns(tuple(own))
-        within, between = [], []
-        for channel in (0, 1):
-            columns = new.within(channel)
-            across = np.vstack(
-                [part.columns.channels[channel].within.T @ columns for part in self.parts]
-            )
-            within.append(_bordered(products.within[channel], across, columns.T @ columns))
-            between.append(
-                _bordered(
-                    products.between[channel],
-                    _between(self, new, channel),
-                    _between(new, new, channel),
-                )
-            )
-        return Products(within=(within[0], within[1]), between=(between[0], between[1]))
+        within = [new.within(channel) for channel in (0, 1)]
+        across_within, across, of_own = (
+            [
+                np.vstack([one.columns.channels[channel].within.T @ columns for one in self.parts])
+                for channel, columns in enumerate(within)
+            ],
+            *(
+                [
+                    _joined([[one.across(part, channel) for one in own] for part in parts])
+                    for channel in (0, 1)
+                ]
+                for parts in (self.parts, own)
+            ),
+        )
+        return BorderedProducts(
+            known=products,
+            across_within=(across_within[0], across_within[1]),
+            own_within=(within[0].T @ within[0], within[1].T @ within[1]),
+            across=(across[0], across[1]),
+            own=(of_own[0], of_own[1]),
+        )
 
 
-def _between(first: TransformedColumns, second: TransformedColumns, channel: int) -> Array:
+def _joined(blocks: Sequence[Sequence[Array]]) -> Array:
+    """Return rows of blocks as one array, shape (noise models, columns, columns)."""
+    return np.concatenate([np.concatenate(row, axis=2) for row in blocks], axis=1)
+
+
+def _inner_products(first: Part, second: Part, channel: int) -> Array:
     """Return inner products of pair means, shape (noise models, columns, columns)."""
     noises = first.noises
-    found = np.zeros((len(noises.indices), first.count, second.count))
-    columns = np.flatnonzero(
-        np.hstack([part.columns.channels[channel].means.any(axis=0) for part in second.parts])
+    found = np.zeros((len(noises.indices), first.columns.count, second.columns.count))
+    rows, columns = (
+        np.flatnonzero(one.columns.channels[channel].means.any(axis=0)) for one in (first, second)
     )
-    if not len(columns):
+    if not (len(rows) and len(columns)):
         return found
+    places = np.ix_(rows, columns)
     for time in range(len(noises.spectra[channel].spectra)):
-        left = first.modes(channel, time).T
+        left = first.modes(channel, time)
+        left = left if len(rows) == left.shape[1] else left[:, rows]
         right = second.modes(channel, time)[:, columns]
-        for number, index in enumerate(noises.indices):
-            if index[0] == time:
-                weighted = right / noises.variance(channel, number)[:, np.newaxis]
-                found[number][:, columns] = left @ weighted
-    return found
-
-
-def _bordered(old: Array, across: Array, own: Array) -> Array:
-    """Return inner products with columns inserted before the last one."""
-    count, width = old.shape[-1] - 1, own.shape[-1]
-    found = np.empty((*old.shape[:-2], count + width + 1, count + width + 1))
-    found[..., :count, :count] = old[..., :count, :count]
-    found[..., :count, -1] = old[..., :count, -1]
-    found[..., -1, :count] = old[..., -1, :count]
-    found[..., -1, -1] = old[..., -1, -1]
-    middle = slice(count, count + width)
-    found[..., :count, middle] = across[..., :count, :]
-    found[..., -1, middle] = across[..., -1, :]
-    found[..., middle, :count] = across[..., :count, :].swapaxes(-1, -2)
-    found[..., middle, -1] = across[..., -1, :]
-    found[..., middle, middle] = own
+        numbers, precisions = noises.precisions(channel, time)
+        if first is second:
+            # the product of an array with itself takes half the time
+            for number, precision in zip(numbers, precisions.T, strict=True):
+                scaled = right * np.sqrt(precision)[:, np.newaxis]
+                found[number][places] = scaled.T @ scaled
+            continue
+        weighted = precisions[:, :, np.newaxis] * right[:, np.newaxis]
+        together = left.T @ weighted.reshape(len(right), -1)
+        products = np.moveaxis(together.reshape(len(rows), len(numbers), -1), 1, 0)
+        if len(rows) == found.shape[1] and len(columns) == found.shape[2]:
+            found[numbers] = products
+        else:
+            found[np.ix_(np.array(numbers), rows, columns)] = products
     return found

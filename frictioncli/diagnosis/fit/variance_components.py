@@ -9,14 +9,18 @@ from dataclasses import replace
 
 import numpy as np
 
+from frictioncli.arrays import Array
 from frictioncli.diagnosis.fit.mixed_model import (
     LEAST_VARIANCE,
+    BaseProducts,
     Components,
     MixedFit,
-    Products,
     Variances,
     evaluate,
+    evaluate_chosen,
+    scales_of,
 )
+from frictioncli.diagnosis.fit.products import AnyProducts
 
 _ROUNDS = 2
 """Rounds in which the noise models are chosen anew."""
@@ -32,7 +36,7 @@ _LONGEST_STEP = 1.5
 
 
 def fit_variances(
-    components: Components, products: Products, known: int, *starts: Variances
+    components: Components, products: AnyProducts, known: int, *starts: Variances
 ) -> MixedFit:
     """Return the fit with the variance components that are most probable; see :func:`evaluate`.
 
@@ -51,7 +55,7 @@ def fit_variances(
 
 
 def _fitted_from(
-    components: Components, products: Products, known: int, start: Variances
+    components: Components, products: AnyProducts, known: int, start: Variances
 ) -> MixedFit:
     """Return the most probable fit that is reached from one start."""
     best = evaluate(components, products, known, start)
@@ -59,15 +63,16 @@ def _fitted_from(
         best = replace(best, objective=np.inf)
     for _ in range(_ROUNDS):
         variances = _with_likeliest_noise(components, products, best)
+        chosen = products.chosen(variances.noise)
         before = np.inf
         for _ in range(_ITERATIONS):
-            fit = evaluate(components, products, known, variances)
+            fit = evaluate_chosen(components, chosen, known, variances)
             if fit.objective < best.objective:
                 best = fit
             if abs(before - fit.objective) < _CONVERGED:
                 break
             before = fit.objective
-            variances = _updated(components, products, fit)
+            variances = _updated(components, chosen, fit)
         if best.variances.noise == start.noise:
             break
         start = best.variances
@@ -81,73 +86,64 @@ def _is_allowed(components: Components, variances: Variances) -> bool:
     return all(one <= most for one, most in zip(drifts, components.most_drift, strict=True))
 
 
-def _updated(components: Components, products: Products, fit: MixedFit) -> Variances:
+def _updated(components: Components, chosen: Array, fit: MixedFit) -> Variances:
     """Return variance components that are more probable: fixed-point and Newton steps."""
     variances, covariance = fit.variances, fit.covariance
     residual = np.append(-fit.coefficients, 1.0)
-    within, between = [], []
-    for channel in (0, 1):
-        parts = (
-            (products.within[channel], variances.within[channel], components.within[channel]),
-            (
-                products.between[channel][variances.noise[channel]],
-                variances.between[channel],
-                components.pairs,
-            ),
-        )
-        scales = []
-        for gram, scale, freedom in parts:
-            square = float(residual @ gram @ residual)
-            taken = float(np.sum(covariance * gram[:-1, :-1])) / scale
-            scales.append(max(square / max(freedom - taken, 0.2 * freedom, 1.0), LEAST_VARIANCE))
-        within.append(scales[0])
-        between.append(scales[1])
-    amplitude = variances.amplitude.copy()
-    for number, place in enumerate(components.functions):
-        precision = np.exp(-2 * amplitude[number])
-        square = float(np.sum(np.square(fit.coefficients[place]))) * precision
-        freedom = components.widths[number] - precision * float(np.trace(covariance[place, place]))
-        spread = components.spread[number] ** 2
-        prior = (amplitude[number] - components.prior[number]) / spread
-        slope = square - freedom - prior
-        curvature = 2 * max(square, 0.5 * freedom, 1e-3) + 1 / spread
-        amplitude[number] += np.clip(slope / curvature, -_LONGEST_STEP, _LONGEST_STEP)
-    amplitude = np.maximum(amplitude, components.least)
+    squares = (chosen @ residual) @ residual
+    known = np.zeros(chosen.shape[1:])
+    known[:-1, :-1] = covariance
+    taken = chosen.reshape(4, -1) @ known.ravel() / scales_of(variances)
+    freedom = np.array([(one, components.pairs) for one in components.within], float).ravel()
+    divisor = np.maximum(np.maximum(freedom - taken, 0.2 * freedom), 1.0)
+    scales = np.maximum(squares / divisor, LEAST_VARIANCE).tolist()
     return replace(
         variances,
-        within=(within[0], within[1]),
-        between=(between[0], between[1]),
-        amplitude=amplitude,
+        within=(scales[0], scales[2]),
+        between=(scales[1], scales[3]),
+        amplitude=_updated_amplitude(components, fit),
     )
 
 
-def _with_likeliest_noise(components: Components, products: Products, fit: MixedFit) -> Variances:
+def _updated_amplitude(components: Components, fit: MixedFit) -> Array:
+    """Return logarithms of amplitudes that are more probable, shape (functions,)."""
+    before, places = fit.variances.amplitude, components.functions
+    if not places:
+        return before
+    precision = np.exp(-2 * before)
+    square = precision * _sums(np.square(fit.coefficients), places)
+    freedom = components.widths - precision * _sums(np.diagonal(fit.covariance), places)
+    spread = np.square(components.spread)
+    slope = square - freedom - (before - components.prior) / spread
+    curvature = 2 * np.maximum(np.maximum(square, 0.5 * freedom), 1e-3) + 1 / spread
+    step = np.clip(slope / curvature, -_LONGEST_STEP, _LONGEST_STEP)
+    return np.maximum(before + step, components.least)
+
+
+def _sums(values: Array, places: tuple[slice, ...]) -> Array:
+    """Return the sum of the values in each place, shape (places,)."""
+    return np.array([values[place].sum() for place in places])
+
+
+def _with_likeliest_noise(
+    components: Components, products: AnyProducts, fit: MixedFit
+) -> Variances:
     """Return the variances with the likeliest noise model of the pair means of each channel.
 
     The base is fitted anew under every noise model; the other coefficients stay.
     """
     base = components.base
     left = np.append(-fit.coefficients[base:], 1.0)
+    bases = components.bases or [BaseProducts.of(one) for one in products.of_base(base)]
     noise, scales = [], []
     for channel in (0, 1):
-        products_with_left = products.between[channel][:, :, base:] @ left
-        own = products.between[channel][:, :base, :base]
+        products_with_left = products.with_rest(channel, base, left)
         whole = products_with_left[:, base:] @ left
-        size = np.sqrt(np.maximum(np.diagonal(own, axis1=1, axis2=2), 0.0))
-        most = np.sqrt(max(size.max(initial=0.0) ** 2, whole.max(initial=0.0)))
-        size = np.where(size > 1e-12 * (1 + most), size, np.inf)
-        scaled = own / (size[:, :, np.newaxis] * size[:, np.newaxis, :])
-        values, vectors = np.linalg.eigh(scaled)
-        kept = values > 1e-8
-        right = products_with_left[:, :base] / size
-        projected = np.einsum("nij,ni->nj", vectors, right)
-        explained = np.sum(np.where(kept, projected**2 / np.where(kept, values, 1.0), 0.0), axis=1)
+        explained = bases[channel].explained(products_with_left[:, :base])
         square = np.maximum(whole - explained, 1e-300)
-        freedom = max(components.pairs - int(kept.sum(axis=1).max(initial=0)), 1)
-        finite = np.where(np.isfinite(size), size, 1.0)
-        determinant = np.sum(np.where(kept, np.log(np.where(kept, values, 1.0)), 0.0), axis=1)
-        determinant = determinant + 2 * np.sum(np.log(finite), axis=1)
-        cost = freedom * np.log(square) + components.determinants[channel] + determinant
+        freedom = max(components.pairs - bases[channel].rank, 1)
+        cost = freedom * np.log(square) + components.determinants[channel]
+        cost = cost + bases[channel].determinant
         drift = components.drifts[channel] * square / freedom
         best = int(np.argmin(np.where(drift > components.most_drift[channel], np.inf, cost)))
         noise.append(best)

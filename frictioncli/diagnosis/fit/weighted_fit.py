@@ -78,8 +78,8 @@ class Weights:
         columns : ndarray, shape (rows, columns)
             Columns in the channel. [N·m]
         """
-        within = self.layout.contrasts(columns) / self.point
-        return np.vstack([within, (self.layout.means(columns).T / self.deviation).T])
+        within, means = self.layout.contrasts_and_means(columns)
+        return np.vstack([within / self.point, (means.T / self.deviation).T])
 
     def correlated(self, weighted: Array) -> Array:
         """Return C X: the correlation matrix of the weighted noise times weighted columns."""

@@ -98,7 +98,8 @@ class Discrepancy:
     columns : ModelColumns
         The former, reduced.
     amplitude : float
-        RMS of a main effect that is expected beforehand. [N·m]
+        RMS of a main effect that is expected beforehand; in a load channel of the log it is as
+        large a share of the load. [N·m]
     """
 
     components: tuple[Component, ...]
@@ -138,13 +139,27 @@ class Discrepancy:
         amplitude : ndarray, shape (components,)
             Logarithm of the amplitude of each function.
         """
-        length = float(np.linalg.norm(torque))
-        if length == 0:
+        rows = len(torque) / 2
+        return self.along_products(
+            torque @ self.rows / rows, float(torque @ torque) / rows, amplitude
+        )
+
+    def along_products(self, products: Array, mean_square: float, amplitude: Array) -> float:
+        """Return the same from mean products of the torque.
+
+        Parameters
+        ----------
+        products : ndarray, shape (columns,)
+            Mean products with the columns of the discrepancy.
+        mean_square : float
+            Mean square of the torque. [(N·m)²]
+        amplitude : ndarray, shape (components,)
+            Logarithm of the amplitude of each function.
+        """
+        if mean_square <= 0:
             return 0.0
         scale = np.repeat(np.exp(amplitude), self.widths.astype(int))
-        return float(
-            np.linalg.norm(scale * (torque @ self.rows)) / length / np.sqrt(len(torque) / 2)
-        )
+        return float(np.linalg.norm(scale * products) / np.sqrt(mean_square))
 
 
 def discrepancy_of(problem: Problem, span: Array, share: float = SHARE) -> Discrepancy:
@@ -165,9 +180,12 @@ def discrepancy_of(problem: Problem, span: Array, share: float = SHARE) -> Discr
     if share > 0:
         parts.append(("friction", FORM, _form(problem.table)))
         parts += [("friction", *one) for one in _functions(problem.table, _FRICTION)]
-    if share > 0 and not problem.has_load_channel:
         parts += [("load", *one) for one in _functions(problem.table, _LOAD)]
         parts += [("load", *one) for one in _of_speed_ripple(problem.table)]
+    mean = float(np.mean(np.abs(problem.friction)))
+    # a load that is measured apart may have another unit: its share is one of the load
+    apart = problem.has_load_channel and mean > 0
+    loads = float(np.mean(np.abs(problem.load))) / mean if apart else 1.0
     components: list[Component] = []
     left, whole, first, squares = [np.zeros((2 * rows, 0))], [], 0, 0.0
     for channel, axes, values in parts:
@@ -179,15 +197,16 @@ def discrepancy_of(problem: Problem, span: Array, share: float = SHARE) -> Discr
         weight = weight_of(axes, channel)
         if axes == FORM:
             orthogonal = orthogonal @ _orthonormal_combination(orthogonal)
-        scale = weight * np.sqrt(rows / float(np.sum(np.square(orthogonal))))
+        unit = loads if channel == "load" else 1.0
+        scale = unit * weight * np.sqrt(rows / float(np.sum(np.square(orthogonal))))
         left.append(scale * orthogonal)
-        whole.append((_FORM_ERRORS if axes == FORM else weight) * _of_errors(axes, columns))
+        whole.append(unit * (_FORM_ERRORS if axes == FORM else weight) * _of_errors(axes, columns))
         components.append(Component(axes, channel, slice(first, first + orthogonal.shape[1])))
         first += orthogonal.shape[1]
-        squares += 0.0 if axes == SPEED_RIPPLE else weight**2
+        if axes != SPEED_RIPPLE and not (apart and channel == "load"):
+            squares += weight**2
     together = np.hstack(left)
     friction, load = np.split(together, 2)
-    mean = float(np.mean(np.abs(problem.friction)))
     return Discrepancy(
         components=tuple(components),
         rows=together,

@@ -25,9 +25,10 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
-from scipy import special, stats
+from scipy import special
 
 from frictioncli.arrays import Array
+from frictioncli.distributions import f_exceeded, f_tail
 from frictioncli.linear_algebra import orthonormal_basis
 
 _PRIOR_VARIANCE = 100.0
@@ -75,14 +76,14 @@ class NullDistribution:
         if self.coefficients == 0 or statistic <= 0:
             return 1.0
         ratio = self.freedom / self.coefficients * np.expm1(min(statistic / self.freedom, 500.0))
-        tail = float(stats.f.sf(ratio, self.coefficients, self.freedom))
+        tail = f_tail(ratio, self.coefficients, self.freedom)
         return min(1.0, self.shapes * tail)
 
     def critical_value(self, probability: float) -> float:
         """Return the statistic that noise alone exceeds with a probability."""
         if self.coefficients == 0:
             return float("inf")
-        ratio = stats.f.isf(probability / self.shapes, self.coefficients, self.freedom)
+        ratio = f_exceeded(probability / self.shapes, self.coefficients, self.freedom)
         return float(self.freedom * np.log1p(ratio * self.coefficients / self.freedom))
 
 

@@ -25,13 +25,13 @@ from pathlib import Path
 
 import numpy as np
 import pandas as pd
-from scipy import stats
 
 from frictioncli import schemas, tables
 from frictioncli.diagnosis.data.problem import Problem
 from frictioncli.diagnosis.noise.significance import log_bayes_factor
 from frictioncli.diagnosis.ramps.misfit import RampMisfit, resolved
 from frictioncli.diagnosis.ramps.robust_fit import Residual, RobustFit
+from frictioncli.distributions import t_quantile
 from frictioncli.pairs.ramps import LAGS
 from frictioncli.workfiles import STARTS
 
@@ -268,7 +268,7 @@ def _estimate(fit: RobustFit, places: Sequence[int]) -> RampEstimate:
     combination[list(places)] = 1.0
     value = float(combination @ fit.coefficients)
     error = math.sqrt(max(float(combination @ fit.covariance @ combination), 0.0))
-    reach = float(stats.t.isf(0.025, fit.freedom)) * error
+    reach = -t_quantile(0.025, fit.freedom) * error
     return RampEstimate(value, value - reach, value + reach)
 
 

@@ -27,10 +27,8 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from scipy import stats
 from scipy.interpolate import CubicSpline
 from scipy.optimize import least_squares
-from scipy.signal import lfilter
 
 from frictioncli.arrays import Array, Flags
 from frictioncli.diagnosis.data.problem import Problem
@@ -42,6 +40,7 @@ from frictioncli.diagnosis.ramps.timing_rivals import (
     LONGEST_FILTER,
     TimingRivals,
 )
+from frictioncli.distributions import normal_quantile, t_quantile
 
 MAX_LOG_ODDS = 12.0
 """Greatest log odds that the starts may contribute: their model is not exact."""
@@ -141,7 +140,7 @@ def timing_of(windows: StartWindows) -> TorqueTiming:
     found = _fitted(windows, used, found)
     misfit = _residual(windows, used, found)
     point, covariance, freedom = _one_step(windows, used, found)
-    reach = float(stats.t.isf(1 - _CONFIDENT, freedom))
+    reach = -t_quantile(1 - _CONFIDENT, freedom)
     shift, smear = (
         RampEstimate(value, value - reach * error, value + reach * error)
         for value, error in zip(point[:2], np.sqrt(np.diag(covariance)), strict=False)
@@ -149,7 +148,7 @@ def timing_of(windows: StartWindows) -> TorqueTiming:
     tolerance = np.array([_SHIFT_TOLERANCE, _SMEAR_TOLERANCE**2 * windows.period])
     tolerance = tolerance * windows.period + np.array(_SHARE) * np.abs(point[:2])
     # the normal distribution stands for Student's with as wide an interval
-    wider = np.square(reach / stats.norm.isf(1 - _CONFIDENT))
+    wider = np.square(reach / -normal_quantile(1 - _CONFIDENT))
     rivals = TimingRivals(point[:2], wider * covariance[:2, :2] + np.diag(np.square(tolerance)))
     return TorqueTiming(
         shift=shift,
@@ -198,6 +197,8 @@ def responded(values: Array, period: float, *, delay: float, time_constant: floa
         memory = math.exp(-ratio)
         past, now = (1 - memory) / ratio - memory, 1 - (1 - memory) / ratio
         steady = (past + memory) * values[:, :1]
+        from scipy.signal import lfilter  # takes long to import
+
         values = lfilter([now, past], [1.0, -memory], values, axis=1, zi=steady)[0]
     if delay == 0.0:
         return values

@@ -8,10 +8,10 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from scipy import stats
 
 from frictioncli.arrays import Array
 from frictioncli.diagnosis.ramps.evidence import RampEstimate
+from frictioncli.distributions import normal_log_density, normal_quantile
 
 DELAYS = (-0.1, 0.2)
 """Least and greatest delay of the torque. [s]"""
@@ -44,12 +44,14 @@ class TimingRivals:
 
     def log_evidence(self) -> dict[str, float]:
         """Return the logarithm of the evidence of each of :data:`RIVALS`."""
+        from scipy.stats import multivariate_normal  # takes long to import
+
         step = LONGEST_FILTER / _GRID
         prior_of_delay = -math.log(DELAYS[1] - DELAYS[0])
         both = np.logaddexp.reduce(self._smear_likelihood(self._time_constants)) + math.log(step)
         filtered = np.logaddexp.reduce(self._filter_likelihood()) + math.log(step)
         return {
-            "none": float(stats.multivariate_normal.logpdf(self.point, cov=self.covariance)),
+            "none": float(multivariate_normal.logpdf(self.point, cov=self.covariance)),
             "torque_delay": float(self._smear_likelihood(np.zeros(1))[0]) + prior_of_delay,
             "torque_filter": float(filtered) - math.log(LONGEST_FILTER),
             "both": float(both) + prior_of_delay - math.log(LONGEST_FILTER),
@@ -87,7 +89,7 @@ class TimingRivals:
         unfiltered = share["none"] + share["torque_delay"]
         time_constant = _estimate(np.append(0.0, tau), np.append(unfiltered, mass))
         # standard normal deviates at which a normal distribution is represented
-        deviates = stats.norm.ppf((np.arange(_DEVIATES) + 0.5) / _DEVIATES)
+        deviates = normal_quantile((np.arange(_DEVIATES) + 0.5) / _DEVIATES)
         spread = self._sd * deviates
         delays = np.concatenate(
             [
@@ -114,12 +116,12 @@ class TimingRivals:
         """Return the log likelihood of a filter without a delay, by time constant."""
         tau = self._time_constants
         found: Array = self._smear_likelihood(tau)
-        return found + stats.norm.logpdf(self._delay_at(tau), 0.0, self._sd).astype(float)
+        return found + normal_log_density(self._delay_at(tau), self._sd)
 
     def _smear_likelihood(self, time_constant: Array) -> Array:
         """Return the log likelihood of the smear by time constant, whatever the delay."""
         sd = math.sqrt(self.covariance[1, 1])
-        return np.asarray(stats.norm.logpdf(self.point[1], np.square(time_constant), sd))
+        return np.asarray(normal_log_density(self.point[1] - np.square(time_constant), sd))
 
     def _delay_at(self, time_constant: Array) -> Array:
         """Return the most likely delay beside each time constant [s]."""

@@ -39,6 +39,8 @@ class Catalogue:
     _within: dict[tuple[int, int], tuple[Part, Array]] = field(default_factory=dict)
     _own: dict[tuple[int, int], Array] = field(default_factory=dict)
     _directions: dict[int, float] = field(default_factory=dict)
+    _parts: dict[tuple[int, int], Part] = field(default_factory=dict)
+    _shown: dict[tuple[int, int], bool] = field(default_factory=dict)
 
     @classmethod
     def of(cls, precomputed: Precomputed, hypotheses: Sequence[Hypothesis]) -> "Catalogue":
@@ -80,8 +82,7 @@ class Catalogue:
         own = np.zeros((shapes, width, width))
         noises = self.precomputed.noises
         for channel in (0, 1):
-            part = self.part.columns.channels[channel]
-            if not (part.within[:, place].any() or part.means[:, place].any()):
+            if not self._shows(channel, number):
                 continue
             scale = variances.within[channel]
             across += self._across_within(channel, known)[:, place] / scale
@@ -93,6 +94,20 @@ class Catalogue:
             across += known.modes(channel, time).T @ (modes * weight[:, np.newaxis])
             own += _blocks(modes, weight, shapes, width)
         return across, own
+
+    def shape_part(self, number: int, shape: int) -> Part:
+        """Return the columns of one shape of a hypothesis.
+
+        Parameters
+        ----------
+        number, shape : int
+            Number of the hypothesis, and of its shape.
+        """
+        if (number, shape) not in self._parts:
+            width = self.hypotheses[number].width
+            first = self.places[number].start + shape * width
+            self._parts[number, shape] = self.part.take(slice(first, first + width))
+        return self._parts[number, shape]
 
     def lengths(self, number: int, shape: int, variances: Variances) -> tuple[float, float]:
         """Return squared lengths of one shape of a hypothesis: within pairs, and of pair means."""
@@ -136,6 +151,14 @@ class Catalogue:
         span = orthonormal_basis(np.vstack(beside), tolerance=RANK)
         left = stacked - span @ (span.T @ stacked)
         return effective_shapes(left.T @ left, self.hypotheses[number].width)
+
+    def _shows(self, channel: int, number: int) -> bool:
+        """Return whether a hypothesis has any torque in a channel."""
+        if (channel, number) not in self._shown:
+            part, place = self.part.columns.channels[channel], self.places[number]
+            shown = part.within[:, place].any() or part.means[:, place].any()
+            self._shown[channel, number] = bool(shown)
+        return self._shown[channel, number]
 
     def _across_within(self, channel: int, known: TransformedColumns) -> Array:
         """Return inner products of deviations with those of known columns."""

@@ -9,12 +9,12 @@ explains its part nearly as well joins its credible set.
 """
 
 from collections.abc import Collection, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
 from frictioncli.diagnosis.data.problem import Problem
-from frictioncli.diagnosis.fit.hypotheses import EffectFit, HypothesisTest, hypothesis_of
+from frictioncli.diagnosis.fit.hypotheses import EffectFit, HypothesisTest
 from frictioncli.diagnosis.noise.discrepancy import SHARE
 from frictioncli.diagnosis.noise.significance import (
     credible_set,
@@ -25,9 +25,10 @@ from frictioncli.diagnosis.search.catalogue import Catalogue
 from frictioncli.diagnosis.search.cause import CONVINCING, Cause
 from frictioncli.diagnosis.search.effect_size import left_size, shown_share, sizes_of
 from frictioncli.diagnosis.search.margin import channel_margin, strength
-from frictioncli.diagnosis.search.measurement import beside_base, measurement_causes
+from frictioncli.diagnosis.search.measurement import measurement_causes
 from frictioncli.diagnosis.search.possible import beyond_bounds
 from frictioncli.diagnosis.search.precomputed import Precomputed
+from frictioncli.diagnosis.search.preparation import Preparation
 from frictioncli.diagnosis.search.rivals import rival_log_bayes_factors
 from frictioncli.diagnosis.search.search_result import SearchResult
 from frictioncli.diagnosis.search.step import Step, free_coefficients
@@ -45,7 +46,10 @@ _REFINED = 3
 _SURELY = 4.0
 """Standard errors by which an effect of the measurement is beyond its bounds without doubt."""
 
-_SUPERFLUOUS = "other causes explain what it explained"
+_SUPERFLUOUS = "other causes explain it"
+
+_REMEMBERED = 3
+"""Number of steps with accepted effects that are remembered, beside the first."""
 
 _CLEARLY = 3.0
 """Log Bayes factor by which another effect must fit better to replace an accepted one."""
@@ -58,6 +62,7 @@ def find_causes(
     margin: float,
     ramps: RampEvidence | None = None,
     discrepancy: float = SHARE,
+    preparation: Preparation | None = None,
 ) -> SearchResult:
     """Search the catalogue for the causes of a problem's misfit.
 
@@ -75,11 +80,14 @@ def find_causes(
         Evidence of the ramps on inertia and on friction after a reversal.
     discrepancy : float, optional
         RMS of the discrepancy that is expected, relative to the mean friction; 0 for none.
+    preparation : Preparation, optional
+        What is known of problems that are searched more than once.
     """
-    beside = beside_base(problem, discrepancy)
+    preparation = preparation or Preparation()
+    beside = preparation.beside(problem, discrepancy)
     precomputed = beside.precomputed
     tried = applicable(effects, problem.table)
-    hypotheses = [hypothesis_of(effect, problem) for effect in tried]
+    hypotheses = preparation.hypotheses(problem, tried, discrepancy)
     catalogue = Catalogue.of(precomputed, hypotheses)
     search = _Search(precomputed, catalogue, settings, margin, ramps, beside.effects)
     accepted: list[EffectFit] = []
@@ -166,11 +174,22 @@ class _Search:
     margin: float
     ramps: RampEvidence | None
     beside: tuple[Effect, ...] = ()
+    _known: dict[tuple[int, ...], tuple[Step, dict[str, HypothesisTest]]] = field(
+        default_factory=dict
+    )
 
     def tested(self, accepted: Sequence[EffectFit]) -> tuple[Step, dict[str, HypothesisTest]]:
         """Return the step with these effects accepted, and the tests of all others there."""
-        step = Step.of(self.precomputed, accepted)
-        tests = step.tested(self.catalogue, skip=_names(accepted))
+        # the same effects are accepted more than once: a step holds them, and so their numbers
+        key = tuple(id(one) for one in accepted)
+        if key not in self._known:
+            for old in [one for one in self._known if one][:-_REMEMBERED]:
+                del self._known[old]
+            self._known[key] = self._tested(Step.of(self.precomputed, accepted))
+        return self._known[key]
+
+    def _tested(self, step: Step) -> tuple[Step, dict[str, HypothesisTest]]:
+        tests = step.tested(self.catalogue, skip=_names(step.accepted))
         factors = with_ramp_evidence(
             {name: one.log_bayes_factor for name, one in tests.items()}, self.ramps
         )
@@ -210,7 +229,7 @@ class _Search:
             gone = measured - self._impossible_measurement(others)
             if gone:
                 name = in_words(min(gone))
-                return one, f"beside it {name} of the measurement would be physically impossible"
+                return one, f"with it, the fitted {name} would be physically impossible"
         return None
 
     def _impossible_measurement(self, accepted: Sequence[EffectFit]) -> set[str]:

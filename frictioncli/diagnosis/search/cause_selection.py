@@ -17,6 +17,7 @@ from frictioncli.diagnosis.fit.hypotheses import EffectFit
 from frictioncli.diagnosis.fit.weighted_fit import WeightedFit
 from frictioncli.diagnosis.search.cause import Cause
 from frictioncli.diagnosis.search.new_run import NewRunTest, new_run_test
+from frictioncli.diagnosis.search.standing import without_cancelling
 from frictioncli.diagnosis.search.step import Step
 from frictioncli.effects.thermal_lag import EFFECT as THERMAL_LAG
 
@@ -32,6 +33,33 @@ _WORSE = 1.05
 
 _ROUNDS = 2
 """Times that the histories of all changes are fitted on the new run, each beside the others."""
+
+
+def judged_together(
+    causes: Sequence[Cause], step: Step, problem: Problem, new: Problem | None
+) -> tuple[Cause, ...]:
+    """Return causes judged on a new run, if there is one; of two that cancel, one has no name.
+
+    Parameters
+    ----------
+    causes : sequence of Cause
+        Causes that are named.
+    step : Step
+        The last step of the search.
+    problem : Problem
+        The rows seen.
+    new : Problem or None
+        Rows of a run that was held out.
+    """
+    judged = tuple(causes) if new is None else judged_on_new_run(causes, step, new)
+    kept = without_cancelling(judged, problem)
+    lost = [one for before, one in zip(judged, kept, strict=True) if one is not before]
+    if new is None or not lost:
+        return kept
+    # the others are judged as if those were not there
+    names = {one.fit.effect.name for one in lost}
+    rest = [one for one in causes if one.fit.effect.name not in names]
+    return (*judged_on_new_run(rest, step, new), *lost)
 
 
 def judged_on_new_run(causes: Sequence[Cause], step: Step, new: Problem) -> tuple[Cause, ...]:
@@ -93,10 +121,8 @@ def refuted_by_new_run(causes: Sequence[Cause], step: Step, new: Problem) -> tup
             continue
         without = missed([one.fit for one in among if one is not cause])
         if with_all > _WORSE * without:
-            reason = (
-                f"with it the misfit of the run that was held out is {with_all / without:.2g} times"
-                " as large as without"
-            )
+            times = f"{with_all / without:.2g} times as large"
+            reason = f"with it, the misfit on the held-out run is {times}"
             refuted.append(replace(cause, standing="visible", reason=reason))
     return tuple(refuted)
 
@@ -146,5 +172,5 @@ def _with_test(cause: Cause, test: NewRunTest) -> Cause:
     nothing = abs(test.amplitude) <= max(2 * test.error, _NOTHING)
     if nothing and cause.test.p_value < BEYOND_DOUBT:
         return judged
-    reason = f"the run that was held out has {test.amplitude:.2g} times of it"
+    reason = f"on the held-out run it is {test.amplitude:.2g} times as large"
     return replace(judged, standing="visible", reason=reason)

@@ -9,29 +9,31 @@ of base and effect to the base alone, each with the noise and the discrepancy th
 the base alone takes an effect for discrepancy or drift, and the more so the larger it is. Under
 fixed variances :math:`\lambda` would grow with the square of the size *s*; so it does not, and the
 size that is needed may be several times larger. Nor is what is planted exactly what is fitted: the
-form of an entry misses a few per cent of any joint's effect.
+form of an entry misses a few per cent of any joint's effect, which is much where the base takes
+nearly all of it.
 """
 
 from dataclasses import dataclass
 
 import numpy as np
-from scipy import stats
 from scipy.optimize import brentq
 
 from frictioncli.diagnosis.fit.hypotheses import EffectFit, HypothesisTest, informative_shapes
+from frictioncli.diagnosis.fit.left_by_base import Z95
 from frictioncli.diagnosis.noise.significance import statistic_of
 from frictioncli.diagnosis.search.cause import CONVINCING
 from frictioncli.diagnosis.search.effect_size import left_share, left_size
 from frictioncli.diagnosis.search.margin import channel_margin, whole_torque
-from frictioncli.diagnosis.search.planted_fit import PlantedFit
+from frictioncli.diagnosis.search.planted_fit import FORM, PlantedFit
 from frictioncli.diagnosis.search.standing import level_of
 from frictioncli.diagnosis.search.step import Step
+from frictioncli.distributions import normal_quantile
 from frictioncli.effects.base import Effect
 
 POWER = 0.8
 """Probability with which an effect of the smallest detectable size is named."""
 
-_ABOVE = 1 + float(stats.norm.isf(1 - POWER)) / 1.96
+_ABOVE = 1 + -float(normal_quantile(1 - POWER)) / 1.96
 """By how many of its half-widths below the size the lower bound must be above the margin for it to
 be so four times in five."""
 
@@ -112,9 +114,10 @@ def noncentrality(threshold: float, freedom: int) -> float:
     >>> round(noncentrality(3.84, 1) ** 0.5, 1)
     2.8
     """
+    from scipy.stats import ncx2  # takes long to import
 
     def passes_too_rarely(value: float) -> float:
-        return float(stats.ncx2.sf(threshold, freedom, value)) - POWER
+        return float(ncx2.sf(threshold, freedom, value)) - POWER
 
     return float(brentq(passes_too_rarely, 1e-6, 1e5))
 
@@ -160,10 +163,12 @@ def _planted(step: Step, effect: Effect, needed: Needed) -> list[PlantedFit]:
 
     A change with several histories that last. Those of which a size worth a name is possible.
     """
+    from scipy.stats import qmc  # takes long to import
+
     shapes, wanted = informative_shapes(effect, step.problem), 1
     if effect.moments is not None:
         shapes, wanted = [one for one in shapes if one["end"] >= 1.0] or shapes, _HISTORIES
-    places = stats.qmc.Halton(1, scramble=False).random(_SHAPES + 1)[1:, 0] * len(shapes)
+    places = qmc.Halton(1, scramble=False).random(_SHAPES + 1)[1:, 0] * len(shapes)
     some = [shapes[place] for place in dict.fromkeys(places.astype(int).tolist())]
     if effect.moments is None:
         shares = np.array([left_share(step.precomputed, effect, shape) for shape in some])
@@ -204,15 +209,20 @@ def _missing(planted: PlantedFit, needed: Needed, size: float) -> float:
     """
     if not planted.is_possible(size):
         return _NEVER
-    if not _is_large(planted, planted.alone(size), needed):
+    if not _is_large(planted, planted.alone(size), needed, size):
         return _STEP
     fit = planted.expected(size)
     if fit.statistic < needed.statistic:
         # the statistic grows at most with the square of the size
         return max(float(np.sqrt(needed.statistic / max(fit.statistic, 1e-9))), _STEP)
-    return 1.0 if _is_large(planted, fit, needed) else _STEP
+    return 1.0 if _is_large(planted, fit, needed, size) else _STEP
 
 
-def _is_large(planted: PlantedFit, fit: EffectFit, needed: Needed) -> bool:
+def _is_large(planted: PlantedFit, fit: EffectFit, needed: Needed, size: float) -> bool:
+    """Return whether the lower bound of what the base leaves is above the margin.
+
+    Where it leaves little, what the form misses of the whole torque is as large as that.
+    """
     left, low, _ = left_size(planted.step.precomputed, fit)
-    return left - _ABOVE * (left - low) > needed.margin
+    reach = float(np.hypot(left - low, Z95 * FORM * size))
+    return left - _ABOVE * reach > needed.margin

@@ -7,7 +7,7 @@ import numpy as np
 
 from frictioncli.arrays import Array
 from frictioncli.diagnosis.fit.hypotheses import EffectFit
-from frictioncli.diagnosis.fit.left_by_base import Z95, left_by, span_of, visible_size
+from frictioncli.diagnosis.fit.left_by_base import Z95, left_by, span_of, visible_size_of
 from frictioncli.diagnosis.search.precomputed import Precomputed
 from frictioncli.effects.base import Effect
 
@@ -21,7 +21,7 @@ the equation of an entry exactly, nor does the base take as much of it as of tha
 TAKEN_BY_BASE = "cannot be distinguished from the base model with these data"
 """Reason why an effect has no detectable size: larger than all friction it could not be named."""
 
-LACKING = "these data lack what it needs"
+LACKING = "these data lack a quantity that it needs"
 """Reason why an effect has no detectable size: a column is missing, or does not vary."""
 
 
@@ -52,11 +52,11 @@ def left_size(known: Precomputed, fit: EffectFit) -> tuple[float, float, float]:
     form; so a part of what it would contribute with the form of the effect counts besides.
     So does what the form of its entry misses of an effect.
     """
-    left = _left(known, fit)
-    size, low, high = visible_size(left, fit.coefficients, fit.covariance)
+    inner, crossed = _left_products(known, fit)
+    size, low, high = visible_size_of(inner, fit.coefficients, fit.covariance)
     if fit.effect.measurement:
         return size, low, high
-    beyond = Z95 * float(np.hypot(_other_form(known, fit, left), _FORM * size))
+    beyond = Z95 * float(np.hypot(_other_form(known, fit, inner, crossed), _FORM * size))
     below, above = np.hypot([size - low, high - size], beyond)
     return size, max(float(size - below), 0.0), float(size + above)
 
@@ -102,14 +102,32 @@ def shown_share(known: Precomputed, fit: EffectFit, others: Sequence[EffectFit])
     return float(misfit @ torque) / length if length > 0 else 1.0
 
 
-def _other_form(known: Precomputed, fit: EffectFit, left: Array) -> float:
+def _other_form(known: Precomputed, fit: EffectFit, inner: Array, crossed: Array) -> float:
     """Return the standard deviation of discrepancy of another form than assumed [N·m].
 
     Along an effect, as the RMS of what the base leaves of it.
     """
-    torque = left @ fit.coefficients if fit.coefficients.any() else left.sum(axis=1)
+    some = fit.coefficients if fit.coefficients.any() else np.ones(len(inner))
     variances = known.start if fit.variances is None else fit.variances
-    return _OTHER_FORM * known.discrepancy.along(torque, variances.amplitude)
+    mean_square = float(some @ inner @ some)
+    return _OTHER_FORM * known.discrepancy.along_products(
+        some @ crossed, mean_square, variances.amplitude
+    )
+
+
+def _left_products(known: Precomputed, fit: EffectFit) -> tuple[Array, Array]:
+    """Return mean products of what the base leaves of an effect's columns.
+
+    With each other, shape (width, width), and with the columns of the discrepancy, shape (width,
+    columns).
+    """
+    key = (id(fit.effect), *fit.shape.items())
+    if key not in known.left:
+        left = _left(known, fit)
+        rows = len(left) / 2
+        products = left.T @ left / rows, left.T @ known.discrepancy.rows / rows
+        known.left[key] = fit.effect, *products
+    return known.left[key][1:]
 
 
 def _left(known: Precomputed, fit: EffectFit) -> Array:

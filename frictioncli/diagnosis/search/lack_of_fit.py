@@ -22,7 +22,6 @@ References
 from dataclasses import dataclass, replace
 
 import numpy as np
-from scipy import stats
 
 from frictioncli.arrays import Array
 from frictioncli.diagnosis.data.problem import Problem
@@ -35,6 +34,7 @@ from frictioncli.diagnosis.noise.discrepancy import SPEED_RIPPLE
 from frictioncli.diagnosis.search.axis_columns import axis_columns
 from frictioncli.diagnosis.search.margin import channel_margin
 from frictioncli.diagnosis.search.step import Step
+from frictioncli.distributions import chi2_exceeded, chi2_tail
 from frictioncli.effects.base import Basis, Channel
 from frictioncli.linear_algebra import orthonormal_basis
 
@@ -154,7 +154,7 @@ def structures(step: Step) -> list[Structure]:
             Structure(
                 axes=names,
                 channel=channel,
-                p_value=min(1.0, len(found) * float(stats.chi2.sf(max(statistic, 0.0), 1)) / 2),
+                p_value=min(1.0, len(found) * chi2_tail(statistic, 1) / 2),
                 statistic=max(statistic, 0.0),
                 size=size,
                 interval=interval,
@@ -192,7 +192,7 @@ def _beside_function(
     layout = step.problem.layout
     columns = reduced(layout, scale * basis.friction, scale * basis.load)
     own = Part(columns, step.precomputed.noises)
-    products = step.columns.bordered(step.products, [own])
+    products = step.columns.beside(step.products, [own])
     place = slice(step.known, step.known + columns.count)
     amplitude = float(expected.prior[0]) if len(expected.prior) else _unit_amplitude(step)
     components = expected.beside_function(place, amplitude)
@@ -232,7 +232,7 @@ def _drift(step: Step, expected: Components, null: MixedFit, number: int) -> _Fo
     duration = sum(float(np.ptp(step.problem.layout.time[part])) for part in spectra.runs)
     # the mean square of such a drift is known as that of so many independent values
     freedom = max(duration / time, 1.0)
-    low, high = (freedom * square / stats.chi2.isf(share, freedom) for share in (0.025, 0.975))
+    low, high = (freedom * square / chi2_exceeded(share, freedom) for share in (0.025, 0.975))
     channel: Channel = "load" if number else "friction"
     interval = float(np.sqrt(low)), float(np.sqrt(high))
     return ("time",), channel, null.objective - fit.objective, float(np.sqrt(square)), interval

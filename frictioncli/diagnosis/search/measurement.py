@@ -10,11 +10,12 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-from scipy import stats
 
+from frictioncli.arrays import Flags
 from frictioncli.diagnosis.data.problem import Problem
 from frictioncli.diagnosis.fit.extension import beside_unfitted
 from frictioncli.diagnosis.fit.hypotheses import EffectFit, HypothesisTest
+from frictioncli.diagnosis.fit.left_by_base import Z95
 from frictioncli.diagnosis.fit.weighted_fit import WeightedFit
 from frictioncli.diagnosis.noise.discrepancy import SHARE
 from frictioncli.diagnosis.noise.significance import NullDistribution
@@ -29,6 +30,7 @@ from frictioncli.diagnosis.search.possible import (
 )
 from frictioncli.diagnosis.search.precomputed import Precomputed
 from frictioncli.diagnosis.search.step import Step
+from frictioncli.distributions import chi2_tail
 from frictioncli.effects import MEASUREMENT_EFFECTS
 from frictioncli.effects.base import Effect, applicable
 from frictioncli.effects.torque_filter import EFFECT as TORQUE_FILTER
@@ -80,10 +82,14 @@ def beside_base(problem: Problem, discrepancy: float = SHARE) -> BesideBase:
         RMS of the discrepancy that is expected, relative to the mean friction; 0 for none.
     """
     beside = applicable(MEASUREMENT_EFFECTS, problem.table)
+    if problem.has_load_channel:
+        # what a log does to its torque does not show in a load that it measures apart
+        beside = tuple(one for one in beside if one.channel == "friction")
     refused: list[Cause] = []
     before: tuple[Cause, ...] = ()
+    precomputed: Precomputed | None = None
     while True:
-        precomputed = Precomputed.of(problem, beside, discrepancy)
+        precomputed = Precomputed.of(problem, beside, discrepancy, precomputed)
         causes = measurement_causes(Step.of(precomputed, []), beside)
         against = _moved(before, causes, refused[-1:])
         before = ()
@@ -112,7 +118,8 @@ def _moved(
     """Return the effects whose estimates hang on one that was refused, with the reason.
 
     By the test of Hausman: of an estimate that does not hang on it, the change has the variance by
-    which that of the estimate falls.
+    which that of the estimate falls. So does one of which there is no evidence beside it: the data
+    do not tell one from the other, and what is there is not the one that is refused.
     """
     old = {one.fit.effect.name: one.fit for one in before}
     found = []
@@ -121,18 +128,23 @@ def _moved(
         freed = np.maximum(np.diag(first.covariance) - np.diag(fit.covariance), 0.0)
         reach = _HAUSMAN * np.sqrt(freed) + _UNCHANGED * np.abs(first.coefficients)
         reach += standard_errors(fit)
-        for parameter, was, value, most in zip(
-            fit.effect.coefficients, first.coefficients, fit.coefficients, reach, strict=True
-        ):
-            if abs(value - was) > most:
+        own = (fit.effect.coefficients, first.coefficients, fit.coefficients, reach)
+        only_without = (_differ(fit) & ~_differ(first)).tolist()
+        for parameter, was, value, most, alone in zip(*own, only_without, strict=True):
+            if alone or abs(value - was) > most:
                 other = in_words(refused[0].fit.effect.name)
                 why = (
-                    f"{parameter.name} of {was:.3g} {parameter.unit} beside a {other} that is"
-                    f" physically impossible, of {value:.3g} {parameter.unit} without it"
+                    f"its {in_words(parameter.name)} depends on a physically impossible {other}:"
+                    f" {was:.3g} {parameter.unit} with it, {value:.3g} {parameter.unit} without"
                 )
                 found.append((one, why))
                 break
     return found
+
+
+def _differ(fit: EffectFit) -> Flags:
+    """Return which coefficients differ from 0."""
+    return np.asarray(np.abs(fit.coefficients) > Z95 * standard_errors(fit))
 
 
 def measurement_causes(step: Step, effects: Sequence[Effect]) -> tuple[Cause, ...]:
@@ -152,7 +164,7 @@ def measurement_causes(step: Step, effects: Sequence[Effect]) -> tuple[Cause, ..
             coefficients=coefficients,
             covariance=covariance,
             statistic=statistic,
-            p_value=min(1.0, len(effects) * float(stats.chi2.sf(statistic, len(coefficients)))),
+            p_value=min(1.0, len(effects) * chi2_tail(statistic, len(coefficients))),
             log_bayes_factor=statistic / 2,
             freedom=len(coefficients),
             null=null,
@@ -191,7 +203,7 @@ def corrected_without_name(
         return ()
     named = {cause.fit.effect.name for cause in causes}
     return tuple(
-        replace(one, reason=f"{one.reason}; corrected all the same")
+        replace(one, reason=f"{one.reason}; corrected nonetheless")
         for one in judged
         if one.fit.effect.measurement
         and one.test.p_value < CLEAR

@@ -89,7 +89,7 @@ def holds_on_new_run(
     noises: tuple[Noise, Noise],
     others: Sequence[EffectFit],
 ) -> bool | None:
-    """Return whether a cause is there on the run kept out, None where that cannot be tested.
+    """Return whether a cause is there on the held-out run, None where that cannot be tested.
 
     Parameters
     ----------
@@ -107,14 +107,14 @@ def new_run_test(
     noises: tuple[Noise, Noise],
     others: Sequence[EffectFit],
 ) -> NewRunTest:
-    """Test whether a cause is there on the run kept out, and when, if it is a change.
+    """Test whether a cause is there on the held-out run, and when, if it is a change.
 
     Parameters
     ----------
     fit : EffectFit
         The cause.
     problem, new : Problem
-        The runs seen, and the run kept out with the base model of the former.
+        The runs seen, and the held-out run with the base model of the former.
     weighted_fit : WeightedFit
         Weights of the runs seen.
     noises : (Noise, Noise)

@@ -72,7 +72,7 @@ class NewRunMisfit:
         Parameters
         ----------
         problem, new : Problem
-            The runs seen, and the run kept out with the base model of the former.
+            The runs seen, and the held-out run with the base model of the former.
         extension : Extension
             The extended model as it predicts the new run.
         weighted_fit : WeightedFit

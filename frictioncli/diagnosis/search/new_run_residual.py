@@ -66,7 +66,7 @@ class NewRunResidual:
         fit : EffectFit
             The cause.
         problem, new : Problem
-            The runs seen, and the run kept out with the base model of the former.
+            The runs seen, and the held-out run with the base model of the former.
         weighted_fit : WeightedFit
             Weights of the runs seen.
         noises : (Noise, Noise)
@@ -269,7 +269,7 @@ def model_columns(problem: Problem, effects: Sequence[EffectFit]) -> tuple[Array
 
 def reduced_rows(weights: Weights, rows: Array) -> Array:
     """Return deviations within pairs and, below them, pair means, shape (n, columns)."""
-    return np.vstack([weights.layout.contrasts(rows), weights.layout.means(rows)])
+    return np.vstack(weights.layout.contrasts_and_means(rows))
 
 
 def solved_rows(weights: Weights, columns: Array) -> Array:

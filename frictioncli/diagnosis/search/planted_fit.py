@@ -7,14 +7,15 @@ import numpy as np
 from frictioncli.arrays import Array, Indices
 from frictioncli.diagnosis.fit.columns import basis_columns, main_channel
 from frictioncli.diagnosis.fit.hypotheses import EffectFit
-from frictioncli.diagnosis.fit.mixed_model import MixedFit, Products
+from frictioncli.diagnosis.fit.mixed_model import MixedFit
+from frictioncli.diagnosis.fit.products import Products
 from frictioncli.diagnosis.fit.transformed_columns import Part
 from frictioncli.diagnosis.fit.variance_components import fit_variances
 from frictioncli.diagnosis.search.possible import beyond_bounds
 from frictioncli.diagnosis.search.step import Step
 from frictioncli.effects.base import Basis, Effect
 
-_FORM = 0.05
+FORM = 0.05
 """What the form of an entry misses of an effect, relative to its size: no joint follows the
 equation exactly. It differs from pair to pair."""
 
@@ -149,7 +150,7 @@ class PlantedFit:
 
     def _products(self, size: float, added: Array, kept: int) -> Products:
         """Return inner products of the first columns and the misfit with the effect planted."""
-        mixed = np.append(added, _FORM * size)
+        mixed = np.append(added, FORM * size)
         within, between = (
             [_with_misfit(one, self.step.known, mixed, kept) for one in part]
             for part in (self.products.within, self.products.between)

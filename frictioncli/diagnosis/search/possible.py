@@ -43,8 +43,14 @@ def beyond_bounds(fit: EffectFit, problem: Problem, errors: float = Z95) -> str:
     parameters = fit.effect.coefficients
     for parameter, value, outside in zip(parameters, fit.coefficients, beyond, strict=True):
         if outside:
-            return f"{parameter.name} of {value:.3g} {parameter.unit} is physically impossible"
+            return _impossible_value(parameter, value)
     return _larger_than_whole(fit, errors)
+
+
+def _impossible_value(parameter: Parameter, value: float) -> str:
+    unit = f" {parameter.unit}" if parameter.unit != "1" else ""
+    shown = f"{value:.3g}".replace("-", "−")
+    return f"its {in_words(parameter.name)} would be {shown}{unit}, which is physically impossible"
 
 
 def _larger_than_whole(fit: EffectFit, errors: float) -> str:
@@ -58,7 +64,10 @@ def _larger_than_whole(fit: EffectFit, errors: float) -> str:
         signs[[number, whole]] = np.sign(fit.coefficients[[number, whole]]) * [1, -_EXCEEDING]
         excess = float(np.sum(signs * fit.coefficients))
         if excess > errors * float(np.sqrt(max(float(signs @ fit.covariance @ signs), 0.0))):
-            return f"{parameter.name} is physically impossible: greater than {parameter.within}"
+            return (
+                f"its {in_words(parameter.name)} would exceed its {in_words(parameter.within)},"
+                " which is physically impossible"
+            )
     return ""
 
 
@@ -76,7 +85,7 @@ def impossible(fit: EffectFit, problem: Problem) -> str:
         The joint's rows.
     """
     outside = (
-        f"{parameter.name} of {value:.3g} {parameter.unit} is physically impossible"
+        _impossible_value(parameter, value)
         for parameter, value, error, low, high in _coefficients(fit, problem)
         if not low <= value <= high and abs(value) > Z95 * error
     )
@@ -97,8 +106,8 @@ def undetermined(fit: EffectFit, problem: Problem) -> str:
         The joint's rows.
     """
     unknown = (
-        f"these data tell its {in_words(parameter.name)} to {error:.2g} {parameter.unit} only,"
-        f" and nothing beyond {low:.3g} to {high:.3g} {parameter.unit} is possible"
+        f"these data determine its {in_words(parameter.name)} only to ±{Z95 * error:.2g}"
+        f" {parameter.unit}; possible is {low:.3g} to {high:.3g} {parameter.unit}"
         for parameter, _, error, low, high in _coefficients(fit, problem)
         if _OF_UNIFORM * error > high - low
     )

@@ -1,7 +1,7 @@
 """What is computed once for all steps of a search: columns, noise models and inner products."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 
@@ -17,7 +17,13 @@ from frictioncli.diagnosis.fit.columns import (
     residual_of_base,
 )
 from frictioncli.diagnosis.fit.left_by_base import span_of
-from frictioncli.diagnosis.fit.mixed_model import LEAST_VARIANCE, Components, Products, Variances
+from frictioncli.diagnosis.fit.mixed_model import (
+    LEAST_VARIANCE,
+    BaseProducts,
+    Components,
+    Variances,
+)
+from frictioncli.diagnosis.fit.products import Products
 from frictioncli.diagnosis.fit.transformed_columns import NoiseModels, Part, TransformedColumns
 from frictioncli.diagnosis.noise.discrepancy import SHARE, SPREAD, Discrepancy, discrepancy_of
 from frictioncli.diagnosis.noise.spectra import STRENGTHS, spectra_of
@@ -54,6 +60,8 @@ class Precomputed:
         Variance components before anything is fitted.
     components : Components
         What the variance components belong to.
+    left : dict
+        Products of what the base leaves of effects, by effect and shape, once they are known.
     """
 
     problem: Problem
@@ -67,10 +75,17 @@ class Precomputed:
     point: tuple[float, float]
     start: Variances
     components: Components
+    left: dict[tuple[object, ...], tuple[Effect, Array, Array]] = field(
+        default_factory=dict, init=False, repr=False
+    )
 
     @classmethod
     def of(
-        cls, problem: Problem, measurement: Sequence[Effect] = (), discrepancy: float = SHARE
+        cls,
+        problem: Problem,
+        measurement: Sequence[Effect] = (),
+        discrepancy: float = SHARE,
+        before: "Precomputed | None" = None,
     ) -> "Precomputed":
         """Return the columns and noise models of a problem.
 
@@ -82,6 +97,8 @@ class Precomputed:
             Effects of the measurement that stand beside the base.
         discrepancy : float, optional
             RMS of the discrepancy that is expected, relative to the mean friction; 0 for none.
+        before : Precomputed, optional
+            The same of other effects of the measurement, for what does not depend on these.
         """
         layout = problem.layout
         bases = [problem.basis(one, {}) for one in measurement]
@@ -89,9 +106,13 @@ class Precomputed:
         misfit = misfit_column(problem)
         point = point_noise(problem, bases)
         noises = _noise_models(problem, base, misfit, point)
-        span = span_of(problem, bases)
-        smooth = discrepancy_of(problem, span_of(problem), discrepancy)
+        span_of_base = span_of(problem) if before is None else before.span_of_base
+        if before is None:
+            smooth = discrepancy_of(problem, span_of_base, discrepancy)
+        else:
+            smooth = before.discrepancy
         expected = np.full(len(smooth.components), np.log(max(smooth.amplitude, _LEAST_NOISE)))
+        span = span_of(problem, bases) if bases else span_of_base
         columns = TransformedColumns(
             (Part(joined([base, smooth.columns]), noises), Part(misfit, noises))
         )
@@ -99,15 +120,17 @@ class Precomputed:
             max(spectra.white, deviation**2 * 1e-6, LEAST_VARIANCE)
             for spectra, deviation in zip(noises.spectra, point, strict=True)
         ]
+        products = columns.products()
+        of_base = [BaseProducts.of(one) for one in products.of_base(base.count)]
         return cls(
             problem=problem,
             measurement=tuple(bases),
             span=span,
-            span_of_base=span_of(problem),
+            span_of_base=span_of_base,
             base=base,
             discrepancy=smooth,
             columns=columns,
-            products=columns.products(),
+            products=products,
             point=point,
             start=Variances(
                 noise=(0, 0),
@@ -129,6 +152,7 @@ class Precomputed:
                 pairs=len(layout.time),
                 determinants=(noises.determinants(0), noises.determinants(1)),
                 drifts=(noises.drifts(0), noises.drifts(1)),
+                bases=(of_base[0], of_base[1]),
             ),
         )
 

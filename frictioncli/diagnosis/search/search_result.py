@@ -5,9 +5,9 @@ from dataclasses import dataclass
 
 from frictioncli.diagnosis.fit.hypotheses import HypothesisTest
 from frictioncli.diagnosis.search.cause import Cause
+from frictioncli.diagnosis.search.confounded import unclaimed
 from frictioncli.diagnosis.search.detectable_size import detectable_size
 from frictioncli.diagnosis.search.effect_size import sizes_of
-from frictioncli.diagnosis.search.standing import goes_with_time
 from frictioncli.diagnosis.search.step import Step
 from frictioncli.effects import BY_NAME
 from frictioncli.effects.base import Effect
@@ -57,15 +57,15 @@ class SearchResult:
         Returns
         -------
         dict of str to (float or None)
-            Sizes [N·m]; None where the data lack what the effect needs or cannot tell temperature
-            from time, and where the base takes so much of it that it would have to be larger than
-            the torque that there is.
+            Sizes [N·m]; None where the data lack what the effect needs, cannot tell it from an
+            effect of another input or do not tell where it begins, and where the base takes so
+            much of it that it would have to be larger than the torque that there is.
         """
         count = max(len(self.rejected) + len(self.causes), 1)
         found: dict[str, float | None] = dict.fromkeys(effect.name for effect in effects)
         for effect in effects:
             step, test = self._beside_others(effect)
-            if test is not None and not goes_with_time(effect, step.problem):
+            if test is not None and not unclaimed(effect, step.problem):
                 found[effect.name] = detectable_size(step, effect, test, alpha / count, margin)
         return found
 

@@ -4,13 +4,18 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
-from scipy import stats
 
 from frictioncli.arrays import Array
 from frictioncli.diagnosis.data.problem import Problem
 from frictioncli.diagnosis.fit.columns import main_channel
 from frictioncli.diagnosis.fit.left_by_base import Z95
 from frictioncli.diagnosis.search.cause import CONVINCING, Cause
+from frictioncli.diagnosis.search.confounded import (
+    at_start_of_runs,
+    confounded,
+    without_forms_of_ends,
+    without_forms_of_others,
+)
 from frictioncli.diagnosis.search.margin import channel_margin
 from frictioncli.diagnosis.search.possible import (
     beyond_bounds,
@@ -26,17 +31,6 @@ looks like a change at some moment or other much more often than p-values say.""
 
 _SHOWN = 0.5
 """Least share of a cause that the residuals show at face value."""
-
-_TOGETHER = 0.8
-"""Rank correlation of temperature and time above which few data tell one from the other."""
-
-GOES_WITH_TIME = (
-    "temperature and time go together in these data: it could be an effect of the other"
-)
-"""Reason why an effect of temperature or time has no name."""
-
-_GRADUAL = frozenset({"temperature", "motor_temperature", "clock", "travel"})
-"""Inputs that change gradually with the temperature or with time."""
 
 _CANCELLING = 0.5
 """Two causes cancel each other if their sum has less than this share of the smaller one's RMS."""
@@ -65,11 +59,30 @@ def with_standing(
         Significance level.
     """
     judged = [_judged(cause, problem, margin, alpha) for cause in causes]
+    return without_forms_of_others(without_forms_of_ends(judged, problem))
+
+
+def without_cancelling(causes: Sequence[Cause], problem: Problem) -> tuple[Cause, ...]:
+    """Return causes of which none that is named cancels another one, in the same order.
+
+    Of two that cancel each other the weaker is not named: together they may stand for a third that
+    is as small as their sum. Both are if both hold on the run that was kept out, where they went
+    on by themselves.
+
+    Parameters
+    ----------
+    causes : sequence of Cause
+        Causes with their standing.
+    problem : Problem
+        The rows.
+    """
+    judged = list(causes)
     for weaker in sorted(range(len(judged)), key=lambda i: judged[i].test.statistic):
         for other in range(len(judged)):
             both = judged[weaker], judged[other]
             named = weaker != other and all(one.standing == "named" for one in both)
-            if named and _cancel(problem, *both):
+            held = all(one.holds_on_new_run for one in both)
+            if named and not held and _cancel(problem, *both):
                 judged[weaker] = replace(
                     judged[weaker],
                     standing="undetermined",
@@ -81,24 +94,23 @@ def with_standing(
 def _judged(cause: Cause, problem: Problem, margin: float, alpha: float) -> Cause:
     low, high = cause.visible_interval
     margin = channel_margin(problem, cause.fit.effect.channel, margin)
-    left = "the base leaves"
+    is_less, may_be_less = "the base model leaves less than", "the base model may leave less than"
     if cause.fit.effect.measurement and cause.visible > 0:
         low, high = (cause.size / cause.visible * bound for bound in (low, high))
-        left = "there is"
+        is_less, may_be_less = "it is below", "it may be below"
     alpha = level_of(cause.fit.effect, alpha)
     if not (cause.test.p_value < alpha and cause.test.log_bayes_factor > CONVINCING):
-        return replace(cause, standing="undetermined", reason="noise may be the reason")
+        return replace(cause, standing="undetermined", reason="it may be noise")
     doubt = _impossible(cause, problem)
-    doubt = doubt or (GOES_WITH_TIME if goes_with_time(cause.fit.effect, problem) else "")
+    doubt = doubt or confounded(cause.fit.effect, problem) or at_start_of_runs(cause.fit, problem)
     if doubt:
         return replace(cause, standing="undetermined", reason=doubt)
     if low > margin:
         return replace(cause, standing="named", reason="")
     if high < margin:
-        reason = f"{left} less of it than the margin of {margin:.2g}"
+        reason = f"{is_less} the margin of {margin:.2g}"
         return replace(cause, standing="negligible", reason=reason)
-    reason = f"{left.replace('leaves', 'may leave').replace('is', 'may be')} less of it than"
-    reason += f" the margin of {margin:.2g}"
+    reason = f"{may_be_less} the margin of {margin:.2g}"
     return replace(cause, standing="visible" if low > 0 else "undetermined", reason=reason)
 
 
@@ -123,38 +135,12 @@ def _impossible(cause: Cause, problem: Problem) -> str:
     if reason:
         return reason
     if cause.shown < _SHOWN:
-        return "the residuals alone do not show it: another effect would have to cancel it"
+        return "the residuals do not show an effect of this size"
     if not errors.any():
-        return "its coefficients lie on the bounds of what is physically possible"
+        return "the fit lies on a bound of what is physically possible"
     if len(errors) == 1 and abs(cause.fit.coefficients[0]) <= Z95 * errors[0]:
         return "its coefficient may be zero"
     return ""
-
-
-def goes_with_time(effect: Effect, problem: Problem) -> bool:
-    """Return whether an effect is of temperature or of time, which go together in these data.
-
-    Where the joint mostly warms up, what goes with temperature goes with time as well: a drift
-    looks like friction that depends on temperature. A change at a moment does not, nor does a lag,
-    which shows at each speed by how friction falls with temperature there.
-
-    Parameters
-    ----------
-    effect : Effect
-        Entry of the catalogue.
-    problem : Problem
-        The joint's rows.
-    """
-    if effect.measurement or effect.moments is not None or _GRADUAL.isdisjoint(effect.needs):
-        return False
-    if "temperature_slope" in effect.needs:
-        return False
-    table = problem.table
-    known = np.column_stack([table.measured_temperature, table.clock])
-    temperature, clock = problem.layout.means(known).T
-    if not (np.ptp(temperature) > 0 and np.ptp(clock) > 0):
-        return False
-    return abs(float(stats.spearmanr(temperature, clock).statistic)) >= _TOGETHER
 
 
 def _cancel(problem: Problem, one: Cause, other: Cause) -> bool:

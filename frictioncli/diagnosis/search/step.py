@@ -1,7 +1,7 @@
 """One step of the search: every hypothesis tested against base and accepted effects."""
 
 from collections.abc import Collection, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -16,10 +16,10 @@ from frictioncli.diagnosis.fit.hypotheses import (
 from frictioncli.diagnosis.fit.mixed_model import (
     Components,
     MixedFit,
-    Products,
     Variances,
     evaluate,
 )
+from frictioncli.diagnosis.fit.products import Products
 from frictioncli.diagnosis.fit.simplex_search import simplex_minimum
 from frictioncli.diagnosis.fit.transformed_columns import Part, TransformedColumns
 from frictioncli.diagnosis.fit.variance_components import fit_variances
@@ -64,6 +64,7 @@ class Step:
     components: Components
     products: Products
     fit: MixedFit
+    _alone: dict[tuple[object, ...], tuple[Effect, Catalogue]] = field(default_factory=dict)
 
     @classmethod
     def of(cls, precomputed: Precomputed, accepted: Sequence[EffectFit]) -> "Step":
@@ -244,14 +245,14 @@ class Step:
 
     def _gain(self, effect: Effect, shape: dict[str, float], null: MixedFit) -> float:
         """Return twice the log likelihood ratio of an effect under given variance components."""
-        alone = Catalogue.of(self.precomputed, [hypothesis_of(effect, self.problem, [shape])])
+        alone = self._alone_at(effect, shape)
         return float(screened(alone, 0, self.columns, null).gain[0])
 
     def fitted(self, effect: Effect, shape: dict[str, float]) -> EffectFit:
         """Return an effect fitted at one shape, the variance components with it."""
         variances = self._fit_with(effect, shape).variances
         null = evaluate(self.components, self.products, self.known, variances)
-        alone = Catalogue.of(self.precomputed, [hypothesis_of(effect, self.problem, [shape])])
+        alone = self._alone_at(effect, shape)
         found = screened(alone, 0, self.columns, null)
         statistic = float(found.gain[0]) + min(self.fit.objective - null.objective, 0.0)
         return EffectFit(
@@ -264,17 +265,21 @@ class Step:
         )
 
     def _fit_with(self, effect: Effect, shape: dict[str, float]) -> MixedFit:
-        alone = Catalogue.of(self.precomputed, [hypothesis_of(effect, self.problem, [shape])])
+        alone = self._alone_at(effect, shape)
         return self._refitted(alone, 0, 0)
+
+    def _alone_at(self, effect: Effect, shape: dict[str, float]) -> Catalogue:
+        """Return the catalogue of one effect at one shape."""
+        key = (id(effect), *shape.items())
+        if key not in self._alone:
+            found = hypothesis_of(effect, self.problem, [shape])
+            self._alone[key] = effect, Catalogue.of(self.precomputed, [found])
+        return self._alone[key][1]
 
     def _refitted(self, catalogue: Catalogue, number: int, shape: int) -> MixedFit:
         """Return the fit of a hypothesis at one of its shapes, with the variance components."""
-        width = catalogue.hypotheses[number].width
-        first = catalogue.places[number].start + shape * width
-        own = Part(
-            catalogue.part.columns.take(slice(first, first + width)), self.precomputed.noises
-        )
-        products = self.columns.bordered(self.products, [own])
+        own = catalogue.shape_part(number, shape)
+        products = self.columns.beside(self.products, [own])
         starts = self.fit.variances, self.precomputed.start
         return fit_variances(self.components, products, self.known, *starts)
 

@@ -10,7 +10,7 @@ Once it is known by how much the torque is late, every effect of the joint is lo
 a log shows it (:mod:`frictioncli.diagnosis.data.late_torque`).
 """
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -21,7 +21,12 @@ from frictioncli.diagnosis.noise.significance import credible_set, posterior_pro
 from frictioncli.diagnosis.ramps.timing import TorqueTiming
 from frictioncli.diagnosis.ramps.timing_rivals import TimingRivals
 from frictioncli.diagnosis.search.cause import CONVINCING, Cause
-from frictioncli.diagnosis.search.measurement import CLEAR, beside_base, measurement_causes
+from frictioncli.diagnosis.search.measurement import (
+    CLEAR,
+    BesideBase,
+    beside_base,
+    measurement_causes,
+)
 from frictioncli.diagnosis.search.step import Step
 
 DELAY, FILTER = "torque_delay", "torque_filter"
@@ -31,7 +36,11 @@ _SHARE = (0.05, 0.25)
 """Errors of *D* and *S* by other structure in the pairs: at least [s], [s²], and as a share."""
 
 
-def late_torque(problem: Problem, starts: TorqueTiming | None) -> LateTorque | None:
+def late_torque(
+    problem: Problem,
+    starts: TorqueTiming | None,
+    beside_base_of: Callable[[Problem], BesideBase] = beside_base,
+) -> LateTorque | None:
     """Return by how much the torque is late, from the starts of moves or else from the pairs.
 
     Parameters
@@ -40,6 +49,8 @@ def late_torque(problem: Problem, starts: TorqueTiming | None) -> LateTorque | N
         One joint's measurements and base model.
     starts : TorqueTiming or None
         Delay and filter by the starts of moves.
+    beside_base_of : callable, optional
+        Returns what stands beside the base of the problem.
 
     Returns
     -------
@@ -50,7 +61,7 @@ def late_torque(problem: Problem, starts: TorqueTiming | None) -> LateTorque | N
         if starts.shift.low <= 0:
             return None
         return LateTorque(delay=starts.shift.value, variance=max(starts.smear.value, 0.0))
-    beside = beside_base(problem)
+    beside = beside_base_of(problem)
     causes = measurement_causes(Step.of(beside.precomputed, []), beside.effects)
     by_name = {cause.fit.effect.name: cause for cause in causes}
     late, smeared = by_name.get(DELAY), by_name.get(FILTER)

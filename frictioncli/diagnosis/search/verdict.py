@@ -37,7 +37,7 @@ def visible_causes(
         if any(cause is other for other in causes):
             continue
         if cause.standing == "named" and unnamed is not None:
-            reason = f"structure along {unnamed.axis} is left that no effect explains"
+            reason = f"structure along {unnamed.axis} remains that no effect explains"
             cause = replace(cause, standing="visible", reason=reason)
         left.append(cause)
 

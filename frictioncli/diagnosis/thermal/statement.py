@@ -56,9 +56,9 @@ def _network_text(estimate: ThermalEstimate) -> str:
     if housing > _ABSENT:
         followed.append(f"{cover} ({100 * housing:.0f} %)")
     if followed:
-        text = f"The gear follows {' and '.join(followed)} with {time}"
+        text = f"The gear follows {' and '.join(followed)} with a time constant of {time}"
     else:
-        text = f"Friction warms the gear with {time}"
+        text = f"Friction warms the gear with a time constant of {time}"
     if at_housing > _ABSENT:
         text += f"; {100 * at_housing:.0f} % of the friction is at the housing"
     if heating > _ABSENT:

@@ -1,0 +1,236 @@
+"""What goes together in the data, so that an effect of one thing may be an effect of another."""
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from frictioncli.arrays import Array, Flags
+from frictioncli.diagnosis.data.problem import Problem
+from frictioncli.diagnosis.fit.hypotheses import EffectFit
+from frictioncli.diagnosis.search.cause import Cause
+from frictioncli.diagnosis.search.planted_fit import FORM
+from frictioncli.effects.base import Effect
+from frictioncli.effects.history import present
+from frictioncli.effects.inertia import EFFECT as INERTIA
+from frictioncli.effects.pair_series import measured_share
+from frictioncli.effects.reversal_transient import EFFECT as REVERSAL_TRANSIENT
+from frictioncli.effects.step_change import EFFECT as STEP_CHANGE
+from frictioncli.wording import in_words
+
+_TOGETHER = 0.8
+"""Rank correlation of temperature and time above which few data tell one from the other."""
+
+_WITHIN_RUNS = 0.05
+"""Share of the variance of the logarithm of speed that must be within runs."""
+
+_START_OF_RUN = 0.15
+"""Share of the pairs of a run that are at its start."""
+
+_TURNS_APART = 0.1
+"""Standard deviation of the ends of moves at one speed in one run, relative to the whole stroke,
+above which moves turn elsewhere each time."""
+
+_FROM_ENDS = frozenset({INERTIA.name, REVERSAL_TRANSIENT.name})
+"""Effects that count from the ends of the stroke."""
+
+_GOES_WITH_TIME = (
+    "temperature and time change together in these data, and either could be the cause"
+)
+
+_GOES_WITH_RUN = (
+    "every run has its own speed, and any other difference between the runs could be the cause"
+)
+
+_AT_START = "it is there only at the start of runs, where friction after a rest would look the same"
+
+_UNKNOWN_ENDS = (
+    "the moves reverse at different angles each time, which the ends of the paired range do not"
+    " show"
+)
+
+_LOOKS_LIKE_ENDS = (
+    "the moves reverse at different angles each time, and errors in the form of {other} look"
+    " the same"
+)
+
+_LOOKS_LIKE_FORM = "errors in the form of {other} may look the same"
+
+_GRADUAL = frozenset({"temperature", "motor_temperature", "clock", "travel"})
+"""Inputs that change gradually with the temperature or with time."""
+
+
+def confounded(effect: Effect, problem: Problem) -> str:
+    """Return why an effect may be one of another input, which goes with its own; empty if not.
+
+    Parameters
+    ----------
+    effect : Effect
+        Entry of the catalogue.
+    problem : Problem
+        The joint's rows.
+    """
+    if _goes_with_time(effect, problem):
+        return _GOES_WITH_TIME
+    return _GOES_WITH_RUN if _goes_with_run(effect, problem) else ""
+
+
+def unclaimed(effect: Effect, problem: Problem) -> str:
+    """Return why nobody can say from which size on an effect has a name; empty if one can.
+
+    Parameters
+    ----------
+    effect : Effect
+        Entry of the catalogue.
+    problem : Problem
+        The joint's rows.
+    """
+    reason = confounded(effect, problem)
+    if not reason and effect.name in _FROM_ENDS and turns_elsewhere(problem):
+        return _UNKNOWN_ENDS
+    return reason
+
+
+def at_start_of_runs(fit: EffectFit, problem: Problem) -> str:
+    """Return why a step of friction may be friction after a rest; empty if it is not.
+
+    Parameters
+    ----------
+    fit : EffectFit
+        The effect, with its history.
+    problem : Problem
+        The joint's rows.
+    """
+    if fit.effect is not STEP_CHANGE:
+        return ""
+    table = problem.all_runs
+    share = measured_share(table)[problem.rows]
+    _, heads = np.unique(problem.layout.row_pair, return_index=True)
+    there = present(share[heads], fit.shape)
+    # absence with the opposite sign is the same
+    return _AT_START if any(_is_start(one, problem) for one in (there, ~there)) else ""
+
+
+def _is_start(there: Flags, problem: Problem) -> bool:
+    """Return whether some pairs are the first of their runs, few of each."""
+    for run in np.unique(problem.layout.run):
+        own = there[problem.layout.run == run]
+        if own.sum() > _START_OF_RUN * len(own) or not own[: own.sum()].all():
+            return False
+    return bool(there.any())
+
+
+def without_forms_of_ends(causes: Sequence[Cause], problem: Problem) -> tuple[Cause, ...]:
+    """Return causes without a name for what the form of an effect at the ends of the stroke misses.
+
+    Where moves turn elsewhere each time, inertia and friction after a reversal begin at angles that
+    the ends of what was paired do not tell. What is left of them then depends on the angle.
+
+    Parameters
+    ----------
+    causes : sequence of Cause
+        Causes with their standing.
+    problem : Problem
+        The joint's rows.
+    """
+    judged = list(causes)
+    at_ends = [one for one in causes if one.standing == "named" and _is_at_ends(one)]
+    if not at_ends or not turns_elsewhere(problem):
+        return tuple(judged)
+    for number, one in enumerate(judged):
+        if one.standing != "named" or _is_at_ends(one) or "position" not in one.fit.effect.needs:
+            continue
+        for other in at_ends:
+            same = one.fit.effect.channel == other.fit.effect.channel
+            if same and one.visible < other.visible:
+                reason = _LOOKS_LIKE_ENDS.format(other=in_words(other.fit.effect.name))
+                judged[number] = replace(one, standing="undetermined", reason=reason)
+    return tuple(judged)
+
+
+def without_forms_of_others(causes: Sequence[Cause]) -> tuple[Cause, ...]:
+    """Return causes without a name for an effect of the measurement that a form may miss.
+
+    The form of an entry misses a share of its whole torque. Where the base takes most of that, what
+    is missed may look like one of those effects of the measurement with which it is confused.
+
+    Parameters
+    ----------
+    causes : sequence of Cause
+        Causes with their standing.
+    """
+    judged = list(causes)
+    named = {one.fit.effect.name: one for one in causes if one.standing == "named"}
+    for number, one in enumerate(judged):
+        if one.standing != "named" or not one.fit.effect.measurement:
+            continue
+        for name in one.fit.effect.confounders:
+            other = named.get(name)
+            if other is None or other.fit.effect.measurement:
+                continue
+            if one.visible_interval[0] < FORM * other.size:
+                reason = _LOOKS_LIKE_FORM.format(other=in_words(name))
+                judged[number] = replace(one, standing="visible", reason=reason)
+    return tuple(judged)
+
+
+def _is_at_ends(cause: Cause) -> bool:
+    return cause.fit.effect.name in _FROM_ENDS
+
+
+def turns_elsewhere(problem: Problem) -> bool:
+    """Return whether moves at one speed in one run turn elsewhere each time.
+
+    Parameters
+    ----------
+    problem : Problem
+        The joint's rows.
+    """
+    position, layout = problem.table.position, problem.layout
+    _, heads = np.unique(layout.row_pair, return_index=True)
+    groups = np.unique(np.column_stack([layout.run, layout.level]), axis=0, return_inverse=True)[1]
+    found = []
+    for ends in (np.minimum.reduceat(position, heads), np.maximum.reduceat(position, heads)):
+        own = [_squares(ends[groups == one]) for one in np.unique(groups)]
+        found.append(float(np.sqrt(sum(own) / len(ends))))
+    return max(found) > _TURNS_APART * float(np.ptp(position))
+
+
+def _goes_with_time(effect: Effect, problem: Problem) -> bool:
+    """Return whether an effect is of temperature or of time, which go together in these data.
+
+    Where the joint mostly warms up, what goes with temperature goes with time as well: a drift
+    looks like friction that depends on temperature. A change at a moment does not, nor does a lag,
+    which shows at each speed by how friction falls with temperature there.
+    """
+    if effect.measurement or effect.moments is not None or _GRADUAL.isdisjoint(effect.needs):
+        return False
+    if "temperature_slope" in effect.needs:
+        return False
+    table = problem.table
+    known = np.column_stack([table.measured_temperature, table.clock])
+    temperature, clock = problem.layout.means(known).T
+    if not (np.ptp(temperature) > 0 and np.ptp(clock) > 0):
+        return False
+    from scipy.stats import spearmanr  # takes long to import
+
+    return abs(float(spearmanr(temperature, clock).statistic)) >= _TOGETHER
+
+
+def _goes_with_run(effect: Effect, problem: Problem) -> bool:
+    """Return whether an effect shows by speed, and speeds differ between runs only.
+
+    The day, the payload and the pose differ between runs as well. An effect that counts from the
+    ends of the stroke shows at one speed.
+    """
+    if "speed" not in effect.needs or "position" in effect.needs:
+        return False
+    run = problem.layout.run
+    speed = np.log(problem.layout.speed)
+    whole = _squares(speed)
+    within = sum(_squares(speed[run == one]) for one in np.unique(run))
+    return whole > 0 and within < _WITHIN_RUNS * whole
+
+
+def _squares(values: Array) -> float:
+    return float(np.sum(np.square(values - np.mean(values))))

@@ -1,0 +1,94 @@
+"""What searches of the same problem share: what stands beside the base, and the hypotheses."""
+
+from dataclasses import dataclass, fields, replace
+
+from frictioncli.diagnosis.data.problem import Problem
+from frictioncli.diagnosis.fit.hypotheses import Hypothesis, hypothesis_of
+from frictioncli.diagnosis.noise.discrepancy import SHARE
+from frictioncli.diagnosis.search.measurement import BesideBase, beside_base
+from frictioncli.effects.base import Effect
+
+_AT_ONCE = 2
+"""Number of problems that are remembered."""
+
+
+@dataclass(slots=True, eq=False)
+class _Prepared:
+    """A problem with what is known of it."""
+
+    problem: Problem
+    discrepancy: float
+    beside: BesideBase
+    hypotheses: dict[int, tuple[Effect, Hypothesis]]
+
+
+class Preparation:
+    """What was computed for problems that are searched more than once.
+
+    Nothing depends on whether a problem was seen before, but the time it takes.
+    """
+
+    def __init__(self) -> None:
+        self._known: list[_Prepared] = []
+
+    def beside(self, problem: Problem, discrepancy: float = SHARE) -> BesideBase:
+        """Return what stands beside the base, as :func:`beside_base` does.
+
+        Parameters
+        ----------
+        problem : Problem
+            One joint's measurements and base model.
+        discrepancy : float, optional
+            RMS of the discrepancy that is expected, relative to the mean friction.
+        """
+        return self._of(problem, discrepancy).beside
+
+    def hypotheses(
+        self, problem: Problem, effects: tuple[Effect, ...], discrepancy: float = SHARE
+    ) -> list[Hypothesis]:
+        """Return effects as hypotheses over their shapes.
+
+        Parameters
+        ----------
+        problem : Problem
+            One joint's measurements and base model.
+        effects : tuple of Effect
+            Effects that can be tested there.
+        discrepancy : float, optional
+            As of :meth:`beside`.
+        """
+        known = self._of(problem, discrepancy).hypotheses
+        for effect in effects:
+            if id(effect) not in known:
+                known[id(effect)] = effect, hypothesis_of(effect, problem)
+        return [known[id(effect)][1] for effect in effects]
+
+    def _of(self, problem: Problem, discrepancy: float) -> _Prepared:
+        alike = [
+            one
+            for one in self._known
+            if one.discrepancy == discrepancy and _same_but_for_delay(one.problem, problem)
+        ]
+        for one in alike:
+            if one.problem is problem:
+                return one
+        # effects of the measurement do not depend on what is known of the delay
+        if alike:
+            before = alike[0].beside
+            own = replace(before.precomputed, problem=problem)
+            beside = replace(before, precomputed=own)
+        else:
+            beside = beside_base(problem, discrepancy)
+        found = _Prepared(problem, discrepancy, beside, {})
+        others = [one for one in self._known if one not in alike]
+        self._known = [*others[1 - _AT_ONCE :], found]
+        return found
+
+
+def _same_but_for_delay(first: Problem, second: Problem) -> bool:
+    """Return whether two problems are the same rows and base, perhaps with another delay."""
+    return all(
+        getattr(first, one.name) is getattr(second, one.name)
+        for one in fields(Problem)
+        if one.init and one.name != "late"
+    )

@@ -1,0 +1,111 @@
+"""What may be an effect of something else that goes with it in the data."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from frictioncli.diagnosis.search.confounded import turns_elsewhere, unclaimed
+from frictioncli.effects import BY_NAME
+from frictioncli.effects.history import history
+from tests.diagnosis.dense_noise import problem
+from tests.diagnosis.test_standing import cause, standing
+
+
+@pytest.fixture(scope="module")
+def joint():
+    return problem(1)
+
+
+@pytest.fixture(scope="module")
+def random_turns(joint):
+    """The same joint, of each move a random part."""
+    generator = np.random.default_rng(0)
+    table = joint.table
+    pairs = len(joint.layout.time)
+    low, high = np.quantile(table.position, [0.0, 1.0])
+    middle = (low + high) / 2
+    ends = generator.uniform(low, middle, pairs), generator.uniform(middle, high, pairs)
+    pair = joint.layout.row_pair
+    kept = (table.position >= ends[0][pair]) & (table.position <= ends[1][pair])
+    return joint.part(kept)
+
+
+def of(name, visible, shape=None):
+    """Return a cause of this name that is beyond doubt, with what the base leaves of it."""
+    one = BY_NAME[name]
+    values = tuple(0.5 * min(parameter.upper, 1.0) for parameter in one.coefficients)
+    shape = shape or {axis.name: axis.at(0.5) for axis in one.shape}
+    told = cause(one, values, tuple(0.01 * value for value in values), shape=shape)
+    return replace(told, visible=visible)
+
+
+def test_moves_that_turn_elsewhere_each_time_are_told_from_strokes(joint, random_turns):
+    assert not turns_elsewhere(joint)
+    assert turns_elsewhere(random_turns)
+
+
+def test_fast_moves_that_reach_their_speed_later_turn_at_the_same_angles(joint):
+    """A tenth of the stroke less at either end at twice the speed is no other turn."""
+    table = joint.table
+    cut = 0.1 * np.ptp(table.position) * np.log2(table.speed / table.speed.min())
+    low, high = table.position.min() + cut / 2, table.position.max() - cut / 2
+    assert not turns_elsewhere(joint.part((table.position >= low) & (table.position <= high)))
+
+
+def test_a_spring_beside_inertia_has_no_name_where_moves_turn_elsewhere(joint, random_turns):
+    pair = of("dress_pack", 0.4), of("inertia", 0.6)
+    assert [one[0] for one in standing(joint, *pair)] == ["named", "named"]
+    found = standing(random_turns, *pair)
+    assert [one[0] for one in found] == ["undetermined", "named"]
+    assert "inertia" in found[0][1]
+    # one that is larger than inertia is not what the form of that misses
+    assert standing(random_turns, of("dress_pack", 0.8), pair[1])[0][0] == "named"
+    # nor is friction
+    assert standing(random_turns, of("position_ripple", 0.4), pair[1])[0][0] == "named"
+    assert standing(random_turns, of("dress_pack", 0.4))[0][0] == "named"
+
+
+@pytest.mark.parametrize(
+    ("size", "low", "expected"), [(8.5, 0.19, "visible"), (8.5, 0.5, "named"), (2.0, 0.19, "named")]
+)
+def test_a_delay_that_a_twentieth_of_load_velocity_would_imitate_has_no_name(
+    joint, size, low, expected
+):
+    """The size of an effect with which the catalogue does not confuse it does not matter."""
+    delay = replace(of("torque_delay", 0.6), visible_interval=(low, 0.9))
+    beside = replace(of("load_velocity", 0.6), size=size)
+    found = standing(joint, delay, beside)
+    assert [one[0] for one in found] == [expected, "named"]
+    assert ("load velocity" in found[0][1]) == (expected != "named")
+    other = replace(of("coulomb_temperature", 0.6), size=size)
+    assert standing(joint, delay, other)[0][0] == "named"
+
+
+def test_no_size_is_claimed_of_what_begins_at_unknown_angles(joint, random_turns):
+    for name in ("inertia", "reversal_transient"):
+        assert not unclaimed(BY_NAME[name], joint)
+        assert "reverse at different angles" in unclaimed(BY_NAME[name], random_turns)
+    assert not unclaimed(BY_NAME["dress_pack"], random_turns)
+
+
+@pytest.mark.parametrize(
+    ("parts", "expected"),
+    [
+        # the first run has the first half of the pairs
+        ([(0.5, 0.56)], "undetermined"),
+        ([(0.0, 0.05), (0.5, 0.56)], "undetermined"),
+        # its absence
+        ([(0.05, 1.0)], "undetermined"),
+        ([(0.5, 1.0)], "named"),
+        ([(0.5, 0.7)], "named"),
+        ([(0.52, 0.56)], "named"),
+        ([(0.3, 1.0)], "named"),
+    ],
+)
+def test_a_step_at_the_start_of_runs_may_be_friction_after_a_rest(joint, parts, expected):
+    shape = history(parts)
+    ((found, reason),) = standing(joint, of("step_change", 0.6, shape=shape))
+    assert found == expected
+    assert ("after a rest" in reason) == (expected != "named")
+    assert standing(joint, of("payload_change", 0.6, shape=shape))[0][0] == "named"
