@@ -44,7 +44,7 @@ def write_pictures(table: Path) -> Path:
             name = f"joint{joint}-{effect}" if several else str(effect)
             with style_context(name):
                 figure = challenge_figure(own)
-                element = svg(figure, name, f"chance that {effect} is named, against its size")
+                element = svg(figure, name, f"probability that {effect} is named, against its size")
                 (draft / f"{name}.svg").write_text(
                     svg_file(element), encoding="utf-8", newline="\n"
                 )

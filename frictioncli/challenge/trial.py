@@ -105,7 +105,9 @@ class Planter:
         effect = drawn_effect(name, self.subject.scale, seed)
         near_turn = usual and effect.definition.at_reversal
         with self._folder() as folder:
-            found, channel = self._sized(folder, effect, seed, size, near_turn=near_turn)
+            found, channel = self._sized(
+                folder, effect, seed, size, near_turn=near_turn, at_most=usual
+            )
             fit(folder, self.settings.fit)
             diagnose(folder, self.settings.diagnosis)
             diagnosis = read_diagnoses(folder / DIAGNOSIS)[self.subject.joint]
@@ -117,12 +119,24 @@ class Planter:
         )
 
     def _sized(
-        self, folder: Path, effect: PlantedEffect, seed: int, size: float, *, near_turn: bool
+        self,
+        folder: Path,
+        effect: PlantedEffect,
+        seed: int,
+        size: float,
+        *,
+        near_turn: bool,
+        at_most: bool,
     ) -> tuple[float, str]:
-        """Write the torques with an effect of a size; return its size over all pairs, and where."""
+        """Write the torques with an effect of a size; return its size over all pairs, and where.
+
+        With ``at_most`` one that cannot be that large is as large as it can be.
+        """
+        most = effect.definition.most
         known = self._known.get((effect.name, seed))
         magnitude = size * known[0] / known[1] if known else self._guess(effect, size)
         for _ in range(_MOST_ATTEMPTS):
+            magnitude = min(magnitude, most)
             self._write(folder, effect.scaled(magnitude))
             pair_and_separate(folder, self._with_sign())
             friction, load, rows = self._added(folder)
@@ -135,6 +149,10 @@ class Planter:
             self._known[effect.name, seed] = (magnitude, whole)
             if abs(counted / size - 1.0) < _TOLERANCE:
                 return whole, channel
+            if magnitude == most and counted < size:
+                if at_most:
+                    return whole, channel
+                break
             magnitude *= float(np.clip(size / counted, 1.0 / _CLOSE, _CLOSE))
         raise NotEnoughData(
             f"{effect.name}: these data cannot show it at a size of {size:.3g}; it adds"

@@ -90,15 +90,13 @@ class SynthesisSettings:
     )
     ambient_drift: tuple[float, ...] = field(
         default=_AMBIENT_DRIFT,
-        metadata=option(f"Its change in each run [K/h]. {_AMBIENT_DRIFT}"),
+        metadata=option(f"Change of the ambient temperature in each run [K/h]. {_AMBIENT_DRIFT}"),
     )
     motor_heat_share: tuple[float, ...] = field(
         default=_MOTOR_HEAT_SHARE,
         metadata=option(f"Share of heat entering at the motor. {_MOTOR_HEAT_SHARE}"),
     )
-    noise_scale: float = field(
-        default=1.0, metadata=option("Factor on all noise; 0 is bare physics.")
-    )
+    noise_scale: float = field(default=1.0, metadata=option("Factor on all noise; 0: no noise."))
     effects: tuple[str, ...] = field(
         default=(),
         metadata=option(
@@ -111,7 +109,7 @@ class SynthesisSettings:
     nuisances: tuple[str, ...] = field(
         default=(),
         metadata=option(
-            "What joint and log do besides, repeatable; all: each in an ordinary size. A wrong name"
+            "Nuisance of joint or log, repeatable; all: each at an ordinary size. A wrong name"
             " lists all; units are those of truth.json [s, N·m, deg, °C, %].",
             "--nuisance",
             metavar="NAME[:SIZE]",
@@ -120,7 +118,7 @@ class SynthesisSettings:
     blind: bool = field(
         default=False,
         metadata=option(
-            "Write the truth to FOLDER-truth.json beside the folder, and tell nothing."
+            "Write the truth to FOLDER-truth.json beside the folder, and print nothing of it."
         ),
     )
     joint_kind: str = field(
@@ -140,7 +138,7 @@ class SynthesisSettings:
             " thermal cycles, three payloads [kg], pauses [s]."
         ),
     )
-    thin: int = field(default=1, metadata=option("Log every so many-th sample of 0.012 s only."))
+    thin: int = field(default=1, metadata=option("Log only every n-th sample of 0.012 s."))
 
     def __post_init__(self) -> None:
         demands = (

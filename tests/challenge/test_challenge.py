@@ -139,6 +139,22 @@ def test_the_usual_size_is_a_share_of_the_mean_friction(logs, tmp_path, undiagno
     assert np.all(rows[rows["effect"] == "inertia"]["size"] < 0.9 * expected)
 
 
+def test_no_magnet_loses_more_than_nature_lets_it(logs, tmp_path, undiagnosed):
+    """Usually the largest size that there is; one that was asked for and is none is refused."""
+    for effects, share in ((("torque_constant",), 50.0), (("torque_constant:1000",), 10.0)):
+        challenge([logs], tmp_path, options=ChallengeSettings(effects=effects, share=share))
+    rows = rows_of(tmp_path)
+    usual, given = one(rows, "torque_constant", "share"), one(rows, "torque_constant")
+    samples = tables.read(tmp_path / "samples.parquet", schemas.SAMPLES)
+    torques = tables.read(tmp_path / "torques.parquet", schemas.TORQUES)
+    whole = np.sqrt(np.mean(torques[["friction_torque", "load_torque"]].max(axis=1) ** 2))
+    most = 0.002 * np.ptp(samples["motor_temperature"]) * whole
+    assert usual["status"] == "done"
+    assert 0 < usual["size"] < 1.3 * most < usual["asked"]
+    assert given["status"] == "cannot"
+    assert "cannot show it at a size of 1e+03" in given["message"]
+
+
 def test_an_interrupted_call_goes_on_and_does_nothing_twice(
     logs, tmp_path, undiagnosed, monkeypatch
 ):

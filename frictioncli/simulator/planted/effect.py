@@ -1,5 +1,6 @@
 """Definition of a planted effect, and an effect with drawn parameters."""
 
+import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
 from typing import Any
@@ -65,6 +66,8 @@ class EffectDefinition:
     histories : tuple of str
         For a change, when it may be there, the default first; its law takes the argument
         ``history``.
+    most : float
+        Greatest magnitude that nature has, in its unit.
     """
 
     name: str
@@ -78,6 +81,7 @@ class EffectDefinition:
     scales_torque: bool = False
     axes: tuple[str, ...] = ()
     histories: tuple[str, ...] = ()
+    most: float = math.inf
 
     def draw(self, generator: np.random.Generator) -> "PlantedEffect":
         """Return the effect with random shape parameters and magnitude 1."""

@@ -24,6 +24,9 @@ from frictioncli.simulator.planted.history_of_change import (
 from frictioncli.simulator.planted.listed_speed_and_load import NEVMERZHITSKIY
 from frictioncli.simulator.planted.state import AddedTorque, State
 
+_FERRITE = 0.002
+"""Temperature coefficient of ferrite, greater than that of other permanent magnets. [1/K]"""
+
 
 def _direction_asymmetry(
     state: State,
@@ -80,6 +83,7 @@ TORQUE_CONSTANT = EffectDefinition(
     law=_torque_constant,
     source="Reversible temperature coefficient of permanent magnets",
     scales_torque=True,
+    most=_FERRITE,
 )
 
 
