@@ -29,7 +29,7 @@ class FoundShare:
     trials, found : int
         Number of trials, and of those in which it was named, alone or in a set.
     low, high : float
-        95 % interval of the chance. [-]
+        95 % interval of the probability. [-]
     """
 
     size: float
@@ -117,7 +117,7 @@ def _draw_shares(panel: Axes, shares: list[FoundShare]) -> None:
         [one.high for one in shares],
         color=FAINT,
         linewidth=1.2,
-        label="95 % interval of the chance",
+        label="95 % interval of the probability",
     )
     several = [one for one in shares if one.trials > 1]
     if several:

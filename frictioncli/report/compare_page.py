@@ -230,8 +230,8 @@ def _runs_table(document: ComparisonDocument) -> TextTable:
             "run",
             "begin",
             "as measured [%]",
-            "at equal surroundings [%]",
-            "surroundings [°C]",
+            "at equal ambient conditions [%]",
+            "ambient [°C]",
         ),
         rows=tuple(
             (

@@ -44,14 +44,16 @@ def data_points(results: JointResults, *, most_rows: int = MOST_ROWS) -> dict[st
     pairs = rows.drop_duplicates("pair")
     columns = [name for name in rows.columns if name.startswith(("angle", "u_", "base_", "ext_"))]
     temperatures = [name for name in ("motor", "housing") if pairs[name].notna().any()]
+    runs = {run: number for number, run in enumerate(results.runs)}
     return {
         "unit": results.unit,
-        "runs": [without_control_characters(run) for run in results.runs],
+        "sign": results.model.sign,
+        "runs": [without_control_characters(run) for run in runs],
         "moves": count,
         "step": step,
         "extended": "ext_forward" in columns,
         "load": results.load_unit == results.unit,
-        "run": [results.runs.index(str(run)) for run in pairs["run"]],
+        "run": [runs[str(run)] for run in pairs["run"]],
         "number": [int(pair) + 1 for pair in pairs["pair"]],
         "length": [int(size) for size in rows.groupby("pair").size()],
         "time": _rounded(pairs["time"].to_numpy(float) / 60.0, 2),

@@ -13,14 +13,15 @@ def evidence_caption(results: JointResults, *, cause: CauseRecord, fitted: str) 
         f" {results.row_noun}. First: the base model."
         f" Second: the extended model without this cause, and the term fitted for it, {fitted};"
         " it may exceed the misfit above, where the base model's parameters compensate for it."
-        " Third: the extended model. The cause stands if the second points lie on the lines and the"
-        " third ones on zero. Bars: which effects could be at work, the credible set in blue."
+        " Third: the extended model. The cause is supported if the second points lie on the"
+        " lines and the third on zero. Bars: which effects could be at work, the credible set"
+        " in blue."
     )
 
 
 def simulation_caption(results: JointResults, *, held_out: str | None) -> str:
     """Return the caption of the figure of measured and simulated torque."""
-    new = f" Run {held_out} was kept out of the fit." if held_out else ""
+    new = f" Run {held_out} was held out of the fit." if held_out else ""
     return (
         "Points: measured torque, forward filled, reverse hollow; lines: simulated along the same"
         f" motion by the base model. Below each: their difference.{new} First: mean of each"
@@ -36,7 +37,8 @@ def map_caption(results: JointResults, *, extended: bool) -> str:
         "Mean of measured minus simulated torque per cell, red where more was measured than"
         f" simulated, blue where less; grey: no data.{beside} Friction reverses with direction;"
         " load does not. Each has its own scale. A trend or a patch is structure; a pattern without"
-        " order is noise. Click a cell to see its points in the chart below."
+        " order is noise. Choose a cell, by mouse or by keyboard, to see its"
+        " points in the chart below."
     )
 
 

@@ -155,7 +155,7 @@ def diagnosis_figures(diagnosis: Reloaded | None) -> list[FigureSpec]:
         figures.append(
             _figure(
                 "diagnosis-gain",
-                "What the extended model is worth",
+                "Benefit of the extended model",
                 partial(gain_caption, document=document),
                 partial(gain_figure, diagnosis=diagnosis, floor=document.gain.noise_floor),
             )

@@ -92,17 +92,16 @@ def verdict_sentence(document: DiagnosisDocument, unit: str) -> str:
         Unit of torque.
     """
     misfit = (
-        f"The simulated torque misses the measured one by"
+        f"The simulated torque differs from the measured one by"
         f" {number_text(document.simulation.rmse)} {unit} (RMS,"
         f" {list_text(document.runs)})."
     )
     if document.verdict == "no_evidence":
         found = (
-            "No cause of that is named; the list below shows what is detectable, and why it is not"
-            " named."
+            "No cause is named; the list below shows what is detectable, and why it is not named."
             if document.visible
-            else "No cause was found in that: no effect of the catalogue and no other structure."
-            " The table below says how large each effect would have to be to be found."
+            else "No cause was found: no known effect and no other structure. The table below says"
+            " how large each effect would have to be."
         )
         return _joined(misfit, found)
     named, lost, measured = (
@@ -127,10 +126,10 @@ def verdict_sentence(document: DiagnosisDocument, unit: str) -> str:
         f"{alternatives_text(cause).capitalize()}: {_lower(lasting_text(cause, document))}"
         for cause in lost
     ]
-    sentences += [f"Of the measurement: {_lower(finding_text(cause))}" for cause in measured]
+    sentences += [f"Measurement: {_lower(finding_text(cause))}" for cause in measured]
     if document.verdict == "unnamed":
-        start = "Beside that, structure" if sentences else "Structure"
-        sentences.append(f"{start} is left that no effect of the catalogue explains.")
+        start = "Besides, structure" if sentences else "Structure"
+        sentences.append(f"{start} remains that no known effect explains.")
     return _joined(misfit, *sentences)
 
 
@@ -200,7 +199,7 @@ def _against(cause: CauseRecord, document: DiagnosisDocument) -> list[str]:
     if len(cause.effects) > 1:
         found.append("These data cannot tell the effects of the set apart.")
     if cause.holds_on_new_run is None:
-        found.append("It could not be tested on a run that the diagnosis has not seen.")
+        found.append("It could not be tested on a run that was not used for fitting.")
     elif not cause.holds_on_new_run:
         found.append(f"It does not appear on the held-out run ({document.held_out}).")
     if doubt := poorly_determined(dict(cause.parameters)):
@@ -211,8 +210,8 @@ def _against(cause: CauseRecord, document: DiagnosisDocument) -> list[str]:
     left = document.remainder
     if left is not None and left.channel == cause.channel:
         found.append(
-            f"With it {number_text(left.size, 2)} {document.unit_of(left.channel)} are still"
-            f" unexplained, mostly along {left.axis}: its form may not be exactly this."
+            f"Even with it, {number_text(left.size, 2)} {document.unit_of(left.channel)} remain"
+            f" unexplained, mostly along {left.axis}: its form may differ."
         )
     return found
 
@@ -236,7 +235,7 @@ def gain_sentence(document: DiagnosisDocument, unit: str) -> str:
         return ""
     low, high = gain.ci95
     if gain.basis == "new_run":
-        where = f"On run {document.held_out}, which the diagnosis has not seen,"
+        where = f"On run {document.held_out}, which was not used for fitting,"
     elif document.held_out is not None:
         where = f"On run {document.held_out}, where a change was found and fitted,"
     else:

@@ -8,7 +8,13 @@ from dataclasses import dataclass
 from pathlib import Path
 from shutil import copyfile
 
+import numpy as np
+import pandas as pd
+import pyarrow as pa
+from pyarrow import csv
+
 from frictioncli import schemas, tables
+from frictioncli.arrays import Array
 from frictioncli.report.results import WorkFolderResults
 from frictioncli.workfiles import DIAGNOSIS, EXTENDED, MODEL, PLAN
 
@@ -102,6 +108,26 @@ def write_downloads(work: Path, draft: Path, found: Sequence[Download]) -> None:
         source, target = work / Path(address).name, draft / address
         if target.suffix == ".csv" and target.stem in schema:
             rows = tables.read(source.with_suffix(".parquet"), schema[target.stem])
-            rows.to_csv(target, index=False, lineterminator="\n", float_format="%.9g")
+            _write_csv(rows, target)
         else:
             copyfile(source, target)
+
+
+def _write_csv(rows: pd.DataFrame, target: Path) -> None:
+    """Write a table as CSV with nine digits; pandas would format number by number."""
+    rounded = rows.copy()
+    for name in rows.select_dtypes("floating"):
+        rounded[name] = _nine_digits(rows[name].to_numpy())
+    for name in rows.select_dtypes("bool"):
+        rounded[name] = rows[name].astype(str)
+    csv.write_csv(pa.Table.from_pandas(rounded, preserve_index=False), target)
+
+
+def _nine_digits(values: Array) -> Array:
+    """Return values as near as possible to their first nine digits, so that no more are written."""
+    with np.errstate(divide="ignore", over="ignore"):
+        scale = 10.0 ** (8 - np.floor(np.log10(np.abs(values))))
+    # an integer over a power of ten is the float nearest to that decimal number
+    plain = (scale >= 1) & (scale <= 1e22)
+    scale = np.where(plain, scale, 1.0)
+    return np.where(plain, np.rint(values * scale) / scale, values)

@@ -2,57 +2,11 @@
 /* The explorer: two sliders choose a setting of the evaluated grid, one switch the model.
    All numbers come from the page's JSON; names are only ever set as text. */
 (() => {
-  const SVG = "http://www.w3.org/2000/svg";
-  const MARKS = {
-    o: "M-3 0a3 3 0 1 0 6 0a3 3 0 1 0 -6 0z",
-    s: "M-2.7 -2.7h5.4v5.4h-5.4z",
-    "^": "M0 -3.4L3.3 2.6H-3.3z",
-    v: "M0 3.4L3.3 -2.6H-3.3z",
-    D: "M0 -3.7L3.7 0L0 3.7L-3.7 0z",
-    P: "M-1.2 -3.5h2.4v2.3h2.3v2.4h-2.3v2.3h-2.4v-2.3h-2.3v-2.4h2.3z",
-  };
   const COUNTS = 150;
   const LEFT = 46, RIGHT = 10, TOP = 34, STEP = 120, GAP = 30, ERROR = 170, BOTTOM = 40;
 
-  function shape(parent, name, attributes, text) {
-    const made = document.createElementNS(SVG, name);
-    for (const [key, value] of Object.entries(attributes)) made.setAttribute(key, value);
-    if (text !== undefined) made.textContent = text;
-    return parent.appendChild(made);
-  }
-
-  function hint(element, text) {
-    shape(element, "title", {}, text);
-  }
-
-  function element(parent, name, text, kind) {
-    const made = document.createElement(name);
-    if (kind) made.className = kind;
-    made.textContent = text;
-    return parent.appendChild(made);
-  }
-
-  const fixed = (value, digits) => {
-    const text = Math.abs(value).toFixed(digits);
-    return (value < 0 && Number(text) !== 0 ? "\u2212" : "") + text;
-  };
-
-  /* Round values between two limits, at most so many. */
-  function ticks(low, high, most) {
-    const rough = (high - low) / most;
-    const power = 10 ** Math.floor(Math.log10(rough));
-    const step = power * [1, 2, 5, 10].find((factor) => factor * power >= rough);
-    const found = [];
-    for (let at = Math.ceil(low / step - 1e-9); at * step <= high + 1e-9; at += 1) found.push(at * step);
-    return { values: found, digits: Math.max(0, -Math.floor(Math.log10(step) + 1e-9)) };
-  }
-
-  const scale = (low, high, from, to) => (value) => from + ((value - low) / (high - low)) * (to - from);
-
-  function extent(values) {
-    return values.reduce(([low, high], value) => [Math.min(low, value), Math.max(high, value)],
-      [Infinity, -Infinity]);
-  }
+  const { shown: fixed, ticks } = frictionNumbers;
+  const { MARKS, GHOST, element, shape, hint, outline, scale, extent } = frictionShapes;
 
   /* The correction in force at each drawn pair: that of the last event up to its time. */
   function inForce(phase, schedule) {
@@ -80,6 +34,8 @@
     const room = 0.08 * Math.max(most - least, 0.1);
     const reach = 1.05 * Math.max(...models.flat().flatMap((phase) => phase.error.map(Math.abs)));
     const limits = { step: [least - room, most + room], error: [-reach, reach] };
+
+    let drawn = "", moves = [];
 
     function chosen() {
       const extended = part("extended");
@@ -161,18 +117,27 @@
         element(row, "td", phase.none, "number");
       }
       const charts = part("charts");
-      charts.replaceChildren();
-      for (const run of runsOf(phases)) {
-        const section = element(charts, "section", "", "run");
-        element(section, box.dataset.heading, run);
-        const own = phases.filter((phase) => phase.run === run);
-        tradeoff(section, own, setting);
-        draw(section, own);
+      const wanted = `${setting.model} ${charts.clientWidth}`;
+      if (wanted !== drawn) {
+        drawn = wanted;
+        charts.replaceChildren();
+        moves = runsOf(phases).map((run) => {
+          const section = element(charts, "section", "", "run");
+          element(section, box.dataset.heading, run);
+          const own = phases.filter((phase) => phase.run === run);
+          const moved = [tradeoff(section, own, setting.model), draw(section, own)];
+          return (all, place) => {
+            const now = all.filter((phase) => phase.run === run);
+            for (const move of moved) move(now, place);
+          };
+        });
       }
+      for (const move of moves) move(phases, setting.k * data.tmax.length + setting.tmax);
     }
 
-    /* Error over the number of corrections; equal schedules are one mark. */
-    function tradeoff(parent, phases, setting) {
+    /* Error over the number of corrections; equal schedules are one mark. What depends on the
+       setting is drawn by the function returned. */
+    function tradeoff(parent, phases, model) {
       const width = Math.max(parent.clientWidth, 280);
       const top = 24, bottom = top + COUNTS;
       const svg = shape(parent, "svg", { class: "tradeoff", viewBox: `0 0 ${width} ${bottom + 40}`, role: "img",
@@ -189,32 +154,31 @@
         "corrections in the phase");
       shape(svg, "text", { class: "name", x: LEFT, y: top - 8 }, `error ε [${data.unit}]`);
       const rule = (kind, at) => shape(svg, "line", { class: kind, x1: LEFT, x2: width - RIGHT, y1: y(at), y2: y(at) });
-      const now = setting.k * data.tmax.length + setting.tmax;
-      const best = data.recommended[setting.model];
-      for (const phase of phases) {
+      const best = data.recommended[model];
+      const put = (made, phase, place) => {
+        const count = phase.schedules[phase.settings[place]].time.length;
+        made.setAttribute("cx", x(count).toFixed(1));
+        made.setAttribute("cy", y(value(phase.epsilon[place])).toFixed(1));
+        hint(made, `${phase.word}, ${settingText(place)}: ${count} corrections, ε ${phase.epsilon[place]} ${data.unit}`);
+      };
+      const current = phases.map((phase) => {
         hint(rule("target", phase.target), `target: ${fixed(phase.target, 2)} ${data.unit}`);
         hint(rule(`none ${phase.phase}`, value(phase.none)), `${phase.word}, no correction: ${phase.none} ${data.unit}`);
         const first = new Map();
         phase.settings.forEach((schedule, place) => { if (!first.has(schedule)) first.set(schedule, place); });
-        const mark = (place, kind, r) => {
-          const count = phase.schedules[phase.settings[place]].time.length;
-          const made = shape(svg, "circle", { class: `${kind} ${phase.phase}`, r,
-            cx: x(count).toFixed(1), cy: y(value(phase.epsilon[place])).toFixed(1) });
-          hint(made, `${phase.word}, ${settingText(place)}: ${count} corrections, ε ${phase.epsilon[place]} ${data.unit}`);
-        };
-        for (const place of first.values()) mark(place, "setting", 2.2);
-        if (best !== null) mark(best, "best", 7);
-        mark(now, "now", 4.5);
-      }
+        const mark = (kind, r) => shape(svg, "circle", { class: `${kind} ${phase.phase}`, r });
+        for (const place of first.values()) put(mark("setting", 2.2), phase, place);
+        if (best !== null) put(mark("best", 7), phase, best);
+        return mark("now", 4.5);
+      });
+      return (now, place) => now.forEach((phase, number) => put(current[number], phase, place));
     }
 
+    /* Corrections and errors over time. What depends on the setting is drawn by the function returned. */
     function draw(parent, phases) {
       const width = Math.max(parent.clientWidth, 280);
       const height = TOP + STEP + GAP + ERROR + BOTTOM;
-      const svg = shape(parent, "svg", {
-        viewBox: `0 0 ${width} ${height}`, role: "img",
-        "aria-label": phases.map((one) => `${one.word}: ${told(one)}`).join("; "),
-      });
+      const svg = shape(parent, "svg", { viewBox: `0 0 ${width} ${height}`, role: "img" });
       const [start, end] = extent(phases.flatMap((phase) => phase.time));
       const x = scale(start, end, LEFT, width - RIGHT);
       const upper = { y: scale(...limits.step, TOP + STEP, TOP), top: TOP, bottom: TOP + STEP };
@@ -235,10 +199,19 @@
         `correction ΔT [°C]`);
       shape(svg, "text", { class: "name", x: LEFT, y: lower.top - 8 },
         `predicted − smoothed friction [${data.unit}]`);
-      for (const phase of phases) {
-        events(svg, phase, x, upper, lower);
-        points(svg, phase, x, lower);
-      }
+      const moved = phases.map((phase) => {
+        const group = shape(svg, "g", {});
+        const moving = points(svg, phase, x, lower);
+        return (now) => {
+          group.replaceChildren();
+          events(group, now, x, upper, lower);
+          moving(now);
+        };
+      });
+      return (now) => {
+        svg.setAttribute("aria-label", now.map((phase) => `${phase.word}: ${told(phase)}`).join("; "));
+        now.forEach((phase, number) => moved[number](phase));
+      };
     }
 
     function shade(svg, phase, x, upper, lower) {
@@ -278,22 +251,35 @@
       shape(svg, "path", { class: "step", d: `${path}H${x(end)}` });
     }
 
+    /* Errors without correction, and those with the schedule given to the function returned. */
     function points(svg, phase, x, panel) {
-      const missed = errors(phase, inForce(phase, phase.schedule));
+      const xs = phase.time.map(x);
+      shape(svg, "path", { class: "ghost", d: outline(GHOST, xs, phase.error.map(panel.y)) });
       const group = shape(svg, "g", { class: "points" });
-      const place = (at, error) =>
-        `translate(${x(phase.time[at]).toFixed(1)} ${panel.y(error).toFixed(1)})`;
-      phase.time.forEach((_, at) => {
-        shape(svg, "circle", { class: "ghost", r: 1.3, transform: place(at, phase.error[at]) });
+      const speeds = [...new Set(phase.speed)].map((number) => {
+        const path = shape(group, "path", {});
+        path.style.setProperty("--series", data.speeds[number].colour);
+        const own = phase.speed.flatMap((speed, at) => (speed === number ? [at] : []));
+        return { path, own, mark: MARKS[data.speeds[number].marker] };
       });
-      svg.append(group);
-      phase.time.forEach((time, at) => {
-        const speed = data.speeds[phase.speed[at]];
-        const mark = shape(group, "path", { d: MARKS[speed.marker], transform: place(at, missed[at]) });
-        mark.style.setProperty("--series", speed.colour);
-        hint(mark, `${speed.text}, ${fixed(time, 0)} min, ${data.symbol} = ` +
-          `${fixed(phase.temperature[at], 1)} °C: ${fixed(missed[at], 2)} ${data.unit}`);
+      let missed = [], ys = [];
+      /* the values of the mark next to the pointer */
+      group.addEventListener("pointermove", (event) => {
+        const at = new DOMPoint(event.clientX, event.clientY).matrixTransform(svg.getScreenCTM().inverse());
+        let near = 0;
+        xs.forEach((_, one) => {
+          if (Math.hypot(xs[one] - at.x, ys[one] - at.y) < Math.hypot(xs[near] - at.x, ys[near] - at.y)) near = one;
+        });
+        hint(group, `${data.speeds[phase.speed[near]].text}, ${fixed(phase.time[near], 0)} min, ${data.symbol} = ` +
+          `${fixed(phase.temperature[near], 1)} °C: ${fixed(missed[near], 2)} ${data.unit}`);
       });
+      return (now) => {
+        missed = errors(now, inForce(now, now.schedule));
+        ys = missed.map(panel.y);
+        for (const { path, own, mark } of speeds) {
+          path.setAttribute("d", outline(mark, own.map((at) => xs[at]), own.map((at) => ys[at])));
+        }
+      };
     }
 
     function legend() {
@@ -302,7 +288,7 @@
         if (!used.has(number)) return;
         const item = element(part("legend"), "li", "");
         const svg = shape(item, "svg", { viewBox: "-5 -5 10 10", width: 12, height: 12, "aria-hidden": "true" });
-        shape(svg, "path", { d: MARKS[speed.marker] }).style.setProperty("--series", speed.colour);
+        shape(svg, "path", { d: `M0 0${MARKS[speed.marker]}` }).style.setProperty("--series", speed.colour);
         item.append(` ${speed.text}`);
       });
     }

@@ -11,7 +11,9 @@
     setTimeout(() => URL.revokeObjectURL(link.href), 10000);
   }
 
-  function markup(svg) {
+  function markup(shown) {
+    const svg = shown.cloneNode(true);
+    for (const cell of svg.querySelectorAll(".cell")) cell.remove();
     return `<?xml version="1.0" encoding="utf-8"?>\n${new XMLSerializer().serializeToString(svg)}`;
   }
 

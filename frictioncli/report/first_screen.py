@@ -91,15 +91,21 @@ def _how_sure(results: JointResults, document: DiagnosisDocument | None) -> Answ
 def _what_is_wrong(document: DiagnosisDocument | None) -> Answer:
     question = "What the simulation gets wrong"
     if document is None:
-        return Answer(question=question, value="not judged yet", text="run 'frictioncli diagnose'")
+        return Answer(
+            question=question, value="not diagnosed yet", text="run 'frictioncli diagnose'"
+        )
     named = [alternatives_text(cause) for cause in document.modelled_causes]
     left = document.remainder
-    rest = (
-        f"{number_text(left.size, 2)} {document.torque_unit} unexplained, mostly along {left.axis}"
-        if left
-        else ""
-    )
+    rest = ""
+    if left:
+        along = f"mostly along {left.axis}"
+        if document.structure is not None:
+            axes = ["angle" if axis == "position" else axis for axis in document.structure.axis]
+            along = f"structure along {list_text(axes)}"
+        rest = f"{number_text(left.size, 2)} {document.torque_unit} unexplained, {along}"
     if named:
+        if document.verdict == "unnamed":
+            named.append("structure without a name")
         return Answer(question=question, value=list_text(named), text=rest)
     if document.verdict == "unnamed":
         return Answer(question=question, value="structure without a name", text=rest)

@@ -114,7 +114,8 @@ def fleet_page(rows: Sequence[Mapping[str, Any]], pages: Sequence[str]) -> Fleet
         ],
         left_out=""
         if len(rows) <= _MOST_ROWS
-        else f"The {thousands_text(_MOST_ROWS)} joints most in need of a look are here; all are in"
+        else f"The {thousands_text(_MOST_ROWS)} joints that most need attention are shown; all"
+        " are in"
         " fleet.parquet.",
         data={
             "unit": units[0] if len(units) == 1 else "",

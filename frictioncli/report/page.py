@@ -69,9 +69,9 @@ def write_report(work: Path, *, png: bool = False) -> Path:
 
 def _page(results: WorkFolderResults, sections: Sequence[JointSection]) -> str:
     """Fill in the template of the page."""
-    scripts = ["figures.js", "data.js"]
+    scripts = ["numbers.js", "figures.js", "points.js", "chart.js", "maps.js", "look.js"]
     if any(not section.explorer.missing for section in sections):
-        scripts.append("explorer.js")
+        scripts += ["shapes.js", "explorer.js"]
     return render(
         "page.html.jinja",
         scripts=scripts,

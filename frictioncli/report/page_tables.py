@@ -1,5 +1,6 @@
 """Tables of the page: errors of the evaluated corrections, numbers of pairs."""
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -13,6 +14,9 @@ from frictioncli.wording import number_text, speed_text
 
 _NEIGHBOURS = 3
 """Settings shown on each side of the simulated one, along k."""
+
+_SHOWN = ("epsilon", "corrections", "failed")
+"""Columns of the evaluation that a cell shows."""
 
 _Row = tuple[tuple[str, ...], pd.DataFrame]
 """Cells that name a setting, and the rows of the evaluation at that setting."""
@@ -89,7 +93,8 @@ def _table(
     marked: Sequence[bool],
 ) -> TextTable:
     """Return a table of errors by phase and criterion, the first row without correction."""
-    criteria = [c for c in CRITERION_WORDS if c != "none" and (own["criterion"] == c).any()]
+    found = set(own["criterion"])
+    criteria = [c for c in CRITERION_WORDS if c != "none" and c in found]
     without = _cells(own[own["criterion"] == "none"], ["none"])
     blank = [""] * (len(criteria) - 1)
     first = ("no correction", *[""] * (len(settings) - 1), without[0], *blank, without[1], *blank)
@@ -103,11 +108,12 @@ def _table(
 
 
 def _cells(rows: pd.DataFrame, criteria: list[str]) -> list[str]:
-    return [
-        _cell(rows[(rows["phase"] == phase) & (rows["criterion"] == criterion)])
-        for phase in PHASES
-        for criterion in criteria
-    ]
+    columns = (rows[name].tolist() for name in ("phase", "criterion", *_SHOWN))
+    # the first row of each phase and criterion counts
+    known = {
+        (phase, name): values for phase, name, *values in reversed([*zip(*columns, strict=True)])
+    }
+    return [_cell(*known.get((phase, c), (math.nan,) * 3)) for phase in PHASES for c in criteria]
 
 
 def _simulated_setting(results: JointResults) -> tuple[float, float] | None:
@@ -144,12 +150,11 @@ def _neighbours(
     return sorted(near)
 
 
-def _cell(rows: pd.DataFrame) -> str:
-    if rows.empty:
+def _cell(epsilon: float, corrections: float, failed: float) -> str:
+    if math.isnan(corrections):
         return "–"
-    row = rows.iloc[0]
-    failed = f", {int(row['failed'])} failed" if row["failed"] > 0 else ""
-    return f"{number_text(float(row['epsilon']))} ({int(row['corrections'])}{failed})"
+    lost = f", {int(failed)} failed" if failed > 0 else ""
+    return f"{number_text(float(epsilon))} ({int(corrections)}{lost})"
 
 
 def pairs_table(results: JointResults) -> TextTable:

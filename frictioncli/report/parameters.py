@@ -170,7 +170,7 @@ def limitations(results: JointResults, diagnosis: DiagnosisDocument | None) -> l
 
 def _undetermined_causes(results: JointResults, diagnosis: DiagnosisDocument | None) -> list[str]:
     if diagnosis is None:
-        return ["What the simulated torque misses, and why, has not been judged."]
+        return ["The errors of the simulated torque have not been diagnosed."]
     sentences = [
         f"Which of {list_text([in_words(name) for name in cause.effects])} is at work: these"
         f" data cannot tell them apart. {cause.experiment}"
@@ -184,7 +184,8 @@ def _undetermined_causes(results: JointResults, diagnosis: DiagnosisDocument | N
         )
     if len(results.runs) == 1:
         sentences.append(
-            "How the model does on another day, and whether a slow change is a drift or an offset:"
+            "How well the model predicts another day, and whether a slow change is a drift or"
+            " an offset:"
             " there is one run only."
         )
     return sentences

@@ -152,13 +152,14 @@ def runs_rating(results: JointResults) -> QualityRating:
         return QualityRating(
             level=GOOD,
             name="Runs",
-            reason=f"{count_text(count, 'run')}: a model can be tried on one that it has not seen.",
+            reason=f"{count_text(count, 'run')}: a model can be tested on a run not used for"
+            " fitting.",
         )
     return QualityRating(
         level=FAIR,
         name="Runs",
-        reason="One run only: a slow drift cannot be told apart from an offset, and no other run is"
-        " left to try the model on.",
+        reason="One run only: a slow drift cannot be told apart from an offset, and there is no"
+        " other run to test the model on.",
     )
 
 
@@ -263,7 +264,7 @@ def model_rating(results: JointResults, diagnosis: DiagnosisDocument | None) -> 
     """Rate whether the friction function describes the joint."""
     if diagnosis is None:
         return QualityRating(
-            level=FAIR, name="Model", reason="What the model misses has not been judged yet."
+            level=FAIR, name="Model", reason="The errors of the model have not been diagnosed yet."
         )
     missed = f"{number_text(diagnosis.simulation.rmse)} {results.unit} (RMS)"
     left = diagnosis.remainder
@@ -278,7 +279,7 @@ def model_rating(results: JointResults, diagnosis: DiagnosisDocument | None) -> 
         return QualityRating(
             level=FAIR if left else GOOD,
             name="Model",
-            reason=f"No cause was found in what the simulated torque misses, {missed}.{beside}",
+            reason=f"No cause was found in the errors of the simulated torque, {missed}.{beside}",
         )
     if diagnosis.verdict == "unnamed":
         return QualityRating(

@@ -1,5 +1,6 @@
 """Maps of the residuals of the simulated torque over two variables of the experiment."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -23,6 +24,15 @@ _LIMIT_PERCENTILE = 98.0
 
 _LEAST_LIMIT, _ERROR_PERCENTILE = 4.0, 90.0
 """Least limit of the colour scale, in standard errors at this percentile of the cells."""
+
+_ABOVE, _MAP, _BELOW = 0.3, 1.35, 0.5
+"""Heights of a title, of a map, and of what is written below it. [inch]"""
+
+_LEFT, _RIGHT, _CHARACTER = 0.45, 0.85, 0.075
+"""Widths of a label beside its numbers, of the colour bar, and of a character. [inch]"""
+
+_BETWEEN = 0.15
+"""Gap between two maps, as a share of their width."""
 
 _CELL_COUNTS = {"temperature": 9, "position": 18, "clock": 24}
 
@@ -78,10 +88,10 @@ def residual_map_figure(results: JointResults, *, diagnosis: Reloaded) -> Figure
     wanted = (("temperature", "speed"), ("clock", "position"), ("position", "speed"))
     named = [(across, up) for across, up in wanted if across in axes and up in axes]
     pairs = [(axes[across], axes[up]) for across, up in named]
-    figure = Figure(figsize=(WIDTH, 0.5 + 3.8 * len(pairs)), layout="constrained")
-    grid = figure.subplots(2 * len(pairs), len(models), squeeze=False, sharey="row")
+    height = 2 * (_ABOVE + len(pairs) * (_MAP + _BELOW))
+    figure = Figure(figsize=(WIDTH, height))
     for index, channel in enumerate(("friction", "load")):
-        panels = grid[index * len(pairs) : (index + 1) * len(pairs)]
+        panels, bar_panel = _placed(figure, [up for _, up in pairs], len(models), index)
         means = [
             [
                 cell_means(across, up, misfit[channel], seen.problem.table.pair)
@@ -101,13 +111,37 @@ def residual_map_figure(results: JointResults, *, diagnosis: Reloaded) -> Figure
                 panel.patch.set_gid(f"cells-{across_name}-{up_name}-{channel}-{model.split()[0]}")
         for panel, (name, _) in zip(panels[0], models, strict=True):
             panel.set_title(f"{channel}, {name}")
-        for panel in panels[:, 1:].flat:
+        for panel in (panel for row in panels for panel in row[1:]):
             panel.set_ylabel("")
         unit = results.unit if channel == "friction" else results.load_unit
-        bar = figure.colorbar(meshes[0], ax=list(panels.flat), extend="both", aspect=40, pad=0.01)
+        bar = figure.colorbar(meshes[0], cax=bar_panel, extend="both", format="{x:g}")
         bar.set_label(f"measured − simulated [{unit}]")
         bar.outline.set_visible(False)
     return figure
+
+
+def _placed(
+    figure: Figure, upward: Sequence[MapAxis], columns: int, index: int
+) -> tuple[list[list[Axes]], Axes]:
+    """Return a channel's panels, a row per map and a column per model, and its colour bar's.
+
+    Their places are known beforehand: measuring every label would take longer than drawing them.
+    """
+    width, height = figure.get_size_inches()
+    longest = max(len(name) for up in upward for name in up.names or ("−100",))
+    left = _LEFT + _CHARACTER * longest
+    top = height * (1 - index / 2) - _ABOVE
+    bottom = top - len(upward) * (_MAP + _BELOW) + _BELOW
+    sides = {"left": left / width, "right": 1 - _RIGHT / width}
+    ends = {"top": top / height, "bottom": bottom / height}
+    grid = figure.add_gridspec(
+        len(upward), columns, **sides, **ends, hspace=_BELOW / _MAP, wspace=_BETWEEN
+    )
+    panels = [list(row) for row in grid.subplots(sharey="row", squeeze=False)]
+    bar = figure.add_axes(
+        (sides["right"] + 0.02, ends["bottom"], 0.022, ends["top"] - ends["bottom"])
+    )
+    return panels, bar
 
 
 def cell_means(across: MapAxis, up: MapAxis, misfit: Array, pair: Indices) -> tuple[Array, Array]:

@@ -18,6 +18,7 @@ from frictioncli.diagnosis.documents.extended_document import ExtendedDocument
 from frictioncli.diagnosis.documents.extended_model import ExtendedModel
 from frictioncli.diagnosis.documents.reload import Reloaded, is_current, read_documents, reload
 from frictioncli.errors import TableError
+from frictioncli.files import is_there
 from frictioncli.model.document import FrictionModel, read_models
 from frictioncli.model.friction import friction_torque
 from frictioncli.model.zero_load import PAIR_KEY, friction_at_zero_load, temperature_of
@@ -225,7 +226,7 @@ def read_results(work: Path) -> WorkFolderResults:
         If ``torques.parquet`` or ``model.json`` is missing, or a file is damaged.
     """
     path = work / TORQUES
-    if not path.exists():
+    if not is_there(path):
         raise TableError(f"{path} is missing; 'frictioncli separate -w {work}' makes it")
     torques = tables.read(path, schemas.TORQUES)
     models = read_models(work / MODEL)
@@ -288,7 +289,7 @@ def _pairs_of(torques: pd.DataFrame, model: FrictionModel) -> tuple[pd.DataFrame
     own = _rows_of(torques, model.joint)
     if own.empty:
         raise TableError(
-            f"model.json: has joint {model.joint}, which torques.parquet has not;"
+            f"model.json: has joint {model.joint}, which torques.parquet lacks;"
             " run 'frictioncli fit' again"
         )
     pairs = friction_at_zero_load(own, model.friction.alpha)
@@ -306,7 +307,7 @@ def _diagnosis_of(
 ) -> tuple[Reloaded | None, str]:
     """Return the joint's diagnosis if it is of these runs, else None and the reason."""
     if not diagnoses:
-        return None, "The simulation has not been judged yet; 'frictioncli diagnose' does it."
+        return None, "The simulation has not been diagnosed yet; 'frictioncli diagnose' does it."
     if joint not in diagnoses:
         return None, "This joint has no diagnosis; 'frictioncli diagnose' says why."
     document, extension = diagnoses[joint]

@@ -52,7 +52,7 @@ PHASES = ("heat-up", "cool-down")
 PHASE_COLOURS = {"heat-up": HEATING, "cool-down": COOLING}
 PHASE_WORDS = {"heat-up": "heating", "cool-down": "cooling"}
 
-_SPEED_COLOURS = ("#0072B2", "#009E73", "#E69F00", "#D55E00", "#A03C78", "#4B4B4B")
+_SPEED_COLOURS = ("#0072B2", "#009E73", "#9A7D00", "#D55E00", "#A03C78", "#4B4B4B")
 _SLOWEST = "#6A5ACD"
 _FASTEST = "#5C1A33"
 _MARKERS = ("o", "s", "^", "D", "v", "P")

@@ -139,9 +139,9 @@ def key_numbers(results: JointResults, diagnosis: DiagnosisDocument | None) -> l
     gain = diagnosis.gain if diagnosis else None
     if diagnosis and gain:
         new = (
-            f"on {diagnosis.held_out}, a run it has not seen"
+            f"on {diagnosis.held_out}, a run not used for fitting"
             if gain.basis == "new_run"
-            else "on the data that it was fitted to"
+            else "on its own training data"
         )
         numbers.append(
             KeyNumber(
@@ -179,12 +179,12 @@ def corrections_needed(results: JointResults) -> KeyNumber | None:
             counts.append(int(enough.min()) if len(enough) else None)
         if reached := sorted(count for count in counts if count is not None):
             failing = counts.count(None)
-            not_all = f" ({count_text(failing, 'run')} never)" if failing else ""
+            not_all = f" (never in {count_text(failing, 'run')})" if failing else ""
             texts.append(
                 f"{range_text([str(n) for n in reached])} in {PHASE_WORDS[phase]}{not_all}"
             )
         elif counts:
-            texts.append(f"never enough in {PHASE_WORDS[phase]}")
+            texts.append(f"no number suffices in {PHASE_WORDS[phase]}")
     if not texts or not criterion:
         return None
     small = "2 N·m, as in the paper" if in_torque else "a quarter of that without correction"
@@ -202,8 +202,8 @@ def _fit_sentence(results: JointResults) -> str:
     if results.model.knows_temperature:
         inputs.append(TEMPERATURE_WORDS[results.model.temperature])
     return (
-        f"Equation (16), a function of {list_text(inputs)}, gives the friction of joint"
-        f" {results.joint} to {number_text(results.model.rmse)} {results.unit} (RMS)."
+        f"Equation (16), a function of {list_text(inputs)}, predicts the friction of joint"
+        f" {results.joint} to within {number_text(results.model.rmse)} {results.unit} (RMS)."
     )
 
 
@@ -265,19 +265,21 @@ def _diagnosis_sentence(results: JointResults, diagnosis: DiagnosisDocument | No
     measured = [alternatives_text(cause) for cause in causes if cause.is_measurement]
     if diagnosis.verdict == "no_evidence":
         found = "is named" if diagnosis.visible else "was found"
-        return f"No cause {found} in what the function misses."
-    text = f"The function lacks {list_text(lacking)}" if lacking else "No known effect is named"
+        return f"No cause {found} in the errors of the function."
+    text = "No known effect is named"
+    if lacking:
+        text = f"The function does not model {list_text(lacking)}"
     if measured:
         beside = f"{text}, and the" if lacking else "The"
         text = f"{beside} measurement adds {list_text(measured)}"
     if diagnosis.verdict == "unnamed":
-        text += ", and structure is left that no known effect explains"
+        text += ", and there is structure that no known effect explains"
     gain = diagnosis.gain
     if gain is None or gain.ci95[0] <= 0:
         return f"{text}."
-    where = f" on {diagnosis.held_out}, which it has not seen," if gain.basis == "new_run" else ""
+    where = f" on {diagnosis.held_out}, not used for fitting," if gain.basis == "new_run" else ""
     return (
-        f"{text}; extended by that, it misses the torque{where} by"
+        f"{text}; with that added, its torque error{where} is"
         f" {number_text(gain.rmse_after)}"
         f" {results.unit} instead of {number_text(gain.rmse_before)} {results.unit}, without any"
         " correction."

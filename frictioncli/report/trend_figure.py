@@ -104,7 +104,7 @@ def _draw_runs(axes: Axes, document: ComparisonDocument) -> None:
         marker="o",
         color=_LEVEL,
         elinewidth=1.2,
-        label="at equal surroundings",
+        label="at equal ambient conditions",
     )
     _draw_limits(axes, document, mean_level + trend.estimate * float(centred[0]))
     axes.set_ylabel("friction against the mean [%]")

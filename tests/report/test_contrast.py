@@ -57,5 +57,8 @@ def test_signs_stand_out_of_their_lamps(theme, lamp):
 
 def test_every_colour_of_the_page_is_one_of_these():
     rules = re.sub(r":root \{[^}]*\}", "", CSS)
-    # figures are drawn on white and inverted in the dark
-    assert set(re.findall(r"#[0-9a-fA-F]{3,8}\b(?![\w-]*\s*\{)", rules)) <= {"#ffffff"}
+    # figures are drawn on white and inverted in the dark, with the frames of their cells
+    assert set(re.findall(r"#[0-9a-fA-F]{3,8}\b(?![\w-]*\s*\{)", rules)) <= {
+        "#ffffff",
+        "#000000",
+    }

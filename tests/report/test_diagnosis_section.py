@@ -73,7 +73,7 @@ def test_section_says_what_was_found(diagnosed):
     assert "2.10 N·m (RMS, day-1)" in section.verdict
     assert "The model lacks stribeck." in section.verdict
     assert "one of direction asymmetry and dress pack" in section.verdict
-    assert "Beside that, structure is left" in section.verdict
+    assert "Besides, structure remains" in section.verdict
     assert [one.effects for one in section.causes] == [
         "stribeck 97 %",
         "direction asymmetry 60 % or dress pack 40 %",
@@ -85,11 +85,9 @@ def test_section_says_what_was_found(diagnosed):
     (seen,) = section.visible
     assert (seen.effects, seen.kind, seen.p_value) == ("inertia", "load", "below 1e−300")
     assert seen.size == "0.05 N·m (0.03 to 0.07) RMS in the friction"
-    assert seen.standing == (
-        "smaller than what is worth naming: the base leaves 0.05 N·m, less than 0.10 N·m"
-    )
-    assert section.margin == "Sizes below 0.10 N·m are not named (--margin)."
-    assert "run day-2, which the diagnosis has not seen" in section.gain
+    assert seen.standing == ("too small to name: the base leaves 0.05 N·m, less than 0.10 N·m")
+    assert section.margin == "Effects below 0.10 N·m are not named (--margin)."
+    assert "run day-2, which was not used for fitting" in section.gain
     assert "50 % less (95 % interval: 40 % less to 60 % less)" in section.gain
     assert section.detectable.rows[0][2] == "0.40"
     assert section.detectable.rows[1][2] == UNDETECTABLE
@@ -148,7 +146,7 @@ def test_silence_is_explained_and_draws_no_gain(diagnosed, diagnosed_work):
     assert found.seen.after is found.seen.before
     silent = replace(diagnosed, diagnosis=found)
     section = diagnosis_section(silent)
-    assert "No cause was found in that" in section.verdict
+    assert "No cause was found: no known effect" in section.verdict
     figures = diagnosis_figures(found)
     assert [figure.name for figure in figures] == ["diagnosis-simulation", "diagnosis-maps"]
     for figure in figures:
@@ -164,7 +162,7 @@ def test_verdict_tells_joint_measurement_and_what_did_not_last_apart():
             cause(
                 ["torque_delay"],
                 kind="measurement",
-                statement="The torque in these logs is 12 ms (11 to 13) late.",
+                statement="The torque in these logs lags the position by 12 ms (11 to 13).",
             ),
         ),
         verdict="ambiguous",
@@ -172,12 +170,12 @@ def test_verdict_tells_joint_measurement_and_what_did_not_last_apart():
     sentence = verdict_sentence(document, "N·m")
     assert "The model lacks stribeck. The model lacks one of drift and run in" in sentence
     assert (
-        "Payload change: a change that did not last: there in run day-1, not on the run kept out"
-        " (day-2)."
+        "Payload change: a change that did not last: present in run day-1, absent on the held-out"
+        " run (day-2)."
     ) in sentence
-    assert "Of the measurement: the torque in these logs is 12 ms (11 to 13) late; corrected." in (
-        sentence
-    )
+    assert (
+        "Measurement: the torque in these logs lags the position by 12 ms (11 to 13); corrected."
+    ) in sentence
     third = cause_texts(document)[3]
     assert third.kind == "measurement"
     assert cause_title(document.causes[3], 4) == "Measurement 4. torque delay"

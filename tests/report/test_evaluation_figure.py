@@ -71,7 +71,7 @@ def test_one_convention_for_several_settings_of_one_number(two_runs):
     worse = table.assign(epsilon=np.where(table["epsilon"] == 1.9, 2.1, table["epsilon"]))
     needed = corrections_needed(replace(two_runs, evaluation=worse))
     assert needed is not None
-    assert needed.value.startswith("never enough")
+    assert needed.value.startswith("no number suffices")
 
 
 def test_runs_share_the_counts_of_the_axis(two_runs):

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from msgspec import structs
 
+from frictioncli.diagnosis.documents.document import RemainderRecord, StructureRecord
 from frictioncli.report.first_screen import answers, word_count
 from frictioncli.report.operating_point import operating_point, overview_figure
 from frictioncli.wording import number_text
@@ -47,7 +48,31 @@ def test_how_sure_is_the_misfit_on_the_new_run(diagnosed, two_runs):
 def test_what_is_wrong_names_the_causes(diagnosed, two_runs):
     said = by_question(diagnosed)["What the simulation gets wrong"]
     assert "stribeck" in said
-    assert "not judged yet" in by_question(two_runs)["What the simulation gets wrong"]
+    assert "not diagnosed yet" in by_question(two_runs)["What the simulation gets wrong"]
+
+
+def test_structure_without_a_name_is_said_beside_the_causes(diagnosed):
+    document = structs.replace(
+        diagnosed.diagnosis.document,
+        verdict="unnamed",
+        structure=StructureRecord(
+            axis=("position",), channel="friction", description="a bump", size=1.2
+        ),
+        remainder=RemainderRecord(
+            basis="new_run",
+            rmse=1.3,
+            noise_floor=0.5,
+            size=1.2,
+            axis="load",
+            channel="friction",
+            axis_size=1.0,
+        ),
+    )
+    changed = replace(diagnosed, diagnosis=replace(diagnosed.diagnosis, document=document))
+    said = by_question(changed)["What the simulation gets wrong"]
+    assert said.startswith("stribeck")
+    assert "and structure without a name" in said
+    assert said.endswith("1.2 N·m unexplained, structure along angle")
 
 
 def test_without_temperature_the_point_has_none(without_temperature):

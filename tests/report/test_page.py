@@ -11,6 +11,7 @@ import pytest
 
 from frictioncli import schemas, tables
 from frictioncli.errors import TableError
+from frictioncli.report import downloads
 from frictioncli.report.page import write_report
 
 HOSTILE = "<script>alert(1)</script>&\"'$\\frac{kr10$\u202e=1+1\x1b"
@@ -154,3 +155,16 @@ def test_figures_are_png_files_on_demand_only(tmp_path, write_work):
     folder = write_report(work).parent
     assert not list(folder.glob("*.png"))
     assert list(folder.glob("*.svg"))
+
+
+def test_downloads_hold_nine_digits(tmp_path):
+    values = np.array([0.1, -2 / 3, 1e-30, 123456789.123, 1e300, np.pi * 1e12, 0.0, np.nan])
+    rows = pd.DataFrame({"run": 'a,"b"', "value": values, "failed": values > 0})
+    downloads._write_csv(rows, tmp_path / "rows.csv")
+    found = pd.read_csv(tmp_path / "rows.csv")
+    assert list(found["run"]) == ['a,"b"'] * len(values)
+    assert found["failed"].dtype == bool
+    np.testing.assert_allclose(found["value"], values, rtol=5.1e-9)
+    texts = [line.split('",')[-1] for line in (tmp_path / "rows.csv").read_text().splitlines()]
+    assert texts[1:3] == ['0.1,"True"', '-0.666666667,"False"']
+    assert texts[-1] == ',"False"'

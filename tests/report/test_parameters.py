@@ -59,7 +59,7 @@ def test_limitations_are_stated(correlated, without_temperature):
     ]
     alone = limitations(without_temperature, None)
     assert alone[0] == ("γ is not determined: the log has no temperature; merged into beta.")
-    assert "has not been judged" in alone[-1]
+    assert "not been diagnosed" in alone[-1]
 
 
 def test_parameters_are_those_of_the_model(two_runs):

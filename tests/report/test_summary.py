@@ -48,7 +48,7 @@ def test_verdict_gives_error_corrections_and_what_they_bring(two_runs):
     assert f"{cooling[0]:.3g} N·m in cooling (5 corrections)" in text
     # the made evaluation has 4 and 5 without any
     assert "against 4.00 N·m in heating and 5.00 N·m in cooling without correction" in text
-    assert "gives the friction of joint 2 to 1.13 N·m (RMS)" in text
+    assert "predicts the friction of joint 2 to within 1.13 N·m (RMS)" in text
 
 
 def test_errors_of_two_models_are_not_set_against_each_other(two_runs):
@@ -68,12 +68,12 @@ def test_what_was_evaluated_with_the_extended_model_says_so(two_runs):
 
 def test_verdict_tells_the_causes_and_their_worth(two_runs):
     text = summary_text(two_runs, DIAGNOSIS)
-    assert "The function lacks thermal lag; extended by that" in text
-    assert "on day-2, which it has not seen, by 1.00 N·m instead of 5.00 N·m" in text
+    assert "The function does not model thermal lag; with that added" in text
+    assert "on day-2, not used for fitting, is 1.00 N·m instead of 5.00 N·m" in text
     unsure = structs.replace(DIAGNOSIS, gain=structs.replace(GAIN, ci95=(-0.1, 0.9)))
-    assert summary_text(two_runs, unsure).endswith("The function lacks thermal lag.")
+    assert summary_text(two_runs, unsure).endswith("The function does not model thermal lag.")
     unsure = diagnosis(verdict="unnamed", sets=[[]], rmse=5.2)
-    assert "No known effect is named, and structure is left" in summary_text(two_runs, unsure)
+    assert "No known effect is named, and there is structure" in summary_text(two_runs, unsure)
     silent = diagnosis(verdict="no_evidence", sets=[], rmse=5.2)
     assert "No cause was found" in summary_text(two_runs, silent)
     seen = structs.replace(silent, visible=(cause(["drift"], standing="negligible"),))
@@ -83,7 +83,7 @@ def test_verdict_tells_the_causes_and_their_worth(two_runs):
     assert summary_text(two_runs, logged).endswith("The measurement adds torque delay.")
     both = diagnosis(causes=(cause(["stribeck"]), delay))
     assert summary_text(two_runs, both).endswith(
-        "The function lacks stribeck, and the measurement adds torque delay."
+        "The function does not model stribeck, and the measurement adds torque delay."
     )
 
 
@@ -103,7 +103,10 @@ def test_fewest_corrections_that_suffice(two_runs, tmp_path, write_work):
     """The made evaluation has 4/n N·m in heating and 5/n in cooling, n of 2, 3, 6, 14, 25."""
     assert corrections_needed(two_runs).value == "2 in heating, 3 in cooling"
     poor = replace(two_runs, evaluation=two_runs.evaluation.assign(epsilon=9.0))
-    assert corrections_needed(poor).value == "never enough in heating, never enough in cooling"
+    assert (
+        corrections_needed(poor).value
+        == "no number suffices in heating, no number suffices in cooling"
+    )
     current = read_results(write_work(tmp_path, runs=("day-1",), unit="A")).joints[0]
     # in another unit, a quarter of the error without correction: 4/n <= 1, 5/n <= 1.25
     assert corrections_needed(current).value == "6 in heating, 6 in cooling"
@@ -123,7 +126,7 @@ def test_key_numbers_have_units_and_what_to_read_them_with(two_runs, without_tem
     ]
     last = key_numbers(two_runs, DIAGNOSIS)[-1]
     assert last.value == "1.00 N·m"
-    assert "on day-2, a run it has not seen; base model 5.00 N·m" in last.context
+    assert "on day-2, a run not used for fitting; base model 5.00 N·m" in last.context
     assert [number.name for number in key_numbers(without_temperature, None)] == [names[3]]
 
 

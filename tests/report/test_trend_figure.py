@@ -101,7 +101,9 @@ def test_the_points_are_the_levels_and_the_hollow_ones_as_measured():
     above = drawn().axes[0]
     hollow = next(one for one in above.lines if one.get_label() == "as measured")
     np.testing.assert_allclose(hollow.get_ydata(), [-1, 0, 1, 2, 3])
-    filled = next(one for one in above.containers if one.get_label() == "at equal surroundings")
+    filled = next(
+        one for one in above.containers if one.get_label() == "at equal ambient conditions"
+    )
     np.testing.assert_allclose(filled.lines[0].get_ydata(), [-1, -0.5, 0, 0.5, 1])
 
 

@@ -89,18 +89,27 @@ def cells(driver):
 
 
 def drawn_errors(driver, run):
-    """The values that the points of a run's curves tell, phase by phase."""
-    told = driver.execute_script(
+    """The errors that a run's marks are drawn at by their axis, phase by phase."""
+    marks, labels = driver.execute_script(
         """
         const name = [...document.querySelectorAll(".charts h3")].find(
           (heading) => heading.textContent === arguments[0]);
-        return [...name.parentElement.querySelectorAll(".points")].map((phase) =>
-          [...phase.querySelectorAll("title")].map((title) => title.textContent));
+        const chart = name.parentElement.querySelector("svg:not(.tradeoff)");
+        const panel = 180;  // the errors are drawn below
+        return [
+          [...chart.querySelectorAll(".points")].map((phase) =>
+            [...phase.querySelectorAll("path")].map((path) => path.getAttribute("d")).join("")),
+          [...chart.querySelectorAll('text[text-anchor="end"]')].map((text) =>
+            [Number(text.getAttribute("y")) - 4, text.textContent]).filter(([y]) => y > panel),
+        ];
         """,
         run,
     )
-    last = re.compile(r"([−\d.]+) N·m$")
-    return [[float(last.search(one)[1].replace("−", "-")) for one in phase] for phase in told]
+    heights = [height for height, _ in labels]
+    values = [float(text.replace("−", "-")) for _, text in labels]
+    axis = np.polyfit(heights, values, 1)
+    found = [[float(y) for y in re.findall(r"M[-\d.]+ ([-\d.]+)", one)] for one in marks]
+    return [np.polyval(axis, phase) for phase in found]
 
 
 def overflowing(driver):
@@ -308,6 +317,25 @@ def test_the_page_follows_a_dark_screen(opened):
         ]
     assert found["light"][0] == "rgb(255, 255, 255)"
     assert all(light != dark for light, dark in zip(*found.values(), strict=True))
+
+
+def test_marks_of_the_explorer_tell_their_values(opened):
+    driver = opened()
+    told = driver.execute_script(
+        """
+        const group = document.querySelector(".charts .points");
+        const [x, y] = group.firstElementChild.getAttribute("d").slice(1).split(/[ m]/);
+        const at = new DOMPoint(x, y).matrixTransform(group.ownerSVGElement.getScreenCTM());
+        group.dispatchEvent(new PointerEvent("pointermove", {clientX: at.x, clientY: at.y}));
+        return group.querySelector("title").textContent;
+        """
+    )
+    assert re.fullmatch(r"[\d.]+ deg/s, \d+ min, Tm = [\d.]+ °C: [−\d.]+ N·m", told)
+    shown = float(re.search(r"([−\d.]+) N·m$", told)[1].replace("−", "-"))
+    drawn = drawn_errors(driver, "day-1")[0]
+    # marks overlap within the pixel that a pointer is at
+    assert shown == pytest.approx(drawn[0], abs=0.3)
+    assert np.abs(drawn - shown).min() < 0.02
 
 
 def test_points_of_figures_tell_their_values(opened):
