@@ -6,7 +6,7 @@ import sys
 import pytest
 from hypothesis import settings
 
-from tests.sample_run import made_once
+from tests.sample_run import made_once, make_sample_run, shared_folder
 
 # otherwise the program would leave out the warnings of libraries, which are errors in the tests
 sys.warnoptions.append("default::RuntimeWarning")
@@ -64,6 +64,6 @@ def _shared(item):
 @pytest.fixture(scope="session")
 def sample_run(tmp_path_factory, worker_id):
     """Return what copies the work folder of the sample logs to a new place."""
-    own = tmp_path_factory.getbasetemp()
-    folder = made_once(own if worker_id == "master" else own.parent)
+    shared = shared_folder(tmp_path_factory.getbasetemp(), worker_id)
+    folder = made_once(shared, "sample-run", make_sample_run)
     return lambda place: shutil.copytree(folder, place)

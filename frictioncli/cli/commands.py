@@ -152,7 +152,7 @@ def diagnose(
     work: Work = WORK,
     settings: DiagnosisSettings,
     fail_on: Annotated[
-        str | None, typer.Option(help="Exit with 3 if there is such a finding: any, named.")
+        str | None, typer.Option(help="Exit with status 3 on such a finding: any, named.")
     ] = None,
 ) -> None:
     """Find what the simulated torque [N·m] gets wrong, name the cause, measure the gain."""
@@ -170,7 +170,8 @@ def diagnose(
 def report(
     work: Work = WORK,
     png: Annotated[
-        bool, typer.Option("--png", help="Write each figure as PNG too; the page makes them too.")
+        bool,
+        typer.Option("--png", help="Also write each figure as PNG; the page can make them too."),
     ] = False,
 ) -> None:
     """Draw the figures (deg, deg/s, s, N·m, °C) and write report/index.html."""
@@ -190,7 +191,7 @@ def run(logs: Logs, *, work: Work = WORK, settings: RunSettings) -> None:
 
 @command()
 def synthesize(
-    folder: Annotated[Path, typer.Argument(help="Folder to make.", metavar="FOLDER")],
+    folder: Annotated[Path, typer.Argument(help="Folder to create.", metavar="FOLDER")],
     settings: SynthesisSettings,
 ) -> None:
     """Simulate a joint (deg, deg/s, N·m, °C, kg) and write its traces with truth.json."""
@@ -250,14 +251,19 @@ def compare(
         list[Path],
         typer.Argument(
             help="Work folders of the same joint on different days; each may hold several runs."
-            " Without dates in the logs they follow each other as named here.",
+            " Without dates in the logs, they are taken in the order given.",
             metavar="RUN...",
         ),
     ],
     *,
     out: Annotated[
         Path,
-        typer.Option("-w", "--work", metavar="OUT", help="Folder for comparison.json and trend."),
+        typer.Option(
+            "-w",
+            "--work",
+            metavar="OUT",
+            help="Folder for comparison.json, compare.html and the trend figure.",
+        ),
     ] = Path("friction-comparison"),
     settings: ComparisonSettings,
 ) -> None:
@@ -276,7 +282,7 @@ def fleet(
         Path,
         typer.Argument(
             help="Folder with robot=R/joint=J/run=D folders of logs, or a table of contents (CSV,"
-            " Parquet) with columns robot, joint, run, path and, if wanted, map, gear_ratio.",
+            " Parquet) with columns robot, joint, run, path and, optionally, map, gear_ratio.",
             metavar="FLEET",
         ),
     ],
@@ -292,7 +298,9 @@ def fleet(
     settings: RunSettings,
     fail_on: Annotated[
         str | None,
-        typer.Option(help="Exit with 3 on such a finding: failed (a joint).", metavar="FINDING"),
+        typer.Option(
+            help="Exit with status 3 on this finding: failed (any joint failed).", metavar="FINDING"
+        ),
     ] = None,
 ) -> None:
     """Run the chain for many joints; one row each in fleet.parquet. N·m (or A), °C, deg/s."""

@@ -32,7 +32,8 @@ _CLAIMS = {
     ("payload_change", "load"): "The load torque changed once, as with another payload or tool.",
     ("drift", "load"): "The load torque changed steadily from run to run.",
     ("torque_constant", "load"): (
-        "Friction and load torque changed by the same share: the scale of the logged torque did."
+        "Friction and load torque changed by the same percentage: the scale of the logged"
+        " torque changed."
     ),
 }
 """Claim by effect and channel."""

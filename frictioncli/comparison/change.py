@@ -15,10 +15,10 @@ from dataclasses import dataclass
 
 import numpy as np
 import pandas as pd
-from scipy import stats
 
 from frictioncli.arrays import Array
 from frictioncli.comparison.noise_averaged_fit import is_estimable, noise_averaged_fit
+from frictioncli.distributions import t_quantile
 from frictioncli.logs.runs.discovery import natural_key
 from frictioncli.model.document import FrictionModel
 from frictioncli.model.equations import COEFFICIENTS, jacobian
@@ -107,7 +107,7 @@ def change_of_last_run(torques: pd.DataFrame, model: FrictionModel) -> Change | 
         own = covariance[np.ix_(earlier, earlier)]
         variance = _prediction_variance(offsets[earlier], own, variance)
         degrees = len(earlier) - 1
-    half_width = float(stats.t.ppf(0.975, degrees) * np.sqrt(variance))
+    half_width = float(t_quantile(0.975, degrees) * np.sqrt(variance))
     levels = (offsets - offsets.mean())[in_order]
     return Change(
         estimate=estimate,

@@ -25,9 +25,9 @@ References
 from dataclasses import dataclass
 
 import numpy as np
-from scipy import stats
 
 from frictioncli.arrays import Array
+from frictioncli.distributions import t_quantile, t_tail
 
 PRIOR_DEGREES_OF_FREEDOM = 3.0
 """Degrees of freedom of the prior for the variance factor."""
@@ -174,7 +174,7 @@ class LevelFit:
         """
         centred = np.eye(len(within)) - 1 / len(within)
         variance = np.diag(centred @ within @ centred) + day_to_day**2
-        quantile = stats.t.ppf(0.975, self.degrees_of_freedom)
+        quantile = t_quantile(0.975, self.degrees_of_freedom)
         return np.asarray(quantile * np.sqrt(self.variance_factor * variance))
 
     def estimate(self, contrast: Array) -> "LevelEstimate":
@@ -187,12 +187,12 @@ class LevelFit:
         """
         value = float(contrast @ self.coefficients)
         error = float(np.sqrt(contrast @ self.covariance @ contrast))
-        half_width = float(stats.t.ppf(0.975, self.degrees_of_freedom)) * error
+        half_width = t_quantile(0.975, self.degrees_of_freedom) * error
         return LevelEstimate(
             value=value,
             low=value - half_width,
             high=value + half_width,
-            p_value=float(2 * stats.t.sf(abs(value) / error, self.degrees_of_freedom)),
+            p_value=2 * t_tail(abs(value) / error, self.degrees_of_freedom),
         )
 
 

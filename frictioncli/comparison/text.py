@@ -6,8 +6,8 @@ from frictioncli.comparison.day_to_day import LevelEstimate
 from frictioncli.comparison.from_comparison import load_unit
 
 _WEAK = (
-    "how much a joint differs from day to day cannot be seen from two runs: the interval rests on"
-    " an assumed"
+    "two runs do not show how much a joint varies from day to day: the interval relies on an"
+    " assumed"
 )
 
 
@@ -27,8 +27,8 @@ def comparison_text(comparison: Comparison) -> str:
     if comparison.load is not None:
         load = comparison.load
         lines.append(
-            f"  load torque, first to last:  {load.value:+.2g} % ({load.low:+.2g} to"
-            f" {load.high:+.2g})"
+            f"  load torque, first to last:  {load.value:+.2f} % ({load.low:+.2f} to"
+            f" {load.high:+.2f})"
         )
     lines += [_cause_text(comparison, cause) for cause in comparison.causes]
     if comparison.weak:
@@ -37,7 +37,8 @@ def comparison_text(comparison: Comparison) -> str:
         lines.append(f"  a change of {comparison.margin:.2g} % is not ruled out; measure more days")
     lines.append(
         f"  mean friction {comparison.mean_friction:.3g} {unit}; from day to day"
-        f" {comparison.day_to_day:.2g} % (1 sigma) beside noise within the runs; surroundings from"
+        f" {comparison.day_to_day:.2g} % (1 sigma) beside noise within the runs; ambient"
+        " temperature from"
         f" {comparison.history.ambient_source}"
     )
     lines += _conditions_text(comparison, unit)
@@ -68,12 +69,12 @@ def _estimate_text(comparison: Comparison, estimate: LevelEstimate) -> str:
 
 
 def _cause_text(comparison: Comparison, cause: CauseOfChange) -> str:
-    shares = ", ".join(f"{name} {cause.probabilities[name]:.0%}" for name in cause.effects)
+    shares = [f"{name} ({cause.probabilities[name]:.0%})" for name in cause.effects]
     since = ""
     if cause.change_point is not None:
         since = f" since {comparison.history.runs[cause.change_point].label}"
     return (
-        f"  looks like {' or '.join(cause.effects)} ({shares}), {cause.change.value:+.2g} % in the"
+        f"  looks like {' or '.join(shares)}, {cause.change.value:+.2g} % in the"
         f" {cause.channel}{since}: {cause.claim}"
     )
 

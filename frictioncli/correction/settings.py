@@ -34,7 +34,8 @@ class CorrectionSettings:
     """
 
     correction_speed: float | None = field(
-        default=None, metadata=option("Speed of correction pairs [deg/s]; 2/3 of the highest.")
+        default=None,
+        metadata=option("Speed of correction pairs [deg/s]; default: 2/3 of the highest."),
     )
     smoothing_degree: int = field(
         default=3, metadata=option("Degree of the polynomial that smooths (21).")
@@ -72,8 +73,8 @@ class ScheduleSettings:
     bound: float = field(
         default=2.0,
         metadata=option(
-            "Criterion uncertainty: greatest standard deviation (1 sigma, as epsilon is an RMS) of"
-            " friction predicted for the highest speed [torque unit]."
+            "For criterion uncertainty: largest predicted standard deviation of friction at the"
+            " highest speed (1 sigma, as epsilon is an RMS) [torque unit]."
         ),
     )
 
@@ -132,11 +133,11 @@ class EvaluationGrid:
 
     k: tuple[float, ...] = field(
         default=(1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 8.0, 10.0, 15.0, 20.0),
-        metadata=numbers_option("Scales k to evaluate, repeated or 1,2,5.", "--k"),
+        metadata=numbers_option("Scales k to evaluate; repeat the option or write 1,2,5.", "--k"),
     )
     tmax: tuple[float, ...] = field(
         default=(600.0, 1200.0, 1800.0, 3600.0, 7200.0),
-        metadata=numbers_option("Forcing times to evaluate [min], as --k.", "--tmax", factor=60.0),
+        metadata=numbers_option("Values of tmax to evaluate [min], as --k.", "--tmax", factor=60.0),
     )
     bound: tuple[float, ...] = field(
         default=(0.5, 0.75, 1.0, 1.5, 2.0, 3.0, 4.0, 6.0),

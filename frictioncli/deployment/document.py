@@ -15,6 +15,7 @@ from frictioncli.deployment.gear_temperature import GearLag
 from frictioncli.diagnosis.documents.extended_model import FittedEffect
 from frictioncli.diagnosis.empirical.term import EmpiricalTerm
 from frictioncli.errors import FrictionError, TableError
+from frictioncli.files import is_there
 from frictioncli.model.document import FrictionModel
 from frictioncli.model.friction import FrictionParameters
 
@@ -191,7 +192,7 @@ def load_deployed(path: Path) -> DeployedModel:
     TableError
         If the file is missing, of another kind or damaged.
     """
-    if not path.exists():
+    if not is_there(path):
         raise TableError(f"{path} is missing; make it with 'frictioncli export --to json'")
     try:
         content = path.read_bytes()

@@ -59,7 +59,7 @@ class ExportSettings:
     extended: bool = field(
         default=False,
         metadata=option(
-            "Carry extended-model.json: the gear's temperature and effects without memory."
+            "Use extended-model.json: the gear's temperature and effects without memory."
         ),
     )
     criterion: str = field(
@@ -69,24 +69,27 @@ class ExportSettings:
     tmax: float = field(default=_SCHEDULE.tmax, metadata=LONGEST_TIME_OPTION)
     temperature: float | None = field(
         default=None,
-        metadata=option("Where the form must fit best [°C]; the middle of the data."),
+        metadata=option(
+            "Temperature at which the form must fit best [°C]; default: middle of the data."
+        ),
     )
     load: float | None = field(
         default=None,
         metadata=option(
-            "As --temperature, load [N·m]; the root mean square over the data's range."
+            "Load at which the form must fit best [N·m]; default: RMS over the data's range."
         ),
     )
     lowest: float | None = field(
-        default=None, metadata=option("Lowest speed to fit [deg/s]; that of the data.")
+        default=None, metadata=option("Lowest speed to fit [deg/s]; default: lowest in the data.")
     )
     highest: float | None = field(
-        default=None, metadata=option("Highest speed to fit [deg/s]; that of the data.")
+        default=None, metadata=option("Highest speed to fit [deg/s]; default: highest in the data.")
     )
     tolerance: float | None = field(
         default=None,
         metadata=option(
-            "csv: greatest error of linear interpolation [torque unit]; 1/1000 of the friction."
+            "csv: largest error of linear interpolation [torque unit]; default: 1/1000 of the"
+            " friction."
         ),
     )
     torque_constant: float | None = field(

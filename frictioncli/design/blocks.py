@@ -88,7 +88,7 @@ def slow_sweep(limits: Limits, seed: int) -> tuple[Block, ...]:
     return (
         Block(
             name="slow sweep",
-            reason="many speeds at nearly one temperature: the speed law, and its slow end",
+            reason="many speeds at nearly constant temperature: how friction depends on speed",
             steps=(SeriesStep(speeds=speeds, low=limits.low, high=limits.high),),
         ),
     )
@@ -117,7 +117,8 @@ def even_speeds(limits: Limits, seed: int) -> tuple[Block, ...]:
     return (
         Block(
             name="even speeds",
-            reason="ten speeds in equal steps, half of them fast: how friction curves over speed",
+            reason="ten speeds in equal steps, half of them fast: the curvature of friction"
+            " over speed",
             steps=(SeriesStep(speeds=tuple(speeds), low=limits.low, high=limits.high),),
         ),
     )
@@ -134,8 +135,8 @@ def extreme_speeds(limits: Limits, seed: int) -> tuple[Block, ...]:
     fast = {limits.speed(highest * factor) for factor in (0.62, 1.0)}
     return (
         Block(
-            name="both ends of speed",
-            reason="slowest and highest speeds in turn: speed laws differ most at the ends",
+            name="slowest and fastest speeds",
+            reason="slowest and fastest speeds alternately, where speed laws differ most",
             steps=(
                 SeriesStep(
                     speeds=tuple(sorted(slow)), low=middle - part / 2, high=middle + part / 2
@@ -151,7 +152,7 @@ def heating(limits: Limits, seed: int) -> tuple[Block, ...]:
     return tuple(
         Block(
             name=f"heat {minutes} min",
-            reason="a warmer joint, and a motor that is ahead of the gear: a second thermal cycle",
+            reason="a second thermal cycle: a warmer joint, with the motor hotter than the gear",
             steps=(
                 HeatStep(
                     speed=limits.speed(min(limits.fastest, limits.highest_useful)),
@@ -172,7 +173,7 @@ def travel_without_heat(limits: Limits, seed: int) -> tuple[Block, ...]:
     speed = limits.speed(0.35 * limits.fastest)
     return (
         Block(
-            name="way without heat",
+            name="travel with little heat",
             reason="much travel in a short time with little heat: separates travel from time and"
             " temperature",
             steps=(
@@ -188,7 +189,7 @@ def static_hold(limits: Limits, seed: int) -> tuple[Block, ...]:
     return tuple(
         Block(
             name=f"hold still {minutes} min",
-            reason="time and cooling without travel; what a rest restores, and how fast it fades",
+            reason="time and cooling without motion: recovery at rest, and how fast it fades",
             steps=(RestStep(60.0 * minutes), short_series(limits)),
         )
         for minutes in _MINUTES
@@ -214,7 +215,7 @@ def other_turning_points(limits: Limits, seed: int) -> tuple[Block, ...]:
         return ()
     return (
         Block(
-            name="turning points elsewhere",
+            name="other reversal points",
             reason="the moves reverse at other angles: separates angle from distance since the"
             " reversal",
             steps=tuple(SeriesStep(speeds=speeds, low=start, high=stop) for start, stop in parts),

@@ -8,7 +8,7 @@ is named where they exceed ln 19: a 95 % credible set then has one member.
 """
 
 import numpy as np
-from scipy.stats import norm
+from scipy.special import ndtr
 
 from frictioncli.arrays import Array
 from frictioncli.design.discrimination import Discrimination
@@ -48,7 +48,7 @@ def rule_out_probabilities(
     for node, weight in _NODES:
         size = np.maximum(1 + node * error, 0.0)
         mean, variance = _log_odds_gain(before, after, size)
-        probability += weight * norm.cdf((log_odds + mean - DECISIVE_LOG_ODDS) / np.sqrt(variance))
+        probability += weight * ndtr((log_odds + mean - DECISIVE_LOG_ODDS) / np.sqrt(variance))
     np.fill_diagonal(probability, 1.0)
     return probability
 

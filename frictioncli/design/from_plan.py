@@ -76,7 +76,7 @@ def plan_document(
             ),
         ),
         check=CheckRecord(
-            when="on the next day, from cold, as a run of its own",
+            when="on the next day, from cold, as a separate run",
             files=tuple(check_files),
             duration_s=_rounded(plan.check_timings[-1].end) if plan.check else 0.0,
             blocks=tuple(

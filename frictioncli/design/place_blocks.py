@@ -78,13 +78,14 @@ def _about_speed(form: FormFunction, limits: Limits, seed: int) -> tuple[Block, 
     return (
         Block(
             name=f"speeds about {centre:.3g} deg/s",
-            reason="closely on both flanks of the peak: its place, its width, what it depends on",
+            reason="speeds close together on both sides of the peak: its position, width and"
+            " dependence",
             steps=(series,),
         ),
         Block(
             name=f"heat, speeds about {centre:.3g} deg/s",
             reason="the same in a warmer joint: a resonance stays at its speed, a change of"
-            " lubrication moves",
+            " lubrication shifts",
             steps=(heat, series),
         ),
     )
@@ -109,8 +110,8 @@ def _about_angle(form: FormFunction, limits: Limits, seed: int) -> tuple[Block, 
     return (
         Block(
             name=f"angles about {centre:.3g} deg",
-            reason="closely over the place at many speeds: damage stays at its angle at all of"
-            " them, a late torque moves",
+            reason="angles close together at many speeds: damage stays at its angle, the effect"
+            " of a late torque shifts",
             steps=(SeriesStep(speeds=tuple(speeds), low=low, high=high),),
         ),
     )
@@ -140,7 +141,7 @@ def _about_temperature(form: FormFunction, limits: Limits, seed: int) -> tuple[B
     return (
         Block(
             name=f"heat through {centre:.3g} °C",
-            reason="series on both flanks of the temperature, warming and cooling: what goes with"
+            reason="series on both sides of the temperature, warming and cooling: what goes with"
             " temperature comes back at the same one",
             steps=(*steps, RestStep(_HEATING), short_series(limits)),
         ),

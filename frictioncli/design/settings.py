@@ -48,20 +48,23 @@ class PlanSettings:
 
     minutes: float = field(
         default=45.0,
-        metadata=option("Time for all of it, the check on the next day included [min]."),
+        metadata=option("Total time, including the check on the next day [min]."),
     )
     low: float | None = field(
-        default=None, metadata=option("Lowest angle [deg]; as measured.", "--from")
+        default=None, metadata=option("Lowest angle [deg]; default: lowest measured.", "--from")
     )
     high: float | None = field(
-        default=None, metadata=option("Highest angle [deg]; as measured.", "--to-angle")
+        default=None,
+        metadata=option("Highest angle [deg]; default: highest measured.", "--to-angle"),
     )
     max_speed: float | None = field(
-        default=None, metadata=option("Highest speed [deg/s]; as measured.")
+        default=None, metadata=option("Highest speed [deg/s]; default: highest measured.")
     )
     max_temperature: float | None = field(
         default=None,
-        metadata=option("Motor temperature at which heating ends [°C]; as measured, at least 65."),
+        metadata=option(
+            "Motor temperature at which heating ends [°C]; default: highest measured, at least 65."
+        ),
     )
     payload: tuple[float, ...] = field(
         default=(), metadata=option("Payload that may be mounted [kg], repeatable.")
@@ -73,7 +76,9 @@ class PlanSettings:
     )
     joint: int | None = field(
         default=None,
-        metadata=option("Joint to plan for, from 1; that with most pairs.", "--joint", "--axis"),
+        metadata=option(
+            "Joint to plan for, from 1; default: the one with most pairs.", "--joint", "--axis"
+        ),
     )
     seed: int = field(default=0, metadata=option("Seed of the random order of speeds."))
 

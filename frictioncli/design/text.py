@@ -1,5 +1,6 @@
 """A plan in plain words."""
 
+from collections import Counter
 from collections.abc import Mapping, Sequence
 from itertools import groupby
 
@@ -38,17 +39,16 @@ def plan_text(
         lines += _blocks_text(plan, first, last, tell=plan.blocks[first].name not in told)
         told.add(plan.blocks[first].name)
     if plan.check:
-        names = ", ".join(block.name for block in plan.check)
-        lines.append(f"  next day, cold, as a check: {names}")
-        lines.append(
-            "    log both as runs of their own: diagnose learns from all runs but the last,"
-        )
-        lines.append("    which shows whether what it has learned is worth modelling")
+        counts = Counter(block.name for block in plan.check)
+        names = [f"{name} ({n} times)" if n > 1 else name for name, n in counts.items()]
+        lines.append(f"  next day, cold, as a check: {', '.join(names)}")
+        lines.append("    log each day as a separate run: diagnose fits all but the last, and")
+        lines.append("    tests on that one")
     wide = [one for one in interval_records(plan, units, stated) if one.wide]
     for one in wide:
         lines.append(
             f"  {one.parameter} {one.estimate:.3g} {'' if one.unit == '1' else one.unit}".rstrip()
-            + f": +-{one.half_width_now:.2g} now, +-{one.half_width_after:.2g} after"
+            + f": ±{one.half_width_now:.2g} now, ±{one.half_width_after:.2g} after"
         )
     limits = plan.limits
     lines.append(

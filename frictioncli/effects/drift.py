@@ -64,6 +64,6 @@ EFFECT = Effect(
     confounders=("run_in", "step_change", "thermal_lag"),
     experiment=(
         "Return to the start temperature and repeat the first pairs; repeat them on the next day."
-        " One run alone cannot tell a drift from slow noise."
+        " One run alone cannot distinguish drift from slow noise."
     ),
 )

@@ -97,7 +97,8 @@ EFFECT = Effect(
     needs=("position", "speed"),
     signature=Signature(
         axis="position",
-        claim="Near the ends of the stroke the load torque bends away, more at high speed.",
+        claim="Near the ends of the stroke the load torque departs from gravity, more at high"
+        " speed.",
     ),
     statement="Acceleration adds {inertial_torque} at the ends of the stroke at 100 deg/s.",
     confounders=("reversal_transient", "load_velocity", "dress_pack", "quadratic_drag"),

@@ -50,7 +50,7 @@ EFFECT = Effect(
     statement="{not_carried} of the constant load torque do not load the gear.",
     confounders=("dress_pack", "payload_change", "load_linear", "backlash"),
     experiment=(
-        "Read the torque with motors off for the zero of its sensor, and weigh or detach what may"
-        " balance the arm: what stays with the motors off does not load the gear."
+        "Read the torque with the motors off to find the zero of the sensor, and weigh or"
+        " detach any balancer: an offset that remains with the motors off does not load the gear."
     ),
 )

@@ -63,7 +63,7 @@ EFFECT = Effect(
     uses=("load_slope",),
     signature=Signature(
         axis="clock",
-        claim="For a while the load torque has another amplitude over the angle.",
+        claim="For a while the amplitude of the load torque over the angle is different.",
     ),
     confounders=("torque_constant", "dress_pack", "step_change"),
     experiment=(

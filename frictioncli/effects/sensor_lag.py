@@ -77,14 +77,14 @@ EFFECT = Effect(
     signature=Signature(
         axis="motor_temperature",
         claim=(
-            "At the same reading friction is lower while heating than while cooling, in proportion"
-            " to the pace of the reading."
+            "At the same reading friction is lower while heating than while cooling, in"
+            " proportion to the rate of change of the reading."
         ),
     ),
     statement="The temperature sensor lags by {time_constant}.",
     confounders=("thermal_lag", "drift", "run_in"),
     experiment=(
-        "Stop the joint while it heats and read the sensor every few seconds: a sensor that lags"
-        " goes on rising at first."
+        "Stop the joint while it heats and read the sensor every few seconds: a lagging sensor"
+        " keeps rising at first."
     ),
 )

@@ -39,7 +39,7 @@ EFFECT = Effect(
             unit="torque",
             lower=-20.0,
             upper=20.0,
-            description="Friction while it is there less friction at other times",
+            description="Friction during the step minus friction at other times",
         ),
     ),
     basis=basis,

@@ -87,7 +87,8 @@ EFFECT = Effect(
         claim="Friction is above the model only at the lowest speeds, more so the slower.",
     ),
     statement=(
-        "Boundary friction of {boundary_torque} at standstill has fallen to 37 % at {velocity}."
+        "Boundary friction is {boundary_torque} at standstill and falls to 37 % of that at"
+        " {velocity}."
     ),
     confounders=("rest_recovery", "linear_viscous", "velocity_exponent"),
     experiment=(

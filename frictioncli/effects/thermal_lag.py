@@ -217,7 +217,8 @@ EFFECT = Effect(
     ),
     confounders=("run_in", "drift", "rest_recovery", "coulomb_temperature"),
     experiment=(
-        "Add a second cycle of heating and cooling with other heat: slow moves under load instead"
+        "Add a second cycle of heating and cooling with another heat source: slow moves under"
+        " load instead"
         " of fast ones without. Pause during cooling and measure a pair every few minutes."
     ),
     mirror="The load torque must not change with temperature.",

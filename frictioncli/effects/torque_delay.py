@@ -17,7 +17,8 @@ from frictioncli.effects.base import Basis, Effect, EffectTable, Signature
 from frictioncli.effects.parameter import Parameter
 
 BESIDE_A_FILTER = (
-    "The torque in these logs is {delay} late, and smoothed by a filter with a time constant of"
+    "The torque in these logs lags the position by {delay} and is smoothed by a filter with a"
+    " time constant of"
     " {time_constant}."
 )
 """What is said of a delay where the torque is filtered as well."""
@@ -58,11 +59,11 @@ EFFECT = Effect(
             " where gravity grows."
         ),
     ),
-    statement="The torque in these logs is {delay} late.",
+    statement="The torque in these logs lags the position by {delay}.",
     confounders=("torque_filter", "backlash", "load_velocity", "position_ripple"),
     experiment=(
         "Reverse the motion where gravity is small, at high acceleration: the step of friction"
-        " stands in the torque as much later than in the velocity as the delay is."
+        " appears in the torque later than in the velocity, by the delay."
     ),
     mirror="The load torque must change by as much as the friction that it causes.",
 )

@@ -93,5 +93,5 @@ EFFECT = Effect(
         "Reverse the motion at high acceleration and look at single samples of the torque: a delay"
         " shifts the step of friction, a filter smooths it."
     ),
-    mirror="Friction must lag as the torque_delay says, by the filter's time constant or more.",
+    mirror="Friction must show a torque_delay of the filter's time constant or more.",
 )

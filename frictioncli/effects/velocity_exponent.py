@@ -77,7 +77,8 @@ EFFECT = Effect(
     ),
     confounders=("linear_viscous", "quadratic_drag", "stribeck"),
     experiment=(
-        "Sweep speeds from the slowest to the fastest at two temperatures held constant: the bow of"
-        " an exponent shrinks with heat as viscous friction does, that of a constant term stays."
+        "Sweep speeds from the slowest to the fastest at two temperatures held constant: the"
+        " curvature due to an exponent shrinks with temperature as viscous friction does, that"
+        " of a constant term does not."
     ),
 )

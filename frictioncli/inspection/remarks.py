@@ -166,7 +166,7 @@ def _joint_remarks(found: JointInspection) -> Iterator[Remark]:
         yield Remark(
             "limit",
             f"torque stays at {limit.torque:.4g} {found.torque_unit} for up to {limit.longest}"
-            f" samples, {100 * limit.share:.2g} % of the motion: cut off?",
+            f" samples, {100 * limit.share:.2g} % of the motion: saturated?",
         )
     for spikes in found.spikes:
         unit = unit_of(spikes.quantity, found.torque_unit)

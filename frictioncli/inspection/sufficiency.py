@@ -117,12 +117,13 @@ def joint_summary(
         stages += [_doubtful(stage) if is_doubtful else stage for stage in later]
     if not len(pairs):
         regression = (
-            "without pairs, 'separate' regresses all motion, and says whether the result suffices"
+            "without pairs, 'separate' uses regression on all motion, and says whether the"
+            " result suffices"
         )
         stages.append(StageVerdict("separate", IN_PART, regression))
         stages += [StageVerdict(name, IN_PART, _AS_FAR) for name in STAGES[len(stages) :]]
     missing = STAGES[len(stages) :]
-    stages += [StageVerdict(name, NO, f"needs what {stages[-1].name} gives") for name in missing]
+    stages += [StageVerdict(name, NO, f"needs the output of {stages[-1].name}") for name in missing]
     return JointSummary(
         joint=joint,
         runs=recordings.runs,
@@ -184,8 +185,9 @@ def _separate(joint: int, pairs: pd.DataFrame) -> StageVerdict:
         return StageVerdict(
             "separate",
             IN_PART,
-            f"{text}, but it opposes motion in {100 * opposing:.0f} % of the pairs only: is this"
-            " torque already freed of friction, or another joint's? Try the other torque or current"
+            f"{text}, but it opposes motion in {100 * opposing:.0f} % of the pairs only: has"
+            " friction already been removed from this torque, or is it another joint's? Try the"
+            " other torque or current"
             " columns",
         )
     return StageVerdict("separate", YES, text)

@@ -142,5 +142,5 @@ def _constant(
         )
     reason = f"from the {found.seen_by} that {current} and {torque} share in {found.rows} rows"
     if _TARGET.search(torque):
-        reason += f", as true as the robot's own model, which makes {torque}"
+        reason += f", as accurate as the robot's own model, from which {torque} is computed"
     return TorqueConstant(found.value, found.ci95, reason)

@@ -55,7 +55,7 @@ class IngestSettings:
 
     joints: tuple[int, ...] | None = field(
         default=None,
-        metadata=option("Joint to read, from 1; repeatable. All with torque.", "--joint"),
+        metadata=option("Joint to read, from 1; repeatable. Default: all with torque.", "--joint"),
     )
     map_file: Path | None = field(
         default=None,
@@ -65,7 +65,7 @@ class IngestSettings:
         default=None, metadata=option("Motor turns per joint turn, for motor-side channels.")
     )
     rated_torque: float | None = field(
-        default=None, metadata=option("Torque that 100 % stands for, for torques in % [N·m].")
+        default=None, metadata=option("Torque at 100 %, for torques in % [N·m].")
     )
     torque_constant: float | str | None = field(
         default=None,

@@ -150,7 +150,7 @@ def _by_source(
         channels = {name: _values(batch, name) for name in names}
         for name in SAMPLES.required:
             if name in channels and not np.isfinite(channels[name].sum()):
-                raise TableError(f"samples: {name} has values that are no numbers, expected none")
+                raise TableError(f"samples: {name} has values that are not numbers, expected none")
         runs, recordings = (_labels(batch.column(name)) for name in ("run", "recording"))
         joints = batch.column("joint").to_numpy(zero_copy_only=False)
         codes = runs.indices.to_numpy(), recordings.indices.to_numpy()

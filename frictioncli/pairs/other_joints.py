@@ -18,14 +18,14 @@ from frictioncli.pairs.slices import reduce_slices, slice_indices
 OTHER_MOVES = "other joint moves"
 """Reason why samples at constant speed are in no pair."""
 
-STAND_ELSEWHERE = "other joints come to stand elsewhere, or the payload changes"
+STAND_ELSEWHERE = "other joints stop at other angles, or the payload changes"
 """Reason why samples of a move in a second pose or with a second payload are in no pair."""
 
-OTHER_POSE = "the other joints stand elsewhere than for the partner"
+OTHER_POSE = "the other joints are at other angles than for the partner"
 """Reason why samples whose partner has another pose are in no pair."""
 
 LEFT_OUT = "left out"
-KEPT = "used nonetheless, and its torque holds what the others add"
+KEPT = "used nonetheless; its torque includes what the others add"
 """What becomes of such samples."""
 
 _MOST = 0.5
@@ -124,7 +124,7 @@ class OtherMotion:
             if self.share(joint)
         ] + [
             f"joint {joint}: no move there and back in one pose of the other joints: used"
-            " nonetheless, and its friction holds half of what their poses change in gravity"
+            " nonetheless; its friction includes half of the change of gravity between their poses"
             for joint in joints
             if joint in self.across_poses
         ]

@@ -25,12 +25,16 @@ class SteadySettings:
         Least number of samples of a constant-speed segment.
     """
 
-    min_speed: float = field(default=0.2, metadata=option("Below this the joint stands [deg/s]."))
+    min_speed: float = field(
+        default=0.2, metadata=option("Speed below which the joint is at rest [deg/s].")
+    )
     speed_tolerance: float = field(
-        default=0.02, metadata=option("Departure from constant speed [share of it].")
+        default=0.02, metadata=option("Allowed deviation from constant speed [fraction of it].")
     )
     settling: float = field(default=0.2, metadata=option("Time dropped after acceleration [s]."))
-    min_samples: int = field(default=3, metadata=option("Least samples of a constant-speed part."))
+    min_samples: int = field(
+        default=3, metadata=option("Minimum number of samples of a constant-speed part.")
+    )
 
     def __post_init__(self) -> None:
         if self.min_speed <= 0 or not 0 < self.speed_tolerance < 0.5:
@@ -66,10 +70,10 @@ class PairingSettings:
     steady: SteadySettings = field(default_factory=SteadySettings)
     bin_width: float = field(default=5.0, metadata=option("Width of the angle bins [deg]."))
     same_speed: float = field(
-        default=0.03, metadata=option("Greatest difference of speed [share].")
+        default=0.03, metadata=option("Largest difference of speed between partners [fraction].")
     )
     same_temperature: float = field(
-        default=2.0, metadata=option("Greatest difference of temperature [°C].")
+        default=2.0, metadata=option("Largest difference of temperature between partners [°C].")
     )
     longest_pause: float = field(
         default=600.0, metadata=option("Longest pause between partners [s].")
@@ -127,8 +131,8 @@ class SeparationSettings:
     by: str = field(
         default="auto",
         metadata=option(
-            "How: pairs of moves at constant speed, regression of all motion, or auto: regression"
-            " where pairs are too few."
+            "Method: pairs of moves at constant speed, regression of all motion, or auto"
+            " (regression where pairs are too few)."
         ),
     )
     urdf: Path | None = field(

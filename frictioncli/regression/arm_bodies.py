@@ -63,7 +63,7 @@ class ArmBodies:
         for told, least, found in self.payloads:
             text = f"payload of {told:g} kg, {told - least:g} kg more than the lightest: "
             if found is None:
-                lines.append(text + "the motion does not tell its mass")
+                lines.append(text + "the motion does not determine its mass")
                 continue
             low, high = found.ci95
             lines.append(

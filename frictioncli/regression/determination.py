@@ -173,13 +173,14 @@ def _by_excitation(prepared: PreparedJoint) -> tuple[EquationTerms, dict[str, st
         undetermined["beta"] = f"{reason}; merged into tau_c"
         terms = terms.without("beta")
     if not terms.offset:
-        reason = "motion in one direction only; what is constant counts as friction"
+        reason = "motion in one direction only; a constant offset counts as friction"
         undetermined["offset"] = reason
     span = float(np.ptp(equations.rows.position))
     if not equations.rows.position.any():
         undetermined["gravity"] = "the log has no angle"
     elif span < _LEAST_ANGLE_SPAN:
-        undetermined["gravity"] = f"angle spans {span:.1f} deg; its torque there is still told"
+        reason = "the load torque within it is still determined"
+        undetermined["gravity"] = f"angle spans {span:.1f} deg; {reason}"
     return terms, undetermined
 
 
@@ -281,7 +282,7 @@ def _refuse(found: JointRegression, joint: int) -> None:
     value, low, _ = found.friction[speed]
     if value - low > _VAGUE * abs(value):
         raise NotEnoughData(
-            f"joint {joint}: friction is not told from load and inertia"
+            f"joint {joint}: friction cannot be separated from load and inertia"
             f" ({value:.3g} ± {value - low:.2g} at {speed:.3g} deg/s, condition number"
             f" {found.estimate.condition:.3g}); log motion in both directions over the same angles"
         )

@@ -130,7 +130,7 @@ def prepare(
         share = 0.0
     elif share:
         notes.append(
-            f"other joints move in {share:.0%} of the motion; friction holds what they add"
+            f"other joints move in {share:.0%} of the motion; friction includes what they add"
         )
     speed = np.abs(_velocity(rows, from_position))
     fastest = float(np.quantile(speed, 0.99)) if len(rows) else 0.0
@@ -157,8 +157,8 @@ def prepare(
     if rare.sum() > _MOST_RARE * len(rows):
         told_apart = False
         notes.append(
-            "the other joints stand elsewhere in nearly every move: gravity is that of all poses"
-            " together, and friction may hold what they change"
+            "the other joints stand elsewhere in nearly every move: gravity is that of all"
+            " poses together, and friction may include what they change"
         )
         rare = _rare(states())
     if rare.any() and not rare.all():

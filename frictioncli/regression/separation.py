@@ -204,7 +204,7 @@ def _refuse_doubtful(joint: int, prepared: PreparedJoint, *, doubtful: bool) -> 
         raise NotEnoughData(
             f"joint {joint}: {OTHER_MOVES} in {prepared.other_share:.0%} of its motion, and the"
             " weight and inertia of the others act on it; log it alone, give --urdf, or try"
-            " 'frictioncli separate --by regression', whose friction then holds what they add"
+            " 'frictioncli separate --by regression', whose friction then includes what they add"
         )
     if len(prepared.equations.rows) and not prepared.terms.offset and not doubtful:
         raise NotEnoughData(

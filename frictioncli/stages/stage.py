@@ -8,6 +8,7 @@ from html import escape
 from pathlib import Path
 from typing import ParamSpec
 
+from frictioncli.files import is_there
 from frictioncli.workfolder import locked, outdated
 
 
@@ -62,4 +63,4 @@ def stage(function: Callable[_Arguments, StageResult]) -> Callable[_Arguments, S
 
 def existing(*paths: Path) -> list[Path]:
     """Return the paths that exist; work folders of older versions lack some."""
-    return [path for path in paths if path.exists()]
+    return [path for path in paths if is_there(path)]

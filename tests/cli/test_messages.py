@@ -75,6 +75,6 @@ def test_units_as_told_that_nothing_explains(tmp_path):
     columns["AxisVel_Act2[°/s]"] = columns["AxisVel_Act2[°/s]"] * 3.3
     log = write(tmp_path / "log.csv", columns)
     summary = ingest([log], tmp_path / "work", IngestSettings(velocity_unit="deg/s"))
-    (warning,) = (text for text in summary.warnings if "as told" in text)
+    (warning,) = (text for text in summary.warnings if "as specified" in text)
     assert "None" not in warning
     assert "which no units explain" in warning

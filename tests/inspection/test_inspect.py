@@ -77,7 +77,7 @@ def test_a_whole_experiment_suffices_for_every_stage(tmp_path):
         (lambda log: log, "diagnose", "in part", "one run only"),
         (lambda log: log[: len(log) // 3], "diagnose", "no", "at least 12 are needed"),
         (lambda log: log[:400], "pair", "no", "1x forward and 0x in reverse"),
-        (lambda log: log[:400], "separate", "in part", "'separate' regresses all motion"),
+        (lambda log: log[:400], "separate", "in part", "'separate' uses regression on all motion"),
         (lambda log: log[:400], "simulate", "in part", "as far as the regression gives torques"),
         (
             lambda log: log.assign(

@@ -186,7 +186,7 @@ def test_a_value_that_is_no_number_is_refused():
                 {key: pa.array(wrong[key].to_numpy(), from_pandas=False) for key in wrong}
             )
         ]
-        with pytest.raises(TableError, match=f"{name} has values that are no numbers"):
+        with pytest.raises(TableError, match=f"{name} has values that are not numbers"):
             list(chunks.chunks(parts, ("position", "torque"), SteadySettings()))
 
 

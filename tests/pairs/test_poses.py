@@ -9,8 +9,8 @@ import pytest
 from tests.found import pairs as paired
 from tests.moves import move_sequence, samples
 
-OTHER = "the other joints stand elsewhere than for the partner"
-ELSEWHERE = "other joints come to stand elsewhere, or the payload changes"
+OTHER = "the other joints are at other angles than for the partner"
+ELSEWHERE = "other joints stop at other angles, or the payload changes"
 FRICTION = 8.0
 
 

@@ -51,3 +51,9 @@ def test_rows_two_triangles_apart_are_nearly_independent():
 
 def test_a_filter_has_at_least_one_sample_a_step():
     assert [filter_step(period, 0.05) for period in (0.5, 0.05, 0.01, 0.001)] == [1, 1, 5, 50]
+
+
+def test_a_signal_shorter_than_the_weights_has_no_rows():
+    """As a log whose moves are all too short, or whose times run backwards."""
+    found = filtered(np.arange(3.0), np.empty(0, np.int64), np.full(5, 0.2), np.ones(5))
+    assert found.shape == (2, 0)

@@ -209,7 +209,7 @@ def test_a_joint_that_moves_with_others_is_regressed_only_when_told(tmp_path):
     write_samples(work, moving)
     with pytest.raises(NotEnoughData, match="other joint moves in 100% of its motion"):
         separate(work)
-    assert "friction holds what they add" in str(separate(work, REGRESSION))
+    assert "friction includes what they add" in str(separate(work, REGRESSION))
 
 
 def test_one_direction_is_regressed_only_when_told(tmp_path):

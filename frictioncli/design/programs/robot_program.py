@@ -12,7 +12,9 @@ APPROACH_SPEED = 20.0
 TEMPERATURE_MARGIN = 10.0
 """All motion waits above the temperature at which heating ends plus this margin. [°C]"""
 
-SAFETY_NOTE = "Try it at reduced speed first, with nobody in reach and a free way for the axis."
+SAFETY_NOTE = (
+    "Try it at reduced speed first, with nobody within reach and a clear path for the axis."
+)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -51,8 +53,8 @@ class RobotProgram:
         yield f"Moves axis {self.axis} only, from {limits.low:g} to {limits.high:g} deg, up to"
         yield f"{limits.fastest:.4g} deg/s. All other axes stay where they are at the start."
         yield SAFETY_NOTE
-        yield "Check before: the way is free over the whole range in this posture of the other"
-        yield "axes, the payload is fixed and its data are set, the robot has stood for the night."
+        yield "Check before: the path is clear over the whole range in this pose of the other"
+        yield "axes, the payload is fixed and its data are set, the robot has been idle overnight."
         for text in limits.beyond:
             yield f"Beyond what was measured, as asked: {text}."
 

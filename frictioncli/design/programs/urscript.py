@@ -23,7 +23,7 @@ _PARTS = """\
     movej(q, a=d2r(ACCELERATION), v=d2r(speed))
   end
 
-  # Stands while the joint is hotter than T_STOP (degC), an hour at the longest.
+  # Waits while the joint is hotter than T_STOP (degC), an hour at the longest.
   def not_too_hot():
     waited = 0
     while get_joint_temp({index}) > T_STOP and waited < 720:
@@ -111,7 +111,7 @@ def program_files(program: RobotProgram) -> dict[str, str]:
         "",
         *_PARTS.format(axis=program.axis, index=program.axis - 1).splitlines(),
         "",
-        '  popup("Tried at reduced speed? Way free, payload fixed and set?", "friction", True,'
+        '  popup("Tried at reduced speed? Path clear, payload fixed and set?", "friction", True,'
         " False, True)",
         *_main(program),
         "end",

@@ -42,7 +42,7 @@ def map_text(suggestion: Suggestion, head: LogHead, source: str, check: str = ""
     for quantity, guess in suggestion.guesses.items():
         doubt = ""
         if quantity == names.TORQUE and not split_unit(head.names[guess.column])[1]:
-            doubt = "  # by name only, numbers do not tell: N·m, or A if it is a current"
+            doubt = "  # by name only, the values do not show it: N·m, or A if it is a current"
         lines.append(f'{quantity} = "{guess.unit}"{doubt}')
     if suggestion.torque_side != names.JOINT_SIDE:
         lines += ["", "[side]", f'torque = "{suggestion.torque_side}"']

@@ -15,6 +15,7 @@ from frictioncli.logs.channels.channel_names import (
 )
 from frictioncli.logs.channels.recognition import LogChannel
 from frictioncli.logs.log_source import Refusal
+from frictioncli.plain_text import printable
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -166,7 +167,7 @@ def _missing(
 ) -> Refusal:
     quantities: Collection[str] = {c.quantity for c in channels}
     lacking = [name for name in (TIME, POSITION, TORQUE) if name not in quantities] or [what]
-    named = [column for column in columns if column]
+    named = [printable(column) for column in columns if column]
     shown = ", ".join(named[:12]) + (f", ... ({len(named)} in all)" if len(named) > 12 else "")
     return Refusal(
         f"no_{what}_channel",

@@ -134,12 +134,12 @@ def plan_joint(
         remarks.notes.append(constant.text(channels.joint, channels.torque.name))
     elif is_current and (channels.load or channels.other_torques):
         remarks.notes.append(
-            "results are in A; with --torque-constant auto they are in N·m, where the torque beside"
-            " the current tells how"
+            "results are in A; with --torque-constant auto they are in N·m, from the torque"
+            " logged beside the current"
         )
     elif constant is not None:
         remarks.warnings.append(
-            f"the torque constant of joint {channels.joint} has no use: {channels.torque.name} is"
+            f"the torque constant of joint {channels.joint} is not used: {channels.torque.name} is"
             f" read in {torque_unit}"
         )
     conversions[names.TORQUE] = _scaled(torque, factor)
@@ -214,7 +214,7 @@ def _without_gear(
         if other_position is None or motion.other_position_unit is None:
             return None
         remarks.notes.append(
-            f"joint {channels.joint} does not move, which would tell the gear ratio: its position"
+            f"joint {channels.joint} does not move, so the gear ratio cannot be found: its position"
             f" is {other_position.name}"
         )
         channels = replace(channels, position=other_position, other_position=position)
@@ -254,11 +254,13 @@ def _torque_side(
         return names.JOINT_SIDE, 1.0
     if gear is None or not gear.converts_torque:
         remarks.notes.append(
-            f"{name} is torque at the motor and stays so; with --gear-ratio it is brought to the"
-            " joint"
+            f"{name} is torque at the motor and stays so; with --gear-ratio it is converted to"
+            " the joint side"
         )
         return names.MOTOR_SIDE, 1.0
-    remarks.notes.append(f"{name} is brought to the joint by the gear ratio {gear.ratio:.4g}")
+    remarks.notes.append(
+        f"{name} is converted to the joint side by the gear ratio {gear.ratio:.4g}"
+    )
     return names.JOINT_SIDE, gear.ratio
 
 

@@ -118,7 +118,7 @@ def _axis_units(
         allowed = frozenset({forced[names.POSITION]})
         if not allowed <= possible:
             remarks.warnings.append(
-                f"{position.name} is read as {forced[names.POSITION]} as told, but {why}"
+                f"{position.name} is read as {forced[names.POSITION]} as specified, but {why}"
             )
     times = [head[axis.time.column] for head in survey.heads]
     written_time = units.canonical(axis.time.unit or axis.time.meaning.unit, names.TIME)
@@ -175,7 +175,7 @@ def _doubt(position: LogChannel, why: str) -> str:
     """Return why the user has to be asked for the unit of a position."""
     return (
         f"{position.name} says {position.unit}, but {why}, as angles in rad do, and neither a"
-        " velocity nor the tool's path tells which it is; say it with --position-unit deg or rad,"
+        " velocity nor the tool's path shows which it is; give it with --position-unit deg or rad,"
         " or with [units] position in --map"
     )
 
@@ -191,7 +191,7 @@ def _with_forced_units(
             "" if found.velocity is None else f": {found.time} and {found.velocity} would fit"
         )
         remarks.warnings.append(
-            f"time and velocity are read as {time} and {velocity} as told, but"
+            f"time and velocity are read as {time} and {velocity} as specified, but"
             f" {found.evidence}{would_fit}"
         )
     return MotionUnits(time, found.position, velocity, found.reversed_velocity, found.evidence)

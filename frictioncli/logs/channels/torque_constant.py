@@ -114,7 +114,7 @@ class TorqueConstant:
                 f" ±{(high - low) / 2 / abs(self.value):.1%}"
             )
         return (
-            f"{current} is brought to N·m at joint {joint} by the torque constant"
+            f"{current} is converted to N·m at joint {joint} by the torque constant"
             f" {self.value:.4g}{interval} N·m/A, {self.reason}{shared}"
         )
 
@@ -197,7 +197,7 @@ def _estimate(tables: Sequence[Sequence[Array]], seen_by: str) -> ConstantEstima
             f" correlation {alike:.2f})"
         )
     # reading logs otherwise needs no scipy, which takes long to import
-    from scipy import stats
+    from frictioncli.distributions import t_quantile
 
     # the current given the torque, and the torque given the current, err to either side
     value = _ratio(shared)
@@ -208,9 +208,9 @@ def _estimate(tables: Sequence[Sequence[Array]], seen_by: str) -> ConstantEstima
         _left_out(runs, found, shared, [np.searchsorted(edges, r.angle % _TURN) for r in runs]),
     ):
         if len(changes) < _LEAST_BLOCKS:
-            raise NotEnoughData("too few moves to tell how well")
+            raise NotEnoughData("too few moves to know how well")
         spread = (len(changes) - 1) * float(np.mean(np.square(changes - np.mean(changes))))
-        half.append(float(stats.t.ppf(0.975, len(changes) - 1)) * float(np.sqrt(spread)))
+        half.append(t_quantile(0.975, len(changes) - 1) * float(np.sqrt(spread)))
     if max(half) > _VAGUE * abs(value):
         raise NotEnoughData(
             f"by {seen_by} {value:.3g} ± {max(half):.2g} N·m/A: not known well enough"

@@ -66,7 +66,7 @@ def find_transmission(
     at_motor = [c.meaning.side for c in (position, channels.velocity, channels.torque) if c]
     if given_ratio is not None and other_position is None and names.MOTOR_SIDE not in at_motor:
         remarks.warnings.append(
-            f"gear ratio {given_ratio:g} of joint {channels.joint} has no use: no channel is known"
+            f"gear ratio {given_ratio:g} of joint {channels.joint} is not used: no channel is known"
             " to be at the motor; name those that are in --map, for example [side] position ="
             ' "motor"'
         )

@@ -112,7 +112,7 @@ def _check_name(path: Path) -> None:
     try:
         str(path).encode()
     except UnicodeEncodeError:
-        raise LogError(f"{path}: its name is no text in UTF-8; rename it") from None
+        raise LogError(f"{path}: its name is not UTF-8; rename it") from None
     if "\n" in path.name or "\r" in path.name:
         raise LogError(f"{printable(str(path), 500)}: its name has several lines; rename it")
 

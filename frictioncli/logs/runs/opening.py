@@ -207,7 +207,7 @@ def _with_own_start(sidecar: Sidecar, source: LogSource) -> Sidecar:
     start = recorder_start(head) or scope_start(head)
     if start is None or sidecar.started_at is not None:
         return sidecar
-    return replace(sidecar, started_at=start, notes=(*sidecar.notes, "started as its head tells"))
+    return replace(sidecar, started_at=start, notes=(*sidecar.notes, "start time from its header"))
 
 
 def _choose(

@@ -77,7 +77,7 @@ class ProgramFile:
 
     def __str__(self) -> str:
         if not self.motions:
-            return "tells of no motion"
+            return "names no motion"
         kinds = " and ".join(sorted({motion.kind for motion in self.motions}))
         speeds = [speed for motion in self.motions for speed in motion.speeds]
         text = f"tells of {kinds} motions"

@@ -58,15 +58,15 @@ def read_sidecar(log: Path, names: Collection[str]) -> Sidecar:
     if file is None or not file.is_file():
         if start is None:
             return _NO_SIDECAR
-        return Sidecar(start, None, ("started as its .dat header tells",))
+        return Sidecar(start, None, ("start time from its .dat header",))
     program = read_program(file)
     if program is None:
-        notes = "started as its .dat header tells", "its _PROG.TXT cannot be understood: not used"
+        notes = "start time from its .dat header", "its _PROG.TXT cannot be understood: not used"
         return Sidecar(start, None, notes[start is None :])
     if start is not None:
-        note = "started as its .dat header tells"
+        note = "start time from its .dat header"
     elif program.started_at is not None:
-        note = "started as its _PROG.TXT tells"
+        note = "start time from its _PROG.TXT"
     else:
         note = "its _PROG.TXT has no valid date"
     notes = note, f"its _PROG.TXT {program}"

@@ -221,8 +221,8 @@ def _contradicted_unit(log: OpenedLog, plan: JointPlan, batch: RawBatch, out: Fl
     value = batch.values[plan.channels.position.column][where]
     return LogError(
         f"{log.file.path} line {batch.lines[where]}: {name} is {value:.4g}, but the beginnings of"
-        f" the logs of run {log.run.name} looked like rad, which end at ±6.9; say which it is with"
-        " --position-unit deg or rad"
+        f" the logs of run {log.run.name} looked like rad, which end at ±6.9; give the unit"
+        " with --position-unit deg or rad"
     )
 
 

@@ -211,7 +211,7 @@ def _refusal(
         return Refusal(
             "implausible_time",
             f"{kept} rows within {duration:.3g} s; expected at most one per"
-            f" {_SHORTEST_PERIOD * 1e6:g} µs; say the unit of the time with --time-unit",
+            f" {_SHORTEST_PERIOD * 1e6:g} µs; give the unit of the time with --time-unit",
         )
     if kept < _MIN_ROWS:
         return Refusal("too_few_rows", f"{kept} usable rows; expected at least {_MIN_ROWS}")

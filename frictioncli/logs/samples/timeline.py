@@ -238,8 +238,8 @@ class RunClock:
         unused = [(used, other) for used, other in payloads if other not in (None, used)]
         if any(used is None for used, _ in unused):
             return [
-                f"run {self.run}: _PROG.TXT tells the payload of {len(unused)} of"
-                f" {len(self.placed)} recordings: taken for none"
+                f"run {self.run}: _PROG.TXT gives the payload of {len(unused)} of"
+                f" {len(self.placed)} recordings: not used"
             ]
         if unused:
             return [
