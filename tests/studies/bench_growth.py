@@ -22,6 +22,8 @@ from tests.studies.bench_rounds import ROOT, STORE, measured_run, state
 from tests.studies.benching import MEGABYTE, Disagreement, command
 
 STAGES = ("ingest", "pair", "separate", "fit")
+
+_COLOURS = ("#0072B2", "#009E73", "#9A7D00", "#D55E00")
 ROWS = STORE / "growth.jsonl"
 FIGURE = ROOT / "docs" / "growth.png"
 
@@ -125,6 +127,13 @@ def slope(rows: list[dict], stage: str, measure: str) -> float:
 
 def draw(rows: list[dict]) -> None:
     """Draw time and peak memory by samples, with the slopes in the legends."""
+    from frictioncli.report.style import style_context
+
+    with style_context():
+        _draw(rows)
+
+
+def _draw(rows: list[dict]) -> None:
     from matplotlib.figure import Figure
 
     figure = Figure(figsize=(9, 4), layout="constrained")
@@ -132,13 +141,12 @@ def draw(rows: list[dict]) -> None:
     for axes, (measure, scale, label) in zip(
         panels, (("wall", 1.0, "time [s]"), ("peak", MEGABYTE, "peak memory [MB]")), strict=True
     ):
-        for stage in STAGES:
+        for stage, colour in zip(STAGES, _COLOURS, strict=True):
             own = sorted((r["samples"], r[measure] / scale) for r in rows if r["stage"] == stage)
             if own:
                 text = f"{stage}, slope {slope(rows, stage, measure):.2f}"
-                axes.loglog(*zip(*own, strict=True), marker="o", label=text)
-        axes.set(xlabel="samples", ylabel=label)
-        axes.grid(alpha=0.3)
+                axes.loglog(*zip(*own, strict=True), marker="o", color=colour, label=text)
+        axes.set(xlabel="number of samples", ylabel=label)
         low, high = axes.get_ylim()
         axes.set_ylim(min(low, high / 100), high)
         axes.legend()

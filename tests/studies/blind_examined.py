@@ -88,6 +88,9 @@ def _hidden(truth: Truth, given_up: Collection[str]) -> list[dict[str, object]]:
     ]
 
 
+_GIVEN_UP = ("physically impossible", "these data determine")
+
+
 def _given_up(said: Said) -> set[str]:
     """Return effects of the measurement that the diagnosis did not set beside the base."""
     return {
@@ -96,7 +99,7 @@ def _given_up(said: Said) -> set[str]:
         for name in cause["effects"]
         if cause["kind"] == "measurement"
         and cause["standing"] == "undetermined"
-        and any(text in cause["reason"] for text in ("physically impossible", "these data tell"))
+        and any(text in cause["reason"] for text in _GIVEN_UP)
     }
 
 

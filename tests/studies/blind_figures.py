@@ -11,6 +11,7 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Rectangle
 from numpy.typing import NDArray
 
+from frictioncli.report.style import style_context
 from frictioncli.simulator.settings import PROTOCOLS
 from tests.studies.blind_rows import Joint, interval, of_kind
 from tests.studies.blind_worlds import LISTED, UNLISTED
@@ -53,16 +54,22 @@ def confusion(joints: Sequence[Joint]) -> tuple[NDArray[np.float64], NDArray[np.
 
 def confusion_picture(joints: Sequence[Joint], path: Path) -> None:
     """Draw the confusion matrix of each programme."""
+    with style_context():
+        _draw_confusion(joints, path)
+
+
+def _draw_confusion(joints: Sequence[Joint], path: Path) -> None:
     figure = Figure(figsize=(13.0, 18.0), layout="constrained")
     panels = figure.subplots(2, 1)
     for axes, protocol in zip(panels, PROTOCOLS, strict=True):
         shares, counts = confusion([one for one in joints if one.world.protocol == protocol])
         _matrix(axes, shares, counts)
-        axes.set_title(f"{protocol}: said, in % of what was hidden", loc="left", weight="bold")
+        axes.set_title(f"{protocol} programme: share of joints [%]; orange: right answer")
     _saved(figure, path)
 
 
 def _matrix(axes: Axes, shares: NDArray[np.float64], counts: NDArray[np.intp]) -> None:
+    axes.grid(visible=False)
     axes.imshow(shares, cmap="Blues", vmin=0.0, vmax=1.0, aspect="auto")
     for line, column in np.argwhere(shares >= 0.005):
         value = shares[line, column]
@@ -92,11 +99,17 @@ def _matrix(axes: Axes, shares: NDArray[np.float64], counts: NDArray[np.intp]) -
         axes.add_patch(
             Rectangle((column - 0.46, line - 0.46), 0.92, 0.92, fill=False, edgecolor="#D55E00")
         )
-    axes.set_ylabel("hidden (joints)")
+    axes.set_ylabel("hidden effect (number of joints)")
+    axes.set_xlabel("diagnosis: name given, set of names, structure without a name, or nothing")
 
 
 def power_picture(joints: Sequence[Joint], path: Path) -> None:
     """Draw how often a single effect is named, by what is left of it over the margin."""
+    with style_context():
+        _draw_power(joints, path)
+
+
+def _draw_power(joints: Sequence[Joint], path: Path) -> None:
     single = [one for one in of_kind(joints, "single") if one.possible]
     ratio = np.array([one.hidden[0]["left"] / one.margin for one in single])
     place = np.searchsorted(EDGES, ratio, side="right") - 1
@@ -122,10 +135,11 @@ def power_picture(joints: Sequence[Joint], path: Path) -> None:
     )
     axes.axhline(0.9, color="#9AA0A6", linewidth=0.8, linestyle=":")
     axes.set_ylim(-0.03, 1.03)
-    axes.set_ylabel("share of joints")
-    axes.set_xlabel("left of the effect by base and measurement, over the margin (joints)")
-    axes.legend(frameon=False, loc="center left")
-    axes.spines[["top", "right"]].set_visible(False)
+    axes.set_ylabel("share of joints, with 95 % interval")
+    axes.set_xlabel(
+        "RMS that the base model leaves of the effect, divided by the margin (number of joints)"
+    )
+    axes.legend(loc="lower right", bbox_to_anchor=(1.0, 1.0), ncols=3)
     _saved(figure, path)
 
 

@@ -106,12 +106,17 @@ def table(tally: Tally) -> str:
 
 def forms_table() -> str:
     """Return the counts of all forms but logs as Markdown."""
-    lines = ["| form | inputs | read or done | refused | findings |", "|---|---:|---:|---:|---:|"]
+    lines = [
+        "| form | inputs | read or done | refused | findings | repeated by |",
+        "|---|---:|---:|---:|---:|---|",
+    ]
     for form in FORMS:
         tally = stored(form)
         good = [tally.counts[form, outcome] for outcome in GOOD]
         cells = [tally.inputs, *good, len(tally.findings)]
-        lines.append(f"| {form} | " + " | ".join(f"{count:,}" for count in cells) + " |")
+        counts = " | ".join(f"{count:,}" for count in cells)
+        call = f'`make fuzz FUZZ="{form} --inputs {tally.inputs}"`'
+        lines.append(f"| {form} | {counts} | {call} |")
     return "\n".join(lines)
 
 

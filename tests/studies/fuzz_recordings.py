@@ -85,7 +85,9 @@ def _mdf(path: Path, columns: Columns) -> None:
 
     names = [name for name in columns if name != "time"]
     with asammdf.MDF(version="4.10") as file:
-        file.append([asammdf.Signal(columns[name], columns["time"], name=name) for name in names])
+        signals = [asammdf.Signal(columns[name], columns["time"], name=name) for name in names]
+        # otherwise asammdf leaves out rows whose times are repeated
+        file.append(signals, common_timebase=True)
         file.save(path, overwrite=True)
 
 

@@ -15,7 +15,7 @@ from frictioncli.diagnosis.documents.extended_document import extended_model
 from frictioncli.diagnosis.documents.from_diagnosis import diagnosis_document, extended_document
 from frictioncli.diagnosis.search.cause_search import find_causes
 from frictioncli.diagnosis.search.margin import margin_of
-from frictioncli.diagnosis.search.standing import with_standing
+from frictioncli.diagnosis.search.standing import with_standing, without_cancelling
 from frictioncli.diagnosis.settings import DiagnosisSettings
 from frictioncli.effects import EFFECTS
 from frictioncli.errors import OptionError
@@ -104,6 +104,7 @@ def _named(torques: pd.DataFrame) -> str:
     margin = margin_of(problem, "N·m", settings)
     found = find_causes(problem, EFFECTS, settings, margin)
     judged = with_standing(found.causes, problem, margin, settings.alpha)
+    judged = without_cancelling(judged, problem)
     causes = [cause for cause in judged if cause.standing == "named"]
     return ";".join("|".join(cause.effects) for cause in causes)
 

@@ -133,7 +133,7 @@ CASES = (
         known="The joint moves in sines: no constant speed at all.",
         refused="Right without a map: nothing in the file says what its 31 columns are.",
         doubt="The unit of the torque is wrong with the suggested map: columns 14 to 19 hold"
-        " currents, and the map says N·m, though it adds that numbers do not tell. The"
+        " currents, and the map says N·m, though it adds that the values do not show it. The"
         " figures are right as amperes.",
     ),
     Case(

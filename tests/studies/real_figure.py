@@ -10,6 +10,8 @@ from frictioncli.diagnosis.documents.reload import Reloaded
 from frictioncli.diagnosis.documents.remainder import largest_structure
 from frictioncli.report.binning import bin_means, bin_numbers, residual_series
 from frictioncli.report.evidence_figure import AXES
+from frictioncli.report.style import style_context
+from frictioncli.wording import in_words
 
 _MOST = 3
 """Rows of panels."""
@@ -25,39 +27,44 @@ def findings(found: Reloaded) -> list[Finding]:
     """Return what is to be shown: causes and structure first, then what is visible."""
     document = found.document
     named = [
-        (" or ".join(cause.effects), cause.seen_in, cause.channel)
+        (" or ".join(map(in_words, cause.effects)), cause.seen_in, cause.channel)
         for cause in document.modelled_causes
     ]
     if document.structure is not None:
         axis = document.structure.axis[0]
         named.append(("structure without a name", axis, document.structure.channel))
     named += [
-        (f"{' or '.join(cause.effects)}, not named", cause.seen_in, cause.channel)
+        (f"{' or '.join(map(in_words, cause.effects))}, not named", cause.seen_in, cause.channel)
         for cause in document.visible
     ]
     if not named:
         problem = found.seen.problem
         load = None if problem.has_load_channel else found.seen.before["load"]
         most = largest_structure(problem, found.seen.before["friction"], load)
-        named = [("nothing found; the axis of the largest means", most.axis, most.channel)]
+        named = [("nothing found (axis of the largest means)", most.axis, most.channel)]
     return named[:_MOST]
 
 
 def draw(found: Reloaded) -> Figure:
     """Return the figure of a joint: a row per finding, before and after the extension."""
+    with style_context():
+        return _drawn(found)
+
+
+def _drawn(found: Reloaded) -> Figure:
     shown = findings(found)
     stages = [("base model", found.seen.before)]
     if found.seen.terms:
         stages.append(("extended model", found.seen.after))
-    figure = Figure(figsize=(4.6 * len(stages), 2.7 * len(shown)), layout="constrained")
+    figure = Figure(figsize=(max(4.6 * len(stages), 6.0), 2.9 * len(shown)), layout="constrained")
     grid = figure.subplots(len(shown), len(stages), squeeze=False, sharey="row")
     for panels, (title, axis, channel) in zip(grid, shown, strict=True):
         for panel, (model, misfit) in zip(panels, stages, strict=True):
             _panel(panel, found, _COLUMNS.get(axis, axis), misfit[channel], channel)
-            panel.set_title(f"{title}: {model}" if panel is panels[0] else model, fontsize=9)
-        panels[0].set_ylabel(
-            f"{channel}: measured − simulated [{found.document.unit_of(channel)}]", fontsize=8
-        )
+            panel.set_title(f"{title}: {model}" if panel is panels[0] else model)
+        if panels[-1].get_legend_handles_labels()[1]:
+            panels[-1].legend(loc="upper left", bbox_to_anchor=(1.0, 1.0))
+        panels[0].set_ylabel(f"{channel}\nmeasured − simulated [{found.document.unit_of(channel)}]")
     return figure
 
 
@@ -89,7 +96,4 @@ def _panel(panel: Axes, found: Reloaded, axis: str, misfit: np.ndarray, channel:
             label=series.name or None,
         )
     panel.axhline(0.0, color="#555555", linewidth=0.8)
-    panel.set_xlabel(label, fontsize=8)
-    panel.tick_params(labelsize=8)
-    if panel.get_legend_handles_labels()[1]:
-        panel.legend(fontsize=7)
+    panel.set_xlabel(label)

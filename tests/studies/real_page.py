@@ -63,7 +63,7 @@ def diagnosis_sentence(document: DiagnosisDocument) -> str:
     parts = [
         f"found: {'; '.join(named)}" if named else "nothing is named",
         f"seen and not named: {'; '.join(seen)}" if seen else "",
-        f"the simulated torque misses the measured one by"
+        f"the simulated torque differs from the measured one by"
         f" {number_text(document.simulation.rmse)} {document.torque_unit} (RMS)",
     ]
     return f"{document.verdict}: {'; '.join(part for part in parts if part)}"
@@ -76,9 +76,9 @@ def joint_text(
     document = found.document
     unit = document.torque_unit
     lines = [
-        f"**Joint {document.joint}: {document.verdict}.** {_measured(rows, noun)} The"
-        " simulated torque"
-        f" misses the measured one by {number_text(document.simulation.rmse)} {unit} (RMS)."
+        f"**Joint {document.joint}: {document.verdict}.** {_measured(rows, noun)} The simulated"
+        f" torque differs from the measured one by {number_text(document.simulation.rmse)}"
+        f" {unit} (RMS)."
         f" {remainder_text(document)}".rstrip(),
         "",
         *(_bullet(cause, document) for cause in (*document.causes, *document.visible)),
@@ -100,7 +100,7 @@ def joint_text(
 
 
 def _bullet(cause: CauseRecord, document: DiagnosisDocument) -> str:
-    size = f"{size_text(cause, document)}, chance of noise alone {chance_text(cause)}"
+    size = f"{size_text(cause, document)}, p-value {chance_text(cause)}"
     if not cause.effects:
         return f"- structure without a name: {cause.claim} {size}."
     names = " or ".join(f"`{name}`" for name in cause.effects)

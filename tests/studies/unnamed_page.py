@@ -1,4 +1,4 @@
-"""The page of the study of what has no name: ``docs/unnamed.md``."""
+"""The page of the study of structure without a name: ``docs/unnamed.md``."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -9,7 +9,7 @@ PAGE = Path(__file__).parents[2] / "docs" / "unnamed.md"
 RIGHT, WITHIN, GAINED, NOTHING = 0.9, 0.2, 0.8, 0.005
 """Gates: share on the right axis, error of the size, share of the gain, gain where nothing is."""
 
-_TEXT = """# What has no name
+_TEXT = """# Structure without a name
 
 **{reached} of {gates} gates are reached.{missed}**
 
