@@ -12,11 +12,17 @@ SHARED := -n 3 --dist loadgroup --no-loadscope-reorder
 export OMP_NUM_THREADS := 1
 export OPENBLAS_NUM_THREADS := 1
 
-.PHONY: reproduce test test-all test-long lint docs dist same coverage blind comparison fleet planning wear real real-diagnoses bench fuzz fuzz-c kill soak memory clean
+.PHONY: docs/epsilon.png reproduce test test-all test-long lint docs dist same coverage blind comparison fleet planning wear real real-diagnoses bench fuzz fuzz-c kill soak memory clean
 
 reproduce: $(VENV)/installed
 	$(BIN)/frictioncli run sample_logs/kr10 -w $(RUN)
 	$(BIN)/python docs/compare_with_paper.py $(RUN)
+
+# the figure of the README and of the site, from the sample logs
+docs/epsilon.png: $(VENV)/installed
+	$(BIN)/frictioncli run sample_logs/kr10 -w $(RUN)
+	$(BIN)/frictioncli report -w $(RUN) --png
+	cp $(RUN)/report/fig11.png $@
 
 test: $(VENV)/tested
 	$(BIN)/pytest $(SHARED) -m "not slow and not long"
