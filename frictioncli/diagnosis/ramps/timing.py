@@ -24,6 +24,7 @@ References
 """
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -192,19 +193,35 @@ def responded(values: Array, period: float, *, delay: float, time_constant: floa
     >>> responded(step, 0.01, delay=0.01, time_constant=0.0).round(3) + 0.0
     array([[0., 0., 0., 1., 1., 1.]])
     """
+    samples = values.shape[1]
+    response = np.eye(samples)
     if time_constant > 1e-3 * period:
-        ratio = period / time_constant
-        memory = math.exp(-ratio)
-        past, now = (1 - memory) / ratio - memory, 1 - (1 - memory) / ratio
-        steady = (past + memory) * values[:, :1]
-        from scipy.signal import lfilter  # takes long to import
+        response = _filter_response(samples, period / time_constant)
+    if delay != 0.0:
+        time = period * np.arange(samples)
+        at = np.clip(time - delay, 0.0, time[-1])
+        response = CubicSpline(time, response)(at)
+    return np.asarray(values @ response.T)
 
-        values = lfilter([now, past], [1.0, -memory], values, axis=1, zi=steady)[0]
-    if delay == 0.0:
-        return values
-    time = period * np.arange(values.shape[1])
-    at = np.clip(time - delay, 0.0, time[-1])
-    return np.asarray(CubicSpline(time, values, axis=1)(at))
+
+def _filter_response(samples: int, ratio: float) -> Array:
+    """Return the response of a filter of first order to each sample, shape (samples, samples).
+
+    Parameters
+    ----------
+    samples : int
+        Number of samples.
+    ratio : float
+        Sampling period over the time constant. [-]
+    """
+    memory = math.exp(-ratio)
+    past, now = (1 - memory) / ratio - memory, 1 - (1 - memory) / ratio
+    response = np.eye(samples)  # at first in balance with the first sample
+    for number in range(1, samples):
+        response[number] *= now
+        response[number] += memory * response[number - 1]
+        response[number, number - 1] += past
+    return response
 
 
 def _residual(windows: StartWindows, used: Flags, point: Array) -> Array:
@@ -213,29 +230,32 @@ def _residual(windows: StartWindows, used: Flags, point: Array) -> Array:
     time_constant = math.sqrt(max(smear, 0.0))
     delay = shift - time_constant
 
-    def logged(values: Array, extra: float = 0.0) -> Array:
-        return responded(values, windows.period, delay=delay + extra, time_constant=time_constant)
+    def logged(signals: Sequence[Array], extra: float = 0.0) -> Array:
+        shape = (len(signals), *windows.torque.shape)
+        rows = np.concatenate(signals)
+        delayed = responded(rows, windows.period, delay=delay + extra, time_constant=time_constant)
+        return delayed.reshape(shape)
 
-    own = (np.ones_like(windows.torque), logged(windows.friction, late))
-    columns = [windows.torque - logged(windows.gravity)]
-    columns += [logged(values) for values in windows.inertial]
-    columns += [logged(values, late) for values in windows.frictional]
+    early = logged((windows.gravity, *windows.inertial))
+    later = logged((windows.friction, *windows.frictional), late)
     basis: list[Array] = []
-    for column in own:
+    for column in (np.ones_like(windows.torque), later[0]):
         rest = _without(column * used, basis)
         size = np.sqrt(np.sum(np.square(rest), axis=1, keepdims=True))
         basis.append(np.divide(rest, size, out=np.zeros_like(rest), where=size > _NO_COLUMN))
-    misfit, *common = (_without(column * used, basis) for column in columns)
-    stacked = np.column_stack([column.ravel() for column in common])
-    stacked /= np.maximum(np.linalg.norm(stacked, axis=0), _NO_COLUMN)
-    coefficients = np.linalg.lstsq(stacked, misfit.ravel(), rcond=1e-8)[0]
-    return np.asarray(misfit - (stacked @ coefficients).reshape(misfit.shape))
+    misfit = _without((windows.torque - early[0]) * used, basis)
+    common = _without(np.concatenate([early[1:], later[1:]]) * used, basis)
+    columns = common.reshape(len(common), -1).T
+    columns = columns / np.maximum(np.linalg.norm(columns, axis=0), _NO_COLUMN)
+    orthogonal, triangle = np.linalg.qr(columns)
+    coefficients = np.linalg.lstsq(triangle, orthogonal.T @ misfit.ravel(), rcond=1e-8)[0]
+    return np.asarray(misfit - (columns @ coefficients).reshape(misfit.shape))
 
 
 def _without(column: Array, basis: list[Array]) -> Array:
-    """Return a column less its projections on a basis, start by start."""
+    """Return columns less their projections on a basis, start by start."""
     for one in basis:
-        column = column - one * np.sum(one * column, axis=1, keepdims=True)
+        column = column - one * np.sum(one * column, axis=-1, keepdims=True)
     return column
 
 

@@ -44,14 +44,12 @@ class TimingRivals:
 
     def log_evidence(self) -> dict[str, float]:
         """Return the logarithm of the evidence of each of :data:`RIVALS`."""
-        from scipy.stats import multivariate_normal  # takes long to import
-
         step = LONGEST_FILTER / _GRID
         prior_of_delay = -math.log(DELAYS[1] - DELAYS[0])
         both = np.logaddexp.reduce(self._smear_likelihood(self._time_constants)) + math.log(step)
         filtered = np.logaddexp.reduce(self._filter_likelihood()) + math.log(step)
         return {
-            "none": float(multivariate_normal.logpdf(self.point, cov=self.covariance)),
+            "none": self._likelihood_of_neither(),
             "torque_delay": float(self._smear_likelihood(np.zeros(1))[0]) + prior_of_delay,
             "torque_filter": float(filtered) - math.log(LONGEST_FILTER),
             "both": float(both) + prior_of_delay - math.log(LONGEST_FILTER),
@@ -117,6 +115,12 @@ class TimingRivals:
         tau = self._time_constants
         found: Array = self._smear_likelihood(tau)
         return found + normal_log_density(self._delay_at(tau), self._sd)
+
+    def _likelihood_of_neither(self) -> float:
+        """Return the log likelihood of a torque that is logged with the position."""
+        distance = float(self.point @ np.linalg.solve(self.covariance, self.point))
+        determinant = float(np.linalg.slogdet(2 * math.pi * self.covariance)[1])
+        return -(distance + determinant) / 2
 
     def _smear_likelihood(self, time_constant: Array) -> Array:
         """Return the log likelihood of the smear by time constant, whatever the delay."""

@@ -4,6 +4,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
+import pandas as pd
 
 from frictioncli.arrays import Array, Flags
 from frictioncli.diagnosis.data.problem import Problem
@@ -209,12 +210,8 @@ def _goes_with_time(effect: Effect, problem: Problem) -> bool:
         return False
     table = problem.table
     known = np.column_stack([table.measured_temperature, table.clock])
-    temperature, clock = problem.layout.means(known).T
-    if not (np.ptp(temperature) > 0 and np.ptp(clock) > 0):
-        return False
-    from scipy.stats import spearmanr  # takes long to import
-
-    return abs(float(spearmanr(temperature, clock).statistic)) >= _TOGETHER
+    means = pd.DataFrame(problem.layout.means(known))
+    return abs(float(means.corr(method="spearman").iloc[0, 1])) >= _TOGETHER
 
 
 def _goes_with_run(effect: Effect, problem: Problem) -> bool:
