@@ -41,7 +41,8 @@ from frictioncli.diagnosis.search.understood import understood
 from frictioncli.diagnosis.search.verdict import verdict_of, visible_causes
 from frictioncli.diagnosis.settings import DiagnosisSettings
 from frictioncli.diagnosis.thermal.estimate import ThermalEstimate
-from frictioncli.diagnosis.thermal.refine import LAG, search_with_lag, settled
+from frictioncli.diagnosis.thermal.lag_search import search_with_lag
+from frictioncli.diagnosis.thermal.refine import LAG, settled
 from frictioncli.effects import EFFECTS
 from frictioncli.effects.base import Effect
 from frictioncli.errors import NotEnoughData

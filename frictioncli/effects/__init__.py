@@ -70,7 +70,8 @@ MEASUREMENT_EFFECTS: tuple[Effect, ...] = (
 """Effects of kind ``measurement``, in the order of reports.
 
 They stand beside the base model from the start, so that no other effect explains what they do. A
-lag of the sensor has the opposite sign of a lag of the gear, and takes nothing of it."""
+lag of the sensor has the opposite sign of a gear that follows the motor, and takes nothing of it; a
+gear that friction warms more than the motor looks much like it."""
 
 BY_NAME: Mapping[str, Effect] = MappingProxyType(
     {effect.name: effect for effect in (*EFFECTS, *MEASUREMENT_EFFECTS)}

@@ -4,8 +4,11 @@ from types import SimpleNamespace
 
 import pytest
 
-from frictioncli.diagnosis.thermal import refine
-from frictioncli.effects import EFFECTS
+from frictioncli.diagnosis.diagnose import diagnose_joint
+from frictioncli.diagnosis.settings import DiagnosisSettings
+from frictioncli.diagnosis.thermal import lag_search
+from frictioncli.effects import EFFECTS, MEASUREMENT_EFFECTS
+from tests.diagnosis.thermal_joint import Network, torques
 
 MEASURED, FIRST, SECOND = "measured temperature", "first estimate", "beside the causes"
 
@@ -29,11 +32,11 @@ def searched(monkeypatch):
             of = SECOND if accepted else FIRST
             return SimpleNamespace(problem=of, estimate=None)
 
-        monkeypatch.setattr(refine, "_is_far_off", lambda problem: True)
-        monkeypatch.setattr(refine, "_explains_most", lambda estimate: True)
-        monkeypatch.setattr(refine, "refine_thermal", estimated)
-        monkeypatch.setattr(refine, "_as_refined", lambda result, refined: result)
-        result, lag = refine.search_with_lag(
+        monkeypatch.setattr(lag_search, "_is_far_off", lambda problem: True)
+        monkeypatch.setattr(lag_search, "_explains_most", lambda estimate: True)
+        monkeypatch.setattr(lag_search, "refine_thermal", estimated)
+        monkeypatch.setattr(lag_search, "_as_refined", lambda result, refined: result)
+        result, lag = lag_search.search_with_lag(
             MEASURED, None, EFFECTS, lambda problem, effects: found(*causes[problem])
         )
         return [cause.fit.effect.name for cause in result.causes], lag.problem
@@ -54,3 +57,59 @@ def test_an_estimate_about_which_the_lag_is_impossible_is_not_taken(searched):
 
 def test_a_lag_that_is_found_alone_needs_no_second_estimate(searched):
     assert searched({FIRST: ("thermal_lag",)}) == (["thermal_lag"], FIRST)
+
+
+def test_a_gear_that_leads_the_motor_may_be_a_sensor_that_lags():
+    """Friction warms the gear more than the motor: friction is lower while heating, as with a
+    sensor that lags. The sensor takes so much of it that less than the margin is surely left.
+    """
+    joint, _ = torques(Network(motor_heat=0.2, motor_gear=20.0, gear=2500.0))
+    diagnosis = diagnose_joint(joint, "motor", "N·m", DiagnosisSettings(margin=0.4))
+    assert [cause.effects for cause in diagnosis.causes] == [("thermal_lag", "sensor_lag")]
+    assert diagnosis.verdict == "ambiguous"
+    assert diagnosis.thermal is not None
+    # noise of a bin, of a pair, and the drift
+    assert diagnosis.gain.after < 1.1 * (0.25**2 + 0.125**2 + 0.1**2 + 0.25**2) ** 0.5
+
+
+def lags(interval, *others, sensor=(0.0, 0.1)):
+    """Return a search that finds a lag of so much, and the lag of a sensor beside the base."""
+    result = found("thermal_lag", *others)
+    result.causes[0].visible_interval = interval
+    name = SimpleNamespace(effect=SimpleNamespace(name="sensor_lag"))
+    result.measurement = [SimpleNamespace(fit=name, visible_interval=sensor)]
+    return result
+
+
+@pytest.mark.parametrize(
+    ("beside", "without", "estimate", "expected"),
+    [
+        (lags((0.5, 0.7)), None, FIRST, "beside"),
+        (lags((0.1, 0.3)), lags((0.5, 0.7)), FIRST, "without"),
+        (lags((0.1, 0.3)), lags((0.15, 0.3)), FIRST, "beside"),
+        (lags((0.1, 0.3)), lags((0.5, 0.7)), None, "beside"),
+    ],
+    ids=["clear beside the sensor", "clear without it", "clear never", "no hidden temperature"],
+)
+def test_the_lag_of_a_sensor_is_left_out_only_where_it_hides_one_of_the_gear(
+    monkeypatch, beside, without, estimate, expected
+):
+    def searched(problem, new, effects, search, margin):
+        measurement = search()["measurement"]
+        if "sensor_lag" in [one.name for one in measurement]:
+            return beside, "own"
+        assert without is not None, "searched again without need"
+        return without, estimate
+
+    monkeypatch.setattr(lag_search, "_searched", searched)
+    monkeypatch.setattr(lag_search, "_lag_or_sensor", lambda cause: "the set")
+    monkeypatch.setattr(lag_search, "replace", lambda one, **changed: SimpleNamespace(**changed))
+
+    def search(measurement=MEASUREMENT_EFFECTS):
+        return {"measurement": measurement}
+
+    result, lag = lag_search.search_with_lag(MEASURED, None, EFFECTS, search, 0.2)
+    if expected == "beside":
+        assert (result, lag) == (beside, "own")
+    else:
+        assert (result.causes, lag) == (("the set",), FIRST)

@@ -18,7 +18,7 @@ from tests.studies.blind_diagnosed import (
     sizes_without_discrepancy,
 )
 from tests.studies.blind_truth import Truth, truth_of
-from tests.studies.blind_worlds import KEY, World
+from tests.studies.blind_worlds import KEY, MEASUREMENT, World
 
 NOT_PLANTED = "not planted"
 """Verdict where the programme cannot show the effect in that size."""
@@ -93,7 +93,14 @@ _GIVEN_UP = ("physically impossible", "these data determine")
 
 def _given_up(said: Said) -> set[str]:
     """Return effects of the measurement that the diagnosis did not set beside the base."""
-    return {
+    in_sets = {
+        name
+        for cause in said.diagnosis["causes"]
+        if cause["kind"] != "measurement"
+        for name in cause["effects"]
+        if name in MEASUREMENT
+    }
+    return in_sets | {
         name
         for cause in said.diagnosis.get("visible", ())
         for name in cause["effects"]

@@ -33,7 +33,7 @@ from frictioncli.diagnosis.search.rivals import rival_log_bayes_factors
 from frictioncli.diagnosis.search.search_result import SearchResult
 from frictioncli.diagnosis.search.step import Step, free_coefficients
 from frictioncli.diagnosis.settings import DiagnosisSettings
-from frictioncli.effects import BY_NAME
+from frictioncli.effects import BY_NAME, MEASUREMENT_EFFECTS
 from frictioncli.effects.base import Effect, applicable
 from frictioncli.wording import in_words
 
@@ -63,6 +63,7 @@ def find_causes(
     ramps: RampEvidence | None = None,
     discrepancy: float = SHARE,
     preparation: Preparation | None = None,
+    measurement: tuple[Effect, ...] = MEASUREMENT_EFFECTS,
 ) -> SearchResult:
     """Search the catalogue for the causes of a problem's misfit.
 
@@ -82,12 +83,14 @@ def find_causes(
         RMS of the discrepancy that is expected, relative to the mean friction; 0 for none.
     preparation : Preparation, optional
         What is known of problems that are searched more than once.
+    measurement : tuple of Effect, optional
+        Effects of the measurement that may stand beside the base.
     """
     preparation = preparation or Preparation()
-    beside = preparation.beside(problem, discrepancy)
+    beside = preparation.beside(problem, discrepancy, measurement)
     precomputed = beside.precomputed
     tried = applicable(effects, problem.table)
-    hypotheses = preparation.hypotheses(problem, tried, discrepancy)
+    hypotheses = preparation.hypotheses(problem, tried, discrepancy, measurement)
     catalogue = Catalogue.of(precomputed, hypotheses)
     search = _Search(precomputed, catalogue, settings, margin, ramps, beside.effects)
     accepted: list[EffectFit] = []

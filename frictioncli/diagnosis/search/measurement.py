@@ -66,7 +66,11 @@ class BesideBase:
     refused: tuple[Cause, ...]
 
 
-def beside_base(problem: Problem, discrepancy: float = SHARE) -> BesideBase:
+def beside_base(
+    problem: Problem,
+    discrepancy: float = SHARE,
+    measurement: Sequence[Effect] = MEASUREMENT_EFFECTS,
+) -> BesideBase:
     """Return what is computed once, with the effects of the measurement that stand beside the base.
 
     One that is physically impossible explains something else, as friction along angle and speed,
@@ -80,8 +84,10 @@ def beside_base(problem: Problem, discrepancy: float = SHARE) -> BesideBase:
         One joint's measurements and base model.
     discrepancy : float, optional
         RMS of the discrepancy that is expected, relative to the mean friction; 0 for none.
+    measurement : sequence of Effect, optional
+        Effects of the measurement that may stand there.
     """
-    beside = applicable(MEASUREMENT_EFFECTS, problem.table)
+    beside = applicable(measurement, problem.table)
     if problem.has_load_channel:
         # what a log does to its torque does not show in a load that it measures apart
         beside = tuple(one for one in beside if one.channel == "friction")

@@ -6,6 +6,7 @@ from frictioncli.diagnosis.data.problem import Problem
 from frictioncli.diagnosis.fit.hypotheses import Hypothesis, hypothesis_of
 from frictioncli.diagnosis.noise.discrepancy import SHARE
 from frictioncli.diagnosis.search.measurement import BesideBase, beside_base
+from frictioncli.effects import MEASUREMENT_EFFECTS
 from frictioncli.effects.base import Effect
 
 _AT_ONCE = 2
@@ -18,6 +19,7 @@ class _Prepared:
 
     problem: Problem
     discrepancy: float
+    measurement: tuple[Effect, ...]
     beside: BesideBase
     hypotheses: dict[int, tuple[Effect, Hypothesis]]
 
@@ -31,7 +33,12 @@ class Preparation:
     def __init__(self) -> None:
         self._known: list[_Prepared] = []
 
-    def beside(self, problem: Problem, discrepancy: float = SHARE) -> BesideBase:
+    def beside(
+        self,
+        problem: Problem,
+        discrepancy: float = SHARE,
+        measurement: tuple[Effect, ...] = MEASUREMENT_EFFECTS,
+    ) -> BesideBase:
         """Return what stands beside the base, as :func:`beside_base` does.
 
         Parameters
@@ -40,11 +47,17 @@ class Preparation:
             One joint's measurements and base model.
         discrepancy : float, optional
             RMS of the discrepancy that is expected, relative to the mean friction.
+        measurement : tuple of Effect, optional
+            Effects of the measurement that may stand there.
         """
-        return self._of(problem, discrepancy).beside
+        return self._of(problem, discrepancy, measurement).beside
 
     def hypotheses(
-        self, problem: Problem, effects: tuple[Effect, ...], discrepancy: float = SHARE
+        self,
+        problem: Problem,
+        effects: tuple[Effect, ...],
+        discrepancy: float = SHARE,
+        measurement: tuple[Effect, ...] = MEASUREMENT_EFFECTS,
     ) -> list[Hypothesis]:
         """Return effects as hypotheses over their shapes.
 
@@ -54,20 +67,23 @@ class Preparation:
             One joint's measurements and base model.
         effects : tuple of Effect
             Effects that can be tested there.
-        discrepancy : float, optional
+        discrepancy, measurement : float and tuple of Effect, optional
             As of :meth:`beside`.
         """
-        known = self._of(problem, discrepancy).hypotheses
+        known = self._of(problem, discrepancy, measurement).hypotheses
         for effect in effects:
             if id(effect) not in known:
                 known[id(effect)] = effect, hypothesis_of(effect, problem)
         return [known[id(effect)][1] for effect in effects]
 
-    def _of(self, problem: Problem, discrepancy: float) -> _Prepared:
+    def _of(
+        self, problem: Problem, discrepancy: float, measurement: tuple[Effect, ...]
+    ) -> _Prepared:
         alike = [
             one
             for one in self._known
-            if one.discrepancy == discrepancy and _same_but_for_delay(one.problem, problem)
+            if (one.discrepancy, one.measurement) == (discrepancy, measurement)
+            and _same_but_for_delay(one.problem, problem)
         ]
         for one in alike:
             if one.problem is problem:
@@ -78,8 +94,8 @@ class Preparation:
             own = replace(before.precomputed, problem=problem)
             beside = replace(before, precomputed=own)
         else:
-            beside = beside_base(problem, discrepancy)
-        found = _Prepared(problem, discrepancy, beside, {})
+            beside = beside_base(problem, discrepancy, measurement)
+        found = _Prepared(problem, discrepancy, measurement, beside, {})
         others = [one for one in self._known if one not in alike]
         self._known = [*others[1 - _AT_ONCE :], found]
         return found

@@ -10,8 +10,7 @@ from frictioncli.diagnosis.data.build_problem import at_temperature
 from frictioncli.diagnosis.data.problem import Problem
 from frictioncli.diagnosis.fit.extension import Extension
 from frictioncli.diagnosis.fit.hypotheses import EffectFit
-from frictioncli.diagnosis.search.search_result import SearchResult
-from frictioncli.diagnosis.thermal.estimate import MEASURED, ThermalEstimate, estimate_temperature
+from frictioncli.diagnosis.thermal.estimate import ThermalEstimate, estimate_temperature
 from frictioncli.effects.base import (
     Basis,
     Effect,
@@ -27,9 +26,6 @@ LAG = EFFECT.name
 _ROUNDS = 2
 """Estimates in turn with the columns of other effects, which depend on the temperature."""
 
-_MOST = 0.7
-"""A hidden temperature that leaves less than this share of the RMS misfit explains most of it."""
-
 _MOST_STEPS = 6
 """Greatest number of Gauss-Newton steps."""
 
@@ -38,11 +34,6 @@ _SETTLED = 1e-6
 
 _LEAST_ERROR = 1e-9
 """Least standard error that counts."""
-
-
-_FAR_OFF = 0.02
-"""Least RMS misfit of pair means, relative to the mean friction, of a lag that would look like
-other effects as well."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -101,99 +92,6 @@ def refine_thermal(
         estimate=estimate,
         fit=lag_fit(estimate),
     )
-
-
-def search_with_lag(
-    problem: Problem,
-    new: Problem | None,
-    effects: Sequence[Effect],
-    search: Callable[[Problem, Sequence[Effect]], SearchResult],
-    margin: float = 0.0,
-) -> tuple[SearchResult, RefinedLag | None]:
-    """Search for causes; where a lag of the gear is one, about the temperature of the gear.
-
-    Where a hidden temperature explains most of the misfit, friction is linear about it from the
-    start: about the measured one, a lag of many degrees would look like other effects as well. Else
-    it is estimated beside the causes once the lag is one of them, and the search repeated. Where
-    the measured temperature then explains friction as well, the lag is left out; where a lag
-    was found about the first temperature and none about the second, the first one stays.
-
-    Parameters
-    ----------
-    problem : Problem
-        The rows, linear about the measured temperature.
-    new : Problem or None
-        Rows of the hold-out run.
-    effects : sequence of Effect
-        The catalogue.
-    search : callable
-        Searches a problem for causes among some effects.
-    margin : float, optional
-        Smallest size worth a name: a lag that may be smaller is left linear. [N·m]
-
-    Returns
-    -------
-    SearchResult, RefinedLag or None
-        The causes, and the lag where it is one of them.
-    """
-    if LAG not in {one.name for one in effects}:
-        return search(problem, effects), None
-    first = refine_thermal(problem, new) if _is_far_off(problem) else None
-    if first is not None and _explains_most(first.estimate):
-        found = search(first.problem, effects)
-        if _has_lag(found) and len(found.causes) == 1:
-            return _as_refined(found, first), first
-        if not _has_lag(found):
-            first, found = None, search(problem, effects)
-    else:
-        first = None
-        found = search(problem, effects)
-    if not _has_lag(found) or _left_of_lag(found) <= margin:
-        return found, None
-    refined = refine_thermal(problem, new, [cause.fit for cause in found.causes])
-    if refined is not None:
-        again = search(refined.problem, effects)
-        if _has_lag(again):
-            return _as_refined(again, refined), refined
-        if first is not None:
-            # estimated beside a cause that looks like it, the temperature may be far off
-            return _as_refined(found, first), first
-    without = search(problem, [one for one in effects if one.name != LAG])
-    dropped = without.dropped | {LAG: "the measured temperature explains friction as well"}
-    return replace(without, dropped=dropped), None
-
-
-def _is_far_off(problem: Problem) -> bool:
-    """Return whether the base model misses the means of pairs by so much that a lag is large."""
-    means = problem.layout.means(problem.friction_misfit[:, np.newaxis])
-    missed = float(np.sqrt(np.mean(np.square(means - np.mean(means)))))
-    return missed > _FAR_OFF * float(np.mean(np.abs(problem.friction)))
-
-
-def _explains_most(estimate: ThermalEstimate) -> bool:
-    """Return whether a hidden temperature explains most of the misfit of the pair means."""
-    measured = next(one for one in estimate.rivals if one.structure is MEASURED)
-    return estimate.chosen.left < _MOST * measured.left
-
-
-def _has_lag(found: SearchResult) -> bool:
-    return any(cause.fit.effect.name == LAG for cause in found.causes)
-
-
-def _left_of_lag(found: SearchResult) -> float:
-    """Return the lower bound of what the base leaves of the lag [N·m]."""
-    return next(cause.visible_interval[0] for cause in found.causes if cause.fit.effect.name == LAG)
-
-
-def _as_refined(found: SearchResult, refined: RefinedLag) -> SearchResult:
-    """Return a result whose lag has the parts of the network that were found."""
-    causes = [
-        replace(cause, fit=replace(refined.fit, statistic=cause.fit.statistic))
-        if cause.fit.effect.name == LAG
-        else cause
-        for cause in found.causes
-    ]
-    return replace(found, causes=tuple(causes))
 
 
 def lag_fit(estimate: ThermalEstimate) -> EffectFit:

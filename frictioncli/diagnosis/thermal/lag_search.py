@@ -1,0 +1,165 @@
+"""The search for causes where a lag of the gear may be one of them."""
+
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+from functools import partial
+
+import numpy as np
+
+from frictioncli.diagnosis.data.problem import Problem
+from frictioncli.diagnosis.search.cause import Cause
+from frictioncli.diagnosis.search.search_result import SearchResult
+from frictioncli.diagnosis.thermal.estimate import MEASURED, ThermalEstimate
+from frictioncli.diagnosis.thermal.refine import LAG, RefinedLag, refine_thermal
+from frictioncli.effects import MEASUREMENT_EFFECTS
+from frictioncli.effects.base import Effect
+from frictioncli.effects.sensor_lag import EFFECT as SENSOR_LAG
+
+_WITHOUT_SENSOR = tuple(one for one in MEASUREMENT_EFFECTS if one is not SENSOR_LAG)
+"""What stands beside the base where the lag of a sensor is left out."""
+
+_FAR_OFF = 0.02
+"""Least RMS misfit of pair means, relative to the mean friction, of a lag that would look like
+other effects as well."""
+
+_MOST = 0.7
+"""A hidden temperature that leaves less than this share of the RMS misfit explains most of it."""
+
+
+def search_with_lag(
+    problem: Problem,
+    new: Problem | None,
+    effects: Sequence[Effect],
+    search: Callable[..., SearchResult],
+    margin: float = 0.0,
+) -> tuple[SearchResult, RefinedLag | None]:
+    """Search for causes; where a lag of the gear is one, about the temperature of the gear.
+
+    A gear that friction warms more than the motor looks much like a sensor that lags: either has
+    friction lower while heating. Where the lag of a sensor leaves less of it than is worth a name,
+    or may be one itself, the search is repeated without it, and a lag of the gear that is then
+    large enough is one of the two.
+
+    Parameters
+    ----------
+    problem : Problem
+        The rows, linear about the measured temperature.
+    new : Problem or None
+        Rows of the hold-out run.
+    effects : sequence of Effect
+        The catalogue.
+    search : callable
+        Searches a problem for causes among some effects, beside a base with those effects of the
+        measurement that ``measurement`` names, all by default.
+    margin : float, optional
+        Smallest size worth a name: a lag that may be smaller is left linear. [N·m]
+
+    Returns
+    -------
+    SearchResult, RefinedLag or None
+        The causes, and the lag where it is one of them.
+    """
+    found, lag = _searched(problem, new, effects, search, margin)
+    if not _sensor_may_hide_lag(found, margin):
+        return found, lag
+    without = partial(search, measurement=_WITHOUT_SENSOR)
+    again, refined = _searched(problem, new, effects, without, margin)
+    if refined is None or _left_of_lag(again) <= margin:
+        return found, lag
+    causes = (_lag_or_sensor(one) if _is_lag(one) else one for one in again.causes)
+    return replace(again, causes=tuple(causes)), refined
+
+
+def _sensor_may_hide_lag(found: SearchResult, margin: float) -> bool:
+    """Return whether the lag of a sensor may have taken what a lag of the gear does."""
+    if any(_is_lag(cause) for cause in found.causes):
+        return _left_of_lag(found) <= margin
+    return any(
+        one.fit.effect.name == SENSOR_LAG.name and one.visible_interval[0] > margin
+        for one in found.measurement
+    )
+
+
+def _lag_or_sensor(cause: Cause) -> Cause:
+    """Return a lag of the gear that may as well be one of the sensor."""
+    names = (LAG, SENSOR_LAG.name)
+    return replace(cause, effects=names, probabilities=dict.fromkeys(names, 1 / len(names)))
+
+
+def _searched(
+    problem: Problem,
+    new: Problem | None,
+    effects: Sequence[Effect],
+    search: Callable[[Problem, Sequence[Effect]], SearchResult],
+    margin: float,
+) -> tuple[SearchResult, RefinedLag | None]:
+    """Search for causes; where a lag of the gear is one, about the temperature of the gear.
+
+    Where a hidden temperature explains most of the misfit, friction is linear about it from the
+    start: about the measured one, a lag of many degrees would look like other effects as well. Else
+    it is estimated beside the causes once the lag is one of them, and the search repeated. Where
+    the measured temperature then explains friction as well, the lag is left out; where a lag
+    was found about the first temperature and none about the second, the first one stays.
+    """
+    if LAG not in {one.name for one in effects}:
+        return search(problem, effects), None
+    first = refine_thermal(problem, new) if _is_far_off(problem) else None
+    if first is not None and _explains_most(first.estimate):
+        found = search(first.problem, effects)
+        if _has_lag(found) and len(found.causes) == 1:
+            return _as_refined(found, first), first
+        if not _has_lag(found):
+            first, found = None, search(problem, effects)
+    else:
+        first = None
+        found = search(problem, effects)
+    if not _has_lag(found) or _left_of_lag(found) <= margin:
+        return found, None
+    refined = refine_thermal(problem, new, [cause.fit for cause in found.causes])
+    if refined is not None:
+        again = search(refined.problem, effects)
+        if _has_lag(again):
+            return _as_refined(again, refined), refined
+        if first is not None:
+            # estimated beside a cause that looks like it, the temperature may be far off
+            return _as_refined(found, first), first
+    without = search(problem, [one for one in effects if one.name != LAG])
+    dropped = without.dropped | {LAG: "the measured temperature explains friction as well"}
+    return replace(without, dropped=dropped), None
+
+
+def _is_far_off(problem: Problem) -> bool:
+    """Return whether the base model misses the means of pairs by so much that a lag is large."""
+    means = problem.layout.means(problem.friction_misfit[:, np.newaxis])
+    missed = float(np.sqrt(np.mean(np.square(means - np.mean(means)))))
+    return missed > _FAR_OFF * float(np.mean(np.abs(problem.friction)))
+
+
+def _explains_most(estimate: ThermalEstimate) -> bool:
+    """Return whether a hidden temperature explains most of the misfit of the pair means."""
+    measured = next(one for one in estimate.rivals if one.structure is MEASURED)
+    return estimate.chosen.left < _MOST * measured.left
+
+
+def _has_lag(found: SearchResult) -> bool:
+    return any(_is_lag(cause) for cause in found.causes)
+
+
+def _is_lag(cause: Cause) -> bool:
+    return cause.fit.effect.name == LAG
+
+
+def _left_of_lag(found: SearchResult) -> float:
+    """Return the lower bound of what the base leaves of the lag [N·m]."""
+    return next(cause.visible_interval[0] for cause in found.causes if _is_lag(cause))
+
+
+def _as_refined(found: SearchResult, refined: RefinedLag) -> SearchResult:
+    """Return a result whose lag has the parts of the network that were found."""
+    causes = [
+        replace(cause, fit=replace(refined.fit, statistic=cause.fit.statistic))
+        if _is_lag(cause)
+        else cause
+        for cause in found.causes
+    ]
+    return replace(found, causes=tuple(causes))
