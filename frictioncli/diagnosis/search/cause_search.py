@@ -192,7 +192,9 @@ class _Search:
         return self._known[key]
 
     def _tested(self, step: Step) -> tuple[Step, dict[str, HypothesisTest]]:
-        tests = step.tested(self.catalogue, skip=_names(step.accepted))
+        skip = _names(step.accepted)
+        least = {one.name: self._least(BY_NAME[one.name]) for one in self.catalogue.hypotheses}
+        tests = step.tested(self.catalogue, skip, least=least)
         factors = with_ramp_evidence(
             {name: one.log_bayes_factor for name, one in tests.items()}, self.ramps
         )
@@ -204,7 +206,12 @@ class _Search:
         """Return whether the base leaves enough of an effect for the search to go on with it."""
         effect = BY_NAME[test.name]
         size, _, _ = left_size(step.precomputed, test.effect_fit(effect))
-        return size > _LEAST_SHARE * channel_margin(step.problem, effect.channel, self.margin)
+        return size > self._least(effect)
+
+    def _least(self, effect: Effect) -> float:
+        """Return the least size with which the search goes on, in the channel of an effect."""
+        problem = self.precomputed.problem
+        return _LEAST_SHARE * channel_margin(problem, effect.channel, self.margin)
 
     def impossible(self, accepted: Sequence[EffectFit]) -> str:
         """Return why the last of some effects is impossible: the data ask for more than bounds.

@@ -1,6 +1,6 @@
 """Tests of hypotheses against a null hypothesis whose variance components are given."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -63,6 +63,27 @@ def screened(
         np.where(free[:, :, np.newaxis] & free[:, np.newaxis, :], inner, 0.0)
     )
     return Screened(coefficients, gain, free, covariance, inner, whole)
+
+
+def of_size(found: Screened, rms: Array, least: float) -> Screened:
+    """Return a hypothesis without those of its shapes that come out too small to matter.
+
+    A small torque that no smooth error resembles, as a fine ripple, may explain more than a large
+    one that the discrepancy can follow, and would hide it. All shapes stay where none is larger.
+
+    Parameters
+    ----------
+    found : Screened
+        The hypothesis at each of its shapes.
+    rms : ndarray, shape (shapes, width)
+        RMS of each column. [N·m per unit of the coefficient]
+    least : float
+        Least RMS torque that matters. [N·m]
+    """
+    small = np.linalg.norm(found.coefficients * rms, axis=1) < least
+    if small.all():
+        return found
+    return replace(found, gain=np.where(small, 0.0, found.gain))
 
 
 def test_of(

@@ -1,7 +1,8 @@
 """One step of the search: every hypothesis tested against base and accepted effects."""
 
-from collections.abc import Collection, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from types import MappingProxyType
 
 import numpy as np
 
@@ -27,7 +28,7 @@ from frictioncli.diagnosis.fit.weighted_fit import WeightedFit, Weights
 from frictioncli.diagnosis.noise.spectra import STRENGTHS
 from frictioncli.diagnosis.search.catalogue import Catalogue
 from frictioncli.diagnosis.search.precomputed import Precomputed
-from frictioncli.diagnosis.search.screening import screened, test_of
+from frictioncli.diagnosis.search.screening import Screened, of_size, screened, test_of
 from frictioncli.effects.base import Effect
 from frictioncli.effects.history import since_start
 from frictioncli.effects.history_search import refined_history
@@ -103,7 +104,11 @@ class Step:
         return self.columns.count - 1
 
     def tested(
-        self, catalogue: Catalogue, skip: Collection[str] = (), refitted: int = REFITTED
+        self,
+        catalogue: Catalogue,
+        skip: Collection[str] = (),
+        refitted: int = REFITTED,
+        least: Mapping[str, float] = MappingProxyType({}),
     ) -> dict[str, HypothesisTest]:
         """Return the test of every hypothesis against the null hypothesis, by name.
 
@@ -118,11 +123,19 @@ class Step:
             Names of hypotheses to leave out.
         refitted : int, optional
             Number of those with which the variance components are estimated anew.
+        least : mapping of str to float, optional
+            Least RMS torque that matters, by the name of the hypothesis. [N·m]
         """
+
+        def under(number: int, null: MixedFit) -> Screened:
+            one = catalogue.hypotheses[number]
+            found = screened(catalogue, number, self.columns, null)
+            return of_size(found, one.rms, least.get(one.name, 0.0))
+
         everything = [i for i, one in enumerate(catalogue.hypotheses) if one.name not in skip]
-        found = {i: screened(catalogue, i, self.columns, self.fit) for i in everything}
+        found = {i: under(i, self.fit) for i in everything}
         quiet = evaluate(self.components, self.products, self.known, self.precomputed.start)
-        first = {i: screened(catalogue, i, self.columns, quiet) for i in everything}
+        first = {i: under(i, quiet) for i in everything}
         tests = {}
         chosen = set()
         for ranked in (found, first):
@@ -140,7 +153,7 @@ class Step:
                     again = min(again, other, key=lambda one: one.objective)
                 null = evaluate(self.components, self.products, self.known, again.variances)
                 offset = min(self.fit.objective - null.objective, 0.0)
-                best_fit = screened(catalogue, number, self.columns, null)
+                best_fit = under(number, null)
                 variances = again.variances
             if float(best_fit.gain.max(initial=0.0)) + offset < float(
                 found[number].gain.max(initial=0.0)
