@@ -23,21 +23,16 @@ from frictioncli.diagnosis.ramps.settling import Settling, settled_problems
 from frictioncli.diagnosis.ramps.timing_rivals import TimingRivals
 from frictioncli.diagnosis.search.cause import Cause
 from frictioncli.diagnosis.search.cause_search import find_causes
-from frictioncli.diagnosis.search.cause_selection import (
-    judged_together,
-    refuted_by_new_run,
-    uncertain_causes,
-)
+from frictioncli.diagnosis.search.cause_selection import refuted_by_new_run
 from frictioncli.diagnosis.search.lack_of_fit import Structure
 from frictioncli.diagnosis.search.margin import channel_margin, margin_of
 from frictioncli.diagnosis.search.measurement import beside_the_rest, corrected_without_name
+from frictioncli.diagnosis.search.named_causes import Judging, named_causes
 from frictioncli.diagnosis.search.new_run_changes import changes_on_new_run, with_effect
 from frictioncli.diagnosis.search.new_run_misfit import NewRunMisfit
 from frictioncli.diagnosis.search.preparation import Preparation
 from frictioncli.diagnosis.search.search_result import SearchResult, given_up_causes
-from frictioncli.diagnosis.search.standing import with_standing
-from frictioncli.diagnosis.search.timing_causes import DELAY, judged_by_timing, late_torque
-from frictioncli.diagnosis.search.understood import understood
+from frictioncli.diagnosis.search.timing_causes import late_torque
 from frictioncli.diagnosis.search.verdict import verdict_of, visible_causes
 from frictioncli.diagnosis.settings import DiagnosisSettings
 from frictioncli.diagnosis.thermal.estimate import ThermalEstimate
@@ -49,8 +44,6 @@ from frictioncli.errors import NotEnoughData
 
 LEAST_PAIRS = 12
 """With fewer pairs noise cannot be distinguished from structure."""
-
-_UNCERTAIN = "its coefficient in the extended model may be zero"
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -189,44 +182,37 @@ def diagnose_joint(
         tried = [one for one in effects if one.name not in {no.fit.effect.name for no in refuted}]
         found, lag = search_with_lag(base, base_new, tried, search, margin)
         problem, new = (base, base_new) if lag is None else (lag.problem, lag.new)
-        judged = with_standing((*found.measurement, *found.causes), problem, margin, settings.alpha)
-        judged, timing = judged_by_timing(judged, rows.timing)
-        named = [cause for cause in judged if cause.standing == "named"]
-        named = list(judged_together(named, found.step, problem, new))
+        judging = Judging(
+            problem=problem,
+            new=new,
+            measured=(base, base_new),
+            preparation=known,
+            starts=rows.timing,
+            margin=margin,
+            alpha=settings.alpha,
+        )
+        judged = judging.judged(found)
         if new is None:
             break
-        worse = refuted_by_new_run(named, found.step, new)
+        worse = refuted_by_new_run(judged.named, found.step, new)
         if not worse:
             break
         refuted += worse
-    weighted_fit = found.step.predicting_fit()
-    causes, unnamed = understood(found.step, named, margin, settings.alpha)
-    uncertain = uncertain_causes(causes, problem, weighted_fit)
-    if timing is not None:
-        # what the starts of moves tell of the delay counts, too
-        uncertain -= {DELAY}
-    judged = tuple(
-        replace(one, standing="undetermined", reason=_UNCERTAIN)
-        if one.fit.effect.name in uncertain
-        else one
-        for one in judged
-    )
-    named = [one for one in named if one.fit.effect.name not in uncertain]
-    causes = tuple(one for one in causes if one.fit.effect.name not in uncertain)
-    given_up = given_up_causes(found, settings.alpha)
-    corrected = corrected_without_name(judged, causes, problem)
+    named = named_causes(judging, judged)
+    causes, step = named.causes, named.step
+    corrected = corrected_without_name(named.others, causes, problem)
     names = {one.fit.effect.name for one in corrected}
-    rest = [one for one in judged if one.fit.effect.name not in names]
-    visible = visible_causes(
-        (*rest, *corrected, *given_up, *refuted, *found.refused), named, causes, unnamed, problem
-    )
+    rest = [one for one in named.others if one.fit.effect.name not in names]
+    given_up = given_up_causes(found, settings.alpha)
+    visible = visible_causes((*rest, *corrected, *given_up, *refuted, *found.refused), problem)
     extension = gain = None
     if lag is not None and not any(cause.fit.effect.name == LAG for cause in causes):
         # what is not named does not move the temperature of the extended model
         problem, new, lag = base, base_new, None
+    weighted_fit = step.predicting_fit()
     if causes:
         fits = [cause.fit for cause in (*causes, *corrected)]
-        weighted_fit = beside_the_rest(problem, weighted_fit, found.measurement, fits)
+        weighted_fit = beside_the_rest(problem, weighted_fit, named.measurement, fits)
         extension = extend(problem, weighted_fit, fits)
         if lag is not None:
             lag, extension = settled(
@@ -238,7 +224,7 @@ def diagnose_joint(
         before = extension or extend(problem, weighted_fit, [])
         predicted, floor = predicting(before, causes), _floor(found)
         appeared = changes_on_new_run(
-            NewRunMisfit.of(problem, new, predicted, weighted_fit, found.step.noise()),
+            NewRunMisfit.of(problem, new, predicted, weighted_fit, step.noise()),
             [one for one in effects if one not in [cause.fit.effect for cause in causes]],
             floor=floor,
             margin=margin,
@@ -258,7 +244,7 @@ def diagnose_joint(
         )
     beside = extension or extend(problem, weighted_fit, [])
     empirical = empirical_term(
-        found.step,
+        step,
         (problem, beside),
         (new, lambda one: predicting(one, causes)) if new else None,
         margin=margin,
@@ -268,10 +254,10 @@ def diagnose_joint(
     return Diagnosis(
         joint=joint,
         torque_unit=torque_unit,
-        verdict=verdict_of(causes, unnamed),
+        verdict=verdict_of(causes, named.structure),
         causes=causes,
         visible=visible,
-        structure=unnamed,
+        structure=named.structure,
         gain=gain,
         corrected=corrected,
         extension=extension,
@@ -288,7 +274,7 @@ def diagnose_joint(
         held_out=held_out,
         ramps=evidence,
         thermal=None if lag is None else lag.estimate,
-        timing=timing,
+        timing=named.timing,
         settling=rows.settling,
         empirical=empirical,
     )

@@ -1,7 +1,6 @@
 """The verdict on a joint, and what was found and is not named."""
 
 from collections.abc import Sequence
-from dataclasses import replace
 
 from frictioncli.diagnosis.data.problem import Problem
 from frictioncli.diagnosis.search.cause import Cause
@@ -10,36 +9,19 @@ from frictioncli.diagnosis.search.margin import strength
 from frictioncli.diagnosis.search.measurement import CLEAR
 
 
-def visible_causes(
-    judged: Sequence[Cause],
-    named: Sequence[Cause],
-    causes: Sequence[Cause],
-    unnamed: Structure | None,
-    problem: Problem,
-) -> tuple[Cause, ...]:
+def visible_causes(unnamed: Sequence[Cause], problem: Problem) -> tuple[Cause, ...]:
     """Return what was found and is not named, with the reason, largest first.
+
+    An effect of the measurement that nothing speaks for is not worth a line.
 
     Parameters
     ----------
-    judged : sequence of Cause
-        All that was found, with its standing.
-    named, causes : sequence of Cause
-        Those that were named before the structure was known, and those that are named beside it.
-    unnamed : Structure or None
-        Structure without a name.
+    unnamed : sequence of Cause
+        What was found and is not named.
     problem : Problem
         The joint's rows.
     """
-    left = [cause for cause in judged if cause.standing != "named"]
-    # an effect of the measurement that nothing speaks for is not worth a line
-    left = [one for one in left if not one.fit.effect.measurement or one.test.p_value < CLEAR]
-    for cause in named:
-        if any(cause is other for other in causes):
-            continue
-        if cause.standing == "named" and unnamed is not None:
-            reason = f"structure along {unnamed.axis} remains that no effect explains"
-            cause = replace(cause, standing="visible", reason=reason)
-        left.append(cause)
+    left = [one for one in unnamed if not one.fit.effect.measurement or one.test.p_value < CLEAR]
 
     def share(cause: Cause) -> float:
         return strength(problem, cause.fit.effect.channel, cause.visible)

@@ -1,0 +1,224 @@
+"""From what a search found to the causes that are named, and what stands beside them.
+
+What the search accepted and nobody names extends no model. It must not take from the measurement
+what corrects the log, nor from the noise what the model leaves: both are judged anew beside the
+named causes alone, until all that stands there has a name.
+"""
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, replace
+
+from frictioncli.diagnosis.data.problem import Problem
+from frictioncli.diagnosis.ramps.timing import TorqueTiming
+from frictioncli.diagnosis.ramps.timing_rivals import TimingRivals
+from frictioncli.diagnosis.search.cause import Cause
+from frictioncli.diagnosis.search.cause_selection import judged_together, uncertain_causes
+from frictioncli.diagnosis.search.lack_of_fit import Structure
+from frictioncli.diagnosis.search.measurement import measurement_causes
+from frictioncli.diagnosis.search.preparation import Preparation
+from frictioncli.diagnosis.search.search_result import SearchResult
+from frictioncli.diagnosis.search.standing import with_standing
+from frictioncli.diagnosis.search.step import Step
+from frictioncli.diagnosis.search.timing_causes import DELAY, judged_by_timing
+from frictioncli.diagnosis.search.understood import understood
+from frictioncli.effects.thermal_lag import EFFECT as THERMAL_LAG
+
+_UNCERTAIN = "its coefficient in the extended model may be zero"
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class JudgedCauses:
+    """What a search found, judged by the rows seen and by a run that was held out.
+
+    Attributes
+    ----------
+    found : SearchResult
+        What the search found.
+    causes : tuple of Cause
+        Everything, with its standing.
+    timing : TimingRivals or None
+        By how much the torque is late, and whether by a delay or a filter.
+    """
+
+    found: SearchResult
+    causes: tuple[Cause, ...]
+    timing: TimingRivals | None
+
+    @property
+    def named(self) -> tuple[Cause, ...]:
+        """What has a name."""
+        return tuple(one for one in self.causes if one.standing == "named")
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Judging:
+    """Rows and demands by which causes are judged.
+
+    Attributes
+    ----------
+    problem, new : Problem, Problem or None
+        The rows seen, and those of a run that was held out.
+    measured : (Problem, Problem or None)
+        The same about the measured temperature, where a lag of the gear has moved it.
+    preparation : Preparation
+        What is known of these problems.
+    starts : TorqueTiming or None
+        Delay and filter by the starts of moves.
+    margin : float
+        Smallest size worth a name. [N·m]
+    alpha : float
+        Significance level.
+    """
+
+    problem: Problem
+    new: Problem | None
+    measured: tuple[Problem, Problem | None]
+    preparation: Preparation
+    starts: TorqueTiming | None
+    margin: float
+    alpha: float
+
+    def judged(self, found: SearchResult) -> JudgedCauses:
+        """Return what a search found with its standing.
+
+        Parameters
+        ----------
+        found : SearchResult
+            What the search found.
+        """
+        first = with_standing(
+            (*found.measurement, *found.causes), self.problem, self.margin, self.alpha
+        )
+        causes, timing = judged_by_timing(first, self.starts)
+        named = [cause for cause in causes if cause.standing == "named"]
+        held = judged_together(named, found.step, self.problem, self.new)
+        return JudgedCauses(found=found, causes=_with(causes, held), timing=timing)
+
+    def without_lag(self) -> "Judging":
+        """Return the same about the measured temperature."""
+        problem, new = self.measured
+        return replace(self, problem=problem, new=new)
+
+    def without_uncertain(self, judged: JudgedCauses) -> JudgedCauses:
+        """Return causes of which none has a name whose coefficient may be zero.
+
+        Parameters
+        ----------
+        judged : JudgedCauses
+            Causes with their standing.
+        """
+        weighted_fit = judged.found.step.predicting_fit()
+        uncertain = uncertain_causes(judged.named, self.problem, weighted_fit)
+        if judged.timing is not None:
+            # what the starts of moves tell of the delay counts, too
+            uncertain -= {DELAY}
+        return _unnamed(judged, uncertain, "undetermined", _UNCERTAIN)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class NamedCauses:
+    """The causes of a joint that are named, and what stands beside them.
+
+    Attributes
+    ----------
+    causes : tuple of Cause
+        The causes, effects of the measurement first.
+    others : tuple of Cause
+        What was found and is not named, with the reason.
+    structure : Structure or None
+        Structure without a name.
+    measurement : tuple of Cause
+        Effects of the measurement, as they are estimated beside these causes.
+    timing : TimingRivals or None
+        By how much the torque is late, and whether by a delay or a filter.
+    step : Step
+        Base and these causes, with the noise that suits them best.
+    """
+
+    causes: tuple[Cause, ...]
+    others: tuple[Cause, ...]
+    structure: Structure | None
+    measurement: tuple[Cause, ...]
+    timing: TimingRivals | None
+    step: Step
+
+
+def named_causes(judging: Judging, first: JudgedCauses) -> NamedCauses:
+    """Return the causes that are named, and all that stands beside them alone.
+
+    Parameters
+    ----------
+    judging : Judging
+        Rows and demands.
+    first : JudgedCauses
+        What the search found, judged.
+    """
+    step = first.found.step
+    kept, structure = understood(step, first.named, judging.margin, judging.alpha)
+    judged = first
+    if structure is not None:
+        lost = _names(first.named) - _names(kept)
+        reason = f"structure along {structure.axis} remains that no effect explains"
+        judged = _unnamed(first, lost, "visible", reason)
+    judged = judging.without_uncertain(judged)
+    lost_on_the_way: tuple[Cause, ...] = ()
+    while not _all_named(judged):
+        unnamed = [one for one in judged.causes if one.standing != "named"]
+        lost_on_the_way += tuple(one for one in unnamed if not one.fit.effect.measurement)
+        if THERMAL_LAG.name not in _names(judged.named):
+            judging = judging.without_lag()
+        judged = judging.without_uncertain(judging.judged(_beside_named(judging, judged)))
+    others = [one for one in judged.causes if one.standing != "named"]
+    return NamedCauses(
+        causes=judged.named,
+        others=(*others, *lost_on_the_way),
+        structure=structure,
+        measurement=judged.found.measurement,
+        timing=judged.timing,
+        step=judged.found.step,
+    )
+
+
+def _all_named(judged: JudgedCauses) -> bool:
+    """Return whether all that stands beside the base is named, or of the measurement."""
+    accepted = judged.found.step.accepted
+    return {one.effect.name for one in accepted} <= _names(judged.named)
+
+
+def _beside_named(judging: Judging, judged: JudgedCauses) -> SearchResult:
+    """Return what was found as it is beside the named causes alone."""
+    found, names = judged.found, _names(judged.named)
+    accepted = [one for one in found.step.accepted if one.effect.name in names]
+    precomputed = found.step.precomputed
+    if found.step.problem is not judging.problem:
+        precomputed = judging.preparation.beside(judging.problem).precomputed
+    step = Step.of(precomputed, accepted)
+    effects = [one.fit.effect for one in found.measurement]
+    return replace(
+        found,
+        causes=tuple(one for one in judged.named if not one.fit.effect.measurement),
+        measurement=measurement_causes(step, effects),
+        step=step,
+    )
+
+
+def _unnamed(
+    judged: JudgedCauses, names: Iterable[str], standing: str, reason: str
+) -> JudgedCauses:
+    """Return causes of which some have lost their name."""
+    lost = frozenset(names)
+    causes = tuple(
+        replace(one, standing=standing, reason=reason) if one.fit.effect.name in lost else one
+        for one in judged.causes
+    )
+    return replace(judged, causes=causes)
+
+
+def _with(causes: Sequence[Cause], newer: Sequence[Cause]) -> tuple[Cause, ...]:
+    """Return causes, some of them as they are now."""
+    known = {one.fit.effect.name: one for one in newer}
+    return tuple(known.get(one.fit.effect.name, one) for one in causes)
+
+
+def _names(causes: Sequence[Cause]) -> set[str]:
+    return {one.fit.effect.name for one in causes}
