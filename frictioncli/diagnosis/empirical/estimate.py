@@ -30,7 +30,7 @@ import numpy as np
 
 from frictioncli.diagnosis.data.problem import Problem
 from frictioncli.diagnosis.empirical.fitted_columns import FittedColumns, refitted_beside
-from frictioncli.diagnosis.empirical.form_search import LEAST_SCORE, WeightedMisfit
+from frictioncli.diagnosis.empirical.form_search import LEAST_SCORE, FormSearch, Noises
 from frictioncli.diagnosis.empirical.forms import forms_of
 from frictioncli.diagnosis.empirical.located import Located, located, sizes_of_parts
 from frictioncli.diagnosis.empirical.normal_equations import Misfits, NormalEquations
@@ -53,9 +53,6 @@ _MOST_FORMS = 2
 
 _MOST_TRIED = 4
 """Greatest number of forms that are tried: one that explains too little makes way for the next."""
-
-_LEAST_LEAD = 5.0
-"""Least difference of the statistic to that of any other form: an odds ratio of twelve."""
 
 _LEAST_OF_PART = 1 / 3
 """Share of itself with which a form must show in each part of the pairs alone."""
@@ -186,40 +183,40 @@ def empirical_term(
         left = _without(misfit, equations.predicted_blocks())
         return reduced_by(problem, misfit, left, basis="within_run", floor=floor, seed=seed)
 
-    def estimated(functions: Sequence[Function]) -> _Estimate:
-        equations = NormalEquations.of(problem, functions, step.noise(), misfit)
+    def estimated(functions: Sequence[Function], noise: Noises) -> _Estimate:
+        equations = NormalEquations.of(problem, functions, noise, misfit)
         return _Estimate(functions=list(functions), equations=equations, gain=reduced(equations))
 
     smooth = functions_of(problem, components, step.fit.variances.amplitude)
     if not smooth:
         return None
-    free, described = estimated(smooth), None
+    free, described = estimated(smooth, step.noise()), None
     least = float(np.hypot(margin, SHARE * np.mean(np.abs(problem.friction))))
     if not _is_worth_using(free.gain, margin):
         return None
     fitted = FittedColumns.of(problem, step.predicting_fit(), seen[1].effects)
     small = functions_of(problem, components, step.precomputed.start.amplitude)
+    search = FormSearch.of(step, fitted, small, misfit)
     best, before = free, free.gain.before
-    forms: list[Function] = []
+    with_small = estimated(small, search.noise).gain.after
     candidates = forms_of(_varying(problem))
     for _ in range(_MOST_TRIED):
-        beside = WeightedMisfit.of(fitted, step.noise(), [*forms, *small], misfit)
-        found = beside.best(candidates)
-        if found.score < LEAST_SCORE or found.lead < _LEAST_LEAD:
+        found = search.best(candidates)
+        if found.score < LEAST_SCORE or not found.leads:
             break
-        tried = [*forms, function_of_form(fitted, found.form, found.shape)]
-        more = estimated([*tried, *small])
+        tried = search.beside(found, function_of_form(fitted, found.form, found.shape))
+        more = estimated(tried.functions, tried.noise)
         alone = reduced(more.equations.of_forms())
         added = float(np.sqrt(max(before**2 - alone.after**2, 0.0)))
-        if added < margin or not _recurs(more):
+        if added < margin or more.gain.after >= with_small or not _recurs(more):
             candidates.remove(found.form)
             continue
-        forms = tried
-        before = alone.after
-        best = min(best, more, estimated([*forms, *smooth]), key=lambda one: one.gain.after)
+        search, before, with_small = tried, alone.after, more.gain.after
+        freely = estimated([*_forms(search), *smooth], search.noise)
+        best = min(best, more, freely, key=lambda one: one.gain.after)
         if _explained(alone) >= _MOST_OF_IT * _explained(free.gain):
             described = more
-        if len(forms) == _MOST_FORMS:
+        if len(search.forms) == _MOST_FORMS:
             break
     chosen = free
     if described is not None and described.gain.after <= _AS_GOOD * best.gain.after:
@@ -257,6 +254,10 @@ def _used(
         gain=gain,
         beside=beside,
     )
+
+
+def _forms(search: FormSearch) -> list[Function]:
+    return [one for one in search.functions if one.is_form]
 
 
 def _varying(problem: Problem) -> dict[str, tuple[float, float]]:

@@ -1,54 +1,55 @@
-r"""Search for the form that explains most of a misfit, beside base and discrepancy.
+r"""Search for the form that explains most of a misfit, beside base, causes and discrepancy.
 
-The misfit *y* has the covariance *V* of the noise and of the discrepancy that any model has. What
-columns *X* of a form explain is
+What is slow, as all that goes with temperature, looks like drift: noise that was estimated without
+a form takes a part of it. Forms are therefore looked for under that noise, those of temperature
+under noise without drift as well, and those that explain most are compared by the restricted
+likelihood with all variances estimated anew beside each,
 
-.. math:: t = y^\mathsf{T} V^{-1} X (X^\mathsf{T} V^{-1} X)^{-1} X^\mathsf{T} V^{-1} y ,
+.. math:: -2 \ln \frac{L_0}{L} - k \ln n ,
 
-a chi-squared variable where nothing is there. Forms are compared by *t* less the number of their
-parameters times the logarithm of the number of pairs (Schwarz's criterion [1]_). All shapes of a
-grid are tried, those of the best forms at more places, and then refined.
+with the number *k* of a form's parameters and the number *n* of pairs (Schwarz's criterion [1]_).
 
 References
 ----------
 .. [1] G. Schwarz, "Estimating the dimension of a model," Ann. Stat. 6(2), 1978,
    doi:10.1214/aos/1176344136.
+.. [2] R. E. Kass and A. E. Raftery, "Bayes factors," J. Am. Stat. Assoc. 90(430), 1995,
+   doi:10.1080/01621459.1995.10476572.
 """
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-from scipy.linalg import solve_triangular
 
-from frictioncli.arrays import Array
-from frictioncli.diagnosis.data.problem import Problem
 from frictioncli.diagnosis.empirical.fitted_columns import FittedColumns
 from frictioncli.diagnosis.empirical.form_columns import Shape
-from frictioncli.diagnosis.empirical.forms import Form, ShapeAxis
+from frictioncli.diagnosis.empirical.forms import Form, is_special_case
 from frictioncli.diagnosis.empirical.random_functions import Function
-from frictioncli.diagnosis.fit.simplex_search import simplex_minimum
-from frictioncli.diagnosis.fit.weighted_fit import Weights
-from frictioncli.effects.base import Basis
+from frictioncli.diagnosis.empirical.weighted_misfit import WeightedMisfit
+from frictioncli.diagnosis.fit.columns import basis_columns
+from frictioncli.diagnosis.fit.mixed_model import Components, MixedFit
+from frictioncli.diagnosis.fit.transformed_columns import Part
+from frictioncli.diagnosis.fit.variance_components import fit_variances
+from frictioncli.diagnosis.search.lack_of_fit import expected_components
+from frictioncli.diagnosis.search.step import Step
 from frictioncli.model.noise import Noise
 
-LEAST_SCORE = 15.0
-"""Least statistic of a form beyond the price of its parameters."""
+LEAST_SCORE = 10.0
+"""Least score of a form: very strong evidence on the scale of Kass and Raftery [2]_."""
 
-_AT_ONCE = 60
-"""Shapes whose columns are weighted together."""
+_LEAST_LEAD = 5.0
+"""Least difference of the score to that of another form: an odds ratio of twelve."""
+
+_LEAST_LEAD_ALIKE = 3.0
+"""The same of forms of one quantity with as many parameters: what is at stake is the words alone,
+and no price of parameters decides. An odds ratio of more than four."""
 
 _REFINED = 4
-"""Forms whose shapes are refined."""
+"""Forms whose shapes are refined, under each noise."""
 
-_FINER = 4
-"""Places of a peak that are tried for each of the grid, once it is among the best forms."""
-
-_LEAST_LEFT = 1e-4
-"""Share of the weighted square of a column that base and discrepancy leave, if it counts at all."""
-
-_FREE = 1e-9
-"""Precision of a coefficient of a unit column that is not expected to be small."""
+Noises = tuple[Noise, Noise]
+FormAt = tuple[Form, Shape]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -59,18 +60,21 @@ class FoundForm:
     ----------
     form : Form
         The form.
-    shape : dict of str to float
+    shape : mapping of str to float
         Its shape parameters.
     score : float
-        Chi-squared statistic, less the price of its parameters.
-    lead : float
-        By how much the score is above that of any form that may be there instead.
+        Twice the log likelihood ratio, less the price of its parameters.
+    fit : MixedFit
+        Base, causes, discrepancy and noise beside it.
+    leads : bool
+        Whether its score is far enough above that of any form that may be there instead.
     """
 
     form: Form
-    shape: dict[str, float]
+    shape: Shape
     score: float
-    lead: float = 0.0
+    fit: MixedFit
+    leads: bool = True
 
     @property
     def places(self) -> frozenset[str]:
@@ -79,129 +83,80 @@ class FoundForm:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class WeightedMisfit:
-    """A weighted misfit with the columns of base, causes, discrepancy and forms that are known.
+class FormSearch:
+    """Base and causes with the forms found so far, and the noise that suits all of them best.
 
     Attributes
     ----------
-    problem : Problem
-        The rows.
-    weights : (Weights, Weights)
-        Weights of friction and load.
-    known : ndarray, shape (columns, weighted rows)
-        Base, causes, discrepancy and forms, weighted: the inverse of the lower Cholesky factor of
-        their inner products with the precision of their coefficients, times the columns.
-    misfit : ndarray, shape (weighted rows,)
-        What these leave of the weighted misfit.
+    step : Step
+        Base and causes.
+    fitted : FittedColumns
+        Their columns.
+    functions : tuple of Function
+        Random functions of the discrepancy that is expected, and forms.
+    misfit : (ndarray, ndarray), shape (rows,)
+        What base and causes leave of both channels. [N·m]
+    forms : tuple of (Form, mapping of str to float)
+        Forms found so far, with their shapes.
+    components : Components
+        Variance components of base and causes, with the discrepancy that is expected.
+    fit : MixedFit
+        Base, causes and forms, with the variances that suit them best.
     """
 
-    problem: Problem
-    weights: tuple[Weights, Weights]
-    known: Array
-    misfit: Array
+    step: Step
+    fitted: FittedColumns
+    functions: tuple[Function, ...]
+    misfit: tuple[np.ndarray, np.ndarray]
+    forms: tuple[FormAt, ...]
+    components: Components
+    fit: MixedFit
 
     @classmethod
     def of(
         cls,
+        step: Step,
         fitted: FittedColumns,
-        noise: tuple[Noise, Noise],
         functions: Sequence[Function],
-        misfit: tuple[Array, Array],
-    ) -> "WeightedMisfit":
-        """Return a misfit with what is known beside it.
-
-        Parameters
-        ----------
-        fitted : FittedColumns
-            Columns of base and causes.
-        noise : (Noise, Noise)
-            Noise of friction and load.
-        functions : sequence of Function
-            Random functions of the discrepancy, and forms.
-        misfit : (ndarray, ndarray), shape (rows,)
-            What base and causes leave of both channels. [N·m]
-        """
-        problem = fitted.problem
-        extra = (problem.temperature_variance, np.zeros(len(problem.layout.time)))
-        friction, load = (
-            Weights.of(problem.layout, level, known)
-            for level, known in zip(noise, extra, strict=True)
-        )
-
-        def weighted(both: Array) -> Array:
-            upper, lower = np.split(both, 2)
-            return np.vstack([friction.weighted(upper), load.weighted(lower)])
-
-        smooth = [one.columns for one in functions if not one.is_form]
-        forms = [one.columns for one in functions if one.is_form]
-        columns = weighted(np.hstack([fitted.rows, *forms, *smooth]))
-        free = columns.shape[1] - sum(one.shape[1] for one in smooth)
-        length = np.linalg.norm(columns[:, :free], axis=0)
-        columns[:, :free] /= np.where(length > 0, length, 1.0)
-        precision = np.ones(columns.shape[1])
-        precision[:free] = _FREE
-        root = np.linalg.cholesky(columns.T @ columns + np.diag(precision))
-        known = np.asarray(solve_triangular(root, columns.T, lower=True))
-        own = weighted(np.concatenate(misfit)[:, np.newaxis])[:, 0]
+        misfit: tuple[np.ndarray, np.ndarray],
+    ) -> "FormSearch":
+        """Return the search before a form is found; arguments as the attributes."""
+        components = expected_components(step)
+        known = step.precomputed.start
+        starts = replace(step.fit.variances, amplitude=known.amplitude), known
         return cls(
-            problem=problem,
-            weights=(friction, load),
-            known=known,
-            misfit=own - known.T @ (known @ own),
+            step=step,
+            fitted=fitted,
+            functions=tuple(functions),
+            misfit=misfit,
+            forms=(),
+            components=components,
+            fit=fit_variances(components, step.products, step.known, *starts),
         )
 
-    def statistics(self, form: Form, shapes: Sequence[Shape]) -> Array:
-        """Return what a form explains at each shape, shape (shapes,).
+    @property
+    def noise(self) -> Noises:
+        """Noise of friction and load."""
+        return self.step.precomputed.noise(self.fit.variances)
+
+    def beside(self, found: FoundForm, function: Function) -> "FormSearch":
+        """Return the search with one more form.
 
         Parameters
         ----------
-        form : Form
+        found : FoundForm
             The form.
-        shapes : sequence of mapping of str to float
-            Its shapes.
+        function : Function
+            Its columns.
         """
-        width = len(form.coefficients)
-        right, left, size = self._beside([form.columns(self.problem.table, one) for one in shapes])
-        if width == 1:
-            own = np.diag(left)
-            shown = own > _LEAST_LEFT * size
-            return np.where(shown, right**2 / np.where(shown, own + _FREE * size, 1.0), 0.0)
-        places = (slice(number * width, (number + 1) * width) for number in range(len(shapes)))
-        return np.array([_statistic(right[one], left[one, one], size[one]) for one in places])
-
-    def together(self, forms: Sequence[tuple[Form, Shape]]) -> float:
-        """Return what several forms explain together.
-
-        Parameters
-        ----------
-        forms : sequence of (Form, mapping of str to float)
-            The forms with their shapes.
-        """
-        parts = [form.columns(self.problem.table, shape) for form, shape in forms]
-        return _statistic(*self._beside(parts))
-
-    def _beside(self, parts: Sequence[Basis]) -> tuple[Array, Array, Array]:
-        """Return inner products of columns beside what is known, and their own squares.
-
-        With the misfit, shape (columns,); with each other, shape (columns, columns).
-        """
-        upper, lower = (
-            weights.weighted(np.hstack([one[channel] for one in parts]))
-            if any(one[channel].any() for one in parts)
-            else None
-            for channel, weights in enumerate(self.weights)
+        forms = [one for one in self.functions if one.is_form]
+        others = self.functions[len(forms) :]
+        return replace(
+            self,
+            functions=(*forms, function, *others),
+            forms=(*self.forms, (found.form, found.shape)),
+            fit=found.fit,
         )
-        if lower is None:
-            width = sum(one.friction.shape[1] for one in parts)
-            weighted = np.zeros((0, width)) if upper is None else upper
-            rows = slice(0, len(weighted))
-        elif upper is None:
-            weighted, rows = lower, slice(len(self.misfit) - len(lower), None)
-        else:
-            weighted, rows = np.vstack([upper, lower]), slice(None)
-        hidden = self.known[:, rows] @ weighted
-        whole = weighted.T @ weighted
-        return weighted.T @ self.misfit[rows], whole - hidden.T @ hidden, np.diag(whole)
 
     def best(self, forms: Sequence[Form]) -> FoundForm:
         """Return the form that explains most for its number of parameters.
@@ -211,104 +166,65 @@ class WeightedMisfit:
         forms : sequence of Form
             The forms.
         """
-        price = np.log(len(self.problem.layout.time))
-        tried = []
-        for form in forms:
-            shape, statistic = self._best_of(form, form.shapes())
-            score = statistic - form.parameters * price
-            tried.append(FoundForm(form=form, shape=shape, score=score))
-        tried.sort(key=lambda one: -one.score)
-        refined = [self._refined(self._in_place(one)) for one in tried[:_REFINED]]
-        first, *others = sorted(refined, key=lambda one: -one.score)
-        rivals = [one for one in others if self._is_rival(one, first)]
-        return replace(first, lead=min((first.score - one.score for one in rivals), default=np.inf))
+        without_drift = self.step.precomputed.noise(self.step.precomputed.start)
+        slow = [one for one in forms if "temperature" in one.axes]
+        found: dict[int, FoundForm] = {}
+        for noise, among in ((self.noise, forms), (without_drift, slow)):
+            misfit = self._weighted(noise)
+            tried = [(form, misfit.best_of(form)) for form in among]
+            tried.sort(key=lambda one: self._price(one[0]) - one[1][1])
+            for form, shape in tried[:_REFINED]:
+                place, _ = misfit.refined(form, misfit.in_place(form, shape))
+                one = self._judged(form, place)
+                known = found.get(id(form), one)
+                found[id(form)] = max(one, known, key=lambda one: one.score)
+        first, *others = sorted(found.values(), key=lambda one: -one.score)
+        misfit = self._weighted(self.step.precomputed.noise(first.fit.variances))
+        again = self._judged(first.form, misfit.refined(first.form, (first.shape, 0.0))[0])
+        first = max(first, again, key=lambda one: one.score)
+        rivals = [one for one in others if self._is_rival(one, first, misfit)]
+        return replace(first, leads=all(_is_behind(one, first) for one in rivals))
 
-    def _is_rival(self, other: FoundForm, first: FoundForm) -> bool:
+    def _weighted(self, noise: Noises) -> WeightedMisfit:
+        return WeightedMisfit.of(self.fitted, noise, self.functions, self.misfit)
+
+    def _price(self, form: Form) -> float:
+        return form.parameters * float(np.log(len(self.fitted.problem.layout.time)))
+
+    def _judged(self, form: Form, shape: Shape) -> FoundForm:
+        """Return a form at a shape, with the variances that suit it best."""
+        precomputed, table = self.step.precomputed, self.fitted.problem.table
+        parts = [
+            Part(basis_columns(precomputed.problem, one.columns(table, at)), precomputed.noises)
+            for one, at in (*self.forms, (form, shape))
+        ]
+        products = self.step.columns.beside(self.step.products, parts)
+        starts = self.fit.variances, precomputed.start
+        fit = fit_variances(self.components, products, self.step.known, *starts)
+        score = self.fit.objective - fit.objective - self._price(form)
+        return FoundForm(form=form, shape=shape, score=score, fit=fit)
+
+    def _is_rival(self, other: FoundForm, first: FoundForm, misfit: WeightedMisfit) -> bool:
         """Return whether a form may be there instead of another one, rather than beside it.
 
-        It is none where it depends on something else and leaves the other one to be explained.
+        It is none where it depends on something else and leaves the other one to be explained, nor
+        where it holds the other one as a special case: that its further parameters are not needed
+        is what the price says.
         """
+        if is_special_case(first.form, other.form):
+            return False
         if other.places & first.places:
             return True
-        both = self.together([(one.form, one.shape) for one in (first, other)])
-        beside = both - self.together([(other.form, other.shape)])
-        price = first.form.parameters * float(np.log(len(self.problem.layout.time)))
-        return beside - price < LEAST_SCORE
-
-    def _best_of(
-        self, form: Form, shapes: Sequence[dict[str, float]]
-    ) -> tuple[dict[str, float], float]:
-        """Return the shape at which a form explains most, and what it explains there."""
-        statistics = np.concatenate(
-            [
-                self.statistics(form, shapes[first : first + _AT_ONCE])
-                for first in range(0, len(shapes), _AT_ONCE)
-            ]
-        )
-        number = int(np.argmax(statistics))
-        return shapes[number], float(statistics[number])
-
-    def _in_place(self, found: FoundForm) -> FoundForm:
-        """Return a form at the best of more places over the whole range, at all widths.
-
-        Beside smooth functions a narrow peak explains something two widths beside its place, too:
-        between coarse places that may look best.
-        """
-        axes = {axis.name: axis for axis in found.form.shape}
-        if not {"centre", "width"} <= axes.keys():
-            return found
-        places = axes["centre"].values
-        between = np.linspace(0, len(places) - 1, _FINER * (len(places) - 1) + 1)
-        shapes = [
-            found.shape | {"centre": float(centre), "width": width}
-            for centre in np.interp(between, np.arange(len(places)), places)
-            for width in axes["width"].values
-        ]
-        shape, statistic = self._best_of(found.form, shapes)
-        score = statistic - found.form.parameters * float(np.log(len(self.problem.layout.time)))
-        return found if score <= found.score else replace(found, shape=shape, score=score)
-
-    def _refined(self, found: FoundForm) -> FoundForm:
-        """Return a form with its shape optimised between the values of the grid."""
-        form, axes = found.form, [one for one in found.form.shape if one.name != "order"]
-        if not axes:
-            return found
-        low, high = (
-            np.array([_measure(axis, axis.values[end]) for axis in axes]) for end in (0, -1)
-        )
-
-        def shape_at(place: Array) -> dict[str, float]:
-            values = low + np.clip(place, 0.0, 1.0) * (high - low)
-            return found.shape | {
-                axis.name: float(np.exp(value) if axis.logarithmic else value)
-                for axis, value in zip(axes, values, strict=True)
-            }
-
-        at = np.array([_measure(axis, found.shape[axis.name]) for axis in axes])
-        start = (at - low) / (high - low)
-        step = np.array([0.5 / len(axis.values) for axis in axes])
-        place, least = simplex_minimum(
-            lambda place: -float(self.statistics(form, [shape_at(place)])[0]),
-            start,
-            step,
-            evaluations=25,
-            tolerance=(2e-3, 0.1),
-        )
-        price = form.parameters * np.log(len(self.problem.layout.time))
-        score = float(-least - price)
-        if score <= found.score:
-            return found
-        return FoundForm(form=form, shape=shape_at(place), score=score)
+        both = misfit.together([(one.form, one.shape) for one in (first, other)])
+        beside = both - misfit.together([(other.form, other.shape)])
+        return beside - self._price(first.form) < LEAST_SCORE
 
 
-def _measure(axis: ShapeAxis, value: float) -> float:
-    return float(np.log(value)) if axis.logarithmic else value
-
-
-def _statistic(right: Array, left: Array, size: Array) -> float:
-    """Return what columns explain, from their inner products with the misfit and each other."""
-    own = np.flatnonzero(np.diag(left) > _LEAST_LEFT * size)
-    if not len(own):
-        return 0.0
-    inner = left[np.ix_(own, own)] + _FREE * np.diag(size[own])
-    return float(right[own] @ np.linalg.solve(inner, right[own]))
+def _is_behind(rival: FoundForm, first: FoundForm) -> bool:
+    """Return whether a form explains so much less that another one is there, not it."""
+    alike = all(
+        getattr(rival.form, name) == getattr(first.form, name)
+        for name in ("axes", "channel", "parameters")
+    )
+    least = _LEAST_LEAD_ALIKE if alike else _LEAST_LEAD
+    return first.score - rival.score >= least

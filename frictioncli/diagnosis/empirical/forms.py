@@ -124,6 +124,17 @@ class Form:
         return columns_of(self.kind, self.axes, self.channel, table, shape)
 
 
+def is_special_case(one: Form, other: Form) -> bool:
+    """Return whether a form is another one with some of its parameters zero.
+
+    Parameters
+    ----------
+    one, other : Form
+        The forms.
+    """
+    return (one.kind, other.kind) == ("peak", "moving_peak") and set(one.axes) <= set(other.axes)
+
+
 def forms_of(ranges: Mapping[str, Range]) -> list[Form]:
     """Return the forms that data can show, for the ranges that were measured.
 

@@ -127,7 +127,7 @@ def structures(step: Step) -> list[Structure]:
         for place, columns in axis_columns(problem).items()
         if _can_be_judged(problem, columns)
     }
-    expected = _expected(step)
+    expected = expected_components(step)
     known = step.precomputed.start
     starts = replace(step.fit.variances, amplitude=known.amplitude), known
     null = fit_variances(expected, step.products, step.known, *starts)
@@ -168,10 +168,15 @@ def structures(step: Step) -> list[Structure]:
 _Found = tuple[tuple[str, ...], Channel, float, float, tuple[float, float]]
 
 
-def _expected(step: Step) -> Components:
+def expected_components(step: Step) -> Components:
     """Return the variance components with the discrepancy and the drift that any joint has.
 
     A speed that is not constant is no structure of the joint, however much it is.
+
+    Parameters
+    ----------
+    step : Step
+        Base and accepted effects.
     """
     components = step.components
     most = _DRIFT * float(np.mean(np.abs(step.problem.friction)))

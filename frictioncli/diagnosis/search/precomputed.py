@@ -29,6 +29,7 @@ from frictioncli.diagnosis.noise.discrepancy import SHARE, SPREAD, Discrepancy, 
 from frictioncli.diagnosis.noise.spectra import STRENGTHS, spectra_of
 from frictioncli.effects.base import Basis, Effect
 from frictioncli.linear_algebra import least_squares_residual
+from frictioncli.model.noise import Noise
 
 _LEAST_NOISE = 1e-9
 """Least standard deviation, so that torques without noise can be weighted. [N·m]"""
@@ -160,6 +161,28 @@ class Precomputed:
     def noises(self) -> NoiseModels:
         """Noise models of the pair means."""
         return self.columns.noises
+
+    def noise(self, variances: Variances) -> tuple[Noise, Noise]:
+        """Return the noise of friction and load of variance components.
+
+        Parameters
+        ----------
+        variances : Variances
+            The variance components.
+        """
+        found = []
+        for channel, spectra in enumerate(self.noises.spectra):
+            time, strength = self.noises.indices[variances.noise[channel]]
+            scale = variances.between[channel]
+            found.append(
+                Noise(
+                    point=float(np.sqrt(variances.within[channel])),
+                    pair=float(np.sqrt(max(scale - spectra.known, 0.0))),
+                    drift=float(np.sqrt(scale * STRENGTHS[strength])),
+                    drift_time=spectra.spectra[time].time,
+                )
+            )
+        return found[0], found[1]
 
 
 def _noise_models(

@@ -25,7 +25,6 @@ from frictioncli.diagnosis.fit.simplex_search import simplex_minimum
 from frictioncli.diagnosis.fit.transformed_columns import Part, TransformedColumns
 from frictioncli.diagnosis.fit.variance_components import fit_variances
 from frictioncli.diagnosis.fit.weighted_fit import WeightedFit, Weights
-from frictioncli.diagnosis.noise.spectra import STRENGTHS
 from frictioncli.diagnosis.search.catalogue import Catalogue
 from frictioncli.diagnosis.search.precomputed import Precomputed
 from frictioncli.diagnosis.search.screening import Screened, of_size, screened, test_of
@@ -164,20 +163,7 @@ class Step:
 
     def noise(self) -> tuple[Noise, Noise]:
         """Return the noise of friction and load that suits base and accepted effects best."""
-        found = []
-        for channel, spectra in enumerate(self.precomputed.noises.spectra):
-            variances = self.fit.variances
-            time, strength = self.precomputed.noises.indices[variances.noise[channel]]
-            scale = variances.between[channel]
-            found.append(
-                Noise(
-                    point=float(np.sqrt(variances.within[channel])),
-                    pair=float(np.sqrt(max(scale - spectra.known, 0.0))),
-                    drift=float(np.sqrt(scale * STRENGTHS[strength])),
-                    drift_time=spectra.spectra[time].time,
-                )
-            )
-        return found[0], found[1]
+        return self.precomputed.noise(self.fit.variances)
 
     def weighted_fit(self) -> WeightedFit:
         """Return the fit, weighted by this noise, by which causes are tested on another run."""
