@@ -6,10 +6,11 @@ from dataclasses import dataclass
 from frictioncli.deployment.c_header import c_header
 from frictioncli.deployment.deployed_model import DeployedModel, no_correction_reason
 from frictioncli.deployment.document import deployed_document
-from frictioncli.deployment.lookup_table import csv_text, lookup_table
+from frictioncli.deployment.empirical_table import empirical_tables, tables_csv
+from frictioncli.deployment.lookup_table import csv_text, lookup_table, tolerance_of
 from frictioncli.deployment.operating_conditions import operating_conditions
 from frictioncli.deployment.polynomial_damping import polynomial_friction
-from frictioncli.deployment.settings import ExportSettings
+from frictioncli.deployment.settings import STATEFUL, ExportSettings
 from frictioncli.deployment.simplified_friction import (
     SimplifiedFriction,
     simplified_friction,
@@ -17,6 +18,7 @@ from frictioncli.deployment.simplified_friction import (
 )
 from frictioncli.deployment.xml_forms import mjcf_text, urdf_text
 from frictioncli.documents import to_json
+from frictioncli.errors import OptionError
 from frictioncli.model.friction import FORM
 
 _ENDINGS = {"c": "h", "urdf": "urdf", "mjcf": "xml", "json": "json", "csv": "csv"}
@@ -61,8 +63,12 @@ def export(joint: DeployedModel, settings: ExportSettings) -> Exported:
     OptionError
         If the format cannot hold this joint's torque, or an option does not apply to it.
     """
-    name = f"friction-joint{joint.model.joint}.{_ENDINGS[settings.to]}"
-    text, notes = _WRITERS[settings.to](joint, settings)
+    name = f"friction-joint{joint.model.joint}"
+    writer = _WRITERS[settings.to]
+    if settings.to == "csv" and settings.extended:
+        name, writer = f"{name}-empirical", _empirical_as_csv
+    text, notes = writer(joint, settings)
+    name = f"{name}.{_ENDINGS[settings.to]}"
     return Exported(name, text, notes)
 
 
@@ -117,6 +123,30 @@ def _as_csv(joint: DeployedModel, settings: ExportSettings) -> tuple[str, tuple[
         f"friction [{unit}]",
     )
     return csv_text(table, columns, (*_origin(joint), *notes)), notes
+
+
+def _empirical_as_csv(
+    joint: DeployedModel, settings: ExportSettings
+) -> tuple[str, tuple[str, ...]]:
+    """Return the tables of the empirical term: what goes with the angle is in no other table."""
+    extension = joint.extension
+    if extension is None or extension.empirical is None:
+        raise OptionError(
+            "--extended --to csv: the extended model has no empirical term, and effects with a"
+            f" memory have no place in a table; expected --to {' or '.join(STATEFUL)}"
+        )
+    unit, conditions = joint.model.torque_unit, operating_conditions(joint, settings)
+    tolerance = tolerance_of(joint, conditions, settings.tolerance)
+    tables = empirical_tables(extension, tolerance)
+    notes = (
+        "empirical torque, to be added to the extended model: the product of all validities times"
+        f" the sum of the other parts of a torque, each interpolated linearly ({tolerance:.3g}"
+        f" {unit} allowed)",
+        "beyond the ends of a table its value at the end holds: validities are 0 there",
+        "left out: the base model (--to csv) and the other effects of the extended model"
+        f" (--to {' or '.join(STATEFUL)})",
+    )
+    return tables_csv(tables, unit, joint.load_unit, (*_origin(joint), *notes)), notes
 
 
 _Writer = Callable[[DeployedModel, ExportSettings], tuple[str, tuple[str, ...]]]

@@ -111,7 +111,7 @@ class DeployedExtension:
         return empirical_torque(
             self.empirical,
             self.about,
-            _table,
+            instants,
             position=position,
             load=load,
             speed=speed,
@@ -150,7 +150,7 @@ class DeployedExtension:
         added = added + viscous * np.sqrt(speed)
         if not self.terms:
             return np.asarray(added)
-        table = _table(p, load.ravel(), speed.ravel(), warm.ravel())
+        table = instants(p, load.ravel(), speed.ravel(), warm.ravel())
         terms = sum(
             term.effect.evaluate(table, term.shape).friction @ term.coefficients
             for term in self.terms
@@ -227,14 +227,24 @@ def _gear_lag(
     )
 
 
-def _table(
+def instants(
     about: FrictionParameters,
     load: Array,
     speed: Array,
     temperature: Array,
     position: Array | None = None,
 ) -> EffectTable:
-    """Return instants without history as an effect table."""
+    """Return instants without history as an effect table.
+
+    Parameters
+    ----------
+    about : FrictionParameters
+        Parameters of the base model.
+    load, speed, temperature : ndarray, shape (rows,)
+        Load torque [N·m], speed [deg/s] and temperature of the gear [°C].
+    position : ndarray, shape (rows,), optional
+        Joint angle. [deg]
+    """
     rows = np.arange(len(load))
     decay = np.exp(-about.delta * temperature)
     unknown = np.full(len(load), np.nan)

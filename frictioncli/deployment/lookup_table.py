@@ -74,11 +74,7 @@ def lookup_table(
     """
     delta = joint.base.delta
     loads = 0.0, max(map(abs, conditions.loads))  # friction depends on the absolute load
-    if tolerance is None:
-        corners = tuple(
-            np.array(ends) for ends in (conditions.speeds, conditions.temperatures, loads)
-        )
-        tolerance = _RELATIVE_TOLERANCE * float(np.max(_friction(joint, corners)))  # type: ignore[arg-type]
+    tolerance = tolerance_of(joint, conditions, tolerance)
     digits = max(0, int(np.ceil(-np.log10(tolerance))) + 2)
     counts = [
         2 if low < high else 1 for low, high in (conditions.speeds, conditions.temperatures, loads)
@@ -103,6 +99,23 @@ def lookup_table(
                 return LookupTable(axes=axes, friction=table, error=error, tolerance=tolerance)
         worst = int(np.argmax(errors))
         counts[worst] += max(1, counts[worst] // 8)
+
+
+def tolerance_of(
+    joint: DeployedModel, conditions: OperatingConditions, tolerance: float | None
+) -> float:
+    """Return the greatest interpolation error: a thousandth of the greatest friction by default.
+
+    Parameters
+    ----------
+    joint, conditions, tolerance
+        As of :func:`lookup_table`.
+    """
+    if tolerance is not None:
+        return tolerance
+    speeds, temperatures = np.array(conditions.speeds), np.array(conditions.temperatures)
+    corners = speeds, temperatures, np.array([0.0, max(map(abs, conditions.loads))])
+    return _RELATIVE_TOLERANCE * float(np.max(_friction(joint, corners)))
 
 
 def csv_text(table: LookupTable, columns: Sequence[str], remarks: Sequence[str]) -> str:

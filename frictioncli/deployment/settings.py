@@ -18,6 +18,9 @@ TARGETS = ("c", "urdf", "mjcf", "json", "csv")
 STATEFUL = ("c", "json")
 """Forms with a state: they hold corrections and the extended model."""
 
+EXTENDED = (*STATEFUL, "csv")
+"""Forms that hold the extended model, or its empirical term."""
+
 _SCHEDULE = ScheduleSettings()
 
 
@@ -32,7 +35,8 @@ class ExportSettings:
     joint : int or None
         Joint; needed where the model has several.
     extended : bool
-        Whether the extended model is exported, as far as its effects need no past.
+        Whether the extended model is exported, as far as its effects need no past; as ``csv`` its
+        empirical term.
     criterion : str
         Reading of criterion (20) that decides when to correct.
     k : float
@@ -59,7 +63,8 @@ class ExportSettings:
     extended: bool = field(
         default=False,
         metadata=option(
-            "Use extended-model.json: the gear's temperature and effects without memory."
+            "Use extended-model.json: the gear's temperature and effects without memory; with csv"
+            " its empirical term."
         ),
     )
     criterion: str = field(
@@ -105,10 +110,10 @@ class ExportSettings:
                 f"--criterion {self.criterion}: a controller decides by {' or '.join(READINGS)};"
                 " the others look at the whole log"
             )
-        if self.extended and self.to not in STATEFUL:
+        if self.extended and self.to not in EXTENDED:
             raise OptionError(
                 f"--extended --to {self.to}: effects with a memory have no place in that form;"
-                f" expected --to {' or '.join(STATEFUL)}"
+                f" expected --to {' or '.join(STATEFUL)}, or csv for the empirical term"
             )
         for name in ("k", "tmax", "tolerance", "torque_constant", "lowest", "highest"):
             self._check(name, "a number > 0", least=0.0)

@@ -1,7 +1,9 @@
 """The empirical term outside the program: in C and JSON what Python says, and what the log gave."""
 
+import csv
 import subprocess
 from dataclasses import replace
+from itertools import groupby
 
 import numpy as np
 import pytest
@@ -13,7 +15,7 @@ from frictioncli.diagnosis.data.build_problem import simulated
 from frictioncli.diagnosis.data.gravity_document import GravityCoefficients
 from frictioncli.diagnosis.empirical.forms import forms_of
 from frictioncli.diagnosis.empirical.term import EmpiricalTerm, FormFunction, SmoothFunction
-from frictioncli.errors import TableError
+from frictioncli.errors import OptionError, TableError
 from frictioncli.model.friction import PUBLISHED
 from tests.deployment.joints import extended, joint
 from tests.deployment.test_c_header import COMPILER, FLAGS
@@ -154,3 +156,59 @@ def test_c_says_what_python_says(tmp_path):
     assert np.any(both.friction == 0)
     np.testing.assert_allclose(told[:, 0], both.friction, atol=1e-10)
     np.testing.assert_allclose(told[:, 1], both.load, atol=1e-10)
+
+
+def looked_up(rows, at):
+    """Interpolate one table linearly, by hand: along its second quantity, then along its first."""
+    place = []
+    for number in (1, 2):
+        label = rows[0][f"quantity {number}"]
+        if label:
+            values = at[label.removeprefix("absolute ").split()[0]]
+            place.append(np.abs(values) if label.startswith("absolute") else values)
+    values = np.array([float(one["value"]) for one in rows])
+    first = np.array([float(one["value 1"]) for one in rows])
+    if len(place) == 1:
+        return np.interp(place[0], first, values)
+    second = np.array([float(one["value 2"]) for one in rows])
+    knots = np.unique(first)
+    along = np.array(
+        [np.interp(place[1], second[first == one], values[first == one]) for one in knots]
+    )
+    left = np.clip(np.searchsorted(knots, place[0]) - 1, 0, len(knots) - 2)
+    share = np.clip((place[0] - knots[left]) / (knots[left + 1] - knots[left]), 0, 1)
+    rows = np.arange(len(share))
+    return (1 - share) * along[left, rows] + share * along[left + 1, rows]
+
+
+def test_tables_say_what_python_says():
+    """Every form and series, inside the ranges, where they fade and beyond, to the tolerance."""
+    written = export(deployed(), ExportSettings(to="csv", extended=True, tolerance=1.0))
+    assert written.name == "friction-joint2-empirical.csv"
+    lines = [one for one in written.text.splitlines() if not one.startswith("#")]
+    found = list(csv.DictReader(lines))
+    at = points()
+    valid, told = np.ones(len(at["load"])), {"friction": 0.0, "load": 0.0}
+    for (part, channel, *_), rows in groupby(
+        found, lambda one: (one["part"], one["torque"], one["quantity 1"], one["quantity 2"])
+    ):
+        values = looked_up(list(rows), at)
+        if part == "validity [1]":
+            valid = valid * values
+        else:
+            assert part.endswith("[N·m]")
+            told[channel] = told[channel] + values
+    both = deployed().extension.empirical_torque(**at)
+    for channel in ("friction", "load"):
+        right = getattr(both, channel)
+        np.testing.assert_allclose(valid * told[channel], right, atol=1.0)
+        # most of what is allowed is for the few places where errors of all tables are greatest
+        assert np.sqrt(np.mean(np.square(valid * told[channel] - right))) < 0.1
+        outside = right == 0
+        assert outside.any()
+        assert np.abs((valid * told[channel])[outside]).max() < 1e-9
+
+
+def test_tables_of_a_model_without_a_term_are_refused():
+    with pytest.raises(OptionError, match="no empirical term"):
+        export(joint(extension=extended()), ExportSettings(to="csv", extended=True))

@@ -20,17 +20,20 @@ Lorentz curves, peaks hyperbolic secants. `python -m tests.studies.unnamed --wri
 Each law is planted once in each programme listed, so that shares rest on few joints.
 
 *Left* is what base model and measurement effects leave of a law on the day seen; less than the
-*margin*, 0.5 % of the friction, is not looked for. The *size* stated is compared with what the base
-model alone leaves. *Gain* is that of the empirical term on the day kept out, as a share of what
-knowing the law would give: the same joint diagnosed without it. It can exceed 1, since the term
-also takes up what the nuisances leave.
+*margin*, 0.5 % of the friction, is not looked for. A law of which 1 N·m leaves less is planted a
+second time, so much larger that 0.75 N·m is left, as of most others. The *size* stated is compared
+with what the base model alone leaves. *Gain* is that of the empirical term on the day kept out, as
+a share of what knowing the law would give: the same joint diagnosed without it. It can exceed 1,
+since the term also takes up what the nuisances leave.
 
 Nuisances may leave more than the margin. A form that leads is evidence beyond what they leave; free
 functions are not, and are used only where they surely explain more than the root sum of squares of
-margin and 0.75 % of the friction, which is expected of any joint: 0.47 N·m here. Before that was
-asked, 3 of 18 further joints with nothing hidden, the first of the blind study, got a term that
-reduced the misfit of the day kept out by 9 to 20 %; now all 18 get none. It costs the fan under
-the programme of the paper, whose law is no larger than that.
+margin and 0.75 % of the friction, which is expected of any joint: 0.47 N·m here.
+
+What goes with temperature is hard to tell from drift where the joint heats up and cools down once
+or twice: the noise is estimated anew beside each form, and a form needs very strong evidence
+against drift. The fan under the programme of the paper (0.47 N·m are left of it, drift of 0.45 N·m
+explains it as well) and the second of two laws under the enriched one do not have it.
 
 ## Gates
 | figure | must reach | measured | |
@@ -46,7 +49,14 @@ as the free function.
 """
 
 _HEAD = (
-    *("law", "programme", "left [N·m]", "stated axis", "size stated / left by the base [N·m]"),
+    *(
+        "law",
+        "programme",
+        "planted [N·m]",
+        "left [N·m]",
+        "stated axis",
+        "size stated / left by the base [N·m]",
+    ),
     *("day kept out [N·m]: without, with, law known", "gain", "described as"),
 )
 
@@ -57,6 +67,7 @@ class Case:
 
     law: str
     protocol: str
+    planted: float
     left: float
     left_by_base: float
     margin: float
@@ -91,15 +102,18 @@ def write_page(cases: Sequence[Case]) -> None:
     silent = [one for one in hidden if not one.axes]
     sized = [one for one in located if abs(one.size / one.left_by_base - 1) <= WITHIN]
     gained = [one for one in visible if one.gain >= GAINED]
-    quiet = [one for one in cases if abs(one.bare_gain) <= NOTHING]
     named = [one for one in cases if one.wrong_names]
+    alike = [one for one in cases if one.planted == min(two.planted for two in cases)]
+    bare = {(one.law, one.protocol): one for one in cases}.values()
+    quiet = [one for one in bare if abs(one.bare_gain) <= NOTHING]
+    found = [one for one in alike if one.is_right]
     rows = [
-        ("right axis, all laws", ">= 90 %", [one for one in cases if one.is_right], cases, RIGHT),
+        ("right axis, all laws of 1 N·m", ">= 90 %", found, alike, RIGHT),
         ("right axis, laws that leave the margin or more", ">= 90 %", located, visible, RIGHT),
         ("nothing said of laws that leave less", "all", silent, hidden, 1.0),
         ("size within 20 %, of those located", ">= 90 %", sized, located, RIGHT),
         ("gain at least 0.8 of knowing the law", ">= 90 %", gained, visible, RIGHT),
-        ("the same joints without the law: gain within ±0.5 %", "all", quiet, cases, 1.0),
+        ("the same joints without the law: gain within ±0.5 %", "all", quiet, list(bare), 1.0),
         (
             "no wrong name of a property of the joint",
             ">= 95 %",
@@ -137,7 +151,7 @@ def _row(one: Case) -> str:
     right = "" if one.is_right else " (**wrong**)" if said else "nothing"
     gain = f"{one.gain:.2f}" if one.can_be_seen else "–"
     return (
-        f"| {one.law} | {one.protocol} | {one.left:.2f}{seen} | {said}{right} |"
+        f"| {one.law} | {one.protocol} | {one.planted:.1f} | {one.left:.2f}{seen} | {said}{right} |"
         f" {one.size:.2f} / {one.left_by_base:.2f} | {one.before:.2f}, {one.after:.2f},"
         f" {one.known:.2f} | {gain} | {one.described or 'nothing'} |"
     )

@@ -18,7 +18,7 @@ References
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -26,7 +26,7 @@ from frictioncli.diagnosis.empirical.fitted_columns import FittedColumns
 from frictioncli.diagnosis.empirical.form_columns import Shape
 from frictioncli.diagnosis.empirical.forms import Form, is_special_case
 from frictioncli.diagnosis.empirical.random_functions import Function
-from frictioncli.diagnosis.empirical.weighted_misfit import WeightedMisfit
+from frictioncli.diagnosis.empirical.weighted_misfit import Explained, WeightedMisfit
 from frictioncli.diagnosis.fit.columns import basis_columns
 from frictioncli.diagnosis.fit.mixed_model import Components, MixedFit
 from frictioncli.diagnosis.fit.transformed_columns import Part
@@ -111,6 +111,10 @@ class FormSearch:
     forms: tuple[FormAt, ...]
     components: Components
     fit: MixedFit
+    _grids: dict[tuple[int, int], tuple[Form, Explained]] = field(
+        default_factory=dict, init=False, repr=False
+    )
+    _refined: dict[tuple[int, int], FoundForm] = field(default_factory=dict, init=False, repr=False)
 
     @classmethod
     def of(
@@ -169,13 +173,19 @@ class FormSearch:
         without_drift = self.step.precomputed.noise(self.step.precomputed.start)
         slow = [one for one in forms if "temperature" in one.axes]
         found: dict[int, FoundForm] = {}
-        for noise, among in ((self.noise, forms), (without_drift, slow)):
+        for number, (noise, among) in enumerate(((self.noise, forms), (without_drift, slow))):
             misfit = self._weighted(noise)
-            tried = [(form, misfit.best_of(form)) for form in among]
+            # the same forms but one are asked for again where that one was no use
+            for form in among:
+                if (number, id(form)) not in self._grids:
+                    self._grids[number, id(form)] = form, misfit.best_of(form)
+            tried = [self._grids[number, id(form)] for form in among]
             tried.sort(key=lambda one: self._price(one[0]) - one[1][1])
             for form, shape in tried[:_REFINED]:
-                place, _ = misfit.refined(form, misfit.in_place(form, shape))
-                one = self._judged(form, place)
+                if (number, id(form)) not in self._refined:
+                    place, _ = misfit.refined(form, misfit.in_place(form, shape))
+                    self._refined[number, id(form)] = self._judged(form, place)
+                one = self._refined[number, id(form)]
                 known = found.get(id(form), one)
                 found[id(form)] = max(one, known, key=lambda one: one.score)
         first, *others = sorted(found.values(), key=lambda one: -one.score)
