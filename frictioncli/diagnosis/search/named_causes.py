@@ -190,10 +190,11 @@ def _beside_named(judging: Judging, judged: JudgedCauses) -> SearchResult:
     found, names = judged.found, _names(judged.named)
     accepted = [one for one in found.step.accepted if one.effect.name in names]
     precomputed = found.step.precomputed
+    effects = tuple(one.fit.effect for one in found.measurement)
     if found.step.problem is not judging.problem:
-        precomputed = judging.preparation.beside(judging.problem).precomputed
+        beside = judging.preparation.beside(judging.problem)
+        precomputed, effects = beside.precomputed, beside.effects
     step = Step.of(precomputed, accepted)
-    effects = [one.fit.effect for one in found.measurement]
     return replace(
         found,
         causes=tuple(one for one in judged.named if not one.fit.effect.measurement),
