@@ -63,6 +63,8 @@ _STYLE = {
     "axes.titlesize": 10.0,
     "axes.titleweight": "bold",
     "axes.titlelocation": "left",
+    # the height at which titles stand anyway: matplotlib would measure every tick label for it
+    "axes.titley": 1.0,
     "axes.labelsize": 9.5,
     "xtick.labelsize": 9.0,
     "ytick.labelsize": 9.0,
