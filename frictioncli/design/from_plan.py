@@ -28,6 +28,7 @@ from frictioncli.design.plan import Expectation, Plan
 from frictioncli.design.predicted_rows import Timing
 from frictioncli.design.rivals import Question
 from frictioncli.design.steps import HeatStep, SeriesStep, Step
+from frictioncli.diagnosis.documents.document import CauseRecord
 from frictioncli.diagnosis.documents.extended_document import ExtendedDocument
 from frictioncli.quantities import TORQUE
 
@@ -202,13 +203,20 @@ def raised_chances(
     return sorted(found, key=lambda one: one[2] - one[3])
 
 
-def stated_half_widths(model: ExtendedDocument) -> dict[str, float]:
-    """Return the half-widths of the 95 % intervals that an extended model states.
+def stated_half_widths(
+    model: ExtendedDocument, causes: Sequence[CauseRecord] = ()
+) -> dict[str, float]:
+    """Return the half-widths of the 95 % intervals that a diagnosis states.
+
+    The intervals of a cause allow for the uncertainty of its shape; those of the extended model
+    hold at its fitted shape. Where there are both, the cause's count, as in the report.
 
     Parameters
     ----------
     model : ExtendedDocument
         The extended model.
+    causes : sequence of CauseRecord
+        The causes of the diagnosis.
 
     Returns
     -------
@@ -220,6 +228,11 @@ def stated_half_widths(model: ExtendedDocument) -> dict[str, float]:
     for effect in model.effects:
         for name, one in effect.coefficients.items():
             intervals[f"{effect.name}.{name}"] = one.ci95
+    for cause in causes:
+        for effect_name in cause.effects:
+            for name, one in cause.parameters.items():
+                if f"{effect_name}.{name}" in intervals:
+                    intervals[f"{effect_name}.{name}"] = one.ci95
     return {name: (ci95[1] - ci95[0]) / 2 for name, ci95 in intervals.items() if ci95 is not None}
 
 

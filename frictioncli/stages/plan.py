@@ -58,15 +58,15 @@ def plan(work: Path, settings: PlanSettings | None = None) -> StageResult:
     joint = settings.joint or max(known, key=lambda one: (models[one].n_pairs, -one), default=0)
     if joint not in known:
         raise OptionError(
-            f"--joint {joint}: {work / DIAGNOSIS} knows joint"
-            f" {', '.join(map(str, known)) or 'none'}"
+            f"--joint {joint}: {work / DIAGNOSIS} has joint {', '.join(map(str, known)) or 'none'}"
         )
     torques = tables.read(work / TORQUES, schemas.TORQUES)
     torques = torques[torques["joint"] == joint]
     document, extended = documents[joint]
     if torques.empty or not is_current(document, torques):
         raise TableError(
-            f"{work / DIAGNOSIS} is of other runs than {TORQUES}; run 'frictioncli diagnose' again"
+            f"{work / DIAGNOSIS} was made from other runs than {TORQUES};"
+            " run 'frictioncli diagnose' again"
         )
     if document.verdict == "unnamed" and torques["motor_temperature"].isna().all():
         raise NotEnoughData(
@@ -94,7 +94,8 @@ def plan(work: Path, settings: PlanSettings | None = None) -> StageResult:
         checks = _write_program(work, check, settings.to)
     units = {one: entry.unit for one, entry in models[joint].parameters.items()}
     extensions = read_joints(work / EXTENDED, ExtendedDocument, "diagnose")
-    stated = stated_half_widths(next(one for one in extensions if one.joint == joint))
+    model = next(one for one in extensions if one.joint == joint)
+    stated = stated_half_widths(model, document.causes)
     inputs = input_hashes([work / TORQUES, work / MODEL, work / DIAGNOSIS, work / EXTENDED])
     planned = plan_document(experiment, units, stated, files, checks, settings.minutes)
     write_document(work / PLAN, planned, Provenance("plan", asdict(settings), inputs))

@@ -159,7 +159,7 @@ def test_the_same_call_gives_the_same_bytes(planned, copy):
     [
         ({"low": 175.0}, "at least"),
         ({"to": "krl", "rated_speed": 90.0}, "rated speed"),
-        ({"joint": 5}, "knows joint 2"),
+        ({"joint": 5}, "has joint 2"),
     ],
 )
 def test_what_is_refused_leaves_nothing_behind(copy, asked, reason):
@@ -278,7 +278,7 @@ def test_blocks_concentrate_where_structure_was_located(
 @pytest.mark.parametrize(
     ("asked", "reason"),
     [
-        ({}, "nothing says what is safe"),
+        ({}, "safe limits are not known"),
         ({"low": 0.0, "high": 5.0, "max_speed": 50.0}, "at least"),
         ({"low": 0.0, "high": 90.0, "max_speed": 150.0, "rated_speed": 100.0}, "at most"),
     ],
@@ -331,6 +331,15 @@ def test_intervals_now_are_those_that_the_diagnosis_states():
     assert stated == pytest.approx(
         {"beta": 1.5, "stribeck.boundary_torque": 0.4, "stribeck.other": 0.0}
     )
+    # a cause's interval allows for its shape: the report states it, and so does the plan
+    wide = SimpleNamespace(
+        effects=("stribeck", "drift"),
+        parameters={
+            "boundary_torque": ParameterRecord(estimate=3.0, ci95=(1.0, 5.0), unit="N·m"),
+            "velocity": ParameterRecord(estimate=8.0, ci95=(4.0, 12.0), unit="deg/s"),
+        },
+    )
+    assert stated_half_widths(model, (wide,)) == stated | {"stribeck.boundary_torque": 2.0}
     names = (*stated, "gamma")
     plan = SimpleNamespace(
         torque_unit="N·m",
