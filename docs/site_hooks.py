@@ -1,4 +1,4 @@
-"""Pages of the documentation that are made from the program: commands, tables, documents, API.
+"""Pages of the documentation that are made from the program: reference pages and effects.
 
 MkDocs calls these functions while it builds the site (``make docs``).
 """
@@ -16,6 +16,8 @@ from mkdocs.structure.files import File, Files
 from frictioncli import schemas
 from frictioncli.challenge_schema import CHALLENGE
 from frictioncli.cli.commands import app
+from frictioncli.effects import BY_NAME
+from frictioncli.report.effect_explanations import explanation
 
 ROOT = Path(__file__).parents[1]
 
@@ -67,6 +69,7 @@ def on_files(files: Files, config: Any) -> Files:
         ("reference/commands.md", commands()),
         ("reference/tables.md", tables()),
         ("reference/documents.md", documents()),
+        ("reference/effects.md", effects()),
         ("reference/python.md", python()),
         ("examples.md", examples()),
         ("sample_logs.md", (ROOT / "sample_logs" / "README.md").read_text(encoding="utf-8")),
@@ -187,6 +190,32 @@ def _inner_records(record: Any) -> list[Any]:
     for kind in hints.values():
         walk(kind)
     return found
+
+
+def effects() -> str:
+    """Return the page of effects from their catalogue."""
+    parts = [
+        "# Effects",
+        "The catalogue of [the diagnosis](../diagnosis.md): what each effect adds to the friction"
+        " `dtau` or the load torque `dL` of the base model, and how it is distinguished from"
+        " others. All parameters have physical bounds. `v` is speed, `T` temperature,"
+        " `L` load torque, `q` angle.",
+    ]
+    for one in map(explanation, BY_NAME):
+        parts += [
+            f"## {one.name}",
+            one.summary,
+            f"```\n{one.equation}\n```",
+            "| symbol | meaning | unit |\n|---|---|---|\n"
+            + "\n".join(
+                f"| `{symbol}` | {_cell(meaning)} | {_cell(unit)} |"
+                for symbol, meaning, unit in one.parameters
+            ),
+            f"Source: {one.source}.",
+        ]
+        if one.confounders:
+            parts.append(f"Similar effects: {one.confounders}. {one.experiment}")
+    return "\n\n".join(parts)
 
 
 def python() -> str:

@@ -69,7 +69,7 @@ def test_table_of_commands_lists_every_command():
 @pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)
 def test_files_that_a_page_links_to_exist(page):
     # pages that the site makes from the program: docs/site_hooks.py
-    made = {"commands.md", "tables.md", "documents.md"}
+    made = {"commands.md", "tables.md", "documents.md", "effects.md"}
     for target in re.findall(r"\]\((?!https)([^)#]+)\)", page.read_text(encoding="utf-8")):
         path = page.parent / target
         is_made = path.parent.name == "reference" and path.name in made | {"python.md"}

@@ -73,13 +73,13 @@ def belonging_files(work: Path) -> Belonging:
     """
     if TORQUES in origin_of(work / MODEL).replaced:
         raise TableError(
-            f"{work / MODEL}: was made from another {TORQUES} than the one here;"
+            f"{work / MODEL}: was made from a different {TORQUES};"
             f" run 'frictioncli fit -w {work}' again"
         )
     sentences: dict[str, str] = {}
     for name, what in _RESULTS.items():
         if fault := _result_fault(work, name):
-            sentences[name] = f"Left out, the {what}: {fault}."
+            sentences[name] = f"{what.capitalize()} left out: {fault}."
     sentences |= _foreign_sources(work)
     present = {path.name for path in work.iterdir() if path.is_file()}
     return Belonging(files=frozenset(present - set(sentences)), left_out=tuple(sentences.values()))
@@ -108,13 +108,10 @@ def _foreign_sources(work: Path) -> dict[str, str]:
             if not lost and name in origin.replaced:
                 lost = _replaced(user, origin, name)
         if lost:
-            sentences[name] = f"Left out, the {what}: {lost}."
+            sentences[name] = f"{what.capitalize()} left out: {lost}."
         users.append(name)
     return sentences
 
 
 def _replaced(file: str, origin: Origin, source: str) -> str:
-    return (
-        f"{file} was made from another {source} than the one here;"
-        f" run 'frictioncli {origin.stage}' again"
-    )
+    return f"{file} was made from a different {source}; run 'frictioncli {origin.stage}' again"

@@ -80,15 +80,15 @@ def corrections_text(results: JointResults, phase: str) -> str:
         return ""
     counts = sorted(made.groupby("run").size())
     text = (
-        f" {range_text([str(count) for count in counts])} corrections: the first is"
-        " made at the start of the phase, and from one to the next the motor passes"
-        f" {number_text(passed.median(), 1)} °C (median)."
+        f" {range_text([str(count) for count in counts])} corrections: the first at"
+        " the start of the phase, then one after every"
+        f" {number_text(passed.median(), 1)} °C of motor temperature (median)."
     )
     same = (schedule["k"] == _PAPER_K).all() and (schedule["tmax"] == _PAPER_TMAX).all()
     if same and any(count != _PAPER_COUNT for count in counts):
         text += (
-            f" The paper has {_PAPER_COUNT} at this k and tmax over 40 °C, about 8 °C from one to"
-            " the next; no reading of (20) gives that where successive degrees take similar times."
+            f" The paper has {_PAPER_COUNT} at this k and tmax over 40 °C, one every 8 °C or so;"
+            " no reading of (20) gives that if successive degrees take similar times."
         )
     return text
 

@@ -10,23 +10,23 @@ def evidence_caption(results: JointResults, *, cause: CauseRecord, fitted: str) 
     return (
         f"{cause.claim} Points: mean misfit of the {cause.channel} in bins, with twice its"
         f" standard error over {results.row_noun}s; a point without a bar is a single"
-        f" {results.row_noun}. First: the base model."
+        f" {results.row_noun}. First panel: the base model."
         f" Second: the extended model without this cause, and the term fitted for it, {fitted};"
         " it may exceed the misfit above, where the base model's parameters compensate for it."
-        " Third: the extended model. The cause is supported if the second points lie on the"
-        " lines and the third on zero. Bars: which effects could be at work, the credible set"
+        " Third: the extended model. The data support the cause if the second points lie on the"
+        " lines and the third on zero. Bars: probability of each possible effect, the credible set"
         " in blue."
     )
 
 
 def simulation_caption(results: JointResults, *, held_out: str | None) -> str:
     """Return the caption of the figure of measured and simulated torque."""
-    new = f" Run {held_out} was held out of the fit." if held_out else ""
+    new = f" Run {held_out} was not used for fitting." if held_out else ""
     return (
         "Points: measured torque, forward filled, reverse hollow; lines: simulated along the same"
-        f" motion by the base model. Below each: their difference.{new} First: mean of each"
-        f" {results.row_noun} over its angles. Then: means over the {results.row_noun}s of the"
-        " fastest speed shown, heating and cooling apart, since their misfits may cancel."
+        f" motion by the base model. Below each: their difference.{new} Above: mean of each"
+        f" {results.row_noun} over its angles. Below: means over the {results.row_noun}s of the"
+        " fastest speed shown, separately for heating and cooling, whose misfits may cancel."
     )
 
 
@@ -36,9 +36,8 @@ def map_caption(results: JointResults, *, extended: bool) -> str:
     return (
         "Mean of measured minus simulated torque per cell, red where more was measured than"
         f" simulated, blue where less; grey: no data.{beside} Friction reverses with direction;"
-        " load does not. Each has its own scale. A trend or a patch is structure; a pattern without"
-        " order is noise. Choose a cell, by mouse or by keyboard, to see its"
-        " points in the chart below."
+        " load does not. Each has its own scale. A trend or a patch is structure; a random pattern"
+        " is noise. Choose a cell, by mouse or keyboard, to see its points in the chart below."
     )
 
 
@@ -46,9 +45,9 @@ def gain_caption(results: JointResults, *, document: DiagnosisDocument) -> str:
     """Return the caption of the distributions of residuals before and after the extension."""
     run = f"run {document.held_out}" if document.held_out else "the data fitted"
     return (
-        f"What the simulated torque misses on {run}, both directions, by the base and by the"
-        " extended model. First: how the misfit is distributed. Then: how many points miss by more"
-        f" than a size. Grey: noise of points and {results.row_noun}s, which no model can predict."
+        f"Misfit of the simulated torque on {run}, in both directions, for the base and the"
+        " extended model. Above: its distribution. Below: the share of points with a larger misfit."
+        f" Grey: noise of points and {results.row_noun}s, which no model can predict."
     )
 
 

@@ -14,6 +14,7 @@ from frictioncli.diagnosis.documents.sentences import (
     standing_text,
 )
 from frictioncli.effects import BY_NAME
+from frictioncli.report.effect_explanations import explained
 from frictioncli.report.model_section import poorly_determined
 from frictioncli.report.page_tables import TextTable
 from frictioncli.wording import (
@@ -29,6 +30,7 @@ _NOTABLE_SHARE = 0.01
 """Least probability of another effect that is mentioned. [1]"""
 
 UNDETECTABLE = "cannot be shown by these data"
+FOUND = "found in these data"
 
 _PHASES = {"heat-up": "rising", "cool-down": "falling"}
 _AXIS_UNITS = {"temperature": "°C", "angle": "deg"}
@@ -56,6 +58,8 @@ class CauseText:
         What speaks against it.
     figure : str
         Name of the figure of its evidence; empty without one.
+    explained : tuple of (str, str)
+        Name and words of those of its effects that the page explains.
     finding, lasting, note : str
         The cause in a sentence with values; whether it lasts, empty where that cannot be tested;
         what is said of it though it is not named, empty for most.
@@ -72,6 +76,7 @@ class CauseText:
     doubt: str
     against: tuple[str, ...]
     figure: str
+    explained: tuple[tuple[str, str], ...]
     finding: str
     lasting: str
     note: str
@@ -98,10 +103,10 @@ def verdict_sentence(document: DiagnosisDocument, unit: str) -> str:
     )
     if document.verdict == "no_evidence":
         found = (
-            "No cause is named; the list below shows what is detectable, and why it is not named."
+            "No cause is named; the list below has what was detected, and why it is not named."
             if document.visible
-            else "No cause was found: no known effect and no other structure. The table below says"
-            " how large each effect would have to be."
+            else "No cause was found: no known effect and no other structure. The table below has"
+            " the smallest size of each effect that would have been named."
         )
         return _joined(misfit, found)
     named, lost, measured = (
@@ -118,7 +123,7 @@ def verdict_sentence(document: DiagnosisDocument, unit: str) -> str:
         sentences.append(f"The model lacks {list_text(certain)}.")
     sentences += [
         f"The model lacks one of {list_text([in_words(name) for name in cause.effects])}: these"
-        " data cannot tell them apart."
+        " data cannot distinguish them."
         for cause in named
         if len(cause.effects) > 1
     ]
@@ -128,8 +133,8 @@ def verdict_sentence(document: DiagnosisDocument, unit: str) -> str:
     ]
     sentences += [f"Measurement: {_lower(finding_text(cause))}" for cause in measured]
     if document.verdict == "unnamed":
-        start = "Besides, structure" if sentences else "Structure"
-        sentences.append(f"{start} remains that no known effect explains.")
+        also = " also" if sentences else ""
+        sentences.append(f"There is{also} structure that no known effect explains.")
     return _joined(misfit, *sentences)
 
 
@@ -176,6 +181,7 @@ def _cause(cause: CauseRecord, document: DiagnosisDocument) -> CauseText:
         doubt=poorly_determined(dict(cause.parameters)),
         against=tuple(_against(cause, document)),
         figure=(cause.figure or "").removesuffix(".svg"),
+        explained=tuple((name, in_words(name)) for name in explained(cause.effects)),
         finding=finding_text(cause),
         lasting=lasting_text(cause, document),
         note=note_text(cause),
@@ -197,7 +203,7 @@ def _against(cause: CauseRecord, document: DiagnosisDocument) -> list[str]:
     if others:
         found.append(f"Other effects are possible: {', '.join(others)}.")
     if len(cause.effects) > 1:
-        found.append("These data cannot tell the effects of the set apart.")
+        found.append("These data cannot distinguish the effects of the set.")
     if cause.holds_on_new_run is None:
         found.append("It could not be tested on a run that was not used for fitting.")
     elif not cause.holds_on_new_run:
@@ -211,7 +217,7 @@ def _against(cause: CauseRecord, document: DiagnosisDocument) -> list[str]:
     if left is not None and left.channel == cause.channel:
         found.append(
             f"Even with it, {number_text(left.size, 2)} {document.unit_of(left.channel)} remain"
-            f" unexplained, mostly along {left.axis}: its form may differ."
+            f" unexplained, varying mostly with {left.axis}: its true form may differ."
         )
     return found
 
@@ -239,17 +245,17 @@ def gain_sentence(document: DiagnosisDocument, unit: str) -> str:
     elif document.held_out is not None:
         where = f"On run {document.held_out}, where a change was found and fitted,"
     else:
-        where = "On the same data that it was fitted to"
+        where = "On its own training data,"
     text = (
-        f"{where} the extended model misses the torque by {number_text(gain.rmse_after)}"
+        f"{where} the torque error of the extended model is {number_text(gain.rmse_after)}"
         f" {unit} (RMS) instead of {number_text(gain.rmse_before)} {unit}:"
         f" {_reduction_text(gain.reduction)} (95 % interval: {_reduction_text(low)} to"
-        f" {_reduction_text(high)}). Noise that no model can predict is"
+        f" {_reduction_text(high)}). Noise, which no model can predict, is"
         f" {number_text(gain.noise_floor)} {unit}."
     )
     if gain.basis != "new_run":
         further = "a second" if document.held_out is None else "another"
-        text += f" A gain on its own training data is optimistic; log {further} run to measure it."
+        text += f" A gain on its own training data is optimistic; log {further} run to test it."
     if high < 0:
         text += " The extended model is worse than the base model: do not use it."
     elif low <= 0:
@@ -277,7 +283,7 @@ def detectable_table(document: DiagnosisDocument, unit: str) -> TextTable:
     # where a log has a load channel, effects on the load are in its unit
     one_unit = document.unit_of("load") == unit
     return TextTable(
-        title="Smallest size of each effect that would be named four times in five",
+        title="Smallest size of each effect that would be named in 80 % of cases",
         header=("effect", "what it is", f"RMS [{unit}]" if one_unit else "RMS"),
         rows=tuple(
             (
@@ -293,6 +299,8 @@ def detectable_table(document: DiagnosisDocument, unit: str) -> TextTable:
 
 def _size_cell(document: DiagnosisDocument, name: str, *, stated: bool) -> str:
     size = document.detectable[name]
+    if size is None and name in document.found:
+        return FOUND
     if size is None:
         return document.undetectable.get(name, UNDETECTABLE)
     channel = BY_NAME[name].channel if name in BY_NAME else "friction"
@@ -302,7 +310,7 @@ def _size_cell(document: DiagnosisDocument, name: str, *, stated: bool) -> str:
 def worst_table(document: DiagnosisDocument) -> TextTable:
     """Return the conditions under which the simulated torque is furthest from the measured one."""
     return TextTable(
-        title="Where the simulated torque misses most",
+        title="Largest errors of the simulated torque",
         header=("where", "temperature", "speed", "channel", "measured − simulated, mean"),
         rows=tuple(
             (

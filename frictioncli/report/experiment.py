@@ -48,16 +48,16 @@ def experiment(results: JointResults) -> Experiment | None:
     after = f" A check of {duration_text(check.duration_s)} follows {check.when}." if check else ""
     intervals = [] if plan.intervals is UNSET else [one for one in plan.intervals if one.wide]
     return Experiment(
-        sentence=f"The programme takes {duration_text(plan.programme.duration_s)}.{after} Log both"
-        " as runs of their own.",
+        sentence=f"The programme takes {duration_text(plan.programme.duration_s)}.{after} Log each"
+        " as a separate run.",
         blocks=TextTable(
-            title="Blocks in their order",
+            title="Blocks in order",
             header=("block", "why", "times", "minutes"),
             rows=tuple(_rows(plan.programme.blocks)),
             texts=2,
         ),
         intervals=TextTable(
-            title="What it would settle: half-widths of 95 % intervals",
+            title="Half-widths of 95 % intervals, now and after it",
             header=("parameter", "estimate", "now", "after", "unit"),
             rows=tuple(
                 (

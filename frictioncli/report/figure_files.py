@@ -3,6 +3,7 @@
 import io
 import re
 from collections.abc import Iterator
+from html import escape
 
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.backends.backend_svg import FigureCanvasSVG
@@ -10,6 +11,7 @@ from matplotlib.figure import Figure, FigureBase, SubFigure
 from matplotlib.layout_engine import ConstrainedLayoutEngine
 from matplotlib.transforms import Bbox
 
+from frictioncli.report.pointer_values import panels_text
 from frictioncli.report.tooltips import tooltips_as_titles
 
 _DPI = 200
@@ -39,13 +41,14 @@ def svg(figure: Figure, name: str, title: str) -> str:
     )
     # the layout is computed by now: the next drawing need not repeat it
     figure.set_layout_engine("none")
+    panels = escape(panels_text(figure))
     text = tooltips_as_titles(stream.getvalue())
     text = text[text.index("<svg") :]
     # two images of equal content would have equal identifiers, and nothing refers to them
     text = re.sub(r' id="image[0-9a-f]+"', "", text)
     text = re.sub(r'\bid="', f'id="{name}-', text)
     text = text.replace("url(#", f"url(#{name}-").replace('href="#', f'href="#{name}-')
-    return text.replace("<svg ", f'<svg role="img" aria-label="{title}" ', 1)
+    return text.replace("<svg ", f'<svg role="img" aria-label="{title}" data-panels="{panels}" ', 1)
 
 
 class _RoundedLayout(ConstrainedLayoutEngine):

@@ -33,7 +33,7 @@ from frictioncli.report.missing_data import (
 )
 from frictioncli.report.residual_figure import residual_figure, residuals
 from frictioncli.report.results import MOST_RUNS, JointResults
-from frictioncli.report.style import PHASE_WORDS
+from frictioncli.report.style import PHASE_WORDS, PHASES
 from frictioncli.report.thermal_figures import (
     branch_means_figure,
     friction_temperature_figure,
@@ -74,8 +74,8 @@ def _load_caption(results: JointResults) -> str:
     single = "pairs of moves" if noun == "pair" else "groups of one speed"
     return (
         f"Points: measured friction of single {single}, one per angle bin. Lines: α·L² + G"
-        f" with one α for all {noun}s and the shift G of each {noun}, equations (9) and (10)."
-        " Below, the same points without their shift: the load term holds where they follow the one"
+        f" with one α for all {noun}s and a shift G of each {noun}, equations (9) and (10)."
+        " Below, the same points without their shift: the load term is valid if they follow the"
         " parabola over the whole load range."
     )
 
@@ -103,12 +103,15 @@ def _temperature_caption(results: JointResults, kind: str) -> str:
     texts = []
     for run in thermal_runs(results, column):
         own = known[known["run"] == run]
+        # the ends of one branch: between heating and cooling friction differs
+        branch = next(phase for phase in PHASES if (own["phase"] == phase).any())
+        own = own[own["phase"] == branch]
         fastest = own[own["speed"] == own["speed"].max()].sort_values(column, kind="stable")
         cold, hot = fastest.iloc[0], fastest.iloc[-1]
         texts.append(
-            f"{run}: {number_text(cold['friction_torque'])} {results.unit} at"
-            f" {cold[column]:.0f} °C, {number_text(hot['friction_torque'])} {results.unit} at"
-            f" {hot[column]:.0f} °C"
+            f"{run}, {PHASE_WORDS[branch]}: {number_text(cold['friction_torque'])}"
+            f" {results.unit} at {cold[column]:.0f} °C, {number_text(hot['friction_torque'])}"
+            f" {results.unit} at {hot[column]:.0f} °C"
         )
     return (
         f"Friction torque at zero load against the {name}; heating filled, cooling hollow. At"
@@ -119,8 +122,8 @@ def _temperature_caption(results: JointResults, kind: str) -> str:
 
 def _means_caption(results: JointResults) -> str:
     curves = (
-        "The curves are the fitted function, which is one function of temperature and therefore"
-        " runs between the branches."
+        "The curves are the fitted function; as it depends on one temperature, it runs between the"
+        " branches."
     )
     if results.model.temperature != "mean":
         curves += (
@@ -140,18 +143,18 @@ def _model_temperature(results: JointResults) -> str:
 def _speed_caption(results: JointResults) -> str:
     if not has_temperature_term(results):
         carried = (
-            "Friction torque at zero load as measured. It could not be carried to one temperature,"
-            " because the model has no term of temperature."
+            "Friction torque at zero load as measured. It could not be converted to one"
+            " temperature, because the model has no temperature term."
         )
     else:
         carried = (
-            f"Friction torque at zero load, carried to T0 = {REFERENCE_TEMPERATURE:.0f} °C by"
+            f"Friction torque at zero load, converted to T0 = {REFERENCE_TEMPERATURE:.0f} °C by"
             f" equation (15) with the {_model_temperature(results)}."
         )
     return (
-        f"{carried} Heating filled and moved to the left, cooling hollow and moved to the right,"
-        " so that no point hides another. A Stribeck effect would show as points that rise above"
-        " the curve towards zero speed."
+        f"{carried} Heating is filled and shifted to the left, cooling hollow and shifted to the"
+        " right, so that neither hides the other. A Stribeck effect would show as points that rise"
+        " above the curve towards zero speed."
     )
 
 
@@ -185,7 +188,7 @@ def _residual_caption(results: JointResults) -> str:
     noun = results.row_noun
     pairs = count_text(residuals(results).groupby(["run", "pair"]).ngroups, noun)
     if thermal_runs(results, "motor_temperature", "housing_temperature"):
-        lag = "; heating and cooling on different sides of zero point to a lag of temperature."
+        lag = "; heating and cooling on different sides of zero indicate a temperature lag."
     else:
         lag = "."
     return (
@@ -281,5 +284,5 @@ def runs_drawn_note(results: JointResults) -> str:
         return ""
     return (
         f"Figures 3 to 11 and the explorer show the first {MOST_RUNS} of {len(results.runs)} runs"
-        " that have the data for them; the fit, the tables and the last figure use all runs."
+        " with the data for them; the fit, the tables and the last figure use all runs."
     )

@@ -73,7 +73,7 @@ def _how_sure(results: JointResults, document: DiagnosisDocument | None) -> Answ
         )
     where = "on its own training data"
     if document and gain.basis == "new_run":
-        where = f"on new run {document.held_out}"
+        where = f"on {document.held_out}, not used for fitting"
     if gain.ci95[0] <= 0:
         return Answer(
             question="How sure",
@@ -83,8 +83,8 @@ def _how_sure(results: JointResults, document: DiagnosisDocument | None) -> Answ
     return Answer(
         question="How sure",
         value=f"±{number_text(gain.rmse_before)} {unit}",
-        text=f"RMS by equation (16); ±{number_text(gain.rmse_after)} {unit} by the extended"
-        f" model, {where}",
+        text=f"RMS misfit of equation (16); ±{number_text(gain.rmse_after)} {unit} with the"
+        f" extended model, {where}",
     )
 
 
@@ -98,10 +98,10 @@ def _what_is_wrong(document: DiagnosisDocument | None) -> Answer:
     left = document.remainder
     rest = ""
     if left:
-        along = f"mostly along {left.axis}"
+        along = f"varying mostly with {left.axis}"
         if document.structure is not None:
             axes = ["angle" if axis == "position" else axis for axis in document.structure.axis]
-            along = f"structure along {list_text(axes)}"
+            along = f"varying with {list_text(axes)}"
         rest = f"{number_text(left.size, 2)} {document.torque_unit} unexplained, {along}"
     if named:
         if document.verdict == "unnamed":
@@ -129,11 +129,13 @@ def _what_next(results: JointResults, document: DiagnosisDocument | None) -> Ans
     gain = document.gain
     if gain is not None and gain.ci95[0] > 0:
         return Answer(
-            question=question, value="use the extended model", text="'frictioncli plan' shows more"
+            question=question,
+            value="use the extended model",
+            text="'frictioncli plan' designs the next experiment",
         )
     if document.verdict == "no_evidence":
         return Answer(question=question, value="use equation (16)", text="")
-    return Answer(question=question, value="measure more", text="'frictioncli plan' says what")
+    return Answer(question=question, value="measure more", text="'frictioncli plan' proposes what")
 
 
 def word_count(found: list[Answer]) -> int:

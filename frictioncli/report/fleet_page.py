@@ -1,6 +1,5 @@
 """Page of a fleet: one row per joint, sorted and filtered in the browser."""
 
-import math
 from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -114,9 +113,8 @@ def fleet_page(rows: Sequence[Mapping[str, Any]], pages: Sequence[str]) -> Fleet
         ],
         left_out=""
         if len(rows) <= _MOST_ROWS
-        else f"The {thousands_text(_MOST_ROWS)} joints that most need attention are shown; all"
-        " are in"
-        " fleet.parquet.",
+        else f"The {thousands_text(_MOST_ROWS)} joints that most need attention are shown;"
+        " fleet.parquet has all.",
         data={
             "unit": units[0] if len(units) == 1 else "",
             "tags": _TAGS,
@@ -153,7 +151,7 @@ def _columns(
             "number",
             "without load",
         ),
-        ("gain", "gain", "number", "share of the misfit that the extended model removes"),
+        ("gain", "gain [%]", "number", "share of the misfit that the extended model removes"),
         ("epsilon_heating", f"ε heating{unit}", "number", "error with corrections"),
         ("epsilon_cooling", f"ε cooling{unit}", "number", "error with corrections"),
         ("runs", "runs", "count", ""),
@@ -190,7 +188,7 @@ def _cell(row: Mapping[str, Any], page: str, key: str, kind: str) -> Any:
         ends = [row.get(f"{key}_{end}") for end in ("low", "high")]
         return None if None in ends else [_rounded(one) for one in (value, *ends)]
     if kind in ("number", "count"):
-        return _rounded(value)
+        return _rounded(100.0 * value if key == "gain" else value)
     text = in_words(str(value)) if key == "causes" and not failed else str(value)
     text = without_control_characters(text)
     return text if len(text) <= _LONGEST else f"{text[: _LONGEST - 1]}…"
@@ -248,13 +246,11 @@ def _key_numbers(
     ]
     compared = sum(row.get("change_low") is not None for row in rows)
     if compared:
-        by_chance = math.ceil(0.05 * compared)
         numbers.append(
             KeyNumber(
                 name="changed since the earlier runs",
                 value=f"{thousands_text(changed)} of {thousands_text(compared)}",
-                context=f"95 % interval excludes zero; about {thousands_text(by_chance)} would by"
-                " chance",
+                context="95 % interval excludes zero; by chance it does in 1 joint of 20",
             )
         )
     if diagnosed := len(rows) - failed - verdicts[_UNDIAGNOSED]:

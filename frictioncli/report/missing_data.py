@@ -25,13 +25,13 @@ def nothing_missing(results: JointResults) -> str:
 def _temperature_missing(results: JointResults, column: str, name: str) -> str:
     if not results.has(column):
         return (
-            f"The log has no {name}. It needs a channel with the {name},"
+            f"The log has no {name}. This needs a channel with the {name},"
             " recorded while the joint heats up and cools down."
         )
     if not thermal_runs(results, column):
         return (
             f"The {name} was recorded, but no heating or cooling phase was found in it."
-            " It needs pairs of moves while the joint heats up and cools down."
+            " This needs pairs of moves while the joint heats up and cools down."
         )
     return ""
 
@@ -86,7 +86,7 @@ def means_missing(results: JointResults) -> str:
     if means_per_run(results).empty:
         return (
             f"No speed was measured both in heating and in cooling over the same range of the"
-            f" {TEMPERATURE_WORDS[results.model.temperature]}. It needs both branches."
+            f" {TEMPERATURE_WORDS[results.model.temperature]}. This needs both branches."
         )
     return ""
 
@@ -100,7 +100,7 @@ def speeds_missing(results: JointResults) -> str:
         One joint's results.
     """
     if len(results.styles) < 2:
-        return "All pairs have the same speed. It needs pairs at several speeds."
+        return "All pairs have the same speed. This needs pairs at several speeds."
     return ""
 
 
@@ -117,11 +117,11 @@ def schedule_missing(results: JointResults, phase: str) -> str:
     if results.schedule.empty:
         if missing := motor_temperature_missing(results):
             return f"No corrections can be simulated. {missing}"
-        return "No corrections were simulated. It needs 'frictioncli simulate'."
+        return "No corrections were simulated: run 'frictioncli simulate'."
     if not (results.schedule["phase"] == phase).any():
         return (
             f"The simulated schedule has no {PHASE_WORDS[phase]} phase."
-            f" It needs pairs of moves in {PHASE_WORDS[phase]}."
+            f" This needs pairs of moves in {PHASE_WORDS[phase]}."
         )
     return ""
 
@@ -137,11 +137,11 @@ def evaluation_missing(results: JointResults) -> str:
     if results.evaluation.empty:
         if missing := motor_temperature_missing(results):
             return f"No corrections can be compared. {missing}"
-        return "The corrections were not compared. It needs 'frictioncli evaluate'."
+        return "No corrections were compared: run 'frictioncli evaluate'."
     if not compared_criterion(results):
         return (
-            "The evaluation compares no criterion of corrections."
-            " It needs 'frictioncli evaluate' with at least one."
+            "The evaluation compares no criterion of corrections:"
+            " run 'frictioncli evaluate' with at least one."
         )
     return ""
 
@@ -157,6 +157,6 @@ def residuals_missing(results: JointResults) -> str:
     if residuals(results).empty:
         return (
             f"The model needs the {TEMPERATURE_WORDS[results.model.temperature]}, which no pair"
-            " has. It needs a fit of these data: 'frictioncli fit'."
+            " has: run 'frictioncli fit' on these data."
         )
     return ""

@@ -54,12 +54,12 @@ def model_cards(results: JointResults) -> list[ModelCard]:
     if gain is not None and results.diagnosis is not None:
         on = " on its own training data"
         if gain.basis == "new_run":
-            on = f" on run {results.diagnosis.document.held_out}, new to it"
+            on = f" on run {results.diagnosis.document.held_out}, not used for fitting"
     base_error = gain.rmse_before if gain else results.model.rmse
     cards = [
         ModelCard(
             name="Base model, equation (16)",
-            use=f"misses the torque by {number_text(base_error)} {unit} RMS{on}",
+            use=f"RMS torque error {number_text(base_error)} {unit}{on}",
             formula=friction_formula(results.model),
             terms=(),
             text=formula_text(results.model),
@@ -71,9 +71,9 @@ def model_cards(results: JointResults) -> list[ModelCard]:
     cards.append(
         ModelCard(
             name="Extended model",
-            use=f"misses the torque by {number_text(gain.rmse_after)} {unit} RMS{on}"
+            use=f"RMS torque error {number_text(gain.rmse_after)} {unit}{on}"
             if gain
-            else "not measured on other data",
+            else "not tested on other data",
             formula=friction_formula(extended),
             terms=tuple(_term(effect) for effect in extended.effects),
             text="\n".join(

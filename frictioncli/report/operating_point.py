@@ -174,7 +174,7 @@ def _caption(results: JointResults) -> str:
     return (
         f"Friction by equation (16){warm}; dashes: measured pairs, heating red, cooling blue."
         f" Point: {number_text(point.friction)} {results.unit} at {point.conditions}. The thin bar"
-        f" holds 95 % of the misfits of equation (16){extended}."
+        f" spans 95 % of the misfits of equation (16){extended}."
     )
 
 

@@ -8,6 +8,7 @@ from frictioncli.files import atomic_write
 from frictioncli.report.data_section import data_section, ingest_counts
 from frictioncli.report.downloads import downloads, write_downloads
 from frictioncli.report.drawing import draw_figures
+from frictioncli.report.effect_explanations import explanations
 from frictioncli.report.figure_files import svg_file
 from frictioncli.report.joint_section import JointSection, joint_section
 from frictioncli.report.joints_summary import joints_summary
@@ -69,7 +70,15 @@ def write_report(work: Path, *, png: bool = False) -> Path:
 
 def _page(results: WorkFolderResults, sections: Sequence[JointSection]) -> str:
     """Fill in the template of the page."""
-    scripts = ["numbers.js", "figures.js", "points.js", "chart.js", "maps.js", "look.js"]
+    scripts = [
+        "numbers.js",
+        "figures.js",
+        "pointer.js",
+        "points.js",
+        "chart.js",
+        "maps.js",
+        "look.js",
+    ]
     if any(not section.explorer.missing for section in sections):
         scripts += ["shapes.js", "explorer.js"]
     return render(
@@ -80,6 +89,7 @@ def _page(results: WorkFolderResults, sections: Sequence[JointSection]) -> str:
         joints=sections,
         summary=joints_summary(sections),
         left_out=results.left_out,
+        effects=explanations(results.joints),
         data=data_section(results),
         downloads=downloads(results),
         version=__version__,

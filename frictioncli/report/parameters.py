@@ -15,9 +15,9 @@ from frictioncli.wording import in_words, list_text, number_text
 _MEANINGS = {
     "tau_c": "Coulomb friction",
     "alpha": "load coefficient",
-    "beta": "viscous, stays when hot",
+    "beta": "viscous, independent of temperature",
     "gamma": "viscous, falls with temperature",
-    "delta": "rate of its fall",
+    "delta": "rate at which γ falls",
 }
 
 _STRONG_CORRELATION = 0.9
@@ -172,12 +172,16 @@ def _undetermined_causes(results: JointResults, diagnosis: DiagnosisDocument | N
     if diagnosis is None:
         return ["The errors of the simulated torque have not been diagnosed."]
     sentences = [
-        f"Which of {list_text([in_words(name) for name in cause.effects])} is at work: these"
-        f" data cannot tell them apart. {cause.experiment}"
+        f"Which of {list_text([in_words(name) for name in cause.effects])} is the cause: these"
+        f" data cannot distinguish them. {cause.experiment}"
         for cause in diagnosis.causes
         if len(cause.effects) > 1
     ]
-    undetectable = [in_words(name) for name, size in diagnosis.detectable.items() if size is None]
+    undetectable = [
+        in_words(name)
+        for name, size in diagnosis.detectable.items()
+        if size is None and name not in diagnosis.found
+    ]
     if undetectable:
         sentences.append(
             f"Whether there is {' or '.join(undetectable)}: these data cannot show it."
@@ -185,7 +189,6 @@ def _undetermined_causes(results: JointResults, diagnosis: DiagnosisDocument | N
     if len(results.runs) == 1:
         sentences.append(
             "How well the model predicts another day, and whether a slow change is a drift or"
-            " an offset:"
-            " there is one run only."
+            " an offset: there is only one run."
         )
     return sentences

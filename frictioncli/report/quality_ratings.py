@@ -132,16 +132,18 @@ def time_rating(counts: IngestCounts) -> QualityRating:
             level=POOR,
             name="Time",
             reason="The logs do not say when each recording began, so effects of time and of"
-            " temperature history cannot be judged. A manifest.csv can say it.",
+            " temperature history cannot be judged. A manifest.csv can provide this.",
         )
     if counts.warnings:
         return QualityRating(
             level=FAIR,
             name="Time and units",
-            reason=f"{count_text(counts.warnings, 'warning')} of reading; see the notes below.",
+            reason=f"{count_text(counts.warnings, 'warning')} while reading; see the notes below.",
         )
     return QualityRating(
-        level=GOOD, name="Time and units", reason="Start times are known; reading gave no warning."
+        level=GOOD,
+        name="Time and units",
+        reason="Start times are known; no warnings while reading.",
     )
 
 
@@ -158,7 +160,7 @@ def runs_rating(results: JointResults) -> QualityRating:
     return QualityRating(
         level=FAIR,
         name="Runs",
-        reason="One run only: a slow drift cannot be told apart from an offset, and there is no"
+        reason="One run only: a slow drift cannot be distinguished from an offset, and there is no"
         " other run to test the model on.",
     )
 
@@ -205,7 +207,7 @@ def temperature_rating(results: JointResults) -> QualityRating:
         return QualityRating(
             level=POOR,
             name="Temperature",
-            reason=f"{fault}: the effect of temperature on friction stays unknown.",
+            reason=f"{fault}: the effect of temperature on friction remains unknown.",
         )
     span = float(warm.max() - warm.min())
     found = [phase for phase in PHASES if (results.thermal_pairs["phase"] == phase).any()]
@@ -238,13 +240,13 @@ def parameters_rating(results: JointResults) -> QualityRating:
         return QualityRating(
             level=FAIR,
             name="Parameters",
-            reason=f"All determined, but {list_text(imprecise)} with an interval wider"
-            f" than ±{100 * _IMPRECISE:.0f} %.",
+            reason=f"All are determined, but {list_text(imprecise)} to no better than"
+            f" ±{100 * _IMPRECISE:.0f} %.",
         )
     return QualityRating(
         level=GOOD,
         name="Parameters",
-        reason=f"All determined to within ±{100 * _IMPRECISE:.0f} % or better.",
+        reason=f"All are determined to within ±{100 * _IMPRECISE:.0f} % or better.",
     )
 
 
@@ -269,8 +271,8 @@ def model_rating(results: JointResults, diagnosis: DiagnosisDocument | None) -> 
     missed = f"{number_text(diagnosis.simulation.rmse)} {results.unit} (RMS)"
     left = diagnosis.remainder
     beside = (
-        f" It is still {number_text(left.rmse)} {results.unit}"
-        f"{' on a new run' if left.basis == 'new_run' else ''}, where noise alone is"
+        f" {'On a new run it' if left.basis == 'new_run' else 'It'} still misses"
+        f" {number_text(left.rmse)} {results.unit}, where noise alone is"
         f" {number_text(left.noise_floor)} {results.unit}."
         if left
         else ""
@@ -296,12 +298,12 @@ def model_rating(results: JointResults, diagnosis: DiagnosisDocument | None) -> 
         )
     )
     lacks = f"lacks {lacking}" if lacking else ""
-    adds = f"does not know {measured} of the measurement" if measured else ""
+    adds = f"does not account for {measured} in the measurement" if measured else ""
     return QualityRating(
         level=FAIR,
         name="Model",
         reason=f"Equation (16) {' and '.join(filter(None, [lacks, adds]))}: alone it misses"
-        f" {missed}. The extended model has it.{beside}",
+        f" {missed}. The extended model includes it.{beside}",
     )
 
 

@@ -261,6 +261,6 @@ def gain_figure(results: JointResults, *, diagnosis: Reloaded, floor: float) -> 
     right.set_xlim(0, reach)
     right.set_ylim(0, 100)
     right.set_xlabel(f"size of the misfit [{results.unit}]")
-    right.set_ylabel("points that miss by more [%]")
+    right.set_ylabel("points with a larger misfit [%]")
     left.legend(loc="upper left")
     return figure

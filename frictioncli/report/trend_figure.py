@@ -107,10 +107,9 @@ def _draw_runs(axes: Axes, document: ComparisonDocument) -> None:
         label="at equal ambient conditions",
     )
     _draw_limits(axes, document, mean_level + trend.estimate * float(centred[0]))
-    axes.set_ylabel("friction against the mean [%]")
+    axes.set_ylabel(f"friction of joint {document.joint} against the mean [%]")
     axes.set_title(
-        f"Friction of joint {document.joint}, first run to last:"
-        f" {_signed(trend.estimate)} % ({_signed(trend.ci95[0])} to"
+        f"First run to last: {_signed(trend.estimate)} % ({_signed(trend.ci95[0])} to"
         f" {_signed(trend.ci95[1])})",
         pad=22,
     )

@@ -49,12 +49,12 @@ def test_an_evaluation_of_another_model_is_left_out_and_said(work):
     assert not found.joints[0].schedule.empty
     assert found.joints[0].evaluation.empty
     assert found.left_out == (
-        "Left out, the comparison of corrections: evaluation.parquet was made from another"
-        " model.json than the one here; run 'frictioncli evaluate' again.",
+        "Comparison of corrections left out: evaluation.parquet was made from a different"
+        " model.json; run 'frictioncli evaluate' again.",
     )
     assert "evaluation.parquet" not in found.metadata
     page = write_report(work).read_text(encoding="utf-8")
-    assert "Left out, the comparison of corrections" in page
+    assert "Comparison of corrections left out" in page
     assert "against" not in page[page.index('class="summary"') :][:800]
 
 
@@ -75,8 +75,8 @@ def test_corrections_by_an_extended_model_fall_with_it(work):
     assert found.joints[0].schedule.empty
     assert found.joints[0].extended_model is None
     assert [text.split(":")[0] for text in found.left_out] == [
-        "Left out, the extended model",
-        "Left out, the simulated corrections",
+        "Extended model left out",
+        "Simulated corrections left out",
     ]
     assert all("run 'frictioncli diagnose' again" in text for text in found.left_out)
 
@@ -90,8 +90,8 @@ def test_counts_of_other_pairs_are_left_out(work):
     assert "pairs.parquet" not in found.metadata
     assert found.recordings.empty
     assert found.left_out[0] == (
-        "Left out, the counts of pairing: torques.parquet was made from another pairs.parquet"
-        " than the one here; run 'frictioncli separate' again."
+        "Counts of pairing left out: torques.parquet was made from a different pairs.parquet;"
+        " run 'frictioncli separate' again."
     )
 
 

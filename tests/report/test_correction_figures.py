@@ -60,7 +60,7 @@ def test_the_number_of_corrections_is_explained_by_the_degrees_between_them(two_
         for step in np.diff([motor[run, pair] for pair in rows["pair"]])
     ]
     said = corrections_text(replace(two_runs, schedule=schedule), "heat-up")
-    assert f"the motor passes {np.median(passed):.0f} °C (median)." in said
+    assert f"after every {np.median(passed):.0f} °C of motor temperature (median)." in said
     assert "The paper has 6 at this k and tmax" in said
     other = corrections_text(replace(two_runs, schedule=schedule.assign(k=7.0)), "heat-up")
     assert other in said

@@ -40,7 +40,8 @@ def test_how_much_is_equation_16_at_the_medians(diagnosed):
 def test_how_sure_is_the_misfit_on_the_new_run(diagnosed, two_runs):
     said = by_question(diagnosed)["How sure"]
     assert said == (
-        "±2.00 N·m RMS by equation (16); ±1.00 N·m by the extended model, on new run day-2"
+        "±2.00 N·m RMS misfit of equation (16); ±1.00 N·m with the extended model, on day-2, not"
+        " used for fitting"
     )
     assert by_question(two_runs)["How sure"] == "±1.13 N·m RMS misfit of equation (16)"
 
@@ -72,7 +73,7 @@ def test_structure_without_a_name_is_said_beside_the_causes(diagnosed):
     said = by_question(changed)["What the simulation gets wrong"]
     assert said.startswith("stribeck")
     assert "and structure without a name" in said
-    assert said.endswith("1.2 N·m unexplained, structure along angle")
+    assert said.endswith("1.2 N·m unexplained, varying with angle")
 
 
 def test_without_temperature_the_point_has_none(without_temperature):

@@ -94,7 +94,7 @@ def test_a_huge_fleet_is_cut_and_says_so(monkeypatch):
     monkeypatch.setattr("frictioncli.report.fleet_page._MOST_ROWS", 2)
     page = fleet_page(ROWS, [""] * 4)
     assert column(page, "joint") == ["5", "3"]
-    assert "all are in fleet.parquet" in page.left_out
+    assert "fleet.parquet has all" in page.left_out
 
 
 def test_names_of_robots_are_harmless():

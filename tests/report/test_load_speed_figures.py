@@ -66,5 +66,5 @@ def test_speed_figure_shows_all_speeds_and_the_model(two_runs):
 def test_without_temperature_speed_is_drawn_as_measured(without_temperature):
     carried = friction_at_reference_temperature(without_temperature)
     assert (carried["carried"] == carried["friction_torque"]).all()
-    assert "could not be carried" in FIGURE_SPECS["fig8"].caption(without_temperature)
+    assert "could not be converted" in FIGURE_SPECS["fig8"].caption(without_temperature)
     speed_figure(without_temperature)

@@ -11,7 +11,7 @@ from tests.report.figure_contents import FIGURE_SPECS
 def test_without_temperature_there_is_a_statement(without_temperature, name):
     missing = FIGURE_SPECS[name].missing(without_temperature)
     assert "temperature" in missing
-    assert "It needs a channel" in missing
+    assert "This needs a channel" in missing
 
 
 def test_without_a_schedule_the_statement_names_the_command(two_runs):

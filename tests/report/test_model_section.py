@@ -25,8 +25,8 @@ def test_the_formula_as_text_gives_the_friction(diagnosed):
 
 def test_both_models_stand_side_by_side(diagnosed, two_runs):
     base, extended = model_cards(diagnosed)
-    assert "2.00 N·m RMS on run day-2, new to it" in base.use
-    assert "1.00 N·m RMS on run day-2, new to it" in extended.use
+    assert "RMS torque error 2.00 N·m on run day-2, not used for fitting" in base.use
+    assert "RMS torque error 1.00 N·m on run day-2, not used for fitting" in extended.use
     assert base.text in formula_text(diagnosed.model)
     assert [name for name, _, _ in extended.terms] == ["stribeck", "direction asymmetry"]
     assert "ts*exp(-(v/vs)^k)" in extended.text

@@ -95,7 +95,7 @@ def test_parameters(two_runs, without_temperature):
     model = two_runs.model
     rough = replace(model, parameters=dict(model.parameters) | {"tau_c": wide})
     rating = parameters_rating(replace(two_runs, model=rough))
-    assert (rating.level, "but τc with an interval wider" in rating.reason) == (FAIR, True)
+    assert (rating.level, "but τc to no better than" in rating.reason) == (FAIR, True)
     rating = parameters_rating(without_temperature)
     assert (rating.level, rating.reason) == (POOR, "The data do not determine γ and δ.")
 
@@ -135,7 +135,7 @@ def test_model_that_leaves_something_on_a_new_run_is_not_good(two_runs):
 def test_measurement_is_no_fault_of_the_equation(two_runs):
     delay = cause(["torque_delay"], kind="measurement")
     reason = model_rating(two_runs, diagnosis(causes=(delay,))).reason
-    assert "Equation (16) does not know torque delay of the measurement: alone" in reason
+    assert "Equation (16) does not account for torque delay in the measurement: alone" in reason
 
 
 def test_every_rating_has_a_reason(two_runs):

@@ -280,6 +280,11 @@ class DiagnosisDocument(msgspec.Struct, frozen=True, kw_only=True):
         """The causes that the extended model has a term for, in the order of its terms."""
         return tuple(cause for cause in self.named_causes if OTHER_JOINT not in cause.effects)
 
+    @property
+    def found(self) -> frozenset[str]:
+        """The effects that a cause names alone."""
+        return frozenset(cause.effects[0] for cause in self.causes if len(cause.effects) == 1)
+
     def unit_of(self, channel: str) -> str:
         """Return the unit of sizes in a channel.
 
