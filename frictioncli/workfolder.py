@@ -87,7 +87,7 @@ def outdated(paths: Iterable[Path]) -> list[str]:
         seen.add(output)
         origin = origin_of(output)
         for name in origin.replaced:
-            text = f"{output.name} was made from another {name} than the one here"
+            text = f"{output.name} was made from a different {name}"
             warnings[f"{text}; run 'frictioncli {origin.stage}' again"] = None
         waiting += [output.with_name(name) for name in origin.inputs]
     return list(warnings)

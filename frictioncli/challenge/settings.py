@@ -30,8 +30,8 @@ class ChallengeSettings:
     effects: tuple[str, ...] = field(
         default=(),
         metadata=option(
-            "Effect to plant, repeatable; SIZE is its RMS over all pairs [torque unit]. Without it,"
-            " every effect that the log can show, and the smallest size at which each is found.",
+            "Effect to plant, repeatable; SIZE is its RMS over all pairs [torque unit]."
+            " Default: every effect that the log can show, at the smallest size that is found.",
             "--effect",
             metavar="NAME[:SIZE]",
         ),
@@ -40,7 +40,7 @@ class ChallengeSettings:
         default=10.0,
         metadata=option("Size of effects given without one [% of mean friction]."),
     )
-    draws: int = field(default=1, metadata=option("Number of shapes to try of each effect."))
+    draws: int = field(default=1, metadata=option("Number of shapes per effect."))
     seed: int = field(default=0, metadata=option("Seed of the shapes."))
     search: bool | None = field(
         default=None,

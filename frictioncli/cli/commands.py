@@ -54,14 +54,14 @@ def inspect(
         bool,
         typer.Option(
             "--suggest-map",
-            help="Print a first mapping file (TOML) for --map, with its reasons.",
+            help="Print a first mapping file (TOML) for --map, with the evidence for it.",
         ),
     ] = False,
     verbose: Annotated[
         bool, typer.Option("--verbose", help="List every file: rows, sampling, faults.")
     ] = False,
 ) -> None:
-    """Show what logs hold (deg, deg/s, s, N·m, °C), how good they are and what they suffice for."""
+    """Show what logs contain and which stages they suffice for. Units: deg, deg/s, s, N·m, °C."""
     if json and suggest_map:
         raise OptionError("--json and --suggest-map: expected one of them")
     if suggest_map:
@@ -88,7 +88,7 @@ def inspect(
 
 @command()
 def ingest(logs: Logs, *, work: Work = WORK, settings: IngestSettings) -> None:
-    """Read logs into samples: deg, deg/s, s, N·m (or A), °C."""
+    """Read logs into samples. Units: deg, deg/s, s, N·m (or A), °C."""
     from frictioncli.stages.ingest import ingest as ingest_stage
 
     say_result("ingest", lambda: ingest_stage(logs, work, settings))
@@ -96,7 +96,7 @@ def ingest(logs: Logs, *, work: Work = WORK, settings: IngestSettings) -> None:
 
 @command(before={"min_speed": ["bin_width"]})
 def pair(*, work: Work = WORK, settings: PairingSettings) -> None:
-    """Match counter-directed constant-speed motion by speed [deg/s] and angle bin [deg]."""
+    """Match constant-speed moves in opposite directions. Speed in deg/s, angle bins in deg."""
     from frictioncli.stages.pair import pair as pair_stage
 
     say_result("pair", lambda: pair_stage(work, settings))
@@ -104,7 +104,7 @@ def pair(*, work: Work = WORK, settings: PairingSettings) -> None:
 
 @command()
 def separate(*, work: Work = WORK, settings: SeparationSettings) -> None:
-    """Separate friction torque from load torque [N·m] by equation (8)."""
+    """Separate friction from load by equation (8). Torques in N·m (or A)."""
     from frictioncli.stages.separate import separate as separate_stage
 
     say_result("separate", lambda: separate_stage(work, settings))
@@ -112,7 +112,7 @@ def separate(*, work: Work = WORK, settings: SeparationSettings) -> None:
 
 @command()
 def fit(*, work: Work = WORK, settings: FitSettings) -> None:
-    """Identify the friction model (16): load [N·m], speed [deg/s], temperature [°C]."""
+    """Identify the friction model, equation (16). Load in N·m, speed in deg/s, °C."""
     from frictioncli.stages.fit import fit as fit_stage
 
     say_result("fit", lambda: fit_stage(work, settings))
@@ -126,7 +126,7 @@ def simulate(
     settings: CorrectionSettings,
     extended: Extended = False,
 ) -> None:
-    """Simulate the temperature correction of Algorithm 3; tmax in minutes, epsilon in N·m."""
+    """Simulate temperature correction by Algorithm 3. tmax in minutes, epsilon in N·m."""
     from frictioncli.stages.simulate import simulate as simulate_stage
 
     say_result("simulate", lambda: simulate_stage(work, schedule, settings, extended=extended))
@@ -140,7 +140,7 @@ def evaluate(
     settings: CorrectionSettings,
     extended: Extended = False,
 ) -> None:
-    """Evaluate schedules over k, tmax [min] and bound [N·m]: epsilon [N·m] by corrections."""
+    """Evaluate corrections over k, tmax and bound. tmax in minutes, bound and epsilon in N·m."""
     from frictioncli.stages.evaluate import evaluate as evaluate_stage
 
     say_result("evaluate", lambda: evaluate_stage(work, grid, settings, extended=extended))
@@ -152,10 +152,10 @@ def diagnose(
     work: Work = WORK,
     settings: DiagnosisSettings,
     fail_on: Annotated[
-        str | None, typer.Option(help="Exit with status 3 on such a finding: any, named.")
+        str | None, typer.Option(help="Exit with status 3 on this finding: any, named.")
     ] = None,
 ) -> None:
-    """Find what the simulated torque [N·m] gets wrong, name the cause, measure the gain."""
+    """Find what the simulated torque gets wrong, and why. Torques in N·m (or A)."""
     if fail_on not in (None, "any", "named"):
         raise OptionError(f"--fail-on {fail_on}: expected any or named")
     from frictioncli.stages.diagnose import diagnose as diagnose_stage
@@ -171,10 +171,10 @@ def report(
     work: Work = WORK,
     png: Annotated[
         bool,
-        typer.Option("--png", help="Also write each figure as PNG; the page can make them too."),
+        typer.Option("--png", help="Also write each figure as PNG; the page can do so too."),
     ] = False,
 ) -> None:
-    """Draw the figures (deg, deg/s, s, N·m, °C) and write report/index.html."""
+    """Draw the figures and write report/index.html. Units: deg, deg/s, s, N·m, °C."""
     from frictioncli.stages.report import report as report_stage
 
     say_result("report", lambda: report_stage(work, png=png))
@@ -194,7 +194,7 @@ def synthesize(
     folder: Annotated[Path, typer.Argument(help="Folder to create.", metavar="FOLDER")],
     settings: SynthesisSettings,
 ) -> None:
-    """Simulate a joint (deg, deg/s, N·m, °C, kg) and write its traces with truth.json."""
+    """Simulate a joint and write its logs, with truth.json. Units: deg, deg/s, N·m, °C, kg."""
     from frictioncli.simulator.synthesize import synthesize as synthesize_traces
 
     say_result("synthesize", lambda: synthesize_traces(folder, settings))
@@ -208,7 +208,7 @@ def challenge(
     options: ChallengeSettings,
     settings: RunSettings,
 ) -> None:
-    """Plant effects [N·m or A] in your own logs; say which ones the diagnosis finds and names."""
+    """Plant effects in your own logs and diagnose them. Sizes in N·m (or A)."""
     from frictioncli.challenge.challenge import challenge as run_challenge
 
     try:
@@ -230,7 +230,7 @@ def plan(
         typer.Option("--new", help="Without data: Algorithms 1 and 2 of the paper, for any axis."),
     ] = False,
 ) -> None:
-    """Plan the next experiment [min, deg, deg/s, °C]: what it would settle; write its program."""
+    """Plan the next experiment and write its program. Units: min, deg, deg/s, °C."""
     from frictioncli.stages.plan import plan as plan_stage
     from frictioncli.stages.plan import plan_new
 
@@ -239,7 +239,7 @@ def plan(
 
 @command()
 def export(*, work: Work = WORK, settings: ExportSettings) -> None:
-    """Write the model as C, URDF, MJCF, JSON or a table (N·m or A, deg/s, °C); say what is lost."""
+    """Export the model as C, URDF, MJCF, JSON or CSV. Units: N·m (or A), deg/s, °C."""
     from frictioncli.stages.export import export as export_stage
 
     say_result("export", lambda: export_stage(work, settings))
@@ -267,7 +267,7 @@ def compare(
     ] = Path("friction-comparison"),
     settings: ComparisonSettings,
 ) -> None:
-    """Say what changed in a joint between runs. Friction in N·m (or A) and %, °C, deg/s."""
+    """Report what changed in a joint between runs. Units: N·m (or A) and %, °C, deg/s."""
     from frictioncli.stages.compare import above_threshold
     from frictioncli.stages.compare import compare as compare_stage
 
@@ -281,7 +281,7 @@ def fleet(
     logs: Annotated[
         Path,
         typer.Argument(
-            help="Folder with robot=R/joint=J/run=D folders of logs, or a table of contents (CSV,"
+            help="Folder with robot=R/joint=J/run=D folders of logs, or a table of runs (CSV,"
             " Parquet) with columns robot, joint, run, path and, optionally, map, gear_ratio.",
             metavar="FLEET",
         ),
@@ -303,7 +303,7 @@ def fleet(
         ),
     ] = None,
 ) -> None:
-    """Run the chain for many joints; one row each in fleet.parquet. N·m (or A), °C, deg/s."""
+    """Run the chain for many joints, one row each. Units: N·m (or A), °C, deg/s."""
     from frictioncli.fleet.fleet import has_failed, run_fleet
 
     if fail_on not in (None, "failed"):

@@ -99,9 +99,8 @@ class ComparisonSettings:
     fail_above: Threshold | None = field(
         default=None,
         metadata=option(
-            "Exit with status 3 if friction has changed, up or down, by more: 3% of the mean"
-            " friction, or"
-            " 1.5 in the unit of torque [N·m or A].",
+            "Exit with status 3 if friction has risen or fallen by more than this: 3% (of the mean"
+            " friction) or 1.5 (in the unit of torque, N·m or A).",
             metavar="X",
             typed=str,
             convert=threshold_of,

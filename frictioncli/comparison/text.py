@@ -36,10 +36,9 @@ def comparison_text(comparison: Comparison) -> str:
     if comparison.verdict == "undetermined":
         lines.append(f"  a change of {comparison.margin:.2g} % is not ruled out; measure more days")
     lines.append(
-        f"  mean friction {comparison.mean_friction:.3g} {unit}; from day to day"
-        f" {comparison.day_to_day:.2g} % (1 sigma) beside noise within the runs; ambient"
-        " temperature from"
-        f" {comparison.history.ambient_source}"
+        f"  mean friction {comparison.mean_friction:.3g} {unit}; it varies from day to day by"
+        f" {comparison.day_to_day:.2g} % (1 sigma), plus noise within the runs; ambient temperature"
+        f" from {comparison.history.ambient_source}"
     )
     lines += _conditions_text(comparison, unit)
     lines += _parameters_text(comparison)

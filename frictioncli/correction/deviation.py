@@ -195,7 +195,7 @@ def fit_deviation_process(pairs: CorrectionPairs) -> DeviationProcess:
     if count < LEAST_PAIRS:
         raise NotEnoughData(
             f"criterion uncertainty needs {LEAST_PAIRS} pairs at the correction speed whose"
-            f" friction gives a temperature by (18), to see how uncertain friction becomes; found"
+            f" friction gives a temperature by (18), to estimate the uncertainty; found"
             f" {count}: log more of them, or choose another criterion"
         )
     constant = np.ones((count, 1))

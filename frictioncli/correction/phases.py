@@ -58,7 +58,7 @@ def correction_phases(
     """
     if not model.knows_temperature:
         raise NotEnoughData(
-            f"joint {model.joint}: the model does not know how friction falls with temperature"
+            f"joint {model.joint}: the model has no dependence of friction on temperature"
             f" ({model.parameters['delta'].reason}), so a correction cannot be computed"
         )
     pairs = friction_at_zero_load(torques, model.friction.alpha)

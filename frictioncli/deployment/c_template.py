@@ -19,9 +19,9 @@ $constants
 struct $prefix {
     double tau_c;      /* Coulomb friction [$unit] */
     double alpha;      /* load coefficient [$alpha_unit] */
-    double beta;       /* viscous coefficient that stays when hot [$viscous_unit] */
+    double beta;       /* viscous coefficient that does not fall with temperature [$viscous_unit] */
     double gamma;      /* viscous coefficient that falls, at 0 degC [$viscous_unit] */
-    double delta;      /* rate of its fall with temperature [1/degC] */
+    double delta;      /* rate at which gamma falls with temperature [1/degC] */
 $fields};
 
 static inline void ${prefix}_init(struct $prefix *joint)
@@ -63,7 +63,7 @@ CORRECTION_FIELDS = """\
     double from_time;         /* where the change by a degree under way began [s] */
     double from_registered;   /* [degC] */
     double degree_time;       /* time that a change by a degree took [s] */
-    int begun;                /* whether a sample was told */
+    int begun;                /* whether a sample was received */
     int corrected;            /* whether a correction was tried */
     int degree_known;         /* whether degree_time is known */
 """
@@ -87,9 +87,9 @@ CORRECTION_INITIAL_VALUES = """\
 
 GEAR_FIELDS = """\
     /* state of the gear: by its time constant [0], and by the ends of the interval [1], [2] */
-    double lag[3];              /* motor's temperature filtered, less itself [degC] */
+    double lag[3];              /* motor temperature, filtered less unfiltered [degC] */
     double heat[3];             /* friction power filtered [1] */
-    double housing_lag[3];      /* housing's temperature filtered, less itself [degC] */
+    double housing_lag[3];      /* housing temperature, filtered less unfiltered [degC] */
     double hidden_lag;          /* housing that is not measured, less the motor [degC] */
     double started_at;          /* time of the first sample [s] */
     double housing_temperature; /* the latest known [degC] */
@@ -259,7 +259,7 @@ CORRECT = """\
 /* Correct the temperature, equations (18) and (19), by a pair measured at about
  * ${PREFIX}_CORRECTION_SPEED: its friction torque [$unit] and load [$load_unit] by (8), its speed
  * [deg/s] and the motor temperature meanwhile [degC]. 0 where (18) has no solution: the last
- * correction then stays in force; the criterion waits anew in either case. */
+ * correction then stays in force; the criterion starts again in either case. */
 static inline int ${prefix}_correct(
     struct $prefix *joint, double friction, double load, double speed,
     double motor_temperature)

@@ -119,7 +119,7 @@ class DeployedModel:
 def no_correction_reason(model: FrictionModel) -> str:
     """Return why a model allows no corrections, as a clause."""
     reason = model.parameters["delta"].reason or model.parameters["gamma"].reason
-    return f"the model does not know how friction falls with temperature ({reason})"
+    return f"the model has no dependence of friction on temperature ({reason})"
 
 
 def default_correction_speed(model: FrictionModel) -> float:

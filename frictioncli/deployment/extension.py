@@ -50,7 +50,7 @@ _REASONS = {
     "drift": "depends on the time since the first log",
     "run_in": "depends on the hours since the first log",
     "rest_recovery": "depends on the rests between the log's series",
-    "step_change": "came and went with the hours of the log",
+    "step_change": "was present during parts of the log only",
     "reversal_transient": "depends on the angle since the last reversal",
     "position_ripple": "depends on the angle",
     "inertia": "depends on acceleration, and is not friction",

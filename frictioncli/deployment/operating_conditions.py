@@ -93,7 +93,7 @@ def operating_conditions(joint: DeployedModel, settings: ExportSettings) -> Oper
             f" of speeds; the data have {speeds[0]:.4g} to {speeds[1]:.4g}"
         )
     outside = [
-        f"{name} {value:.4g} {unit} lies outside the data's {low:.4g} to {high:.4g}"
+        f"{name} {value:.4g} {unit} is outside the range of the data, {low:.4g} to {high:.4g}"
         for name, value, unit, (low, high) in (
             ("speed", conditions.speeds[0], "deg/s", speeds),
             ("speed", conditions.speeds[1], "deg/s", speeds),

@@ -43,7 +43,7 @@ class PolynomialFriction:
         return (
             f'MuJoCo 4 takes a polynomial: damping="{damping}" frictionloss="{self.dry:.6g}" loses'
             f" {self.rms:.3g} N·m RMS there, up to {self.fastest:.4g} deg/s; its DC-motor actuator"
-            " knows no friction that depends on temperature or load either"
+            " has no friction that depends on temperature or load either"
         )
 
 

@@ -107,12 +107,12 @@ class ExportSettings:
             raise OptionError(f"--to {self.to}: expected one of {', '.join(TARGETS)}")
         if self.criterion not in READINGS:
             raise OptionError(
-                f"--criterion {self.criterion}: a controller decides by {' or '.join(READINGS)};"
-                " the others look at the whole log"
+                f"--criterion {self.criterion}: a controller can use {' or '.join(READINGS)};"
+                " the others need the whole log"
             )
         if self.extended and self.to not in EXTENDED:
             raise OptionError(
-                f"--extended --to {self.to}: effects with a memory have no place in that form;"
+                f"--extended --to {self.to}: effects with memory cannot be written in that format;"
                 f" expected --to {' or '.join(STATEFUL)}, or csv for the empirical term"
             )
         for name in ("k", "tmax", "tolerance", "torque_constant", "lowest", "highest"):

@@ -60,7 +60,7 @@ def new_limits(settings: PlanSettings) -> Limits:
     missing = [name for name, value in needed if value is None]
     if missing:
         raise OptionError(
-            f"--new needs {', '.join(missing)}: without data nothing says what is safe"
+            f"--new needs {', '.join(missing)}: without data the safe limits are not known"
         )
     low, high, fastest = settings.low, settings.high, settings.max_speed
     assert low is not None
@@ -130,7 +130,7 @@ def algorithms(limits: Limits) -> tuple[Block, ...]:
         ),
         Block(
             name="Algorithm 2, cooling",
-            reason="the same at every degree while the joint cools by itself",
+            reason="the same at every degree while the joint cools at rest",
             steps=tuple(colder),
         ),
     )

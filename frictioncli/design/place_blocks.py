@@ -141,13 +141,13 @@ def _about_temperature(form: FormFunction, limits: Limits, seed: int) -> tuple[B
     return (
         Block(
             name=f"heat through {centre:.3g} °C",
-            reason="series on both sides of the temperature, warming and cooling: what goes with"
-            " temperature comes back at the same one",
+            reason="series on both sides of the temperature, warming and cooling: an effect of"
+            " temperature appears at the same temperature in both",
             steps=(*steps, RestStep(_HEATING), short_series(limits)),
         ),
         Block(
             name=f"heat to {centre:.3g} °C",
-            reason="series at the temperature itself, by speed",
+            reason="series at that temperature, at several speeds",
             steps=(steps[2 * (len(until) // 2)], short_series(limits)),
         ),
     )

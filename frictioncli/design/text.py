@@ -29,11 +29,11 @@ def plan_text(
         checked = f", {_chance(last)} with the check" if plan.check else ""
         lines.append(f"    {_chance(after)} after it{checked}{_too_little(last)}")
     if plan.verdict == "unnamed":
-        way = "about where it shows" if plan.criterion.forms else "that spread over all inputs"
+        way = "around its location" if plan.criterion.forms else "that spread over all inputs"
         lines.append(f"  no known effect explains the structure: blocks {way}")
     if plan.unnamed is not None:
         lines.append(f"  without a name: {plan.unnamed.claim}")
-        lines.append(f"    to learn its nature: {plan.unnamed.experiment}")
+        lines.append(f"    to find its nature: {plan.unnamed.experiment}")
     told: set[str] = set()
     for first, last in _alike(plan):
         lines += _blocks_text(plan, first, last, tell=plan.blocks[first].name not in told)
@@ -88,7 +88,7 @@ def _blocks_text(plan: Plan, first: int, last: int, *, tell: bool) -> list[str]:
         raised = raised_chances(question, before, after, place)
         for truth, rival, old, new in [one for one in raised if likely[one[0]] >= _LIKELY][:2]:
             lines.append(
-                f"         rules out {rival} if {truth} is at work: {old:.0%} to {new:.0%}"
+                f"         rules out {rival} if {truth} is the cause: {old:.0%} to {new:.0%}"
             )
     return lines
 

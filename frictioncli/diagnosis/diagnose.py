@@ -164,8 +164,8 @@ def diagnose_joint(
     pairs = torques[torques["run"] != held_out].groupby(["run", "pair"], observed=True).ngroups
     if pairs < LEAST_PAIRS:
         raise NotEnoughData(
-            f"joint {joint}: {pairs} pairs to learn from, expected at least {LEAST_PAIRS}, to tell"
-            " noise from structure; log more moves there and back"
+            f"joint {joint}: {pairs} pairs to learn from, expected at least {LEAST_PAIRS} to"
+            " distinguish structure from noise; log more moves in both directions"
         )
     rows = settled_problems(torques, temperature, held_out, ramps, LEAST_PAIRS)
     known = Preparation()

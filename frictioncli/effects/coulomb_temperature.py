@@ -23,7 +23,7 @@ EFFECT = Effect(
     name="coulomb_temperature",
     summary="Coulomb friction changes with temperature, not only viscous friction.",
     equation="dtau = ct*(T - 25)/10",
-    source="Linear term beside equation (16) of Nevmerzhitskiy et al. 2019, "
+    source="Linear term added to equation (16) of Nevmerzhitskiy et al. 2019, "
     "doi:10.1155/2019/6931563",
     channel="friction",
     shape=(),
@@ -34,7 +34,7 @@ EFFECT = Effect(
             unit="torque/(10 °C)",
             lower=-6.0,
             upper=3.0,
-            description="Change of Coulomb friction per 10 °C; negative where it falls hot",
+            description="Change of Coulomb friction per 10 °C; negative if it falls",
         ),
     ),
     basis=basis,

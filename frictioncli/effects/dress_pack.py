@@ -43,7 +43,7 @@ EFFECT = Effect(
             unit="deg",
             lower=-90.0,
             upper=90.0,
-            description="Angle at which the spring does not pull, from the middle of the angles",
+            description="Angle at which the spring is relaxed, from the middle of the range",
             points=5,
         ),
         Parameter(
@@ -52,7 +52,7 @@ EFFECT = Effect(
             unit="1/rad^2",
             lower=0.0,
             upper=1.2,
-            description="How much stiffer the spring becomes with its own bend",
+            description="Growth of its stiffness with deflection",
             points=4,
         ),
     ),
@@ -71,7 +71,7 @@ EFFECT = Effect(
     uses=("angle",),
     signature=Signature(
         axis="position",
-        claim="The load torque is not a sine of the angle: a straight line adds to it.",
+        claim="The load torque is not a pure sine of the angle: it has a linear part.",
     ),
     statement="Cables and hoses pull the joint like a spring of {stiffness}.",
     confounders=("payload_change", "direction_asymmetry", "inertia"),
@@ -79,5 +79,5 @@ EFFECT = Effect(
         "Sweep the whole angle range with two payloads: the spring stays, gravity scales."
         " Repeat with the cables loosened."
     ),
-    mirror="Friction must not change with the angle, save through the load.",
+    mirror="Friction must not change with the angle, except through the load.",
 )

@@ -89,7 +89,7 @@ EFFECT = Effect(
             unit="torque",
             lower=-20.0,
             upper=20.0,
-            description="Half of what accelerating takes more than braking, at 100 deg/s",
+            description="Half the difference between accelerating and braking torque, at 100 deg/s",
             within="inertial_torque",
         ),
     ),
@@ -104,7 +104,7 @@ EFFECT = Effect(
     confounders=("reversal_transient", "load_velocity", "dress_pack", "quadratic_drag"),
     experiment=(
         "Cut 30 deg off both ends instead of 10 deg, and repeat with half the acceleration:"
-        " inertia goes away, a spring does not."
+        " an effect of inertia disappears, that of a spring does not."
     ),
-    mirror="Friction must stay as it is if the joint brakes as hard as it accelerates.",
+    mirror="Friction must not change if the joint brakes as hard as it accelerates.",
 )

@@ -26,7 +26,7 @@ EFFECT = Effect(
             unit="torque/(deg/s)",
             lower=0.0,
             upper=0.2,
-            description="Friction per speed, beside the square-root term",
+            description="Friction per speed, in addition to the square-root term",
         ),
     ),
     basis=basis,

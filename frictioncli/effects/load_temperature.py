@@ -60,7 +60,7 @@ EFFECT = Effect(
             unit="torque/(10 °C)",
             lower=-0.3,
             upper=0.1,
-            description="Added friction at load torque 10 per 10 °C; negative where it falls hot",
+            description="Added friction at load torque 10 per 10 °C; negative if it falls",
         ),
     ),
     basis=basis,

@@ -33,7 +33,7 @@ def basis(table: EffectTable, **shape: float) -> Basis:
 
 EFFECT = Effect(
     name="payload_change",
-    summary="The payload differed for a while, or changed for good.",
+    summary="The payload changed, permanently or temporarily.",
     equation="dL = (Pc*cos(q) + Ps*sin(q))*(1 from m to e, else 0), dtau = 2*alpha*L*dL",
     source="Gravity torque of a point mass; equation (3) of Nevmerzhitskiy et al. 2019, "
     "doi:10.1155/2019/6931563",
@@ -68,7 +68,7 @@ EFFECT = Effect(
     confounders=("torque_constant", "dress_pack", "step_change"),
     experiment=(
         "Weigh the payload and repeat one slow sweep at the temperature of the first run:"
-        " a changed mass stays, a changed torque constant goes with the heat."
+        " a changed mass stays, an effect of the torque constant changes with temperature."
     ),
     mirror="Friction must change only by what the base model gives for the new load.",
     statement="The payload added {cosine} to gravity at 0 deg and {sine} at 90 deg.",

@@ -38,7 +38,7 @@ EFFECT = Effect(
     needs=("speed",),
     signature=Signature(
         axis="speed",
-        claim="Only the fastest speeds lie above the model.",
+        claim="Friction is above the model only at the fastest speeds.",
     ),
     statement="Drag grows with the square of speed, to {drag} at 100 deg/s.",
     confounders=("linear_viscous", "velocity_exponent", "inertia"),

@@ -100,7 +100,7 @@ EFFECT = Effect(
     uses=("rest",),
     signature=Signature(
         axis="order",
-        claim="Friction is above the model in the first pairs after a rest and settles with them.",
+        claim="Friction is above the model in the first pairs after a rest and then settles.",
     ),
     statement="The first pair after a long rest has {excess} more friction.",
     confounders=("stribeck", "velocity_exponent", "run_in"),

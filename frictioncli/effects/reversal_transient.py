@@ -55,7 +55,7 @@ EFFECT = Effect(
             unit="deg",
             lower=0.5,
             upper=30.0,
-            description="Angle from the turn after which 37 % of the lack remain",
+            description="Distance from the reversal after which 37 % of the deficit remain",
             search="logarithmic",
         ),
         Parameter(
@@ -75,7 +75,7 @@ EFFECT = Effect(
             unit="torque",
             lower=0.0,
             upper=40.0,
-            description="Friction lacking where the outermost bin is",
+            description="Friction deficit in the outermost bin",
         ),
     ),
     basis=basis,
@@ -91,7 +91,7 @@ EFFECT = Effect(
     confounders=("inertia", "position_ripple", "direction_asymmetry"),
     experiment=(
         "Approach the same angles from the same side after a longer distance, at the slowest"
-        " speed: the lack depends on the reversal, and inertia is too small to matter."
+        " speed: the deficit depends on the distance from the reversal, and inertia is negligible."
     ),
-    mirror="The lack in the load torque must equal that in friction, but for its sign.",
+    mirror="The deficits in load torque and friction must be equal except for sign.",
 )

@@ -43,7 +43,7 @@ EFFECT = Effect(
             unit="deg",
             lower=3_600.0,
             upper=3_600_000.0,
-            description="Way after which 37 % of the running-in remain",
+            description="Distance after which 37 % of the running-in remain",
             search="logarithmic",
         ),
     ),
@@ -54,7 +54,7 @@ EFFECT = Effect(
             unit="torque",
             lower=0.0,
             upper=30.0,
-            description="Friction above the settled one at the start",
+            description="Friction above its settled value at the start",
         ),
     ),
     basis=basis,
@@ -65,7 +65,7 @@ EFFECT = Effect(
         " time.",
     ),
     statement=(
-        "Friction was {initial_excess} above the settled one at the start and falls with"
+        "Friction was {initial_excess} above its settled value at the start and falls with"
         " the distance travelled."
     ),
     confounders=("drift", "thermal_lag", "rest_recovery"),

@@ -57,7 +57,7 @@ EFFECT = Effect(
     name="sensor_lag",
     summary="The temperature sensor lags behind the part that it measures.",
     equation="dtau = dtau/dT*theta_s*dT/dt",
-    source="Response of first order of a temperature sensor, to first order in its time constant",
+    source="First-order response of a temperature sensor, linear in its time constant",
     channel="friction",
     shape=(),
     coefficients=(

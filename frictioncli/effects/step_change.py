@@ -27,7 +27,7 @@ def basis(table: EffectTable, **shape: float) -> Basis:
 
 EFFECT = Effect(
     name="step_change",
-    summary="Friction stepped to another level, for good or for a while.",
+    summary="Friction stepped to another level, permanently or temporarily.",
     equation="dtau = d*(1 from m to e, else 0)",
     source="Step at an unknown moment, as in change-point detection",
     channel="friction",

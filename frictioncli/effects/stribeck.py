@@ -84,7 +84,7 @@ EFFECT = Effect(
     uses=("temperature",),
     signature=Signature(
         axis="speed",
-        claim="Friction is above the model only at the lowest speeds, more so the slower.",
+        claim="Friction is above the model only at the lowest speeds, more so at slower ones.",
     ),
     statement=(
         "Boundary friction is {boundary_torque} at standstill and falls to 37 % of that at"

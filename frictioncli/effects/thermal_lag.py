@@ -167,7 +167,7 @@ EFFECT = Effect(
             unit="s",
             lower=120.0,
             upper=14_400.0,
-            description="Time in which the gear closes 63 % of its distance to the motor",
+            description="Time in which the gear closes 63 % of the difference to the motor",
             search="logarithmic",
         ),
     ),

@@ -35,7 +35,7 @@ EFFECT = Effect(
             unit="%/°C",
             lower=-0.3,
             upper=0.3,
-            description="Growth of the logged torque per degree of the motor",
+            description="Growth of the logged torque per degree of motor temperature",
         ),
     ),
     basis=basis,

@@ -52,7 +52,7 @@ EFFECT = Effect(
     name="torque_filter",
     summary="The logged torque is smoothed by a filter.",
     equation="dL = s2*v^2*d2L/dq2, dtau = s2*v^2*d2tau/dq2 - s3*v^3*d3L/dq3",
-    source="Moments of the impulse response of a filter of first order behind a delay",
+    source="Moments of the impulse response of a first-order filter after a delay",
     channel="load",
     shape=(),
     coefficients=(

@@ -111,7 +111,7 @@ def run_on_cluster(
                 del running[future.key]
                 yield from outcomes
                 submit()
-            text = "all workers are held up by joints that took too long"
+            text = "all workers are blocked by joints that took too long"
         except _SchedulerLost as lost:
             text = f"--scheduler {address}: {lost}: start it and call again"
             waiting += [one.batch for one in running.values()]
@@ -306,11 +306,11 @@ def _run_batch(tasks: Sequence[JointTask]) -> list[JointOutcome]:
     if worker.state.nthreads != 1:
         raise OptionError(
             f"worker {worker.address} has {worker.state.nthreads} threads; expected one, as joints"
-            " are worked on side by side in processes: start it with --nthreads 1"
+            " run in processes of their own: start it with --nthreads 1"
         )
     if tasks[0].version != __version__:
         raise OptionError(
             f"worker {worker.address} has frictioncli {__version__}; expected"
-            f" {tasks[0].version}, as the one who asks"
+            f" {tasks[0].version}, the version of the caller"
         )
     return [run_joint(task) for task in tasks]

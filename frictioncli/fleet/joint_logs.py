@@ -95,7 +95,7 @@ def find_joints(fleet: Path) -> list[JointLogs]:
     else:
         raise LogError(
             f"{fleet}: no such file or folder; expected a folder with robot=R/joint=J/run=D, or a"
-            f" table of contents with the columns {', '.join(REQUIRED_COLUMNS)}"
+            f" table of runs with the columns {', '.join(REQUIRED_COLUMNS)}"
         )
     if not joints:
         raise LogError(f"{fleet}: no joints found; expected robot=R/joint=J/run=D, or rows")

@@ -95,7 +95,7 @@ def check_folder(work: Path) -> None:
         return
     if any(not path.name.startswith(".") for path in work.iterdir()):
         raise FrictionError(
-            f"{work}: holds files that no fleet has made, and would be emptied; choose another"
+            f"{work}: holds files that 'fleet' did not write and would delete; choose another"
             " folder with -w"
         )
 

@@ -154,7 +154,7 @@ def _recordings_text(recordings: RecordingCounts) -> str:
 def _pair(segments: Mapping[str, int], pairs: pd.DataFrame) -> StageVerdict:
     if not len(pairs):
         if not any(segments.values()):
-            return StageVerdict("pair", NO, "this joint never holds a constant speed")
+            return StageVerdict("pair", NO, "this joint never moves at constant speed")
         text = f"constant speed {segments[FORWARD]}x forward and {segments[REVERSE]}x in reverse"
         return StageVerdict(
             "pair",

@@ -265,7 +265,7 @@ def _differing(kind: str, found: Sequence[tuple[str, Path]], total: int) -> Iter
     if len(found) > _EXAMPLES:
         files = len({path for _, path in found})
         yield from _bullet(
-            f"{kind}: {len(found) - _EXAMPLES} more of these, in {files} of {total} files all told"
+            f"{kind}: {len(found) - _EXAMPLES} more of these, in {files} of {total} files"
         )
 
 

@@ -29,7 +29,7 @@ def evidence(plan: JointPlan, quantity: str, given: Collection[str], largest: fl
     channel: LogChannel = getattr(plan.channels, quantity)
     notes = _remarks_on(plan, channel)
     if quantity in given:
-        return "; ".join(("as told", *notes))
+        return "; ".join(("as given", *notes))
     if any("read as" in text or "taken as" in text for text in notes):
         return "; ".join(notes)
     if channel.unit:

@@ -129,8 +129,8 @@ def _constant(
     if not torque:
         return Refusal(
             NO_CONSTANT,
-            f"joint {joint}: no torque in N·m at the joint stands beside {current}, from which its"
-            f" torque constant could be found; {hint}",
+            f"joint {joint}: the log has no torque in N·m at the joint from which the torque"
+            f" constant of {current} could be found; {hint}",
         )
     try:
         found = estimate_constant(pairs)

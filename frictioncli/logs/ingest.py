@@ -220,7 +220,7 @@ def _add_knots(run: str, timeline: Timeline, ingested: IngestedLogs) -> None:
             count = sum(one.n_changes for one in distinct)
             ingested.notes.append(
                 f"run {run}: motor temperature of joint {joint} has steps of"
-                f" {next(iter(distinct)).step:g} °C: rebuilt between {count} known changes"
+                f" {next(iter(distinct)).step:g} °C: interpolated between {count} of them"
             )
 
 

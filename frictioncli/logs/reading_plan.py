@@ -94,7 +94,7 @@ def _plans_of_layout(
     rated = channel_map.rated_torque if rated is None else rated
     told = wanted_constant(settings, channel_map)
     if isinstance(told, float | int):
-        one = TorqueConstant(float(told), None, "as told")
+        one = TorqueConstant(float(told), None, "as given")
         constants = {channels.joint: one for channels in first.joints}
     chosen = choose_torques(first.joints, surveyed)
     found = [

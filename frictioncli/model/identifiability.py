@@ -135,7 +135,7 @@ def _by_excitation(observed: Observations) -> Determination:
             "beta",
             f"speeds of {speeds} do not separate viscous from Coulomb friction; merged into tau_c",
             "tau_c",
-            f"holds Coulomb friction and the viscous part that stays when hot, at {speeds}",
+            f"holds Coulomb friction and the viscous part beta, at {speeds}",
         )
     return chosen
 

@@ -123,7 +123,7 @@ class OtherMotion:
             for joint in joints
             if self.share(joint)
         ] + [
-            f"joint {joint}: no move there and back in one pose of the other joints: used"
+            f"joint {joint}: no pair of moves in one pose of the other joints: used"
             " nonetheless; its friction includes half of the change of gravity between their poses"
             for joint in joints
             if joint in self.across_poses

@@ -104,8 +104,8 @@ def pair_segments(
         raise NotEnoughData(
             f"no constant-velocity motion in {segments.samples} samples"
             f" ({dropped_text(segments.dropped)}); expected moves that hold a speed above"
-            f" {settings.steady.min_speed:g} deg/s (look at the velocity); other motion, as sines,"
-            " is for 'frictioncli separate --by regression'"
+            f" {settings.steady.min_speed:g} deg/s (check the velocity); for other motion, such as"
+            " sines, use 'frictioncli separate --by regression'"
         )
     pairer = _Pairer(
         settings,
@@ -133,9 +133,9 @@ def pair_segments(
         )
         raise NotEnoughData(
             f"no pair of counter-directed moves: {directions_text(segments)}{mixed}; expected"
-            " motion of a joint there and back over the same angles at the same speed; log both"
-            " directions, or loosen --same-speed, --same-temperature, --longest-pause; other"
-            " motion is for 'frictioncli separate --by regression'"
+            " motion in both directions over the same angles at the same speed; log both"
+            " directions, or loosen --same-speed, --same-temperature, --longest-pause; for other"
+            " motion use 'frictioncli separate --by regression'"
         )
     medians = {level: counts.median for level, counts in pairer.speeds.items()}
     speeds = common_speeds(store, medians)

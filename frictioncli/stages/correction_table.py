@@ -30,7 +30,7 @@ def other_joint(source: Path, joint: int, joints: Iterable[int]) -> TableError:
     known = ", ".join(str(number) for number in sorted(set(joints)))
     made_by = "diagnose" if source.name == EXTENDED else "fit"
     return TableError(
-        f"{source}: of joint {joint}, but {TORQUES} beside it has joint(s) {known}; run"
+        f"{source}: of joint {joint}, but {TORQUES} in the same folder has joint(s) {known}; run"
         f" 'frictioncli {made_by}' again"
     )
 

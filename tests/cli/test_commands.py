@@ -143,7 +143,7 @@ def test_simulate_without_temperature_says_why(finished):
     folder, _ = finished
     result = called("simulate", "-w", folder / "work", "--k", 5, "--tmax", 60)
     assert result.returncode == 2
-    assert "does not know how friction falls with temperature" in result.stderr
+    assert "has no dependence of friction on temperature" in result.stderr
     assert not (folder / "work" / "schedule.parquet").exists()
 
 

@@ -41,7 +41,7 @@ def test_a_wrong_joint_lists_those_there_are(tmp_path):
     with pytest.raises(LogError) as caught:
         ingest([logs[0].parent], tmp_path / "work", IngestSettings(joints=(9,)))
     text = str(caught.value)
-    assert text.endswith("a.csv and 2 more: no joint 9; torque channels are there of joint 2, 3")
+    assert text.endswith("a.csv and 2 more: no joint 9; there are torque channels of joint 2, 3")
 
 
 def test_parts_of_different_joints_are_not_merged(tmp_path):

@@ -114,7 +114,7 @@ def test_no_thermal_cycle_is_named():
 
 
 def test_a_model_without_temperature_is_named():
-    with pytest.raises(NotEnoughData, match="does not know how friction falls"):
+    with pytest.raises(NotEnoughData, match="no dependence of friction on temperature"):
         simulated(torques(0), published_model(gamma=0.0, delta=0.0))
 
 

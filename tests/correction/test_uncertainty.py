@@ -263,7 +263,7 @@ def test_too_few_pairs_are_named_by_simulate_and_skipped_by_evaluate():
 
 
 def test_a_model_without_temperature_is_named():
-    with pytest.raises(NotEnoughData, match="does not know how friction falls"):
+    with pytest.raises(NotEnoughData, match="no dependence of friction on temperature"):
         simulated(torques(0), published_model(gamma=0.0, delta=0.0), criterion="uncertainty")
 
 

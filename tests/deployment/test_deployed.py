@@ -143,7 +143,7 @@ def test_a_damaged_document_is_refused_or_still_a_joint(tmp_path, place, damage)
     ("wrong", "said"),
     [
         ({"to": "fmu"}, "expected one of c, urdf"),
-        ({"to": "c", "criterion": "uncertainty"}, "look at the whole log"),
+        ({"to": "c", "criterion": "uncertainty"}, "need the whole log"),
         ({"to": "urdf", "extended": True}, "expected --to c or json"),
         ({"to": "csv", "tolerance": 0.0}, "--tolerance 0"),
         ({"to": "urdf", "lowest": float("nan")}, "--lowest nan"),

@@ -144,8 +144,8 @@ def test_where_it_fits_by_default_is_the_middle_of_the_data():
 def test_leaving_the_data_is_said():
     settings = ExportSettings(to="urdf", temperature=90.0, highest=200.0)
     said = export(joint(), settings).notes
-    assert "speed 200 deg/s lies outside the data's 2.3 to 101.2" in said
-    assert "temperature 90 °C lies outside the data's 20 to 65" in said
+    assert "speed 200 deg/s is outside the range of the data, 2.3 to 101.2" in said
+    assert "temperature 90 °C is outside the range of the data, 20 to 65" in said
 
 
 def test_neither_part_is_negative():

@@ -45,13 +45,14 @@ def test_a_change_that_did_not_last_says_when_it_was_there():
     assert lasting_text(STEP, document) == ""
 
 
-def test_size_says_what_the_base_model_leaves():
+def test_size_says_what_a_refit_of_the_base_model_would_leave():
     both = cause(["drift"], size=1.9, size_ci95=(1.5, 2.3), visible_size=0.8)
     document = diagnosis(torque_unit="A", load_unit="N·m")
     assert size_text(both, document) == (
-        "1.9 A (1.5 to 2.3) RMS in the friction, of which refitting the base model leaves 0.80 A"
+        "1.9 A (1.5 to 2.3) RMS in the friction, of which 0.80 A would remain after refitting the"
+        " base model"
     )
-    assert "leaves" not in size_text(cause(["drift"], size=1.0, visible_size=0.99), document)
+    assert "remain" not in size_text(cause(["drift"], size=1.0, visible_size=0.99), document)
     # a load channel is in N·m where the torque is a current
     assert size_text(cause(["dress_pack"], channel="load"), document).startswith("1.0 N·m RMS")
 
@@ -80,10 +81,9 @@ def test_what_is_left_is_said_with_size_and_axis():
     )
     said = "\n".join(lines(sets=[["coulomb_temperature"]], remainder=left))
     assert (
-        "Unexplained structure remains: on run day-2 the extended model misses the torque by"
-        " 1.4 N·m (RMS),"
-        " where noise alone is 0.67 N·m. That leaves 1.2 N·m, most of it along time, in the"
-        " friction (0.95 N·m)."
+        "Unexplained structure remains: on run day-2 the torque error of the extended model is"
+        " 1.4 N·m (RMS), where noise alone is 0.67 N·m. The difference is 1.2 N·m; most of it,"
+        " 0.95 N·m in the friction, varies with time."
     ) in said
     assert "Something is left" not in "\n".join(lines(sets=[["coulomb_temperature"]]))
 

@@ -92,7 +92,7 @@ def test_workers_of_another_version_are_refused(logs, tmp_path):
     with (
         scheduler() as (address, _),
         worker(address, tmp_path / "one"),
-        pytest.raises(OptionError, match=r"expected 0\.0\.1, as the one who asks"),
+        pytest.raises(OptionError, match=r"expected 0\.0\.1, the version of the caller"),
     ):
         list(run_on_cluster([task], address))
 

@@ -177,7 +177,7 @@ def test_logs_are_never_taken_for_work_folders(logs):
     before = contents(logs)
     result = fleet(logs, "-w", logs)
     assert result.returncode == 2
-    assert "holds files that no fleet has made" in result.stderr
+    assert "holds files that 'fleet' did not write" in result.stderr
     assert contents(logs) == before
 
 

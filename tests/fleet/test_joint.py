@@ -158,7 +158,7 @@ def test_a_run_without_usable_logs_does_not_stop_the_others(task, tmp_path):
 
 def test_a_folder_that_something_else_has_filled_is_left_alone(tmp_path):
     (tmp_path / "mine.txt").write_text("precious", encoding="utf-8")
-    with pytest.raises(FrictionError, match="holds files that no fleet has made"):
+    with pytest.raises(FrictionError, match="holds files that 'fleet' did not write"):
         check_folder(tmp_path)
     check_folder(tmp_path / "not there yet")
 

@@ -210,7 +210,7 @@ def test_a_unit_of_the_map_is_as_told_whatever_the_values(tmp_path):
     path = write(log, tmp_path / "log.csv")
     found = inspect([path], IngestSettings(map_file=tmp_path / "channels.toml"))
     channels = {one.quantity: one for one in found.files[0].joints[0].channels}
-    assert {channels[name].evidence for name in ("position", "velocity", "torque")} == {"as told"}
+    assert {channels[name].evidence for name in ("position", "velocity", "torque")} == {"as given"}
     assert max(abs(channels["position"].lowest), abs(channels["position"].highest)) > 6.9
 
 

@@ -157,7 +157,9 @@ def test_the_intervals_of_the_fit_hold_the_constants_error(tmp_path):
 def test_auto_without_a_torque_beside_the_current_is_refused(tmp_path):
     time, angle, current, _ = channels()
     path = write(tmp_path / "log.csv", {"time": time, "q_2 [deg]": angle, "current_2 [A]": current})
-    with pytest.raises(LogError, match=r"no torque in N·m at the joint stands beside current_2"):
+    with pytest.raises(
+        LogError, match=r"no torque in N·m at the joint from which the torque constant of current_2"
+    ):
         ingest([path], tmp_path / "work", IngestSettings(torque_constant="auto"))
     assert not (tmp_path / "work").exists()
 
@@ -170,7 +172,7 @@ def test_a_constant_that_is_given(tmp_path):
     plain = tables.read(tmp_path / "plain" / "samples.parquet", schemas.SAMPLES)
     np.testing.assert_allclose(table["torque"], -12.5 * plain["torque"], rtol=1e-9)
     fact = tables.facts(tmp_path / "work" / "samples.parquet")["torque_constant"]["2"]
-    assert (fact["estimate"], fact["ci95"], fact["reason"]) == (-12.5, None, "as told")
+    assert (fact["estimate"], fact["ci95"], fact["reason"]) == (-12.5, None, "as given")
     assert summary.torque_unit == "N·m"
 
 

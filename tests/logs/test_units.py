@@ -193,7 +193,7 @@ def test_implausible_temperatures_are_left_out(tmp_path, value):
     columns["Motortemperatur2[°C]"] = np.full(len(columns["Zeit[sec]"]), value)
     summary = ingest([write(tmp_path / "log.csv", columns)], tmp_path / "work")
     assert samples(tmp_path / "work")["motor_temperature"].isna().all()
-    assert any("holds no temperature" in note for note in summary.notes)
+    assert any("has no temperature" in note for note in summary.notes)
 
 
 def test_percent_stays_percent_unless_the_rated_torque_is_known(tmp_path):

@@ -114,7 +114,7 @@ def test_a_table_made_from_a_replaced_one_is_told(work):
     pair(work, PairingSettings(bin_width=2.0))
     assert digests(work)["pairs.parquet"] != pairs
     told = (
-        "warning: torques.parquet was made from another pairs.parquet than the one here;"
+        "warning: torques.parquet was made from a different pairs.parquet;"
         " run 'frictioncli separate' again"
     )
     assert fit(work).text.splitlines()[0] == told
@@ -122,7 +122,7 @@ def test_a_table_made_from_a_replaced_one_is_told(work):
     separate(work)
     assert "warning" not in fit(work).text
     told = report(work).text
-    assert "warning: evaluation.parquet was made from another torques.parquet" in told
+    assert "warning: evaluation.parquet was made from a different torques.parquet" in told
     assert "run 'frictioncli evaluate' again" in told
 
 
@@ -132,7 +132,9 @@ def test_an_old_model_is_told_whatever_its_time(work):
     document["provenance"]["inputs"]["torques.parquet"] = "0" * 64
     (work / "model.json").write_text(json.dumps(document), encoding="utf-8")
     os.utime(work / "model.json", (1, 1))
-    with pytest.raises(TableError, match=r"model\.json: was made from another torques\.parquet"):
+    with pytest.raises(
+        TableError, match=r"model\.json: was made from a different torques\.parquet"
+    ):
         report(work)
 
 

@@ -60,7 +60,7 @@ END
 DEF HEAT (LOW :IN, HIGH :IN, V :IN, SECONDS :IN, UNTIL_K :IN)
 DECL REAL LOW, HIGH, V, SECONDS
 DECL INT UNTIL_K
-WAIT SEC 0.0 ; stops the advance run: the timer starts when the axis stands
+WAIT SEC 0.0 ; stops the advance run: the timer starts when the axis is at rest
 $TIMER[1] = 0
 $TIMER_STOP[1] = FALSE
 WHILE ($TIMER[1] < SECONDS * 1000.0) AND ($MOT_TEMP[{axis}] < UNTIL_K)
@@ -84,7 +84,7 @@ ENDWHILE
 $TIMER_STOP[1] = TRUE
 END
 
-; Stands while the motor is hotter than T_STOP_K (K), an hour at the longest.
+; Waits while the motor is hotter than T_STOP_K (K), at most an hour.
 DEF NOT_TOO_HOT ( )
 WAIT SEC 0.0
 $TIMER[2] = 0
@@ -117,7 +117,7 @@ ENDIF
 WAIT SEC LEAD
 END
 
-; USER HOOK: ends the recording and waits until it is written, a minute at the longest.
+; USER HOOK: ends the recording and waits until it is written, at most a minute.
 DEF TRACE_OFF ( )
 WAIT SEC 0.0
 IF $MODE_OP <> #T1 THEN
@@ -170,7 +170,7 @@ def _source(program: RobotProgram, name: str) -> str:
         *(f"; {to_ascii(text)}" for text in program.header_lines()),
         f"; Limits and speeds are constants in {name.lower()}.dat. V_RATED there must be the rated",
         "; speed of the axis: speeds are stated in whole per cent of it. Run in T1 first, then in",
-        "; automatic mode with the override at 100 %: another override makes other speeds.",
+        "; automatic mode with the override at 100 %: another override changes all speeds.",
         ";FOLD INI",
         "  ;FOLD BASISTECH INI",
         "    GLOBAL INTERRUPT DECL 3 WHEN $STOPMESS==TRUE DO IR_STOPM( )",
@@ -239,12 +239,17 @@ def _data(program: RobotProgram, name: str, rated: float) -> str:
     constants = (
         ("REAL", "V_RATED", f"{rated:.3f}", "rated speed of the axis: CHECK IT (deg/s)"),
         ("REAL", "V_MAX", f"{limits.fastest * (1 + 1e-6):.3f}", "highest speed (deg/s)"),
-        ("REAL", "V_APPROACH", f"{program.approach:.3f}", "to where a series begins (deg/s)"),
+        (
+            "REAL",
+            "V_APPROACH",
+            f"{program.approach:.3f}",
+            "approach to the start of a series (deg/s)",
+        ),
         ("REAL", "A_LOW", f"{limits.low:.3f}", "lowest angle (deg)"),
         ("REAL", "A_HIGH", f"{limits.high:.3f}", "highest angle (deg)"),
         ("INT", "T_STOP_K", f"{hottest}", "wait above (K)"),
-        ("REAL", "DWELL", f"{DWELL:.3f}", "standing time at each end (s)"),
-        ("REAL", "LEAD", f"{LEAD:.3f}", "standing time after a recording starts (s)"),
+        ("REAL", "DWELL", f"{DWELL:.3f}", "pause at each end (s)"),
+        ("REAL", "LEAD", f"{LEAD:.3f}", "pause after a recording starts (s)"),
     )
     lines = [
         "&ACCESS RVP",
@@ -255,7 +260,7 @@ def _data(program: RobotProgram, name: str, rated: float) -> str:
         "  EXT BAS (BAS_COMMAND :IN, REAL :IN)",
         ";ENDFOLD",
         *(f"DECL {kind} {what}={value} ; {text}" for kind, what, value, text in constants),
-        "DECL E6AXIS TARGET ; where the axis is sent; the other axes as at the start",
+        "DECL E6AXIS TARGET ; target of the axis; the other axes as at the start",
         "ENDDAT",
     ]
     return "\n".join(lines) + "\n"

@@ -56,7 +56,7 @@ class RobotProgram:
         yield "Check before: the path is clear over the whole range in this pose of the other"
         yield "axes, the payload is fixed and its data are set, the robot has been idle overnight."
         for text in limits.beyond:
-            yield f"Beyond what was measured, as asked: {text}."
+            yield f"Beyond the measured range, as requested: {text}."
 
 
 def to_ascii(text: str) -> str:

@@ -14,7 +14,7 @@ from frictioncli.design.steps import (
 HEADER = "time_s;block;action;target_deg;back_deg;speed_deg_s;duration_s;until_degC;payload_kg"
 """Column names; ``duration_s`` is the duration of an action with its standing time."""
 
-_NOTE = f"# A recorded move ends with {DWELL:g} s of standing, which its duration includes."
+_NOTE = f"# A recorded move ends with {DWELL:g} s of rest, which its duration includes."
 
 
 def program_files(program: RobotProgram) -> dict[str, str]:

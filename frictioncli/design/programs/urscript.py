@@ -96,11 +96,11 @@ def program_files(program: RobotProgram) -> dict[str, str]:
         ("A_LOW", limits.low, "lowest angle (deg)"),
         ("A_HIGH", limits.high, "highest angle (deg)"),
         ("V_MAX", limits.fastest * (1 + 1e-6), "highest speed (deg/s)"),
-        ("V_APPROACH", program.approach, "to where a series begins (deg/s)"),
+        ("V_APPROACH", program.approach, "approach to the start of a series (deg/s)"),
         ("ACCELERATION", ACCELERATION, "of all moves (deg/s2)"),
         ("T_STOP", limits.hottest + TEMPERATURE_MARGIN, "wait above (degC)"),
-        ("DWELL", DWELL, "standing time at each end (s)"),
-        ("LEAD", LEAD, "standing time after a recording starts (s)"),
+        ("DWELL", DWELL, "pause at each end (s)"),
+        ("LEAD", LEAD, "pause after a recording starts (s)"),
     )
     lines = [
         *(f"# {to_ascii(text)}" for text in program.header_lines()),

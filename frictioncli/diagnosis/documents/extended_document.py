@@ -129,7 +129,7 @@ def extended_model(document: ExtendedDocument) -> ExtendedModel:
             effects=(),
         )
     if not (document.linear_about and document.gravity and document.gravity_about):
-        raise TableError("expected linear_about, gravity and gravity_about beside the rest")
+        raise TableError("expected linear_about, gravity and gravity_about as well")
     empirical = document.empirical or None
     if empirical is not None:
         empirical.check()

@@ -70,7 +70,7 @@ def size_text(cause: CauseRecord, document: DiagnosisDocument) -> str:
     if left is None or left >= _LEFT_BY_BASE * cause.size:
         return text
     remaining = quantity_text(left, cause.visible_ci95, unit)
-    return f"{text}, of which refitting the base model leaves {remaining}"
+    return f"{text}, of which {remaining} would remain after refitting the base model"
 
 
 def lasting_text(cause: CauseRecord, document: DiagnosisDocument) -> str:
@@ -169,10 +169,14 @@ def detectable_text(document: DiagnosisDocument) -> str:
         # sizes in another unit are not compared
         if size is not None and document.unit_of(BY_NAME[name].channel) == document.torque_unit
     )
-    taken = [in_words(name) for name, why in document.undetectable.items() if why == TAKEN_BY_BASE]
+    taken = [
+        in_words(name)
+        for name, why in document.undetectable.items()
+        if why == TAKEN_BY_BASE and name not in document.found
+    ]
     hidden = f" {TAKEN_BY_BASE[0].upper()}{TAKEN_BY_BASE[1:]}: {list_text(taken)}." if taken else ""
     if not known:
-        return f"These data can show none of the effects.{hidden}"
+        return f"These data cannot show any of the effects.{hidden}"
     unit = document.torque_unit
     (least, easiest), (most, hardest) = known[0], known[-1]
     return (
@@ -192,15 +196,15 @@ def remainder_text(document: DiagnosisDocument) -> str:
     left, unit = document.remainder, document.torque_unit
     if left is None:
         return ""
-    on = f"on run {document.held_out}" if left.basis == "new_run" else "on the data fitted"
+    on = f"on run {document.held_out}" if left.basis == "new_run" else "on the fitted data"
     model = "extended" if document.modelled_causes else "base"
-    most = ", most of it" if left.axis_size**2 >= 0.5 * left.size**2 else ", mostly"
+    most = "most" if left.axis_size**2 >= 0.5 * left.size**2 else "the largest part"
     return (
-        f"Unexplained structure remains: {on} the {model} model misses the torque by"
+        f"Unexplained structure remains: {on} the torque error of the {model} model is"
         f" {number_text(left.rmse, 2)} {unit} (RMS), where noise alone is"
-        f" {number_text(left.noise_floor, 2)} {unit}. That leaves {number_text(left.size, 2)}"
-        f" {unit}{most} along {_AXES.get(left.axis, left.axis)}, in the {left.channel}"
-        f" ({number_text(left.axis_size, 2)} {unit})."
+        f" {number_text(left.noise_floor, 2)} {unit}. The difference is {number_text(left.size, 2)}"
+        f" {unit}; {most} of it, {number_text(left.axis_size, 2)} {unit} in the {left.channel},"
+        f" varies with {_AXES.get(left.axis, left.axis)}."
     )
 
 

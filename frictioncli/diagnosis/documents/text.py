@@ -86,7 +86,7 @@ def _visible_lines(cause: CauseRecord, document: DiagnosisDocument) -> Iterator[
 def _gain_text(gain: GainRecord, document: DiagnosisDocument) -> str:
     unit = document.torque_unit
     where = (
-        f"on run {document.held_out}, new to the extension"
+        f"on run {document.held_out}, not used for fitting"
         if gain.basis == "new_run"
         else "on its own training data (optimistic)"
     )

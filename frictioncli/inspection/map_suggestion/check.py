@@ -73,12 +73,15 @@ def check_by_pairing(text: str, logs: Sequence[Path], settings: IngestSettings) 
     others = "".join(f"\n{text}" for text in motion.texts(sorted(motion.shared)))
     if pairs.empty:
         return Check(
-            f"Checked: with it no move at constant speed has a counterpart the other way{others}",
+            "Checked: with it no move at constant speed has a counterpart in the other direction"
+            f"{others}",
             is_doubtful=True,
         )
     half = pairs["half_difference"].to_numpy(float)
     same = float(np.mean(np.sign(half) == np.sign(np.median(half))))
-    paired = f"Checked: with it {count_text(len(half), 'pair')} of moves there and back are found"
+    paired = (
+        f"Checked: with it {count_text(len(half), 'pair')} of moves in both directions are found"
+    )
     if same < _ONE_SIGN:
         return Check(
             f"{paired}, but half differences of torque of both signs{others}", is_doubtful=True

@@ -159,8 +159,9 @@ def _by_position(
     )
     if not named and not (smooth and _unevenness(columns.head.values[smooth[0]]) < _MAX_UNEVENNESS):
         raise NotEnoughData(
-            "no column is like a joint's position: none is another one's integral, none is"
-            " named so, and none goes there and back smoothly; a friction test needs positions"
+            "no column looks like a joint's position: none is the integral of another, none"
+            " has such a name, and none moves smoothly in both directions; a friction test needs"
+            " positions"
         )
     candidates = named or smooth
     column = max(named, key=lambda c: _travel(columns.head.values[c])) if named else candidates[0]
@@ -176,7 +177,7 @@ def _by_position(
     time_unit = possible_time_units(time)[-1]
     degrees = values * units.FACTORS[names.POSITION][unit]
     seconds = columns.head.values[time.column] * units.FACTORS[names.TIME][time_unit]
-    reason = "its name says so" if named else "the smoothest column that goes there and back"
+    reason = "its name says so" if named else "the smoothest column that moves in both directions"
     number = columns.joints.get(column, 1)
     others = [c for c in candidates if c != column and not columns.is_of_another(c, number)]
     velocity, rate = None, np.gradient(degrees, seconds)

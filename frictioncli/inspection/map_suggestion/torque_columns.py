@@ -179,7 +179,7 @@ def load_as_read(columns: LogColumns, plan: JointPlan) -> ColumnGuess | None:
     load = plan.channels.load
     if load is None or load.is_merged or load.column not in columns.head.values:
         return None
-    reason = "the load beside that torque, as it is read without a map"
+    reason = "the load read with that torque when there is no map"
     return ColumnGuess(load.column, reason, LIKELY, plan.conversions[names.LOAD].unit)
 
 
@@ -296,8 +296,8 @@ def guess_load(
             and _torque_unit(columns, one.column) == "N·m"
         ):
             reason = (
-                f"goes with the angle ({100 * one.by_angle:.0f} %), hardly with the direction: a"
-                " load freed of friction"
+                f"depends on the angle ({100 * one.by_angle:.0f} %), hardly on the direction: a"
+                " load without friction"
             )
             return ColumnGuess(one.column, reason, LIKELY, "N·m")
     return None

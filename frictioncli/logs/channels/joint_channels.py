@@ -94,7 +94,7 @@ def assign_channels(
     if not wanted and joints is not None and with_torque:
         return Refusal(
             "no_torque_channel",
-            f"no joint {', '.join(map(str, joints))}; torque channels are there of joint"
+            f"no joint {', '.join(map(str, joints))}; there are torque channels of joint"
             f" {', '.join(map(str, sorted(with_torque)))}",
         )
     if not wanted:

@@ -285,8 +285,7 @@ def _add_temperatures(
         )
         if conversion is None:
             remarks.notes.append(
-                f"{channel.name} holds no temperature (empty, zero, or outside -30..150 °C):"
-                " left out"
+                f"{channel.name} has no temperature (empty, zero, or outside -30..150 °C): left out"
             )
             continue
         conversions[quantity] = conversion

@@ -187,13 +187,13 @@ def _estimate(tables: Sequence[Sequence[Array]], seen_by: str) -> ConstantEstima
     part = squares / np.maximum(squares + np.diag(left), 1e-300)
     if part.min() < _LEAST_PART:
         raise NotEnoughData(
-            f"{seen_by} makes {max(part[0], 0):.0%} of what friction leaves of the current and"
-            f" {max(part[1], 0):.0%} of the torque: too little"
+            f"{seen_by} explains only {max(part[0], 0):.0%} of the current without friction and"
+            f" {max(part[1], 0):.0%} of the torque"
         )
     alike = float(shared[0, 1] ** 2 / squares.prod())
     if alike < _LEAST_SHARED:
         raise NotEnoughData(
-            f"what {seen_by} makes of the current is not what it makes of the torque (squared"
+            f"{seen_by} changes the current and the torque differently (squared"
             f" correlation {alike:.2f})"
         )
     # reading logs otherwise needs no scipy, which takes long to import
@@ -208,7 +208,7 @@ def _estimate(tables: Sequence[Sequence[Array]], seen_by: str) -> ConstantEstima
         _left_out(runs, found, shared, [np.searchsorted(edges, r.angle % _TURN) for r in runs]),
     ):
         if len(changes) < _LEAST_BLOCKS:
-            raise NotEnoughData("too few moves to know how well")
+            raise NotEnoughData("too few moves for an interval")
         spread = (len(changes) - 1) * float(np.mean(np.square(changes - np.mean(changes))))
         half.append(t_quantile(0.975, len(changes) - 1) * float(np.sqrt(spread)))
     if max(half) > _VAGUE * abs(value):

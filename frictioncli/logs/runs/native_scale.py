@@ -47,7 +47,7 @@ class ScaledLog(SequentialSource):
     @property
     def form(self) -> str:
         """The file's form in words."""
-        return f"{self.base.form}, raw values scaled as the .dat header beside it says"
+        return f"{self.base.form}, raw values scaled by the .dat header"
 
     def batches(self, columns: Collection[int], size: int) -> Iterator[RawBatch]:
         """Yield the rows in order, about ``size`` bytes of the file at a time."""

@@ -104,7 +104,7 @@ def open_run(
         del sources[file]
         refusals[file] = Refusal(
             "same_recording",
-            f"the {native.path.suffix} of the same name holds the same recording and is read",
+            f"the {native.path.suffix} of the same name has the same recording and is read instead",
         )
     sources = {file: scale_raw_export(source) for file, source in sources.items()}
     choices = _choices(sources, settings, channel_map)

@@ -80,7 +80,7 @@ class ProgramFile:
             return "names no motion"
         kinds = " and ".join(sorted({motion.kind for motion in self.motions}))
         speeds = [speed for motion in self.motions for speed in motion.speeds]
-        text = f"tells of {kinds} motions"
+        text = f"lists {kinds} motions"
         if speeds:
             low, high = min(speeds), max(speeds)
             text += f" at {low:g}" + (f" to {high:g}" if high > low else "") + " % of axis speed"
