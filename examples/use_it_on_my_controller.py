@@ -1,7 +1,7 @@
 """Use it on my controller.
 
-The model leaves this program as a C header or a JSON document; the correction of the temperature
-runs in the control loop, sample by sample. Here the second day is lived through again.
+The model is exported as a C header or a JSON document; the correction of the temperature runs in
+the control loop, sample by sample. Here the second day is replayed.
 """
 
 # %%

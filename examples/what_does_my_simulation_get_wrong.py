@@ -1,7 +1,7 @@
-"""What does my simulation get wrong: which effect is missing, and what it is worth.
+"""What does my simulation get wrong: which effect is missing, and how much it matters.
 
-The fitted friction and gravity simulate the torque; what is left is tested against twenty
-physical effects, with noise that drifts. The last run is kept out and judges the gain.
+The fitted friction and gravity simulate the torque; the residual is tested against twenty physical
+effects, with noise that drifts. The last run is held out to measure the gain.
 """
 
 # %%
@@ -23,7 +23,7 @@ print("verdict:", diagnosis.verdict)
 for cause in diagnosis.causes:
     print(f"\n{' or '.join(cause.effects)}: {cause.claim}")
     print(f"  {cause.equation}")
-    print(f"  size {cause.size:.2f} N·m RMS, by chance with p = {cause.p_value:.1g}")
+    print(f"  size {cause.size:.2f} N·m RMS, p-value {cause.p_value:.1g}")
     for name, parameter in cause.parameters.items():
         low, high = parameter.ci95 or (float("nan"), float("nan"))
         value = f"{parameter.estimate:.3g} {parameter.unit}"
@@ -39,7 +39,7 @@ print(
 )
 
 # %% What these data could have shown, the smallest size found 4 times in 5
-print("\nwould have been found from:")
+print("\nsmallest size that would have been named:")
 for name, size in diagnosis.detectable.items():
     print(f"  {name:20s} {'cannot show it' if size is None else f'{size:.2f} N·m'}")
 

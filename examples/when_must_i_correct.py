@@ -1,4 +1,4 @@
-"""When must I correct the temperature, and what does it bring.
+"""When must I correct the temperature, and what is the benefit.
 
 While the robot works its friction is predicted from the motor's temperature; now and then a pair
 of moves corrects that temperature (Algorithm 3). How often is enough?

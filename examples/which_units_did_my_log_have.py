@@ -1,7 +1,7 @@
 """Which units did my log have, and how is that known.
 
-Headers lie: radians under a `[°]`, Kelvin under `[°C]`, motor-side channels. What a log holds is
-found from the data, and the evidence is told. Here two good logs are spoilt on purpose.
+Headers can be wrong: radians under `[°]`, Kelvin under `[°C]`, motor-side channels. Units are
+determined from the data, and the evidence is shown. Here two good logs are altered on purpose.
 """
 
 # %%

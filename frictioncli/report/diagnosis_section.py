@@ -21,15 +21,14 @@ from frictioncli.report.diagnosis_captions import (
     map_caption,
     simulation_caption,
 )
+from frictioncli.report.diagnosis_tables import detectable_table, worst_table
 from frictioncli.report.diagnosis_text import (
     CauseText,
     cause_texts,
-    detectable_table,
     gain_sentence,
     unnamed_texts,
     verdict_sentence,
     visible_texts,
-    worst_table,
 )
 from frictioncli.report.evidence_figure import evidence_figure
 from frictioncli.report.experiment import experiment_sentence

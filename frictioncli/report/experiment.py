@@ -48,8 +48,8 @@ def experiment(results: JointResults) -> Experiment | None:
     after = f" A check of {duration_text(check.duration_s)} follows {check.when}." if check else ""
     intervals = [] if plan.intervals is UNSET else [one for one in plan.intervals if one.wide]
     return Experiment(
-        sentence=f"The programme takes {duration_text(plan.programme.duration_s)}.{after} Log each"
-        " as a separate run.",
+        sentence=f"The programme takes {duration_text(plan.programme.duration_s)}; log it as a"
+        f" separate run.{after}",
         blocks=TextTable(
             title="Blocks in order",
             header=("block", "why", "times", "minutes"),

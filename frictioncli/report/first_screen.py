@@ -73,7 +73,7 @@ def _how_sure(results: JointResults, document: DiagnosisDocument | None) -> Answ
         )
     where = "on its own training data"
     if document and gain.basis == "new_run":
-        where = f"on {document.held_out}, not used for fitting"
+        where = f"tested on {document.held_out}"
     if gain.ci95[0] <= 0:
         return Answer(
             question="How sure",
@@ -83,8 +83,8 @@ def _how_sure(results: JointResults, document: DiagnosisDocument | None) -> Answ
     return Answer(
         question="How sure",
         value=f"±{number_text(gain.rmse_before)} {unit}",
-        text=f"RMS misfit of equation (16); ±{number_text(gain.rmse_after)} {unit} with the"
-        f" extended model, {where}",
+        text=f"RMS misfit of equation (16); extended model ±{number_text(gain.rmse_after)} {unit},"
+        f" {where}",
     )
 
 
@@ -98,10 +98,10 @@ def _what_is_wrong(document: DiagnosisDocument | None) -> Answer:
     left = document.remainder
     rest = ""
     if left:
-        along = f"varying mostly with {left.axis}"
+        along = f"mainly over {left.axis}"
         if document.structure is not None:
             axes = ["angle" if axis == "position" else axis for axis in document.structure.axis]
-            along = f"varying with {list_text(axes)}"
+            along = f"structure over {list_text(axes)}"
         rest = f"{number_text(left.size, 2)} {document.torque_unit} unexplained, {along}"
     if named:
         if document.verdict == "unnamed":
@@ -131,7 +131,7 @@ def _what_next(results: JointResults, document: DiagnosisDocument | None) -> Ans
         return Answer(
             question=question,
             value="use the extended model",
-            text="'frictioncli plan' designs the next experiment",
+            text="then 'frictioncli plan'",
         )
     if document.verdict == "no_evidence":
         return Answer(question=question, value="use equation (16)", text="")
@@ -139,7 +139,7 @@ def _what_next(results: JointResults, document: DiagnosisDocument | None) -> Ans
 
 
 def word_count(found: list[Answer]) -> int:
-    """Return the number of words of the answers.
+    """Return the number of words of the questions and answers.
 
     Parameters
     ----------
@@ -149,6 +149,6 @@ def word_count(found: list[Answer]) -> int:
     Examples
     --------
     >>> word_count([Answer(question="How much", value="69 N·m", text="at 40 °C")])
-    5
+    7
     """
-    return sum(len(f"{one.value} {one.text}".split()) for one in found)
+    return sum(len(f"{one.question} {one.value} {one.text}".split()) for one in found)

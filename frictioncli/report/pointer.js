@@ -26,6 +26,7 @@
     if (!panels.length || !card) continue;
     const box = card.appendChild(document.createElement("p"));
     box.className = "pointer";
+    box.setAttribute("aria-hidden", "true"); // the tables have the values
     box.hidden = true;
     svg.addEventListener("pointermove", (event) => {
       const at = new DOMPoint(event.clientX, event.clientY).matrixTransform(svg.getScreenCTM().inverse());

@@ -141,9 +141,7 @@ def time_rating(counts: IngestCounts) -> QualityRating:
             reason=f"{count_text(counts.warnings, 'warning')} while reading; see the notes below.",
         )
     return QualityRating(
-        level=GOOD,
-        name="Time and units",
-        reason="Start times are known; no warnings while reading.",
+        level=GOOD, name="Time and units", reason="Start times are known; reading without warnings."
     )
 
 

@@ -22,7 +22,8 @@ from frictioncli.report.style import (
     speed_styles,
     style_context,
 )
-from frictioncli.wording import number_text, speed_text
+from frictioncli.report.tooltips import set_tooltips
+from frictioncli.wording import change_text, number_text, speed_text
 
 _LEVEL = "#2B6CB0"
 _BAND = "#BFD4EA"
@@ -96,7 +97,7 @@ def _draw_runs(axes: Axes, document: ComparisonDocument) -> None:
         markerfacecolor="white",
         label="as measured",
     )
-    axes.errorbar(
+    drawn = axes.errorbar(
         x,
         level,
         yerr=half_width,
@@ -105,6 +106,10 @@ def _draw_runs(axes: Axes, document: ComparisonDocument) -> None:
         color=_LEVEL,
         elinewidth=1.2,
         label="at equal ambient conditions",
+    )
+    set_tooltips(
+        drawn.lines[0],
+        [f"{run.folder}, {run.run}: {change_text(run.level, run.ci95, '%')}" for run in runs],
     )
     _draw_limits(axes, document, mean_level + trend.estimate * float(centred[0]))
     axes.set_ylabel(f"friction of joint {document.joint} against the mean [%]")
@@ -143,7 +148,7 @@ def _draw_conditions(axes: Axes, rows: Sequence[ConditionRecord]) -> None:
     for index, row in enumerate(rows):
         change = row.percent
         centre = change.estimate
-        axes.errorbar(
+        drawn = axes.errorbar(
             centre,
             index,
             xerr=[[centre - change.ci95[0]], [change.ci95[1] - centre]],
@@ -152,6 +157,8 @@ def _draw_conditions(axes: Axes, rows: Sequence[ConditionRecord]) -> None:
             markerfacecolor="white" if row.extrapolated else styles[row.speed].colour,
             elinewidth=1.2,
         )
+        where = f"{row.temperature:.0f} °C, {speed_text(row.speed)}"
+        set_tooltips(drawn.lines[0], [f"{where}: {change_text(centre, change.ci95, '%')}"])
     axes.axvline(0.0, color=MODEL, linewidth=1.0)
     axes.set_yticks(
         range(len(rows)),

@@ -94,7 +94,7 @@ def test_detectable_sizes_are_said():
         "Smallest effects that would be named in 80 % of cases: 0.20 N·m RMS (stribeck) to 1.5 N·m"
         " (drift)."
     )
-    assert lines(detectable={"run_in": None})[-1] == "These data can show none of the effects."
+    assert lines(detectable={"run_in": None})[-1] == "These data cannot show any of the effects."
 
 
 def test_what_the_base_takes_entirely_is_said():

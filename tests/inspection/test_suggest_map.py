@@ -168,7 +168,7 @@ def test_the_first_file_that_is_not_recognised_is_chosen(tmp_path):
 def test_a_table_without_motion_is_refused(tmp_path):
     rng = np.random.default_rng(3)
     table = pd.DataFrame({"t": np.arange(500) * 0.1, "x": rng.normal(size=500)})
-    with pytest.raises(LogError, match=r"log\.csv.*no column is like a joint's position"):
+    with pytest.raises(LogError, match=r"log\.csv.*no column looks like a joint's position"):
         suggested_map([write(table, tmp_path / "log.csv")])
     table["t"] = rng.normal(size=500)
     with pytest.raises(LogError, match="needs a time column"):

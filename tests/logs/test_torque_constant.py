@@ -101,7 +101,7 @@ def test_a_vertical_axis_is_told_by_its_inertia():
 def test_channels_without_a_common_load_tell_none():
     time, angle, current, _ = channels(gravity=0.0, inertia=0.0)
     torque = np.random.default_rng(2).normal(0, 1, len(time))
-    with pytest.raises(NotEnoughData, match=r"gravity makes .* too little"):
+    with pytest.raises(NotEnoughData, match=r"gravity explains only .* inertia explains only"):
         estimate_constant([[ChannelPair(time, angle, current, torque)]])
     still = np.full(len(time), 3.0)
     with pytest.raises(NotEnoughData, match="hardly moves"):

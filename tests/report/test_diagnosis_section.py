@@ -13,17 +13,13 @@ from msgspec import convert, structs
 from frictioncli.diagnosis.documents.document import DiagnosisDocument
 from frictioncli.diagnosis.documents.extended_document import ExtendedDocument, extended_model
 from frictioncli.diagnosis.documents.reload import is_current, read_documents, reload
-from frictioncli.diagnosis.documents.sentences import p_value_text
+from frictioncli.diagnosis.documents.sentences import detectable_text, p_value_text
+from frictioncli.diagnosis.search.effect_size import TAKEN_BY_BASE
 from frictioncli.errors import TableError
 from frictioncli.report.diagnosis_captions import cause_title
 from frictioncli.report.diagnosis_section import diagnosis_figures, diagnosis_section
-from frictioncli.report.diagnosis_text import (
-    UNDETECTABLE,
-    cause_texts,
-    detectable_table,
-    gain_sentence,
-    verdict_sentence,
-)
+from frictioncli.report.diagnosis_tables import FOUND, UNDETECTABLE, detectable_table
+from frictioncli.report.diagnosis_text import cause_texts, gain_sentence, verdict_sentence
 from frictioncli.report.drawing import draw_figure
 from frictioncli.report.page import write_report
 from frictioncli.report.results import read_results
@@ -73,7 +69,7 @@ def test_section_says_what_was_found(diagnosed):
     assert "2.10 N·m (RMS, day-1)" in section.verdict
     assert "The model lacks stribeck." in section.verdict
     assert "one of direction asymmetry and dress pack" in section.verdict
-    assert "Besides, structure remains" in section.verdict
+    assert "There is also structure" in section.verdict
     assert [one.effects for one in section.causes] == [
         "stribeck 97 %",
         "direction asymmetry 60 % or dress pack 40 %",
@@ -248,6 +244,19 @@ def test_page_has_the_section_after_the_figures_escaped_and_the_same_twice(
         again = draw_figure(figure, results, png=True)
         assert again.svg in text
         assert again.png == (page.parent / f"{figure.name}.png").read_bytes()
+
+
+def test_an_effect_that_is_named_is_never_said_to_be_undetectable():
+    """Of a named effect the data may show no smallest size; the page does not doubt it for that."""
+    sizes = {"thermal_lag": None, "drift": None, "run_in": 1.0}
+    document = diagnosis(
+        sets=[["thermal_lag"], ["drift", "run_in"]],
+        detectable=sizes,
+        undetectable=dict.fromkeys(("thermal_lag", "drift"), TAKEN_BY_BASE),
+    )
+    rows = {row[0]: row[-1] for row in detectable_table(document, "N·m").rows}
+    assert rows == {"thermal lag": FOUND, "drift": TAKEN_BY_BASE, "run in": "1.0"}
+    assert detectable_text(document).endswith("with these data: drift.")
 
 
 def test_smallest_sizes_of_effects_on_a_load_channel_have_its_unit():

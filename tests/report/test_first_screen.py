@@ -1,5 +1,7 @@
 """First screen: four answers in few words, with numbers that the tables have."""
 
+import html
+import re
 from dataclasses import replace
 
 import numpy as np
@@ -9,6 +11,7 @@ from msgspec import structs
 from frictioncli.diagnosis.documents.document import RemainderRecord, StructureRecord
 from frictioncli.report.first_screen import answers, word_count
 from frictioncli.report.operating_point import operating_point, overview_figure
+from frictioncli.report.page import write_report
 from frictioncli.wording import number_text
 
 
@@ -21,6 +24,20 @@ def test_answers_have_less_than_sixty_words(two_runs, diagnosed, current_log, wi
         found = answers(results)
         assert len(found) == 4
         assert word_count(found) < 60
+
+
+def test_the_first_screen_of_a_page_has_no_other_prose(diagnosed_work, diagnosed):
+    """Beside the picture there are the questions, the answers and the names of the lights."""
+    page = write_report(diagnosed_work).read_text(encoding="utf-8")
+    first = re.search(r'<div class="first">.*?(<dl class="answers">.*?</dl>)(.*?)<nav', page, re.S)
+    shown = html.unescape(re.sub(r"<[^>]+>", " ", first[1]))
+    assert (
+        shown.split()
+        == " ".join(f"{one.question} {one.value} {one.text}" for one in answers(diagnosed)).split()
+    )
+    assert len(shown.split()) < 60
+    lights = re.sub(r'<span class="(lamp|spoken)".*?</span>', "", first[2])
+    assert len(re.sub(r"<[^>]+>", " ", lights).split()) <= 2 * 8
 
 
 def test_how_much_is_equation_16_at_the_medians(diagnosed):
@@ -40,8 +57,7 @@ def test_how_much_is_equation_16_at_the_medians(diagnosed):
 def test_how_sure_is_the_misfit_on_the_new_run(diagnosed, two_runs):
     said = by_question(diagnosed)["How sure"]
     assert said == (
-        "±2.00 N·m RMS misfit of equation (16); ±1.00 N·m with the extended model, on day-2, not"
-        " used for fitting"
+        "±2.00 N·m RMS misfit of equation (16); extended model ±1.00 N·m, tested on day-2"
     )
     assert by_question(two_runs)["How sure"] == "±1.13 N·m RMS misfit of equation (16)"
 
@@ -73,7 +89,7 @@ def test_structure_without_a_name_is_said_beside_the_causes(diagnosed):
     said = by_question(changed)["What the simulation gets wrong"]
     assert said.startswith("stribeck")
     assert "and structure without a name" in said
-    assert said.endswith("1.2 N·m unexplained, varying with angle")
+    assert said.endswith("1.2 N·m unexplained, structure over angle")
 
 
 def test_without_temperature_the_point_has_none(without_temperature):

@@ -129,7 +129,7 @@ def test_model_that_leaves_something_on_a_new_run_is_not_good(two_runs):
     )
     rating = model_rating(two_runs, diagnosis(verdict="no_evidence", remainder=left))
     assert rating.level == FAIR
-    assert "still 1.40 N·m on a new run, where noise alone is 0.700 N·m" in rating.reason
+    assert "On a new run it still misses 1.40 N·m, where noise alone is 0.700 N·m" in rating.reason
 
 
 def test_measurement_is_no_fault_of_the_equation(two_runs):

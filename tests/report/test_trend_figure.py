@@ -1,5 +1,7 @@
 """The figure of a comparison shows the numbers of its document."""
 
+import html
+import re
 from datetime import datetime, timedelta
 
 import numpy as np
@@ -128,6 +130,17 @@ def test_without_conditions_or_dates_there_is_one_panel_over_the_order():
     figure = drawn(dated=False, conditions=False)
     assert len(figure.axes) == 1
     assert figure.axes[0].get_xlabel() == "run, in the order given"
+
+
+def test_points_show_their_values():
+    shown = document()
+    element, _ = trend_files(shown)
+    titles = [html.unescape(one) for one in re.findall(r"<use [^>]*><title>(.*?)</title>", element)]
+    assert len(titles) == len(shown.runs) + len(shown.friction)
+    for title, run in zip(titles, shown.runs, strict=False):
+        name, value = title.rsplit(": ", 1)
+        assert name == f"{run.folder}, {run.run}"
+        assert float(value.split(" %")[0].replace("−", "-")) == pytest.approx(run.level, abs=0.06)
 
 
 def test_pictures_are_the_same_bytes_again():
