@@ -63,6 +63,9 @@ class StartWindows:
         Samples with known neighbours while the joint moves.
     gravity : ndarray, shape (starts, samples)
         Torque of gravity; 0 where it is not known in the unit of the torque. [N·m]
+    turned : ndarray or None, shape (starts, samples)
+        Angle since the first sample, over which a load that is not known changes; None where all
+        loads are known. [deg]
     friction : ndarray, shape (starts, samples)
         Friction torque of the base model with the sign of the motion. [N·m]
     inertial : tuple of ndarray, shape (starts, samples)
@@ -79,6 +82,7 @@ class StartWindows:
     since: Array
     moving: Flags
     gravity: Array
+    turned: Array | None
     friction: Array
     inertial: tuple[Array, ...]
     frictional: tuple[Array, ...]
@@ -189,6 +193,7 @@ def _assembled(grid: _Grid, sign: int, problem: Problem, temperature: str) -> St
         since=grid.since,
         moving=(grid.since > 0) & (along > _SLOWEST) & (ends > 2 * half + 2),
         gravity=smooth(gravity, 2),
+        turned=smooth(grid.position - grid.position[:, :1], 2),
         friction=sign * smooth(friction, 1),
         inertial=tuple(inertial),
         frictional=tuple(

@@ -8,9 +8,10 @@ average; the filter smears it too, with the variance :math:`S = \theta^2`. Where
 
 follows the motion at once but for friction, which builds up over an unknown way: what it is late by
 is a parameter of its own, and the first 0.04 s are left out. *D*, *S* and that lateness are found
-by nonlinear least squares, the linear ones within (variable projection) [1]_. Standard errors are
-robust to correlation within a start and within all starts of one direction and speed, since a servo
-repeats its misfit exactly.
+by nonlinear least squares, the linear ones within (variable projection) [1]_. Where a load
+is not known, as of a payload that was put on, each start has a line over the angle besides.
+Standard errors are robust to correlation within a start and within all starts of one direction and
+speed, since a servo repeats its misfit exactly.
 
 That the torque is neither late nor smeared, is late, filtered, or both, are four rivals, whose
 evidence is the integral of the likelihood of *D* and *S* over uniform priors of *d* and
@@ -25,7 +26,7 @@ References
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from scipy.interpolate import CubicSpline
@@ -59,6 +60,13 @@ _SHARE = (0.02, 0.05)
 _STARTS = tuple((shift, smear) for shift in (0.0, 0.02, 0.06) for smear in (1e-6, 4e-4, 3e-3))
 _STEPS = (5e-4, 2e-5, 5e-4)
 """Values of shift [s] and smear [s²] to start from, and steps of derivatives. [s], [s²], [s]"""
+
+_OF_UNKNOWN_LOAD = 1 / 3
+"""Share of the squared misfit of the starts that is left where a load is not known, as of a payload
+that nobody told of. It takes a line over the angle for each start, which costs precision."""
+
+_WIDEST = 0.2
+"""Width of an interval of the shift that says nothing: no drive is as late. [s]"""
 
 _CONFIDENT = 0.975
 _NO_COLUMN = 1e-9
@@ -110,7 +118,9 @@ class TorqueTiming:
 
 
 def torque_timing(ramps: RampLog, problem: Problem, temperature: str) -> TorqueTiming | None:
-    """Return delay and filter of the torque; None where the log has too few starts of moves.
+    """Return delay and filter of the torque; None where the starts of moves do not show them.
+
+    There may be too few, or something else may happen at them.
 
     Parameters
     ----------
@@ -124,21 +134,13 @@ def torque_timing(ramps: RampLog, problem: Problem, temperature: str) -> TorqueT
     if ramps.starts is None:
         return None
     windows = StartWindows.of(ramps.starts, ramps.sign, problem, temperature)
-    return None if windows is None else timing_of(windows)
+    found = None if windows is None else timing_of(windows)
+    return None if found is None or found.shift.high - found.shift.low > _WIDEST else found
 
 
 def timing_of(windows: StartWindows) -> TorqueTiming:
     """Return delay and filter of the torque in the samples around starts of moves."""
-    used = windows.used(0.0)
-    first = min(
-        (np.array([shift, smear, 0.0]) for shift, smear in _STARTS),
-        key=lambda point: float(np.sum(np.square(_residual(windows, used, point)))),
-    )
-    found = _fitted(windows, used, first)
-    # a late onset of friction looks like a smear of up to a sample
-    smear_for_sure = max(found[1] - windows.period**2, 0.0)
-    used = windows.used(found[0] - math.sqrt(smear_for_sure))
-    found = _fitted(windows, used, found)
+    windows, used, found = _with_loads(windows)
     misfit = _residual(windows, used, found)
     point, covariance, freedom = _one_step(windows, used, found)
     reach = -t_quantile(1 - _CONFIDENT, freedom)
@@ -158,6 +160,31 @@ def timing_of(windows: StartWindows) -> TorqueTiming:
         rms=float(np.sqrt(np.sum(np.square(misfit)) / max(used.sum(), 1))),
         starts=len(windows.torque),
     )
+
+
+def _with_loads(windows: StartWindows) -> tuple[StartWindows, Flags, Array]:
+    """Return windows with all loads known, unless others explain far more, and their best fit."""
+    fits = []
+    for one in (replace(windows, turned=None), windows):
+        used, found = _found(one)
+        left = float(np.sum(np.square(_residual(one, used, found))))
+        fits.append((left, (one, used, found)))
+    (left, known), (left_beside, unknown) = fits
+    return unknown if left_beside < _OF_UNKNOWN_LOAD * left else known
+
+
+def _found(windows: StartWindows) -> tuple[Flags, Array]:
+    """Return the samples that are used, and shift, smear and lateness with the least misfit."""
+    used = windows.used(0.0)
+    first = min(
+        (np.array([shift, smear, 0.0]) for shift, smear in _STARTS),
+        key=lambda point: float(np.sum(np.square(_residual(windows, used, point)))),
+    )
+    found = _fitted(windows, used, first)
+    # a late onset of friction looks like a smear of up to a sample
+    smear_for_sure = max(found[1] - windows.period**2, 0.0)
+    used = windows.used(found[0] - math.sqrt(smear_for_sure))
+    return used, _fitted(windows, used, found)
 
 
 def _fitted(windows: StartWindows, used: Flags, first: Array) -> Array:
@@ -236,15 +263,17 @@ def _residual(windows: StartWindows, used: Flags, point: Array) -> Array:
         delayed = responded(rows, windows.period, delay=delay + extra, time_constant=time_constant)
         return delayed.reshape(shape)
 
-    early = logged((windows.gravity, *windows.inertial))
+    turned = () if windows.turned is None else (windows.turned,)
+    early = logged((windows.gravity, *turned, *windows.inertial))
     later = logged((windows.friction, *windows.frictional), late)
     basis: list[Array] = []
-    for column in (np.ones_like(windows.torque), later[0]):
+    lines = 1 + len(turned)
+    for column in (np.ones_like(windows.torque), later[0], *early[1:lines]):
         rest = _without(column * used, basis)
         size = np.sqrt(np.sum(np.square(rest), axis=1, keepdims=True))
         basis.append(np.divide(rest, size, out=np.zeros_like(rest), where=size > _NO_COLUMN))
     misfit = _without((windows.torque - early[0]) * used, basis)
-    common = _without(np.concatenate([early[1:], later[1:]]) * used, basis)
+    common = _without(np.concatenate([early[lines:], later[1:]]) * used, basis)
     columns = common.reshape(len(common), -1).T
     columns = columns / np.maximum(np.linalg.norm(columns, axis=0), _NO_COLUMN)
     orthogonal, triangle = np.linalg.qr(columns)
