@@ -20,7 +20,9 @@ from frictioncli.workfiles import DIAGNOSIS, EXTENDED, MODEL, RAMPS, TORQUES
 
 
 @stage
-def diagnose(work: Path, settings: DiagnosisSettings | None = None) -> StageResult:
+def diagnose(
+    work: Path, settings: DiagnosisSettings | None = None, *, sizes: bool = True
+) -> StageResult:
     """Find what the simulated torque gets wrong: ``diagnosis.json``, ``extended-model.json``.
 
     Parameters
@@ -29,6 +31,8 @@ def diagnose(work: Path, settings: DiagnosisSettings | None = None) -> StageResu
         Work folder with ``torques.parquet`` and ``model.json``.
     settings : DiagnosisSettings, optional
         Significance level and limits of the search.
+    sizes : bool, optional
+        Whether the smallest size of each effect that would be named is worked out.
 
     Raises
     ------
@@ -55,7 +59,7 @@ def diagnose(work: Path, settings: DiagnosisSettings | None = None) -> StageResu
         except NotEnoughData as fault:
             faults.append(str(fault))
         else:
-            found = diagnosis_document(diagnosis, settings)
+            found = diagnosis_document(diagnosis, settings, sizes=sizes)
             moving = facts.get("other_motion", {}).get(str(model.joint))
             diagnoses[model.joint] = with_other_joint(found, moving)
             extended[model.joint] = extended_document(diagnosis, model)

@@ -1,51 +1,62 @@
-"""The smallest size of an effect that is named: expected statistics against planted effects."""
+"""The smallest size of an effect that is named: planted fits against effects in the data."""
 
 from dataclasses import replace
 
 import numpy as np
 import pytest
-from scipy import stats
 
 from frictioncli.diagnosis.data.problem import Problem
+from frictioncli.diagnosis.fit.columns import misfit_column
 from frictioncli.diagnosis.fit.hypotheses import hypothesis_of
-from frictioncli.diagnosis.search import detectable_size as module
+from frictioncli.diagnosis.fit.transformed_columns import Part, TransformedColumns
+from frictioncli.diagnosis.search import detectable_size as detectable
+from frictioncli.diagnosis.search import planted_torque as module
 from frictioncli.diagnosis.search.catalogue import Catalogue
 from frictioncli.diagnosis.search.cause_search import find_causes
-from frictioncli.diagnosis.search.detectable_size import Needed, detectable_size, noncentrality
+from frictioncli.diagnosis.search.detectable_size import SHAPES, Rules, detectable_size
 from frictioncli.diagnosis.search.effect_size import left_share
-from frictioncli.diagnosis.search.planted_fit import PlantedFit
+from frictioncli.diagnosis.search.lack_of_fit import Structure
+from frictioncli.diagnosis.search.planted_fits import PlantedFits
+from frictioncli.diagnosis.search.planted_rivals import PlantedRivals
+from frictioncli.diagnosis.search.planted_torque import error_forms, planted_torques
 from frictioncli.diagnosis.search.precomputed import Precomputed
 from frictioncli.diagnosis.search.standing import with_standing
 from frictioncli.diagnosis.search.step import Step
 from frictioncli.diagnosis.settings import DiagnosisSettings
 from frictioncli.effects import BY_NAME, EFFECTS
+from frictioncli.effects.base import Basis
 from tests.diagnosis.dense_noise import problem
 
 MARGIN = 0.1
 LEVEL = 0.05 / 26
 
 
+def torques_of(data, effect, count):
+    return planted_torques(data, effect, error_forms(data, count))
+
+
 def step_of(data, discrepancy=0.0075):
     return Step.of(Precomputed.of(data, discrepancy=discrepancy), [])
 
 
-def the_test(step, name):
-    effect = BY_NAME[name]
-    catalogue = Catalogue.of(step.precomputed, [hypothesis_of(effect, step.problem)])
-    return step.tested(catalogue)[name]
+def size_of(step, effect, margin=MARGIN, beside=(), **others):
+    """Return the detectable size of an effect beside some rivals."""
+    tried = [effect, *(BY_NAME[name] for name in beside)]
+    hypotheses = [hypothesis_of(one, step.problem) for one in tried]
+    catalogue = Catalogue.of(step.precomputed, hypotheses)
+    test = step.tested(catalogue)[effect.name]
+    forms = error_forms(step.problem, SHAPES)
+    rules = {"structure": None, "unnamed": frozenset()} | others
+    rules = Rules(level=LEVEL, margin=margin, forms=forms, **rules)
+    return detectable_size(effect, test, rules, PlantedRivals(step, catalogue))
 
 
-def planted(data: Problem, name, shape, size, missed=0.0, seed=0):
-    """Return a problem with an effect in its data, and noise of its form from pair to pair."""
-    basis = data.basis(BY_NAME[name], shape)
-    columns = getattr(basis, BY_NAME[name].channel)[:, 0]
-    scale = size / np.sqrt(np.mean(np.square(columns)))
-    factor = 1 + missed * np.random.default_rng(seed).standard_normal(len(data.layout.time))
-    factor = factor[data.layout.row_pair]
+def planted(data: Problem, torque: Basis, size):
+    """Return a problem with a torque in its data."""
     return replace(
         data,
-        friction=data.friction + scale * factor * basis.friction[:, 0],
-        load=data.load + scale * factor * basis.load[:, 0],
+        friction=data.friction + size * torque.friction[:, 0],
+        load=data.load + size * torque.load[:, 0],
     )
 
 
@@ -53,81 +64,105 @@ def middle(name):
     return {axis.name: axis.at(0.5) for axis in BY_NAME[name].shape}
 
 
-@pytest.mark.parametrize("name", ["load_linear", "dress_pack"])
-def test_a_small_size_has_its_squared_white_length_as_statistic(name):
-    """By noncentral chi squared, as long as neither noise nor discrepancy takes a part of it."""
-    step = step_of(problem(0), discrepancy=0)
-    shape = middle(name)
-    alone = Catalogue.of(step.precomputed, [hypothesis_of(BY_NAME[name], step.problem, [shape])])
-    scale = step.tested(alone, refitted=0)[name].size_scale
-    one = PlantedFit.of(step, BY_NAME[name], shape)
-    assert one.expected(0.0).statistic == pytest.approx(0.0, abs=0.5)
-    assert one.expected(6 * scale).statistic == pytest.approx(36, rel=0.15)
+@pytest.mark.parametrize("name", ["payload_change", "position_ripple", "rest_recovery"])
+def test_what_is_planted_has_its_size_and_an_error_of_form(name):
+    """The size is that of the whole torque in its channel; the form misses a tenth of it."""
+    data, effect = problem(0), BY_NAME[name]
+    torques = torques_of(data, effect, 4)
+    assert len(torques) == 4
+    for one in torques:
+        torque = getattr(one.torque, effect.channel)[:, 0]
+        assert np.sqrt(np.mean(np.square(torque))) == pytest.approx(1.0)
+        exact = getattr(one.columns, effect.channel) @ one.coefficients
+        missed = torque - exact
+        # relative to the whole torque, whose size an error of form changes a little
+        assert np.sqrt(np.mean(np.square(missed))) == pytest.approx(0.1, abs=0.015)
+
+
+def test_a_torque_is_planted_into_inner_products_as_into_the_data():
+    """All inner products of the data with the torque, worked out from the columns."""
+    data = problem(0)
+    step, torque = step_of(data), torques_of(data, BY_NAME["dress_pack"], 1)[0].torque
+    found = step.planted(torque, np.array([2.5]))
+    there = misfit_column(planted(data, torque, 2.5))
+    *parts, _ = step.columns.parts
+    columns = TransformedColumns((*parts, Part(there, step.precomputed.noises)))
+    expected = columns.products()
+    for channel in (0, 1):
+        for name in ("within", "between"):
+            one, two = (getattr(this, name)[channel] for this in (found.products, expected))
+            np.testing.assert_allclose(one, two, atol=1e-9 * float(np.abs(two).max()))
 
 
 @pytest.mark.parametrize(
     ("name", "size"), [("load_linear", 3.0), ("step_change", 0.6), ("dress_pack", 2.0)]
 )
-def test_the_expected_statistic_is_that_of_the_effect_in_the_data(name, size):
+def test_the_statistic_is_that_of_the_effect_in_the_data(name, size):
     """The effect is added to the torques, and everything is fitted again."""
-    shape = {"moment": 0.4, "end": 1.0} if name == "step_change" else middle(name)
-    expected, found = [], []
-    for seed in range(4):
-        data = problem(seed, drift=0.2)
-        expected.append(PlantedFit.of(step_of(data), BY_NAME[name], shape).expected(size).statistic)
-        step = step_of(planted(data, name, shape, size, missed=0.05, seed=seed))
-        found.append(step.fitted(BY_NAME[name], shape).statistic)
-    assert np.mean(found) == pytest.approx(np.mean(expected), rel=0.25)
+    data, effect = problem(1, drift=0.2), BY_NAME[name]
+    torques = torques_of(data, effect, 3)
+    fits = PlantedFits.of(step_of(data), torques)
+    for number, one in enumerate(torques):
+        fits.add_best(number, size)
+        expected = fits.fitted(number, size).fit
+        found = step_of(planted(data, one.torque, size)).fitted(effect, one.shape)
+        assert expected.statistic == pytest.approx(found.statistic, rel=0.25, abs=1.0)
+        np.testing.assert_allclose(
+            expected.coefficients, found.coefficients, rtol=0.2, atol=0.05 * size
+        )
 
 
 def test_drift_takes_a_slow_effect_the_more_the_larger_it_is():
     """Four times the statistic at twice the size is what fixed variances would give."""
     data = problem(1, drift=0.6, drift_time=9000.0)
-    one = PlantedFit.of(step_of(data), BY_NAME["drift"], middle("drift"))
-    small, large = (one.expected(size).statistic for size in (4.0, 8.0))
+    fits = PlantedFits.of(step_of(data), torques_of(data, BY_NAME["drift"], 1))
+    for size in (4.0, 8.0):
+        fits.add_best(0, size)
+    small, large = (fits.fitted(0, size).fit.statistic for size in (4.0, 8.0))
     assert 0 < large < 3 * small
 
 
-def test_needed_statistic_and_margin():
-    """By the definition of the power, and nothing below the margin."""
-    for freedom in (1, 3):
-        value = noncentrality(20.0, freedom)
-        assert stats.ncx2.sf(20.0, freedom, value) == pytest.approx(0.8, abs=1e-6)
-    step = step_of(problem(0))
-    effect = BY_NAME["position_ripple"]
-    test = the_test(step, effect.name)
-    change = BY_NAME["step_change"]
-    sizes = [detectable_size(step, effect, test, LEVEL, margin) for margin in (MARGIN, 10 * MARGIN)]
+def test_nothing_below_the_margin_is_claimed():
+    step, ripple = step_of(problem(0)), BY_NAME["position_ripple"]
+    sizes = [size_of(step, ripple, margin) for margin in (MARGIN, 10 * MARGIN)]
     assert MARGIN < sizes[0] < 2 * MARGIN
     assert 10 * MARGIN < sizes[1] < 20 * MARGIN
-    # a change needs a p-value fifty times smaller
-    single = replace(test, freedom=1, null=replace(test.null, coefficients=1, shapes=1.0))
-    asked = [Needed.of(step, one, single, LEVEL, MARGIN) for one in (effect, change)]
-    assert asked[1].statistic > asked[0].statistic + 5
-    assert detectable_size(step, effect, replace(test, freedom=0), LEVEL, MARGIN) is None
+
+
+def test_an_effect_along_structure_without_a_name_must_be_larger_than_it():
+    """Three times: else both may be one thing that no effect explains."""
+    structure = Structure(
+        axes=("position",),
+        channel="friction",
+        p_value=1e-9,
+        statistic=50.0,
+        size=0.5,
+        interval=(0.4, 0.6),
+    )
+    step, ripple = step_of(problem(0)), BY_NAME["position_ripple"]
+    assert 1.35 < size_of(step, ripple, structure=structure) < 1.8
+    elsewhere = replace(structure, axes=("speed",))
+    assert size_of(step, ripple, structure=elsewhere) < 2 * MARGIN
 
 
 def test_what_would_be_impossible_has_no_size():
     """Ripple bounded to a tenth of the margin."""
-    effect = BY_NAME["position_ripple"]
+    ripple = BY_NAME["position_ripple"]
     bounded = tuple(
-        replace(one, lower=-MARGIN / 10, upper=MARGIN / 10) for one in effect.coefficients
+        replace(one, lower=-MARGIN / 10, upper=MARGIN / 10) for one in ripple.coefficients
     )
-    step = step_of(problem(0))
-    test = the_test(step, effect.name)
-    little = replace(effect, coefficients=bounded)
-    assert detectable_size(step, little, test, LEVEL, MARGIN) is None
+    assert size_of(step_of(problem(0)), replace(ripple, coefficients=bounded)) is None
 
 
 def test_no_size_is_claimed_where_the_base_leaves_no_more_than_a_form_misses(monkeypatch):
-    """The base leaves a tenth of a load's amount; a form misses a twentieth, give or take two."""
-    step = step_of(problem(0))
-    effect = BY_NAME["load_linear"]
-    test = the_test(step, effect.name)
-    assert left_share(step.precomputed, effect, {}) == pytest.approx(0.1, abs=0.02)
-    assert detectable_size(step, effect, test, LEVEL, MARGIN) is None
-    monkeypatch.setattr(module, "FORM", 0.0)
-    assert detectable_size(step, effect, test, LEVEL, MARGIN) > 10 * MARGIN
+    """The base leaves a tenth of a load's amount, and a form misses as much."""
+    step, effect = step_of(problem(0)), BY_NAME["load_linear"]
+    torque = step.problem.basis(effect, {})
+    assert left_share(step.precomputed, torque) == pytest.approx(0.1, abs=0.02)
+    assert size_of(step, effect) is None
+    monkeypatch.setattr(module, "_FORM", 0.0)
+    monkeypatch.setattr(detectable, "_LEAST_LEFT", 0.0)
+    assert size_of(step, effect) > 10 * MARGIN
 
 
 @pytest.mark.long
@@ -137,14 +172,13 @@ def test_the_claimed_size_is_named_and_half_of_it_is_not(name):
     settings = DiagnosisSettings()
     found = find_causes(problem(0, drift=0.2), EFFECTS, settings, MARGIN)
     claimed = found.detectable_sizes([BY_NAME[name]], settings.alpha, MARGIN)[name]
-    shape = {"moment": 0.4, "end": 1.0} if name == "step_change" else middle(name)
     named = {}
     for factor in (0.4, 1.5):
         named[factor] = 0
         for seed in range(1, 7):
-            data = planted(
-                problem(seed, drift=0.2), name, shape, factor * claimed, missed=0.05, seed=seed
-            )
+            data = problem(seed, drift=0.2)
+            torque = torques_of(data, BY_NAME[name], 6)[seed - 1].torque
+            data = planted(data, torque, factor * claimed)
             causes = find_causes(data, EFFECTS, settings, MARGIN).causes
             judged = with_standing(causes, data, MARGIN, settings.alpha)
             named[factor] += any(one.standing == "named" and name in one.effects for one in judged)

@@ -1,6 +1,5 @@
 """``diagnosis.json`` and ``extended-model.json`` of a diagnosis."""
 
-from collections.abc import Mapping
 from dataclasses import fields, replace
 
 import numpy as np
@@ -8,6 +7,7 @@ from msgspec import UNSET
 
 from frictioncli.diagnosis.data.gravity_document import gravity_document
 from frictioncli.diagnosis.diagnose import Diagnosis
+from frictioncli.diagnosis.documents.detectable import detectable_sizes, undetectable_reasons
 from frictioncli.diagnosis.documents.document import (
     CauseRecord,
     DiagnosisDocument,
@@ -39,13 +39,10 @@ from frictioncli.diagnosis.documents.thermal_record import record_of_lag
 from frictioncli.diagnosis.fit.extension import Extension
 from frictioncli.diagnosis.ramps.evidence import RampEstimate
 from frictioncli.diagnosis.search.cause import Cause
-from frictioncli.diagnosis.search.confounded import unclaimed
-from frictioncli.diagnosis.search.effect_size import LACKING, TAKEN_BY_BASE
 from frictioncli.diagnosis.search.timing_causes import DELAY, FILTER
 from frictioncli.diagnosis.settings import DiagnosisSettings
 from frictioncli.diagnosis.thermal.refine import LAG
-from frictioncli.effects import BY_NAME, torque_delay, torque_filter
-from frictioncli.effects.base import Effect, missing_columns
+from frictioncli.effects import torque_delay, torque_filter
 from frictioncli.effects.history_text import history_text
 from frictioncli.model.document import PARAMETERS, FrictionModel
 from frictioncli.model.friction import FrictionParameters
@@ -54,7 +51,9 @@ _LOAD_UNIT = "N·m"
 """Unit of a load channel."""
 
 
-def diagnosis_document(diagnosis: Diagnosis, settings: DiagnosisSettings) -> DiagnosisDocument:
+def diagnosis_document(
+    diagnosis: Diagnosis, settings: DiagnosisSettings, *, sizes: bool = True
+) -> DiagnosisDocument:
     """Return one joint's diagnosis as a document.
 
     Parameters
@@ -63,6 +62,8 @@ def diagnosis_document(diagnosis: Diagnosis, settings: DiagnosisSettings) -> Dia
         The diagnosis.
     settings : DiagnosisSettings
         Its settings.
+    sizes : bool, optional
+        Whether the smallest size of each effect that would be named is worked out.
     """
     causes = [
         _cause_record(diagnosis, cause, number + 1) for number, cause in enumerate(diagnosis.causes)
@@ -70,7 +71,7 @@ def diagnosis_document(diagnosis: Diagnosis, settings: DiagnosisSettings) -> Dia
     if diagnosis.structure is not None:
         causes.append(unnamed_record(diagnosis))
     gain, ramps = diagnosis.gain, diagnosis.ramps
-    detectable = _detectable(diagnosis, settings)
+    detectable = detectable_sizes(diagnosis, settings) if sizes else {}
     return DiagnosisDocument(
         joint=diagnosis.joint,
         verdict=diagnosis.verdict,
@@ -94,7 +95,7 @@ def diagnosis_document(diagnosis: Diagnosis, settings: DiagnosisSettings) -> Dia
         else gain_record(diagnosis.empirical, diagnosis.torque_unit),
         remainder=remainder_record(diagnosis),
         detectable=detectable,
-        undetectable=_undetectable(diagnosis, detectable),
+        undetectable=undetectable_reasons(diagnosis, settings, detectable),
         simulation=SimulationRecord(rmse=diagnosis.rmse, worst=diagnosis.worst),
         ramps=None if ramps is None else ramps_record(ramps, diagnosis.torque_unit),
         settling=diagnosis.settling,
@@ -104,22 +105,6 @@ def diagnosis_document(diagnosis: Diagnosis, settings: DiagnosisSettings) -> Dia
         held_out=diagnosis.held_out,
         settings=settings,
     )
-
-
-def _detectable(diagnosis: Diagnosis, settings: DiagnosisSettings) -> dict[str, float | None]:
-    return diagnosis.search.detectable_sizes(diagnosis.tried, settings.alpha, diagnosis.margin)
-
-
-def _undetectable(diagnosis: Diagnosis, detectable: Mapping[str, float | None]) -> dict[str, str]:
-    """Return why effects have no detectable size."""
-
-    def reason(effect: Effect) -> str:
-        if missing_columns(effect, diagnosis.base.table):
-            return LACKING
-        return unclaimed(effect, diagnosis.base) or TAKEN_BY_BASE
-
-    unknown = [name for name, size in detectable.items() if size is None]
-    return {name: reason(BY_NAME[name]) for name in unknown}
 
 
 def extended_document(diagnosis: Diagnosis, model: FrictionModel) -> ExtendedDocument:

@@ -64,6 +64,15 @@ class ModelColumns:
         """Number of columns."""
         return self.friction.count
 
+    def plus(self, other: "ModelColumns") -> "ModelColumns":
+        """Return the columns, each with one of others added."""
+        return ModelColumns(
+            *(
+                ChannelColumns(one.within + two.within, one.means + two.means)
+                for one, two in zip(self.channels, other.channels, strict=True)
+            )
+        )
+
     def take(self, chosen: slice | Sequence[int] | Indices) -> "ModelColumns":
         """Return some of the columns."""
         return ModelColumns(

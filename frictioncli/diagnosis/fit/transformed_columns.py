@@ -102,7 +102,7 @@ class Part:
             self._across[key] = (other, _inner_products(other, self, channel))
         return self._across[key][1]
 
-    def take(self, chosen: slice) -> "Part":
+    def take(self, chosen: slice | list[int]) -> "Part":
         """Return some of the columns."""
         modes = {key: values[:, chosen] for key, values in self._modes.items()}
         return Part(self.columns.take(chosen), self.noises, modes)
@@ -153,6 +153,23 @@ class TransformedColumns:
     def within(self, channel: int) -> Array:
         """Return deviations within pairs, shape (contrasts, columns)."""
         return np.hstack([part.columns.channels[channel].within for part in self.parts])
+
+    def within_products(self, other: Part, channel: int) -> Array:
+        """Return inner products of deviations within pairs with those of another part.
+
+        Parameters
+        ----------
+        other : Part
+            The other part.
+        channel : int
+            0 for friction, 1 for load.
+
+        Returns
+        -------
+        ndarray, shape (columns, columns of the other)
+        """
+        columns = other.columns.channels[channel].within
+        return np.vstack([one.columns.channels[channel].within.T @ columns for one in self.parts])
 
     def products(self) -> Products:
         """Return inner products of all columns."""

@@ -78,22 +78,48 @@ class Catalogue:
         """
         hypothesis, place = self.hypotheses[number], self.places[number]
         shapes, width = len(hypothesis.shapes), hypothesis.width
-        across = np.zeros((known.count, shapes * width))
         own = np.zeros((shapes, width, width))
-        noises = self.precomputed.noises
+        for channel in (0, 1):
+            if not self._shows(channel, number):
+                continue
+            own += self._own_within(channel, number) / variances.within[channel]
+            modes, weight = self._modes(channel, place, variances)
+            own += _blocks(modes, weight, shapes, width)
+        return self.across(number, known, variances), own
+
+    def across(self, number: int, known: TransformedColumns, variances: Variances) -> Array:
+        """Return inner products with known columns alone, as of :meth:`products`.
+
+        Parameters
+        ----------
+        number : int
+            Number of the hypothesis.
+        known : TransformedColumns
+            The known columns.
+        variances : Variances
+            Variance components.
+
+        Returns
+        -------
+        ndarray, shape (columns, shapes * width)
+        """
+        place = self.places[number]
+        across = np.zeros((known.count, place.stop - place.start))
         for channel in (0, 1):
             if not self._shows(channel, number):
                 continue
             scale = variances.within[channel]
             across += self._across_within(channel, known)[:, place] / scale
-            own += self._own_within(channel, number) / scale
-            noise = variances.noise[channel]
-            weight = 1 / (noises.variance(channel, noise) * variances.between[channel])
-            time = noises.indices[noise][0]
-            modes = self.part.modes(channel, time)[:, place]
+            modes, weight = self._modes(channel, place, variances)
+            time = self.precomputed.noises.indices[variances.noise[channel]][0]
             across += known.modes(channel, time).T @ (modes * weight[:, np.newaxis])
-            own += _blocks(modes, weight, shapes, width)
-        return across, own
+        return across
+
+    def _modes(self, channel: int, place: slice, variances: Variances) -> tuple[Array, Array]:
+        """Return pair means in the eigenvectors of the noise, and the precision of each."""
+        noises, noise = self.precomputed.noises, variances.noise[channel]
+        weight = 1 / (noises.variance(channel, noise) * variances.between[channel])
+        return self.part.modes(channel, noises.indices[noise][0])[:, place], weight
 
     def shape_part(self, number: int, shape: int) -> Part:
         """Return the columns of one shape of a hypothesis.

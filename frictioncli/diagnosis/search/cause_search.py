@@ -149,6 +149,7 @@ def find_causes(
         rejected=tests,
         dropped={name: why for name, why in dropped.items() if name not in _names(accepted)},
         step=step,
+        catalogue=catalogue,
     )
 
 

@@ -10,7 +10,7 @@ from frictioncli.arrays import Array, Flags
 from frictioncli.diagnosis.data.problem import Problem
 from frictioncli.diagnosis.fit.hypotheses import EffectFit
 from frictioncli.diagnosis.search.cause import Cause
-from frictioncli.diagnosis.search.planted_fit import FORM
+from frictioncli.diagnosis.search.effect_size import FORM
 from frictioncli.effects.base import Effect
 from frictioncli.effects.history import present
 from frictioncli.effects.inertia import EFFECT as INERTIA

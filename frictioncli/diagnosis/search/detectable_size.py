@@ -1,228 +1,258 @@
-r"""Smallest size of an effect that would be named, with what noise and discrepancy take of it.
+"""Smallest size of an effect that would be named, by planting it into the misfit that there is.
 
-An effect of the catalogue is planted into the misfit that is there, less what already looks like
-it. Its expected statistic is twice the gain of the restricted log likelihood
-
-.. math:: \lambda(s) = 2 \ell_1 - 2 \ell_0(s)
-
-of base and effect to the base alone, each with the noise and the discrepancy that suit it best:
-the base alone takes an effect for discrepancy or drift, and the more so the larger it is. Under
-fixed variances :math:`\lambda` would grow with the square of the size *s*; so it does not, and the
-size that is needed may be several times larger. Nor is what is planted exactly what is fitted: the
-form of an entry misses a few per cent of any joint's effect, which is much where the base takes
-nearly all of it.
+An effect of the catalogue is added to the residuals of the joint in several shapes, each with an
+error of form, and judged as the search judges it. Noise and discrepancy are those that suit base
+and effect best, and the base alone best, which takes an effect for discrepancy or drift, the more
+so the larger it is. Then come the size that the base leaves of it, its rivals, and structure
+without a name. The result is the size at which four of five shapes are named.
 """
 
-from dataclasses import dataclass
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
+from math import ceil
 
 import numpy as np
-from scipy.optimize import brentq
 
-from frictioncli.diagnosis.fit.hypotheses import EffectFit, HypothesisTest, informative_shapes
-from frictioncli.diagnosis.fit.left_by_base import Z95
+from frictioncli.arrays import Array
+from frictioncli.diagnosis.fit.hypotheses import HypothesisTest
+from frictioncli.diagnosis.fit.left_by_base import Z95, left_by
 from frictioncli.diagnosis.noise.significance import statistic_of
 from frictioncli.diagnosis.search.cause import CONVINCING
 from frictioncli.diagnosis.search.effect_size import left_share, left_size
+from frictioncli.diagnosis.search.lack_of_fit import Structure
 from frictioncli.diagnosis.search.margin import channel_margin, whole_torque
-from frictioncli.diagnosis.search.planted_fit import FORM, PlantedFit
+from frictioncli.diagnosis.search.planted_fits import SHARED, PlantedFit, PlantedFits
+from frictioncli.diagnosis.search.planted_rivals import PlantedRivals, RivalsOfTorques
+from frictioncli.diagnosis.search.planted_torque import planted_torques
+from frictioncli.diagnosis.search.possible import beyond_bounds, standard_errors
+from frictioncli.diagnosis.search.rivals import evidence_missed
 from frictioncli.diagnosis.search.standing import level_of
-from frictioncli.diagnosis.search.step import Step
-from frictioncli.distributions import normal_quantile
-from frictioncli.effects.base import Effect
+from frictioncli.diagnosis.search.understood import MOST_LEFT, is_part
+from frictioncli.effects.base import Basis, Effect
 
 POWER = 0.8
-"""Probability with which an effect of the smallest detectable size is named."""
+"""Share of the shapes that are named at the smallest detectable size."""
 
-_ABOVE = 1 + -float(normal_quantile(1 - POWER)) / 1.96
-"""By how many of its half-widths below the size the lower bound must be above the margin for it to
-be so four times in five."""
+SHAPES = 5
+"""Number of shapes in which an effect is planted."""
 
-_STEP = 1.25
-"""Factor to which the size is resolved, and by which it grows at least until it would be named."""
+_MOST = 0.5
+"""Greatest size that is claimed, as a share of all friction or load: with a larger effect the base
+would be another."""
 
-_LEAP = 3.0
-"""Factor by which it grows at most."""
+_LEAST = 1e-3
+"""Least size that is tried, as a share of the greatest."""
+
+_LEAST_LEFT = 0.2
+"""Least share of its torque that the base must leave of a shape: else an error of form of a tenth
+changes what is left by more than a half, and the size that is named by as much."""
+
+_STEP = 2.0
+"""Factor from one size that is tried to the next."""
+
+_CLOSE = 1.1
+"""Factor to which the size of a shape is resolved."""
+
+_SAME = 1.2
+"""Factor within which the base alone has the same noise and discrepancy."""
+
+_ROUNDS = 4
+"""Greatest number of times that these are estimated anew."""
+
+_LEFT = 0.5
+"""Share of the margin that must be left of a rival."""
+
+_IN_SET = 3.0
+"""Greatest difference of the log Bayes factors of an effect and its best rival in one set."""
+
+_STRUCTURE = 30.0
+"""Twice the log likelihood from which on what the form misses of an effect is structure."""
 
 _NEVER = float("inf")
-"""Size of what is never named, and factor by which a physically impossible size is too small."""
-
-_SHAPES = 9
-"""Number of shapes of an effect of which it is planted in the middle one."""
-
-_HISTORIES = 3
-"""Number of histories of a change with which it is planted: what drift takes of it depends on them
-by more than what the base does."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Needed:
-    """What a name needs.
+class Rules:
+    """What is the same for all effects of a joint.
 
     Attributes
     ----------
-    statistic : float
-        Expected statistic.
-    margin : float
-        Size of which the base must leave more. [N·m]
-    most : float
-        Torque that an effect cannot be larger than. [N·m]
-    """
-
-    statistic: float
-    margin: float
-    most: float
-
-    @classmethod
-    def of(
-        cls, step: Step, effect: Effect, test: HypothesisTest, level: float, margin: float
-    ) -> "Needed | None":
-        """Return what a name needs; None where the data determine none of the coefficients.
-
-        Parameters
-        ----------
-        step : Step
-            Base and other causes.
-        effect : Effect
-            The effect.
-        test : HypothesisTest
-            Its test there.
-        level : float
-            Significance level of a single test.
-        margin : float
-            Smallest size worth a name. [N·m]
-        """
-        if test.freedom == 0:
-            return None
-        threshold = max(
-            test.null.critical_value(level_of(effect, level)),
-            statistic_of(CONVINCING, test.freedom, test.null.shapes),
-        )
-        if not np.isfinite(threshold):
-            return None
-        return cls(
-            statistic=noncentrality(threshold, test.freedom),
-            margin=channel_margin(step.problem, effect.channel, margin),
-            most=whole_torque(step.problem, effect.channel),
-        )
-
-
-def noncentrality(threshold: float, freedom: int) -> float:
-    """Return the noncentrality of a chi-squared variable that passes a threshold with `POWER`.
-
-    Examples
-    --------
-    >>> round(noncentrality(3.84, 1) ** 0.5, 1)
-    2.8
-    """
-    from scipy.stats import ncx2  # takes long to import
-
-    def passes_too_rarely(value: float) -> float:
-        return float(ncx2.sf(threshold, freedom, value)) - POWER
-
-    return float(brentq(passes_too_rarely, 1e-6, 1e5))
-
-
-def detectable_size(
-    step: Step, effect: Effect, test: HypothesisTest, level: float, margin: float
-) -> float | None:
-    """Return the smallest RMS size of an effect that would be named four times in five [N·m].
-
-    Of an average shape of the effect; of a change the median over some histories.
-
-    Parameters
-    ----------
-    step : Step
-        Base and other causes.
-    effect : Effect
-        The effect.
-    test : HypothesisTest
-        Its test there.
     level : float
         Significance level of a single test.
     margin : float
         Smallest size worth a name. [N·m]
+    structure : Structure or None
+        Structure without a name that is there.
+    unnamed : frozenset of str
+        Effects that have no name in these data.
+    forms : sequence of ndarray, shape (rows,)
+        Errors of form, one for each shape that is planted.
+    """
+
+    level: float
+    margin: float
+    structure: Structure | None
+    unnamed: frozenset[str]
+    forms: Sequence[Array]
+
+
+def detectable_size(
+    effect: Effect, test: HypothesisTest, rules: Rules, rivals: PlantedRivals
+) -> float | None:
+    """Return the smallest RMS size of an effect at which four of five shapes are named.
+
+    Parameters
+    ----------
+    effect : Effect
+        The effect.
+    test : HypothesisTest
+        Its test there.
+    rules : Rules
+        What a name needs.
+    rivals : PlantedRivals
+        Base and other causes, and all hypotheses beside them.
 
     Returns
     -------
     float or None
-        None where it would have to be larger than the torque that there is, or than is physically
-        possible.
+        The size [N·m]; None where it would have to be more than half of all friction, or load, or
+        than is physically possible, and where the base takes too much of some shapes.
     """
-    needed = Needed.of(step, effect, test, level, margin)
-    if needed is None:
+    if test.freedom == 0:
         return None
-    sizes = [_least(one, needed, test) for one in _planted(step, effect, needed)]
-    if not sizes:
+    step = rivals.step
+    threshold = max(
+        test.null.critical_value(level_of(effect, rules.level)),
+        statistic_of(CONVINCING, test.freedom, test.null.shapes),
+    )
+    margin = channel_margin(step.problem, effect.channel, rules.margin)
+    most = _MOST * whole_torque(step.problem, effect.channel)
+    torques = planted_torques(step.problem, effect, rules.forms)
+    if not (np.isfinite(threshold) and torques and margin < most):
         return None
-    size = float(np.median(sizes))
+    shares = [left_share(step.precomputed, one.torque) for one in torques]
+    told = [one for one, share in zip(torques, shares, strict=True) if share >= _LEAST_LEFT]
+    if len(told) < POWER * len(torques):
+        return None
+    fits = PlantedFits.of(step, told)
+    judge = _Judge(fits, rules, rivals, threshold, margin, ceil(POWER * len(torques)))
+    size = _settled_size(judge, most)
     return size if np.isfinite(size) else None
 
 
-def _planted(step: Step, effect: Effect, needed: Needed) -> list[PlantedFit]:
-    """Return an effect in the shape of which the base leaves an average share.
-
-    A change with several histories that last. Those of which a size worth a name is possible.
-    """
-    from scipy.stats import qmc  # takes long to import
-
-    shapes, wanted = informative_shapes(effect, step.problem), 1
-    if effect.moments is not None:
-        shapes, wanted = [one for one in shapes if one["end"] >= 1.0] or shapes, _HISTORIES
-    places = qmc.Halton(1, scramble=False).random(_SHAPES + 1)[1:, 0] * len(shapes)
-    some = [shapes[place] for place in dict.fromkeys(places.astype(int).tolist())]
-    if effect.moments is None:
-        shares = np.array([left_share(step.precomputed, effect, shape) for shape in some])
-        order = np.argsort(np.abs(shares - np.median(shares)), kind="stable")
-        some = [some[place] for place in order]
-    found: list[PlantedFit] = []
-    for shape in some:
-        one = PlantedFit.of(step, effect, shape)
-        if one is not None and one.is_possible(needed.margin):
-            found.append(one)
-        if len(found) == wanted:
+def _settled_size(judge: "_Judge", most: float) -> float:
+    """Return the size with the noise and discrepancy that the base alone has there."""
+    fits, tried = judge.fits, dict[int, float]()
+    least = [0.0] * len(fits.torques)
+    for _ in range(_ROUNDS):
+        least = [_least(judge, judge.doubtful, most, *one) for one in enumerate(least)]
+        number = judge.counting(least)
+        at = min(least[number], most)
+        if number in tried and 1 / _SAME < at / tried[number] < _SAME:
             break
-    return found
+        tried[number] = at
+        fits.add_best(number, at)
+    if np.isfinite(least[judge.counting(least)]):
+        least = [_least(judge, judge.refused, most, *one) for one in enumerate(least)]
+    return least[judge.counting(least)]
 
 
-def _least(planted: PlantedFit, needed: Needed, test: HypothesisTest) -> float:
-    """Return the least size of a planted effect that is named; infinity where none is."""
-    size = min(max(float(np.sqrt(needed.statistic)) * test.size_scale, needed.margin), needed.most)
-    below, factor = size, _missing(planted, needed, size)
-    while factor > 1:
-        below, size = size, size * float(np.clip(factor, _STEP, _LEAP))
-        if size > needed.most:
-            return _NEVER
-        factor = _missing(planted, needed, size)
-    while size > _STEP * below:
+def _least(
+    judge: "_Judge",
+    doubtful: Callable[[PlantedFit], bool],
+    most: float,
+    number: int,
+    before: float,
+) -> float:
+    """Return the least size of a torque that is named; infinity where none is.
+
+    None below the one before: the more is asked for, the larger it is.
+    """
+
+    def is_named(size: float) -> bool:
+        planted = judge.fits.fitted(number, size)
+        return planted.fit.statistic >= judge.threshold and not doubtful(planted)
+
+    if not np.isfinite(before) or (before and is_named(before)):
+        return before
+    lowest = before or max(judge.margin / 2, _LEAST * most)
+    count = max(ceil(np.log(most / lowest) / np.log(_STEP)), 1)
+    sizes = np.geomspace(lowest, most, count + 1)[1 if before else 0 :]
+    possible = judge.fits.most_statistics(number, sizes) >= judge.threshold
+    below = before
+    for size, may_be in zip(sizes.tolist(), possible.tolist(), strict=True):
+        if may_be and is_named(size):
+            break
+        below = size
+    else:
+        return _NEVER
+    while below and size > _CLOSE * below:
         middle = float(np.sqrt(below * size))
-        if _missing(planted, needed, middle) > 1:
-            below = middle
-        else:
+        if is_named(middle):
             size = middle
+        else:
+            below = middle
     return size
 
 
-def _missing(planted: PlantedFit, needed: Needed, size: float) -> float:
-    """Return by about which factor a size would have to be larger to pass every gate; 1 if none.
+@dataclass(frozen=True, slots=True)
+class _Judge:
+    """What a planted effect needs for its name, and the number of shapes that must have it."""
 
-    Those gates first that take no further fit. What is impossible at one size is so at a larger.
-    """
-    if not planted.is_possible(size):
-        return _NEVER
-    if not _is_large(planted, planted.alone(size), needed, size):
-        return _STEP
-    fit = planted.expected(size)
-    if fit.statistic < needed.statistic:
-        # the statistic grows at most with the square of the size
-        return max(float(np.sqrt(needed.statistic / max(fit.statistic, 1e-9))), _STEP)
-    return 1.0 if _is_large(planted, fit, needed, size) else _STEP
+    fits: PlantedFits
+    rules: Rules
+    rivals: PlantedRivals
+    threshold: float
+    margin: float
+    wanted: int
+    _of_torques: dict[int, RivalsOfTorques] = field(default_factory=dict)
 
+    def counting(self, least: Sequence[float]) -> int:
+        """Return the number of the shape up to whose least size enough are named."""
+        return int(np.argsort(least, kind="stable")[self.wanted - 1])
 
-def _is_large(planted: PlantedFit, fit: EffectFit, needed: Needed, size: float) -> bool:
-    """Return whether the lower bound of what the base leaves is above the margin.
+    def refused(self, planted: PlantedFit) -> bool:
+        """Return whether an effect is doubtful, or taken by a rival."""
+        return self.doubtful(planted) or self.rivalled(planted)
 
-    Where it leaves little, what the form misses of the whole torque is as large as that.
-    """
-    left, low, _ = left_size(planted.step.precomputed, fit)
-    reach = float(np.hypot(left - low, Z95 * FORM * size))
-    return left - _ABOVE * reach > needed.margin
+    def doubtful(self, planted: PlantedFit) -> bool:
+        """Return whether an effect is impossible, too small, or not understood."""
+        fit, step, errors = planted.fit, self.fits.step, standard_errors(planted.fit)
+        if beyond_bounds(fit, step.problem) or not errors.any():
+            return True
+        if len(errors) == 1 and abs(fit.coefficients[0]) <= Z95 * errors[0]:
+            return True
+        left, low, _ = left_size(step.precomputed, fit)
+        if low <= self.margin:
+            return True
+        structure = self.rules.structure
+        if structure is not None and is_part(fit.effect, left, structure):
+            return True
+        return planted.missed > _STRUCTURE and self._missed(planted) > MOST_LEFT * left
+
+    def rivalled(self, planted: PlantedFit) -> bool:
+        """Return whether a rival that has no name, or a name of its own, takes an effect."""
+        fits, rules = self.fits, self.rules
+        planted = fits.fitted(planted.number, planted.size, SHARED)
+        if planted.member not in self._of_torques:
+            variances = fits.family[planted.member].variances
+            found = self.rivals.of_torques(fits.torque_part, variances)
+            self._of_torques[planted.member] = found
+        rivals = self._of_torques[planted.member]
+        own = rivals.own_log_bayes_factor(planted)
+        for factor, fit in rivals.better(planted, own):
+            size, _, _ = left_size(fits.step.precomputed, fit)
+            if size <= _LEFT * channel_margin(fits.step.problem, fit.effect.channel, rules.margin):
+                continue
+            in_set = own + evidence_missed(fit.statistic, 0.0) > factor - _IN_SET
+            return fit.effect.name in rules.unnamed or not in_set
+        return False
+
+    def _missed(self, planted: PlantedFit) -> float:
+        """Return the RMS that the base leaves of what a fit misses of a torque."""
+        torque = self.fits.torques[planted.number]
+        coefficients = planted.fit.coefficients[:, np.newaxis]
+        both = zip(torque.torque, torque.columns, strict=True)
+        rest = Basis(*(planted.size * one - own @ coefficients for one, own in both))
+        left = left_by(self.fits.step.precomputed.span, rest)
+        return float(np.sqrt(np.sum(np.square(left)) / (len(left) / 2)))

@@ -1,6 +1,6 @@
 """Sizes of fitted effects: their torque, and what the base leaves of it, with intervals."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
@@ -9,17 +9,17 @@ from frictioncli.arrays import Array
 from frictioncli.diagnosis.fit.hypotheses import EffectFit
 from frictioncli.diagnosis.fit.left_by_base import Z95, left_by, span_of, visible_size_of
 from frictioncli.diagnosis.search.precomputed import Precomputed
-from frictioncli.effects.base import Effect
+from frictioncli.effects.base import Basis
 
 _OTHER_FORM = 0.5
 """Share of the discrepancy along an effect that the assumed covariance does not account for."""
 
-_FORM = 0.05
+FORM = 0.05
 """Standard deviation of what the form of an effect misses, relative to its size: no joint follows
 the equation of an entry exactly, nor does the base take as much of it as of that."""
 
 TAKEN_BY_BASE = "cannot be distinguished from the base model with these data"
-"""Reason why an effect has no detectable size: larger than all friction it could not be named."""
+"""Reason why an effect has no detectable size: with half of all friction it would not be named."""
 
 LACKING = "these data lack a quantity that it needs"
 """Reason why an effect has no detectable size: a column is missing, or does not vary."""
@@ -56,26 +56,23 @@ def left_size(known: Precomputed, fit: EffectFit) -> tuple[float, float, float]:
     size, low, high = visible_size_of(inner, fit.coefficients, fit.covariance)
     if fit.effect.measurement:
         return size, low, high
-    beyond = Z95 * float(np.hypot(_other_form(known, fit, inner, crossed), _FORM * size))
+    beyond = Z95 * float(np.hypot(_other_form(known, fit, inner, crossed), FORM * size))
     below, above = np.hypot([size - low, high - size], beyond)
     return size, max(float(size - below), 0.0), float(size + above)
 
 
-def left_share(known: Precomputed, effect: Effect, shape: Mapping[str, float]) -> float:
-    """Return the share of an effect's torque that the base leaves [-].
+def left_share(known: Precomputed, torque: Basis) -> float:
+    """Return the share of a torque that the base leaves [-].
 
     Parameters
     ----------
     known : Precomputed
         The data.
-    effect : Effect
-        The effect.
-    shape : mapping of str to float
-        Its shape.
+    torque : Basis
+        The torque, a column in both channels.
     """
-    basis = known.problem.basis(effect, shape)
-    whole = float(np.linalg.norm(np.vstack(basis)))
-    return float(np.linalg.norm(left_by(known.span, basis))) / whole if whole > 0 else 0.0
+    whole = float(np.linalg.norm(np.vstack(torque)))
+    return float(np.linalg.norm(left_by(known.span, torque))) / whole if whole > 0 else 0.0
 
 
 def shown_share(known: Precomputed, fit: EffectFit, others: Sequence[EffectFit]) -> float:

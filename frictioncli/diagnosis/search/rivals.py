@@ -49,7 +49,7 @@ def rival_log_bayes_factors(
     left_share : float, optional
         Share of its RMS that the base leaves of the cause.
     """
-    missed = min((_FORM / max(left_share, _FORM)) ** 2, _MOST_MISSED) * own.statistic / 2
+    missed = evidence_missed(own.statistic, left_share)
     near = {
         name: min(one.log_bayes_factor + missed, max(factor, one.log_bayes_factor))
         for name, one in tests.items()
@@ -60,6 +60,19 @@ def rival_log_bayes_factors(
         for name, value in near.items()
         if value < factor - _NEARLY or _explains(step, own, tests[name])
     }
+
+
+def evidence_missed(statistic: float, left_share: float) -> float:
+    """Return the logarithm of the evidence of a cause that errors of its form may account for.
+
+    Parameters
+    ----------
+    statistic : float
+        Its test statistic.
+    left_share : float
+        Share of its RMS that the base leaves of it.
+    """
+    return min((_FORM / max(left_share, _FORM)) ** 2, _MOST_MISSED) * statistic / 2
 
 
 def _explains(step: Step, own: EffectFit, rival: HypothesisTest) -> bool:

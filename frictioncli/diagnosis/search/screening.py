@@ -40,21 +40,38 @@ class Screened:
     whole: Array
 
 
+@dataclass(frozen=True, slots=True)
+class LeftProducts:
+    """What a null hypothesis leaves of the columns of a hypothesis, as inner products.
+
+    Attributes
+    ----------
+    inner : ndarray, shape (shapes, width, width)
+        Of the columns of each shape.
+    right : ndarray, shape (shapes, width)
+        Of these with the misfit.
+    whole : ndarray, shape (shapes, width)
+        Squared lengths of the whole columns.
+    left : ndarray of bool, shape (shapes, width)
+        Columns of which enough is left.
+    taken : ndarray, shape (known columns, shapes * width)
+        Coefficients of the known columns in each column.
+    """
+
+    inner: Array
+    right: Array
+    whole: Array
+    left: Flags
+    taken: Array
+
+
 def screened(
     catalogue: Catalogue, number: int, columns: TransformedColumns, null: MixedFit
 ) -> Screened:
     """Return a hypothesis at each of its shapes under given variance components."""
     hypothesis = catalogue.hypotheses[number]
-    across, own = catalogue.products(number, columns, null.variances)
-    shapes, width = len(hypothesis.shapes), hypothesis.width
-    right = across[-1] - null.coefficients @ across[:-1]
-    taken = (null.covariance @ across[:-1]).reshape(-1, shapes, width)
-    blocks = across[:-1].reshape(-1, shapes, width)
-    inner = own - np.einsum("nsi,nsj->sij", blocks, taken)
-    whole = np.diagonal(own, axis1=1, axis2=2)
-    left = np.diagonal(inner, axis1=1, axis2=2) > _LEAST_LEFT * np.maximum(whole, 1e-12)
-    inner = np.where(left[:, :, np.newaxis] & left[:, np.newaxis, :], inner, 0.0)
-    right = np.where(left, right.reshape(shapes, width), 0.0)
+    one = left_products(catalogue, number, columns, null)
+    inner, right, left = one.inner, one.right, one.left
     coefficients, gain, free = bounded_coefficients(
         inner, right, hypothesis.lower, hypothesis.upper
     )
@@ -62,7 +79,25 @@ def screened(
     covariance = pseudo_inverse(
         np.where(free[:, :, np.newaxis] & free[:, np.newaxis, :], inner, 0.0)
     )
-    return Screened(coefficients, gain, free, covariance, inner, whole)
+    return Screened(coefficients, gain, free, covariance, inner, one.whole)
+
+
+def left_products(
+    catalogue: Catalogue, number: int, columns: TransformedColumns, null: MixedFit
+) -> LeftProducts:
+    """Return products of what the null hypothesis leaves of a hypothesis, shape by shape."""
+    hypothesis = catalogue.hypotheses[number]
+    across, own = catalogue.products(number, columns, null.variances)
+    shapes, width = len(hypothesis.shapes), hypothesis.width
+    right = across[-1] - null.coefficients @ across[:-1]
+    taken = null.covariance @ across[:-1]
+    blocks = across[:-1].reshape(-1, shapes, width)
+    inner = own - np.einsum("nsi,nsj->sij", blocks, taken.reshape(-1, shapes, width))
+    whole = np.diagonal(own, axis1=1, axis2=2)
+    left = np.diagonal(inner, axis1=1, axis2=2) > _LEAST_LEFT * np.maximum(whole, 1e-12)
+    inner = np.where(left[:, :, np.newaxis] & left[:, np.newaxis, :], inner, 0.0)
+    right = np.where(left, right.reshape(shapes, width), 0.0)
+    return LeftProducts(inner, right, whole, left, taken)
 
 
 def of_size(found: Screened, rms: Array, least: float) -> Screened:

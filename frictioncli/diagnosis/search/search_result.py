@@ -1,13 +1,18 @@
 """What a search for causes found: causes, tests of all others, and what was given up again."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from frictioncli.diagnosis.fit.hypotheses import HypothesisTest
+from frictioncli.diagnosis.search.catalogue import Catalogue
 from frictioncli.diagnosis.search.cause import Cause
-from frictioncli.diagnosis.search.confounded import unclaimed
-from frictioncli.diagnosis.search.detectable_size import detectable_size
+from frictioncli.diagnosis.search.confounded import confounded, unclaimed
+from frictioncli.diagnosis.search.detectable_size import SHAPES, Rules, detectable_size
 from frictioncli.diagnosis.search.effect_size import sizes_of
+from frictioncli.diagnosis.search.lack_of_fit import Structure
+from frictioncli.diagnosis.search.planted_rivals import PlantedRivals
+from frictioncli.diagnosis.search.planted_torque import error_forms
+from frictioncli.diagnosis.search.standing import level_of
 from frictioncli.diagnosis.search.step import Step
 from frictioncli.effects import BY_NAME
 from frictioncli.effects.base import Effect
@@ -31,6 +36,8 @@ class SearchResult:
         Effects that were accepted and given up again, with the reason.
     step : Step
         The last step: base, causes, noise and discrepancy.
+    catalogue : Catalogue
+        All hypotheses.
     """
 
     causes: tuple[Cause, ...]
@@ -39,11 +46,16 @@ class SearchResult:
     rejected: dict[str, HypothesisTest]
     dropped: dict[str, str]
     step: Step
+    catalogue: Catalogue
 
     def detectable_sizes(
-        self, effects: Sequence[Effect], alpha: float, margin: float
+        self,
+        effects: Sequence[Effect],
+        alpha: float,
+        margin: float,
+        structure: Structure | None = None,
     ) -> dict[str, float | None]:
-        """Return the smallest RMS size of each effect that would be named four times in five.
+        """Return the smallest RMS size of each effect that would be named in four of five shapes.
 
         Parameters
         ----------
@@ -53,29 +65,60 @@ class SearchResult:
             Significance level of the whole search.
         margin : float
             Smallest size worth a name. [N·m]
+        structure : Structure, optional
+            Structure without a name.
 
         Returns
         -------
         dict of str to (float or None)
             Sizes [N·m]; None where the data lack what the effect needs, cannot tell it from an
-            effect of another input or do not tell where it begins, and where the base takes so
-            much of it that it would have to be larger than the torque that there is.
+            effect of another input or do not tell where it begins, and where it would have to be
+            larger than half of the torque that there is, or where something like it that may be
+            noise is there already.
         """
         count = max(len(self.rejected) + len(self.causes), 1)
         found: dict[str, float | None] = dict.fromkeys(effect.name for effect in effects)
+        rules = Rules(
+            level=alpha / count,
+            margin=margin,
+            structure=structure,
+            unnamed=frozenset(one.name for one in effects if confounded(one, self.step.problem)),
+            forms=error_forms(self.step.problem, SHAPES),
+        )
+        rivals = PlantedRivals(self.step, self.catalogue, frozenset(self.dropped))
+        known = {cause.fit.effect.name: cause for cause in self.causes}
         for effect in effects:
-            step, test = self._beside_others(effect)
-            if test is not None and not unclaimed(effect, step.problem):
-                found[effect.name] = detectable_size(step, effect, test, alpha / count, margin)
+            if unclaimed(effect, self.step.problem):
+                continue
+            cause = known.get(effect.name)
+            if cause is not None and cause.test.p_value < level_of(effect, alpha):
+                beside = replace(rivals, step=self._without(cause))
+                found[effect.name] = detectable_size(effect, cause.test, rules, beside)
+            elif cause is None and effect.name in self.rejected:
+                test = self.rejected[effect.name]
+                found[effect.name] = detectable_size(effect, test, rules, rivals)
         return found
 
-    def _beside_others(self, effect: Effect) -> tuple[Step, HypothesisTest | None]:
-        """Return the base with all causes but an effect, and the test of that effect there."""
-        for cause in self.causes:
-            if cause.fit.effect is effect:
-                others = [one for one in self.step.accepted if one.effect is not effect]
-                return Step.of(self.step.precomputed, others), cause.test
-        return self.step, self.rejected.get(effect.name)
+    def may_be_noise(self, effect: Effect, alpha: float) -> bool:
+        """Return whether these data show something like an effect that may be noise.
+
+        Parameters
+        ----------
+        effect : Effect
+            The effect.
+        alpha : float
+            Significance level of the whole search.
+        """
+        return any(
+            one.fit.effect is effect and one.test.p_value >= level_of(effect, alpha)
+            for one in self.causes
+        )
+
+    def _without(self, cause: Cause) -> Step:
+        """Return base and all other causes, as if a cause were not in the data."""
+        others = [one for one in self.step.accepted if one.effect is not cause.fit.effect]
+        step, fit = Step.of(self.step.precomputed, others), cause.fit
+        return step.planted(step.problem.basis(fit.effect, fit.shape), -fit.coefficients)
 
 
 def given_up_causes(found: SearchResult, alpha: float) -> tuple[Cause, ...]:

@@ -20,6 +20,7 @@ from frictioncli.diagnosis.fit.mixed_model import (
     Variances,
     evaluate,
 )
+from frictioncli.diagnosis.fit.planted_columns import with_torque
 from frictioncli.diagnosis.fit.products import Products
 from frictioncli.diagnosis.fit.simplex_search import simplex_minimum
 from frictioncli.diagnosis.fit.transformed_columns import Part, TransformedColumns
@@ -28,7 +29,7 @@ from frictioncli.diagnosis.fit.weighted_fit import WeightedFit, Weights
 from frictioncli.diagnosis.search.catalogue import Catalogue
 from frictioncli.diagnosis.search.precomputed import Precomputed
 from frictioncli.diagnosis.search.screening import Screened, of_size, screened, test_of
-from frictioncli.effects.base import Effect
+from frictioncli.effects.base import Basis, Effect
 from frictioncli.effects.history import since_start
 from frictioncli.effects.history_search import refined_history
 from frictioncli.effects.pair_series import measured_share
@@ -90,6 +91,28 @@ class Step:
             components=components,
             products=products,
             fit=fit_variances(components, products, columns.count - 1, precomputed.start),
+        )
+
+    def planted(self, basis: Basis, coefficients: Array) -> "Step":
+        """Return the step with a torque added to its misfit, its variances estimated anew.
+
+        Parameters
+        ----------
+        basis : Basis
+            Columns of the torque.
+        coefficients : ndarray, shape (width,)
+            Their coefficients.
+        """
+        torque = Basis(*(one @ coefficients[:, np.newaxis] for one in basis))
+        own = Part(basis_columns(self.problem, torque), self.precomputed.noises)
+        columns, products = with_torque(self.columns, self.products, own)
+        start = self.precomputed.start
+        return replace(
+            self,
+            columns=columns,
+            products=products,
+            fit=fit_variances(self.components, products, self.known, start),
+            _alone={},
         )
 
     @property

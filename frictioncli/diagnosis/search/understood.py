@@ -5,8 +5,9 @@ from collections.abc import Sequence
 from frictioncli.diagnosis.search.cause import Cause
 from frictioncli.diagnosis.search.lack_of_fit import Structure, unnamed_structure
 from frictioncli.diagnosis.search.step import Step
+from frictioncli.effects.base import Effect
 
-_MOST_LEFT = 1 / 3
+MOST_LEFT = 1 / 3
 """Structure without a name that is greater than this share of a cause along the same axis says that
 the cause is not understood."""
 
@@ -45,7 +46,7 @@ def understood(
     structure = unnamed_structure(step, margin, alpha)
     if structure is None:
         return named, None
-    kept = tuple(one for one in named if not _is_part(one, structure))
+    kept = tuple(one for one in named if not is_part(one.fit.effect, one.visible, structure))
     if len(kept) < len(named):
         lost = {one.fit.effect.name for one in named} - {one.fit.effect.name for one in kept}
         rest = [one for one in step.accepted if one.effect.name not in lost]
@@ -53,13 +54,22 @@ def understood(
     return kept, structure
 
 
-def _is_part(cause: Cause, unnamed: Structure) -> bool:
-    """Return whether a cause may be a part of structure without a name along its axis."""
-    effect = cause.fit.effect
+def is_part(effect: Effect, visible: float, unnamed: Structure) -> bool:
+    """Return whether a cause may be a part of structure without a name along its axis.
+
+    Parameters
+    ----------
+    effect : Effect
+        The cause.
+    visible : float
+        What the base leaves of it. [N·m]
+    unnamed : Structure
+        The structure.
+    """
     along = {_AXES.get(one, one) for one in effect.needs}
     return (
         not effect.measurement
         and effect.channel == unnamed.channel
         and not along.isdisjoint(_AXES.get(one, one) for one in unnamed.axes)
-        and unnamed.size > _MOST_LEFT * cause.visible
+        and unnamed.size > MOST_LEFT * visible
     )

@@ -1,0 +1,82 @@
+"""Inner products of the columns of a model with a torque that is planted into its misfit."""
+
+import numpy as np
+
+from frictioncli.arrays import Array
+from frictioncli.diagnosis.fit.mixed_model import Variances
+from frictioncli.diagnosis.fit.products import Products
+from frictioncli.diagnosis.fit.transformed_columns import Part, TransformedColumns
+
+
+def weighted_products(
+    columns: TransformedColumns, other: Part, variances: Variances
+) -> tuple[Array, Array]:
+    """Return inner products of columns with a part under given variance components.
+
+    Parameters
+    ----------
+    columns : TransformedColumns
+        The columns.
+    other : Part
+        The other part.
+    variances : Variances
+        Variance components.
+
+    Returns
+    -------
+    across : ndarray, shape (columns, columns of the other)
+        With its columns.
+    own : ndarray, shape (columns of the other, columns of the other)
+        Of its columns with each other.
+    """
+    count = other.columns.count
+    across, own = np.zeros((columns.count, count)), np.zeros((count, count))
+    for channel, noise in enumerate(variances.noise):
+        within = other.columns.channels[channel].within
+        across += columns.within_products(other, channel) / variances.within[channel]
+        own += within.T @ within / variances.within[channel]
+        time = columns.noises.indices[noise][0]
+        modes = other.modes(channel, time)
+        variance = columns.noises.variance(channel, noise) * variances.between[channel]
+        scaled = modes / variance[:, np.newaxis]
+        across += columns.modes(channel, time).T @ scaled
+        own += modes.T @ scaled
+    return across, own
+
+
+def with_torque(
+    columns: TransformedColumns, products: Products, torque: Part
+) -> tuple[TransformedColumns, Products]:
+    """Return columns and their inner products with a torque added to the last, the misfit.
+
+    Parameters
+    ----------
+    columns : TransformedColumns
+        The columns.
+    products : Products
+        Inner products of these columns.
+    torque : Part
+        The torque, one column.
+    """
+    within, between = [], []
+    for channel in (0, 1):
+        deviations = torque.columns.channels[channel].within[:, 0]
+        across = columns.within_products(torque, channel)[:, 0]
+        own = np.sum(np.square(deviations))
+        within.append(_with_last(products.within[channel], across, own))
+        of_means = [torque.across(one, channel)[:, :, 0] for one in columns.parts]
+        across, own = np.concatenate(of_means, axis=1), torque.across(torque, channel)[:, 0, 0]
+        between.append(_with_last(products.between[channel], across, own))
+    *parts, misfit = columns.parts
+    added = Part(misfit.columns.plus(torque.columns), columns.noises)
+    found = Products(within=(within[0], within[1]), between=(between[0], between[1]))
+    return TransformedColumns((*parts, added)), found
+
+
+def _with_last(gram: Array, across: Array, own: Array) -> Array:
+    """Return inner products of columns with another one added to the last of them."""
+    found = gram.copy()
+    found[..., -1, :] += across
+    found[..., -1] += across
+    found[..., -1, -1] += own
+    return found
