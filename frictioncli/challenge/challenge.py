@@ -1,8 +1,11 @@
 """Effects planted in the logs of a joint, and what the diagnosis says of them: ``challenge``."""
 
+import hashlib
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
+
+import msgspec
 
 from frictioncli import tables
 from frictioncli.challenge.pictures import write_pictures
@@ -18,6 +21,8 @@ from frictioncli.challenge.subject import Subject, read_subjects
 from frictioncli.challenge.text import challenge_text
 from frictioncli.challenge.trial import Planter
 from frictioncli.challenge_schema import GIVEN, SEARCH, SHARE, Row
+from frictioncli.diagnosis.documents.document import read_diagnoses
+from frictioncli.documents import to_json
 from frictioncli.errors import NotEnoughData, OptionError
 from frictioncli.logs.runs.discovery import Logs
 from frictioncli.provenance import Provenance, input_hashes
@@ -85,6 +90,7 @@ def challenge(
             # it may have been taken up
             if not any(row["joint"] == subject.joint for row in table.rows):
                 table.add(row_as_logged(subject))
+            table.set_claimed(subject.joint, subject.diagnosis.detectable)
             planter = Planter(subject, work, settings)
             _Challenge(subject, planter, table, options, progress).run(requests)
         table.write()
@@ -111,9 +117,23 @@ def _table(work: Path, settings: RunSettings) -> ChallengeTable:
     facts = tables.facts(work / TORQUES)
     return ChallengeTable(
         path=work / CHALLENGE,
-        provenance=Provenance("challenge", {}, input_hashes(inputs)),
+        provenance=Provenance(
+            "challenge", {"as_logged": _said_as_logged(work)}, input_hashes(inputs)
+        ),
         facts={"torque_unit": facts.get("torque_unit", "N·m")},
     )
+
+
+def _said_as_logged(work: Path) -> str:
+    """Return the SHA-256 of the diagnoses without the sizes that they claim.
+
+    No trial depends on these: where only they change, its rows stay.
+    """
+    said = [
+        to_json(msgspec.structs.replace(one, detectable={}, undetectable={}))
+        for one in read_diagnoses(work / DIAGNOSIS).values()
+    ]
+    return hashlib.sha256("".join(said).encode()).hexdigest()
 
 
 @dataclass(slots=True)
@@ -167,10 +187,10 @@ class _Challenge:
         return self.table.add(row_of_trial(subject, name, seed, purpose, size, trial))
 
     def _search(self, name: str, seed: int, what: str) -> None:
-        """Search the least size of an effect that is found, unless the log has it already."""
+        """Search the least size of an effect that is found, unless it is known or there already."""
         subject = self.subject
         known = {one for cause in subject.diagnosis.named_causes for one in cause.effects}
-        if name in known:
+        if name in known or self.table.is_searched(subject.joint, name, seed):
             return
         whole = subject.reference(subject.channel_of(name))
         claimed = subject.diagnosis.detectable.get(name)

@@ -1,7 +1,7 @@
 """Rows of ``challenge.parquet``: written after each trial, and taken up again by the next call."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, fields
 from pathlib import Path
 from typing import Any
 
@@ -24,6 +24,7 @@ from frictioncli.diagnosis.documents.document import DiagnosisDocument
 from frictioncli.errors import TableError
 from frictioncli.provenance import Provenance
 from frictioncli.report.challenge_words import rows_of_table
+from frictioncli.workfiles import DIAGNOSIS
 
 SEPARATOR = "; "
 """Between the names of two causes."""
@@ -38,7 +39,8 @@ class ChallengeTable:
     path : Path
         The file.
     provenance : Provenance
-        Settings of the chain, and digests of what was diagnosed; rows of other ones are dropped.
+        Settings of the chain, and digests of what was diagnosed and of what was said of it; rows of
+        other ones are dropped. The diagnosis may claim other sizes.
     facts : mapping
         Facts of the table, as its torque unit.
     rows : list of dict
@@ -91,6 +93,21 @@ class ChallengeTable:
                 frame[column.name] = frame[column.name].astype(float)
         tables.write(self.path, frame, CHALLENGE_TABLE, self.provenance, self.facts)
 
+    def set_claimed(self, joint: int, claimed: Mapping[str, float | None]) -> None:
+        """State the sizes that the diagnosis of a joint claims in all its rows."""
+        for row in self.rows:
+            if row["joint"] == joint:
+                row["claimed"] = claimed.get(row["effect"])
+        self.write()
+
+    def is_searched(self, joint: int, effect: str, seed: int) -> bool:
+        """Return whether the least size of an effect was searched for before."""
+        return any(
+            (row["joint"], row["effect"], row["seed"]) == (joint, effect, seed)
+            and (row["size_found_low"] is not None or row["size_found_high"] is not None)
+            for row in self.rows
+        )
+
     def set_found(self, joint: int, effect: str, seed: int, found: SizeFound) -> None:
         """State the least size that was found in the rows of an effect."""
         for row in self.rows:
@@ -109,12 +126,20 @@ def _earlier(path: Path, provenance: Provenance) -> list[Row]:
         return []
     try:
         origin = tables.metadata(path)
-        if any(origin.get(key) != value for key, value in provenance.as_dict().items()):
+        if _comparable(origin) != _comparable(provenance.as_dict()):
             return []
         frame = tables.read(path, CHALLENGE_TABLE)
     except TableError:
         return []
     return rows_of_table(frame)
+
+
+def _comparable(origin: Mapping[str, Any]) -> dict[str, Any]:
+    """Return what must be the same: all but the claims of the diagnosis."""
+    names = [one.name for one in fields(Provenance)]
+    known = {name: origin.get(name) for name in names if name != "inputs"}
+    inputs = {name: one for name, one in origin.get("inputs", {}).items() if name != DIAGNOSIS}
+    return known | {"inputs": inputs}
 
 
 def row_as_logged(subject: Subject) -> Row:

@@ -109,7 +109,7 @@ class Planter:
                 folder, effect, seed, size, near_turn=near_turn, at_most=usual
             )
             fit(folder, self.settings.fit)
-            diagnose(folder, self.settings.diagnosis)
+            diagnose(folder, self.settings.diagnosis, sizes=False)
             diagnosis = read_diagnoses(folder / DIAGNOSIS)[self.subject.joint]
         return Trial(
             size=found,

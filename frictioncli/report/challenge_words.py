@@ -1,11 +1,14 @@
 """What became of effects that were planted in a log, in words and figures."""
 
 from collections.abc import Sequence
+from math import ceil, inf
 
 import pandas as pd
 
 from frictioncli.challenge_schema import AS_LOGGED, CANNOT, DONE, SHARE, Row
 from frictioncli.wording import count_text
+
+_FOUR_OF_FIVE = 0.8
 
 
 def rows_of_table(frame: pd.DataFrame) -> list[Row]:
@@ -96,20 +99,27 @@ def can_show(row: Row) -> bool:
     return row["claimed"] is not None and row["size"] is not None and row["claimed"] <= row["size"]
 
 
-def claim_ratios(rows: Sequence[Row]) -> dict[tuple[str, int], float]:
-    """Return the claimed size over the size found, of each effect and shape that was searched.
+def claim_ratios(rows: Sequence[Row]) -> dict[str, float]:
+    """Return the claimed size over the size found, of each effect that was searched.
 
-    It is 0 where no size that was tried was found; where all were, the true ratio is larger.
+    Where several shapes were tried, the size is the one at which four of five are found, as it is
+    claimed. The ratio is 0 where no size that was tried was found; where all were, the true ratio
+    is larger.
 
     Parameters
     ----------
     rows : sequence of dict
         Rows of one joint.
     """
-    ratios = {}
+    claimed: dict[str, float] = {}
+    found: dict[str, dict[int, float]] = {}
     for row in rows:
-        claimed, size = row["claimed"], row["size_found"]
-        if claimed is None or (size is None and row["size_found_low"] is None):
+        size = row["size_found"]
+        if row["claimed"] is None or (size is None and row["size_found_low"] is None):
             continue
-        ratios[row["effect"], row["seed"]] = 0.0 if size is None else float(claimed / size)
-    return ratios
+        claimed[row["effect"]] = row["claimed"]
+        found.setdefault(row["effect"], {})[row["seed"]] = inf if size is None else size
+    return {
+        effect: claimed[effect] / sorted(sizes.values())[ceil(_FOUR_OF_FIVE * len(sizes)) - 1]
+        for effect, sizes in found.items()
+    }

@@ -106,7 +106,7 @@ def test_the_page_shows_planted_effects_as_long_as_they_are_of_these_data(asymme
 def undiagnosed(monkeypatch):
     """Trials say of every planted log what the log as it is says; the rest is as it is."""
 
-    def copied(folder, settings):
+    def copied(folder, settings, *, sizes):
         for name in ("diagnosis.json", "model.json"):
             shutil.copyfile(folder.parent / name, folder / name)
 

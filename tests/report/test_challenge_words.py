@@ -88,8 +88,16 @@ def test_claims_are_compared_with_the_size_found_and_fail_where_none_was():
         row(effect="inertia", size_found=None, size_found_low=4.0),
         row(effect="stribeck"),
     ]
-    assert claim_ratios(rows) == pytest.approx({("drift", 0): 1.25, ("inertia", 0): 0.0})
+    assert claim_ratios(rows) == pytest.approx({"drift": 1.25, "inertia": 0.0})
     assert summary(rows)[-1].endswith("1 of 2 effects")
+
+
+def test_of_several_shapes_the_size_counts_at_which_four_of_five_are_found():
+    sizes = [0.4, 0.1, None, 0.25, 0.2]
+    rows = [row(seed=seed, size_found=size, size_found_low=0.05) for seed, size in enumerate(sizes)]
+    assert claim_ratios(rows) == pytest.approx({"drift": 0.5 / 0.4})
+    rows[0]["size_found"] = None
+    assert claim_ratios(rows) == {"drift": 0.0}
 
 
 def test_the_page_has_no_part_without_planted_effects_and_marks_wrong_names():

@@ -1,12 +1,12 @@
 """Which effects does the diagnosis find that are planted in logs, and which names are wrong?
 
-Usage: python -m tests.studies.challenge FOLDER WORK [NAME...] [--search]
+Usage: python -m tests.studies.challenge FOLDER WORK [NAME...] [--search] [--draws=NUMBER]
 
 FOLDER, or the environment variable REAL_LOGS, holds the real logs that ``real_cases`` lists; those
 of ``sample_logs`` come first, as ``kr10``. Each effect that a log can show is planted at 10 % of
-the mean friction; with ``--search`` the least size that is found is searched for, too. WORK keeps
-the tables, so that a call that was stopped goes on. docs/challenge.md gets the results of all
-cases whose tables are in WORK.
+the mean friction; with ``--search`` the least size that is found is searched for, too, and with
+``--draws`` that of several shapes. WORK keeps the tables, so that a call that was stopped goes on.
+docs/challenge.md gets the results of all cases whose tables are in WORK.
 """
 
 import sys
@@ -37,6 +37,7 @@ def logs_of(name: str, real: Path) -> tuple[list[Path], IngestSettings]:
 def main(arguments: list[str]) -> None:
     """Challenge the logs named, or all, and write the page."""
     search = "--search" in arguments
+    draws = [int(one.removeprefix("--draws=")) for one in arguments if one.startswith("--draws=")]
     folder, store, *wanted = (one for one in arguments if not one.startswith("--"))
     real, work = Path(folder).resolve(), Path(store)
     for name in wanted or [SAMPLES, *(one.name for one in CASES)]:
@@ -46,7 +47,7 @@ def main(arguments: list[str]) -> None:
                 logs,
                 work / name,
                 RunSettings(ingest=reading),
-                ChallengeSettings(search=search),
+                ChallengeSettings(search=search, draws=draws[-1] if draws else 1),
                 progress=lambda text, name=name: print(f"{name}: {text}", flush=True),
             )
             print(result, flush=True)

@@ -66,7 +66,8 @@ def gates(cases: dict[str, list[Row]]) -> str:
             most=True,
         ),
         _gate(
-            f"claimed detectable size within a factor of {CLOSE} of the size found",
+            f"claimed detectable size within a factor of {CLOSE} of the size at which four of five"
+            " shapes were found",
             CLAIMED,
             [1 / CLOSE <= one <= CLOSE for one in ratios],
         ),
