@@ -51,8 +51,9 @@ from frictioncli.effects.base import Basis
 _MOST_FORMS = 2
 """Greatest number of forms."""
 
-_MOST_TRIED = 4
-"""Greatest number of forms that are tried: one that explains too little makes way for the next."""
+_MOST_TRIED = 8
+"""Greatest number of forms that are tried: one that explains too little makes way for the next, as
+what is left of a form that has not quite the shape of the law."""
 
 _LEAST_OF_PART = 1 / 3
 """Share of itself with which a form must show in each part of the pairs alone."""
@@ -198,7 +199,7 @@ def empirical_term(
     small = functions_of(problem, components, step.precomputed.start.amplitude)
     search = FormSearch.of(step, fitted, small, misfit)
     best, before = free, free.gain.before
-    with_small = estimated(small, search.noise).gain.after
+    without = np.inf
     candidates = forms_of(_varying(problem))
     for _ in range(_MOST_TRIED):
         found = search.best(candidates)
@@ -208,10 +209,10 @@ def empirical_term(
         more = estimated(tried.functions, tried.noise)
         alone = reduced(more.equations.of_forms())
         added = float(np.sqrt(max(before**2 - alone.after**2, 0.0)))
-        if added < margin or more.gain.after >= with_small or not _recurs(more):
+        if added < margin or more.gain.after >= without or not _recurs(more):
             candidates.remove(found.form)
             continue
-        search, before, with_small = tried, alone.after, more.gain.after
+        search, before, without = tried, alone.after, more.gain.after
         freely = estimated([*_forms(search), *smooth], search.noise)
         best = min(best, more, freely, key=lambda one: one.gain.after)
         if _explained(alone) >= _MOST_OF_IT * _explained(free.gain):
