@@ -180,7 +180,8 @@ def _by_position(
     reason = "its name says so" if named else "the smoothest column that moves in both directions"
     number = columns.joints.get(column, 1)
     others = [c for c in candidates if c != column and not columns.is_of_another(c, number)]
-    velocity, rate = None, np.gradient(degrees, seconds)
+    with np.errstate(all="ignore"):  # times that are no clock's
+        velocity, rate = None, np.gradient(degrees, seconds)
     rates = [
         c
         for c in _named_motion(columns, names.VELOCITY, joint)

@@ -84,7 +84,7 @@ def plan_joint(
     remarks = Remarks(notes=list(channels.notes))
     torque_values = survey.pooled(channels.torque)
     if survey.n_rows and not np.any(torque_values):
-        state = "holds only zeros" if len(torque_values) else "is empty"
+        state = "holds only zeros" if len(torque_values) else "holds no number"
         return Refusal(
             "no_torque_channel",
             f"torque of joint {channels.joint}: {channels.torque.name} {state}; name another"

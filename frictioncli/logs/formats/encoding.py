@@ -27,6 +27,8 @@ ASCII_BASED = ("utf-8", "cp1252")
 _NEED_MARK = ("utf-16", "utf-32")
 HEAD_BYTES = 1 << 16
 """Length of the beginning from which the format is detected. [byte]"""
+_HEAD_LINES, _LONGEST_HEAD = 20, 1 << 22
+"""Of a text with longer lines, so many lines are the beginning, up to this length. [-, byte]"""
 _MAX_LINE = 1 << 25
 """Longest line; text without line ends must not fill the memory. [byte]"""
 _MAX_BLANKS = 1 << 25
@@ -70,7 +72,7 @@ class FileHead:
     Attributes
     ----------
     content : bytes
-        The first 64 KiB, decompressed.
+        The first 64 KiB, decompressed; more where thousands of columns make long lines.
     file_size : int or None
         Size of the file; None where it is compressed. [byte]
     """
@@ -90,7 +92,16 @@ def read_head(path: Path) -> FileHead:
     try:
         with open_bytes(path) as stream:
             size = None if is_compressed(stream) else os.fstat(stream.fileno()).st_size
-            return FileHead(stream.read(HEAD_BYTES), size)
+            content = stream.read(HEAD_BYTES)
+            while (
+                HEAD_BYTES <= len(content) < _LONGEST_HEAD
+                and content.count(b"\n") < _HEAD_LINES
+                and content.count(b"\r") < _HEAD_LINES
+                and detect_encoding(content[:HEAD_BYTES]) is not None
+                and (more := stream.read(len(content)))
+            ):
+                content += more
+            return FileHead(content, size)
     except STREAM_ERRORS as error:
         raise UnreadableLog(f"cannot be opened ({error}); expected a readable file") from error
 
