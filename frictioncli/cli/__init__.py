@@ -31,6 +31,15 @@ def main() -> None:
     except FrictionError as fault:
         say(f"frictioncli: {fault}", fault=True)
         raise SystemExit(2) from None
+    except (MemoryError, RuntimeError) as fault:
+        if isinstance(fault, RuntimeError) and "can't start new thread" not in str(fault):
+            raise
+        say(
+            "frictioncli: the memory or the threads that the system allows do not suffice; raise"
+            " the limit, or give fewer logs or columns at once",
+            fault=True,
+        )
+        raise SystemExit(2) from None
     except OSError as fault:
         # the system refuses something outside the work folder: a log's name, the temporary folder
         where = f"{fault.filename}: " if fault.filename else ""

@@ -18,12 +18,17 @@ from itertools import islice
 from multiprocessing.connection import Connection, wait
 from multiprocessing.process import BaseProcess
 from queue import SimpleQueue
+from types import ModuleType
 
+from frictioncli.errors import OptionError
 from frictioncli.fleet.joint import JointOutcome, JointTask, record_failure, run_joint
 from frictioncli.fleet.settings import ATTEMPTS
 
 _CONTEXT = multiprocessing.get_context("spawn")
 """A new interpreter, because a fork copies locks that threads of this process hold."""
+
+_LONGEST_WAIT = 86_400.0
+"""The system waits no longer than 24 days at once. [s]"""
 
 
 def run_locally(
@@ -115,11 +120,21 @@ class _Worker:
 
     def _send(self) -> None:
         if self.connection is None:
-            self.connection, theirs = _CONTEXT.Pipe()
+            connection, theirs = _CONTEXT.Pipe()
             # a daemon is ended with this process where that ends in the usual way
-            self.process = _CONTEXT.Process(target=_work, args=(theirs,), daemon=True)
-            with _interrupt_held(), theirs:
-                self.process.start()
+            process = _CONTEXT.Process(target=_work, args=(theirs,), daemon=True)
+            with theirs:
+                try:
+                    with _interrupt_held(), _script_hidden():
+                        process.start()
+                except OSError as fault:
+                    connection.close()
+                    raise OptionError(
+                        f"--workers: a process for a joint could not be started ({fault.strerror});"
+                        " expected that the system allows one more; ask for fewer, or raise the"
+                        " limits of processes and memory"
+                    ) from None
+            self.connection, self.process = connection, process
         self.began = time.monotonic()
         with suppress(OSError):  # it has died already: receiving tells
             self.connection.send(self.task)
@@ -150,13 +165,13 @@ class _Worker:
 
 
 def _next_ready(running: list[_Worker], timeout: float | None) -> list[_Worker]:
-    """Wait for workers that have an outcome, have died or have taken too long."""
+    """Wait for workers that have an outcome, have died or have taken too long; none may come."""
     connections = [worker.connection for worker in running if worker.connection is not None]
     if timeout is None:
         ready = wait(connections)
         return [worker for worker in running if worker.connection in ready]
     first = min(worker.began for worker in running) + timeout
-    ready = wait(connections, max(first - time.monotonic(), 0))
+    ready = wait(connections, min(max(first - time.monotonic(), 0), _LONGEST_WAIT))
     late = time.monotonic() - timeout
     return [w for w in running if w.connection in ready or w.began <= late]
 
@@ -172,6 +187,20 @@ def _interrupt_held() -> Iterator[None]:
         yield
     finally:
         signal.pthread_sigmask(signal.SIG_SETMASK, before)
+
+
+@contextmanager
+def _script_hidden() -> Iterator[None]:
+    """Keep the process that is started in the block from running the caller's script anew.
+
+    A new interpreter would do so, to know what the script defines; joints need nothing of it.
+    """
+    script = sys.modules["__main__"]
+    sys.modules["__main__"] = ModuleType("__main__")
+    try:
+        yield
+    finally:
+        sys.modules["__main__"] = script
 
 
 def _work(connection: Connection) -> None:

@@ -1,13 +1,17 @@
 """Workers of a fleet as processes: who ends them, and who does not."""
 
+import errno
+import multiprocessing
 import os
 import signal
 import subprocess
 import sys
+import time
 
 import pytest
 
 from frictioncli.errors import OptionError
+from frictioncli.fleet import local_processes
 from frictioncli.fleet.joint import JointTask
 from frictioncli.fleet.joint_logs import find_joints
 from frictioncli.fleet.local_processes import run_locally
@@ -140,3 +144,44 @@ def test_a_damaged_output_is_made_again(tmp_path):
         assert contents(task.work) == whole
     (unchanged,) = run_locally([task], 1)
     assert unchanged.status == "unchanged"
+
+
+def test_a_script_that_calls_a_fleet_is_run_once(tmp_path):
+    """Also where it does not keep its calls from workers, which would begin it anew."""
+    (tmp_path / "logs" / "robot=A" / "joint=1" / "run=1").mkdir(parents=True)
+    (tmp_path / "logs" / "robot=A" / "joint=1" / "run=1" / "log.csv").write_bytes(b"")
+    script = tmp_path / "script.py"
+    script.write_text(
+        "from pathlib import Path\n"
+        "from frictioncli.fleet.fleet import run_fleet\n"
+        "from frictioncli.fleet.settings import FleetSettings\n"
+        "print('begun')\n"
+        "print(run_fleet(Path('logs'), Path('out'), options=FleetSettings(workers=1)))\n",
+        encoding="utf-8",
+    )
+    words = [sys.executable, str(script)]
+    ended = subprocess.run(
+        words, cwd=tmp_path, env=ENVIRONMENT, capture_output=True, text=True, check=True
+    )
+    assert ended.stdout.count("begun") == 1
+    assert "no usable log" in ended.stdout
+    assert ended.stderr == ""
+
+
+def test_a_process_that_cannot_be_started_is_told(tmp_path, monkeypatch):
+    def refused(process):
+        raise BlockingIOError(errno.EAGAIN, "Resource temporarily unavailable")
+
+    monkeypatch.setattr(multiprocessing.get_context("spawn").Process, "start", refused)
+    (task, *_) = tasks_of(tmp_path / "logs", tmp_path / "out", endless=())
+    with pytest.raises(OptionError, match=r"could not be started \(Resource temporarily"):
+        list(run_locally([task], 1))
+
+
+def test_a_timeout_of_years_is_waited_for_in_parts(monkeypatch):
+    """The system takes no more than 24 days at once."""
+    waits = []
+    monkeypatch.setattr(local_processes, "wait", lambda _, seconds: waits.append(seconds) or [])
+    worker = local_processes._Worker(began=time.monotonic())
+    assert local_processes._next_ready([worker], 1e308) == []
+    assert waits == [86_400.0]

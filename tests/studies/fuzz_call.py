@@ -42,6 +42,8 @@ def call(words: list[str]) -> tuple[int | str, str]:
     said = output.getvalue() + errors.getvalue()
     if "Traceback" in said or "Warning" in errors.getvalue():
         return "traceback", said[-1500:]
+    if status == 2 and "the memory or the threads" in said:
+        return "memory", said
     if past():
         return "past the program", past()[-1500:]
     return status, errors.getvalue() if status == 2 else said
