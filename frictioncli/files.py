@@ -5,7 +5,7 @@ import os
 import shutil
 import sys
 import tempfile
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
@@ -57,6 +57,32 @@ def atomic_write(target: Path) -> Iterator[Path]:
         shutil.rmtree(temporary, ignore_errors=True)
 
 
+def check_own(folder: Path, own: Callable[[str], bool]) -> None:
+    """Check that a folder, which will be replaced, holds only files that this program makes.
+
+    Parameters
+    ----------
+    folder : Path
+        The folder; it need not exist.
+    own : callable
+        Says of a file's path in the folder, with ``/`` between its parts, whether it is one of
+        those.
+
+    Raises
+    ------
+    FrictionError
+        If it holds another file.
+    """
+    if not folder.is_dir():
+        return
+    for path in sorted(folder.rglob("*")):
+        if not path.is_dir() and not own(path.relative_to(folder).as_posix()):
+            raise FrictionError(
+                f"{folder}: holds {path.relative_to(folder)}, which frictioncli did not write, and"
+                " would be replaced; move that file, or choose another folder with -w"
+            )
+
+
 def is_there(path: Path) -> bool:
     """Return whether there is a file or folder that can be read; no pipe, which has no end.
 
@@ -91,6 +117,8 @@ def _synchronize(draft: Path) -> None:
 
 def _replace(draft: Path, target: Path) -> None:
     """Rename the draft to the target; a replaced folder keeps the name of the draft."""
+    if not draft.is_dir():
+        check_own(target, lambda name: name.endswith(target.suffix))
     if not target.is_dir():
         os.replace(draft, target)
     elif not _exchange_names(draft, target):

@@ -17,6 +17,13 @@ EXTENDED = "extended-model.json"
 PLAN = "plan.json"
 COMPARISON = "comparison.json"
 CHALLENGE = "challenge.parquet"
+REPORT = "report"
+
+MADE_BY_RUN = (
+    *(SAMPLES, RECORDINGS, REJECTED, PAIRS, RAMPS, STARTS, TORQUES, MODEL),
+    *(DIAGNOSIS, EXTENDED, SCHEDULE, EVALUATION, REPORT),
+)
+"""Files, and the folder of the report, that the whole chain makes."""
 
 _MADE_BY = {
     "samples": "ingest LOGS",

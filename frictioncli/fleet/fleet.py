@@ -13,6 +13,7 @@ from urllib.parse import quote
 import pyarrow as pa
 
 from frictioncli import schemas
+from frictioncli.errors import OptionError
 from frictioncli.files import write_text
 from frictioncli.fleet.cluster import run_on_cluster
 from frictioncli.fleet.joint import (
@@ -23,7 +24,7 @@ from frictioncli.fleet.joint import (
     JointTask,
     settings_document,
 )
-from frictioncli.fleet.joint_logs import find_joints
+from frictioncli.fleet.joint_logs import JointLogs, find_joints
 from frictioncli.fleet.joint_record import check_folder, read_row
 from frictioncli.fleet.local_processes import run_locally
 from frictioncli.fleet.settings import FleetSettings
@@ -150,8 +151,10 @@ def run_fleet(
         )
         for logs in find_joints(fleet)
     ]
+    _check_table(fleet, out)
     for task in tasks:
         check_folder(task.work)
+        _check_logs(task.logs, task.work)
     summary = FleetSummary(path=out / FLEET, joints=len(tasks))
     with locked(out):
         with (
@@ -171,6 +174,27 @@ def run_fleet(
 def has_failed(summary: FleetSummary) -> bool:
     """Return whether a joint of a fleet has failed."""
     return summary.status[FAILED] > 0
+
+
+def _check_table(fleet: Path, out: Path) -> None:
+    """Raise if the table of contents is in the place of an output."""
+    if os.path.realpath(fleet) in map(os.path.realpath, (out / FLEET, out / PAGE)):
+        raise OptionError(
+            f"{fleet}: the table of contents has the place of an output of this fleet; rename it,"
+            " or choose another folder with -w"
+        )
+
+
+def _check_logs(logs: JointLogs, work: Path) -> None:
+    """Raise if logs lie where the outputs of their joint go: no logs are looked for there."""
+    place = Path(os.path.realpath(work))
+    named = (logs.folder, logs.map_file, *(path for _, path in logs.run_paths))
+    for path in filter(None, named):
+        if Path(os.path.realpath(path)).is_relative_to(place):
+            raise OptionError(
+                f"{path}: lies in the folder of this joint's results, {work}; expected logs"
+                " elsewhere: choose another folder with -w"
+            )
 
 
 def _outcomes(

@@ -10,6 +10,7 @@ from frictioncli import documents
 from frictioncli.errors import FrictionError, TableError
 from frictioncli.files import write_text
 from frictioncli.provenance import sha256
+from frictioncli.workfiles import MADE_BY_RUN
 
 RECORD = "fleet.json"
 """Name of the record; it exists from the beginning of the work on a joint."""
@@ -46,20 +47,16 @@ def read_record(work: Path) -> JointRecord | None:
 
 
 def output_digests(work: Path) -> dict[str, str]:
-    """Return the digest of each file that the stages have made in a folder.
+    """Return the digest of each file that the chain has made in a folder.
 
     Parameters
     ----------
     work : Path
         Work folder of a joint.
     """
-    files = (path for path in sorted(work.rglob("*")) if path.is_file())
-    names = {path.relative_to(work).as_posix(): path for path in files}
-    return {
-        name: sha256(path)
-        for name, path in names.items()
-        if name != RECORD and not name.startswith(".")
-    }
+    places = (work / name for name in MADE_BY_RUN)
+    files = (path for place in places for path in (place, *place.rglob("*")) if path.is_file())
+    return {path.relative_to(work).as_posix(): sha256(path) for path in sorted(files)}
 
 
 def write_record(work: Path, record: JointRecord) -> None:
@@ -82,7 +79,7 @@ def read_row(work: Path) -> Mapping[str, Any]:
 
 
 def check_folder(work: Path) -> None:
-    """Check that a work folder is empty or was made by a fleet, because it will be emptied.
+    """Check that a work folder is empty or was made by a fleet: outputs in it will be removed.
 
     Raises
     ------
@@ -101,7 +98,9 @@ def check_folder(work: Path) -> None:
 
 
 def reset_folder(work: Path, row: Mapping[str, Any]) -> None:
-    """Write the record of a joint that is not done, and remove all other files.
+    """Write the record of a joint that is not done, and remove the outputs of a former call.
+
+    What the chain does not make stays: exports, plans, and files of the user.
 
     Parameters
     ----------
@@ -111,10 +110,9 @@ def reset_folder(work: Path, row: Mapping[str, Any]) -> None:
         Row of the joint.
     """
     write_record(work, JointRecord(key=None, row=row))
-    for path in work.iterdir():
-        if path.name == RECORD or path.name.startswith("."):
-            continue
+    for name in (*MADE_BY_RUN, FAILURE):
+        path = work / name
         if path.is_dir() and not path.is_symlink():
             shutil.rmtree(path)
         else:
-            path.unlink()
+            path.unlink(missing_ok=True)

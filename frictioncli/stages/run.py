@@ -59,7 +59,7 @@ def run(
     -----
     A log without a thermal cycle has no corrections to simulate, and few data allow no diagnosis.
     These stages are then left out: their result says so, and their tables of an earlier run are
-    removed. An earlier diagnosis is removed at the start, because it belongs to other data.
+    removed. An earlier diagnosis is removed when the logs are read: it belongs to other data.
     """
     with locked(work):
         analyse(logs, work, settings, progress)
@@ -83,9 +83,9 @@ def analyse(
     """
     settings = settings or RunSettings()
     with locked(work):
+        progress("ingest", ingest(logs, work, settings.ingest))
         for name in (DIAGNOSIS, EXTENDED):
             (work / name).unlink(missing_ok=True)
-        progress("ingest", ingest(logs, work, settings.ingest))
         pair_and_separate(work, settings, progress)
         progress("fit", fit(work, settings.fit))
         for stage, output, call in _optional_stages(work, settings):

@@ -12,6 +12,7 @@ from frictioncli.errors import LogError
 from frictioncli.logs.formats.compression import SUFFIXES
 from frictioncli.logs.runs import manifest
 from frictioncli.plain_text import printable
+from frictioncli.workfiles import MADE_BY_RUN
 
 Logs = Sequence[Path] | Mapping[str, Path]
 """Log files and folders, where each folder is a run; or run name -> its file or folder."""
@@ -87,6 +88,9 @@ def discover(logs: Logs, excluded: Path | None = None) -> tuple[LogRun, ...]:
         found.
     """
     paths = list(logs.values()) if isinstance(logs, Mapping) else logs
+    if excluded is not None:
+        for path in paths:
+            _check_place(path, excluded)
     found = {path: _files_of(path, excluded) for path in paths}
     folders: dict[Path, dict[Path, None]] = {}
     for files in found.values():
@@ -95,7 +99,10 @@ def discover(logs: Logs, excluded: Path | None = None) -> tuple[LogRun, ...]:
             folders.setdefault(file.parent, {})[file] = None
     if not folders:
         named = ", ".join(str(path) for path in paths) or "nothing named"
-        raise LogError(f"{named}: no log files found; expected text logs of a joint's motion")
+        passed = "" if excluded is None else f"; none is looked for in the work folder {excluded}"
+        raise LogError(
+            f"{named}: no log files found; expected text logs of a joint's motion{passed}"
+        )
     if isinstance(logs, Mapping):
         return tuple(
             LogRun(name, path if path.is_dir() else path.parent, _in_order(found[path]))
@@ -105,6 +112,16 @@ def discover(logs: Logs, excluded: Path | None = None) -> tuple[LogRun, ...]:
     return tuple(
         LogRun(names[folder], folder, _in_order(files)) for folder, files in folders.items()
     )
+
+
+def _check_place(path: Path, work: Path) -> None:
+    """Raise if a log that is named has the place of an output."""
+    outputs = (work / name for name in MADE_BY_RUN)
+    if path.is_file() and os.path.realpath(path) in map(os.path.realpath, outputs):
+        raise LogError(
+            f"{path}: has the place of an output of {work}, which would replace it; name the"
+            " original logs, or choose another folder with -w"
+        )
 
 
 def _check_name(path: Path) -> None:
