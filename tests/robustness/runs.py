@@ -20,10 +20,11 @@ SPEEDS = (20.0, 50.0, 90.0)
 TRUTH = {"tau_c": 5.0, "alpha": 0.0, "beta": 2.0, "gamma": 8.0, "delta": 0.05}
 
 
-def write_warm_up(folder: Path, *, levels=(25, 32, 39, 46, 53, 60, 67), seed=0) -> Path:
+def write_warm_up(folder: Path, *, levels=(25, 32, 39, 46, 53, 60, 67), seed=0, ripple=0.0) -> Path:
     """Write a run that makes every table: pairs at three speeds, warmer from file to file.
 
-    Friction is that of equation (16) with ``TRUTH``, gravity 80 cos(q) N·m.
+    Friction is that of equation (16) with ``TRUTH``, gravity 80 cos(q) N·m; a ripple [N·m] of six
+    periods per turn comes with the direction.
     """
     rng = np.random.default_rng(seed)
     folder.mkdir(parents=True)
@@ -34,7 +35,10 @@ def write_warm_up(folder: Path, *, levels=(25, 32, 39, 46, 53, 60, 67), seed=0) 
         torque = (
             80 * np.cos(np.radians(motion["position"]))
             + np.sign(motion["velocity"])
-            * friction(TRUTH, load=0.0, speed=speed, temperature=celsius)
+            * (
+                friction(TRUTH, load=0.0, speed=speed, temperature=celsius)
+                + ripple * np.sin(np.radians(6 * motion["position"]))
+            )
             + rng.normal(0, 0.1, len(motion))
         )
         warmth = {"Motortemperatur2[°C]": float(celsius)}

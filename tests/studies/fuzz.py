@@ -152,7 +152,7 @@ def main() -> None:
     with tempfile.TemporaryDirectory(prefix="fuzz-base-") as name:
         base = Path(name)
         if set(asked.forms) - {LOGS}:
-            prepare(base)
+            prepare(base, rich="work" in asked.forms)
         if asked.only is not None:
             for form in asked.forms:
                 print(examine_here(asked.only, form, base))

@@ -4,18 +4,14 @@ Each input is a folder and the words of a call in it, which has to end with stat
 one message and everything in the work folder as it was.
 """
 
-import copy
 import csv
 import hashlib
 import io
-import json
 import os
 import random
 import shutil
 from collections.abc import Callable
-from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import pyarrow as pa
@@ -23,9 +19,11 @@ import pyarrow.parquet as pq
 
 from tests.studies.fuzz_call import call, commands
 from tests.studies.fuzz_damage import _CELLS, _TEXTS, _damaged
+from tests.studies.fuzz_input import LOGS, RICH, RICH_LOGS, WORK, Input
 from tests.studies.fuzz_recordings import COLUMNS, RECORDINGS, WRITERS, recording
+from tests.studies.fuzz_work import work_folders
 
-WORK, LOGS = "work", "logs"
+_INSPECTIONS: tuple[list[str], ...] = ([], ["--json"], ["--suggest-map"], ["--verbose"])
 STATUS = (0, 2, 3)
 """Exit status that a call may have."""
 
@@ -40,10 +38,6 @@ _TOML = (
         '"\\u0000"',
     ),
     *('"utf-16"', '"idna"', '";"', '"°"', '"rad"', '"A"', '"torque_2"', "{ a = { b = 1 } }", "2.0"),
-)
-_VALUES: tuple[Any, ...] = (
-    *(None, True, 0, -1, 1e308, -1e308, 1e-308, 10**400, "", "x", "é" * 3000, [], {}, [[]], [None]),
-    *(float("nan"), float("inf"), {"a": 1}, [1, "x"], "NaN", "1.5", 3, 2.5),
 )
 _OPTION = (
     *(
@@ -77,41 +71,28 @@ _OPTION = (
         "1e5",
     ),
 )
-_STAGES = (
-    *(["pair"], ["separate"], ["separate", "--by", "regression"], ["fit"], ["simulate"]),
-    *(["simulate", "--extended"], ["evaluate"], ["diagnose"], ["plan"], ["export", "--to", "json"]),
-    *(["export", "--to", "c"], ["export", "--to", "urdf"], ["export", "--to", "mjcf"], ["report"]),
-    ["compare", WORK, "other"],
-)
 
 
-@dataclass(frozen=True, slots=True)
-class Input:
-    """A folder that was prepared, and what to do in it.
+def prepare(base: Path, *, rich: bool = False) -> None:
+    """Make the folder that inputs of most forms begin with: logs of a joint and its outputs.
 
-    Attributes
-    ----------
-    damage : str
-        What was done to it.
-    words : list of str
-        Arguments of the program; paths are relative to the folder.
-    rows : int or None
-        Rows of the log, where it is known: each is kept or rejected.
+    With ``rich`` also every other output: a diagnosis with a cause, a plan, a challenge.
     """
-
-    damage: str
-    words: list[str]
-    rows: int | None = None
-
-
-def prepare(base: Path) -> None:
-    """Make the folder that inputs of most forms begin with: logs of a joint and its outputs."""
     from tests.robustness.runs import write_warm_up
 
     write_warm_up(base / LOGS / "day", levels=(25, 39, 53), seed=1)
     status, said = call(["run", f"{base / LOGS}", "-w", f"{base / WORK}"])
     assert status == 0, said
     shutil.copytree(base / WORK, base / "other")
+    if rich:
+        write_warm_up(base / RICH_LOGS / "day", seed=1, ripple=1.5)
+        logs, work = f"{base / RICH_LOGS}", f"{base / RICH}"
+        for words in (["run", logs], ["plan"], ["challenge", logs, "--effect", "stribeck:2"]):
+            status, said = call([*words, "-w", work])
+            assert status == 0, said
+        # challenge leaves the chain without what follows the diagnosis
+        for words in (["simulate"], ["evaluate"], ["report"]):
+            call([*words, "-w", work])
 
 
 def maps(folder: Path, base: Path, draw: random.Random) -> Input:
@@ -145,7 +126,8 @@ def maps(folder: Path, base: Path, draw: random.Random) -> Input:
         kind, content = _damaged(content, draw)
     (folder / "map.toml").write_bytes(content)
     if draw.random() < 0.2:
-        return Input(f"map: {kind}", ["inspect", LOGS, "--map", "map.toml"])
+        more = draw.choice(_INSPECTIONS)
+        return Input(f"map: {kind}", ["inspect", LOGS, "--map", "map.toml", *more])
     return Input(f"map: {kind}", ["ingest", LOGS, "--map", "map.toml", "-w", WORK])
 
 
@@ -224,104 +206,19 @@ def _csv(rows: list[list[str]], delimiter: str) -> bytes:
     return sink.getvalue().encode("utf-8", "surrogatepass")
 
 
-def work_folders(folder: Path, base: Path, draw: random.Random) -> Input:
-    """Return a stage on a work folder in which one file is damaged."""
-    for name in (WORK, "other"):
-        shutil.copytree(base / name, folder / name)
-    files = sorted([*(folder / WORK).glob("*.parquet"), *(folder / WORK).glob("*.json")])
-    path = draw.choice(files)
-    content = path.read_bytes()
-    kind = "bytes"
-    if draw.random() < 0.2:
-        kind, content = _damaged(content, draw)
-    elif path.suffix == ".json":
-        kind, content = _json(content, draw)
-    else:
-        kind, content = _parquet(pq.read_table(path), draw)
-    if draw.random() < 0.03:
-        path.unlink()
-        kind = "missing"
-    else:
-        path.write_bytes(content)
-    words = list(draw.choice(_STAGES))
-    if words[0] == "report" and draw.random() < 0.7:  # it takes longest
-        words = ["fit"]
-    return Input(f"{path.name}: {kind}", words if WORK in words else [*words, "-w", WORK])
-
-
-def _json(content: bytes, draw: random.Random) -> tuple[str, bytes]:
-    document = json.loads(content)
-    holder, key = document, draw.choice(list(document))
-    while isinstance(holder[key], dict | list) and holder[key] and draw.random() < 0.7:
-        holder = holder[key]
-        key = draw.choice(list(holder) if isinstance(holder, dict) else range(len(holder)))
-    kind = draw.choice(("value", "value", "value", "lost", "more", "twice", "number"))
-    if kind == "lost":
-        del holder[key]
-    elif kind == "more" and isinstance(holder, dict):
-        holder["another"] = draw.choice(_VALUES)
-    elif kind == "twice" and isinstance(holder, list):
-        holder.append(copy.deepcopy(holder[key]))
-    elif kind == "number" and isinstance(holder[key], int | float):
-        holder[key] = draw.choice((-1, 1e9, 1e-9, 0)) * holder[key]
-    else:
-        holder[key] = draw.choice(_VALUES)
-    return f"{kind} of {key}", json.dumps(document).encode("utf-8", "surrogatepass")
-
-
-def _parquet(table: pa.Table, draw: random.Random) -> tuple[str, bytes]:
-    at = draw.randrange(table.num_columns)
-    name, column = table.column_names[at], table.column(at).combine_chunks()
-    kind = draw.choice(
-        (
-            "lost",
-            "text",
-            "value",
-            "value",
-            "value",
-            "nothing",
-            "one row",
-            "reversed",
-            "facts",
-            "more",
-        )
-    )
-    if kind == "lost":
-        table = table.remove_column(at)
-    elif kind == "text":
-        table = table.set_column(at, name, pa.array(["x"] * table.num_rows))
-    elif kind == "value" and table.num_rows and pa.types.is_floating(column.type):
-        values = column.to_numpy(zero_copy_only=False).copy()
-        some = slice(None) if draw.random() < 0.4 else draw.randrange(len(values))
-        values[some] = draw.choice((np.nan, np.inf, -np.inf, 0.0, -1.0, 1e308, 1e-308, 1e9))
-        table = table.set_column(at, name, pa.array(values))
-    elif kind == "value":
-        table = table.set_column(at, name, pa.nulls(table.num_rows, column.type))
-    elif kind == "facts":
-        document = json.loads((table.schema.metadata or {}).get(b"frictioncli", b"{}"))
-        if document:
-            _, stored = _json(json.dumps(document).encode(), draw)
-            table = table.replace_schema_metadata({b"frictioncli": stored})
-    elif kind == "more":
-        table = pa.concat_tables([table, table])
-    else:
-        rows = {"nothing": [], "one row": [0][: table.num_rows]}
-        taken = rows.get(kind, list(range(table.num_rows))[::-1])
-        table = table.take(pa.array(taken, pa.int64()))
-    sink = io.BytesIO()
-    pq.write_table(table, sink)
-    return f"{kind} {name}", sink.getvalue()
-
-
 def options(folder: Path, base: Path, draw: random.Random) -> Input:
     """Return a call with options of strange values."""
     for name in (LOGS, WORK, "other"):
         shutil.copytree(base / name, folder / name)
     known = commands()
-    command = draw.choice(sorted(set(known) - {"fleet", "report", "run"}))
+    command = draw.choice(sorted(known))
     words = [command]
-    if command in ("inspect", "ingest", "challenge"):
+    if command in ("inspect", "ingest", "challenge", "run"):
         words.append(LOGS)
+    elif command == "fleet":
+        shutil.copytree(base / LOGS, folder / "robots" / "robot=A" / "joint=2" / "run=1")
+        shutil.rmtree(folder / WORK)
+        words += ["robots", "--no-report", "--no-diagnosis"]
     elif command == "compare":
         words += [WORK, "other"]
     elif command == "synthesize":
@@ -344,7 +241,9 @@ def binary(folder: Path, base: Path, draw: random.Random) -> Input:
     kind, content = _damaged(recording(name), draw)
     (folder / LOGS / "day").mkdir(parents=True)
     (folder / LOGS / "day" / name).write_bytes(content)
-    words = ["ingest", LOGS, "-w", WORK] if draw.random() < 0.75 else ["inspect", LOGS]
+    words = ["ingest", LOGS, "-w", WORK]
+    if draw.random() < 0.25:
+        words = ["inspect", LOGS, *draw.choice(_INSPECTIONS)]
     return Input(f"{name}: {kind}", words)
 
 
@@ -363,6 +262,8 @@ def rows(folder: Path, base: Path, draw: random.Random) -> Input:
     name = draw.choice(sorted(WRITERS))
     (folder / LOGS / "day").mkdir(parents=True)
     WRITERS[name](folder / LOGS / "day" / name, columns)
+    if draw.random() < 0.1:
+        return Input(f"values of {name}", ["inspect", LOGS, *draw.choice(_INSPECTIONS)])
     return Input(f"values of {name}", ["ingest", LOGS, "-w", WORK], count)
 
 
@@ -380,8 +281,9 @@ def examine(form: str, number: int, folder: Path, base: Path) -> tuple[Input, st
         return one, status, said
     if status not in STATUS:
         return one, f"status {status}", said
-    # the chain of challenge leaves what its stages have made, as that of run does
-    if status == 2 and one.words[0] != "challenge" and digests(folder / WORK) != before:
+    # a chain leaves what its stages have made
+    chain = one.words[0] in ("challenge", "run", "fleet")
+    if status == 2 and not chain and digests(folder / WORK) != before:
         return one, "half-written", said
     if status == 2 and not 1 <= len(said.splitlines()) <= 4 and "Usage:" not in said:
         return one, "not one message", said

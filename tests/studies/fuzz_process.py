@@ -7,6 +7,7 @@ import tempfile
 import traceback
 import warnings
 from collections.abc import Iterator, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, replace
 from multiprocessing.connection import Connection, wait
 from pathlib import Path
@@ -158,6 +159,7 @@ def _outcome(one: Case, folder: Path, *, inspected: bool) -> tuple[str, str]:
     from frictioncli.errors import FrictionError
     from frictioncli.inspection.document import document
     from frictioncli.inspection.inspect import inspect
+    from frictioncli.inspection.map_suggestion.suggest_map import suggested_map
     from frictioncli.inspection.text import text
     from frictioncli.logs.ingest import IngestSettings, ingest
 
@@ -175,7 +177,9 @@ def _outcome(one: Case, folder: Path, *, inspected: bool) -> tuple[str, str]:
             if inspected:
                 found = inspect([run], settings)
                 to_json(document(found))
-                text(found)
+                text(found, verbose=True)
+                with suppress(FrictionError):  # no log that can be opened
+                    suggested_map([run], settings)
             ingest([run], work, settings)
     except FrictionError:
         left = [*work.rglob("*")] if work.exists() else []
