@@ -83,6 +83,20 @@ def check_own(folder: Path, own: Callable[[str], bool]) -> None:
             )
 
 
+def check_name(target: Path) -> None:
+    """Check that tables can be written below a path: other programs need names in UTF-8.
+
+    Raises
+    ------
+    FrictionError
+        If its name, or that of a folder that it is in, is not UTF-8.
+    """
+    try:
+        os.path.realpath(target).encode()
+    except UnicodeEncodeError:
+        raise FrictionError(f"{target}: the name is not UTF-8; choose another with -w") from None
+
+
 def is_there(path: Path) -> bool:
     """Return whether there is a file or folder that can be read; no pipe, which has no end.
 

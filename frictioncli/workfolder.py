@@ -11,7 +11,7 @@ from filelock import FileLock, Timeout
 
 from frictioncli import documents, tables
 from frictioncli.errors import FrictionError, TableError
-from frictioncli.files import DRAFT_PREFIX, cannot_write, is_there
+from frictioncli.files import DRAFT_PREFIX, cannot_write, check_name, is_there
 from frictioncli.provenance import sha256
 
 _LOCK = ".lock"
@@ -36,6 +36,7 @@ def locked(work: Path) -> Iterator[None]:
     FrictionError
         If another process writes into the folder, or the system does not allow it.
     """
+    check_name(work)
     try:
         made = _make_folder(work)
         lock = FileLock(Path(os.path.realpath(work), _LOCK), timeout=0, is_singleton=True)

@@ -96,7 +96,8 @@ class IngestSettings:
         if self.joints is not None and not (
             self.joints and all(1 <= joint <= MAX_JOINT for joint in self.joints)
         ):
-            raise OptionError(f"joints {self.joints}: expected joint numbers from 1 to {MAX_JOINT}")
+            given = ", ".join(map(str, self.joints)) or "none"
+            raise OptionError(f"joints {given}: expected joint numbers from 1 to {MAX_JOINT}")
         if self.gear_ratio is not None and (
             not math.isfinite(self.gear_ratio) or self.gear_ratio == 0
         ):

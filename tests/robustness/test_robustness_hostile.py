@@ -5,11 +5,14 @@ import hashlib
 import os
 import re
 from html.parser import HTMLParser
+from pathlib import Path
 
 import pytest
 
+from frictioncli.errors import FrictionError
+from frictioncli.stages.ingest import ingest as ingest_stage
 from frictioncli.stages.run import run as run_chain
-from tests.logs.logs import kuka_columns, text_of
+from tests.logs.logs import kuka_columns, text_of, write
 from tests.robustness.runs import finished, refused, write_warm_up
 
 HTML = "<script>alert(1)</script><img src=x onerror=alert(2)>"
@@ -92,6 +95,14 @@ def test_a_file_name_that_is_no_text_is_refused(tmp_path):
         stream.write(text_of(kuka_columns()))
     for command in (("inspect", run), ("ingest", run, "-w", tmp_path / "work")):
         assert "its name is not UTF-8" in refused(finished(*command))
+
+
+def test_a_work_folder_whose_name_is_no_text_is_refused(tmp_path):
+    write(tmp_path / "log.csv", kuka_columns())
+    work = os.fsdecode(os.fsencode(tmp_path) + b"/\xff")
+    with pytest.raises(FrictionError, match="the name is not UTF-8"):
+        ingest_stage([tmp_path / "log.csv"], Path(work))
+    assert [path.name for path in tmp_path.iterdir()] == ["log.csv"]
 
 
 def test_a_terminal_that_knows_few_characters(tmp_path):

@@ -28,7 +28,7 @@ def test_a_log_is_not_replaced_by_an_output(tmp_path):
 
 def test_a_named_folder_that_is_the_work_folder_is_said_to_be_passed_over(tmp_path):
     write(tmp_path / "log.csv", kuka_columns())
-    with pytest.raises(LogError, match=f"none is looked for in the work folder {tmp_path}"):
+    with pytest.raises(LogError, match=f"the work folder {tmp_path} is not searched"):
         ingest([tmp_path], tmp_path)
 
 

@@ -54,3 +54,13 @@ def test_its_torques_give_the_parameters_that_they_were_made_with(old):
     for name in ("tau_c", "beta", "gamma", "delta"):
         low, high = model["parameters"][name]["ci95"]
         assert low <= TRUTH[name] <= high
+
+
+@pytest.mark.parametrize("words", [["simulate"], ["evaluate"], ["export", "--to", "c"]])
+def test_a_model_of_another_joint_is_told(old, words):
+    model = json.loads((old / "model.json").read_text(encoding="utf-8"))
+    (old / "model.json").write_text(json.dumps(model | {"joint": 3}), encoding="utf-8")
+    status, said = call([*words, "-w", str(old)])
+    assert status == 2
+    assert f"{old / 'model.json'}: of joint 3, but torques.parquet beside it has joint(s) 2" in said
+    assert not (old / "export").exists()

@@ -32,7 +32,9 @@ from tests.studies.robustness_page import put
 ROOT = Path(__file__).parents[2]
 LOGS = "logs"
 ALL = (LOGS, *FORMS)
-ROUND = 1_000
+ROUND = 100
+ROUNDS = {LOGS: 1_000, "work": 20, "options": 20}
+"""Inputs after which the counts are kept; fewer of those that take long."""
 INPUTS = 100_000
 
 
@@ -126,7 +128,7 @@ def tried(form: str, inputs: int, minutes: float, processes: int, base: Path) ->
     tally = stored(form, digest)
     until = time.monotonic() + 60 * minutes
     while tally.inputs < inputs and time.monotonic() < until:
-        end = min(tally.inputs + (ROUND if form == LOGS else ROUND // 10), inputs)
+        end = min(tally.inputs + ROUNDS.get(form, ROUND), inputs)
         for one in examined(range(tally.inputs, end), processes, form, base):
             tally.counts[one.layout, one.outcome] += 1
             if one.outcome not in GOOD:

@@ -1,9 +1,11 @@
 """Processes that examine damaged inputs under a limit of memory and time."""
 
 import multiprocessing
+import os
 import resource
 import shutil
 import tempfile
+import time
 import traceback
 import warnings
 from collections.abc import Iterator, Sequence
@@ -26,7 +28,8 @@ MEMORY = 500
 
 _INSPECTED = 4  # one in so many is inspected too, which takes longer than reading
 _ADDRESSES = 4 << 30
-_SECONDS = 120.0
+_SECONDS, _WAIT = 120.0, 600.0
+"""Processor time that an input may take, and the time on a loaded machine. [s]"""
 _PROCESSES = multiprocessing.get_context("forkserver")
 _PROCESSES.set_forkserver_preload(["tests.studies.fuzz_process"])
 _LAYOUTS = layouts()
@@ -66,9 +69,9 @@ def examined(
     waiting = iter(numbers)
     workers = [_Worker(waiting, form, base) for _ in range(min(processes, len(numbers)))]
     while workers:
-        ready = wait([worker.results for worker in workers], timeout=_SECONDS)
+        ready = wait([worker.results for worker in workers], timeout=10.0)
         for worker in list(workers):
-            found = worker.take() if worker.results in ready else worker.late(stuck=not ready)
+            found = worker.take() if worker.results in ready else worker.late()
             if found is not None:
                 yield found
                 if not worker.next():
@@ -98,7 +101,17 @@ class _Worker:
             self._process.join()
             return False
         self._number = number
+        self._used, self._began = self._processor_time(), time.monotonic()
         return True
+
+    def _processor_time(self) -> float:
+        """Return the processor time of the process so far; 0 where the system does not tell. [s]"""
+        try:
+            stat = Path(f"/proc/{self._process.pid}/stat").read_text(encoding="utf-8")
+        except OSError:
+            return 0.0
+        user, system = stat.rpartition(")")[2].split()[11:13]
+        return (int(user) + int(system)) / os.sysconf("SC_CLK_TCK")
 
     def take(self) -> Finding:
         """Return the result that is there; a process that died says so by its end."""
@@ -109,13 +122,14 @@ class _Worker:
             return self._again(f"died, exit code {self._process.exitcode}")
         return self._again(found.outcome, found) if found.outcome == "memory" else found
 
-    def late(self, *, stuck: bool) -> Finding | None:
-        """Kill the process if nothing came from any for too long."""
-        if not stuck:
+    def late(self) -> Finding | None:
+        """Kill the process if it is at its input for too long."""
+        used, waited = self._processor_time() - self._used, time.monotonic() - self._began
+        if used < _SECONDS and waited < _WAIT:
             return None
         self._process.kill()
         self._process.join()
-        return self._again(f"not done in {_SECONDS:.0f} s")
+        return self._again(f"not done in {used:.0f} s of processor, {waited:.0f} s")
 
     def _again(self, outcome: str, found: Finding | None = None) -> Finding:
         if self._process.is_alive():

@@ -99,7 +99,8 @@ def discover(logs: Logs, excluded: Path | None = None) -> tuple[LogRun, ...]:
             folders.setdefault(file.parent, {})[file] = None
     if not folders:
         named = ", ".join(str(path) for path in paths) or "nothing named"
-        passed = "" if excluded is None else f"; none is looked for in the work folder {excluded}"
+        passed = "; links to folders are not followed"
+        passed += f", the work folder {excluded} is not searched" if excluded is not None else ""
         raise LogError(
             f"{named}: no log files found; expected text logs of a joint's motion{passed}"
         )
