@@ -2,6 +2,7 @@
 
 import re
 import tomllib
+import warnings
 
 import numpy as np
 import pandas as pd
@@ -331,3 +332,28 @@ def test_xarm_joint_2_of_seven(tmp_path):
     (joint,) = whole.joints
     assert joint.joint == 2
     assert {stage.name: stage.suffices for stage in joint.stages}["separate"] == "yes"
+
+
+def text_log(path, times, positions, rates):
+    """Write a log of a position that goes there and back, by lists of text."""
+    rows = zip(times, positions, rates, strict=True)
+    lines = [f"{t};{q};{v};{i % 7}" for i, (t, q, v) in enumerate(rows)]
+    path.write_text("\n".join(["t;position_2;velocity_2;tau", *lines]), encoding="utf-8")
+    return path
+
+
+def test_positions_in_microdegrees_beside_a_velocity_of_something_else(tmp_path):
+    """Velocities are not logged in microdegrees per second: there is no such unit."""
+    swing = [round(5e7 * np.sin(i / 40)) for i in range(400)]
+    path = text_log(tmp_path / "log.csv", [f"{i / 100}" for i in range(400)], swing, swing)
+    units = tomllib.loads(suggested_map([path], IngestSettings()))["units"]
+    assert (units["position"], units["velocity"]) == ("udeg", "deg/s")
+
+
+def test_times_that_no_clock_has_are_no_hindrance(tmp_path):
+    """Steps of 1e-300 s make velocities without end."""
+    swing = [f"{50 * np.sin(i / 40)}" for i in range(300)]
+    path = text_log(tmp_path / "log.csv", [f"{i}e-300" for i in range(300)], swing, ["0"] * 300)
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        assert "[channels]" in suggested_map([path], IngestSettings())

@@ -189,7 +189,8 @@ def _by_position(
     ]
     if rates:
         rate_unit = units.canonical(split_unit(columns.head.names[rates[0]])[1], names.VELOCITY)
-        rate_unit = rate_unit or f"{unit}/s"
+        # no velocity is logged in microdegrees per second
+        rate_unit = rate_unit or ("rad/s" if unit == "rad" else "deg/s")
         rate = columns.head.values[rates[0]] * units.FACTORS[names.VELOCITY][rate_unit]
         doubt = "its name says so, though its integral is not the position's change"
         velocity = ColumnGuess(rates[0], doubt, GUESS, rate_unit)
