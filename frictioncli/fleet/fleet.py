@@ -186,8 +186,16 @@ def _check_table(fleet: Path, out: Path) -> None:
 
 
 def _check_logs(logs: JointLogs, work: Path) -> None:
-    """Raise if logs lie where the outputs of their joint go: no logs are looked for there."""
+    """Raise if logs lie where the outputs of their joint go, or the outputs among the logs."""
     place = Path(os.path.realpath(work))
+    runs = [path for _, path in logs.run_paths]
+    runs += [] if logs.folder is None else logs.folder.glob("run=*")
+    for path in runs:
+        if place.is_relative_to(os.path.realpath(path)):
+            raise OptionError(
+                f"{work}: lies in {path}, all of which are logs of a run; choose another folder"
+                " with -w"
+            )
     named = (logs.folder, logs.map_file, *(path for _, path in logs.run_paths))
     for path in filter(None, named):
         if Path(os.path.realpath(path)).is_relative_to(place):

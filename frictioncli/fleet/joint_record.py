@@ -1,8 +1,9 @@
 """Record in the work folder of a joint: its row of the fleet's table, and the state of the work."""
 
+import hashlib
 import shutil
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
@@ -31,18 +32,27 @@ class JointRecord:
         Row of the table :data:`frictioncli.schemas.FLEET`.
     outputs : mapping of str to str
         Digest of each file of the joint by its path in the folder; empty while it is not done.
+    digest : str
+        Digest of the other fields: a row that is damaged is not taken over into the table.
     """
 
     key: str | None
     row: Mapping[str, Any]
     outputs: Mapping[str, str] = field(default_factory=dict)
+    digest: str = ""
+
+    def own_digest(self) -> str:
+        """Return the digest of all fields but ``digest``, as they are written."""
+        text = documents.to_json(replace(self, digest=""))
+        return hashlib.sha256(text.encode("utf-8", "surrogatepass")).hexdigest()
 
 
 def read_record(work: Path) -> JointRecord | None:
     """Return the record of a work folder; None if it is missing or damaged."""
     try:
-        return documents.decode((work / RECORD).read_bytes(), JointRecord)
-    except (OSError, TableError):
+        record = documents.decode((work / RECORD).read_bytes(), JointRecord)
+        return record if record.digest == record.own_digest() else None
+    except (OSError, ValueError, TableError):
         return None
 
 
@@ -61,7 +71,7 @@ def output_digests(work: Path) -> dict[str, str]:
 
 def write_record(work: Path, record: JointRecord) -> None:
     """Write the record of a joint into its work folder."""
-    write_text(work / RECORD, documents.to_json(record))
+    write_text(work / RECORD, documents.to_json(replace(record, digest=record.own_digest())))
 
 
 def read_row(work: Path) -> Mapping[str, Any]:

@@ -8,7 +8,13 @@ from frictioncli.errors import FrictionError, LogError, OptionError
 from frictioncli.files import write_text
 from frictioncli.fleet import fleet as fleets
 from frictioncli.fleet.fleet import run_fleet
-from frictioncli.fleet.joint_record import JointRecord, reset_folder, write_record
+from frictioncli.fleet.joint_record import (
+    RECORD,
+    JointRecord,
+    read_record,
+    reset_folder,
+    write_record,
+)
 from frictioncli.fleet.settings import FleetSettings
 from frictioncli.logs.ingest import ingest
 from frictioncli.stages.report import report
@@ -89,6 +95,29 @@ def test_logs_among_the_results_of_their_joint_are_refused(joint, tmp_path, list
         run_fleet(fleet, out, options=FleetSettings(workers=1))
     assert (joint / "run=1" / "log.csv").is_file()
     assert (joint / "model.json").is_file()
+
+
+def test_results_among_the_logs_of_a_run_are_refused(tmp_path):
+    """The next call would take them for logs."""
+    run = tmp_path / "robot=A" / "joint=2" / "run=1"
+    write(run / "log.csv", kuka_columns())
+    with pytest.raises(OptionError, match=r"lies in .*run=1, all of which are logs"):
+        run_fleet(tmp_path, run / "out", options=FleetSettings(workers=1))
+    assert [path.name for path in run.iterdir()] == ["log.csv"]
+
+
+@pytest.mark.parametrize(
+    ("old", "new"), [('"status": "done"', '"status": "dome"'), ("0.25", "0.75"), ("0.25", '"x"')]
+)
+def test_a_damaged_record_of_a_joint_is_none(tmp_path, old, new):
+    """Its row would go into the table of the fleet."""
+    whole = JointRecord(key="k", row={"status": "done", "rmse": 0.25}, outputs={"a": "b"})
+    write_record(tmp_path, whole)
+    found = read_record(tmp_path)
+    assert (found.key, found.row, found.outputs) == (whole.key, whole.row, whole.outputs)
+    text = (tmp_path / RECORD).read_text(encoding="utf-8")
+    (tmp_path / RECORD).write_text(text.replace(old, new), encoding="utf-8")
+    assert read_record(tmp_path) is None
 
 
 def test_a_table_of_contents_is_not_replaced_by_the_table_of_results(tmp_path):
