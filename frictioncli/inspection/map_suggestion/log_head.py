@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from frictioncli.arrays import Array
+from frictioncli.logs.channels.survey import LARGEST
 from frictioncli.logs.log_source import LogSource, RawBatch, UnreadableLog
 
 _FIRST_BYTES = 1 << 16
@@ -65,7 +66,7 @@ def read_log_head(source: LogSource) -> LogHead:
     cells = {c: np.concatenate([b.values[c] for b in batches] or [np.empty(0)]) for c in numeric}
     complete = np.ones(rows, bool)
     for column_cells in cells.values():
-        complete &= np.isfinite(column_cells)
+        complete &= np.abs(column_cells) < LARGEST
     values = {column: found[complete][:most_rows] for column, found in cells.items()}
     changing = {c: v for c, v in values.items() if len(v) and float(np.ptp(v)) > 0}
     constants = {c: float(v[0]) for c, v in values.items() if len(v) and c not in changing}
@@ -77,5 +78,6 @@ def _is_numeric(source: LogSource, column: int) -> bool:
         first = next(iter(source.batches([column], _FIRST_BYTES)), None)
         if first is not None:
             cells = len(first.lines) + len(first.bad_lines)
-            return bool(np.isfinite(first.values[column]).sum() > _LEAST_FILLED * cells)
+            numbers = np.abs(first.values[column]) < LARGEST
+            return bool(numbers.sum() > _LEAST_FILLED * cells)
     return False

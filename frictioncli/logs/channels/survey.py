@@ -18,7 +18,8 @@ _MAX_VALUES = 4_000_000
 _MAX_BAD_ROWS = 100_000
 _MAX_BATCHES = 64
 _BATCH_BYTES = 1 << 20
-_LARGEST = 1e100
+LARGEST = 1e100
+"""Larger values measure nothing: their sums and squares would be infinite. [raw]"""
 _LEAST_MOTION = 0.01
 """Position range above which an axis counts as moving. [raw]"""
 
@@ -119,10 +120,10 @@ def _readable_batches(source: LogSource, wanted: list[int]) -> Iterator[RawBatch
 
 
 def _known(values: Array) -> Array:
-    """Return values, NaN for those that measure nothing: sums and squares would be infinite."""
-    if not len(values) or -_LARGEST < values.min() <= values.max() < _LARGEST:
+    """Return values, NaN for those that measure nothing."""
+    if not len(values) or -LARGEST < values.min() <= values.max() < LARGEST:
         return values
-    return np.where(np.abs(values) < _LARGEST, values, np.nan)
+    return np.where(np.abs(values) < LARGEST, values, np.nan)
 
 
 def _moves(values: Array) -> bool:
