@@ -12,6 +12,9 @@ from frictioncli.regression.equation import EquationTerms
 TOLERANCE = 1e-11
 """Share of the greatest eigenvalue of inner products below which one counts as zero."""
 
+_LEAST_SIZE = 1e-100
+"""Of a column that is no column of zeros: its square is a number, too."""
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class RegressionEstimate:
@@ -103,7 +106,9 @@ def left_out_changes(columns: Array, derivatives: Array, target: Array, block: N
         grams.append(part.T @ derivatives[begin:end])
         rights.append(part.T @ target[begin:end])
     gram, right = np.sum(grams, axis=0), np.sum(rights, axis=0)
-    size = np.maximum(np.linalg.norm(columns, axis=0), 1e-300)
+    size = np.linalg.norm(columns, axis=0)
+    # a column of zeros, as of a torque that never changes, has no parameter to change
+    size = np.where(size > _LEAST_SIZE, size, 1.0)
     scale = np.outer(size, size)
     return np.stack(
         [

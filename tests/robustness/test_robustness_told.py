@@ -12,17 +12,27 @@ import pyarrow as pa
 import pyarrow.parquet as pq
 import pytest
 
-from frictioncli.errors import FrictionError, LogError, MappingError, OptionError, TableError
+from frictioncli.errors import (
+    FrictionError,
+    LogError,
+    MappingError,
+    NotEnoughData,
+    OptionError,
+    TableError,
+)
 from frictioncli.fleet.joint_logs import find_joints
 from frictioncli.logs.channels.channel_map import read_map
 from frictioncli.logs.ingest import IngestSettings, ingest
 from frictioncli.logs.runs.discovery import natural_key
 from frictioncli.logs.runs.manifest import read_manifest
 from frictioncli.model.document import read_models
+from frictioncli.pairs.settings import SeparationSettings
 from frictioncli.stages.fit import fit
 from frictioncli.stages.pair import pair
+from frictioncli.stages.separate import separate
 from tests.command_line import invoke
 from tests.fleet.fleets import ENVIRONMENT
+from tests.logs.logs import kuka_columns, write
 
 HEADER = "Zeit[sec];AxisPos_Act2[deg];GearTorq_Act2[Nm]\n"
 ROWS = "".join(f"{i * 0.012:.3f};{i * 0.1:.4f};{i % 7 * 0.3:.3f}\n" for i in range(300))
@@ -250,6 +260,22 @@ def test_warnings_of_libraries_do_not_reach_the_terminal(tmp_path):
 
 
 @pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="no pipes with names")
+def test_a_torque_that_never_changes_has_no_friction(tmp_path):
+    columns = kuka_columns()
+    columns["GearTorq_Act2[Nm]"][:] = 5.0
+    ingest([write(tmp_path / "log.csv", columns)], tmp_path / "work")
+    with pytest.raises(NotEnoughData, match="the torque holds no friction to speak of"):
+        separate(tmp_path / "work", SeparationSettings(by="regression"))
+
+
+def test_torques_whose_squares_are_zero_are_zeros(tmp_path):
+    columns = kuka_columns()
+    columns["GearTorq_Act2[Nm]"] *= 1e-300
+    log = write(tmp_path / "log.csv", columns, digits=320)
+    with pytest.raises(LogError, match="holds only zeros"):
+        ingest([log], tmp_path / "work")
+
+
 def test_a_pipe_in_the_place_of_an_output_is_not_waited_for(tmp_path):
     """A pipe that nobody writes into has no end."""
     for stage, name in ((pair, "samples.parquet"), (fit, "torques.parquet")):

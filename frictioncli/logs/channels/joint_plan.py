@@ -10,7 +10,7 @@ from frictioncli.logs.channels import position_units, units
 from frictioncli.logs.channels.joint_channels import JointChannels
 from frictioncli.logs.channels.motion_units import JointMotion, Remarks, joint_motion
 from frictioncli.logs.channels.recognition import LogChannel
-from frictioncli.logs.channels.survey import Survey
+from frictioncli.logs.channels.survey import LARGEST, Survey
 from frictioncli.logs.channels.torque_constant import TorqueConstant
 from frictioncli.logs.channels.transmission import Transmission, find_transmission
 from frictioncli.logs.channels.units import UnitConversion
@@ -83,7 +83,7 @@ def plan_joint(
     """
     remarks = Remarks(notes=list(channels.notes))
     torque_values = survey.pooled(channels.torque)
-    if survey.n_rows and not np.any(torque_values):
+    if survey.n_rows and not np.any(np.abs(torque_values) > 1 / LARGEST):
         state = "holds only zeros" if len(torque_values) else "holds no number"
         return Refusal(
             "no_torque_channel",
