@@ -57,7 +57,7 @@ def test_a_programme_is_understood(tmp_path):
     assert program.payload == 0.661
     assert program.started_at.isoformat() == "2021-05-19T15:03:53+00:00"
     assert (
-        str(program) == "tells of LIN and PTP motions at 10 to 50 % of axis speed, payload 0.661 kg"
+        str(program) == "lists LIN and PTP motions at 10 to 50 % of axis speed, payload 0.661 kg"
     )
 
 
