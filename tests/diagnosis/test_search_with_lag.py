@@ -67,6 +67,7 @@ def test_a_gear_that_leads_the_motor_may_be_a_sensor_that_lags():
     diagnosis = diagnose_joint(joint, "motor", "N·m", DiagnosisSettings(margin=0.4))
     assert [cause.effects for cause in diagnosis.causes] == [("thermal_lag", "sensor_lag")]
     assert diagnosis.verdict == "ambiguous"
+    assert sum(diagnosis.causes[0].probabilities.values()) == pytest.approx(1.0)
     assert diagnosis.thermal is not None
     # noise of a bin, of a pair, and the drift
     assert diagnosis.gain.after < 1.1 * (0.25**2 + 0.125**2 + 0.1**2 + 0.25**2) ** 0.5
@@ -76,6 +77,7 @@ def lags(interval, *others, sensor=(0.0, 0.1)):
     """Return a search that finds a lag of so much, and the lag of a sensor beside the base."""
     result = found("thermal_lag", *others)
     result.causes[0].visible_interval = interval
+    result.causes[0].visible = sum(interval) / 2
     name = SimpleNamespace(effect=SimpleNamespace(name="sensor_lag"))
     result.measurement = [SimpleNamespace(fit=name, visible_interval=sensor)]
     return result
@@ -102,7 +104,7 @@ def test_the_lag_of_a_sensor_is_left_out_only_where_it_hides_one_of_the_gear(
         return without, estimate
 
     monkeypatch.setattr(lag_search, "_searched", searched)
-    monkeypatch.setattr(lag_search, "_lag_or_sensor", lambda cause: "the set")
+    monkeypatch.setattr(lag_search, "_lag_or_sensor", lambda cause, share: "the set")
     monkeypatch.setattr(lag_search, "replace", lambda one, **changed: SimpleNamespace(**changed))
 
     def search(measurement=MEASUREMENT_EFFECTS):
@@ -113,3 +115,8 @@ def test_the_lag_of_a_sensor_is_left_out_only_where_it_hides_one_of_the_gear(
         assert (result, lag) == (beside, "own")
     else:
         assert (result.causes, lag) == (("the set",), FIRST)
+
+
+@pytest.mark.parametrize(("interval", "expected"), [((0.1, 0.3), 0.5), ((0.0, 0.05), 0.05)])
+def test_the_share_of_the_gear_is_that_with_which_it_is_worth_a_name(interval, expected):
+    assert lag_search._share_of_lag(lags(interval), 0.2) == pytest.approx(expected)

@@ -56,9 +56,7 @@ def test_a_programme_is_understood(tmp_path):
     assert [motion.speeds for motion in program.motions] == [(10, 20, 10), (50,)]
     assert program.payload == 0.661
     assert program.started_at.isoformat() == "2021-05-19T15:03:53+00:00"
-    assert (
-        str(program) == "lists LIN and PTP motions at 10 to 50 % of axis speed, payload 0.661 kg"
-    )
+    assert str(program) == "lists LIN and PTP motions at 10 to 50 % of axis speed, payload 0.661 kg"
 
 
 @pytest.mark.parametrize(

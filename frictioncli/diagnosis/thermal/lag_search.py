@@ -5,8 +5,10 @@ from dataclasses import replace
 from functools import partial
 
 import numpy as np
+from scipy.special import ndtr
 
 from frictioncli.diagnosis.data.problem import Problem
+from frictioncli.diagnosis.fit.left_by_base import Z95
 from frictioncli.diagnosis.search.cause import Cause
 from frictioncli.diagnosis.search.search_result import SearchResult
 from frictioncli.diagnosis.thermal.estimate import MEASURED, ThermalEstimate
@@ -17,6 +19,9 @@ from frictioncli.effects.sensor_lag import EFFECT as SENSOR_LAG
 
 _WITHOUT_SENSOR = tuple(one for one in MEASUREMENT_EFFECTS if one is not SENSOR_LAG)
 """What stands beside the base where the lag of a sensor is left out."""
+
+_DOUBT = (0.05, 0.95)
+"""Range of the probability of either, where both are in a set."""
 
 _FAR_OFF = 0.02
 """Least RMS misfit of pair means, relative to the mean friction, of a lag that would look like
@@ -66,7 +71,8 @@ def search_with_lag(
     again, refined = _searched(problem, new, effects, without, margin)
     if refined is None or _left_of_lag(again) <= margin:
         return found, lag
-    causes = (_lag_or_sensor(one) if _is_lag(one) else one for one in again.causes)
+    share = _share_of_lag(found, margin)
+    causes = (_lag_or_sensor(one, share) if _is_lag(one) else one for one in again.causes)
     return replace(again, causes=tuple(causes)), refined
 
 
@@ -80,10 +86,20 @@ def _sensor_may_hide_lag(found: SearchResult, margin: float) -> bool:
     )
 
 
-def _lag_or_sensor(cause: Cause) -> Cause:
+def _share_of_lag(found: SearchResult, margin: float) -> float:
+    """Return the probability that beside the lag of a sensor one of the gear is worth a name."""
+    for cause in found.causes:
+        if _is_lag(cause):
+            low, high = cause.visible_interval
+            error = max((high - low) / (2 * Z95), 1e-9)
+            return float(np.clip(ndtr((cause.visible - margin) / error), *_DOUBT))
+    return _DOUBT[0]
+
+
+def _lag_or_sensor(cause: Cause, share: float) -> Cause:
     """Return a lag of the gear that may as well be one of the sensor."""
-    names = (LAG, SENSOR_LAG.name)
-    return replace(cause, effects=names, probabilities=dict.fromkeys(names, 1 / len(names)))
+    shares = {LAG: share, SENSOR_LAG.name: 1.0 - share}
+    return replace(cause, effects=tuple(shares), probabilities=shares)
 
 
 def _searched(
