@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from frictioncli.diagnosis.search.catalogue import Catalogue
 from frictioncli.diagnosis.search.cause import Cause
 from frictioncli.diagnosis.search.effect_size import sizes_of
 from frictioncli.diagnosis.search.measurement import measurement_causes
@@ -53,6 +54,7 @@ def judged(data, *accepted):
         rejected={},
         dropped={},
         step=step,
+        catalogue=Catalogue.of(precomputed, []),
     )
     judging = Judging(
         problem=data,

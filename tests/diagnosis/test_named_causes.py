@@ -44,6 +44,6 @@ def test_what_makes_the_prediction_of_a_new_day_worse_is_not_named():
     diagnosis = diagnosed_under_nuisances(("run_in:5.66",), 0)
     keeps_the_rules(diagnosis)
     drift = next(cause for cause in diagnosis.visible if cause.fit.effect.name == "drift")
-    assert "misfit of the run that was held out" in drift.reason
+    assert "the misfit on the held-out run" in drift.reason
     assert "run_in" in {cause.fit.effect.name for cause in diagnosis.causes}
     assert diagnosis.gain.after < 0.5 * diagnosis.gain.before

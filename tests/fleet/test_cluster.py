@@ -181,7 +181,7 @@ def test_a_joint_that_takes_for_ever_is_a_row(tmp_path, nanny, timeout):
     others = {outcomes[joint].status for joint in (2, 3)}
     assert others == ({"done"} if nanny else {"failed"})
     if not nanny:
-        assert "all workers are held up" in outcomes[3].message
+        assert "all workers are blocked" in outcomes[3].message
 
 
 @pytest.mark.slow

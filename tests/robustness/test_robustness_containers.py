@@ -123,7 +123,7 @@ def test_rows_of_hdf5_that_were_never_written(tmp_path):
         for name in ("time", "position", "torque"):
             file.create_dataset(name, (10**13,), "f8", chunks=(1 << 20,), fillvalue=1.0)
     assert (tmp_path / "a.h5").stat().st_size < 10_000
-    assert "promises 80000000000000 bytes and stores 0" in refusal(tmp_path / "a.h5")
+    assert "declares 80000000000000 bytes and stores 0" in refusal(tmp_path / "a.h5")
 
 
 def test_names_of_thousands_of_characters_are_cut_in_messages(tmp_path):

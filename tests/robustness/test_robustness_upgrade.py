@@ -62,5 +62,6 @@ def test_a_model_of_another_joint_is_told(old, words):
     (old / "model.json").write_text(json.dumps(model | {"joint": 3}), encoding="utf-8")
     status, said = call([*words, "-w", str(old)])
     assert status == 2
-    assert f"{old / 'model.json'}: of joint 3, but torques.parquet beside it has joint(s) 2" in said
+    expected = "of joint 3, but torques.parquet in the same folder has joint(s) 2"
+    assert f"{old / 'model.json'}: {expected}" in said
     assert not (old / "export").exists()
