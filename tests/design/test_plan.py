@@ -246,7 +246,10 @@ def errors(rows, column, centre, width):
 @pytest.mark.parametrize(
     ("axis", "column", "kind", "shape", "least"),
     [
-        ("speed", "speed", "peak", {"centre": 40.0, "width": 0.15}, 1.5),
+        pytest.param(
+            *("speed", "speed", "peak", {"centre": 40.0, "width": 0.15}, 1.5),
+            marks=pytest.mark.long,
+        ),
         pytest.param(
             *("position", "position", "bump", {"centre": 50.0, "width": 4.0, "lag": 0.0}, 1.1),
             marks=pytest.mark.long,
