@@ -20,6 +20,10 @@ from frictioncli.effects.sensor_lag import EFFECT as SENSOR_LAG
 _WITHOUT_SENSOR = tuple(one for one in MEASUREMENT_EFFECTS if one is not SENSOR_LAG)
 """What stands beside the base where the lag of a sensor is left out."""
 
+_LIKELY = 0.5
+"""Least probability that beside the lag of a sensor one of the gear is worth a name, for a set of
+both."""
+
 _DOUBT = (0.05, 0.95)
 """Range of the probability of either, where both are in a set."""
 
@@ -41,8 +45,8 @@ def search_with_lag(
     """Search for causes; where a lag of the gear is one, about the temperature of the gear.
 
     A gear that friction warms more than the motor looks much like a sensor that lags: either has
-    friction lower while heating. Where the lag of a sensor leaves less of it than is worth a name,
-    or may be one itself, the search is repeated without it, and a lag of the gear that is then
+    friction lower while heating. Where what a sensor leaves of it is most probably, but not surely,
+    worth a name, the search is repeated without the sensor, and a lag of the gear that is then
     large enough is one of the two.
 
     Parameters
@@ -65,35 +69,25 @@ def search_with_lag(
         The causes, and the lag where it is one of them.
     """
     found, lag = _searched(problem, new, effects, search, margin)
-    if not _sensor_may_hide_lag(found, margin):
+    if not _has_lag(found) or _left_of_lag(found) > margin:
+        return found, lag
+    share = _share_of_lag(found, margin)
+    if share < _LIKELY:
         return found, lag
     without = partial(search, measurement=_WITHOUT_SENSOR)
     again, refined = _searched(problem, new, effects, without, margin)
     if refined is None or _left_of_lag(again) <= margin:
         return found, lag
-    share = _share_of_lag(found, margin)
     causes = (_lag_or_sensor(one, share) if _is_lag(one) else one for one in again.causes)
     return replace(again, causes=tuple(causes)), refined
 
 
-def _sensor_may_hide_lag(found: SearchResult, margin: float) -> bool:
-    """Return whether the lag of a sensor may have taken what a lag of the gear does."""
-    if any(_is_lag(cause) for cause in found.causes):
-        return _left_of_lag(found) <= margin
-    return any(
-        one.fit.effect.name == SENSOR_LAG.name and one.visible_interval[0] > margin
-        for one in found.measurement
-    )
-
-
 def _share_of_lag(found: SearchResult, margin: float) -> float:
     """Return the probability that beside the lag of a sensor one of the gear is worth a name."""
-    for cause in found.causes:
-        if _is_lag(cause):
-            low, high = cause.visible_interval
-            error = max((high - low) / (2 * Z95), 1e-9)
-            return float(np.clip(ndtr((cause.visible - margin) / error), *_DOUBT))
-    return _DOUBT[0]
+    cause = next(one for one in found.causes if _is_lag(one))
+    low, high = cause.visible_interval
+    error = max((high - low) / (2 * Z95), 1e-9)
+    return float(np.clip(ndtr((cause.visible - margin) / error), *_DOUBT))
 
 
 def _lag_or_sensor(cause: Cause, share: float) -> Cause:
