@@ -21,9 +21,7 @@ from frictioncli.diagnosis.diagnose import Diagnosis, predicting
 from frictioncli.diagnosis.documents.document import RemainderRecord
 from frictioncli.diagnosis.fit.extension import misfits
 from frictioncli.diagnosis.search.axis_columns import varying_axes
-
-ADEQUATE = 1.25
-"""Greatest misfit on a run kept out of a model that is adequate, as a multiple of the noise."""
+from frictioncli.diagnosis.search.new_run_changes import ADEQUATE
 
 _BINS = 8
 """Bins of equal filling along an axis of many values."""

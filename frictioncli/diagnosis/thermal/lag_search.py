@@ -84,7 +84,7 @@ def search_with_lag(
 
 def _share_of_lag(found: SearchResult, margin: float) -> float:
     """Return the probability that beside the lag of a sensor one of the gear is worth a name."""
-    cause = next(one for one in found.causes if _is_lag(one))
+    cause = _lag_of(found)
     low, high = cause.visible_interval
     error = max((high - low) / (2 * Z95), 1e-9)
     return float(np.clip(ndtr((cause.visible - margin) / error), *_DOUBT))
@@ -161,7 +161,12 @@ def _is_lag(cause: Cause) -> bool:
 
 def _left_of_lag(found: SearchResult) -> float:
     """Return the lower bound of what the base leaves of the lag [N·m]."""
-    return next(cause.visible_interval[0] for cause in found.causes if _is_lag(cause))
+    return _lag_of(found).visible_interval[0]
+
+
+def _lag_of(found: SearchResult) -> Cause:
+    """Return the lag of a search that found one."""
+    return next(cause for cause in found.causes if _is_lag(cause))
 
 
 def _as_refined(found: SearchResult, refined: RefinedLag) -> SearchResult:
