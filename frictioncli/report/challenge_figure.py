@@ -7,6 +7,7 @@ import pandas as pd
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from frictioncli.report.panel import name_ticks, stacked
 from frictioncli.report.style import FAINT, HEATING, MODEL, WIDTH
 from frictioncli.wording import in_words
 
@@ -90,7 +91,7 @@ def challenge_figure(rows: pd.DataFrame) -> Figure:
         of them diagnosed.
     """
     figure = Figure(figsize=(WIDTH, 2.6), layout="constrained")
-    panel = figure.subplots()
+    (panel,) = stacked(figure, 1)
     done = rows[rows["status"] == "done"]
     unit = str(rows["unit"].iloc[0])
     _draw_shares(panel, found_shares(done))
@@ -101,7 +102,7 @@ def challenge_figure(rows: pd.DataFrame) -> Figure:
     panel.set_xlim(0.7 * min(sizes), 1.4 * max(sizes))
     _number_ticks(panel)
     panel.set_ylim(-0.12, 1.12)
-    panel.set_yticks([0, 0.5, 1], ["0", "50", "100"])
+    name_ticks(panel.yaxis, [0, 0.5, 1], ["0", "50", "100"])
     panel.set_ylabel("right name [%]")
     panel.set_xlabel(f"RMS of the planted effect over all pairs [{unit}]")
     panel.set_title(in_words(str(rows["effect"].iloc[0])))
@@ -176,5 +177,4 @@ def _number_ticks(panel: Axes) -> None:
         for digit in (1, 2, 5)
     ]
     inside = [mark for mark in marks if low <= mark <= high]
-    panel.set_xticks(inside, [f"{mark:g}" for mark in inside])
-    panel.set_xticks([], minor=True)
+    name_ticks(panel.xaxis, inside, [f"{mark:g}" for mark in inside])

@@ -9,6 +9,7 @@ from numpy.typing import ArrayLike
 from frictioncli.arrays import Array
 from frictioncli.model.friction import friction_torque
 from frictioncli.report.labels import TEMPERATURE_SYMBOLS, figure_text, friction_label
+from frictioncli.report.panel import stacked
 from frictioncli.report.results import MOST_RUNS, JointResults, by_speed
 from frictioncli.report.style import FAINT, MODEL, WIDTH, label_right, legend_above, points
 from frictioncli.wording import number_text, range_text, speed_text
@@ -42,12 +43,7 @@ def corrected_friction_figure(results: JointResults, phase: str) -> Figure:
     runs = sorted(schedule["run"].unique())[:MOST_RUNS]
     height = _FRICTION_HEIGHT + _STRIP_HEIGHT
     figure = Figure(figsize=(WIDTH, height * len(runs) + 0.4), layout="constrained")
-    grid = figure.subplots(
-        2 * len(runs),
-        1,
-        squeeze=False,
-        gridspec_kw={"height_ratios": [_FRICTION_HEIGHT, _STRIP_HEIGHT] * len(runs)},
-    )[:, 0]
+    grid = stacked(figure, 2 * len(runs), [_FRICTION_HEIGHT, _STRIP_HEIGHT] * len(runs))
     for index, run in enumerate(runs):
         friction, temperature = grid[2 * index], grid[2 * index + 1]
         own = schedule[schedule["run"] == run].sort_values("time")

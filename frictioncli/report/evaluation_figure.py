@@ -7,6 +7,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from frictioncli.report.labels import CRITERION_WORDS, figure_text
+from frictioncli.report.panel import name_ticks
 from frictioncli.report.results import MOST_RUNS, JointResults
 from frictioncli.report.style import (
     FAINT,
@@ -67,7 +68,7 @@ def error_figure(results: JointResults) -> Figure:
         panel.plot([], [], color=FAINT, linestyle=_DASHES, linewidth=1.3, label="no correction")
         if results.unit == "N·m":
             panel.axhline(_PAPER_BOUND, color=MODEL, linewidth=1.0, linestyle=":", label="2 N·m")
-        panel.set_xticks(range(len(counts)), [str(count) for count in counts])
+        name_ticks(panel.xaxis, range(len(counts)), [str(count) for count in counts])
         panel.grid(visible=False, axis="x")
         panel.set_title(figure_text(run))
         panel.set_ylabel(f"error ε [{results.unit}]")

@@ -6,6 +6,7 @@ import numpy as np
 import pandas as pd
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.ticker import FixedLocator
 
 from frictioncli.diagnosis.documents.reload import Reloaded
 from frictioncli.report.binning import (
@@ -15,6 +16,7 @@ from frictioncli.report.binning import (
     bin_numbers,
     residual_series,
 )
+from frictioncli.report.panel import name_ticks, stacked
 from frictioncli.report.results import JointResults
 from frictioncli.report.style import FAINT, MODEL, WIDTH
 from frictioncli.wording import in_words, probability_text
@@ -63,7 +65,7 @@ def evidence_figure(results: JointResults, *, diagnosis: Reloaded, index: int) -
     low = 0.62 + 0.24 * len(bars)
     figure = Figure(figsize=(WIDTH, 6.6 + low), layout="constrained")
     upper, lower = figure.subfigures(2, 1, squeeze=False, height_ratios=(6.6, low))[:, 0]
-    panels = upper.subplots(3, 1, sharey=True, sharex=True)
+    panels = stacked(upper, 3, share_x=True, share_y=True)
     table = seen.problem.table
     rows = pd.DataFrame(
         {
@@ -91,7 +93,8 @@ def evidence_figure(results: JointResults, *, diagnosis: Reloaded, index: int) -
     panels[1].set_ylabel(f"{channel}: measured − simulated [{unit}]")
     handles, labels = panels[1].get_legend_handles_labels()
     upper.legend(handles, labels, loc="outside lower center", ncols=len(labels))
-    _draw_probabilities(lower.subplots(), bars, set(cause.effects))
+    (shares,) = stacked(lower, 1)
+    _draw_probabilities(shares, bars, set(cause.effects))
     return figure
 
 
@@ -140,8 +143,7 @@ def _logarithmic(panel: Axes, values: pd.Series) -> None:
     panel.set_xscale("log")
     low, high = 0.8 * values.min(), 1.2 * values.max()
     ticks = [mark for mark in (0.1, 0.3, 1, 3, 10, 30, 100, 300) if low < mark < high]
-    panel.set_xticks(ticks, [f"{value:g}" for value in ticks])
-    panel.set_xticks([], minor=True)
+    name_ticks(panel.xaxis, ticks, [f"{value:g}" for value in ticks])
 
 
 def _draw_probabilities(panel: Axes, bars: list[tuple[str, float]], chosen: set[str]) -> None:
@@ -158,9 +160,9 @@ def _draw_probabilities(panel: Axes, bars: list[tuple[str, float]], chosen: set[
             va="center",
             fontsize=9,
         )
-    panel.set_yticks(places, names)
+    name_ticks(panel.yaxis, places, names)
     panel.set_ylim(len(bars) - 0.3, -0.7)
     panel.set_xlim(0, 112)
-    panel.set_xticks([0, 25, 50, 75, 100])
+    panel.xaxis.set_major_locator(FixedLocator([0, 25, 50, 75, 100]))
     panel.grid(axis="y", visible=False)
     panel.set_xlabel("probability [%]")

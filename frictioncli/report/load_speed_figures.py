@@ -6,6 +6,7 @@ from matplotlib.figure import Figure
 
 from frictioncli.model.friction import carried_to_temperature
 from frictioncli.report.labels import figure_text, friction_label
+from frictioncli.report.panel import stacked
 from frictioncli.report.results import MOST_RUNS, JointResults, by_speed
 from frictioncli.report.style import (
     FAINT,
@@ -47,13 +48,8 @@ def load_figure(results: JointResults) -> Figure:
     runs = results.runs[:MOST_RUNS]
     height = _CURVES_HEIGHT + _SHIFTED_HEIGHT
     figure = Figure(figsize=(WIDTH, height * len(runs) + 0.5), layout="constrained")
-    grid = figure.subplots(
-        2 * len(runs),
-        1,
-        sharex=True,
-        squeeze=False,
-        gridspec_kw={"height_ratios": [_CURVES_HEIGHT, _SHIFTED_HEIGHT] * len(runs)},
-    )[:, 0]
+    heights = [_CURVES_HEIGHT, _SHIFTED_HEIGHT] * len(runs)
+    grid = stacked(figure, 2 * len(runs), heights, share_x=True)
     alpha = results.model.friction.alpha
     span = results.torques["load_torque"].min(), results.torques["load_torque"].max()
     for index, run in enumerate(runs):

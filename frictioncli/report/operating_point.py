@@ -10,6 +10,7 @@ from frictioncli.report.figures import FigureSpec
 from frictioncli.report.labels import TEMPERATURE_SYMBOLS
 from frictioncli.report.load_speed_figures import has_temperature_term
 from frictioncli.report.missing_data import nothing_missing
+from frictioncli.report.panel import stacked
 from frictioncli.report.results import JointResults
 from frictioncli.report.style import (
     COOLING,
@@ -94,7 +95,7 @@ def overview_figure(results: JointResults) -> Figure:
     """
     point = operating_point(results)
     figure = Figure(figsize=(WIDTH, 3.9), layout="constrained")
-    panel = figure.subplots()
+    (panel,) = stacked(figure, 1)
     _draw_pairs(panel, results)
     fastest = float(results.pairs["speed"].max())
     speeds = np.linspace(0.0, np.sqrt(1.04 * fastest), 160) ** 2

@@ -6,6 +6,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from frictioncli.report.labels import TEMPERATURE_LABELS
+from frictioncli.report.panel import stacked
 from frictioncli.report.results import JointResults, by_speed
 from frictioncli.report.style import (
     COOLING,
@@ -57,7 +58,7 @@ def residual_figure(results: JointResults) -> Figure:
     has_temperature = bool(pairs["temperature"].notna().any())
     count = 3 if has_temperature else 2
     figure = Figure(figsize=(WIDTH, 0.4 + 2.2 * count), layout="constrained")
-    axes = figure.subplots(count, 1)
+    axes = stacked(figure, count)
     if has_temperature:
         axes[1].sharey(axes[0])
     _draw_pairs(axes[0], pairs, "speed")

@@ -13,6 +13,7 @@ from frictioncli.diagnosis.documents.reload import Reloaded
 from frictioncli.effects.base import EffectTable
 from frictioncli.report.binning import group_boundaries, is_warming, merge_close_values
 from frictioncli.report.labels import TEMPERATURE_SYMBOLS
+from frictioncli.report.panel import Panel, name_ticks
 from frictioncli.report.results import JointResults
 from frictioncli.report.style import MODEL, WIDTH
 
@@ -137,7 +138,10 @@ def _placed(
     grid = figure.add_gridspec(
         len(upward), columns, **sides, **ends, hspace=_BELOW / _MAP, wspace=_BETWEEN
     )
-    panels = [list(row) for row in grid.subplots(sharey="row", squeeze=False)]
+    panels = [
+        list(row)
+        for row in grid.subplots(sharey="row", squeeze=False, subplot_kw={"axes_class": Panel})
+    ]
     bar = figure.add_axes(
         (sides["right"] + 0.02, ends["bottom"], 0.022, ends["top"] - ends["bottom"])
     )
@@ -201,9 +205,9 @@ def _draw_map(panel: Axes, across: MapAxis, up: MapAxis, mean: Array, limit: flo
     panel.set_xlabel(across.label)
     panel.set_ylabel(up.label)
     if up.names:
-        panel.set_yticks(np.arange(len(up.names)) + 0.5, up.names)
+        name_ticks(panel.yaxis, np.arange(len(up.names)) + 0.5, up.names)
     if across.ticks:
-        panel.set_xticks(*zip(*across.ticks, strict=True))
+        name_ticks(panel.xaxis, *zip(*across.ticks, strict=True))
         panel.axvline(across.fold, color=MODEL, linewidth=0.9)
     return mesh
 

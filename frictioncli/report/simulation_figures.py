@@ -10,6 +10,7 @@ from matplotlib.figure import Figure
 from frictioncli.diagnosis.documents.reload import Misfits, Reloaded
 from frictioncli.report.binning import bin_numbers, is_warming, merge_close_values
 from frictioncli.report.labels import figure_text
+from frictioncli.report.panel import stacked
 from frictioncli.report.results import JointResults
 from frictioncli.report.style import (
     COOLING,
@@ -99,27 +100,26 @@ def simulation_figure(results: JointResults, *, diagnosis: Reloaded) -> Figure:
     rows = simulated_rows(results, diagnosis)
     figure = Figure(figsize=(WIDTH, 9.0), layout="constrained")
     parts = figure.subfigures(2, 1, squeeze=False)[:, 0]
-    grid = np.column_stack(
-        [part.subplots(2, 1, sharex=True, height_ratios=(1.25, 1)) for part in parts]
-    )
+    columns = [stacked(part, 2, (1.25, 1), share_x=True) for part in parts]
+    over_time, over_angle = columns
     pairs = rows.groupby(["run", "pair", "speed"], as_index=False).mean(numeric_only=True)
     shown = _shown_speeds(pairs)
-    _draw_torque(grid[:, 0], pairs, _series(results, shown), "time")
-    _name_runs(grid[0, 0], pairs, diagnosis)
+    _draw_torque(over_time, pairs, _series(results, shown), "time")
+    _name_runs(over_time[0], pairs, diagnosis)
     fastest = rows[rows["speed"] == shown[-1]]
     series = _series_by_direction(fastest, results)
-    _draw_torque(grid[:, 1], _means_by_angle(fastest), series, "position")
+    _draw_torque(over_angle, _means_by_angle(fastest), series, "position")
     shown_part = "torque u" if results.load_unit == results.unit else "friction's part of torque"
-    for upper, lower in grid.T:
+    for upper, lower in columns:
         upper.set_ylabel(f"{shown_part} [{results.unit}]")
         lower.set_ylabel(f"measured − simulated [{results.unit}]")
         lower.axhline(0.0, color=MODEL, linewidth=0.9, zorder=1)
-    grid[1, 0].set_xlabel("time, run after run [h]")
-    grid[1, 1].set_xlabel("joint angle φ [deg]")
-    grid[0, 0].set_title(f"means of {results.row_noun}s")
-    grid[0, 1].set_title(f"means at {speed_text(shown[-1])}")
-    _legend(grid[0, 0], [(speed_text(speed), results.style(speed)) for speed in shown])
-    _legend(grid[0, 1], [(name, style) for name, _, style in series if name])
+    over_time[1].set_xlabel("time, run after run [h]")
+    over_angle[1].set_xlabel("joint angle φ [deg]")
+    over_time[0].set_title(f"means of {results.row_noun}s")
+    over_angle[0].set_title(f"means at {speed_text(shown[-1])}")
+    _legend(over_time[0], [(speed_text(speed), results.style(speed)) for speed in shown])
+    _legend(over_angle[0], [(name, style) for name, _, style in series if name])
     return figure
 
 
@@ -170,7 +170,7 @@ def _shown_speeds(pairs: pd.DataFrame) -> list[float]:
 
 
 def _draw_torque(
-    panels: np.ndarray,
+    panels: list[Axes],
     rows: pd.DataFrame,
     series: list[tuple[str, float, SpeedStyle]],
     along: str,
@@ -239,7 +239,7 @@ def gain_figure(results: JointResults, *, diagnosis: Reloaded, floor: float) -> 
     )
     edges = np.linspace(-reach, reach, _EDGES)
     figure = Figure(figsize=(WIDTH, 5.6), layout="constrained")
-    left, right = figure.subplots(2, 1)
+    left, right = stacked(figure, 2)
     for name, misfit, colour, line in models:
         rms = float(np.sqrt(np.mean(np.square(misfit))))
         label = f"{name}, RMS {number_text(rms)} {results.unit}"

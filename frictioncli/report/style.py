@@ -17,6 +17,7 @@ from matplotlib.colors import to_hex, to_rgb
 from matplotlib.figure import Figure
 from numpy.typing import ArrayLike
 
+from frictioncli.report.panel import stacked
 from frictioncli.report.tooltips import set_tooltips
 
 WIDTH = 5.6
@@ -163,8 +164,7 @@ def panels(rows: int, *, height: float, share_y: bool = True) -> tuple[Figure, l
         Whether they also share the vertical axis.
     """
     figure = Figure(figsize=(WIDTH, height * rows + 0.5), layout="constrained")
-    grid = figure.subplots(rows, 1, sharex=True, sharey=share_y, squeeze=False)
-    return figure, list(grid[:, 0])
+    return figure, stacked(figure, rows, share_x=True, share_y=share_y)
 
 
 def points(

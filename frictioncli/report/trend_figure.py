@@ -10,10 +10,12 @@ import pandas as pd
 from matplotlib.axes import Axes
 from matplotlib.dates import AutoDateLocator, ConciseDateFormatter
 from matplotlib.figure import Figure
+from matplotlib.ticker import FixedLocator
 
 from frictioncli.comparison.document import ComparisonDocument, ConditionRecord, RunRecord
 from frictioncli.report.figure_files import png, svg
 from frictioncli.report.labels import figure_text
+from frictioncli.report.panel import name_ticks, stacked
 from frictioncli.report.style import (
     FAINT,
     MODEL,
@@ -60,11 +62,12 @@ def trend_figure(document: ComparisonDocument) -> Figure:
     rows = document.friction
     if not rows:
         figure = Figure(figsize=(WIDTH, 3.6), layout="constrained")
-        _draw_runs(figure.subplots(), document)
+        (panel,) = stacked(figure, 1)
+        _draw_runs(panel, document)
         return figure
     below = _ROW * len(rows) + 0.9
     figure = Figure(figsize=(WIDTH, 3.6 + below), layout="constrained")
-    above, lower = figure.subplots(2, 1, height_ratios=(3.6, below))
+    above, lower = stacked(figure, 2, (3.6, below))
     _draw_runs(above, document)
     _draw_conditions(lower, rows)
     return figure
@@ -140,7 +143,7 @@ def _draw_limits(axes: Axes, document: ComparisonDocument, start: float) -> None
 def _label_run_numbers(axes: Axes, runs: Sequence[RunRecord]) -> None:
     axes.set_xlabel("run, in the order given")
     if len(runs) <= _MOST_TICKS:
-        axes.set_xticks(range(1, len(runs) + 1))
+        axes.xaxis.set_major_locator(FixedLocator(range(1, len(runs) + 1)))
 
 
 def _draw_conditions(axes: Axes, rows: Sequence[ConditionRecord]) -> None:
@@ -160,7 +163,8 @@ def _draw_conditions(axes: Axes, rows: Sequence[ConditionRecord]) -> None:
         where = f"{row.temperature:.0f} °C, {speed_text(row.speed)}"
         set_tooltips(drawn.lines[0], [f"{where}: {change_text(centre, change.ci95, '%')}"])
     axes.axvline(0.0, color=MODEL, linewidth=1.0)
-    axes.set_yticks(
+    name_ticks(
+        axes.yaxis,
         range(len(rows)),
         [figure_text(f"{row.temperature:.0f} °C, {speed_text(row.speed)}") for row in rows],
     )

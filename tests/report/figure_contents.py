@@ -15,7 +15,10 @@ def data_lines(axes):
 
 
 def texts(figure):
-    return [text.get_text() for text in figure.findobj(Text) if text.get_text()]
+    found = figure.findobj(Text)
+    for axes in figure.axes:
+        found += [*axes.get_xticklabels(), *axes.get_yticklabels()]
+    return [text.get_text() for text in found if text.get_text()]
 
 
 def at_zero_load(speed, temperature):
