@@ -6,12 +6,12 @@ from collections.abc import Iterator
 from html import escape
 
 from matplotlib.backends.backend_agg import FigureCanvasAgg
-from matplotlib.backends.backend_svg import FigureCanvasSVG
 from matplotlib.figure import Figure, FigureBase, SubFigure
 from matplotlib.layout_engine import ConstrainedLayoutEngine
 from matplotlib.transforms import Bbox
 
 from frictioncli.report.pointer_values import panels_text
+from frictioncli.report.svg_renderer import drawn_as_svg
 from frictioncli.report.tooltips import tooltips_as_titles
 
 _DPI = 200
@@ -32,17 +32,13 @@ def svg(figure: Figure, name: str, title: str) -> str:
     title : str
         Text for screen readers, with markup already escaped.
     """
-    stream = io.StringIO()
     if isinstance(figure.get_layout_engine(), ConstrainedLayoutEngine):
         figure.set_layout_engine(_RoundedLayout())
-    # printing by the canvas draws once, where Figure.savefig draws twice
-    FigureCanvasSVG(figure).print_svg(
-        stream, metadata={"Date": None, "Creator": None, "Format": None, "Type": None}
-    )
+    drawn = drawn_as_svg(figure)
     # the layout is computed by now: the next drawing need not repeat it
     figure.set_layout_engine("none")
     panels = escape(panels_text(figure))
-    text = tooltips_as_titles(stream.getvalue())
+    text = tooltips_as_titles(drawn)
     text = text[text.index("<svg") :]
     # two images of equal content would have equal identifiers, and nothing refers to them
     text = re.sub(r' id="image[0-9a-f]+"', "", text)

@@ -4,7 +4,7 @@ matplotlib keeps five artists per tick, which it creates, measures and draws one
 times per figure; that takes longer than drawing the data.
 """
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import Any, cast
 
 import matplotlib
@@ -20,6 +20,7 @@ from matplotlib.ticker import FixedFormatter, FixedLocator, NullLocator
 from matplotlib.transforms import Bbox, IdentityTransform
 
 from frictioncli.arrays import Array
+from frictioncli.report.tick_labels import TickLabels
 
 _NEAR = 1e-6
 """Share of an axis by which a tick may lie outside its limits."""
@@ -29,9 +30,6 @@ _STYLE = cast("Mapping[str, Any]", matplotlib.rcParams)
 
 _POINTS_PER_INCH = 72.0
 _PIXELS = IdentityTransform()
-
-_extents: dict[tuple[str, int, Any, float], Bbox] = {}
-"""Extent of a tick label about its anchor, by text, axis, font size and resolution. [pixel]"""
 
 
 def stacked(
@@ -106,23 +104,21 @@ class _PathAxis(Axis):
         if not self.get_visible():
             return
         renderer.open_group(__name__, gid=self.get_gid())
-        label = self._tick_label()
+        labels = self._tick_labels()
+        boxes = []
         for which in ("major", "minor"):
             places, texts = self._ticks(which)
             if not texts:
                 continue
-            style = self.get_tick_params(which)
+            style = self.get_tick_params(cast(Any, which))
             if style.get("gridOn", False):
                 self._draw_lines(renderer, "grid", places, self._edge, self._far_edge)
             if style[self.side]:
                 end = self._edge - self._tick_size(which)
                 self._draw_lines(renderer, f"{self.kind}.{which}", places, end, self._edge)
-            if style[f"label{self.side}"]:
-                for place, text in zip(places, texts, strict=True):
-                    label.set_text(text)
-                    label.set_position(self._point(place, self._label_edge(which)))
-                    label.draw(renderer)
-        boxes = self._label_boxes(renderer)
+            for text, at in self._labelled(which, places, texts):
+                labels.draw(renderer, text, at)
+                boxes.append(labels.extent(renderer, text, at))
         for name in self._named(boxes):
             name.draw(renderer)
         renderer.close_group(__name__)
@@ -139,7 +135,12 @@ class _PathAxis(Axis):
             return None
         if renderer is None:
             renderer = cast(Any, self.get_figure(root=True))._get_renderer()
-        boxes = self._label_boxes(renderer)
+        labels = self._tick_labels()
+        boxes = [
+            labels.extent(renderer, text, at)
+            for which in ("major", "minor")
+            for text, at in self._labelled(which, *self._ticks(which))
+        ]
         corners = self.axes.bbox.get_points().copy()
         corners[:, 1 - self.along] = (self._edge - self._tick_size("major"), self._edge)
         around = [*boxes, Bbox(corners)]
@@ -151,6 +152,17 @@ class _PathAxis(Axis):
                 box = Bbox(corners)
             around.append(box)
         return Bbox.union(around)
+
+    def _labelled(
+        self, which: str, places: Array, texts: Sequence[str]
+    ) -> Iterator[tuple[str, tuple[float, float]]]:
+        """Yield text and anchor of each label."""
+        if self.get_tick_params(cast(Any, which))[f"label{self.side}"]:
+            pad = self._pixels(_STYLE[f"{self.kind}.{which}.pad"])
+            across = self._edge - self._tick_size(which) - pad
+            for place, text in zip(places.tolist(), texts, strict=True):
+                if text:
+                    yield text, (place, across) if self.along == 0 else (across, place)
 
     def _named(self, boxes: Sequence[Bbox]) -> list[Text]:
         """Place the name of the axis and the common factor of its labels; return which it has."""
@@ -165,24 +177,6 @@ class _PathAxis(Axis):
             self.label.set_position((at[0], at[1]))
         texts = (self.label, self.offsetText)
         return [text for text in texts if text.get_text() and text.get_visible()]
-
-    def _label_boxes(self, renderer: RendererBase) -> list[Bbox]:
-        """Return the boxes of the tick labels."""
-        boxes = []
-        label, resolution = self._tick_label(), self._pixels(1.0)
-        for which in ("major", "minor"):
-            if not self.get_tick_params(which)[f"label{self.side}"]:
-                continue
-            for place, text in zip(*self._ticks(which), strict=True):
-                if not text:
-                    continue
-                key = (text, self.along, label.get_fontsize(), resolution)
-                if key not in _extents:
-                    label.set_text(text)
-                    label.set_position((0.0, 0.0))
-                    _extents[key] = label.get_window_extent(renderer)
-                boxes.append(_extents[key].translated(*self._point(place, self._label_edge(which))))
-        return boxes
 
     def _ticks(self, which: str) -> tuple[Array, list[str]]:
         """Return place [pixel] and label of each tick within the limits."""
@@ -218,8 +212,8 @@ class _PathAxis(Axis):
         renderer.draw_path(gc, Path(points.reshape(-1, 2), codes), _PIXELS)
         gc.restore()
 
-    def _tick_label(self) -> Text:
-        """Return the text that all tick labels are drawn with in turn."""
+    def _tick_labels(self) -> TickLabels:
+        """Return what draws the labels, in their style."""
         style = self.get_tick_params("major")
         sideways = self.along == 0
         text = Text(
@@ -230,7 +224,7 @@ class _PathAxis(Axis):
             transform=_PIXELS,
         )
         text.set_figure(cast(Figure, self.get_figure(root=False)))
-        return text
+        return TickLabels(text, self._pixels(1.0))
 
     @property
     def _edge(self) -> float:
@@ -240,15 +234,8 @@ class _PathAxis(Axis):
     def _far_edge(self) -> float:
         return float(self.axes.bbox.get_points()[1, 1 - self.along])
 
-    def _label_edge(self, which: str) -> float:
-        pad = self._pixels(_STYLE[f"{self.kind}.{which}.pad"])
-        return self._edge - self._tick_size(which) - pad
-
     def _tick_size(self, which: str) -> float:
         return self._pixels(_STYLE[f"{self.kind}.{which}.size"])
-
-    def _point(self, place: float, across: float) -> tuple[float, float]:
-        return (float(place), across) if self.along == 0 else (across, float(place))
 
     def _pixels(self, points: float) -> float:
         return float(points * cast(Figure, self.get_figure(root=True)).dpi / _POINTS_PER_INCH)

@@ -60,6 +60,8 @@ _MARKERS = ("o", "s", "^", "D", "v", "P")
 
 _STYLE = {
     "font.family": "sans-serif",
+    # every text of an SVG repeats this list; these fonts are about as wide as each other
+    "font.sans-serif": ["DejaVu Sans", "Verdana", "Arial", "Helvetica"],
     "font.size": 9.5,
     "axes.titlesize": 10.0,
     "axes.titleweight": "bold",
