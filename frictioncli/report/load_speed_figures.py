@@ -140,22 +140,24 @@ def speed_figure(results: JointResults) -> Figure:
         own = carried[carried["run"] == run]
         panel.plot(speeds, curve, color=MODEL, label="model (16), L = 0")
         for speed, group in by_speed(own):
+            branch = _branch(group)
+            measured, friction = group["speed"].to_numpy(), group["carried"].to_numpy()
             for phase, aside in _ASIDE.items():
-                branch = group[_branch(group) == phase]
+                chosen = branch == phase
                 points(
                     panel,
-                    branch["speed"] + aside * fastest,
-                    branch["carried"],
+                    measured[chosen] + aside * fastest,
+                    friction[chosen],
                     results.style(speed),
                     filled=phase != "cool-down",
                     size=4.0,
                     tooltips=[
-                        f"{speed_text(speed)}: {number_text(friction)} {results.unit}"
-                        for friction in branch["carried"]
+                        f"{speed_text(speed)}: {number_text(value)} {results.unit}"
+                        for value in friction[chosen]
                     ],
                 )
-        several = own.groupby("speed").filter(lambda group: len(group) > _FEW_PAIRS)
-        means = several.groupby("speed")["carried"].mean()
+        by_number = own.groupby("speed")["carried"].agg(["mean", "size"])
+        means = by_number.loc[by_number["size"] > _FEW_PAIRS, "mean"]
         panel.plot(
             means.index,
             means,
@@ -178,9 +180,10 @@ def speed_figure(results: JointResults) -> Figure:
     return figure
 
 
-def _branch(pairs: pd.DataFrame) -> pd.Series:
+def _branch(pairs: pd.DataFrame) -> np.ndarray:
     """Return the phase of each pair, empty outside heating and cooling."""
-    return pairs["phase"].where(pairs["phase"].isin(PHASES), "")
+    phase = pairs["phase"].to_numpy(object)
+    return np.where(np.isin(phase, PHASES), phase, "")
 
 
 def has_temperature_term(results: JointResults) -> bool:

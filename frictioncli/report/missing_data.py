@@ -8,7 +8,7 @@ from frictioncli.report.labels import TEMPERATURE_WORDS
 from frictioncli.report.residual_figure import residuals
 from frictioncli.report.results import JointResults
 from frictioncli.report.style import PHASE_WORDS
-from frictioncli.report.thermal_figures import means_per_run, thermal_runs
+from frictioncli.report.thermal_figures import has_means, thermal_runs
 
 
 def nothing_missing(results: JointResults) -> str:
@@ -83,7 +83,7 @@ def means_missing(results: JointResults) -> str:
     """
     if missing := any_temperature_missing(results):
         return missing
-    if means_per_run(results).empty:
+    if not has_means(results):
         return (
             f"No speed was measured both in heating and in cooling over the same range of the"
             f" {TEMPERATURE_WORDS[results.model.temperature]}. This needs both branches."

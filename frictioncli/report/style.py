@@ -199,6 +199,8 @@ def points(
     tooltips : sequence of str
         Tooltip of each point; empty for none.
     """
+    if not np.size(x):
+        return
     (drawn,) = axes.plot(
         np.asarray(x),
         np.asarray(y),

@@ -1,10 +1,13 @@
 """Figures 4 to 7: the thermal cycle, and friction against temperature."""
 
+from collections.abc import Iterator
+
 import numpy as np
 import pandas as pd
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from frictioncli.arrays import Array
 from frictioncli.model.paper_method import branch_means
 from frictioncli.report.labels import TEMPERATURE_LABELS, figure_text, friction_label
 from frictioncli.report.results import MOST_RUNS, JointResults, by_speed
@@ -121,19 +124,22 @@ def friction_temperature_figure(results: JointResults, kind: str) -> Figure:
         labels = []
         for speed, group in by_speed(own):
             style = results.style(speed)
+            at, friction = group[column].to_numpy(), group["friction_torque"].to_numpy()
+            phases = group["phase"].to_numpy(object)
             for phase in PHASES:
-                branch = group[group["phase"] == phase]
-                filled = phase == "heat-up"
+                branch = phases == phase
                 points(
                     panel,
-                    branch[column],
-                    branch["friction_torque"],
+                    at[branch],
+                    friction[branch],
                     style,
-                    filled=filled,
+                    filled=phase == "heat-up",
                     size=4.5,
-                    tooltips=_tooltips(branch, column, speed, PHASE_WORDS[phase], results.unit),
+                    tooltips=_tooltips(
+                        at[branch], friction[branch], speed, PHASE_WORDS[phase], results.unit
+                    ),
                 )
-            at_hottest = group.sort_values(column, kind="stable")["friction_torque"].iloc[-1]
+            at_hottest = friction[np.argsort(at, kind="stable")[-1]]
             labels.append((float(at_hottest), speed_text(speed), style.colour))
         panel.set_title(figure_text(run))
         _phase_legend(panel)
@@ -143,10 +149,10 @@ def friction_temperature_figure(results: JointResults, kind: str) -> Figure:
     return figure
 
 
-def _tooltips(rows: pd.DataFrame, column: str, speed: float, what: str, unit: str) -> list[str]:
+def _tooltips(at: Array, friction: Array, speed: float, what: str, unit: str) -> list[str]:
     return [
-        f"{speed_text(speed)}, {what}, {temperature:.1f} °C: {number_text(friction)} {unit}"
-        for temperature, friction in zip(rows[column], rows["friction_torque"], strict=True)
+        f"{speed_text(speed)}, {what}, {temperature:.1f} °C: {number_text(torque)} {unit}"
+        for temperature, torque in zip(at, friction, strict=True)
     ]
 
 
@@ -172,9 +178,12 @@ def branch_means_figure(results: JointResults) -> Figure:
         labels = []
         for speed, group in by_speed(means[means["run"] == run]):
             style = results.style(speed)
-            tooltips = _tooltips(group, "temperature", speed, "mean", results.unit)
-            points(panel, group["temperature"], group["friction_torque"], style, tooltips=tooltips)
-            at = np.linspace(group["temperature"].min(), group["temperature"].max(), 60)
+            measured, friction = (
+                group[name].to_numpy() for name in ("temperature", "friction_torque")
+            )
+            tooltips = _tooltips(measured, friction, speed, "mean", results.unit)
+            points(panel, measured, friction, style, tooltips=tooltips)
+            at = np.linspace(measured.min(), measured.max(), 60)
             curve = results.predict(load=0.0, speed=speed, temperature=at)
             panel.plot(at, curve, color=style.colour)
             labels.append((float(curve[-1]), speed_text(speed), style.colour))
@@ -196,11 +205,26 @@ def means_per_run(results: JointResults) -> pd.DataFrame:
     results : JointResults
         One joint's results.
     """
-    means = [
-        branch_means(own, results.model.temperature).assign(run=str(run))
-        for run, own in results.thermal_pairs.groupby("run")
-    ]
-    present = [frame for frame in means if len(frame)]
+    present = list(_means(results))
     if not present:
         return pd.DataFrame(columns=["speed", "temperature", "friction_torque", "run"])
     return pd.concat(present, ignore_index=True)
+
+
+def has_means(results: JointResults) -> bool:
+    """Return whether any run has branch means (11).
+
+    Parameters
+    ----------
+    results : JointResults
+        One joint's results.
+    """
+    return any(True for _ in _means(results))
+
+
+def _means(results: JointResults) -> Iterator[pd.DataFrame]:
+    """Yield the branch means of each run that has some."""
+    for run, own in results.thermal_pairs.groupby("run"):
+        means = branch_means(own, results.model.temperature)
+        if len(means):
+            yield means.assign(run=str(run))
