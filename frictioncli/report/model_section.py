@@ -7,7 +7,7 @@ from markupsafe import Markup
 from frictioncli.diagnosis.documents.extended_document import EffectRecord, ParameterRecord
 from frictioncli.effects import BY_NAME
 from frictioncli.model.document import PARAMETERS, FrictionModel
-from frictioncli.report.formula import friction_formula
+from frictioncli.report.formula import friction_formula, unit_markup
 from frictioncli.report.labels import PARAMETER_SYMBOLS
 from frictioncli.report.page_tables import TextTable
 from frictioncli.report.results import JointResults
@@ -140,7 +140,7 @@ def parameters_table(results: JointResults) -> TextTable | None:
             PARAMETER_SYMBOLS[name],
             *_cells(results.model.parameters[name]),
             *_cells(extended.parameters[name]),
-            results.model.parameters[name].unit.replace("^0.5", "½").replace("^2", "²"),
+            unit_markup(results.model.parameters[name].unit),
         )
         for name in PARAMETERS
     ]
