@@ -93,17 +93,16 @@ def model_cards(results: JointResults) -> list[ModelCard]:
 
 
 def _values(effect: EffectRecord) -> list[tuple[str, str, str]]:
-    """Return name, value and unit of each parameter of an effect."""
+    """Return name, value and unit of each parameter of an effect; a number has no unit."""
     units = {axis.name: axis.unit for axis in BY_NAME[effect.name].shape}
-    shape = [(name, f"{value:.5g}", units.get(name, "")) for name, value in effect.shape.items()]
-    return shape + [
-        (name, f"{one.estimate:.5g}", one.unit) for name, one in effect.coefficients.items()
-    ]
+    found = [(name, value, units.get(name, "")) for name, value in effect.shape.items()]
+    found += [(name, one.estimate, one.unit) for name, one in effect.coefficients.items()]
+    return [(name, f"{value:.5g}", "" if unit == "1" else unit) for name, value, unit in found]
 
 
 def _term(effect: EffectRecord) -> tuple[str, str, str]:
     values = "; ".join(
-        f"{in_words(name)} {number_text(float(value), 4)} {unit if unit != '1' else ''}".rstrip()
+        f"{in_words(name)} {number_text(float(value), 4)} {unit}".rstrip()
         for name, value, unit in _values(effect)
     )
     return in_words(effect.name), effect.equation, values
@@ -135,7 +134,7 @@ def parameters_table(results: JointResults) -> TextTable | None:
     extended = results.extended_model
     if extended is None or not extended.effects or results.diagnosis is None:
         return None
-    rows = [
+    rows: list[tuple[str, ...]] = [
         (
             PARAMETER_SYMBOLS[name],
             *_cells(results.model.parameters[name]),
@@ -154,8 +153,7 @@ def parameters_table(results: JointResults) -> TextTable | None:
         for name, value, unit in _values(effect):
             one = stated.get((effect.name, name)) or effect.coefficients.get(name)
             cells = _cells(one) if one is not None else (value, "–")
-            shown = "" if unit == "1" else unit
-            rows.append((f"{in_words(effect.name)}: {in_words(name)}", "–", "–", *cells, shown))
+            rows.append((f"{in_words(effect.name)}: {in_words(name)}", "–", "–", *cells, unit))
     return TextTable(
         title="Parameters of both models",
         groups=(("", 1), ("base model", 2), ("extended model", 2), ("", 1)),
