@@ -208,7 +208,7 @@ class _PathAxis(Axis):
         gc = renderer.new_gc()
         gc.set_foreground(to_rgba(_STYLE["grid.color" if grid else f"{self.kind}.color"]))
         width = _STYLE["grid.linewidth" if grid else f"{setting}.width"]
-        gc.set_linewidth(self._pixels(width))
+        gc.set_linewidth(width)
         renderer.draw_path(gc, Path(points.reshape(-1, 2), codes), _PIXELS)
         gc.restore()
 

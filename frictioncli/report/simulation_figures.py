@@ -255,7 +255,8 @@ def gain_figure(results: JointResults, *, diagnosis: Reloaded, floor: float) -> 
         [], [], color=FAINT, alpha=0.3, label=f"noise floor, {number_text(floor)} {results.unit}"
     )
     left.set_xlim(-reach, reach)
-    left.set_ylim(bottom=0)
+    # room above the curves for the legend
+    left.set_ylim(0, 1.35 * left.get_ylim()[1])
     left.set_xlabel(f"torque, measured − simulated [{results.unit}]")
     left.set_ylabel(f"share of points per {results.unit}")
     right.set_xlim(0, reach)

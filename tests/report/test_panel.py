@@ -6,6 +6,7 @@ import re
 import numpy as np
 import pytest
 from matplotlib.axes import Axes  # noqa: TID251
+from matplotlib.backends.backend_agg import FigureCanvasAgg  # noqa: TID251
 from matplotlib.backends.backend_svg import FigureCanvasSVG  # noqa: TID251
 from matplotlib.figure import Figure  # noqa: TID251
 
@@ -83,3 +84,17 @@ def test_the_grid_has_its_lines_at_the_ticks(fill):
     _, _, expected = drawn(Axes, fill)
     _, _, svg = drawn(Panel, fill)
     np.testing.assert_allclose(grid_places(svg), grid_places(expected), atol=0.2)
+
+
+def pixels(kind):
+    with style_context():
+        figure = Figure(figsize=(5, 4), dpi=200)
+        plain(figure.add_axes((0.2, 0.2, 0.7, 0.7), axes_class=kind))
+        canvas = FigureCanvasAgg(figure)
+        canvas.draw()
+    return np.asarray(canvas.buffer_rgba())[..., :3].astype(float)
+
+
+def test_lines_are_as_wide_at_any_resolution():
+    expected = pixels(Axes)
+    assert np.abs(pixels(Panel) - expected).mean() < 0.02 * np.abs(255.0 - expected).mean()
