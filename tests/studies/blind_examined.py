@@ -33,8 +33,8 @@ DOCUMENTS = (
 """Columns that hold JSON."""
 
 NUMBERS = (
-    *("margin", "share_seen", "nuisance", "before", "after", "floor", "floor_said"),
-    *("diagnosed", "seconds"),
+    *("margin", "share_seen", "nuisance", "before", "after", "floor", "reachable"),
+    *("floor_said", "diagnosed", "seconds"),
 )
 """Columns that hold a number."""
 
@@ -119,6 +119,7 @@ def _true(truth: Truth) -> dict[str, object]:
         "nuisance": f"{truth.nuisance:.4g}",
         "before": f"{truth.before:.5g}",
         "floor": f"{truth.floor:.5g}",
+        "reachable": f"{truth.reachable:.5g}",
     }
 
 

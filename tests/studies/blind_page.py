@@ -61,6 +61,7 @@ def page(joints: Sequence[Joint], stale: int) -> str:
         planned=len(plan()),
         stale=_stale(stale),
         nuisance=_nuisance(joints),
+        reachable=_reachable(joints),
         gates=gate_table(joints),
         before=before_table(joints),
         alarms=alarm_table(joints),
@@ -94,3 +95,13 @@ def _nuisance(joints: Sequence[Joint]) -> str:
     if not left:
         return "an unknown"
     return f"{np.median(left):.2f} ({min(left):.2f} to {max(left):.2f})"
+
+
+def _reachable(joints: Sequence[Joint]) -> str:
+    """Return by how much a model that lacks nothing hidden misses the day kept out, over noise."""
+    of = [one.numbers for one in joints if one.world.kind in ("clean", "single", "pair")]
+    ratios = [one["reachable"] / one["floor"] for one in of if np.isfinite(one["reachable"])]
+    if not ratios:
+        return "an unknown multiple of"
+    low, high = np.quantile(ratios, (0.1, 0.9))
+    return f"{np.median(ratios):.2f} times (eight of ten between {low:.2f} and {high:.2f})"

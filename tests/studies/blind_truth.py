@@ -100,6 +100,9 @@ class Truth:
         RMS misfit of the base on the day kept out. [N·m]
     floor : float
         RMS of the noise on that day, which no model can predict. [N·m]
+    reachable : float
+        RMS misfit on that day of base and measurement, fitted to the day seen without what is
+        hidden. [N·m]
     seen : Problem
         The runs seen.
     signals : tuple of ndarray, shape (2 * rows,)
@@ -114,6 +117,7 @@ class Truth:
     share_seen: float
     before: float
     floor: float
+    reachable: float
     seen: Problem
     signals: tuple[Array, ...]
 
@@ -159,6 +163,7 @@ def truth_of(world: World) -> Truth:
         share_seen=_pairs(seen) / (_pairs(seen) + (0 if new is None else _pairs(new))),
         before=_rms_misfit(judged),
         floor=_rms(_torque(judged, bare) - _torque(judged, quiet)),
+        reachable=_reachable(seen, judged, bare),
         seen=seen,
         signals=tuple(signals.values()),
     )
@@ -277,17 +282,34 @@ def _rms(both: Array) -> float:
     return float(np.sqrt(2.0 * np.mean(np.square(both))))
 
 
+def _reachable(seen: Problem, judged: Problem, bare: pd.DataFrame) -> float:
+    """Return what base and measurement, fitted to some rows by least squares, miss of others."""
+
+    def missed(problem: Problem) -> Array:
+        base = np.concatenate([problem.table.friction, problem.load_base @ seen.gravity])
+        return np.asarray(_torque(problem, bare) - base)
+
+    columns = _columns(seen)
+    fitted = np.linalg.lstsq(columns, missed(seen), rcond=1e-10)[0]
+    return _rms(missed(judged) - _columns(judged) @ fitted)
+
+
 def base_and_measurement(problem: Problem, given_up: Collection[str] = ()) -> Array:
     """Return the columns of base and measurement, friction above load, each of length 1."""
+    found = _columns(problem, given_up)
+    size = np.linalg.norm(found, axis=0)
+    return np.asarray(found[:, size > 0] / size[size > 0])
+
+
+def _columns(problem: Problem, given_up: Collection[str] = ()) -> Array:
+    """Return the columns of base and measurement, friction above load."""
     columns = [np.vstack(base_rows(problem))]
     for effect in applicable(MEASUREMENT_EFFECTS, problem.table):
         if effect.name in given_up:
             continue
         shapes = effect.shapes(problem.table)
         columns.append(np.vstack(problem.basis(effect, shapes[len(shapes) // 2])))
-    found = np.hstack(columns)
-    size = np.linalg.norm(found, axis=0)
-    return np.asarray(found[:, size > 0] / size[size > 0])
+    return np.hstack(columns)
 
 
 def _off(columns: Array, signal: Array) -> Array:
