@@ -44,14 +44,23 @@ def _remarks_on(plan: JointPlan, channel: LogChannel) -> tuple[str, ...]:
     return tuple(
         text.removeprefix(channel.name).lstrip(": ")
         for text in (*plan.notes, *plan.warnings)
-        if text.startswith(channel.name)
+        if _is_on(channel.name, text)
     )
 
 
 def other_remarks(plan: JointPlan) -> tuple[str, ...]:
     """Return notes and warnings that concern no single channel."""
-    read = tuple(getattr(plan.channels, name).name for name in plan.conversions)
-    return tuple(text for text in (*plan.notes, *plan.warnings) if not text.startswith(read))
+    read = [getattr(plan.channels, name).name for name in plan.conversions]
+    return tuple(
+        text
+        for text in (*plan.notes, *plan.warnings)
+        if not any(_is_on(name, text) for name in read)
+    )
+
+
+def _is_on(name: str, text: str) -> bool:
+    """Return whether a note is on a channel: it begins with the whole name."""
+    return text.startswith((f"{name}:", f"{name} "))
 
 
 def gear_ratio(plan: JointPlan) -> float | None:

@@ -52,6 +52,19 @@ def test_form_channels_units_and_faults(tmp_path):
     assert sorted(path.name for path in tmp_path.iterdir()) == ["a.csv", "b.csv"]
 
 
+def test_a_reason_is_of_its_own_channel(tmp_path):
+    """One name may begin with another."""
+    log = clean_log(3)
+    log[[POSITION, VELOCITY]] = np.radians(log[[POSITION, VELOCITY]])
+    names = dict(zip(COLUMNS, ("time", "q", "qd", "tau", "temperature"), strict=True))
+    path = write(log.rename(columns=names), tmp_path / "log.csv")
+    channels = {one.quantity: one for one in inspect([path]).files[0].joints[0].channels}
+    position, velocity = channels["position"].evidence, channels["velocity"].evidence
+    assert position.startswith("has no unit, values span")
+    assert velocity.startswith("has no unit, position changes")
+    assert position.count("has no unit") == velocity.count("has no unit") == 1
+
+
 def test_a_whole_experiment_suffices_for_every_stage(tmp_path):
     """Two days with a thermal cycle each, three speeds, start times by the manifest."""
     for day in (1, 2):
