@@ -32,6 +32,9 @@ from tests.studies.robustness_page import put
 
 WORKERS = 2
 
+KINDS = ("workers", "parent", "disk", "logs", "outputs", "dask")
+"""Kinds of disturbance. Each round of so many calls has all of them, in any order."""
+
 
 @dataclass(slots=True)
 class Soak:
@@ -43,6 +46,8 @@ class Soak:
         Its place: ``logs``, ``calm`` with the outputs of an undisturbed call, ``out``.
     draw : random.Random
         Where, when and what.
+    round : list of str
+        Kinds of disturbance that are left of this round.
     counts : Counter of str
         What was done.
     whole : dict of str to bytes
@@ -53,6 +58,7 @@ class Soak:
 
     folder: Path
     draw: random.Random
+    round: list[str] = field(default_factory=list)
     counts: Counter[str] = field(default_factory=Counter)
     whole: dict[str, bytes] = field(default_factory=dict)
     seconds: float = 0.0
@@ -74,7 +80,8 @@ class Soak:
 
     def disturbed_call(self) -> None:
         """Call once, with one kind of disturbance from begin to end."""
-        kind = self.draw.choice(("workers", "workers", "parent", "disk", "logs", "outputs", "dask"))
+        self.round = self.round or self.draw.sample(KINDS, len(KINDS))
+        kind = self.round.pop()
         self.counts[f"calls: {kind}"] += 1
         with ExitStack() as stack:
             more: list[str] = []
