@@ -38,6 +38,7 @@ from frictioncli.diagnosis.settings import DiagnosisSettings
 from frictioncli.diagnosis.thermal.estimate import ThermalEstimate
 from frictioncli.diagnosis.thermal.lag_search import search_with_lag
 from frictioncli.diagnosis.thermal.refine import LAG, settled
+from frictioncli.diagnosis.thermal.slow_sensor import with_slow_sensor
 from frictioncli.effects import EFFECTS
 from frictioncli.effects.base import Effect
 from frictioncli.errors import NotEnoughData
@@ -181,6 +182,7 @@ def diagnose_joint(
     while True:
         tried = [one for one in effects if one.name not in {no.fit.effect.name for no in refuted}]
         found, lag = search_with_lag(base, base_new, tried, search, margin)
+        found = with_slow_sensor(found)
         problem, new = (base, base_new) if lag is None else (lag.problem, lag.new)
         judging = Judging(
             problem=problem,

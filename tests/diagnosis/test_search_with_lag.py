@@ -117,6 +117,8 @@ def test_the_lag_of_a_sensor_is_left_out_only_where_it_hides_one_of_the_gear(
         assert (result.causes, lag) == (("the set",), FIRST)
 
 
-@pytest.mark.parametrize(("interval", "expected"), [((0.1, 0.3), 0.5), ((0.0, 0.05), 0.05)])
+@pytest.mark.parametrize(
+    ("interval", "expected"), [((0.1, 0.3), 0.5), ((0.0, 0.05), 0.0), ((0.4, 0.6), 0.95)]
+)
 def test_the_share_of_the_gear_is_that_with_which_it_is_worth_a_name(interval, expected):
-    assert lag_search._share_of_lag(lags(interval), 0.2) == pytest.approx(expected)
+    assert lag_search._share_of_lag(lags(interval), 0.2) == pytest.approx(expected, abs=1e-9)

@@ -8,13 +8,13 @@ import numpy as np
 from scipy.special import ndtr
 
 from frictioncli.diagnosis.data.problem import Problem
-from frictioncli.diagnosis.fit.left_by_base import Z95, left_by
+from frictioncli.diagnosis.fit.left_by_base import Z95
 from frictioncli.diagnosis.search.cause import Cause
 from frictioncli.diagnosis.search.search_result import SearchResult
 from frictioncli.diagnosis.thermal.estimate import MEASURED, ThermalEstimate
 from frictioncli.diagnosis.thermal.refine import LAG, RefinedLag, refine_thermal
 from frictioncli.effects import MEASUREMENT_EFFECTS
-from frictioncli.effects.base import Effect, applicable
+from frictioncli.effects.base import Effect
 from frictioncli.effects.sensor_lag import EFFECT as SENSOR_LAG
 
 _WITHOUT_SENSOR = tuple(one for one in MEASUREMENT_EFFECTS if one is not SENSOR_LAG)
@@ -26,9 +26,6 @@ both."""
 
 _SURE = 0.95
 """Greatest probability of the lag of the gear, where both are in a set."""
-
-_SLOW_SENSOR = 90.0
-"""Time constant up to which a sensor in a winding may lag. [s]"""
 
 _FAR_OFF = 0.02
 """Least RMS misfit of pair means, relative to the mean friction, of a lag that would look like
@@ -47,8 +44,10 @@ def search_with_lag(
 ) -> tuple[SearchResult, RefinedLag | None]:
     """Search for causes; where a lag of the gear is one, about the temperature of the gear.
 
-    A sensor that lags hides a part of a lag of the gear, and data with both hardly tell how much:
-    where the sensor does not stand beside the base, the lag of the gear may be larger by that.
+    A gear that friction warms more than the motor looks much like a sensor that lags: either has
+    friction lower while heating. Where what a sensor leaves of it is most probably, but not surely,
+    worth a name, the search is repeated without the sensor, and a lag of the gear that is then
+    large enough is one of the two.
 
     Parameters
     ----------
@@ -68,43 +67,6 @@ def search_with_lag(
     -------
     SearchResult, RefinedLag or None
         The causes, and the lag where it is one of them.
-    """
-    found, lag = _lag_or_slow_sensor(problem, new, effects, search, margin)
-    causes = (_with_slow_sensor(one, found) if _is_lag(one) else one for one in found.causes)
-    return replace(found, causes=tuple(causes)), lag
-
-
-def _with_slow_sensor(cause: Cause, found: SearchResult) -> Cause:
-    """Return a lag that may be larger by what a sensor that lags as well hides of it."""
-    known = found.step.precomputed
-    problem = known.problem
-    beside = {one.fit.effect.name for one in found.measurement}
-    if SENSOR_LAG.name in beside or not applicable([SENSOR_LAG], problem.table):
-        return cause
-    fit = cause.fit
-    lag = left_by(known.span, problem.basis(fit.effect, fit.shape)) @ fit.coefficients
-    sensor = left_by(known.span, problem.basis(SENSOR_LAG, {}))[:, 0]
-    rows = len(sensor) / 2
-    with_sensor = np.linalg.norm(lag - _SLOW_SENSOR * sensor) / np.sqrt(rows)
-    more = max(float(with_sensor - np.linalg.norm(lag) / np.sqrt(rows)), 0.0)
-    low, high = cause.visible_interval
-    high = cause.visible + float(np.hypot(high - cause.visible, more))
-    return replace(cause, visible_interval=(low, high))
-
-
-def _lag_or_slow_sensor(
-    problem: Problem,
-    new: Problem | None,
-    effects: Sequence[Effect],
-    search: Callable[..., SearchResult],
-    margin: float,
-) -> tuple[SearchResult, RefinedLag | None]:
-    """Search for causes; a lag of the gear may be in a set with one of the sensor.
-
-    A gear that friction warms more than the motor looks much like a sensor that lags: either has
-    friction lower while heating. Where what a sensor leaves of it is most probably, but not surely,
-    worth a name, the search is repeated without the sensor, and a lag of the gear that is then
-    large enough is one of the two.
     """
     found, lag = _searched(problem, new, effects, search, margin)
     if not _has_lag(found) or _left_of_lag(found) > margin:
