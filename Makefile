@@ -12,7 +12,7 @@ SHARED := -n 3 --dist loadgroup --no-loadscope-reorder
 export OMP_NUM_THREADS := 1
 export OPENBLAS_NUM_THREADS := 1
 
-.PHONY: docs/epsilon.png reproduce test test-all test-long lint docs dist same coverage blind comparison fleet planning wear real real-diagnoses bench fuzz fuzz-c kill soak memory clean
+.PHONY: docs/epsilon.png reproduce test test-all test-long lint docs dist same coverage blind unnamed comparison fleet planning wear real real-diagnoses bench fuzz fuzz-c kill soak memory clean
 
 reproduce: $(VENV)/installed
 	$(BIN)/frictioncli run sample_logs/kr10 -w $(RUN)
@@ -38,6 +38,9 @@ coverage: $(VENV)/tested
 
 blind: $(VENV)/tested
 	$(BIN)/python -m tests.studies.blind --jobs 2 --write
+
+unnamed: $(VENV)/tested
+	$(BIN)/python -m tests.studies.unnamed --jobs 2 --write
 
 comparison: $(VENV)/studied
 	$(BIN)/python -m tests.studies.comparison

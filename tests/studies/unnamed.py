@@ -3,8 +3,8 @@
 Each law is added to the torques of simulated joints with all nuisances, by a formula that no form
 of the analysis has. Usage:
 
-    python -m tests.studies.unnamed [--laws NAME ...] [--protocols paper enriched] [--seed N]
-                                    [--write]
+    python -m tests.studies.unnamed [--laws NAME ...] [--protocols paper enriched] [--seeds N ...]
+                                    [--jobs N] [--write]
 
 ``--write`` writes ``docs/unnamed.md``.
 """
@@ -12,7 +12,9 @@ of the analysis has. Usage:
 import argparse
 import time
 from collections.abc import Callable, Sequence
+from concurrent.futures import ProcessPoolExecutor
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 import pandas as pd
@@ -32,8 +34,8 @@ from tests.studies.unnamed_page import Case, write_page
 SIZE = 1.0
 """RMS of each law over both days. [N·m]"""
 
-SEED = 100
-"""Joint of the first law; every law has its own."""
+SEEDS = (100, 200)
+"""Joint of the first law, set by set; every law has its own."""
 
 LEFT = 0.75
 """RMS that the base and the effects of the measurement leave of a law that is planted once more,
@@ -146,8 +148,19 @@ LAWS = (
 """Laws that are planted, one or two at once."""
 
 
-def examined(law: Law, protocol: str, seed: int) -> list[Case]:
-    """Return a joint with a law, and with more of it where the base takes nearly all."""
+def examined(number: int, protocol: str, seed: int) -> list[Case]:
+    """Return a joint with a law, and with more of it where the base takes nearly all.
+
+    Parameters
+    ----------
+    number : int
+        Number of the law.
+    protocol : {"paper", "enriched"}
+        Programme of the joint.
+    seed : int
+        The joint's.
+    """
+    law = LAWS[number]
     first = _examined(law, protocol, seed, SIZE)
     if first.can_be_seen:
         return [first]
@@ -156,9 +169,7 @@ def examined(law: Law, protocol: str, seed: int) -> list[Case]:
 
 def _examined(law: Law, protocol: str, seed: int, size: float) -> Case:
     """Simulate a joint without and with a law, diagnose both and compare."""
-    world = World("clean", "", seed, 0.0, protocol=protocol)
-    bare = simulate_world(world.settings(())).torques
-    quiet = simulate_world(world.settings((), noise_scale=0.0)).torques
+    bare, quiet, without = _bare(protocol, seed)
     torque = np.asarray(law.torque(bare, quiet["load_torque"].to_numpy(float)), float)
     torque = torque * (size / np.sqrt(np.mean(np.square(torque))))
     column = f"{law.channel}_torque"
@@ -166,7 +177,6 @@ def _examined(law: Law, protocol: str, seed: int, size: float) -> Case:
     began = time.perf_counter()
     diagnosis = diagnose_joint(rows, TEMPERATURE, "N·m", SETTINGS)
     seconds = time.perf_counter() - began
-    without = diagnose_joint(bare, TEMPERATURE, "N·m", SETTINGS)
     document = diagnosis_document(diagnosis, SETTINGS)
     left, left_by_base = _left(rows, bare)
     gain, own = document.empirical, without.empirical
@@ -175,6 +185,7 @@ def _examined(law: Law, protocol: str, seed: int, size: float) -> Case:
     return Case(
         law=law.name,
         protocol=protocol,
+        joint=seed,
         planted=size,
         left=left,
         left_by_base=left_by_base,
@@ -193,6 +204,15 @@ def _examined(law: Law, protocol: str, seed: int, size: float) -> Case:
         ),
         seconds=seconds,
     )
+
+
+@lru_cache(maxsize=1)
+def _bare(protocol: str, seed: int) -> tuple[pd.DataFrame, pd.DataFrame, Diagnosis]:
+    """Return a joint's torques without a law, these without noise, and what is said of them."""
+    world = World("clean", "", seed, 0.0, protocol=protocol)
+    bare = simulate_world(world.settings(())).torques
+    quiet = simulate_world(world.settings((), noise_scale=0.0)).torques
+    return bare, quiet, diagnose_joint(bare, TEMPERATURE, "N·m", SETTINGS)
 
 
 def _after(diagnosis: Diagnosis) -> float:
@@ -240,16 +260,23 @@ def main(arguments: Sequence[str] | None = None) -> None:
     parser = argparse.ArgumentParser()
     parser.add_argument("--laws", nargs="+", default=[one.name for one in LAWS])
     parser.add_argument("--protocols", nargs="+", default=["paper", "enriched"])
-    parser.add_argument("--seed", type=int, default=SEED, help="joint of the first law")
+    parser.add_argument("--seeds", nargs="+", type=int, default=SEEDS, help="first law's joints")
+    parser.add_argument("--jobs", type=int, default=1, help="processes")
     parser.add_argument("--write", action="store_true")
     given = parser.parse_args(arguments)
+    asked = [
+        (number, protocol, seed + number)
+        for seed in given.seeds
+        for protocol in given.protocols
+        for number, law in enumerate(LAWS)
+        if law.name in given.laws
+    ]
     cases = []
-    for protocol in given.protocols:
-        for number, law in enumerate(LAWS):
-            if law.name in given.laws:
-                for case in examined(law, protocol, given.seed + number):
-                    cases.append(case)
-                    print(line(case), flush=True)
+    with ProcessPoolExecutor(given.jobs) as pool:
+        for found in pool.map(examined, *zip(*asked, strict=True)):
+            for case in found:
+                cases.append(case)
+                print(line(case), flush=True)
     if given.write:
         write_page(cases)
 
