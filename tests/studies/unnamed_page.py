@@ -154,5 +154,6 @@ def _row(one: Case) -> str:
     return (
         f"| {one.law} | {one.protocol} | {one.joint} | {one.planted:.1f} | {one.left:.2f}{seen} |"
         f" {said}{right} | {one.size:.2f} / {one.left_by_base:.2f} |"
-        f" {one.before:.2f}, {one.after:.2f}, {one.known:.2f} | {gain} | {one.described or 'nothing'} |"
+        f" {one.before:.2f}, {one.after:.2f}, {one.known:.2f} | {gain} |"
+        f" {one.described or 'nothing'} |"
     )
