@@ -1,6 +1,7 @@
 """Parameters of a cause with their intervals, from the fit of its effect or from the extension."""
 
 from collections.abc import Mapping
+from string import Formatter
 from typing import NamedTuple
 
 import numpy as np
@@ -16,6 +17,9 @@ from frictioncli.wording import quantity_text
 
 Z95 = 1.96
 """Half-width of a 95 % interval in standard errors."""
+
+
+_NO_SIZE = "These data determine the torque that it adds, but not its parameters."
 
 
 class TorqueUnits(NamedTuple):
@@ -87,6 +91,9 @@ def statement(
 ) -> str:
     """Return what is said of an effect that was found, with the values of its parameters.
 
+    The torque of an effect may be certain where its coefficients are not, as they compensate its
+    shape: no number is stated that may have either sign.
+
     Parameters
     ----------
     effect : Effect
@@ -99,7 +106,12 @@ def statement(
     values = {
         name: quantity_text(one.estimate, one.ci95, one.unit) for name, one in parameters.items()
     }
-    return (words or effect.statement or effect.summary).format_map(values)
+    text = words or effect.statement or effect.summary
+    fields = {name for _, name, _, _ in Formatter().parse(text)}
+    stated = [parameters[one.name] for one in effect.coefficients if one.name in fields]
+    if stated and all(one.ci95 and one.ci95[0] < 0 < one.ci95[1] for one in stated):
+        return f"{effect.summary} {_NO_SIZE}"
+    return text.format_map(values)
 
 
 def _coefficients(

@@ -1,0 +1,29 @@
+"""What is said of an effect that was found, with its numbers."""
+
+import pytest
+
+from frictioncli.diagnosis.documents.extended_document import ParameterRecord
+from frictioncli.diagnosis.documents.parameters import statement
+from frictioncli.effects import BY_NAME
+
+
+def said(effect, interval):
+    parameters = {
+        one.name: ParameterRecord(estimate=sum(interval) / 2, ci95=interval, unit=one.unit)
+        for one in (*effect.shape, *effect.coefficients)
+    }
+    return statement(effect, parameters)
+
+
+@pytest.mark.parametrize("name", ["rest_recovery", "stribeck", "payload_change"])
+def test_the_torque_of_an_effect_may_be_certain_where_its_coefficients_are_not(name):
+    effect = BY_NAME[name]
+    assert "6.5" in said(effect, (5.0, 8.0))
+    without = said(effect, (-77.0, 90.0))
+    assert without.startswith(effect.summary)
+    assert without.endswith("but not its parameters.")
+    assert "6.5" not in without
+
+
+def test_an_order_is_no_coefficient():
+    assert "7" in said(BY_NAME["position_ripple"], (-2.0, 16.0))
