@@ -52,8 +52,8 @@ class Soak:
         What was done.
     whole : dict of str to bytes
         All files that the undisturbed call made.
-    seconds, pause : float
-        What that took, and the longest time between two disturbances. [s]
+    pause : float
+        Longest time between two disturbances. [s]
     """
 
     folder: Path
@@ -61,7 +61,6 @@ class Soak:
     round: list[str] = field(default_factory=list)
     counts: Counter[str] = field(default_factory=Counter)
     whole: dict[str, bytes] = field(default_factory=dict)
-    seconds: float = 0.0
     pause: float = 0.0
 
     def build(self, joints: int) -> None:
@@ -74,8 +73,7 @@ class Soak:
         began = time.monotonic()
         status, said = self._ended(self._started("calm"))
         assert (status, f"{joints} done, 0 failed" in said) == (0, True), said
-        self.seconds = time.monotonic() - began
-        self.pause = 4 * WORKERS * self.seconds / joints
+        self.pause = 4 * WORKERS * (time.monotonic() - began) / joints
         self.whole = contents(self.folder / "calm")
 
     def disturbed_call(self) -> None:
@@ -95,12 +93,13 @@ class Soak:
                 more = ["--scheduler", address]
             else:
                 process = None
-            if self.draw.random() < 0.5:
+            if kind != "outputs":
+                # where all is done already, there is nothing to disturb
                 more.append("--redo")
-                self.counts["calls with --redo"] += 1
+            done = self._records()
             call = self._started("out", *more, limit=limit)
-            until = time.monotonic() + self.draw.uniform(0.2, 1.0) * self.seconds
-            while call.poll() is None and time.monotonic() < until:
+            until = self.draw.uniform(0.1, 0.9) * len(self._records("calm"))
+            while call.poll() is None and len(self._records() - done) < until:
                 time.sleep(self.draw.uniform(0.1, 1.0) * self.pause)
                 if kind == "workers":
                     self._kill_worker(call)
@@ -129,6 +128,14 @@ class Soak:
                     found = (work / name).read_bytes()
                     assert found == self.whole[f"{place}/{name}"], f"{place}/{name} is another"
                 self.counts["joints compared"] += 1
+
+    def _records(self, out: str = "out") -> set[tuple[Path, int]]:
+        """Return the records of joints with the time at which they were written."""
+        found = set()
+        for path in (self.folder / out).glob(f"*/*/{RECORD}"):
+            with suppress(FileNotFoundError):  # being made anew
+                found.add((path, path.stat().st_mtime_ns))
+        return found
 
     def last_call(self) -> None:
         """Call undisturbed; everything must be as in the calm."""
