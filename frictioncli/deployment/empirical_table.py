@@ -10,7 +10,6 @@ from dataclasses import dataclass
 from itertools import product
 
 import numpy as np
-from scipy.interpolate import RegularGridInterpolator
 
 from frictioncli.arrays import Array
 from frictioncli.deployment.extension import DeployedExtension, instants
@@ -200,6 +199,8 @@ def _table(
         mesh = dict(zip(axes, np.meshgrid(*knots, indexing="ij"), strict=True))
         shape = np.broadcast_shapes(*(one.shape for one in mesh.values()))
         return np.reshape(values(_instants(extension, term, mesh)), shape)
+
+    from scipy.interpolate import RegularGridInterpolator  # slow to import, and rarely needed
 
     while True:
         knots = [_spaced(term, *one) for one in zip(axes, counts, strict=True)]

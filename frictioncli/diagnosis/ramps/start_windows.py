@@ -9,8 +9,6 @@ from dataclasses import dataclass
 
 import numpy as np
 import pandas as pd
-from scipy.interpolate import CubicSpline
-from scipy.ndimage import correlate1d
 
 from frictioncli.arrays import Array, Flags
 from frictioncli.diagnosis.data.gravity import known_payload, known_pose
@@ -153,6 +151,8 @@ class _Grid:
 
 def _assembled(grid: _Grid, sign: int, problem: Problem, temperature: str) -> StartWindows:
     """Return the windows of starts on a grid."""
+    from scipy.interpolate import CubicSpline  # slow to import, and only needed with ramps
+
     period = float(grid.since[1] - grid.since[0])
     half = max(round(_HALF_WINDOW / period), 1)
     velocity = _slope(grid.position, period, half)
@@ -227,5 +227,7 @@ def _gravity(grid: _Grid, mass: Array, problem: Problem) -> Array:
 
 def _slope(values: Array, period: float, half: int) -> Array:
     """Return the slope of local lines along the samples, shape (starts, samples)."""
+    from scipy.ndimage import correlate1d  # slow to import, and only needed with ramps
+
     steps = np.arange(-half, half + 1)
     return correlate1d(values, steps / (period * np.sum(np.square(steps))), axis=1, mode="nearest")

@@ -29,7 +29,6 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-from scipy.interpolate import CubicSpline
 from scipy.optimize import least_squares
 
 from frictioncli.arrays import Array, Flags
@@ -225,6 +224,8 @@ def responded(values: Array, period: float, *, delay: float, time_constant: floa
     if time_constant > 1e-3 * period:
         response = _filter_response(samples, period / time_constant)
     if delay != 0.0:
+        from scipy.interpolate import CubicSpline  # slow to import, and only needed with ramps
+
         time = period * np.arange(samples)
         at = np.clip(time - delay, 0.0, time[-1])
         response = CubicSpline(time, response)(at)
