@@ -17,7 +17,7 @@ _STARTS = 30
 """Number of random programmes, of which the best is improved."""
 
 _EXCHANGES = 100
-"""Number of exchanges that are tried."""
+"""Number of exchanges that are usually tried."""
 
 _EXCHANGE_SHARE = 3
 """An exchange replaces at most one in so many blocks, plus one."""
@@ -56,7 +56,7 @@ def choose_blocks(
     budget: float,
     payload: float | None,
     seed: int,
-    exchanges: int = _EXCHANGES,
+    exchanges: int | None = None,
 ) -> tuple[Block, ...]:
     """Return the sequence of blocks with the greatest criterion that was found.
 
@@ -72,8 +72,8 @@ def choose_blocks(
         Payload that is mounted before the first. [kg]
     seed : int
         Seed of the random starts and exchanges.
-    exchanges : int
-        Number of exchanges that are tried.
+    exchanges : int, optional
+        Number of exchanges that are tried; usually 100.
 
     Returns
     -------
@@ -98,7 +98,7 @@ def choose_blocks(
     values = [criterion(steps_of(blocks)) for blocks in starts]
     best = max(values)
     chosen = starts[values.index(best)]
-    for _ in range(exchanges):
+    for _ in range(_EXCHANGES if exchanges is None else exchanges):
         first = generator.randrange(len(chosen) + 1)
         count = generator.randint(1, 1 + len(chosen) // _EXCHANGE_SHARE)
         other = fill(chosen[:first] + chosen[first + count :], first)

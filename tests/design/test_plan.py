@@ -3,11 +3,14 @@
 import json
 import shutil
 from types import SimpleNamespace
+from unittest.mock import patch
 
 import numpy as np
 import pytest
 
 from frictioncli import schemas, tables
+from frictioncli.design import plan as planning
+from frictioncli.design import selection
 from frictioncli.design.from_plan import interval_records, stated_half_widths
 from frictioncli.design.plan import plan_joint
 from frictioncli.design.predicted_rows import predict_rows
@@ -31,7 +34,21 @@ FASTEST = 101.2
 ASKED = PlanSettings(minutes=30.0, to="krl", rated_speed=225.0)
 
 
-@pytest.fixture(scope="session")
+def planned_quickly(work, asked):
+    """Plan, with fewer programmes compared than for users; return what is said.
+
+    What every plan has to keep does not depend on how many there were to choose from;
+    test_selection.py has the choice.
+    """
+    with (
+        patch.object(selection, "_STARTS", 8),
+        patch.object(selection, "_EXCHANGES", 16),
+        patch.object(planning, "_CHECK_EXCHANGES", 6),
+    ):
+        return str(plan(work, asked))
+
+
+@pytest.fixture(scope="module")
 def thin(tmp_path_factory):
     """A work folder with an experiment that only heats, on a joint with a hidden gear."""
     work = tmp_path_factory.mktemp("plan") / "run"
@@ -60,12 +77,11 @@ def copy(thin, tmp_path):
     return shutil.copytree(thin, tmp_path / "run")
 
 
-@pytest.fixture(scope="session")
+@pytest.fixture(scope="module")
 def planned(thin, tmp_path_factory):
     """The plan of it as a KUKA program: its folder and what was said."""
     work = shutil.copytree(thin, tmp_path_factory.mktemp("planned") / "run")
-    done = plan(work, ASKED)
-    return work, str(done)
+    return work, planned_quickly(work, ASKED)
 
 
 def document(work):
@@ -143,10 +159,9 @@ def test_the_text_says_what_why_and_how(planned):
         assert wanted in said
 
 
-@pytest.mark.slow
 def test_the_same_call_gives_the_same_bytes(planned, copy):
     work, said = planned
-    again = str(plan(copy, ASKED))
+    again = planned_quickly(copy, ASKED)
     assert again.replace(str(copy), str(work)) == said
     told = document(work)
     programs = [name for part in ("programme", "check") for name in told[part]["files"]]
@@ -169,9 +184,8 @@ def test_what_is_refused_leaves_nothing_behind(copy, asked, reason):
     assert not list(copy.glob("friction_a*"))
 
 
-@pytest.mark.slow
 def test_a_payload_that_there_is_no_time_to_mount_is_left_out(copy):
-    plan(copy, PlanSettings(minutes=5.0, payload=(4.0,), high=60.0))
+    planned_quickly(copy, PlanSettings(minutes=5.0, payload=(4.0,), high=60.0))
     assert all("payload" not in one["name"] for one in document(copy)["programme"]["blocks"])
 
 
