@@ -5,8 +5,9 @@ BIN := $(VENV)/bin
 RUN ?= friction-run
 LARGEST ?= 1e8
 
-# three processes on two cores: some tests wait for schedulers, kills and time limits
-SHARED := -n 3 --dist loadgroup --no-loadscope-reorder
+# three processes on two cores: some tests wait for schedulers, kills and time limits;
+# a module's tests in one process, which makes their fixtures once
+SHARED := -n 3 --dist loadscope --no-loadscope-reorder
 
 # tests and studies share the cores out among processes: one thread of linear algebra each
 export OMP_NUM_THREADS := 1

@@ -20,19 +20,14 @@ LONGEST = (
     *("test_challenge", "test_robustness_kill"),
     *("test_plan", "test_named_causes", "test_fleet", "test_page_in_chromium", "test_commands"),
 )
-"""Tests and modules that take longest, the longest first."""
-
-OWN = {"tmp_path_factory", "worker_id", "testrun_uid", "one_thread", "doctest_namespace"}
-"""Fixtures of a session that cost nothing to make again."""
+"""Modules that take longest, the longest first."""
 
 
 @pytest.hookimpl(tryfirst=True)
 def pytest_collection_modifyitems(items):
-    """Say which tests stay in one process, and put the longest first, slow modules next.
+    """Put the modules that take longest first, other slow ones next.
 
-    Tests stay together that share a fixture of their module or of the session, since each process
-    makes it anew; slow ones that share nothing go where there is room. At the end all processes
-    have something short to do.
+    At the end all processes then have something short to do.
     """
     slow = {item.path for item in items if _is_slow(item)}
 
@@ -41,24 +36,10 @@ def pytest_collection_modifyitems(items):
         return (item.path not in slow, min(places, default=len(LONGEST)))
 
     items.sort(key=rank)
-    for item in items:
-        alone = _is_slow(item) and not _shared(item)
-        together = item.path.parent if "chromium" in item.fixturenames else item.path
-        item.add_marker(pytest.mark.xdist_group(item.nodeid if alone else str(together)))
 
 
 def _is_slow(item):
     return any(item.get_closest_marker(name) for name in ("slow", "long"))
-
-
-def _shared(item):
-    """Return the fixtures of a test that others have with it."""
-    definitions = item._fixtureinfo.name2fixturedefs
-    return {
-        name
-        for name, found in definitions.items()
-        if name not in OWN and found[-1].scope in ("module", "session") and found[-1].baseid
-    }
 
 
 @pytest.fixture(scope="session")
