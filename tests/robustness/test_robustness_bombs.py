@@ -1,8 +1,10 @@
 """Little that unpacks to much: work ends early, not only memory."""
 
 import gzip
+import struct
 import subprocess
 import sys
+import zlib
 
 import pytest
 
@@ -27,12 +29,32 @@ atexit.register(lambda: print(int(re.search(r"VmHWM:\\s*(\\d+)", status.read_tex
 
 
 def packed(path, part, mebibytes):
-    """Write a log that goes on with the same part for long."""
-    with gzip.open(path, "wb", 6) as stream:
-        stream.write(HEAD + ROWS)
-        for _ in range(mebibytes):
-            stream.write(part * (MIB // len(part)))
+    """Write a log that goes on with the same part for long; each mebibyte is packed alike."""
+    plain = part * (MIB // len(part))
+    check = zlib.crc32(HEAD + ROWS)
+    for _ in range(mebibytes):
+        check = zlib.crc32(plain, check)
+    length = len(HEAD + ROWS) + mebibytes * len(plain)
+    path.write_bytes(
+        b"\x1f\x8b\x08\0\0\0\0\0\0\xff"
+        + _deflated(HEAD + ROWS)
+        + _deflated(plain) * mebibytes
+        + _deflated(b"", zlib.Z_FINISH)
+        + struct.pack("<LL", check, length)
+    )
     assert path.stat().st_size < 3 * MIB
+
+
+def _deflated(content, end=zlib.Z_FULL_FLUSH):
+    """Return a part of a deflated stream, which may follow any other."""
+    packer = zlib.compressobj(6, zlib.DEFLATED, -zlib.MAX_WBITS)
+    return packer.compress(content) + packer.flush(end)
+
+
+def test_what_is_packed_is_a_gzip_file(tmp_path):
+    packed(tmp_path / "log.gz", b"0;0;0\n", 3)
+    plain = gzip.decompress((tmp_path / "log.gz").read_bytes())
+    assert plain == HEAD + ROWS + b"0;0;0\n" * (MIB // 6) * 3
 
 
 @pytest.mark.slow
