@@ -9,6 +9,7 @@ import pytest
 from docs import folders
 from docs.compare_with_paper import comparison, markdown
 from frictioncli.cli.commands import app
+from tests.robustness.runs import write_warm_up
 from tests.sample_run import WORDS, command
 
 ROOT = Path(__file__).parents[1]
@@ -29,15 +30,16 @@ def quick_start():
 def work(tmp_path_factory, sample_run):
     """The work folder that the commands of the quick start leave.
 
-    The paper's method is tried on one day; its comparison below has both.
+    The paper's method is tried on a few recordings; its comparison below has both days.
     """
+    few = write_warm_up(tmp_path_factory.mktemp("few") / "day", levels=(25, 39, 53, 67))
     folder = sample_run(tmp_path_factory.mktemp("quick") / "friction-run")
     first, *others = quick_start()
     assert shlex.split(first, comments=True)[1:] == [*WORDS, folder.name]
     for line in others:
         words = shlex.split(line, comments=True)[1:]
         words = [str(folder.with_name(word)) if word.endswith("-run") else word for word in words]
-        words = [f"{word}/day1" if word == "sample_logs/kr10" else word for word in words]
+        words = [str(few) if word == "sample_logs/kr10" else word for word in words]
         command(*words)
     return folder, markdown(comparison(folder))
 
