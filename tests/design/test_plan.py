@@ -3,14 +3,11 @@
 import json
 import shutil
 from types import SimpleNamespace
-from unittest.mock import patch
 
 import numpy as np
 import pytest
 
 from frictioncli import schemas, tables
-from frictioncli.design import plan as planning
-from frictioncli.design import selection
 from frictioncli.design.from_plan import interval_records, stated_half_widths
 from frictioncli.design.plan import plan_joint
 from frictioncli.design.predicted_rows import predict_rows
@@ -26,6 +23,7 @@ from frictioncli.stages.diagnose import diagnose
 from frictioncli.stages.fit import fit
 from frictioncli.stages.plan import plan, plan_new
 from frictioncli.workfiles import TORQUES
+from tests.design.few_programmes import few_programmes
 from tests.design.krl import Controller
 from tests.design.model_arm import Arm
 from tests.simulation.motion_programme import MeasuredMoves, UnrecordedMoves, simulate_programmes
@@ -35,16 +33,8 @@ ASKED = PlanSettings(minutes=30.0, to="krl", rated_speed=225.0)
 
 
 def planned_quickly(work, asked):
-    """Plan, with fewer programmes compared than for users; return what is said.
-
-    What every plan has to keep does not depend on how many there were to choose from;
-    test_selection.py has the choice.
-    """
-    with (
-        patch.object(selection, "_STARTS", 8),
-        patch.object(selection, "_EXCHANGES", 16),
-        patch.object(planning, "_CHECK_EXCHANGES", 6),
-    ):
+    """Plan, with few programmes to choose from; return what is said."""
+    with few_programmes():
         return str(plan(work, asked))
 
 

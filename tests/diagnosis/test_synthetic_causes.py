@@ -53,7 +53,7 @@ SMOOTH = (
 what is said of them must be right, and it may be that nothing is."""
 
 HIGHEST = 45
-"""Motor temperature to which the joint is warmed from 25 °C: half as many pairs as in the paper. [°C]"""
+"""Motor temperature to which the joint is warmed: half the pairs of the paper. [°C]"""
 
 DAYS = {"drift": 3, "run_in": 3}
 """Days simulated where it is not two: one run alone cannot tell a slow change from slow noise."""

@@ -9,6 +9,10 @@ import time
 from collections.abc import Callable
 from pathlib import Path
 
+from frictioncli.stages.fit import fit
+from frictioncli.stages.ingest import ingest
+from frictioncli.stages.pair import pair
+from frictioncli.stages.separate import separate
 from tests.command_line import called
 from tests.robustness.runs import check_readable, digests, finished, outputs, started, write_warm_up
 
@@ -19,6 +23,15 @@ _PROCESSES.set_forkserver_preload(["frictioncli.stages.run", "frictioncli.report
 
 class Worlds:
     """Two versions of a joint's logs, and the undisturbed outputs of each.
+
+    Parameters
+    ----------
+    folder : Path
+        Where all of it is made.
+    levels : tuple of int
+        Motor temperature of each recording. [°C]
+    whole : bool
+        Whether the outputs are those of the whole chain; else they end with the model.
 
     Attributes
     ----------
@@ -32,16 +45,17 @@ class Worlds:
         What the undisturbed run took. [s]
     """
 
-    def __init__(self, folder: Path, levels: tuple[int, ...]) -> None:
+    def __init__(self, folder: Path, levels: tuple[int, ...], *, whole: bool = True) -> None:
         self.folder = folder
         self.logs, self.old = folder / "logs", folder / "old"
         write_warm_up(self.logs / "day", levels=levels, seed=1)
-        assert called("run", self.logs, "-w", self.old).returncode == 0
+        make = _run if whole else _stages_to_the_model
+        make(self.logs, self.old)
         shutil.rmtree(self.logs)
         write_warm_up(self.logs / "day", levels=levels, seed=4)
         begin = time.monotonic()
         # in this process, which has imported what a process of its own has to
-        assert called("run", self.logs, "-w", folder / "new").returncode == 0
+        make(self.logs, folder / "new")
         self.duration = time.monotonic() - begin
         self.before, self.after = digests(self.old), digests(folder / "new")
         # else nothing would tell old from new
@@ -69,6 +83,16 @@ class Worlds:
         again = finished("run", self.logs, "-w", work)
         assert again.returncode == 0, again.stderr
         assert digests(work) == self.after
+
+
+def _run(logs: Path, work: Path) -> None:
+    assert called("run", logs, "-w", work).returncode == 0
+
+
+def _stages_to_the_model(logs: Path, work: Path) -> None:
+    ingest([logs], work)
+    for stage in (pair, separate, fit):
+        stage(work)
 
 
 def killed_run(worlds: Worlds, seconds: float, *, fresh: bool) -> tuple[Path, bool]:
