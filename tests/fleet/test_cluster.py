@@ -37,14 +37,14 @@ QUICK = RunSettings(diagnosis=None)
 
 
 @pytest.mark.slow
-def test_two_workers_one_of_them_killed_give_the_same_bytes(alone, logs, tmp_path):
+def test_two_workers_one_of_them_killed_give_the_same_bytes(undiagnosed, logs, tmp_path):
     out = tmp_path / "out"
     with (
         scheduler() as (address, _),
         worker(address, tmp_path / "one") as victim,
         worker(address, tmp_path / "two"),
     ):
-        process = started(logs, "-w", out, "--scheduler", address, "--no-report")
+        process = started(logs, "-w", out, "--scheduler", address, *WITHOUT)
         # both workers are at a joint after one is done
         until(lambda: done(out) and len(begun(out)) == 2)
         os.kill(victim.pid, signal.SIGKILL)
@@ -52,7 +52,7 @@ def test_two_workers_one_of_them_killed_give_the_same_bytes(alone, logs, tmp_pat
     assert process.returncode == 0, errors
     assert "4 done" in output
     assert "2 failed" in output
-    assert contents(out) == contents(alone[0])
+    assert contents(out) == contents(undiagnosed)
 
 
 @pytest.mark.slow

@@ -56,7 +56,10 @@ def workers_of(process):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("number", [signal.SIGTERM, signal.SIGHUP, signal.SIGKILL])
+@pytest.mark.parametrize(
+    "number",
+    [signal.SIGTERM, pytest.param(signal.SIGHUP, marks=pytest.mark.long), signal.SIGKILL],
+)
 def test_workers_end_with_the_process_that_started_them(small, tmp_path, number):
     (logs, whole), out = small, tmp_path / "out"
     process = started(logs, "-w", out, "--workers", 2, *WITHOUT)
@@ -65,7 +68,7 @@ def test_workers_end_with_the_process_that_started_them(small, tmp_path, number)
     process.communicate(timeout=300)
     assert process.returncode == -number
     until(lambda: not any(map(is_alive, workers)), seconds=60)
-    assert "3 done" in fleet(logs, "-w", out, "--workers", 2, *WITHOUT).stdout
+    assert "3 done" in fleet(logs, "-w", out, "--workers", 1, *WITHOUT).stdout
     assert contents(out) == whole
 
 
