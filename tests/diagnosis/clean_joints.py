@@ -92,6 +92,11 @@ def clean_days(
         cold = {**TRUTH, "gamma": 0.0}
         return load(angle) + way * friction(cold, load=load(angle), speed=speed, temperature=0.0)
 
+    # only the viscous part goes with temperature: the rest is the same in every pair of every day
+    cold = {
+        way: [logged(partial(still, speed=v, way=way), v, way, delay, filtering) for v in SPEEDS]
+        for way in (1, -1)
+    }
     tables = []
     for day in range(days):
         clock = np.repeat(time, len(SPEEDS)) + np.tile(10.0 * np.arange(len(SPEEDS)), len(time))
@@ -104,11 +109,7 @@ def clean_days(
             )
         away += pair * generator.normal(size=away.shape)
         ways = []
-        for way in (1, -1):
-            # only the viscous part goes with temperature: the rest is the same in every pair
-            rows = [
-                logged(partial(still, speed=v, way=way), v, way, delay, filtering) for v in SPEEDS
-            ]
+        for way, rows in cold.items():
             viscous = TRUTH["gamma"] * np.exp(-TRUTH["delta"] * warm) * np.sqrt(speed)
             ways.append(np.tile(rows, (len(time), 1)) + way * viscous[:, None] + offset)
         mean, half = (ways[0] + ways[1]) / 2, (ways[0] - ways[1]) / 2
