@@ -309,7 +309,9 @@ def test_a_form_that_is_unknown_is_refused(changed):
 def diagnosed():
     """Two days of a joint with a law that no catalogue lists, and its diagnosis."""
     rows = simulate_torques(
-        SynthesisSettings(seed=7, joint_kind="plain", effects=("position_temperature:1.0",))
+        SynthesisSettings(
+            seed=7, joint_kind="plain", effects=("position_temperature:1.0",), highest=45
+        )
     )
     rows = rows.assign(load=np.nan)
     return rows, diagnose_joint(rows, "motor", "N·m", SETTINGS)
@@ -358,7 +360,8 @@ def test_the_extended_model_as_it_is_read_back_predicts_the_new_run(diagnosed):
 
 @pytest.mark.slow
 def test_a_joint_with_all_nuisances_and_nothing_hidden_gets_none():
+    nuisances = ("all", "friction_zones:0.02")
     rows = simulate_torques(
-        SynthesisSettings(seed=11, joint_kind="plain", nuisances=("all", "friction_zones:0.02"))
+        SynthesisSettings(seed=11, joint_kind="plain", nuisances=nuisances, highest=45)
     )
     assert diagnose_joint(rows, "motor", "N·m", SETTINGS).empirical is None

@@ -13,6 +13,7 @@ from frictioncli.diagnosis.data.gravity import GravityForm, gravity_columns
 from frictioncli.diagnosis.data.gravity_document import gravity_document, stated_gravity
 from frictioncli.diagnosis.diagnose import diagnose_joint
 from frictioncli.diagnosis.documents.apply_extension import without_effects
+from frictioncli.diagnosis.documents.document import read_diagnoses
 from frictioncli.diagnosis.documents.extended_document import read_extended
 from frictioncli.diagnosis.documents.reload import read_documents, reload
 from frictioncli.diagnosis.settings import DiagnosisSettings
@@ -21,7 +22,7 @@ from frictioncli.model.document import read_models
 from frictioncli.provenance import Provenance
 from frictioncli.stages.diagnose import diagnose
 from frictioncli.stages.fit import fit
-from frictioncli.workfiles import EXTENDED, TORQUES
+from frictioncli.workfiles import DIAGNOSIS, EXTENDED, TORQUES
 from tests.equation_16 import cycle_temperatures, torques
 
 P, Q, C, PER_KG, ASIDE = 70.0, 5.0, -2.0, 8.3, 0.6
@@ -130,23 +131,43 @@ def test_files_state_gravity_as_they_did_and_payloads_beside():
         stated_gravity(five, GravityForm())
 
 
-def test_payloads_in_turn_are_no_finding_and_an_undeclared_mass_is():
-    clean, hidden = (
-        diagnose_joint(carried(noise=0.3, undeclared=mass), "motor", "N·m", DiagnosisSettings())
-        for mass in (0.0, 0.2)
-    )
-    assert clean.verdict == "no_evidence"
-    assert ("payload_change",) in [cause.effects for cause in hidden.causes]
-
-
-def extended_written(work, rows):
-    """Return the extended model that the stages write for some torques."""
+def work_of(work, rows):
+    """Write some torques into a work folder and take it through the stages to the diagnosis."""
     rows = rows.assign(torque_forward=1.0, torque_reverse=1.0, n_forward=1, n_reverse=1)
     provenance = Provenance("test")
     tables.write(work / TORQUES, rows, schemas.TORQUES, provenance, {"torque_unit": "N·m"})
     fit(work)
     diagnose(work)
+    return work
+
+
+@pytest.fixture(scope="module")
+def undeclared(tmp_path_factory):
+    """The work folder of payloads in turn, with a mass that nobody tells."""
+    return work_of(tmp_path_factory.mktemp("undeclared"), carried(noise=0.3, undeclared=0.2))
+
+
+@pytest.fixture(scope="module")
+def undeclared_in_a_pose(tmp_path_factory):
+    """The work folder of poses in turn, with a mass in one of them that nobody tells."""
+    return work_of(tmp_path_factory.mktemp("pose"), in_poses(undeclared=0.5))
+
+
+def written(work):
+    """Return the extended model that the stages have written."""
     return json.loads((work / EXTENDED).read_text(encoding="utf-8"))
+
+
+def named(work):
+    """Return the sets of effects that the diagnosis of a work folder names."""
+    (found,) = read_diagnoses(work / DIAGNOSIS).values()
+    return [cause.effects for cause in found.causes]
+
+
+def test_payloads_in_turn_are_no_finding_and_an_undeclared_mass_is(undeclared):
+    clean = diagnose_joint(carried(noise=0.3), "motor", "N·m", DiagnosisSettings())
+    assert clean.verdict == "no_evidence"
+    assert ("payload_change",) in named(undeclared)
 
 
 def read_back_predicts_load(work):
@@ -162,11 +183,11 @@ def read_back_predicts_load(work):
     return extended
 
 
-def test_an_extended_model_with_payloads_is_read_back(tmp_path):
-    written = extended_written(tmp_path, carried(noise=0.3, undeclared=0.2))
-    assert written["gravity"]["cosine_per_kg"] == pytest.approx(PER_KG, abs=0.2)
-    assert set(written["gravity_about"]) == set(written["gravity"])
-    read_back_predicts_load(tmp_path)
+def test_an_extended_model_with_payloads_is_read_back(undeclared):
+    extended = written(undeclared)
+    assert extended["gravity"]["cosine_per_kg"] == pytest.approx(PER_KG, abs=0.2)
+    assert set(extended["gravity_about"]) == set(extended["gravity"])
+    read_back_predicts_load(undeclared)
 
 
 @pytest.mark.parametrize("sign", [1, -1])
@@ -263,17 +284,15 @@ def test_poses_known_from_the_log_are_no_finding(days):
     assert hidden.verdict != "no_evidence"
 
 
-def test_a_payload_in_one_pose_is_found_beside_the_gravity_of_the_others():
-    found = diagnose_joint(in_poses(undeclared=0.5), "motor", "N·m", DiagnosisSettings())
-    assert [cause.effects for cause in found.causes] == [("payload_change",)]
+def test_a_payload_in_one_pose_is_found_beside_the_gravity_of_the_others(undeclared_in_a_pose):
+    assert named(undeclared_in_a_pose) == [("payload_change",)]
 
 
-def test_an_extended_model_states_the_gravity_of_each_pose(tmp_path):
-    written = extended_written(tmp_path, in_poses(undeclared=0.5))
-    (other,) = written["gravity"]["in_poses"]
+def test_an_extended_model_states_the_gravity_of_each_pose(undeclared_in_a_pose):
+    (other,) = written(undeclared_in_a_pose)["gravity"]["in_poses"]
     assert other["poses"] == [1]
     assert other["cosine"] == pytest.approx(-25.0, abs=0.6)
-    extended = read_back_predicts_load(tmp_path)
+    extended = read_back_predicts_load(undeclared_in_a_pose)
     with pytest.raises(TableError, match="other poses of the other joints"):
         stated_gravity(extended.gravity, GravityForm())
 
