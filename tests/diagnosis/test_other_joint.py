@@ -30,7 +30,7 @@ SIZE = 8.0
 
 
 def settings(size):
-    chosen = {"runs": 1, "seed": 5, "lowest": 25, "highest": 42, "joint_kind": "plain"}
+    chosen = {"runs": 1, "seed": 5, "lowest": 25, "highest": 36, "joint_kind": "plain"}
     return SynthesisSettings(nuisances=(f"other_joint:{size:g}",) if size else (), **chosen)
 
 
