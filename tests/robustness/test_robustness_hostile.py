@@ -12,6 +12,7 @@ import pytest
 from frictioncli.errors import FrictionError
 from frictioncli.stages.ingest import ingest as ingest_stage
 from frictioncli.stages.run import run as run_chain
+from tests.command_line import called
 from tests.logs.logs import kuka_columns, text_of, write
 from tests.robustness.runs import finished, refused, write_warm_up
 
@@ -75,7 +76,7 @@ def test_hostile_headers_and_names_are_harmless_on_the_terminal(tmp_path, comman
     (tmp_path / "run" / f"{name}.csv").write_text(text_of(columns), encoding="utf-8")
     (tmp_path / "run" / f"{name}-2.csv").write_text(f"{hostile}\n{hostile}", encoding="utf-8")
     where = () if command == "inspect" else ("-w", tmp_path / "work")
-    result = finished(command, tmp_path / "run", *where)
+    result = called(command, tmp_path / "run", *where)
     assert result.returncode == 0, result.stderr
     assert not re.search("[\x00-\x08\x0b-\x1f\x7f-\x9f\u202a-\u202e]", result.stdout)
     assert result.stderr == ""
@@ -94,7 +95,7 @@ def test_a_file_name_that_is_no_text_is_refused(tmp_path):
     with open(os.fsencode(run) + b"/\xff\xfe.csv", "w", encoding="utf-8") as stream:
         stream.write(text_of(kuka_columns()))
     for command in (("inspect", run), ("ingest", run, "-w", tmp_path / "work")):
-        assert "its name is not UTF-8" in refused(finished(*command))
+        assert "its name is not UTF-8" in refused(called(*command))
 
 
 def test_a_work_folder_whose_name_is_no_text_is_refused(tmp_path):
@@ -125,7 +126,7 @@ def test_nothing_is_written_outside_the_work_folder(tmp_path):
     lines = [";".join([header, *names]), *(row + ";1" * len(names) for row in rows)]
     (run / "s0.csv").write_text("\n".join(lines), encoding="cp1252")
     before = {path for path in tmp_path.rglob("*")}
-    result = finished("run", inside, "-w", inside / "work", cwd=inside)
+    result = called("run", inside, "-w", inside / "work", cwd=inside)
     assert result.returncode == 0, result.stderr
     assert "outside is not in the folder" in result.stdout
     made = {path for path in tmp_path.rglob("*")} - before

@@ -16,6 +16,7 @@ from frictioncli.stages.report import report
 from frictioncli.stages.run import analyse
 from frictioncli.stages.separate import separate
 from frictioncli.workfolder import locked, outdated
+from tests.command_line import called
 from tests.robustness.runs import digests, finished, refused, started, write_warm_up
 
 LEVELS = (25, 39, 53)
@@ -49,7 +50,7 @@ def test_of_two_runs_into_one_folder_the_second_is_refused(done, tmp_path):
     os.kill(first.pid, signal.SIGSTOP)  # it holds the folder for as long as we like
     try:
         for command in (("run", done / "logs"), ("ingest", done / "logs"), ("pair",), ("report",)):
-            message = refused(finished(*command, "-w", tmp_path / "work"))
+            message = refused(called(*command, "-w", tmp_path / "work"))
             assert "another frictioncli is writing into this folder" in message
     finally:
         os.kill(first.pid, signal.SIGCONT)
@@ -68,7 +69,7 @@ def test_the_lock_of_a_killed_run_holds_nobody_up(done, tmp_path):
     for left_over in (".writing.abc", ".reading.abc"):
         (tmp_path / "work" / left_over).mkdir()
         (tmp_path / "work" / left_over / "samples.parquet").write_bytes(b"half")
-    assert finished("ingest", done / "logs", "-w", tmp_path / "work").returncode == 0
+    assert called("ingest", done / "logs", "-w", tmp_path / "work").returncode == 0
     assert {path.name for path in (tmp_path / "work").iterdir()} == {
         "samples.parquet",
         "recordings.parquet",
