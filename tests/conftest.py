@@ -16,9 +16,10 @@ settings.load_profile("fixed")
 
 
 LONGEST = (
-    *("test_docs", "test_cluster", "test_synthetic_causes", "test_changes", "test_processes"),
-    *("test_challenge", "test_robustness_kill"),
-    *("test_plan", "test_named_causes", "test_fleet", "test_page_in_chromium", "test_commands"),
+    *("test_synthetic_causes", "test_cluster", "test_named_causes", "test_changes", "test_fleet"),
+    *("test_processes", "test_challenge", "test_empirical", "test_gravity", "test_clean_joints"),
+    *("test_plan", "test_docs", "test_robustness_disk", "test_robustness_forms", "test_step"),
+    *("test_page_in_chromium", "test_commands", "test_robustness_bombs", "test_robustness_kill"),
 )
 """Modules that take longest, the longest first."""
 
@@ -32,8 +33,9 @@ def pytest_collection_modifyitems(items):
     slow = {item.path for item in items if _is_slow(item)}
 
     def rank(item):
-        places = [place for place, name in enumerate(LONGEST) if name in item.nodeid]
-        return (item.path not in slow, min(places, default=len(LONGEST)))
+        name = item.path.stem
+        place = LONGEST.index(name) if name in LONGEST else len(LONGEST)
+        return (place, item.path not in slow)
 
     items.sort(key=rank)
 
