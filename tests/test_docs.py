@@ -2,6 +2,7 @@
 
 import re
 import shlex
+import shutil
 from pathlib import Path
 
 import pytest
@@ -9,7 +10,6 @@ import pytest
 from docs import folders
 from docs.compare_with_paper import comparison, markdown
 from frictioncli.cli.commands import app
-from tests.robustness.runs import write_warm_up
 from tests.sample_run import WORDS, command
 
 ROOT = Path(__file__).parents[1]
@@ -26,13 +26,24 @@ def quick_start():
     return [line.strip() for line in block.splitlines() if line.strip().startswith("frictioncli")]
 
 
+def recordings(folder, *, every):
+    """Return a folder with some recordings of the first day of the sample logs."""
+    day = ROOT / "sample_logs" / "kr10" / "day1"
+    header, *rows = (day / "manifest.csv").read_text("utf-8").splitlines()
+    folder.mkdir()
+    (folder / "manifest.csv").write_text("\n".join([header, *rows[::every], ""]), "utf-8")
+    for row in rows[::every]:
+        shutil.copy(day / row.split(";")[0], folder)
+    return folder
+
+
 @pytest.fixture(scope="module")
 def work(tmp_path_factory, sample_run):
     """The work folder that the commands of the quick start leave.
 
     The paper's method is tried on a few recordings; its comparison below has both days.
     """
-    few = write_warm_up(tmp_path_factory.mktemp("few") / "day", levels=(25, 39, 53, 67))
+    few = recordings(tmp_path_factory.mktemp("few") / "day", every=8)
     folder = sample_run(tmp_path_factory.mktemp("quick") / "friction-run")
     first, *others = quick_start()
     assert shlex.split(first, comments=True)[1:] == [*WORDS, folder.name]
