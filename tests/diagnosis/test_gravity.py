@@ -273,7 +273,13 @@ def test_gravity_in_a_pose_that_only_the_new_run_has_is_fitted_there():
     np.testing.assert_allclose(new.table.load, ordered["load_torque"], atol=1e-4)
 
 
-@pytest.mark.parametrize("days", [(0, 1), (4,)], ids=["in turn", "a new one"])
+@pytest.mark.parametrize(
+    "days",
+    [
+        pytest.param((0, 1), id="in turn"),
+        pytest.param((4,), id="a new one", marks=pytest.mark.long),
+    ],
+)
 def test_poses_known_from_the_log_are_no_finding(days):
     """Without the poses the same log is not understood."""
     rows = in_poses(days=days)

@@ -45,7 +45,7 @@ def alone(step, *effects, shapes=None):
     )
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_noise_passes_no_more_often_than_its_p_values_say():
     """30 problems with three kinds of drift, six effects each."""
     least, single = [], []

@@ -98,7 +98,9 @@ def test_workers_of_another_version_are_refused(logs, tmp_path):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("ended_by", [signal.SIGKILL, signal.SIGSTOP])
+@pytest.mark.parametrize(
+    "ended_by", [pytest.param(signal.SIGKILL, marks=pytest.mark.long), signal.SIGSTOP]
+)
 def test_a_scheduler_that_goes_is_told_in_the_rows_and_the_next_call_goes_on(
     tmp_path, monkeypatch, ended_by
 ):
