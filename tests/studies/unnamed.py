@@ -34,8 +34,8 @@ from tests.studies.unnamed_page import Case, write_page
 SIZE = 1.0
 """RMS of each law over both days. [N·m]"""
 
-SEEDS = (100, 200)
-"""Joint of the first law, set by set; every law has its own."""
+SEEDS = (200,)
+"""Joint of the first law, set by set; every law has its own. Thresholds were chosen with 100."""
 
 LEFT = 0.75
 """RMS that the base and the effects of the measurement leave of a law that is planted once more,
