@@ -20,7 +20,7 @@ from matplotlib.ticker import FixedFormatter, FixedLocator, NullLocator
 from matplotlib.transforms import Bbox, IdentityTransform
 
 from frictioncli.arrays import Array
-from frictioncli.report.tick_labels import TickLabels
+from frictioncli.report.tick_labels import Layouts, TickLabels
 
 _NEAR = 1e-6
 """Share of an axis by which a tick may lie outside its limits."""
@@ -60,7 +60,7 @@ def stacked(
         sharey=share_y,
         squeeze=False,
         height_ratios=heights,
-        subplot_kw={"axes_class": Panel},
+        subplot_kw={"axes_class": Panel, "layouts": {}},
     )
     return list(grid[:, 0])
 
@@ -224,7 +224,7 @@ class _PathAxis(Axis):
             transform=_PIXELS,
         )
         text.set_figure(cast(Figure, self.get_figure(root=False)))
-        return TickLabels(text, self._pixels(1.0))
+        return TickLabels(text, self._pixels(1.0), cast(Panel, self.axes).layouts)
 
     @property
     def _edge(self) -> float:
@@ -250,7 +250,21 @@ class _PathYAxis(_PathAxis, YAxis):
 
 
 class Panel(Axes):
-    """Axes with ticks at the lower and the left edge, drawn as paths."""
+    """Axes with ticks at the lower and the left edge, drawn as paths.
+
+    Parameters
+    ----------
+    *where : FigureBase, SubplotSpec
+        As of matplotlib's axes.
+    layouts : dict, optional
+        Layouts of the labels of ticks, for panels that share them.
+    **options
+        As of matplotlib's axes.
+    """
+
+    def __init__(self, *where: Any, layouts: Layouts | None = None, **options: Any) -> None:
+        self.layouts: Layouts = {} if layouts is None else layouts
+        super().__init__(*where, **options)
 
     def _init_axis(self) -> None:
         self.xaxis = _PathXAxis(self, clear=False)

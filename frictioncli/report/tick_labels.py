@@ -10,7 +10,7 @@ from matplotlib.transforms import Bbox
 
 
 @dataclass(frozen=True, slots=True)
-class _Layout:
+class Layout:
     """Where a text is when its anchor is at the origin."""
 
     extent: Bbox
@@ -18,7 +18,8 @@ class _Layout:
     """Where the renderer starts to write; None for a text that it cannot write in one piece."""
 
 
-_layouts: dict[tuple[str, str, Any, float], _Layout] = {}
+Layouts = dict[tuple[str, str, Any, float], Layout]
+"""Layouts of texts by text, alignment, size and resolution."""
 
 
 class TickLabels:
@@ -30,11 +31,14 @@ class TickLabels:
         Text with the style of all labels, placed in pixels.
     resolution : float
         Pixels per point.
+    layouts : dict
+        Layouts that are known; new ones are added.
     """
 
-    def __init__(self, style: Text, resolution: float) -> None:
+    def __init__(self, style: Text, resolution: float, layouts: Layouts) -> None:
         self._text = style
         self._resolution = resolution
+        self._layouts = layouts
 
     def extent(self, renderer: RendererBase, text: str, at: tuple[float, float]) -> Bbox:
         """Return the box around a label [pixel].
@@ -77,17 +81,17 @@ class TickLabels:
         renderer.draw_text(gc, x, y, text, font, 0.0, ismath=False, mtext=self._text)
         gc.restore()
 
-    def _layout(self, renderer: RendererBase, text: str) -> _Layout:
+    def _layout(self, renderer: RendererBase, text: str) -> Layout:
         alignment = f"{self._text.get_horizontalalignment()} {self._text.get_verticalalignment()}"
         key = (text, alignment, self._text.get_fontsize(), self._resolution)
-        if key not in _layouts:
+        if key not in self._layouts:
             self._text.set_text(text)
             self._text.set_position((0.0, 0.0))
             extent = self._text.get_window_extent(renderer)
             recorder = _Recorder(renderer)
             self._text.draw(cast(RendererBase, recorder))
-            _layouts[key] = _Layout(extent, recorder.start)
-        return _layouts[key]
+            self._layouts[key] = Layout(extent, recorder.start)
+        return self._layouts[key]
 
 
 class _Recorder:
