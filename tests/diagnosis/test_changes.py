@@ -65,7 +65,10 @@ HELD = [
 
 with_history = pytest.mark.parametrize(
     ("count", "there", "holds", "text"),
-    [HELD[0], *HELD[2:4], *(pytest.param(*one, marks=pytest.mark.long) for one in HELD[1::3])],
+    [
+        *(HELD[0], HELD[3]),
+        *(pytest.param(*HELD[number], marks=pytest.mark.long) for number in (1, 2, 4)),
+    ],
     ids=lambda value: getattr(value, "__name__", ""),
 )
 

@@ -18,6 +18,7 @@ WORLDS = {
 }
 
 QUICK = ("one sample late", "all three")
+LONG = ("an offset of the sensor",)
 
 
 def diagnosed(seed, **world):
@@ -38,7 +39,14 @@ def measured(diagnosis):
 
 @pytest.mark.parametrize(
     "name",
-    [one if one in QUICK else pytest.param(one, marks=pytest.mark.slow) for one in WORLDS],
+    [
+        *QUICK,
+        *(
+            pytest.param(one, marks=pytest.mark.long if one in LONG else pytest.mark.slow)
+            for one in WORLDS
+            if one not in QUICK
+        ),
+    ],
 )
 def test_no_cause_of_friction_or_load_is_named(name):
     diagnosis = diagnosed(5, **WORLDS[name])

@@ -223,7 +223,7 @@ def test_a_switch_at_a_temperature_is_described():
     assert "switches" in experiment(part.form)
 
 
-@pytest.mark.parametrize("sizes", [(3.0, 6.0), (5.0, 5.0)])
+@pytest.mark.parametrize("sizes", [(3.0, 6.0), pytest.param((5.0, 5.0), marks=pytest.mark.long)])
 def test_two_laws_at_once_are_described_one_after_the_other(sizes):
     """A narrow bump at 57 deg, whose place lies between those tried, and a peak at 45 °C."""
 

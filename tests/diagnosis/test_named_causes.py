@@ -17,6 +17,7 @@ HIDDEN = {
 """Effects hidden beside all nuisances; test_synthetic_causes.py has joints without nuisances."""
 
 QUICK = ("nothing",)
+LONG = ("Stribeck friction", "drift")
 
 
 def diagnosed_under_nuisances(effects, seed, highest=45):
@@ -28,7 +29,14 @@ def diagnosed_under_nuisances(effects, seed, highest=45):
 
 @pytest.mark.parametrize(
     "name",
-    [one if one in QUICK else pytest.param(one, marks=pytest.mark.slow) for one in HIDDEN],
+    [
+        *QUICK,
+        *(
+            pytest.param(one, marks=pytest.mark.long if one in LONG else pytest.mark.slow)
+            for one in HIDDEN
+            if one not in QUICK
+        ),
+    ],
 )
 def test_causes_named_keep_the_rules(name):
     keeps_the_rules(diagnosed_under_nuisances(HIDDEN[name], 31))

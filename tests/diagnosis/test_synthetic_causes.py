@@ -50,7 +50,7 @@ SMOOTH = (
     "dress_pack",
 )
 """Effects that at four speeds, or along one stroke, look like a smooth error of 2 % of the base:
-what is said of them must be right, and it may be that nothing is."""
+what is said of them must be right, and it may be that nothing is. Their tests are long ones."""
 
 HIGHEST = 45
 """Motor temperature to which the joint is warmed: half the pairs of the paper. [°C]"""
@@ -70,9 +70,6 @@ ELSEWHERE = ("step_change", "payload_change")
 """Effects that test_changes.py finds with size and history; the second stands beside a lag here."""
 
 QUICK = ("thermal_lag", "position_ripple")
-
-LONG = ("load_linear", "quadratic_drag", "linear_viscous", "coulomb_temperature")
-"""Effects of which the base leaves little; docs/blind.md has them with the others."""
 """One effect that goes with temperature, and one of the stroke."""
 
 
@@ -114,7 +111,7 @@ def sets(diagnosis: Diagnosis) -> list[tuple[str, ...]]:
         effect.name
         if effect.name in QUICK
         else pytest.param(
-            effect.name, marks=pytest.mark.long if effect.name in LONG else pytest.mark.slow
+            effect.name, marks=pytest.mark.long if effect.name in SMOOTH else pytest.mark.slow
         )
         for effect in EFFECTS
         if effect.name not in ELSEWHERE
@@ -146,7 +143,7 @@ def test_a_lag_and_another_effect_are_both_found(name):
         ("default", "paper"),
         pytest.param("white", "paper", marks=pytest.mark.long),
         pytest.param("drift97", "paper", marks=pytest.mark.long),
-        ("outliers", "paper"),
+        pytest.param("outliers", "paper", marks=pytest.mark.long),
         ("default", "enriched"),
         pytest.param("heteroscedastic", "enriched", marks=pytest.mark.long),
     ],
@@ -166,7 +163,7 @@ def test_what_the_catalogue_does_not_list_gets_no_name(seed):
     assert set(diagnosis.structure.axes) == {"position", "temperature"}
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_the_experiment_of_the_catalogue_resolves_what_four_speeds_cannot():
     """Four speeds leave a viscous term undecided; ten in random order decide."""
     before = diagnosed(("linear_viscous:9.5",), 73)

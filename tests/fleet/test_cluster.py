@@ -122,7 +122,7 @@ def test_a_scheduler_that_goes_is_told_in_the_rows_and_the_next_call_goes_on(
     assert again == {1: "unchanged", 3: "done"}
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_a_scheduler_without_workers_for_long_is_told_in_the_rows(tmp_path, monkeypatch):
     monkeypatch.setattr("frictioncli.fleet.cluster._WITHOUT_WORKERS", 8)
     monkeypatch.setattr("frictioncli.fleet.cluster._CHECKED", 3)
@@ -173,7 +173,9 @@ def test_an_encrypted_cluster_lets_in_only_who_is_known(tmp_path):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize(("nanny", "timeout"), [(True, 20.0), (False, 5.0)])
+@pytest.mark.parametrize(
+    ("nanny", "timeout"), [pytest.param(True, 20.0, marks=pytest.mark.long), (False, 5.0)]
+)
 def test_a_joint_that_takes_for_ever_is_a_row(tmp_path, nanny, timeout):
     """The joints after it have their time only where a nanny ends what holds them up."""
     tasks = list(tasks_of(tmp_path / "logs", tmp_path / "out", endless={1}))
