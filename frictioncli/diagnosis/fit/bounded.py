@@ -64,14 +64,12 @@ def bounded_coefficients(
         [0, *([1] if np.isfinite(low) else []), *([2] if np.isfinite(high) else [])]
         for low, high in zip(lower, upper, strict=True)
     ]
+    inner_there, right_there = inner[where], right[where]
+    on_bound = np.column_stack([np.zeros_like(lower), np.nan_to_num(lower), np.nan_to_num(upper)])
     for state in product(*states):
         at = np.array(state)
-        fixed = np.where(
-            at == 1, np.nan_to_num(lower), np.where(at == 2, np.nan_to_num(upper), 0.0)
-        )
-        tried, value = _solved(
-            inner[where], right[where], at == 0, np.broadcast_to(fixed, right[where].shape)
-        )
+        fixed = np.broadcast_to(on_bound[np.arange(len(at)), at], right_there.shape)
+        tried, value = _solved(inner_there, right_there, at == 0, fixed)
         inside = np.all((tried >= lower - 1e-12) & (tried <= upper + 1e-12), axis=1)
         better = inside & (value > best)
         best[better] = value[better]
