@@ -122,7 +122,10 @@ def test_a_payload_on_the_second_of_three_days():
 
 @pytest.mark.parametrize(
     ("change", "name", "size"),
-    [(with_payload, "payload_change", [6.0, 0.0]), (with_friction_step, "step_change", [3.0])],
+    [
+        pytest.param(with_payload, "payload_change", [6.0, 0.0], marks=pytest.mark.long),
+        (with_friction_step, "step_change", [3.0]),
+    ],
 )
 def test_a_change_on_the_last_day_only(change, name, size):
     """It is found on the held-out run, so that the gain is no gain on data never seen."""

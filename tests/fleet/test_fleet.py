@@ -86,7 +86,7 @@ def test_units_of_the_columns(alone):
     assert units["tau_c"] == units["tau_c_low"] == "tau_c_unit"
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_two_workers_give_the_same_bytes(alone, logs, tmp_path):
     result = fleet(logs, "-w", tmp_path / "two", "--workers", 2, "--no-report")
     assert (result.returncode, result.stderr) == (0, "")

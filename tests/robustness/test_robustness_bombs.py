@@ -65,7 +65,7 @@ def test_what_is_packed_is_a_gzip_file(tmp_path):
         ("inspect", b"        \r\n", "not blank"),
         ("ingest", b"x\n", "wrong_field_count"),
         ("ingest", b"0;0;0\n", "time_not_increasing"),
-        ("inspect", b"0;0;0\n", "time_not_increasing"),
+        pytest.param("inspect", b"0;0;0\n", "time_not_increasing", marks=pytest.mark.long),
     ],
 )
 def test_gigabytes_in_kilobytes_end_early(tmp_path, command, part, reason):

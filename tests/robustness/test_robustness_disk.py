@@ -119,7 +119,7 @@ def test_a_stage_that_cannot_write_its_files_keeps_the_old_ones(done, tmp_path, 
     assert kept == before
 
 
-@pytest.mark.parametrize("size", ["24k", pytest.param("400k", marks=pytest.mark.slow)])
+@pytest.mark.parametrize("size", ["24k", pytest.param("400k", marks=pytest.mark.long)])
 def test_a_full_disk_ends_a_run_with_one_message(done, mounted, size):
     point = mounted(size)
     result = finished("run", done / "logs", "-w", point / "work")

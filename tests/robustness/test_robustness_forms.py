@@ -14,7 +14,8 @@ from tests.studies.fuzz_process import GOOD
 from tests.studies.fuzz_recordings import WRITERS
 from tests.studies.soak import soaked
 
-INPUTS = 6
+INPUTS = {"work": 3}
+"""Inputs that are tried of each form, where it is not six: a stage takes longer than a reading."""
 
 
 @pytest.fixture(scope="module")
@@ -31,7 +32,7 @@ def base(tmp_path_factory):
 @pytest.mark.parametrize("form", FORMS)
 def test_damaged_inputs_end_as_they_should(form, base, tmp_path):
     found = []
-    for number in range(INPUTS):
+    for number in range(INPUTS.get(form, 6)):
         (tmp_path / str(number)).mkdir()
         with few_programmes():
             one, outcome, text = examine(form, number, tmp_path / str(number), base)

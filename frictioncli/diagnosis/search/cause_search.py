@@ -35,6 +35,7 @@ from frictioncli.diagnosis.search.step import Step, free_coefficients
 from frictioncli.diagnosis.settings import DiagnosisSettings
 from frictioncli.effects import BY_NAME, MEASUREMENT_EFFECTS
 from frictioncli.effects.base import Effect, applicable
+from frictioncli.effects.thermal_lag import EFFECT as THERMAL_LAG
 from frictioncli.wording import in_words
 
 _LEAST_SHARE = 0.5
@@ -218,9 +219,14 @@ class _Search:
         """Return why the last of some effects is impossible: the data ask for more than bounds.
 
         Once accepted its coefficients that lie on no bound are free, and would explain what is
-        another's.
+        another's. A lag of the gear is possible where friction is linear about a hidden
+        temperature, which was found within physical bounds: what it asks for beyond them is
+        another's, which the search has yet to find.
         """
-        fit, newest = Step.of(self.precomputed, accepted).fit, accepted[-1]
+        newest = accepted[-1]
+        if newest.effect is THERMAL_LAG and self.precomputed.problem.hidden is not None:
+            return ""
+        fit = Step.of(self.precomputed, accepted).fit
         free = free_coefficients(newest)
         place = len(fit.coefficients) - len(free) + np.arange(len(free))
         coefficients, covariance = newest.coefficients.copy(), newest.covariance.copy()
