@@ -49,7 +49,7 @@ def test_what_noise_hardly_explains_is_corrected_where_there_is_a_cause():
     assert one.reason == "small; corrected nonetheless"
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_what_is_corrected_follows_the_causes_and_counts_for_the_prediction():
     """A joint that does many small things; its documents predict the new run as the diagnosis."""
     world = World("single", "load_temperature", 0)

@@ -58,7 +58,9 @@ def undetectable(diagnosis):
     return diagnosis_document(diagnosis, DiagnosisSettings()).undetectable
 
 
-@pytest.mark.parametrize("seed", range(3))
+@pytest.mark.parametrize(
+    "seed", [0, *(pytest.param(one, marks=pytest.mark.long) for one in (1, 2))]
+)
 def test_nothing_is_found_where_nothing_is_hidden(seed):
     diagnosis = clean(seed)
     assert diagnosis.verdict == "no_evidence"
@@ -182,6 +184,7 @@ def test_detectable_sizes_cover_the_catalogue():
     assert 0.01 < whatever["position_ripple"] < 0.2
 
 
+@pytest.mark.long
 def test_no_detectable_size_is_larger_than_the_friction():
     """At two speeds base and drift take a viscous term whole; at one it is not asked about."""
     rows = days(1)

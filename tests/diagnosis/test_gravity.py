@@ -276,7 +276,7 @@ def test_gravity_in_a_pose_that_only_the_new_run_has_is_fitted_there():
 @pytest.mark.parametrize(
     "days",
     [
-        pytest.param((0, 1), id="in turn"),
+        pytest.param((0, 1), id="in turn", marks=pytest.mark.long),
         pytest.param((4,), id="a new one", marks=pytest.mark.long),
     ],
 )

@@ -50,7 +50,11 @@ def write_day(path, rng, elbow):
 
 @pytest.mark.parametrize(
     ("second", "known"),
-    [(ELBOW, True), (ELBOW[1:], True), (ELBOW, False)],
+    [
+        (ELBOW, True),
+        pytest.param(ELBOW[1:], True, marks=pytest.mark.long),
+        (ELBOW, False),
+    ],
     ids=["in turn", "on the second day alone", "not in the log"],
 )
 def test_a_joint_that_stands_elsewhere_is_no_finding(tmp_path, second, known):

@@ -4,10 +4,12 @@ from types import SimpleNamespace
 
 import pytest
 
+from frictioncli import schemas, tables
 from frictioncli.diagnosis.diagnose import diagnose_joint
 from frictioncli.diagnosis.settings import DiagnosisSettings
 from frictioncli.diagnosis.thermal import lag_search
 from frictioncli.effects import EFFECTS, MEASUREMENT_EFFECTS
+from frictioncli.workfiles import TORQUES
 from tests.diagnosis.thermal_joint import Network, torques
 
 MEASURED, FIRST, SECOND = "measured temperature", "first estimate", "beside the causes"
@@ -71,6 +73,19 @@ def test_a_gear_that_leads_the_motor_may_be_a_sensor_that_lags():
     assert diagnosis.thermal is not None
     # noise of a bin, of a pair, and the drift
     assert diagnosis.gain.after < 1.1 * (0.25**2 + 0.125**2 + 0.1**2 + 0.25**2) ** 0.5
+
+
+@pytest.mark.slow
+def test_a_drift_does_not_hide_a_lag_of_many_degrees(sample_run, tmp_path):
+    """Beside the drift alone the lag would ask for more than is physically possible."""
+    torques = tables.read(sample_run(tmp_path / "work") / TORQUES, schemas.TORQUES)
+    torques = torques[torques["run"] == "day1"].copy()
+    torques["friction_torque"] += torques["time"] / 3600.0
+    diagnosis = diagnose_joint(torques, "motor", "N·m", DiagnosisSettings())
+    assert diagnosis.verdict == "named"
+    assert [cause.effects for cause in diagnosis.causes] == [("thermal_lag",), ("drift",)]
+    assert diagnosis.causes[1].fit.coefficients == pytest.approx([1.0], abs=0.25)
+    assert diagnosis.gain.after < 1.5 * diagnosis.floor
 
 
 def lags(interval, *others, sensor=(0.0, 0.1)):

@@ -114,6 +114,7 @@ def test_a_delay_behind_a_filter_is_both():
     assert found.shift.value == pytest.approx(0.05, abs=0.003)
 
 
+@pytest.mark.long
 def test_a_fast_log_tells_the_delay_to_a_fraction_of_a_millisecond():
     found = timing(logged(delay=0.003, every=2))
     assert found.best == "torque_delay"

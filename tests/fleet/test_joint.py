@@ -85,7 +85,7 @@ def test_a_row_repeats_what_the_files_say(finished):
     assert (task.work / "report" / "index.html").is_file()
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_the_same_joint_in_another_folder_gives_the_same_bytes(finished, tmp_path):
     task, _ = finished
     run_joint(replace(task, work=tmp_path / "elsewhere" / "joint=2"))

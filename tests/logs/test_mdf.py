@@ -60,7 +60,7 @@ def refused(path):
     ("version", "compression"),
     [
         ("4.10", 2),
-        pytest.param("4.20", 0, marks=pytest.mark.slow),
+        pytest.param("4.20", 0, marks=pytest.mark.long),
         pytest.param("3.30", 0, marks=pytest.mark.slow),
     ],
 )

@@ -30,7 +30,13 @@ def plain(observations):
     )
 
 
-@pytest.mark.parametrize("seed", range(20_000, 20_050))
+@pytest.mark.parametrize(
+    "seed",
+    [
+        *range(20_000, 20_015),
+        *(pytest.param(seed, marks=pytest.mark.long) for seed in range(20_015, 20_050)),
+    ],
+)
 def test_no_other_point_is_lower(seed):
     """Against a dense grid and many polished starts; ``tests.studies.minimum`` does 10,000."""
     *_, same = compared(seed)

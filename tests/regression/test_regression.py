@@ -52,7 +52,7 @@ def test_noisy_parameters_lie_near_their_intervals(seed):
         assert abs(found.parameters[name] - value) < 4.5 * found.deviation(name), name
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_intervals_hold_the_truth_as_often_as_they_say():
     """100 logs, seven parameters and friction at three speeds."""
     held = {name: [] for name in (*TRUTH, "friction")}

@@ -159,7 +159,7 @@ def write_speeds(path, motion, torque):
     pd.DataFrame(columns).to_csv(path, index=False, float_format="%.7g")
 
 
-@pytest.mark.parametrize("offset", [0.0, 1.5])
+@pytest.mark.parametrize("offset", [pytest.param(0.0, marks=pytest.mark.long), 1.5])
 def test_a_log_without_positions_is_regressed_by_its_velocity(offset, tmp_path):
     """Sines of a motor on a bench: no gravity, but inertia, friction and an offset."""
     generator = np.random.default_rng(31)

@@ -5,7 +5,7 @@ import pytest
 from tests.robustness.runs import digests, finished, write_warm_up
 
 
-@pytest.mark.slow
+@pytest.mark.long
 @pytest.mark.parametrize(
     "elsewhere",
     [

@@ -101,6 +101,7 @@ def test_packed_arrays_are_bounded_before_they_are_unpacked(tmp_path, monkeypatc
     assert "unpack to 4 MiB" in refusal(tmp_path / "a.npz")
 
 
+@pytest.mark.long
 def test_groups_of_hdf5_by_the_thousand(tmp_path):
     """The time of each was once proportional to the number of all."""
     h5py = pytest.importorskip("h5py")

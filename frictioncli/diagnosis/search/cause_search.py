@@ -207,8 +207,7 @@ class _Search:
     def matters(self, step: Step, test: HypothesisTest) -> bool:
         """Return whether the base leaves enough of an effect for the search to go on with it."""
         effect = BY_NAME[test.name]
-        size, _, _ = left_size(step.precomputed, test.effect_fit(effect))
-        return size > self._least(effect)
+        return left_size(step.precomputed, test.effect_fit(effect))[0] > self._least(effect)
 
     def _least(self, effect: Effect) -> float:
         """Return the least size with which the search goes on, in the channel of an effect."""
