@@ -27,6 +27,7 @@ from frictioncli.diagnosis.search.possible import (
     standard_errors,
     times_its_range,
     undetermined,
+    with_unit,
 )
 from frictioncli.diagnosis.search.precomputed import Precomputed
 from frictioncli.diagnosis.search.step import Step
@@ -141,7 +142,7 @@ def _moved(
                 other = in_words(refused[0].fit.effect.name)
                 why = (
                     f"its {in_words(parameter.name)} depends on a physically impossible {other}:"
-                    f" {was:.3g} {parameter.unit} with it, {value:.3g} {parameter.unit} without"
+                    f" {with_unit(parameter, was)} with it, {with_unit(parameter, value)} without"
                 )
                 found.append((one, why))
                 break

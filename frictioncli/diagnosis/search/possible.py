@@ -9,7 +9,7 @@ from frictioncli.diagnosis.data.problem import Problem
 from frictioncli.diagnosis.fit.hypotheses import EffectFit, physical_bounds
 from frictioncli.diagnosis.fit.left_by_base import Z95
 from frictioncli.effects.parameter import Parameter
-from frictioncli.wording import in_words
+from frictioncli.wording import in_words, number_text
 
 _BEYOND = 0.25
 """How far a share may be below 0 or above 1."""
@@ -48,9 +48,21 @@ def beyond_bounds(fit: EffectFit, problem: Problem, errors: float = Z95) -> str:
 
 
 def _impossible_value(parameter: Parameter, value: float) -> str:
-    unit = f" {parameter.unit}" if parameter.unit != "1" else ""
-    shown = f"{value:.3g}".replace("-", "−")
-    return f"its {in_words(parameter.name)} would be {shown}{unit}, which is physically impossible"
+    shown = with_unit(parameter, value)
+    return f"its {in_words(parameter.name)} would be {shown}, which is physically impossible"
+
+
+def with_unit(parameter: Parameter, value: float) -> str:
+    """Return the value of a parameter in words.
+
+    Parameters
+    ----------
+    parameter : Parameter
+        The parameter.
+    value : float
+        Its value, in the parameter's unit.
+    """
+    return number_text(value) + (f" {parameter.unit}" if parameter.unit != "1" else "")
 
 
 def _larger_than_whole(fit: EffectFit, errors: float) -> str:
