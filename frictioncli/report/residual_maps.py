@@ -140,7 +140,9 @@ def _placed(
     )
     panels = [
         list(row)
-        for row in grid.subplots(sharey="row", squeeze=False, subplot_kw={"axes_class": Panel})
+        for row in grid.subplots(
+            sharey="row", squeeze=False, subplot_kw={"axes_class": Panel, "layouts": {}}
+        )
     ]
     bar = figure.add_axes(
         (sides["right"] + 0.02, ends["bottom"], 0.022, ends["top"] - ends["bottom"])
