@@ -9,7 +9,9 @@ import pytest
 
 from docs import folders
 from docs.compare_with_paper import comparison, markdown
+from frictioncli import schemas, tables
 from frictioncli.cli.commands import app
+from frictioncli.workfiles import EVALUATION
 from tests.sample_run import WORDS, command
 
 ROOT = Path(__file__).parents[1]
@@ -71,6 +73,17 @@ def test_comparison_with_the_paper_is_what_the_sample_logs_give(work):
         assert number.sub("#", one) == number.sub("#", other)
         for left, right in zip(number.findall(one), number.findall(other), strict=True):
             assert float(left) == pytest.approx(float(right), rel=0.06, abs=0.06), one
+
+
+def test_the_readme_states_the_error_of_the_extended_model(sample_run, tmp_path):
+    folder = sample_run(tmp_path / "friction-run")
+    command("evaluate", "-w", str(folder), "--extended")
+    found = tables.read(folder / EVALUATION, schemas.EVALUATION)
+    found = found[found["criterion"] == "none"].set_index(["phase", "run"])["epsilon"]
+    row = next(line for line in README.splitlines() if "`evaluate --extended`" in line)
+    stated = [float(number) for number in re.findall(r"\d\.\d+", row)]
+    places = [(phase, day) for phase in ("heat-up", "cool-down") for day in ("day1", "day2")]
+    assert stated == pytest.approx([found[place] for place in places], abs=0.02)
 
 
 def test_table_of_commands_lists_every_command():
