@@ -115,7 +115,7 @@ def first_order_lag(*, time: Array, value: Array, restart: Flags, time_constant:
     """
     ratio = np.maximum(np.diff(time), 0.0) / time_constant
     share = np.where(ratio > 0, -np.expm1(-ratio) / np.where(ratio > 0, ratio, 1.0), 1.0)
-    return _accumulated(np.exp(-ratio), -np.diff(value) * share, restart)
+    return linear_recursion(decay=np.exp(-ratio), gain=-np.diff(value) * share, restart=restart)
 
 
 def first_order_response(
@@ -156,15 +156,36 @@ def first_order_response(
     [0.    1.264]
     """
     ratio = np.maximum(np.diff(time), 0.0) / time_constant
-    return _accumulated(np.exp(-ratio), -level * np.expm1(-ratio), restart)
+    return linear_recursion(decay=np.exp(-ratio), gain=-level * np.expm1(-ratio), restart=restart)
 
 
-def _accumulated(decay: Array, gain: Array, restart: Flags) -> Array:
-    """Return x with ``x[i + 1] = decay[i] x[i] + gain[i]``, and 0 at each restart."""
+def linear_recursion(*, decay: Array, gain: Array, restart: Flags, first: float = 0.0) -> Array:
+    """Return x with ``x[i + 1] = decay[i] x[i] + gain[i]``, shape (pairs,).
+
+    Parameters
+    ----------
+    decay, gain : ndarray, shape (pairs - 1,)
+        From each pair to the next.
+    restart : ndarray of bool, shape (pairs,)
+        Where x begins anew.
+    first : float, optional
+        x there.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> linear_recursion(
+    ...     decay=np.array([0.5, 0.5, 0.5]),
+    ...     gain=np.array([0.0, 0.0, 1.0]),
+    ...     restart=np.array([True, False, True, False]),
+    ...     first=1.0,
+    ... )
+    array([1. , 0.5, 1. , 1.5])
+    """
     banded = np.empty((2, len(restart)))
     banded[0] = 1.0
     banded[1, :-1] = np.where(restart[1:], 0.0, -decay)
-    right = np.concatenate([np.zeros(min(1, len(restart))), np.where(restart[1:], 0.0, gain)])
+    right = np.where(restart, first, np.append(0.0, gain)[: len(restart)])
     return np.asarray(dtbtrs(banded, right, uplo="L", diag="U")[0])
 
 

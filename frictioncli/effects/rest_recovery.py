@@ -1,22 +1,35 @@
-r"""After a rest friction is higher, until the first moves have displaced the grease again.
+r"""After a rest friction is higher, until enough moves have displaced the grease again.
 
-.. math:: \Delta\tau = A R\, e^{-n/n_0}, \quad \Delta L = B R\, e^{-n/n_0}, \quad R = 1 - e^{-r/r_0}
+.. math:: \Delta\tau = A x, \quad \Delta L = B x
 
-with the number *n* of the pair after a rest *r*.
+The excess *x*, between 0 and 1, decays with every pair that the joint moves and recovers at rest:
+
+.. math::
+    x \to x\, e^{-1/n_0} \text{ in a pair}, \quad
+    x \to 1 - (1 - x)\, e^{-r/r_0} \text{ in a rest } r .
+
+It is the structure parameter of a thixotropic grease [1]_, broken down by strokes instead of time.
+
+References
+----------
+.. [1] J. Mewis and N. J. Wagner, "Thixotropy," Adv. Colloid Interface Sci. 147-148, 2009,
+   doi:10.1016/j.cis.2008.09.005.
 """
 
 import numpy as np
 
+from frictioncli.arrays import Array
 from frictioncli.effects.base import Basis, Effect, EffectTable, Signature
+from frictioncli.effects.pair_series import linear_recursion, pair_heads, starts
 from frictioncli.effects.parameter import Parameter
 
 
 def basis(table: EffectTable, *, pairs: float, rest_time: float, at_start: float) -> Basis:
     """Return the remaining excess in friction and, of the first move of a pair, in load. [-].
 
-    The log does not state the rest before the first series of a run: ``at_start`` is the share
-    recovered by then. The first move of a pair has more of the excess than the move back, and half
-    the difference appears as load.
+    The log does not state the rest before the first series of a run: ``at_start`` is the excess
+    there. Unrecorded motion counts as well, as far as the motor warmed in it. The first move of a
+    pair has more of the excess than the move back, and half the difference appears as load.
 
     Parameters
     ----------
@@ -27,23 +40,38 @@ def basis(table: EffectTable, *, pairs: float, rest_time: float, at_start: float
     rest_time : float
         Rest in which 63 % of the excess recover. [s]
     at_start : float
-        Share recovered before the first series of a run. [-]
+        Excess in the first pair of a run. [-]
     """
-    known = np.isfinite(table.rest)
-    recovered = np.where(known, -np.expm1(-np.where(known, table.rest, 0.0) / rest_time), at_start)
-    excess = recovered * np.exp(-table.order / pairs)
+    heads = pair_heads(table)
+    first = heads.first
+    rest = np.where(table.order[first] == 0, table.rest[first], 0.0)
+    kept = np.exp(-np.where(np.isfinite(rest), rest, 0.0) / rest_time)
+    decay = np.exp(-_pairs_moved(table.travel[first]) / pairs) * kept[1:]
+    excess = heads.spread(
+        linear_recursion(
+            decay=decay, gain=1 - kept[1:], restart=starts(table.run[first]), first=at_start
+        )
+    )
     zeros = np.zeros_like(excess)
     return Basis(np.column_stack([excess, zeros]), np.column_stack([zeros, excess]))
+
+
+def _pairs_moved(travel: Array) -> Array:
+    """Return the motion from each pair to the next, relative to that of a usual pair."""
+    moved = np.maximum(np.diff(travel), 0.0)
+    usual = float(np.median(moved[moved > 0])) if np.any(moved > 0) else 1.0
+    return moved / usual
 
 
 EFFECT = Effect(
     name="rest_recovery",
     summary="The first pairs after a rest have more friction.",
     equation=(
-        "dtau = A*R*exp(-n/n0), dL = B*R*exp(-n/n0),"
-        " R = 1 - exp(-r/r0) after a rest r, r1 at the start of a run"
+        "dtau = A*x, dL = B*x; x -> x*exp(-1/n0) in a pair, 1 - (1 - x)*exp(-r/r0) in a rest r;"
+        " x = r1 at the start of a run"
     ),
-    source="Redistribution of grease at rest; size is an engineering estimate",
+    source="Structure parameter of thixotropic grease: Mewis & Wagner 2009,"
+    " doi:10.1016/j.cis.2008.09.005; size is an engineering estimate",
     channel="friction",
     shape=(
         Parameter(
@@ -51,20 +79,20 @@ EFFECT = Effect(
             symbol="n0",
             unit="pairs",
             lower=0.5,
-            upper=20.0,
+            upper=500.0,
             description="Number of pairs after which 37 % of the excess remain",
             search="logarithmic",
-            points=6,
+            points=8,
         ),
         Parameter(
             name="rest_time",
             symbol="r0",
             unit="s",
             lower=30.0,
-            upper=7_200.0,
+            upper=86_400.0,
             description="Rest in which 63 % of the excess recover",
             search="logarithmic",
-            points=5,
+            points=6,
         ),
         Parameter(
             name="at_start",
@@ -72,7 +100,7 @@ EFFECT = Effect(
             unit="1",
             lower=0.0,
             upper=1.0,
-            description="Share recovered before the run's first series",
+            description="Excess in the first pair of a run, relative to that after a long rest",
             points=2,
         ),
     ),
@@ -96,7 +124,7 @@ EFFECT = Effect(
         ),
     ),
     basis=basis,
-    needs=("order",),
+    needs=("travel", "order"),
     uses=("rest",),
     signature=Signature(
         axis="order",

@@ -94,6 +94,10 @@ def test_detectable_sizes_are_said():
         "Smallest effects that would be named in 80 % of cases: 0.20 N·m RMS (stribeck) to 1.5 N·m"
         " (drift)."
     )
+    alone = lines(sets=[["drift"]], detectable={"stribeck": 0.2, "run_in": None})
+    assert alone[-1] == (
+        "Smallest effect that would be named in 80 % of cases: 0.20 N·m RMS (stribeck)."
+    )
     assert lines(detectable={"run_in": None})[-1] == "These data cannot show any of the effects."
 
 
@@ -103,5 +107,5 @@ def test_what_the_base_takes_entirely_is_said():
     said = (
         "Cannot be distinguished from the base model with these data: run in and velocity exponent."
     )
-    assert lines(detectable=sizes, undetectable=why)[-1].endswith(f"N·m (stribeck). {said}")
+    assert lines(detectable=sizes, undetectable=why)[-1].endswith(f"N·m RMS (stribeck). {said}")
     assert lines(detectable=dict.fromkeys(why), undetectable=why)[-1].endswith(f"effects. {said}")

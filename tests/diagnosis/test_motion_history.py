@@ -6,7 +6,13 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from frictioncli.diagnosis.data.motion_history import clock_of, series, travel_of
+from frictioncli.diagnosis.data.motion_history import (
+    clock_of,
+    distance_of_pairs,
+    pauses_of,
+    series,
+    travel_of,
+)
 from frictioncli.diagnosis.data.pair_layout import PairLayout
 
 INF = np.inf
@@ -25,7 +31,9 @@ def pairs(time, run=0):
 
 
 def rests(time, warm=40.0, run=0):
-    rest, order = series(pairs(time, run), np.broadcast_to(warm, len(time)).astype(float))
+    layout = pairs(time, run)
+    pause = pauses_of(layout, np.zeros(len(time)))
+    rest, order = series(layout, pause, np.broadcast_to(warm, len(time)).astype(float))
     return rest.tolist(), order.tolist()
 
 
@@ -33,6 +41,14 @@ def test_a_pause_of_more_than_two_minutes_is_a_rest():
     rest, order = rests([0, 60, 180, 301, 401, 1001])
     assert rest == [INF, INF, INF, 121, 121, 600]
     assert order == [0, 1, 2, 0, 1, 0]
+
+
+def test_the_time_that_slow_pairs_take_is_no_rest():
+    """At 20 deg/s pairs of 2400 deg take 120 s: of 200 s between two middles 80 are a pause."""
+    layout = pairs([0, 200, 460])
+    pause = pauses_of(layout, np.full(3, 2400.0))
+    assert pause.tolist() == [80, 140]
+    assert series(layout, pause, np.full(3, 40.0))[0].tolist() == [INF, INF, 140]
 
 
 @pytest.mark.parametrize(
@@ -63,7 +79,8 @@ def test_rests_are_alike_within_a_series_and_places_count_up(steps, runs):
     time = np.cumsum([step for step, _ in steps])
     warm = 40 + np.cumsum([change for _, change in steps])
     run = np.sort(np.arange(len(steps)) % runs)
-    rest, order = series(pairs(time, run), warm)
+    layout = pairs(time, run)
+    rest, order = series(layout, pauses_of(layout, np.zeros(len(time))), warm)
     for i in range(1, len(time)):
         if order[i] > 0:
             assert (rest[i], order[i]) == (rest[i - 1], order[i - 1] + 1)
@@ -92,10 +109,15 @@ ROWS = pd.DataFrame(
 )
 
 
+def travelled(layout, temperature):
+    distance = distance_of_pairs(ROWS)
+    return travel_of(layout, distance, pauses_of(layout, distance), temperature)
+
+
 def test_a_pair_travels_its_angles_twice():
     """Before the third pair of a run: there and back over 30 and over 10 deg."""
     layout = pairs([0, 10, 20, 0, 10], [0, 0, 0, 1, 1])
-    assert travel_of(ROWS, layout, np.full(5, 40.0)).tolist() == [0, 60, 80, 0, 180]
+    assert travelled(layout, np.full(5, 40.0)).tolist() == [0, 60, 80, 0, 180]
 
 
 @pytest.mark.parametrize(
@@ -108,7 +130,7 @@ def test_a_pair_travels_its_angles_twice():
     ],
 )
 def test_a_motor_that_warms_in_a_pause_tells_of_way_at_the_highest_speed(warm, way):
-    """The first pair takes 3 s of the 303 at 20 deg/s; warming within a series tells nothing."""
-    layout = pairs([0, 303, 313, 0, 10], [0, 0, 0, 1, 1])
-    found = travel_of(ROWS, layout, np.array([*warm, 20.0, 20.0]))
+    """Half of both pairs takes 2 s of the 302 at 20 deg/s; a pause of 8 s tells nothing."""
+    layout = pairs([0, 302, 312, 0, 10], [0, 0, 0, 1, 1])
+    found = travelled(layout, np.array([*warm, 20.0, 20.0]))
     assert found.tolist() == [*way, 0, 180]

@@ -209,8 +209,8 @@ def test_basis_reads_no_column_that_is_not_declared(effect, table):
 def test_every_declared_column_matters(effect, table):
     expected = np.hstack(effect.evaluate(table, middle(effect)))
     factor = dict.fromkeys(COLUMNS, 1.0 + np.arange(len(table.pair)) % 7)
-    # a ripple reads from the positions only how wide the bins are
-    factor |= {"time": 1.3, "clock": -1.0, "order": 2.0, "rest": 0.5, "position": 30.0}
+    # a ripple reads from the positions only how wide the bins are, and rests precede pairs 0
+    factor |= {"time": 1.3, "clock": -1.0, "order": 0.0, "rest": 0.5, "position": 30.0}
     for name in (*effect.needs, *effect.uses):
         changed = replace(table, **{name: getattr(table, name) * factor[name]})
         found = np.hstack(effect.evaluate(changed, middle(effect)))

@@ -191,14 +191,27 @@ def test_run_in_falls_with_the_way_of_all_days():
     assert found == pytest.approx(np.array([[1.0], [np.exp(-2)], [np.exp(-2)]]))
 
 
-def test_rest_recovery_needs_a_rest_and_settles_with_the_pairs():
-    """Rest of one rest_time recovers 1 - 1/e; two pairs later 1/e of it is left."""
-    table = small(rest=[0.0, 100.0, 100.0, np.inf, np.nan], order=[0.0, 0.0, 2.0, 0.0, 0.0])
+def test_rest_recovery_decays_with_every_pair_and_recovers_at_rest():
+    """Of 0.3 at the start, each pair of the usual motion keeps a share of exp(-1/2)."""
+    table = small(
+        run=[0, 0, 0, 0, 1, 1],
+        pair=[0, 1, 2, 3, 4, 5],
+        travel=[0.0, 90.0, 180.0, 270.0, 0.0, 900.0],
+        rest=[np.inf, np.inf, np.inf, 100.0, np.inf, 0.0],
+        order=[0.0, 1.0, 2.0, 0.0, 0.0, 0.0],
+    )
     found = friction("rest_recovery", table, pairs=2.0, rest_time=100.0, at_start=0.3)
-    recovered = 1 - np.exp(-1)
-    expected = [0.0, recovered, recovered * np.exp(-1), 0.3, 0.3]
+    rested = 1 - (1 - 0.3 * np.exp(-1.5)) * np.exp(-1)
+    after_ten_pairs = 0.3 * np.exp(-5)
+    expected = [0.3, 0.3 * np.exp(-0.5), 0.3 * np.exp(-1), rested, 0.3, after_ten_pairs]
     assert [row[0] for row in found] == pytest.approx(expected)
-    assert [row[1] for row in found] == [0.0] * 5
+    assert [row[1] for row in found] == [0.0] * 6
+
+
+def test_rest_recovery_of_an_unknown_rest_goes_on_as_it_was():
+    table = small(pair=[0, 1], travel=[0.0, 90.0], rest=[np.inf, np.nan], order=0.0)
+    found = friction("rest_recovery", table, pairs=1.0, rest_time=100.0, at_start=1.0)
+    assert [row[0] for row in found] == pytest.approx([1.0, np.exp(-1)])
 
 
 @pytest.mark.parametrize("sign", [1, -1])
@@ -207,7 +220,7 @@ def test_rest_recovery_is_what_separation_makes_of_a_stiffer_first_move(sign):
     first, back = 20.0 + 5.0, 20.0 + 3.0
     torque_first, torque_back = 30.0 + sign * first, 30.0 - sign * back
     basis = BY_NAME["rest_recovery"].evaluate(
-        small(rest=[1e9], order=0.0), {"pairs": 3.0, "rest_time": 60.0, "at_start": 0.0}
+        small(travel=[0.0]), {"pairs": 3.0, "rest_time": 60.0, "at_start": 1.0}
     )
     coefficients = np.array([4.0, sign * 1.0])
     assert 20.0 + basis.friction @ coefficients == sign * (torque_first - torque_back) / 2

@@ -19,7 +19,13 @@ from frictioncli.diagnosis.data.gravity import (
     sign_convention,
 )
 from frictioncli.diagnosis.data.hidden_temperature import HiddenTemperature
-from frictioncli.diagnosis.data.motion_history import clock_of, series, travel_of
+from frictioncli.diagnosis.data.motion_history import (
+    clock_of,
+    distance_of_pairs,
+    pauses_of,
+    series,
+    travel_of,
+)
 from frictioncli.diagnosis.data.pair_layout import PairLayout
 from frictioncli.diagnosis.data.pose_gravity import gravities_by_pose
 from frictioncli.diagnosis.data.problem import Problem
@@ -191,7 +197,9 @@ def _assembled(
     reference_power = 100.0 * max(float(np.mean(np.abs(friction))), 1e-12)
     if hidden is not None:
         reference_power = hidden.reference_power
-    rest, order = series(layout, motor[heads])
+    distance = distance_of_pairs(rows)
+    pause = pauses_of(layout, distance)
+    rest, order = series(layout, pause, motor[heads])
     counted = sign_convention(rows)
     in_torque = gravity if rows["load"].isna().all() else gravity_in_torque(rows, columns)
     table = EffectTable(
@@ -214,7 +222,7 @@ def _assembled(
         temperature_slope=np.zeros_like(speed),
         load_slope=np.zeros_like(speed),
         friction_power=friction * speed / reference_power,
-        travel=travel_of(rows, layout, motor[heads])[pair],
+        travel=travel_of(layout, distance, pause, motor[heads])[pair],
         rest=rest[pair],
         order=order[pair],
     )

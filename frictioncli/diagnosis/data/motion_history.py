@@ -10,6 +10,9 @@ from frictioncli.model.zero_load import PAIR_KEY
 _SERIES_GAP = 120.0
 """A pause longer than this starts a new measuring series. [s]"""
 
+_IDLE = 20.0
+"""A pause longer than this leaves room for moves that are not recorded. [s]"""
+
 _WARMED = 0.2
 """A motor that is warmer by more than this after a pause has moved during it. [°C]"""
 
@@ -18,7 +21,36 @@ _LEAST_RATE = 0.4
 that warmed the motor; a slower one had motion in a part of it only."""
 
 
-def series(layout: PairLayout, temperature: Array) -> tuple[Array, Array]:
+def distance_of_pairs(rows: pd.DataFrame) -> Array:
+    """Return the distance of each pair, there and back over its angles, shape (pairs,) [deg].
+
+    Parameters
+    ----------
+    rows : DataFrame
+        Rows of :data:`frictioncli.schemas.TORQUES` of a single joint.
+    """
+    grouped = rows.groupby(PAIR_KEY, sort=False, observed=True)
+    ends = grouped["position"].agg(["min", "max"]).to_numpy(float)
+    return 2 * (ends[:, 1] - ends[:, 0])
+
+
+def pauses_of(layout: PairLayout, distance: Array) -> Array:
+    """Return the time between the end of each pair and the start of the next, shape (pairs - 1,).
+
+    Times of pairs are those of their middles. [s]
+
+    Parameters
+    ----------
+    layout : PairLayout
+        The pairs.
+    distance : ndarray, shape (pairs,)
+        Distance of each. [deg]
+    """
+    moving = distance / layout.speed
+    return np.maximum(np.diff(layout.time) - (moving[:-1] + moving[1:]) / 2, 0.0)
+
+
+def series(layout: PairLayout, pause: Array, temperature: Array) -> tuple[Array, Array]:
     """Return the rest before each pair's measuring series, and the pair's number in it.
 
     A joint whose motor is warmer after a pause than before it has moved without being recorded:
@@ -28,6 +60,8 @@ def series(layout: PairLayout, temperature: Array) -> tuple[Array, Array]:
     ----------
     layout : PairLayout
         The pairs.
+    pause : ndarray, shape (pairs - 1,)
+        Time between two pairs. [s]
     temperature : ndarray, shape (pairs,)
         Motor temperature of each pair; NaN where unknown: every pause is then a rest. [°C]
 
@@ -38,11 +72,10 @@ def series(layout: PairLayout, temperature: Array) -> tuple[Array, Array]:
     """
     rest, order = np.full(len(layout.time), np.inf), np.zeros(len(layout.time))
     for i in range(1, len(layout.time)):
-        pause = layout.time[i] - layout.time[i - 1]
         if layout.run[i] != layout.run[i - 1]:
             continue
-        if pause > _SERIES_GAP:
-            rest[i] = 0.0 if temperature[i] - temperature[i - 1] > _WARMED else pause
+        if pause[i - 1] > _SERIES_GAP:
+            rest[i] = 0.0 if temperature[i] - temperature[i - 1] > _WARMED else pause[i - 1]
         else:
             rest[i], order[i] = rest[i - 1], order[i - 1] + 1
     return rest, order
@@ -56,7 +89,7 @@ def clock_of(layout: PairLayout) -> Array:
     return clock
 
 
-def travel_of(rows: pd.DataFrame, layout: PairLayout, temperature: Array) -> Array:
+def travel_of(layout: PairLayout, distance: Array, pause: Array, temperature: Array) -> Array:
     """Return the distance that a joint has travelled before each pair since its run's start [deg].
 
     The log has the strokes of its pairs. Where the motor warmed during a pause, the joint is
@@ -65,22 +98,20 @@ def travel_of(rows: pd.DataFrame, layout: PairLayout, temperature: Array) -> Arr
 
     Parameters
     ----------
-    rows : DataFrame
-        Rows of :data:`frictioncli.schemas.TORQUES` of a single joint.
     layout : PairLayout
-        Their pairs.
+        The pairs.
+    distance : ndarray, shape (pairs,)
+        Distance of each. [deg]
+    pause : ndarray, shape (pairs - 1,)
+        Time between two. [s]
     temperature : ndarray, shape (pairs,)
         Motor temperature of each pair; NaN where unknown: pauses are then rests. [°C]
     """
-    grouped = rows.groupby(PAIR_KEY, sort=False, observed=True)
-    ends = grouped["position"].agg(["min", "max"]).to_numpy(float)
-    stroke, speed = 2 * (ends[:, 1] - ends[:, 0]), grouped["speed"].first().to_numpy(float)
-    pause = np.diff(layout.time) - (stroke / speed)[:-1]
     rise = np.diff(temperature)
-    warmed = (pause > _SERIES_GAP) & (rise > _WARMED) & (np.diff(layout.run) == 0)
+    warmed = (pause > _IDLE) & (rise > _WARMED) & (np.diff(layout.run) == 0)
     moved = moved_throughout(rise, pause, warmed)
-    distance = stroke[:-1] + np.where(moved, pause * speed.max(), 0.0)
-    travel = np.append(0.0, np.cumsum(distance))
+    unrecorded = np.where(moved, pause * layout.speed.max(), 0.0)
+    travel = np.append(0.0, np.cumsum(distance[:-1] + unrecorded))
     return travel - travel[np.searchsorted(layout.run, layout.run)]
 
 

@@ -179,9 +179,12 @@ def detectable_text(document: DiagnosisDocument) -> str:
         return f"These data cannot show any of the effects.{hidden}"
     unit = document.torque_unit
     (least, easiest), (most, hardest) = known[0], known[-1]
+    sizes = f"{number_text(least, 2)} {unit} RMS ({in_words(easiest)})"
+    if len(known) == 1:
+        return f"Smallest effect that would be named in 80 % of cases: {sizes}.{hidden}"
     return (
-        f"Smallest effects that would be named in 80 % of cases: {number_text(least, 2)} {unit} RMS"
-        f" ({in_words(easiest)}) to {number_text(most, 2)} {unit} ({in_words(hardest)}).{hidden}"
+        f"Smallest effects that would be named in 80 % of cases: {sizes}"
+        f" to {number_text(most, 2)} {unit} ({in_words(hardest)}).{hidden}"
     )
 
 

@@ -54,7 +54,7 @@ RUN_IN = EffectDefinition(
     magnitude="torque at the start [N·m]",
     parameters=(
         Range("turns", log_uniform(100.0, 900.0), "turns", "travel constant s0"),
-        Range("exponent", uniform(0.7, 1.2), "-", "c; below 1 the fall begins fast"),
+        Range("exponent", uniform(0.4, 0.7), "-", "c; the fall begins fast and ends slowly"),
     ),
     law=_run_in,
     source="Running-in of lubricated contacts with the angle turned, unrecorded moves included",
