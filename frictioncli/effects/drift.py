@@ -34,11 +34,11 @@ EFFECT = Effect(
             name="time_constant",
             symbol="th",
             unit="h",
-            lower=2.0,
+            lower=0.5,
             upper=200.0,
             description="Time after which 37 % of the first rate remain; long where it is steady",
             search="logarithmic",
-            points=5,
+            points=6,
         ),
     ),
     coefficients=(

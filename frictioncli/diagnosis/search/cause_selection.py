@@ -90,12 +90,14 @@ def judged_on_new_run(causes: Sequence[Cause], step: Step, new: Problem) -> tupl
     return tuple(found)
 
 
-def refuted_by_new_run(causes: Sequence[Cause], step: Step, new: Problem) -> tuple[Cause, ...]:
+def refuted_by_new_run(
+    causes: Sequence[Cause], step: Step, new: Problem, measured: tuple[Problem, Problem]
+) -> tuple[Cause, ...]:
     """Return causes that make the prediction of a new run clearly worse, no longer named.
 
     A slow cause that goes on as it did may be far off a day later, though something of its sign is
-    there. Changes have their history on the new run; a lag is judged with its temperature; effects
-    of the measurement belong to the log.
+    there. Changes have their history on the new run; effects of the measurement belong to the log.
+    Without a lag of the gear friction is that of the measured temperature.
 
     Parameters
     ----------
@@ -105,21 +107,25 @@ def refuted_by_new_run(causes: Sequence[Cause], step: Step, new: Problem) -> tup
         The last step of the search.
     new : Problem
         Rows of a run that was held out.
+    measured : (Problem, Problem)
+        The rows seen and those of that run, linear about the measured temperature.
     """
     weighted_fit = step.predicting_fit()
     among = [one for one in causes if one.standing == "named" and one.holds_on_new_run is not False]
 
-    def missed(fits: Sequence[EffectFit]) -> float:
-        fitted = refit(step.problem, weighted_fit, fits)
-        return float(np.sqrt(np.mean(new.squared(*misfits(new, fitted)))))
+    about = step.problem, new
+
+    def missed(fits: Sequence[EffectFit], rows: tuple[Problem, Problem]) -> float:
+        fitted = refit(rows[0], weighted_fit, fits)
+        return float(np.sqrt(np.mean(rows[1].squared(*misfits(rows[1], fitted)))))
 
     refuted = []
-    with_all = missed([one.fit for one in among])
+    with_all = missed([one.fit for one in among], about)
     for cause in among:
-        effect = cause.fit.effect
-        if effect.measurement or _is_change(cause) or effect.name == THERMAL_LAG.name:
+        if cause.fit.effect.measurement or _is_change(cause):
             continue
-        without = missed([one.fit for one in among if one is not cause])
+        others = [one.fit for one in among if one is not cause]
+        without = missed(others, measured if cause.fit.effect is THERMAL_LAG else about)
         if with_all > _WORSE * without:
             times = f"{with_all / without:.2g} times as large"
             reason = f"with it, the misfit on the held-out run is {times}"
