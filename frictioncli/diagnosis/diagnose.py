@@ -30,6 +30,7 @@ from frictioncli.diagnosis.search.measurement import beside_the_rest, corrected_
 from frictioncli.diagnosis.search.named_causes import Judging, named_causes
 from frictioncli.diagnosis.search.new_run_changes import changes_on_new_run, with_effect
 from frictioncli.diagnosis.search.new_run_misfit import NewRunMisfit
+from frictioncli.diagnosis.search.new_run_rivals import without_refuted_rivals
 from frictioncli.diagnosis.search.preparation import Preparation
 from frictioncli.diagnosis.search.search_result import SearchResult, given_up_causes
 from frictioncli.diagnosis.search.timing_causes import late_torque
@@ -200,6 +201,8 @@ def diagnose_joint(
         if not worse:
             break
         refuted += worse
+    if new is not None:
+        judged = replace(judged, causes=without_refuted_rivals(judged.causes, found, new))
     named = named_causes(judging, judged)
     causes, step = named.causes, named.step
     corrected = corrected_without_name(named.others, causes, problem)

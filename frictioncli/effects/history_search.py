@@ -19,7 +19,7 @@ from frictioncli.effects.history import (
 )
 from frictioncli.effects.pair_series import measured_share, pair_heads, series_starts
 
-_MOST = 190
+_MOST = 250
 """Greatest number of histories tried; the cost of a search is proportional to it."""
 
 _BOUNDARIES = 12
@@ -56,7 +56,7 @@ def histories(table: EffectTable) -> list[Shape]:
     Returns
     -------
     list of dict
-        At most 190 histories, all of different pairs.
+        At most 250 histories, all of different pairs.
     """
     spans, moments = run_spans(table), series_starts(table)
     begins = np.array([begin for begin, _ in spans[1:]])

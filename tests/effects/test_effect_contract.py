@@ -114,7 +114,7 @@ def test_shapes_to_try_first_are_a_grid_or_histories_between_series(effect, tabl
         # 24 series of 4 pairs each: lasting changes between the first and the last
         moments = [shape["moment"] for shape in shapes if shape["end"] == 1.0]
         assert moments == pytest.approx(np.arange(1, 24) / 24)
-        assert len(shapes) <= 190
+        assert len(shapes) <= 250
 
 
 @every_effect

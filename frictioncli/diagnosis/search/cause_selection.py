@@ -28,7 +28,7 @@ any cause whose coefficient may be zero in the extended model."""
 _NOTHING = 0.2
 """Greatest amplitude on the new run that counts as nothing, beside its interval."""
 
-_WORSE = 1.05
+WORSE = 1.05
 """RMS misfit of a new run with a cause over that without it from which on the run refutes it."""
 
 _ROUNDS = 2
@@ -114,23 +114,38 @@ def refuted_by_new_run(
     among = [one for one in causes if one.standing == "named" and one.holds_on_new_run is not False]
 
     about = step.problem, new
-
-    def missed(fits: Sequence[EffectFit], rows: tuple[Problem, Problem]) -> float:
-        fitted = refit(rows[0], weighted_fit, fits)
-        return float(np.sqrt(np.mean(rows[1].squared(*misfits(rows[1], fitted)))))
-
     refuted = []
-    with_all = missed([one.fit for one in among], about)
+    with_all = missed_of_new_run([one.fit for one in among], about, weighted_fit)
     for cause in among:
         if cause.fit.effect.measurement or _is_change(cause):
             continue
         others = [one.fit for one in among if one is not cause]
-        without = missed(others, measured if cause.fit.effect is THERMAL_LAG else about)
-        if with_all > _WORSE * without:
+        rows = measured if cause.fit.effect is THERMAL_LAG else about
+        without = missed_of_new_run(others, rows, weighted_fit)
+        if with_all > WORSE * without:
             times = f"{with_all / without:.2g} times as large"
             reason = f"with it, the misfit on the held-out run is {times}"
             refuted.append(replace(cause, standing="visible", reason=reason))
     return tuple(refuted)
+
+
+def missed_of_new_run(
+    fits: Sequence[EffectFit], rows: tuple[Problem, Problem], weighted_fit: WeightedFit
+) -> float:
+    """Return the RMS misfit of a new run, the base fitted beside some effects to the runs seen.
+
+    Parameters
+    ----------
+    fits : sequence of EffectFit
+        The effects.
+    rows : (Problem, Problem)
+        The rows seen, and those of the new run. [N·m]
+    weighted_fit : WeightedFit
+        Weights of the rows seen.
+    """
+    problem, new = rows
+    fitted = refit(problem, weighted_fit, fits)
+    return float(np.sqrt(np.mean(new.squared(*misfits(new, fitted)))))
 
 
 def uncertain_causes(
