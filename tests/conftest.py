@@ -16,10 +16,11 @@ settings.load_profile("fixed")
 
 
 LONGEST = (
-    *("test_synthetic_causes", "test_cluster", "test_named_causes", "test_changes", "test_fleet"),
-    *("test_processes", "test_challenge", "test_empirical", "test_gravity", "test_clean_joints"),
-    *("test_plan", "test_docs", "test_robustness_disk", "test_robustness_forms", "test_step"),
-    *("test_page_in_chromium", "test_commands", "test_robustness_bombs", "test_robustness_kill"),
+    *("test_synthetic_causes", "test_cluster", "test_diagnose", "test_changes", "test_fleet"),
+    *("test_processes", "test_mdf", "test_challenge", "test_empirical", "test_gravity"),
+    *("test_clean_joints", "test_plan", "test_docs", "test_robustness_disk", "test_step"),
+    *("test_robustness_forms", "test_page_in_chromium", "test_commands", "test_robustness_bombs"),
+    *("test_robustness_kill",),
 )
 """Modules that take longest, the longest first."""
 

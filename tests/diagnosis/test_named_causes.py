@@ -17,7 +17,7 @@ HIDDEN = {
 """Effects hidden beside all nuisances; test_synthetic_causes.py has joints without nuisances."""
 
 QUICK = ("nothing",)
-LONG = ("Stribeck friction", "drift")
+LONG = ("Stribeck friction", "a changed torque constant", "drift")
 
 
 def diagnosed_under_nuisances(effects, seed):
