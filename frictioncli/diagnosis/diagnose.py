@@ -195,9 +195,9 @@ def diagnose_joint(
             alpha=settings.alpha,
         )
         judged = judging.judged(found)
-        if new is None or base_new is None:
+        if new is None:
             break
-        worse = refuted_by_new_run(judged.named, found.step, new, (base, base_new))
+        worse = refuted_by_new_run(judged.named, found.step, new)
         if not worse:
             break
         refuted += worse

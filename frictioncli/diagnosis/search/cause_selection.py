@@ -90,14 +90,12 @@ def judged_on_new_run(causes: Sequence[Cause], step: Step, new: Problem) -> tupl
     return tuple(found)
 
 
-def refuted_by_new_run(
-    causes: Sequence[Cause], step: Step, new: Problem, measured: tuple[Problem, Problem]
-) -> tuple[Cause, ...]:
+def refuted_by_new_run(causes: Sequence[Cause], step: Step, new: Problem) -> tuple[Cause, ...]:
     """Return causes that make the prediction of a new run clearly worse, no longer named.
 
     A slow cause that goes on as it did may be far off a day later, though something of its sign is
-    there. Changes have their history on the new run; effects of the measurement belong to the log.
-    Without a lag of the gear friction is that of the measured temperature.
+    there. Changes have their history on the new run; a lag is judged with its temperature; effects
+    of the measurement belong to the log.
 
     Parameters
     ----------
@@ -107,8 +105,6 @@ def refuted_by_new_run(
         The last step of the search.
     new : Problem
         Rows of a run that was held out.
-    measured : (Problem, Problem)
-        The rows seen and those of that run, linear about the measured temperature.
     """
     weighted_fit = step.predicting_fit()
     among = [one for one in causes if one.standing == "named" and one.holds_on_new_run is not False]
@@ -117,11 +113,11 @@ def refuted_by_new_run(
     refuted = []
     with_all = missed_of_new_run([one.fit for one in among], about, weighted_fit)
     for cause in among:
-        if cause.fit.effect.measurement or _is_change(cause):
+        effect = cause.fit.effect
+        if effect.measurement or _is_change(cause) or effect is THERMAL_LAG:
             continue
         others = [one.fit for one in among if one is not cause]
-        rows = measured if cause.fit.effect is THERMAL_LAG else about
-        without = missed_of_new_run(others, rows, weighted_fit)
+        without = missed_of_new_run(others, about, weighted_fit)
         if with_all > WORSE * without:
             times = f"{with_all / without:.2g} times as large"
             reason = f"with it, the misfit on the held-out run is {times}"
