@@ -19,6 +19,7 @@ from frictioncli.diagnosis.search.cause import Cause
 from frictioncli.diagnosis.search.new_run import NewRunTest, new_run_test
 from frictioncli.diagnosis.search.standing import without_cancelling
 from frictioncli.diagnosis.search.step import Step
+from frictioncli.effects.base import Effect
 from frictioncli.effects.thermal_lag import EFFECT as THERMAL_LAG
 
 BEYOND_DOUBT = 1e-6
@@ -109,15 +110,13 @@ def refuted_by_new_run(causes: Sequence[Cause], step: Step, new: Problem) -> tup
     weighted_fit = step.predicting_fit()
     among = [one for one in causes if one.standing == "named" and one.holds_on_new_run is not False]
 
-    about = step.problem, new
     refuted = []
-    with_all = missed_of_new_run([one.fit for one in among], about, weighted_fit)
+    with_all = missed_of_new_run([one.fit for one in among], step.problem, new, weighted_fit)
     for cause in among:
-        effect = cause.fit.effect
-        if effect.measurement or _is_change(cause) or effect is THERMAL_LAG:
+        if not predicts_new_run(cause.fit.effect):
             continue
         others = [one.fit for one in among if one is not cause]
-        without = missed_of_new_run(others, about, weighted_fit)
+        without = missed_of_new_run(others, step.problem, new, weighted_fit)
         if with_all > WORSE * without:
             times = f"{with_all / without:.2g} times as large"
             reason = f"with it, the misfit on the held-out run is {times}"
@@ -125,8 +124,22 @@ def refuted_by_new_run(causes: Sequence[Cause], step: Step, new: Problem) -> tup
     return tuple(refuted)
 
 
+def predicts_new_run(effect: Effect) -> bool:
+    """Return whether an effect says by itself what it adds on a new run.
+
+    Changes have their history there, a lag of the gear has its own temperature, and effects of the
+    measurement belong to the log.
+
+    Parameters
+    ----------
+    effect : Effect
+        The effect.
+    """
+    return not effect.measurement and effect.moments is None and effect is not THERMAL_LAG
+
+
 def missed_of_new_run(
-    fits: Sequence[EffectFit], rows: tuple[Problem, Problem], weighted_fit: WeightedFit
+    fits: Sequence[EffectFit], problem: Problem, new: Problem, weighted_fit: WeightedFit
 ) -> float:
     """Return the RMS misfit of a new run, the base fitted beside some effects to the runs seen.
 
@@ -134,12 +147,16 @@ def missed_of_new_run(
     ----------
     fits : sequence of EffectFit
         The effects.
-    rows : (Problem, Problem)
-        The rows seen, and those of the new run. [N·m]
+    problem, new : Problem
+        The rows seen, and those of the new run.
     weighted_fit : WeightedFit
         Weights of the rows seen.
+
+    Returns
+    -------
+    float
+        The misfit. [N·m]
     """
-    problem, new = rows
     fitted = refit(problem, weighted_fit, fits)
     return float(np.sqrt(np.mean(new.squared(*misfits(new, fitted)))))
 

@@ -10,12 +10,15 @@ from dataclasses import replace
 from frictioncli.diagnosis.data.problem import Problem
 from frictioncli.diagnosis.fit.hypotheses import EffectFit
 from frictioncli.diagnosis.search.cause import Cause
-from frictioncli.diagnosis.search.cause_selection import WORSE, missed_of_new_run
+from frictioncli.diagnosis.search.cause_selection import (
+    WORSE,
+    missed_of_new_run,
+    predicts_new_run,
+)
 from frictioncli.diagnosis.search.search_result import SearchResult
 from frictioncli.diagnosis.search.step import Step
 from frictioncli.effects import BY_NAME
 from frictioncli.effects.base import Effect
-from frictioncli.effects.thermal_lag import EFFECT as THERMAL_LAG
 
 
 def without_refuted_rivals(
@@ -23,8 +26,7 @@ def without_refuted_rivals(
 ) -> tuple[Cause, ...]:
     """Return causes whose sets lack the effects that predict a new run clearly worse.
 
-    Changes have their history on the new run, and a lag of the gear has its own temperature: they
-    stay, as do effects of the measurement.
+    Effects that do not say by themselves what they add there stay; see :func:`predicts_new_run`.
 
     Parameters
     ----------
@@ -42,17 +44,21 @@ def _judged(cause: Cause, causes: Sequence[Cause], found: SearchResult, new: Pro
     """Return a cause without the rivals that the new run refutes."""
     own = cause.fit.effect
     rivals = [BY_NAME[name] for name in cause.effects if name != own.name]
-    rivals = [one for one in rivals if _predicts(one)]
-    if cause.standing != "named" or not cause.holds_on_new_run or not _predicts(own) or not rivals:
+    rivals = [one for one in rivals if predicts_new_run(one)]
+    holds = cause.standing == "named" and cause.holds_on_new_run
+    if not holds or not predicts_new_run(own) or not rivals:
         return cause
     others = [one.fit for one in causes if one.standing == "named" and one is not cause]
-    step = found.step
-    rows, weighted_fit = (step.problem, new), step.predicting_fit()
-    with_own = missed_of_new_run([*others, cause.fit], rows, weighted_fit)
+    weighted_fit = found.step.predicting_fit()
+
+    def missed(fit: EffectFit) -> float:
+        return missed_of_new_run([*others, fit], found.step.problem, new, weighted_fit)
+
+    most = WORSE * missed(cause.fit)
     refuted = {
         one.name
         for one, fit in zip(rivals, _fitted(rivals, others, found), strict=True)
-        if missed_of_new_run([*others, fit], rows, weighted_fit) > WORSE * with_own
+        if missed(fit) > most
     }
     if not refuted:
         return cause
@@ -63,11 +69,6 @@ def _judged(cause: Cause, causes: Sequence[Cause], found: SearchResult, new: Pro
         effects=tuple(name for name in cause.effects if name not in refuted),
         probabilities={name: share / whole for name, share in kept.items()},
     )
-
-
-def _predicts(effect: Effect) -> bool:
-    """Return whether an effect says by itself what it adds on a new run."""
-    return not effect.measurement and effect.moments is None and effect is not THERMAL_LAG
 
 
 def _fitted(
