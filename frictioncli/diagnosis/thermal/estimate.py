@@ -172,8 +172,8 @@ def estimate_temperature(
     -------
     ThermalEstimate
         The simplest rival that is as good as the best one: within 10 of its information criterion,
-        a gear with all the friction within 20, a mix within 4, a measured temperature also where it
-        leaves hardly more.
+        a gear with all the friction within 20 if it is within 10 of the best of those, a mix within
+        4, a measured temperature also where it leaves hardly more.
     """
     residual = residual_of_base(problem, problem.friction_misfit - known, "friction", beside)
     point = max(problem.layout.point_deviation(residual), 1e-9)
@@ -184,19 +184,23 @@ def estimate_temperature(
     found = [_rival(problem, data, structure) for structure in (MEASURED, *others)]
     ranked = sorted(found, key=lambda one: one.criterion)
     alike = _ALIKE * float(np.mean(np.abs(problem.friction)))
-    good = [one for one in ranked if _is_as_good(one, ranked[0], alike)]
+    good = [one for one in ranked if _is_as_good(one, ranked, alike)]
     chosen = min(good, key=lambda one: one.structure.order)
     ranked.remove(chosen)
     return _estimate(problem, data, (chosen, *ranked))
 
 
-def _is_as_good(one: FittedNetwork, best: FittedNetwork, alike: float) -> bool:
+def _is_as_good(one: FittedNetwork, ranked: Sequence[FittedNetwork], alike: float) -> bool:
     """Return whether a rival explains friction as well as the best, up to a torque [N·m]."""
+    best = ranked[0]
     worse = one.criterion - best.criterion
     if one.structure.name == "mix":
         return worse < _THAN_MIX
-    if worse < (_THAN_WHOLE if one.structure.whole else _CONVINCING):
+    if worse < _CONVINCING:
         return True
+    if one.structure.whole:
+        best_whole = next(other for other in ranked if other.structure.whole)
+        return worse < _THAN_WHOLE and one.criterion - best_whole.criterion < _CONVINCING
     more = np.sqrt(max(one.left**2 - best.left**2, 0.0))
     return one.structure.name in ("measured", "housing") and bool(more < alike)
 

@@ -31,6 +31,9 @@ _FAR_OFF = 0.02
 """Least RMS misfit of pair means, relative to the mean friction, of a lag that would look like
 other effects as well."""
 
+_ROUNDS = 2
+"""Estimates of the hidden temperature beside the causes, and searches about it, in turn."""
+
 _MOST = 0.7
 """A hidden temperature that leaves less than this share of the RMS misfit explains most of it."""
 
@@ -125,17 +128,24 @@ def _searched(
         found = search(problem, effects)
     if not _has_lag(found) or _left_of_lag(found) <= margin:
         return found, None
-    refined = refine_thermal(problem, new, [cause.fit for cause in found.causes])
-    if refined is not None:
-        again = search(refined.problem, effects)
-        if _has_lag(again):
-            return _as_refined(again, refined), refined
-        if first is not None:
-            # estimated beside a cause that looks like it, the temperature may be far off
-            return _as_refined(found, first), first
+    for _ in range(_ROUNDS):
+        refined = refine_thermal(problem, new, [cause.fit for cause in found.causes])
+        again = None if refined is None else search(refined.problem, effects)
+        if refined is None or again is None or not _has_lag(again):
+            break
+        known, found, first = found, _as_refined(again, refined), refined
+        if _names(known) == _names(found):
+            break
+    if first is not None:
+        # estimated beside a cause that looks like it, the temperature may be far off
+        return _as_refined(found, first), first
     without = search(problem, [one for one in effects if one.name != LAG])
     dropped = without.dropped | {LAG: "the measured temperature explains friction as well"}
     return replace(without, dropped=dropped), None
+
+
+def _names(found: SearchResult) -> set[str]:
+    return {cause.fit.effect.name for cause in found.causes}
 
 
 def _is_far_off(problem: Problem) -> bool:
