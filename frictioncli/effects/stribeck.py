@@ -75,7 +75,7 @@ EFFECT = Effect(
             symbol="ts",
             unit="torque",
             lower=0.0,
-            upper=40.0,
+            upper=120.0,
             description="Boundary friction at standstill, above the Coulomb friction",
         ),
     ),

@@ -95,8 +95,8 @@ def refuted_by_new_run(causes: Sequence[Cause], step: Step, new: Problem) -> tup
     """Return causes that make the prediction of a new run clearly worse, no longer named.
 
     A slow cause that goes on as it did may be far off a day later, though something of its sign is
-    there. Changes have their history on the new run; a lag is judged with its temperature; effects
-    of the measurement belong to the log.
+    there. The worst goes first, and the others are judged without it. Changes have their history on
+    the new run; a lag is judged with its temperature; effects of the measurement belong to the log.
 
     Parameters
     ----------
@@ -110,18 +110,23 @@ def refuted_by_new_run(causes: Sequence[Cause], step: Step, new: Problem) -> tup
     weighted_fit = step.predicting_fit()
     among = [one for one in causes if one.standing == "named" and one.holds_on_new_run is not False]
 
-    refuted = []
-    with_all = missed_of_new_run([one.fit for one in among], step.problem, new, weighted_fit)
-    for cause in among:
-        if not predicts_new_run(cause.fit.effect):
-            continue
-        others = [one.fit for one in among if one is not cause]
-        without = missed_of_new_run(others, step.problem, new, weighted_fit)
-        if with_all > WORSE * without:
-            times = f"{with_all / without:.2g} times as large"
-            reason = f"with it, the misfit on the held-out run is {times}"
-            refuted.append(replace(cause, standing="visible", reason=reason))
-    return tuple(refuted)
+    def missed(named: Sequence[Cause]) -> float:
+        return missed_of_new_run([one.fit for one in named], step.problem, new, weighted_fit)
+
+    refuted: list[Cause] = []
+    while True:
+        with_all, without = missed(among), {}
+        for cause in among:
+            if predicts_new_run(cause.fit.effect):
+                without[cause.fit.effect.name] = missed([one for one in among if one is not cause])
+        worst = min(without, key=lambda name: without[name], default=None)
+        if worst is None or with_all <= WORSE * without[worst]:
+            return tuple(refuted)
+        times = f"{with_all / without[worst]:.2g} times as large"
+        reason = f"with it, the misfit on the held-out run is {times}"
+        (gone,) = (one for one in among if one.fit.effect.name == worst)
+        refuted.append(replace(gone, standing="visible", reason=reason))
+        among.remove(gone)
 
 
 def predicts_new_run(effect: Effect) -> bool:
