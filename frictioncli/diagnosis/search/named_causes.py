@@ -12,7 +12,11 @@ from frictioncli.diagnosis.data.problem import Problem
 from frictioncli.diagnosis.ramps.timing import TorqueTiming
 from frictioncli.diagnosis.ramps.timing_rivals import TimingRivals
 from frictioncli.diagnosis.search.cause import Cause
-from frictioncli.diagnosis.search.cause_selection import judged_together, uncertain_causes
+from frictioncli.diagnosis.search.cause_selection import (
+    BEYOND_DOUBT,
+    judged_together,
+    uncertain_causes,
+)
 from frictioncli.diagnosis.search.lack_of_fit import Structure
 from frictioncli.diagnosis.search.measurement import measurement_causes
 from frictioncli.diagnosis.search.preparation import Preparation
@@ -168,6 +172,7 @@ def named_causes(judging: Judging, first: JudgedCauses) -> NamedCauses:
         if THERMAL_LAG.name not in _names(judged.named):
             judging = judging.without_lag()
         judged = judging.without_uncertain(judging.judged(_beside_named(judging, judged)))
+        judged = _without_imitations(judged, first, judging.alpha)
     others = [one for one in judged.causes if one.standing != "named"]
     return NamedCauses(
         causes=judged.named,
@@ -201,6 +206,37 @@ def _beside_named(judging: Judging, judged: JudgedCauses) -> SearchResult:
         measurement=measurement_causes(step, effects),
         step=step,
     )
+
+
+def _without_imitations(judged: JudgedCauses, first: JudgedCauses, alpha: float) -> JudgedCauses:
+    """Return causes of which no effect of the measurement stands for one that has lost its name.
+
+    What is there beyond doubt and too small for a name is no part of the model; an effect of the
+    measurement that was noise beside it then looks like it, and stays what it was.
+
+    Parameters
+    ----------
+    judged : JudgedCauses
+        What stands beside the named causes alone.
+    first : JudgedCauses
+        Everything that the search found, each beside all others.
+    alpha : float
+        Significance level.
+    """
+    named = _names(judged.named)
+    lost = any(
+        one.standing == "visible"
+        and one.test.p_value < BEYOND_DOUBT
+        and one.fit.effect.name not in named
+        and not one.fit.effect.measurement
+        for one in first.causes
+    )
+    noise = [
+        one
+        for one in first.causes
+        if lost and one.fit.effect.measurement and one.test.p_value >= alpha
+    ]
+    return replace(judged, causes=_with(judged.causes, noise))
 
 
 def _unnamed(

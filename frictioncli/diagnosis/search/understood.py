@@ -6,10 +6,15 @@ from frictioncli.diagnosis.search.cause import Cause
 from frictioncli.diagnosis.search.lack_of_fit import Structure, unnamed_structure
 from frictioncli.diagnosis.search.step import Step
 from frictioncli.effects.base import Effect
+from frictioncli.effects.step_change import EFFECT as STEP_CHANGE
 
 MOST_LEFT = 1 / 3
 """Structure without a name that is greater than this share of a cause along the same axis says that
 the cause is not understood."""
+
+_MOST_BESIDE = 1.0
+"""Structure along any axis that is greater than this share of a change of friction says the same:
+what comes and goes at some moments may be a part of anything that varies slowly."""
 
 _AXES = {
     "clock": "time",
@@ -28,8 +33,9 @@ def understood(
 ) -> tuple[tuple[Cause, ...], Structure | None]:
     """Return the causes that are named, and the structure without a name that is left.
 
-    A cause loses its name to structure along its own axis that is nearly as large: both may be one
-    thing that no effect explains. The structure is then what is left without it.
+    A cause loses its name to structure along its own axis that is nearly as large, a change of
+    friction to any that is larger: both may be one thing that no effect explains. The structure is
+    then what is left without it.
 
     Parameters
     ----------
@@ -55,7 +61,7 @@ def understood(
 
 
 def is_part(effect: Effect, visible: float, unnamed: Structure) -> bool:
-    """Return whether a cause may be a part of structure without a name along its axis.
+    """Return whether a cause may be a part of structure without a name.
 
     Parameters
     ----------
@@ -66,10 +72,9 @@ def is_part(effect: Effect, visible: float, unnamed: Structure) -> bool:
     unnamed : Structure
         The structure.
     """
+    if effect.measurement or effect.channel != unnamed.channel:
+        return False
     along = {_AXES.get(one, one) for one in effect.needs}
-    return (
-        not effect.measurement
-        and effect.channel == unnamed.channel
-        and not along.isdisjoint(_AXES.get(one, one) for one in unnamed.axes)
-        and unnamed.size > MOST_LEFT * visible
-    )
+    if along.isdisjoint(_AXES.get(one, one) for one in unnamed.axes):
+        return effect is STEP_CHANGE and unnamed.size > _MOST_BESIDE * visible
+    return unnamed.size > MOST_LEFT * visible
