@@ -13,7 +13,8 @@ from frictioncli import schemas, tables
 from frictioncli.diagnosis.data.build_problem import build_problems
 from frictioncli.diagnosis.data.gravity import GravityForm
 from frictioncli.diagnosis.ramps.evidence import RampLog, ramp_logs
-from frictioncli.diagnosis.ramps.timing import responded, torque_timing
+from frictioncli.diagnosis.ramps.logged_response import responded
+from frictioncli.diagnosis.ramps.timing import torque_timing
 from frictioncli.logs.ingest import IngestSettings, ingest
 from frictioncli.model.friction import FrictionParameters, friction_torque
 from frictioncli.pairs.pair_tables import start_rows

@@ -34,6 +34,7 @@ from scipy.optimize import least_squares
 from frictioncli.arrays import Array, Flags
 from frictioncli.diagnosis.data.problem import Problem
 from frictioncli.diagnosis.ramps.evidence import RampEstimate, RampLog
+from frictioncli.diagnosis.ramps.logged_response import responded
 from frictioncli.diagnosis.ramps.robust_fit import Labels
 from frictioncli.diagnosis.ramps.start_windows import StartWindows
 from frictioncli.diagnosis.ramps.timing_rivals import (
@@ -64,8 +65,9 @@ _OF_UNKNOWN_LOAD = 1 / 3
 """Share of the squared misfit of the starts that is left where a load is not known, as of a payload
 that nobody told of. It takes a line over the angle for each start, which costs precision."""
 
-_WIDEST = 0.2
-"""Width of an interval of the shift that says nothing: no drive is as late. [s]"""
+_WIDEST = 0.05
+"""Width of an interval of the shift that says nothing: hardly a drive is as late, and where starts
+tell no more, something else happens at them. [s]"""
 
 _CONFIDENT = 0.975
 _NO_COLUMN = 1e-9
@@ -87,6 +89,8 @@ class TorqueTiming:
         RMS misfit of the starts. [N·m]
     starts : int
         Number of starts.
+    period : float
+        Sampling period. [s]
     """
 
     shift: RampEstimate
@@ -94,6 +98,7 @@ class TorqueTiming:
     rivals: TimingRivals
     rms: float
     starts: int
+    period: float
 
     @property
     def best(self) -> str:
@@ -109,6 +114,18 @@ class TorqueTiming:
     def time_constant(self) -> RampEstimate:
         """Time constant of the filter likewise [s]."""
         return self.rivals.estimates()[1]
+
+    def contradicts(self, shift: float, error: float) -> bool:
+        """Return whether another estimate of the shift is of something else.
+
+        Parameters
+        ----------
+        shift, error : float
+            Shift by the segments at constant speed, and its standard error. [s]
+        """
+        own = (self.shift.high - self.shift.low) / 2
+        reach = math.hypot(own, normal_quantile(_CONFIDENT) * error)
+        return abs(shift - self.shift.value) > self.period + reach
 
     @property
     def log_odds(self) -> float:
@@ -158,6 +175,7 @@ def timing_of(windows: StartWindows) -> TorqueTiming:
         rivals=rivals,
         rms=float(np.sqrt(np.sum(np.square(misfit)) / max(used.sum(), 1))),
         starts=len(windows.torque),
+        period=windows.period,
     )
 
 
@@ -199,57 +217,6 @@ def _fitted(windows: StartWindows, used: Flags, first: Array) -> Array:
         max_nfev=30,
     )
     return np.asarray(found.x)
-
-
-def responded(values: Array, period: float, *, delay: float, time_constant: float) -> Array:
-    """Return signals behind a filter of first order and a delay.
-
-    Parameters
-    ----------
-    values : ndarray, shape (starts, samples)
-        Signals, constant before their first sample and linear between samples.
-    period : float
-        Sampling period. [s]
-    delay, time_constant : float
-        Delay and time constant of the filter; no filter at 0. [s]
-
-    Examples
-    --------
-    >>> step = np.array([[0.0, 0.0, 1.0, 1.0, 1.0, 1.0]])
-    >>> responded(step, 0.01, delay=0.01, time_constant=0.0).round(3) + 0.0
-    array([[0., 0., 0., 1., 1., 1.]])
-    """
-    samples = values.shape[1]
-    response = np.eye(samples)
-    if time_constant > 1e-3 * period:
-        response = _filter_response(samples, period / time_constant)
-    if delay != 0.0:
-        from scipy.interpolate import CubicSpline  # slow to import, and only needed with ramps
-
-        time = period * np.arange(samples)
-        at = np.clip(time - delay, 0.0, time[-1])
-        response = CubicSpline(time, response)(at)
-    return np.asarray(values @ response.T)
-
-
-def _filter_response(samples: int, ratio: float) -> Array:
-    """Return the response of a filter of first order to each sample, shape (samples, samples).
-
-    Parameters
-    ----------
-    samples : int
-        Number of samples.
-    ratio : float
-        Sampling period over the time constant. [-]
-    """
-    memory = math.exp(-ratio)
-    past, now = (1 - memory) / ratio - memory, 1 - (1 - memory) / ratio
-    response = np.eye(samples)  # at first in balance with the first sample
-    for number in range(1, samples):
-        response[number] *= now
-        response[number] += memory * response[number - 1]
-        response[number, number - 1] += past
-    return response
 
 
 def _residual(windows: StartWindows, used: Flags, point: Array) -> Array:

@@ -28,12 +28,15 @@ from frictioncli.diagnosis.search.measurement import (
     measurement_causes,
 )
 from frictioncli.diagnosis.search.step import Step
+from frictioncli.wording import quantity_text
 
 DELAY, FILTER = "torque_delay", "torque_filter"
 
 _TOLERANCE = (0.001, 2e-4)
 _SHARE = (0.05, 0.25)
 """Errors of *D* and *S* by other structure in the pairs: at least [s], [s²], and as a share."""
+
+_CONTRADICTED = "the starts of moves show {shown}"
 
 
 def late_torque(
@@ -55,16 +58,18 @@ def late_torque(
     Returns
     -------
     LateTorque or None
-        None where it is not clearly late.
+        None where it is not clearly late, or where both contradict each other.
     """
-    if starts is not None:
-        if starts.shift.low <= 0:
-            return None
-        return LateTorque(delay=starts.shift.value, variance=max(starts.smear.value, 0.0))
+    if starts is not None and starts.shift.low <= 0:
+        return None
     beside = beside_base_of(problem)
     causes = measurement_causes(Step.of(beside.precomputed, []), beside.effects)
     by_name = {cause.fit.effect.name: cause for cause in causes}
     late, smeared = by_name.get(DELAY), by_name.get(FILTER)
+    if starts is not None:
+        if late is not None and starts.contradicts(*_shift_of(late)):
+            return None
+        return LateTorque(delay=starts.shift.value, variance=max(starts.smear.value, 0.0))
     if late is None or late.test.p_value >= CLEAR or late.fit.coefficients[0] <= 0:
         return None
     delay = float(late.fit.coefficients[0])
@@ -78,7 +83,8 @@ def judged_by_timing(
 ) -> tuple[tuple[Cause, ...], TimingRivals | None]:
     """Return causes in which late torque has the name of its reason, and its rivals.
 
-    Without starts of moves the delay keeps its name unless the pairs speak clearly for a filter.
+    It has no name where the starts of moves contradict it. Without starts of moves the delay keeps
+    its name unless the pairs speak clearly for a filter.
 
     Parameters
     ----------
@@ -94,6 +100,11 @@ def judged_by_timing(
     """
     by_name = {cause.fit.effect.name: cause for cause in causes}
     late, smeared = by_name.get(DELAY), by_name.get(FILTER)
+    if late is not None and starts is not None and starts.contradicts(*_shift_of(late)):
+        interval = (starts.shift.low, starts.shift.high)
+        reason = _CONTRADICTED.format(shown=quantity_text(starts.shift.value, interval, "s"))
+        unnamed = replace(late, standing="undetermined", reason=reason)
+        return tuple(unnamed if one is late else one for one in causes), None
     known = [] if late is None or smeared is None else [_of_pairs(late, smeared)]
     known += [] if starts is None else [starts.rivals]
     if late is None or not known:
@@ -113,6 +124,11 @@ def judged_by_timing(
     return tuple(
         renamed if cause is late else cause for cause in causes if not (twice and cause is smeared)
     ), rivals
+
+
+def _shift_of(late: Cause) -> tuple[float, float]:
+    """Return the mean time by which the torque is late, and its standard error [s]."""
+    return float(late.fit.coefficients[0]), float(np.sqrt(max(late.fit.covariance[0, 0], 0.0)))
 
 
 def _of_pairs(late: Cause, smeared: Cause) -> TimingRivals:
