@@ -12,7 +12,8 @@ from frictioncli.effects import EFFECTS, MEASUREMENT_EFFECTS
 from frictioncli.workfiles import TORQUES
 from tests.diagnosis.thermal_joint import Network, torques
 
-MEASURED, FIRST, SECOND = "measured temperature", "first estimate", "beside the causes"
+MEASURED, FIRST = "measured temperature", "first estimate"
+SECOND, THIRD = "beside the causes of the first", "beside those of the second"
 
 
 def found(*names):
@@ -31,7 +32,8 @@ def searched(monkeypatch):
 
     def about(causes):
         def estimated(problem, new, accepted=()):
-            of = SECOND if accepted else FIRST
+            names = {one.effect.name for one in accepted}
+            of = THIRD if "stribeck" in names else SECOND if accepted else FIRST
             return SimpleNamespace(problem=of, estimate=None)
 
         monkeypatch.setattr(lag_search, "_is_far_off", lambda problem: True)
@@ -49,6 +51,18 @@ def searched(monkeypatch):
 def test_the_second_estimate_is_beside_the_causes_of_the_first(searched):
     both = ("thermal_lag", "step_change")
     assert searched({FIRST: both, SECOND: both}) == (list(both), SECOND)
+
+
+def test_other_causes_about_the_second_estimate_ask_for_a_third(searched):
+    step, stribeck = ("thermal_lag", "step_change"), ("thermal_lag", "stribeck")
+    found = searched({FIRST: step, SECOND: stribeck, THIRD: stribeck})
+    assert found == (list(stribeck), THIRD)
+
+
+def test_a_third_estimate_about_which_the_lag_is_impossible_is_not_taken(searched):
+    step, stribeck = ("thermal_lag", "step_change"), ("thermal_lag", "stribeck")
+    found = searched({FIRST: step, SECOND: stribeck, THIRD: ("drift",)})
+    assert found == (list(stribeck), SECOND)
 
 
 def test_an_estimate_about_which_the_lag_is_impossible_is_not_taken(searched):
@@ -75,7 +89,7 @@ def test_a_gear_that_leads_the_motor_may_be_a_sensor_that_lags():
     assert diagnosis.gain.after < 1.1 * (0.25**2 + 0.125**2 + 0.1**2 + 0.25**2) ** 0.5
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_a_drift_does_not_hide_a_lag_of_many_degrees(sample_run, tmp_path):
     """Beside the drift alone the lag would ask for more than is physically possible.
 

@@ -69,6 +69,9 @@ BESIDE_A_LAG = ("torque_constant", "payload_change", "position_ripple")
 ELSEWHERE = ("step_change", "payload_change")
 """Effects that test_changes.py finds with size and history; the second stands beside a lag here."""
 
+ALIKE = ("load_velocity", "reversal_transient", "torque_constant")
+"""Effects whose like is found here: those of the load and of the ends of the stroke."""
+
 QUICK = ("thermal_lag", "position_ripple")
 """One effect that goes with temperature, and one of the stroke."""
 
@@ -111,7 +114,8 @@ def sets(diagnosis: Diagnosis) -> list[tuple[str, ...]]:
         effect.name
         if effect.name in QUICK
         else pytest.param(
-            effect.name, marks=pytest.mark.long if effect.name in SMOOTH else pytest.mark.slow
+            effect.name,
+            marks=pytest.mark.long if effect.name in (*SMOOTH, *ALIKE) else pytest.mark.slow,
         )
         for effect in EFFECTS
         if effect.name not in ELSEWHERE

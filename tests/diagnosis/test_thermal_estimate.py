@@ -5,6 +5,7 @@ the last day is kept out.
 """
 
 import functools
+from types import SimpleNamespace
 
 import numpy as np
 import pandas as pd
@@ -13,7 +14,13 @@ import pytest
 from frictioncli.diagnosis.data.build_problem import at_temperature, build_problems
 from frictioncli.diagnosis.data.hidden_temperature import HiddenTemperature
 from frictioncli.diagnosis.data.problem import Problem
-from frictioncli.diagnosis.thermal.estimate import ThermalEstimate, estimate_temperature
+from frictioncli.diagnosis.thermal.estimate import (
+    MEASURED,
+    WITH_HOUSING,
+    ThermalEstimate,
+    estimate_temperature,
+    simplest_as_good,
+)
 from frictioncli.diagnosis.thermal.refine import refine_thermal
 from frictioncli.diagnosis.thermal.statement import temperature_statement
 from frictioncli.effects.base import Basis
@@ -159,3 +166,29 @@ def test_friction_is_simulated_at_the_hidden_temperature():
         at_temperature(warm, parameters, None).table.temperature, table.motor_temperature
     )
     assert len(BINS) * len(problem.layout.bins) == len(table.time)
+
+
+WHOLE = {one.parts: one for one in WITH_HOUSING if one.whole}
+PARTLY = {one.parts: one for one in WITH_HOUSING if not one.whole and one.times}
+
+
+@pytest.mark.parametrize(
+    ("criteria", "chosen"),
+    [
+        # a gear with all the friction, up to 20 behind one that has a part of it
+        ({PARTLY[0, 1, 3]: -19.0, WHOLE[1, 3]: 0.0, MEASURED: 300.0}, WHOLE[1, 3]),
+        ({PARTLY[0, 1, 3]: -21.0, WHOLE[1, 3]: 0.0, MEASURED: 300.0}, PARTLY[0, 1, 3]),
+        # of two with all the friction the simpler one only up to 10 behind
+        ({WHOLE[1, 3]: -9.0, WHOLE[1,]: 0.0, MEASURED: 300.0}, WHOLE[1,]),
+        ({WHOLE[1, 3]: -11.0, WHOLE[1,]: 0.0, MEASURED: 300.0}, WHOLE[1, 3]),
+        ({PARTLY[0, 1, 3]: -18.0, WHOLE[1, 3]: -11.0, WHOLE[1,]: 0.0}, WHOLE[1, 3]),
+        ({WHOLE[1, 3]: -11.0, WHOLE[1,]: -9.0, MEASURED: -3.0}, MEASURED),
+    ],
+)
+def test_the_simplest_network_that_is_as_good_as_the_best(criteria, chosen):
+    rivals = [
+        SimpleNamespace(structure=structure, criterion=value, left=1.0 + value / 1000)
+        for structure, value in criteria.items()
+    ]
+    ranked = sorted(rivals, key=lambda one: one.criterion)
+    assert simplest_as_good(ranked, 1e-6).structure is chosen

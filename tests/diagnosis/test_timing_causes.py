@@ -1,12 +1,13 @@
 """Late torque gets the name of its reason, where that can be told."""
 
 from dataclasses import replace
-from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
 from frictioncli.diagnosis.fit.hypotheses import EffectFit
+from frictioncli.diagnosis.ramps.evidence import RampEstimate
+from frictioncli.diagnosis.ramps.timing import TorqueTiming
 from frictioncli.diagnosis.ramps.timing_rivals import TimingRivals
 from frictioncli.diagnosis.search.cause import Cause
 from frictioncli.diagnosis.search.timing_causes import judged_by_timing
@@ -33,7 +34,11 @@ def causes(shift, second, *, shift_error=0.001, second_error=1e-4, standing="neg
 
 def starts(shift, smear, *, error=0.0005, smear_error=3e-5):
     rivals = TimingRivals(np.array([shift, smear]), np.diag(np.square([error, smear_error])))
-    return SimpleNamespace(rivals=rivals)
+    values = ((shift, error), (smear, smear_error))
+    both = [RampEstimate(one, one - 1.96 * sd, one + 1.96 * sd) for one, sd in values]
+    return TorqueTiming(
+        shift=both[0], smear=both[1], rivals=rivals, rms=0.1, starts=50, period=0.012
+    )
 
 
 def names(judged):
@@ -85,3 +90,28 @@ def test_pairs_alone_name_a_filter_only_where_it_is_clear():
 def test_without_the_measurement_s_effects_nothing_changes():
     (_, _, drift) = causes(0.0, 0.0)
     assert judged_by_timing([drift], starts(0.04, 0.0016)) == ((drift,), None)
+
+
+def test_a_delay_that_the_starts_of_moves_contradict_has_no_name():
+    """At least one of both is something else: at starts a gear may wind up, in segments friction
+    may go with the angle.
+    """
+    early, *_ = causes(-0.046, 0.0, shift_error=0.005, standing="named")
+    (judged, *_), rivals = judged_by_timing(causes(-0.046, 0.0, shift_error=0.005), starts(0.1, 0))
+    assert judged.fit.coefficients == early.fit.coefficients
+    assert judged.standing == "undetermined"
+    assert "100 ms" in judged.reason
+    assert rivals is None
+
+
+@pytest.mark.parametrize(
+    ("shift", "error", "contradicts"),
+    [
+        (0.023, 0.0005, False),  # within a sample
+        (0.027, 0.0005, True),
+        (0.040, 0.01, False),  # the segments tell little
+        (0.040, 0.006, True),
+    ],
+)
+def test_starts_and_segments_may_differ_by_a_sample_and_their_errors(shift, error, contradicts):
+    assert starts(0.012, 0.0).contradicts(shift, error) is contradicts

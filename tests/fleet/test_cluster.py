@@ -55,7 +55,7 @@ def test_two_workers_one_of_them_killed_give_the_same_bytes(undiagnosed, logs, t
     assert contents(out) == contents(undiagnosed)
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_a_joint_that_takes_down_workers_fails_alone(tmp_path):
     for number in (1, 2):
         folder = tmp_path / "logs" / "robot=A" / f"joint={number}"

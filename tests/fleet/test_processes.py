@@ -58,7 +58,10 @@ def workers_of(process):
 @pytest.mark.slow
 @pytest.mark.parametrize(
     "number",
-    [signal.SIGTERM, pytest.param(signal.SIGHUP, marks=pytest.mark.long), signal.SIGKILL],
+    [
+        *(pytest.param(one, marks=pytest.mark.long) for one in (signal.SIGTERM, signal.SIGHUP)),
+        signal.SIGKILL,
+    ],
 )
 def test_workers_end_with_the_process_that_started_them(small, tmp_path, number):
     (logs, whole), out = small, tmp_path / "out"

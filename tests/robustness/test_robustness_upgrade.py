@@ -29,7 +29,7 @@ def old(tmp_path):
     "words",
     [
         *(["pair"], ["separate"], ["fit"], ["simulate"], ["evaluate"], ["export", "--to", "json"]),
-        pytest.param(["diagnose"], marks=pytest.mark.slow),
+        pytest.param(["diagnose"], marks=pytest.mark.long),
         pytest.param(["report"], marks=pytest.mark.slow),
         pytest.param(["plan"], marks=pytest.mark.slow),
         *(["simulate", "--extended"], ["compare"]),

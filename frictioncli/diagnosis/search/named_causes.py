@@ -172,7 +172,7 @@ def named_causes(judging: Judging, first: JudgedCauses) -> NamedCauses:
         if THERMAL_LAG.name not in _names(judged.named):
             judging = judging.without_lag()
         judged = judging.without_uncertain(judging.judged(_beside_named(judging, judged)))
-        judged = _without_imitations(judged, first, judging.alpha)
+        judged = without_imitations(judged, first, judging.alpha)
     others = [one for one in judged.causes if one.standing != "named"]
     return NamedCauses(
         causes=judged.named,
@@ -208,7 +208,7 @@ def _beside_named(judging: Judging, judged: JudgedCauses) -> SearchResult:
     )
 
 
-def _without_imitations(judged: JudgedCauses, first: JudgedCauses, alpha: float) -> JudgedCauses:
+def without_imitations(judged: JudgedCauses, first: JudgedCauses, alpha: float) -> JudgedCauses:
     """Return causes of which no effect of the measurement stands for one that has lost its name.
 
     What is there beyond doubt and too small for a name is no part of the model; an effect of the

@@ -183,11 +183,23 @@ def estimate_temperature(
     others = WITHOUT_HOUSING if data.inputs.housing is None else WITH_HOUSING
     found = [_rival(problem, data, structure) for structure in (MEASURED, *others)]
     ranked = sorted(found, key=lambda one: one.criterion)
-    alike = _ALIKE * float(np.mean(np.abs(problem.friction)))
-    good = [one for one in ranked if _is_as_good(one, ranked, alike)]
-    chosen = min(good, key=lambda one: one.structure.order)
+    chosen = simplest_as_good(ranked, _ALIKE * float(np.mean(np.abs(problem.friction))))
     ranked.remove(chosen)
     return _estimate(problem, data, (chosen, *ranked))
+
+
+def simplest_as_good(ranked: Sequence[FittedNetwork], alike: float) -> FittedNetwork:
+    """Return the simplest rival that is as good as the best one; see :func:`estimate_temperature`.
+
+    Parameters
+    ----------
+    ranked : sequence of FittedNetwork
+        The rivals by their criterion, the best first.
+    alike : float
+        What a measured temperature may leave beside what the best rival leaves. [N·m]
+    """
+    good = [one for one in ranked if _is_as_good(one, ranked, alike)]
+    return min(good, key=lambda one: one.structure.order)
 
 
 def _is_as_good(one: FittedNetwork, ranked: Sequence[FittedNetwork], alike: float) -> bool:

@@ -1,0 +1,74 @@
+"""Effects of the measurement that stand for a cause without a name; causes refuted in turn."""
+
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+from frictioncli.diagnosis.fit.hypotheses import EffectFit
+from frictioncli.diagnosis.search import cause_selection
+from frictioncli.diagnosis.search.cause import Cause
+from frictioncli.diagnosis.search.cause_selection import refuted_by_new_run
+from frictioncli.diagnosis.search.named_causes import JudgedCauses, without_imitations
+from frictioncli.effects import BY_NAME
+
+
+def cause(name, standing, p_value=1e-20, size=1.0):
+    width = len(BY_NAME[name].coefficients)
+    return Cause(
+        fit=EffectFit(BY_NAME[name], {}, np.full(width, size), np.eye(width), 100.0),
+        test=SimpleNamespace(p_value=p_value, log_bayes_factor=50.0),
+        effects=(name,),
+        probabilities={name: 1.0},
+        size=size,
+        visible=size,
+        standing=standing,
+    )
+
+
+def judged(*causes):
+    return JudgedCauses(found=None, causes=causes, timing=None)
+
+
+NOISE = cause("torque_delay", "undetermined", p_value=1.0, size=0.001)
+IMITATION = cause("torque_delay", "named", size=0.024)
+
+
+@pytest.mark.parametrize(
+    ("lost", "measured", "named"),
+    [
+        # there beyond doubt, but too small for a name: the delay was noise beside it
+        (cause("inertia", "visible"), NOISE, False),
+        # it may be noise itself, or impossible: what looks like it is the delay
+        (cause("inertia", "visible", p_value=1e-3), NOISE, True),
+        (cause("inertia", "undetermined"), NOISE, True),
+        # the delay was there beside it, too
+        (cause("inertia", "visible"), cause("torque_delay", "visible"), True),
+    ],
+)
+def test_what_was_noise_beside_a_cause_stays_noise_when_that_loses_its_name(lost, measured, named):
+    first = judged(measured, cause("thermal_lag", "named"), lost)
+    found = without_imitations(judged(IMITATION, cause("thermal_lag", "named")), first, 0.05)
+    assert ("torque_delay" in {one.fit.effect.name for one in found.named}) is named
+    assert found.causes[0] is (IMITATION if named else measured)
+
+
+def test_the_new_run_refutes_the_worst_first_and_the_others_without_it(monkeypatch):
+    """A drift that goes the wrong way spoils what Stribeck friction beside it predicts."""
+    misfits = {
+        frozenset({"drift", "stribeck"}): 3.0,
+        frozenset({"drift"}): 2.6,
+        frozenset({"stribeck"}): 1.0,
+        frozenset(): 2.0,
+    }
+    monkeypatch.setattr(
+        cause_selection,
+        "missed_of_new_run",
+        lambda fits, *rest: misfits[frozenset(one.effect.name for one in fits)],
+    )
+    step = SimpleNamespace(problem=None, predicting_fit=lambda: None)
+    causes = [cause("stribeck", "named"), cause("drift", "named")]
+    (refuted,) = refuted_by_new_run(causes, step, None)
+    assert refuted.fit.effect.name == "drift"
+    assert refuted.standing == "visible"
+    assert "3 times" in refuted.reason
