@@ -65,14 +65,33 @@ class Determination:
         merged = self.merged if holder is None else self.merged | {holder: holds}
         return Determination(tuple(t for t in self.terms if t != term), dropped, merged)
 
+    def with_beta_for_gamma(self, reason: str, holds: str) -> "Determination":
+        """Return the determination with beta in place of gamma, which held both.
 
-def determined_fit(observed: Observations) -> tuple[Estimate, Determination]:
+        Parameters
+        ----------
+        reason : str
+            Why gamma is no longer fitted.
+        holds : str
+            What beta then holds.
+        """
+        dropped = {name: why for name, why in self.dropped.items() if name != "beta"}
+        merged = {name: what for name, what in self.merged.items() if name != "gamma"}
+        terms = tuple(one for one in COEFFICIENTS if one == "beta" or one in self.terms)
+        return Determination(terms, dropped, merged).without("gamma", reason, "beta", holds)
+
+
+def determined_fit(
+    observed: Observations, *, vague_delta: bool = False
+) -> tuple[Estimate, Determination]:
     """Fit the parameters that the data determine.
 
     Parameters
     ----------
     observed : Observations
         Friction of one joint.
+    vague_delta : bool, optional
+        Whether gamma and delta stay where delta is vague: what the model lacks may be the reason.
 
     Returns
     -------
@@ -82,7 +101,7 @@ def determined_fit(observed: Observations) -> tuple[Estimate, Determination]:
     chosen = _by_excitation(observed)
     while True:
         estimate = fit_terms(observed, chosen.terms)
-        fewer = _by_interval(observed, estimate, chosen)
+        fewer = _by_interval(observed, estimate, chosen, vague_delta=vague_delta)
         if fewer is chosen:
             return estimate, chosen
         chosen = fewer
@@ -141,19 +160,17 @@ def _by_excitation(observed: Observations) -> Determination:
 
 
 def _by_interval(
-    observed: Observations, estimate: Estimate, chosen: Determination
+    observed: Observations, estimate: Estimate, chosen: Determination, *, vague_delta: bool
 ) -> Determination:
     """Return a determination with a term less if the data do not determine it, else the same."""
     friction = float(np.mean(np.abs(observed.friction)))
     if "gamma" in chosen.terms and estimate.parameters.gamma <= 0:
         # with gamma 0 the derivative by delta is 0 too, and nothing tells delta
-        return chosen.without(
-            "gamma",
-            "at its lower bound 0: friction does not fall with temperature in these data; left"
-            " out (0)",
-            None,
-            "",
-        )
+        reason = "at its lower bound 0: friction does not fall with temperature in these data"
+        if "gamma" in chosen.merged:
+            holds = "holds the whole viscous coefficient"
+            return chosen.with_beta_for_gamma(f"{reason}; merged with beta", holds)
+        return chosen.without("gamma", f"{reason}; left out (0)", None, "")
     half_width = {
         name: (high - low) / 2 for name in estimate.names for low, high in [estimate.interval(name)]
     }
@@ -181,12 +198,12 @@ def _by_interval(
                 "gamma",
                 "holds the whole viscous coefficient",
             )
-        return chosen.without(
-            "gamma",
-            "the data do not show that friction falls with temperature; left out (0)",
-            None,
-            "",
-        )
+        if not vague_delta:
+            return chosen.with_beta_for_gamma(
+                "the data do not show that friction falls with temperature; merged with beta into"
+                " one viscous coefficient",
+                "holds the whole viscous coefficient",
+            )
     if "beta" in half_width and "gamma" not in chosen.terms:
         root_speed = np.sqrt(observed.speed)
         if half_width["beta"] * float(np.ptp(root_speed)) > _VAGUE * friction * 2:

@@ -36,8 +36,9 @@ def candidate_bases(rows: pd.DataFrame, temperature: str) -> list[Base]:
     """Return base models fitted to all pairs, and to those at common speeds only.
 
     A few pairs at rare speeds that follow another law would bend the parameters so far that a model
-    linear about them explains nothing. Beta is refitted wherever gamma is, even where the fit could
-    not distinguish them: the effect that is searched for may be the reason.
+    linear about them explains nothing. Gamma and delta stay where delta is vague, and beta is
+    refitted wherever gamma is, even where the fit could not distinguish them: the effect that is
+    searched for may be the reason.
 
     Parameters
     ----------
@@ -58,6 +59,6 @@ def candidate_bases(rows: pd.DataFrame, temperature: str) -> list[Base]:
 
 
 def _base(rows: pd.DataFrame, temperature: str) -> Base:
-    estimate, _ = determined_fit(observations(rows, temperature))
+    estimate, _ = determined_fit(observations(rows, temperature), vague_delta=True)
     free = {*estimate.names, "beta"} if "gamma" in estimate.names else set(estimate.names)
     return Base(estimate.parameters, tuple(name for name in PARAMETERS if name in free))

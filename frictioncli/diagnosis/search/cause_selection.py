@@ -172,7 +172,8 @@ def uncertain_causes(
     """Return the names of causes whose only coefficient may be zero in the extended model.
 
     What smooth errors of the model could add along it counts there, and what is not fitted. Of what
-    is there beyond doubt only the part that the base could imitate may be zero.
+    is there beyond doubt only the part that the base could imitate may be zero; of an effect of the
+    measurement that part counts as well.
 
     Parameters
     ----------
@@ -187,7 +188,8 @@ def uncertain_causes(
     return frozenset(
         cause.fit.effect.name
         for number, cause in enumerate(causes)
-        if extension.may_be_zero(number) and cause.test.p_value >= BEYOND_DOUBT
+        if extension.may_be_zero(number)
+        and (cause.test.p_value >= BEYOND_DOUBT or cause.fit.effect.measurement)
     )
 
 

@@ -17,7 +17,7 @@ from frictioncli.diagnosis.search.cause_selection import (
     judged_together,
     uncertain_causes,
 )
-from frictioncli.diagnosis.search.lack_of_fit import Structure
+from frictioncli.diagnosis.search.lack_of_fit import Structure, unnamed_structure
 from frictioncli.diagnosis.search.measurement import measurement_causes
 from frictioncli.diagnosis.search.preparation import Preparation
 from frictioncli.diagnosis.search.search_result import SearchResult
@@ -113,7 +113,7 @@ class Judging:
         """
         weighted_fit = judged.found.step.predicting_fit()
         uncertain = uncertain_causes(judged.named, self.problem, weighted_fit)
-        if judged.timing is not None:
+        if judged.timing is not None and judged.timing.best != "none":
             # what the starts of moves tell of the delay counts, too
             uncertain -= {DELAY}
         return _unnamed(judged, uncertain, "undetermined", _UNCERTAIN)
@@ -174,6 +174,8 @@ def named_causes(judging: Judging, first: JudgedCauses) -> NamedCauses:
         judged = judging.without_uncertain(judging.judged(_beside_named(judging, judged)))
         judged = without_imitations(judged, first, judging.alpha)
     others = [one for one in judged.causes if one.standing != "named"]
+    if structure is None and _is_there(first, judged, judging.margin):
+        structure = unnamed_structure(judged.found.step, judging.margin, judging.alpha)
     return NamedCauses(
         causes=judged.named,
         others=(*others, *lost_on_the_way),
@@ -181,6 +183,23 @@ def named_causes(judging: Judging, first: JudgedCauses) -> NamedCauses:
         measurement=judged.found.measurement,
         timing=judged.timing,
         step=judged.found.step,
+    )
+
+
+def _is_there(first: JudgedCauses, judged: JudgedCauses, margin: float) -> bool:
+    """Return whether a property of the joint without a name is there beyond doubt.
+
+    It is physically impossible as an effect of the catalogue, or not determined, but it is not
+    nothing.
+    """
+    named = _names(judged.named)
+    return any(
+        one.standing == "undetermined"
+        and one.fit.effect.name not in named
+        and not one.fit.effect.measurement
+        and one.test.p_value < BEYOND_DOUBT
+        and one.visible_interval[0] > margin
+        for one in first.causes
     )
 
 

@@ -182,7 +182,8 @@ def _change(
     null = NullDistribution(
         coefficients=len(coefficients),
         freedom=max(len(new.layout.time) - base_rows(new)[0].shape[1], 1),
-        shapes=len(shapes),
+        # presence throughout the run is no choice of moments
+        shapes=1 if best is shapes[0] else len(shapes),
     )
     p_value = min(1.0, len(tried) * null.p_value(statistic))
     factor = log_bayes_factor(np.array([2 * one for one in scores]), len(coefficients))

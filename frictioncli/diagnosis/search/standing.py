@@ -24,6 +24,7 @@ from frictioncli.diagnosis.search.possible import (
     undetermined,
 )
 from frictioncli.effects.base import Effect
+from frictioncli.effects.thermal_lag import EFFECT as THERMAL_LAG
 
 _OF_CHANGES = 0.02
 """Significance level of a change, relative to that of other effects: drift over a few dozen pairs
@@ -136,7 +137,8 @@ def _impossible(cause: Cause, problem: Problem) -> str:
         return reason
     if cause.shown < _SHOWN:
         return "the residuals do not show an effect of this size"
-    if not errors.any():
+    if not errors.any() and cause.fit.effect.name != THERMAL_LAG.name:
+        # all friction at a temperature that is measured is no bound that something else asks for
         return "the fit lies on a bound of what is physically possible"
     if len(errors) == 1 and abs(cause.fit.coefficients[0]) <= Z95 * errors[0]:
         return "its coefficient may be zero"
