@@ -237,3 +237,15 @@ def test_an_effect_of_a_speed_that_differs_between_runs_only_has_no_name(joint, 
         assert ("every run has its own speed" in reason) == (expected != "named")
         ((found, _),) = standing(apart, cause())
         assert found == "named"
+
+
+def test_friction_wholly_at_a_measured_temperature_is_no_fit_on_a_bound(joint):
+    """All friction follows the housing: that share is 1, and the others are 0, whatever they are
+    bounded by.
+    """
+    lag = BY_NAME["thermal_lag"]
+    at_housing = cause(lag, (0.0, 0.0, 1.0, 0.0), (0.0,) * 4, shape={"time_constant": 120.0})
+    assert standing(joint, at_housing) == [("named", "")]
+    ((found, reason),) = standing(joint, cause(coefficients=(0.0,), errors=(0.0,)))
+    assert found == "undetermined"
+    assert "on a bound" in reason
