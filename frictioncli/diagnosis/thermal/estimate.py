@@ -60,6 +60,10 @@ _ALIKE = 0.0025
 """A temperature that is measured is as good if it leaves no more than this share of the mean
 friction beside what the best rival leaves: no network is exact."""
 
+_FORM = 0.05
+"""Standard deviation of the logarithm of a time constant by the form of the network: a joint has
+more nodes than one or two, and its temperatures are read in steps."""
+
 _TOLERANCE = 1e-10
 """Directions of unit columns with less than this share of the squared length are undetermined."""
 
@@ -271,7 +275,8 @@ def _intervals(data: ThermalData, rival: FittedNetwork) -> dict[str, ThermalPara
         axis = axes[name]
         if name.endswith("time_constant"):
             value = float(getattr(fit, name))
-            low, high = value * np.exp(-_Z95 * error), value * np.exp(_Z95 * error)
+            reach = _Z95 * float(np.hypot(error, _FORM))
+            low, high = value * np.exp(-reach), value * np.exp(reach)
         else:
             value = float(fit.coefficients[names.index(name)])
             low, high = value - _Z95 * error, value + _Z95 * error
