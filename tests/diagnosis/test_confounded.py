@@ -109,3 +109,12 @@ def test_a_step_at_the_start_of_runs_may_be_friction_after_a_rest(joint, parts, 
     assert found == expected
     assert ("after a rest" in reason) == (expected != "named")
     assert standing(joint, of("payload_change", 0.6, shape=shape))[0][0] == "named"
+
+
+def test_a_play_at_one_speed_may_be_a_delay(joint):
+    play = of("backlash", 0.7)
+    assert standing(joint, play) == [("named", "")]
+    one_speed = replace(joint.layout, speed=np.full_like(joint.layout.speed, 40.0))
+    ((found, reason),) = standing(replace(joint, layout=one_speed), play)
+    assert found == "undetermined"
+    assert "one speed" in reason

@@ -11,6 +11,7 @@ from frictioncli.diagnosis.data.problem import Problem
 from frictioncli.diagnosis.fit.hypotheses import EffectFit
 from frictioncli.diagnosis.search.cause import Cause
 from frictioncli.diagnosis.search.effect_size import FORM
+from frictioncli.effects.backlash import EFFECT as BACKLASH
 from frictioncli.effects.base import Effect
 from frictioncli.effects.history import present
 from frictioncli.effects.inertia import EFFECT as INERTIA
@@ -43,6 +44,11 @@ _GOES_WITH_RUN = (
     "every run has its own speed, and any other difference between the runs could be the cause"
 )
 
+_ONE_SPEED = 1.1
+"""Ratio of the highest to the lowest speed up to which all moves have one speed."""
+
+_GOES_WITH_DELAY = "all moves have one speed, at which a delay of the torque looks the same"
+
 _AT_START = "it is there only at the start of runs, where friction after a rest would look the same"
 
 _UNKNOWN_ENDS = (
@@ -73,6 +79,8 @@ def confounded(effect: Effect, problem: Problem) -> str:
     """
     if _goes_with_time(effect, problem):
         return _GOES_WITH_TIME
+    if effect is BACKLASH and float(np.ptp(np.log(problem.layout.speed))) < np.log(_ONE_SPEED):
+        return _GOES_WITH_DELAY
     return _GOES_WITH_RUN if _goes_with_run(effect, problem) else ""
 
 
