@@ -65,20 +65,25 @@ class Determination:
         merged = self.merged if holder is None else self.merged | {holder: holds}
         return Determination(tuple(t for t in self.terms if t != term), dropped, merged)
 
-    def with_beta_for_gamma(self, reason: str, holds: str) -> "Determination":
-        """Return the determination with beta in place of gamma, which held both.
+    def without_gamma(self, reason: str) -> "Determination":
+        """Return the determination without gamma; beta comes back where gamma held its share.
 
         Parameters
         ----------
         reason : str
             Why gamma is no longer fitted.
-        holds : str
-            What beta then holds.
         """
+        if "gamma" not in self.merged:
+            return self.without("gamma", f"{reason}; left out (0)", None, "")
         dropped = {name: why for name, why in self.dropped.items() if name != "beta"}
         merged = {name: what for name, what in self.merged.items() if name != "gamma"}
         terms = tuple(one for one in COEFFICIENTS if one == "beta" or one in self.terms)
-        return Determination(terms, dropped, merged).without("gamma", reason, "beta", holds)
+        return Determination(terms, dropped, merged).without(
+            "gamma",
+            f"{reason}; merged with beta into one viscous coefficient",
+            "beta",
+            "holds the whole viscous coefficient",
+        )
 
 
 def determined_fit(
@@ -166,11 +171,9 @@ def _by_interval(
     friction = float(np.mean(np.abs(observed.friction)))
     if "gamma" in chosen.terms and estimate.parameters.gamma <= 0:
         # with gamma 0 the derivative by delta is 0 too, and nothing tells delta
-        reason = "at its lower bound 0: friction does not fall with temperature in these data"
-        if "gamma" in chosen.merged:
-            holds = "holds the whole viscous coefficient"
-            return chosen.with_beta_for_gamma(f"{reason}; merged with beta", holds)
-        return chosen.without("gamma", f"{reason}; left out (0)", None, "")
+        return chosen.without_gamma(
+            "at its lower bound 0: friction does not fall with temperature in these data"
+        )
     half_width = {
         name: (high - low) / 2 for name in estimate.names for low, high in [estimate.interval(name)]
     }
@@ -199,11 +202,7 @@ def _by_interval(
                 "holds the whole viscous coefficient",
             )
         if not vague_delta:
-            return chosen.with_beta_for_gamma(
-                "the data do not show that friction falls with temperature; merged with beta into"
-                " one viscous coefficient",
-                "holds the whole viscous coefficient",
-            )
+            return chosen.without_gamma("the data do not show that friction falls with temperature")
     if "beta" in half_width and "gamma" not in chosen.terms:
         root_speed = np.sqrt(observed.speed)
         if half_width["beta"] * float(np.ptp(root_speed)) > _VAGUE * friction * 2:

@@ -1,14 +1,83 @@
-"""Which causes lose their name to structure that no effect explains."""
+"""Causes beside structure without a name, and what the residuals show of a cause at face value."""
 
+from dataclasses import replace
 from types import SimpleNamespace
 
+import numpy as np
 import pytest
 
-from frictioncli.diagnosis.search.understood import is_part
+from frictioncli.diagnosis.fit.hypotheses import EffectFit
+from frictioncli.diagnosis.search.cause import Cause
+from frictioncli.diagnosis.search.effect_size import left_size, shown_share
+from frictioncli.diagnosis.search.precomputed import Precomputed
+from frictioncli.diagnosis.search.step import Step
+from frictioncli.diagnosis.search.understood import is_part, understood
 from frictioncli.effects import BY_NAME
+from tests.diagnosis.dense_noise import problem
+from tests.diagnosis.wave_effects import B, effect, wave
+
+MARGIN = 0.1
+ALPHA = 0.05
+SHORT = wave(7.0)
+RIPPLE = effect("ripple", [(1.0, SHORT)])
 
 
-def structure(size, *axes, channel="friction"):
+def accepted(data):
+    """Return the step with the ripple accepted, and the cause."""
+    precomputed = Precomputed.of(data)
+    fit = Step.of(precomputed, []).fitted(RIPPLE, {})
+    size, low, high = left_size(precomputed, fit)
+    cause = Cause(
+        fit=fit,
+        test=None,
+        effects=("ripple",),
+        probabilities={"ripple": 1.0},
+        size=size,
+        visible=size,
+        visible_interval=(low, high),
+    )
+    return Step.of(precomputed, [fit]), cause
+
+
+@pytest.mark.parametrize(("peak", "is_named"), [(0.0, True), (0.4, True), (3.0, False)])
+def test_a_cause_loses_its_name_to_structure_along_its_axis_that_is_nearly_as_large(peak, is_named):
+    """A ripple of 1 N·m, and a peak at one angle."""
+    data = problem(3, friction=lambda rows: 1.0 * SHORT(rows))
+    torque = peak * np.exp(-np.square((data.table.position - 40.0) / 9.0))
+    data = replace(data, friction=data.friction + torque)
+    step, cause = accepted(data)
+    causes, structure = understood(step, [cause], MARGIN, ALPHA)
+    assert (causes == (cause,)) is is_named
+    if not is_named:
+        assert structure is not None
+        assert structure.axes in {("position",), ("load",)}
+        # what is left without the cause contains the ripple
+        assert structure.size > 0.95 / np.sqrt(2)
+
+
+def test_structure_along_another_axis_takes_no_name():
+    data = problem(3, friction=lambda rows: 1.0 * SHORT(rows))
+    levels = np.unique(data.table.speed)
+    resonance = np.where(data.table.speed == levels[len(levels) // 2], 3.0, 0.0)
+    data = replace(data, friction=data.friction + resonance)
+    step, cause = accepted(data)
+    causes, structure = understood(step, [cause], MARGIN, ALPHA)
+    assert causes == (cause,)
+    assert structure is not None
+    assert structure.axes == ("speed",)
+
+
+@pytest.mark.parametrize("share", [0.0, 0.3, 1.0])
+def test_the_residuals_show_a_share_of_a_cause_at_face_value(share):
+    """Beside another effect, whose torque is taken off first."""
+    data = problem(5, friction=lambda rows: 2.0 * share * SHORT(rows) + 3.0 * B(rows))
+    precomputed = Precomputed.of(data)
+    own = EffectFit(RIPPLE, {}, np.array([2.0]), np.array([[1e-4]]), 1.0)
+    other = EffectFit(effect("other", [(1.0, B)]), {}, np.array([3.0]), np.array([[1e-4]]), 1.0)
+    assert shown_share(precomputed, own, [other]) == pytest.approx(share, abs=0.05)
+
+
+def structure_of(size, *axes, channel="friction"):
     return SimpleNamespace(size=size, axes=axes, channel=channel)
 
 
@@ -16,16 +85,16 @@ def structure(size, *axes, channel="friction"):
     ("name", "unnamed", "expected"),
     [
         # along its own axis, more than a third of it
-        ("stribeck", structure(0.4, "speed"), True),
-        ("stribeck", structure(0.3, "speed"), False),
-        ("stribeck", structure(5.0, "temperature"), False),
+        ("stribeck", structure_of(0.4, "speed"), True),
+        ("stribeck", structure_of(0.3, "speed"), False),
+        ("stribeck", structure_of(5.0, "temperature"), False),
         # a step may be a part of anything that varies slowly, if that is larger
-        ("step_change", structure(1.1, "temperature"), True),
-        ("step_change", structure(0.9, "temperature"), False),
-        ("step_change", structure(0.4, "time"), True),
-        ("step_change", structure(5.0, "temperature", channel="load"), False),
-        ("payload_change", structure(5.0, "temperature"), False),
-        ("torque_delay", structure(5.0, "position"), False),
+        ("step_change", structure_of(1.1, "temperature"), True),
+        ("step_change", structure_of(0.9, "temperature"), False),
+        ("step_change", structure_of(0.4, "time"), True),
+        ("step_change", structure_of(5.0, "temperature", channel="load"), False),
+        ("payload_change", structure_of(5.0, "temperature"), False),
+        ("torque_delay", structure_of(5.0, "position"), False),
     ],
 )
 def test_a_cause_is_part_of_structure(name, unnamed, expected):

@@ -106,6 +106,17 @@ def test_one_speed_merges_coulomb_and_viscous_friction():
     assert model.parameters["delta"].estimate == pytest.approx(0.056, rel=0.3)
 
 
+@pytest.mark.parametrize("seed", [1, 2, 3])
+def test_at_one_speed_beta_does_not_come_back_for_gamma(seed):
+    """It was merged into Coulomb friction, not into gamma."""
+    table = torques(seed, drift=6.0, speeds=(67.5,))
+    falling = TRUTH["gamma"] * np.exp(-TRUTH["delta"] * table["motor_temperature"])
+    table["friction_torque"] -= falling * np.sqrt(table["speed"])
+    model = fitted(table)
+    assert not model.parameters["beta"].determined
+    assert "merged into tau_c" in model.parameters["beta"].reason
+
+
 def test_a_small_load_drops_alpha():
     model = fitted(torques(6, load=2.0))
     assert not model.parameters["alpha"].determined
