@@ -179,10 +179,11 @@ def diagnose_joint(
     search = partial(
         find_causes, settings=settings, margin=margin, ramps=evidence, preparation=known
     )
+    measurement = known.beside(base).effects
     refuted: tuple[Cause, ...] = ()
     while True:
         tried = [one for one in effects if one.name not in {no.fit.effect.name for no in refuted}]
-        found, lag = search_with_lag(base, base_new, tried, search, margin)
+        found, lag = search_with_lag(base, base_new, tried, search, margin, measurement)
         found = with_slow_sensor(found)
         problem, new = (base, base_new) if lag is None else (lag.problem, lag.new)
         judging = Judging(

@@ -31,7 +31,7 @@ def searched(monkeypatch):
     """Return the causes and the estimate that a search ends with, from what it finds about each."""
 
     def about(causes):
-        def estimated(problem, new, accepted=()):
+        def estimated(problem, new, accepted=(), measurement=()):
             names = {one.effect.name for one in accepted}
             of = THIRD if "stribeck" in names else SECOND if accepted else FIRST
             return SimpleNamespace(problem=of, estimate=None)
@@ -130,7 +130,7 @@ def lags(interval, *others, sensor=(0.0, 0.1)):
 def test_the_lag_of_a_sensor_is_left_out_only_where_it_hides_one_of_the_gear(
     monkeypatch, beside, without, estimate, expected
 ):
-    def searched(problem, new, effects, search, margin):
+    def searched(problem, effects, search, refine, margin):
         measurement = search()["measurement"]
         if "sensor_lag" in [one.name for one in measurement]:
             return beside, "own"

@@ -158,9 +158,7 @@ class ThermalEstimate:
         return min(found, key=lambda one: one.criterion, default=None)
 
 
-def estimate_temperature(
-    problem: Problem, beside: Sequence[Basis] = (), known: Array | float = 0.0
-) -> ThermalEstimate:
+def estimate_temperature(problem: Problem, beside: Sequence[Basis] = ()) -> ThermalEstimate:
     """Estimate the temperature of friction.
 
     Parameters
@@ -169,8 +167,6 @@ def estimate_temperature(
         The rows, with gamma and delta among the fitted parameters.
     beside : sequence of Basis
         Columns of other effects at these rows.
-    known : ndarray or float, shape (rows,), optional
-        Friction that is known beforehand, as by effects of the measurement. [N·m]
 
     Returns
     -------
@@ -179,11 +175,11 @@ def estimate_temperature(
         a gear with all the friction within 20 if it is within 10 of the best of those, a mix within
         4, a measured temperature also where it leaves hardly more.
     """
-    residual = residual_of_base(problem, problem.friction_misfit - known, "friction", beside)
+    residual = residual_of_base(problem, problem.friction_misfit, "friction", beside)
     point = max(problem.layout.point_deviation(residual), 1e-9)
     means = problem.layout.means(residual[:, np.newaxis])[:, 0]
     deviation = max(float(np.median(np.abs(means))) * 1.4826, point / 10)
-    data = ThermalData.of(problem, beside, known, point=point, deviation=deviation)
+    data = ThermalData.of(problem, beside, point=point, deviation=deviation)
     others = WITHOUT_HOUSING if data.inputs.housing is None else WITH_HOUSING
     found = [_rival(problem, data, structure) for structure in (MEASURED, *others)]
     ranked = sorted(found, key=lambda one: one.criterion)

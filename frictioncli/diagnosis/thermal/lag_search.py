@@ -44,6 +44,7 @@ def search_with_lag(
     effects: Sequence[Effect],
     search: Callable[..., SearchResult],
     margin: float = 0.0,
+    measurement: Sequence[Effect] = (),
 ) -> tuple[SearchResult, RefinedLag | None]:
     """Search for causes; where a lag of the gear is one, about the temperature of the gear.
 
@@ -65,20 +66,23 @@ def search_with_lag(
         measurement that ``measurement`` names, all by default.
     margin : float, optional
         Smallest size worth a name: a lag that may be smaller is left linear. [N·m]
+    measurement : sequence of Effect, optional
+        Effects of the measurement that stand beside the base.
 
     Returns
     -------
     SearchResult, RefinedLag or None
         The causes, and the lag where it is one of them.
     """
-    found, lag = _searched(problem, new, effects, search, margin)
+    refine = partial(refine_thermal, problem, new, measurement=measurement)
+    found, lag = _searched(problem, effects, search, refine, margin)
     if not _has_lag(found) or _left_of_lag(found) > margin:
         return found, lag
     share = _share_of_lag(found, margin)
     if share < _LIKELY:
         return found, lag
     without = partial(search, measurement=_WITHOUT_SENSOR)
-    again, refined = _searched(problem, new, effects, without, margin)
+    again, refined = _searched(problem, effects, without, refine, margin)
     if refined is None or _left_of_lag(again) <= margin:
         return found, lag
     causes = (_lag_or_sensor(one, share) if _is_lag(one) else one for one in again.causes)
@@ -101,9 +105,9 @@ def _lag_or_sensor(cause: Cause, share: float) -> Cause:
 
 def _searched(
     problem: Problem,
-    new: Problem | None,
     effects: Sequence[Effect],
     search: Callable[[Problem, Sequence[Effect]], SearchResult],
+    refine: Callable[..., RefinedLag | None],
     margin: float,
 ) -> tuple[SearchResult, RefinedLag | None]:
     """Search for causes; where a lag of the gear is one, about the temperature of the gear.
@@ -116,7 +120,7 @@ def _searched(
     """
     if LAG not in {one.name for one in effects}:
         return search(problem, effects), None
-    first = refine_thermal(problem, new) if _is_far_off(problem) else None
+    first = refine() if _is_far_off(problem) else None
     if first is not None and _explains_most(first.estimate):
         found = search(first.problem, effects)
         if _has_lag(found) and len(found.causes) == 1:
@@ -129,7 +133,7 @@ def _searched(
     if not _has_lag(found) or _left_of_lag(found) <= margin:
         return found, None
     for _ in range(_ROUNDS):
-        refined = refine_thermal(problem, new, [cause.fit for cause in found.causes])
+        refined = refine([cause.fit for cause in found.causes])
         again = None if refined is None else search(refined.problem, effects)
         if refined is None or again is None or not _has_lag(again):
             break

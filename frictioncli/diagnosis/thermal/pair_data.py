@@ -55,7 +55,6 @@ class ThermalData:
         cls,
         problem: Problem,
         beside: Sequence[Basis],
-        known: Array | float,
         *,
         point: float,
         deviation: float,
@@ -68,8 +67,6 @@ class ThermalData:
             The rows.
         beside : sequence of Basis
             Columns of other effects at these rows.
-        known : ndarray or float, shape (rows,)
-            Friction that is known beforehand, as by effects of the measurement. [N·m]
         point, deviation : float
             Standard deviation of an angle bin about the mean of its pair, and of a pair mean. [N·m]
         """
@@ -81,7 +78,7 @@ class ThermalData:
         }
         names = tuple(name for name in columns if name in problem.names)
         fixed = [getattr(parameters, name) * columns[name] for name in columns if name not in names]
-        target = problem.friction - known - sum(fixed, np.zeros_like(problem.friction))
+        target = problem.friction - sum(fixed, np.zeros_like(problem.friction))
         linear = [columns[name][:, np.newaxis] for name in names]
         linear += [basis.friction for basis in beside]
         rows = np.column_stack([*linear, target])

@@ -32,6 +32,10 @@ _MOST_STEPS = 6
 _SETTLED = 1e-6
 """Changes of the parameters, as a share of their standard errors, at which they end."""
 
+_NOT_BESIDE = frozenset({"sensor_lag", "torque_filter"})
+"""Effects of the measurement that are not estimated beside the temperature: a rival of it, and one
+of second order, which what the model lacks within pairs would decide."""
+
 _LEAST_ERROR = 1e-9
 """Least standard error that counts."""
 
@@ -57,7 +61,10 @@ class RefinedLag:
 
 
 def refine_thermal(
-    problem: Problem, new: Problem | None, accepted: Sequence[EffectFit] = ()
+    problem: Problem,
+    new: Problem | None,
+    accepted: Sequence[EffectFit] = (),
+    measurement: Sequence[Effect] = (),
 ) -> RefinedLag | None:
     """Return a problem linear about the hidden temperature that explains a lag of the gear.
 
@@ -69,6 +76,10 @@ def refine_thermal(
         Rows of the hold-out run.
     accepted : sequence of EffectFit, optional
         Effects that were accepted, the lag perhaps among them.
+    measurement : sequence of Effect, optional
+        Effects of the measurement that stand beside the base. Those of first order are estimated
+        beside the temperature: over angles that are not symmetric to gravity, torque that is late
+        looks like friction that grows with the speed.
 
     Returns
     -------
@@ -80,9 +91,10 @@ def refine_thermal(
         return None
     others = [one for one in accepted if one.effect.name != LAG]
     linear = problem
+    always = [problem.basis(one, {}) for one in measurement if one.name not in _NOT_BESIDE]
     for _ in range(_ROUNDS if others else 1):
         beside = [linear.basis(one.effect, one.shape) for one in others]
-        estimate = estimate_temperature(problem, beside)
+        estimate = estimate_temperature(problem, [*always, *beside])
         if estimate.hidden is None:
             return None
         linear = at_temperature(problem, estimate.parameters, estimate.hidden)
