@@ -4,6 +4,7 @@ from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import replace
 
 from frictioncli.errors import OptionError
+from frictioncli.logs.channels import channel_names as names
 from frictioncli.logs.channels.channel_map import ChannelMap
 from frictioncli.logs.channels.joint_plan import JointPlan, plan_joint
 from frictioncli.logs.channels.survey import survey
@@ -108,7 +109,7 @@ def _plans_of_layout(
         )
         for joint in chosen
     ]
-    plans = [plan for plan in found if isinstance(plan, JointPlan)]
+    plans = _with_one_time([plan for plan in found if isinstance(plan, JointPlan)])
     scaled = [str(plan.channels.joint) for plan in plans if plan.constant is not None]
     if isinstance(told, float | int) and len(scaled) > 1:
         raise OptionError(
@@ -120,6 +121,15 @@ def _plans_of_layout(
         return refusals[0]
     left_out = tuple(f"left out: {refusal.text}" for refusal in refusals)
     return [replace(plans[0], notes=(*plans[0].notes, *left_out)), *plans[1:]]
+
+
+def _with_one_time(plans: list[JointPlan]) -> list[JointPlan]:
+    """Return the plans with one unit of time: the one that most joints that move show."""
+    shown = [plan.conversions[names.TIME] for plan in plans if plan.shows_time]
+    if not shown:
+        return plans
+    time = max(shown, key=shown.count)
+    return [replace(plan, conversions={**plan.conversions, names.TIME: time}) for plan in plans]
 
 
 def wanted_constant(settings: IngestSettings, channel_map: ChannelMap) -> float | str | None:

@@ -162,6 +162,8 @@ def _with_steps(
     """Return the plateaus with those that are left in candidates of several speeds, in order."""
     first, last, owner = parts_left(start, stop, *plateaus)
     flat_start, flat_stop, part = flat_parts(speed, first, last, window[owner], settings)
+    wide = flat_stop - flat_start >= 2 * window[owner[part]]
+    flat_start, flat_stop, part = flat_start[wide], flat_stop[wide], part[wide]
     if not len(flat_start):
         return plateaus
     begin, end, which = _plateaus(speed, flat_start, flat_stop, settings)

@@ -9,6 +9,7 @@ from frictioncli.arrays import Array
 from frictioncli.inspection.map_suggestion.log_head import LogHead
 from frictioncli.logs.channels import channel_names as names
 from frictioncli.logs.channels import position_units, unit_evidence
+from frictioncli.logs.channels.recognition import unit_in_name
 from frictioncli.logs.channels.unit_evidence import MotionUnits
 from frictioncli.logs.channels.units import FACTORS
 
@@ -70,11 +71,15 @@ def find_derivatives(head: LogHead, time: int, time_units: Sequence[str]) -> lis
             continue  # itself a derivative: a velocity with its acceleration
         ratio = float(changes[i] @ integrals[j] / (integrals[j] @ integrals[j]))
         position = head.values[columns[i]]
-        units = _fitting_units(position, ratio, time_units)
-        if units is not None:
+        written = (
+            unit_in_name(head.names[columns[i]], names.POSITION),
+            unit_in_name(head.names[columns[j]], names.VELOCITY),
+        )
+        fitting = _fitting_units(position, ratio, time_units, written)
+        if fitting is not None:
             travel = float(np.abs(np.diff(position)).sum())
             cosine = float(similarity[i, j])
-            found.append(Derivative(columns[i], columns[j], cosine, units, travel))
+            found.append(Derivative(columns[i], columns[j], cosine, fitting, travel))
     return sorted(found, key=lambda derivative: -derivative.cosine)
 
 
@@ -100,17 +105,24 @@ def _normalised_rows(rows: Array) -> Array:
     return rows / np.where(lengths > 0, lengths, 1.0)
 
 
-def _fitting_units(position: Array, ratio: float, time_units: Sequence[str]) -> MotionUnits | None:
-    """Return units that agree with the ratio of change to integral; None where none do."""
+def _fitting_units(
+    position: Array, ratio: float, time_units: Sequence[str], written: tuple[str | None, str | None]
+) -> MotionUnits | None:
+    """Return units that agree with the ratio of change to integral; None where none do.
+
+    Units of position and velocity that are written in the header are preferred.
+    """
     largest, span = float(np.max(np.abs(position))), float(np.ptp(position))
     usual = position_units.usual_position_unit(largest=largest, span=span, on_motor=False)
     possible, _ = position_units.possible_position_units(
         largest=largest, span=span, on_motor=False, path_per_angle=None
     )
+    if written[0] == "turn":
+        possible = frozenset({"turn"})
     for time_unit in time_units:
         scaled = ratio / FACTORS[names.TIME][time_unit]
         found = unit_evidence.motion_units(
-            declared=("s", None, None), possible=possible, ratio=scaled, usual=usual
+            declared=("s", *written), possible=possible, ratio=scaled, usual=usual
         )
         if found.velocity is not None and found.time == "s":
             return MotionUnits(

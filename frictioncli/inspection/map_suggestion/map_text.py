@@ -4,8 +4,19 @@ from frictioncli.inspection.map_suggestion.columns import ColumnGuess
 from frictioncli.inspection.map_suggestion.log_head import LogHead
 from frictioncli.inspection.map_suggestion.suggestion import Suggestion
 from frictioncli.logs.channels import channel_names as names
+from frictioncli.logs.channels import units
 from frictioncli.logs.channels.recognition import split_unit
 from frictioncli.plain_text import escaped, printable
+
+_PER_COUNT = {
+    names.TIME: "seconds per count",
+    names.POSITION: "degrees per count, as 360 / counts of a turn",
+    names.VELOCITY: "deg/s per count",
+    names.TORQUE: "N·m per count, or A with that unit above",
+    names.LOAD: "N·m per count",
+    names.MOTOR_TEMPERATURE: "°C per count",
+    names.HOUSING_TEMPERATURE: "°C per count",
+}
 
 _MAX_COMMENT = 180
 """Longest text in a comment. [characters]"""
@@ -43,7 +54,18 @@ def map_text(suggestion: Suggestion, head: LogHead, source: str, check: str = ""
         doubt = ""
         if quantity == names.TORQUE and not split_unit(head.names[guess.column])[1]:
             doubt = "  # by name only, the values do not show it: N·m, or A if it is a current"
-        lines.append(f'{quantity} = "{guess.unit}"{doubt}')
+        unit = guess.unit
+        if units.is_count(split_unit(head.names[guess.column])[1]):
+            unit = next(iter(units.FACTORS[quantity]))
+        lines.append(f'{quantity} = "{unit}"{doubt}')
+    counted = [
+        quantity
+        for quantity, guess in suggestion.guesses.items()
+        if units.is_count(split_unit(head.names[guess.column])[1])
+    ]
+    if counted:
+        lines += ["", "[scale]"]
+        lines += [f"{quantity} = 0  # fill in: {_PER_COUNT[quantity]}" for quantity in counted]
     if suggestion.torque_side != names.JOINT_SIDE:
         lines += ["", "[side]", f'torque = "{suggestion.torque_side}"']
     lines += ["", "[joint]", f"number = {suggestion.joint}"]

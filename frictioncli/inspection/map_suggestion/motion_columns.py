@@ -24,7 +24,7 @@ from frictioncli.inspection.map_suggestion.measured_or_commanded import (
 from frictioncli.inspection.map_suggestion.time_columns import TimeColumn, possible_time_units
 from frictioncli.logs.channels import channel_names as names
 from frictioncli.logs.channels import position_units, units
-from frictioncli.logs.channels.recognition import split_unit
+from frictioncli.logs.channels.recognition import unit_in_name
 
 _ACCELERATION = re.compile(r"acc|beschl", re.I)
 _SURE_COSINE = 0.999
@@ -172,7 +172,10 @@ def _by_position(
     )
     usual = position_units.usual_position_unit(largest=largest, span=span, on_motor=False)
     unit = usual if usual in possible else min(possible)
-    if position_units.wraps_as_of_mit_protocol([values]):
+    written = unit_in_name(columns.head.names[column], names.POSITION)
+    if written is not None:
+        unit, unit_reason = written, ""
+    elif position_units.wraps_as_of_mit_protocol([values]):
         unit, unit_reason = "rad", "wraps at ±12.5, as motors of the MIT protocol log rad"
     time_unit = possible_time_units(time)[-1]
     degrees = values * units.FACTORS[names.POSITION][unit]
@@ -188,7 +191,7 @@ def _by_position(
         if named and columns.joints.get(c) == columns.joints.get(column)
     ]
     if rates:
-        rate_unit = units.canonical(split_unit(columns.head.names[rates[0]])[1], names.VELOCITY)
+        rate_unit = unit_in_name(columns.head.names[rates[0]], names.VELOCITY)
         # no velocity is logged in microdegrees per second
         rate_unit = rate_unit or ("rad/s" if unit == "rad" else "deg/s")
         rate = columns.head.values[rates[0]] * units.FACTORS[names.VELOCITY][rate_unit]

@@ -23,6 +23,7 @@ from frictioncli.inspection.map_suggestion.measured_or_commanded import (
 from frictioncli.logs.channels import channel_names as names
 from frictioncli.logs.channels import units
 from frictioncli.logs.channels.joint_plan import JointPlan
+from frictioncli.logs.channels.recognition import unit_in_name
 
 _LEAST_SPEED = 0.1
 """Least speed of a moving joint, as a share of the highest speed."""
@@ -307,8 +308,9 @@ def _torque_unit(columns: LogColumns, column: int) -> str:
     """Return the unit of a torque column by its header, else A or N·m by its name."""
     channel = columns.recognised.get(column)
     name = columns.head.names[column].lower()
-    written = "" if channel is None else channel.unit or channel.meaning.unit
-    unit = units.canonical(written, names.TORQUE) if written else None
-    if unit in units.FACTORS[names.TORQUE]:
-        return str(unit)
+    known = "" if channel is None else channel.meaning.unit
+    unit = unit_in_name(columns.head.names[column], names.TORQUE)
+    unit = unit or units.canonical(known, names.TORQUE)
+    if unit is not None:
+        return unit
     return "A" if any(word in name for word in _CURRENT_WORDS) else "N·m"

@@ -23,6 +23,7 @@ from frictioncli.logs.channels.map_entries import (
     joint_number,
     listed,
     ratio,
+    scale,
     shown,
     toml_document,
     torque_constant,
@@ -30,7 +31,7 @@ from frictioncli.logs.channels.map_entries import (
 from frictioncli.logs.log_source import CsvHints
 from frictioncli.plain_text import whole_number
 
-_SECTIONS = ("channels", "units", "side", "csv", "joint")
+_SECTIONS = ("channels", "units", "scale", "side", "csv", "joint")
 _SIDED = (POSITION, VELOCITY, TORQUE)
 _JOINT_KEYS = ("number", "gear_ratio", "rated_torque", "torque_constant")
 _INLINE = re.compile(rf"\s*({'|'.join((*CHANNELS, 'joint'))})\s*=")
@@ -46,6 +47,8 @@ class ChannelMap:
         Column name by quantity.
     units : dict of str to str
         Unit by quantity, a key of :data:`frictioncli.logs.channels.units.FACTORS`.
+    scales : dict of str to float
+        Factor by quantity from the numbers in the log to its unit, for counts of a converter.
     sides : dict of str to str
         Side of the gear, ``joint`` or ``motor``, of position, velocity and torque.
     hints : CsvHints
@@ -62,6 +65,7 @@ class ChannelMap:
 
     channels: dict[str, str] = field(default_factory=dict)
     units: dict[str, str] = field(default_factory=dict)
+    scales: dict[str, float] = field(default_factory=dict)
     sides: dict[str, str] = field(default_factory=dict)
     hints: CsvHints = field(default_factory=CsvHints)
     joint: int | None = None
@@ -99,6 +103,7 @@ def read_map(path: Path) -> ChannelMap:
     channels, channel_units = sections["channels"], sections["units"]
     check_keys(path, "name in [channels]", channels, CHANNELS)
     check_keys(path, "name in [units]", channel_units, CHANNELS)
+    check_keys(path, "name in [scale]", sections["scale"], CHANNELS)
     check_keys(path, "name in [side]", sections["side"], _SIDED)
     check_keys(path, "key in [csv]", sections["csv"], CSV_KEYS)
     check_keys(path, "key in [joint]", sections["joint"], _JOINT_KEYS)
@@ -112,10 +117,14 @@ def read_map(path: Path) -> ChannelMap:
     for name, side in sections["side"].items():
         if side not in (JOINT_SIDE, MOTOR_SIDE):
             raise MappingError(f"{path}: [side] {name} = {shown(side)}; expected joint or motor")
+    scales = {name: scale(path, name, value) for name, value in sections["scale"].items()}
+    # what is scaled has the unit that is given, not the one in its header
+    own_units = {name: next(iter(units.FACTORS[name])) for name in scales}
     return ChannelMap(
         channels={name: str(column) for name, column in channels.items()},
+        scales=scales,
         sides=dict(sections["side"]),
-        units={name: _unit(path, name, text) for name, text in channel_units.items()},
+        units=own_units | {name: _unit(path, name, text) for name, text in channel_units.items()},
         hints=csv_hints(path, sections["csv"]),
         joint=joint_number(path, sections["joint"].get("number")),
         gear_ratio=ratio(path, "gear_ratio", sections["joint"].get("gear_ratio")),
@@ -161,6 +170,7 @@ def _unit(path: Path, name: str, text: Any) -> str:
     unit = units.canonical(text, name) if isinstance(text, str) else None
     if unit is None or unit not in units.FACTORS[name]:
         raise MappingError(
-            f"{path}: [units] {name} = {shown(text)}; expected one of {listed(units.FACTORS[name])}"
+            f"{path}: [units] {name} = {shown(text)}; expected one of"
+            f" {listed(units.FACTORS[name])}; for anything else give its size with [scale] {name}"
         )
     return unit

@@ -67,7 +67,8 @@ _ALIASES: tuple[tuple[Meaning, str], ...] = (
         "axisposact axispos axisact axisactmeas position positions pos jointposition jointpositions"
         " actualposition actualjointposition positionact actpos posact q actualq aipos mp stateq"
         " robotactualjointpositions angle jointangle winkel achswinkel gelenkwinkel istwinkel"
-        " axisangle axisposition achsposition jointpos qact observationstate observationqpos",
+        " axisangle axisposition achsposition jointpos qact observationstate observationqpos"
+        " posestimate",
     ),
     (
         Meaning(POSITION, MOTOR_SIDE),
@@ -78,7 +79,7 @@ _ALIASES: tuple[tuple[Meaning, str], ...] = (
         "axisvelact axisvel velocity velocities vel jointvelocity jointvelocities actualvelocity"
         " velocityact velact qd dq qdot actualqd statedq robotactualjointvelocities speed"
         " geschwindigkeit achsgeschwindigkeit gelenkgeschwindigkeit axisvelocity jointvel"
-        " axisspeed jointspeed actvelo actvel observationvelocity observationqvel",
+        " axisspeed jointspeed actvelo actvel observationvelocity observationqvel velestimate",
     ),
     (
         Meaning(VELOCITY, MOTOR_SIDE),
@@ -96,7 +97,8 @@ _ALIASES: tuple[tuple[Meaning, str], ...] = (
     (
         Meaning(TORQUE, MOTOR_SIDE, 3, "A"),
         "iststrom strom current currents motorcurrent motorstrom actualcurrent actualjointcurrent"
-        " robotactualjointcurrent currentact actcurrent curr jointcurrent macur observationcurrent",
+        " robotactualjointcurrent currentact actcurrent curr jointcurrent macur observationcurrent"
+        " iqmeasured",
     ),
     (Meaning(TORQUE, MOTOR_SIDE, 3, "%"), "curract"),
     (

@@ -35,6 +35,8 @@ class JointPlan:
         Side of the gear, ``joint`` or ``motor``.
     constant : TorqueConstant or None
         By which a motor current was brought to N·m.
+    shows_time : bool
+        Whether the unit of time follows from the joint's motion and velocity.
     notes, warnings : tuple of str
         Where the reading departs from the header or adds to it.
     """
@@ -47,6 +49,7 @@ class JointPlan:
     notes: tuple[str, ...]
     warnings: tuple[str, ...]
     constant: TorqueConstant | None = None
+    shows_time: bool = False
 
 
 def plan_joint(
@@ -164,6 +167,7 @@ def plan_joint(
         notes=tuple(remarks.notes),
         warnings=tuple(remarks.warnings),
         constant=constant if is_current and isinstance(constant, TorqueConstant) else None,
+        shows_time=bool(found.evidence) and found.velocity is not None,
     )
 
 
@@ -196,8 +200,15 @@ def _torque_unit(channel: LogChannel, forced: Mapping[str, str], remarks: Remark
         )
     if unit is None:
         unit = "N·m"
-        why = f"unit {written!r} is not known" if written else "no unit in the header"
-        remarks.notes.append(f"{channel.name}: {why}, taken as N·m; force with --torque-unit")
+        if written:
+            remarks.warnings.append(
+                f"{channel.name}: unit {written!r} is not known, taken as N·m; give another with"
+                " --torque-unit, or its size with [scale] torque in --map"
+            )
+        else:
+            remarks.notes.append(
+                f"{channel.name}: no unit in the header, taken as N·m; force with --torque-unit"
+            )
     return unit
 
 

@@ -143,21 +143,52 @@ def ratio(path: Path, key: str, value: Any) -> float | None:
     MappingError
         If it is no number, 0 or infinite.
     """
-    if value is None:
-        return None
-    if isinstance(value, int | float) and value is not True:
-        try:
-            number = float(value)
-        except OverflowError:
-            number = math.inf
-        if math.isfinite(number) and number != 0:
-            return number
+    number = _factor(value)
+    if value is None or number is not None:
+        return number
     meaning = {
         "gear_ratio": "motor turns per joint turn, not 0",
         "rated_torque": "N·m at 100 %, not 0",
         "torque_constant": "'auto', or N·m/A, not 0",
     }[key]
     raise MappingError(f"{path}: [joint] {key} = {shown(value)}; expected {meaning}")
+
+
+def scale(path: Path, name: str, value: Any) -> float:
+    """Return the factor of a quantity, from the numbers in a log to its unit.
+
+    Parameters
+    ----------
+    path : Path
+        The mapping file.
+    name : str
+        The quantity.
+    value : object
+        The value as it was read.
+
+    Raises
+    ------
+    MappingError
+        If it is no number, 0 or infinite.
+    """
+    number = _factor(value)
+    if number is None:
+        raise MappingError(
+            f"{path}: [scale] {name} = {shown(value)}; expected the number by which the column is"
+            " multiplied, not 0"
+        )
+    return number
+
+
+def _factor(value: Any) -> float | None:
+    """Return a number that is neither 0 nor infinite, None for anything else."""
+    if not isinstance(value, int | float) or isinstance(value, bool):
+        return None
+    try:
+        number = float(value)
+    except OverflowError:
+        return None
+    return number if math.isfinite(number) and number != 0 else None
 
 
 def torque_constant(path: Path, value: Any) -> float | str | None:

@@ -114,7 +114,11 @@ def _axis_units(
         path_per_angle=_tool_path_per_angle(survey, family),
     )
     allowed = possible
-    if names.POSITION in forced:
+    declared_position = forced.get(names.POSITION) or units.canonical(position.unit, names.POSITION)
+    if declared_position == "turn":
+        # no other unit is written so, and any value can be one of turns
+        allowed, why = frozenset({"turn"}), ""
+    elif names.POSITION in forced:
         allowed = frozenset({forced[names.POSITION]})
         if not allowed <= possible:
             remarks.warnings.append(
@@ -123,7 +127,6 @@ def _axis_units(
     times = [head[axis.time.column] for head in survey.heads]
     written_time = units.canonical(axis.time.unit or axis.time.meaning.unit, names.TIME)
     declared_time = forced.get(names.TIME) or units.infer_time_unit(times, written_time)
-    declared_position = forced.get(names.POSITION) or units.canonical(position.unit, names.POSITION)
     declared_velocity = forced.get(names.VELOCITY)
     ratio = None
     if axis.velocity is not None:
@@ -154,6 +157,8 @@ def _axis_units(
     velocity_tells = bool(found.evidence) and found.velocity is not None
     is_open = len(allowed) > 1 and usual == "rad" and not velocity_tells
     doubt = _doubt(axis.position, why) if is_open and declared_position == "deg" else ""
+    if names.POSITION not in forced and units.is_count(position.unit):
+        doubt = _COUNTED.format(name=position.name)
     found = _with_forced_units(found, forced, remarks)
     _remark_position(axis, found, why, forced, remarks)
     if axis.velocity is not None:
@@ -169,6 +174,12 @@ def _mit_units(axis: _Axis, found: MotionUnits, remarks: Remarks) -> MotionUnits
             f" compare {axis.position.name} with a known angle"
         )
     return replace(found, position="rad", velocity="rad/s", evidence="")
+
+
+_COUNTED = (
+    "{name} counts pulses; give the angle of one pulse in deg with --map, as"
+    " [scale] position = 0.0879"
+)
 
 
 def _doubt(position: LogChannel, why: str) -> str:
@@ -222,6 +233,11 @@ def _remark_velocity(
     velocity: LogChannel, found: MotionUnits, forced: Mapping[str, str], remarks: Remarks
 ) -> None:
     written = units.canonical(velocity.unit, names.VELOCITY)
+    if velocity.unit and written is None and names.VELOCITY not in forced and not found.evidence:
+        remarks.warnings.append(
+            f"{velocity.name}: unit {velocity.unit!r} is not known, taken as {found.velocity};"
+            " give another with --velocity-unit, or its size with [scale] velocity in --map"
+        )
     if found.velocity is None:
         remarks.warnings.append(
             f"{velocity.name} is not used, {found.evidence}; velocity is differentiated from"

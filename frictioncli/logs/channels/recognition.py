@@ -4,6 +4,7 @@ import re
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
+from frictioncli.logs.channels import units
 from frictioncli.logs.channels.channel_names import (
     MEANINGS,
     TIME,
@@ -89,6 +90,17 @@ def split_unit(column: str) -> tuple[str, str]:
     if unit in ("x", "y", "z", "rx", "ry", "rz"):  # an axis of a coordinate frame, not a unit
         return f"{name} {unit}", ""
     return name, unit
+
+
+def unit_in_name(column: str, quantity: str) -> str | None:
+    """Return the unit of a quantity that a column's name has in brackets, None where it has none.
+
+    Examples
+    --------
+    >>> unit_in_name("pos_estimate [turns]", "position")
+    'turn'
+    """
+    return units.canonical(split_unit(column)[1], quantity)
 
 
 def recognise_channels(

@@ -152,6 +152,8 @@ def motion_units(
     for time_unit in dict.fromkeys((time or "s", "s", "ms", "us")):
         for position_unit in positions:
             for velocity_unit, velocity_factor in FACTORS["velocity"].items():
+                if velocity_unit == "turn/s" and velocity_unit != velocity and position != "turn":
+                    continue  # from its values it looks much like rpm
                 expected = (
                     velocity_factor
                     * FACTORS["time"][time_unit]

@@ -16,18 +16,22 @@ if TYPE_CHECKING:
     from frictioncli.arrays import Array
 
 _DEGREES_PER_RADIAN = 180.0 / math.pi
+_TORQUE_FACTORS = {"N·m": 1.0, "mN·m": 1e-3, "N·cm": 1e-2, "kN·m": 1e3}
 _TEMPERATURE_FACTORS = {"°C": 1.0, "K": 1.0, "°F": 5.0 / 9.0, "m°C": 1e-3, "mK": 1e-3}
 _OFFSETS = {"K": -273.15, "°F": -32.0 * 5.0 / 9.0, "mK": -273.15}
 
 FACTORS: Mapping[str, Mapping[str, float]] = MappingProxyType(
     {
         "time": {"s": 1.0, "ms": 1e-3, "us": 1e-6, "ns": 1e-9, "min": 60.0, "100ns": 1e-7},
-        "position": {"deg": 1.0, "rad": _DEGREES_PER_RADIAN, "udeg": 1e-6},
-        "velocity": {"deg/s": 1.0, "rad/s": _DEGREES_PER_RADIAN, "rpm": 6.0, "mdeg/s": 1e-3},
-        "torque": {"N·m": 1.0, "mN·m": 1e-3, "A": 1.0, "mA": 1e-3, "%": 1.0},
+        "position": {"deg": 1.0, "rad": _DEGREES_PER_RADIAN, "udeg": 1e-6, "turn": 360.0},
+        "velocity": {
+            **{"deg/s": 1.0, "rad/s": _DEGREES_PER_RADIAN, "rpm": 6.0, "mdeg/s": 1e-3},
+            "turn/s": 360.0,
+        },
+        "torque": {**_TORQUE_FACTORS, "A": 1.0, "mA": 1e-3, "%": 1.0},
         "motor_temperature": _TEMPERATURE_FACTORS,
         "housing_temperature": _TEMPERATURE_FACTORS,
-        "load": {"N·m": 1.0, "mN·m": 1e-3},
+        "load": _TORQUE_FACTORS,
     }
 )
 """Factor from each unit to the internal unit, by quantity."""
@@ -42,12 +46,16 @@ _SPELLINGS = {
     "deg": "deg ° degree degrees grad",
     "rad": "rad radian radians radiant",
     "udeg": "udeg µdeg μdeg µ° μ° u° microdeg microdegree microdegrees 1e-6deg",
+    "turn": "turn turns rev revs revolution revolutions rotation rotations umdrehung umdrehungen",
+    "turn/s": "turn/s turns/s rev/s revs/s rps hz",
     "deg/s": "deg/s °/s degree/s degrees/s grad/s deg/sec °/sec deg*s^-1 dps",
     "rad/s": "rad/s rad/sec rad*s^-1 radian/s",
     "mdeg/s": "mdeg/s m°/s millideg/s",
-    "rpm": "rpm 1/min u/min min^-1 /min r/min",
+    "rpm": "rpm min-1 1/min u/min min^-1 /min r/min",
     "N·m": "nm n·m n*m newtonmeter newtonmetre n.m",
     "mN·m": "mnm mn·m mn*m",
+    "N·cm": "ncm n·cm n*cm",
+    "kN·m": "knm kn·m kn*m",
     "A": "a amp ampere amps arms",
     "mA": "ma milliampere",
     "%": "% percent prozent",
@@ -59,6 +67,11 @@ _SPELLINGS = {
 }
 _CANONICAL = {text: unit for unit, texts in _SPELLINGS.items() for text in texts.split()}
 
+_COUNTS = re.compile(
+    r"(?:pulses?|puls|counts?|cts?|cnts?|ticks?|inc|incr|increments?|inkremente?|steps?|lsb|digits?)"
+    r"(?:/s|/sec|/ms)?",
+    re.I,
+)
 _NOT_READ = re.compile(r"[^\x00-\x7f]+|\?+")
 _NOT_ASCII = re.compile(r"[^\x00-\x7f]+")
 
@@ -114,6 +127,17 @@ def canonical(text: str, quantity: str) -> str | None:
         if unit in FACTORS[quantity]:
             return unit
     return None
+
+
+def is_count(text: str) -> bool:
+    """Return whether a unit counts pulses of an encoder or digits of a converter.
+
+    Examples
+    --------
+    >>> is_count("[pulse]"), is_count("counts/s"), is_count("deg")
+    (True, True, False)
+    """
+    return _COUNTS.fullmatch(text.strip().strip("[]()").replace(" ", "")) is not None
 
 
 def conversion_from(unit: str, quantity: str, note: str = "") -> UnitConversion:

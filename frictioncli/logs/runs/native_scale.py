@@ -25,33 +25,36 @@ class ScaledLog(SequentialSource):
 
     Attributes
     ----------
-    base : LogSource
+    source : LogSource
         The log with raw values.
     scales : tuple of (float, float)
         Factor and offset of each column: ``raw * factor + offset``.
+    note : str
+        Where they are from, in words.
     """
 
-    base: LogSource
+    source: LogSource
     scales: tuple[tuple[float, float], ...]
+    note: str = "raw values scaled by the .dat header"
 
     @property
     def path(self) -> Path:
         """The file."""
-        return self.base.path
+        return self.source.path
 
     @property
     def columns(self) -> tuple[str, ...]:
         """Column names as they stand in the file."""
-        return self.base.columns
+        return self.source.columns
 
     @property
     def form(self) -> str:
         """The file's form in words."""
-        return f"{self.base.form}, raw values scaled by the .dat header"
+        return f"{self.source.form}, {self.note}"
 
     def batches(self, columns: Collection[int], size: int) -> Iterator[RawBatch]:
         """Yield the rows in order, about ``size`` bytes of the file at a time."""
-        for batch in self.base.batches(columns, size):
+        for batch in self.source.batches(columns, size):
             values = {
                 column: cells * self.scales[column][0] + self.scales[column][1]
                 for column, cells in batch.values.items()
@@ -60,7 +63,7 @@ class ScaledLog(SequentialSource):
 
     def texts(self, lines: Numbers, size: int) -> Iterator[tuple[int, str]]:
         """Yield (line, text) for the asked lines, which must be ascending."""
-        return self.base.texts(lines, size)
+        return self.source.texts(lines, size)
 
 
 def scale_raw_export(source: LogSource) -> LogSource:

@@ -6,9 +6,11 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 from frictioncli.logs.channels.channel_map import ChannelMap
+from frictioncli.logs.channels.channel_names import INTEGRATED, TIME, VELOCITY
 from frictioncli.logs.channels.joint_channels import JointChannels, assign_channels
 from frictioncli.logs.channels.mapped_channels import mapped_channels, with_side
 from frictioncli.logs.channels.recognition import LogChannel, recognise_channels
+from frictioncli.logs.channels.units import is_count
 from frictioncli.logs.formats import open_logs
 from frictioncli.logs.formats.twincat_scope import scope_start
 from frictioncli.logs.log_source import LogSource, Refusal
@@ -20,7 +22,7 @@ from frictioncli.logs.runs.integrated_position import (
     scale_to_degrees,
     with_position,
 )
-from frictioncli.logs.runs.native_scale import scale_raw_export
+from frictioncli.logs.runs.native_scale import ScaledLog, scale_raw_export
 from frictioncli.logs.runs.sidecar import Sidecar, read_sidecar, recorder_start
 from frictioncli.logs.runs.trace_files import duplicates_of_native, merge_trace
 from frictioncli.logs.runs.trace_names import is_module, is_program, trace_of
@@ -117,7 +119,7 @@ def open_run(
             run=run,
             file=file,
             recording=recordings[file],
-            source=choice.source,
+            source=_scaled(choice, channel_map),
             channels=choice.channels,
             joints=choice.joints,
             sidecar=_with_own_start(
@@ -192,11 +194,33 @@ def _without_position(
     if found is None or isinstance(channels, Refusal):
         return refusal
     time, velocity = found
+    if is_count(velocity.unit) and VELOCITY not in channel_map.scales:
+        text = (
+            f"no position, and {velocity.name} counts pulses; give the speed of one pulse per"
+            " time in deg/s with --map, as [scale] velocity = 0.0879"
+        )
+        return Refusal("unclear_velocity_unit", text)
     forced = {**channel_map.units, **settings.forced_units()}
     scale = scale_to_degrees(time, velocity, forced)
+    for quantity in (TIME, VELOCITY):
+        scale *= channel_map.scales.get(quantity, 1.0)
     integrated = IntegratedPosition(source, time.column, velocity.column, scale)
     known = with_position(channels, velocity, len(source.columns))
     return _choose(integrated, known, settings.joints, file_joint=joint)
+
+
+def _scaled(choice: _Choice, channel_map: ChannelMap) -> LogSource:
+    """Return the log with the columns that the map scales multiplied."""
+    factors = {
+        channel.column: channel_map.scales[channel.quantity]
+        for channel in choice.channels
+        if channel.quantity in channel_map.scales and channel.name != INTEGRATED
+    }
+    if not factors:
+        return choice.source
+    columns = range(len(choice.source.columns))
+    scales = tuple((factors.get(column, 1.0), 0.0) for column in columns)
+    return ScaledLog(choice.source, scales, "scaled by the map")
 
 
 def _with_own_start(sidecar: Sidecar, source: LogSource) -> Sidecar:
