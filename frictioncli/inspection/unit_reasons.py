@@ -32,7 +32,7 @@ def evidence(plan: JointPlan, quantity: str, given: Collection[str], largest: fl
         return "; ".join(("as given", *notes))
     if any("read as" in text or "taken as" in text for text in notes):
         return "; ".join(notes)
-    if channel.unit:
+    if channel.unit and units.canonical(channel.unit, quantity):
         return "; ".join(("as the header says", *notes))
     if quantity == names.POSITION and largest > _LARGEST_RADIANS:
         return "; ".join((f"no unit, but values reach {largest:.4g}, too far for rad", *notes))

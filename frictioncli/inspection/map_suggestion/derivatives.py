@@ -11,7 +11,7 @@ from frictioncli.logs.channels import channel_names as names
 from frictioncli.logs.channels import position_units, unit_evidence
 from frictioncli.logs.channels.recognition import unit_in_name
 from frictioncli.logs.channels.unit_evidence import MotionUnits
-from frictioncli.logs.channels.units import FACTORS
+from frictioncli.logs.channels.units import FACTORS, ONLY_WRITTEN
 
 _LEAST_COSINE = 0.97
 """Least cosine between the change of a column and the integral of its derivative."""
@@ -117,8 +117,8 @@ def _fitting_units(
     possible, _ = position_units.possible_position_units(
         largest=largest, span=span, on_motor=False, path_per_angle=None
     )
-    if written[0] == "turn":
-        possible = frozenset({"turn"})
+    if written[0] in ONLY_WRITTEN:
+        possible = frozenset({written[0]})
     for time_unit in time_units:
         scaled = ratio / FACTORS[names.TIME][time_unit]
         found = unit_evidence.motion_units(

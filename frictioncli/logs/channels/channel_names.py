@@ -59,16 +59,16 @@ _ALIASES: tuple[tuple[Meaning, str], ...] = (
     (
         Meaning(TIME),
         "zeit time t timestamp zeitstempel sekunden seconds elapsed elapsedtime robottime tsec"
-        " timesec times zeits datetime recordtime controllertime sec",
+        " timesec times zeits temps datetime recordtime controllertime sec",
     ),
-    (Meaning(TIME, rank=1, unit="ms"), "sample timems zeitms"),
+    (Meaning(TIME, rank=1, unit="ms"), "sample timems zeitms timestampms"),
     (
         Meaning(POSITION),
         "axisposact axispos axisact axisactmeas position positions pos jointposition jointpositions"
         " actualposition actualjointposition positionact actpos posact q actualq aipos mp stateq"
         " robotactualjointpositions angle jointangle winkel achswinkel gelenkwinkel istwinkel"
         " axisangle axisposition achsposition jointpos qact observationstate observationqpos"
-        " posestimate",
+        " posestimate positionachse theta",
     ),
     (
         Meaning(POSITION, MOTOR_SIDE),
@@ -79,7 +79,8 @@ _ALIASES: tuple[tuple[Meaning, str], ...] = (
         "axisvelact axisvel velocity velocities vel jointvelocity jointvelocities actualvelocity"
         " velocityact velact qd dq qdot actualqd statedq robotactualjointvelocities speed"
         " geschwindigkeit achsgeschwindigkeit gelenkgeschwindigkeit axisvelocity jointvel"
-        " axisspeed jointspeed actvelo actvel observationvelocity observationqvel velestimate",
+        " axisspeed jointspeed actvelo actvel observationvelocity observationqvel velestimate"
+        " vitesse omega",
     ),
     (
         Meaning(VELOCITY, MOTOR_SIDE),
@@ -91,21 +92,22 @@ _ALIASES: tuple[tuple[Meaning, str], ...] = (
         Meaning(TORQUE, JOINT_SIDE, 1),
         "torque torques jointtorque jointtorques axistorque drehmoment moment tau effort"
         " torqueaxisact actualtorque torqueact mt statetauj tauj measuredtorque achsmoment"
-        " gelenkmoment torqact axistorqact acttorque acttorq observationeffort observationtorque",
+        " gelenkmoment torqact axistorqact acttorque acttorq observationeffort observationtorque"
+        " tauest trq eff couple",
     ),
     (Meaning(TORQUE, JOINT_SIDE, 2), "geartorqact geartorque geartorq getriebemoment"),
     (
         Meaning(TORQUE, MOTOR_SIDE, 3, "A"),
         "iststrom strom current currents motorcurrent motorstrom actualcurrent actualjointcurrent"
         " robotactualjointcurrent currentact actcurrent curr jointcurrent macur observationcurrent"
-        " iqmeasured",
+        " iqmeasured currentmotor",
     ),
     (Meaning(TORQUE, MOTOR_SIDE, 3, "%"), "curract"),
     (
         Meaning(MOTOR_TEMPERATURE),
         "motortemperatur motortemperature motortemperatures mottemp motortemp motortempact"
         " temperatur temperature temperatures temp jointtemperature jointtemperatures jointtemp"
-        " robotjointtemp motort tm wicklungstemperatur",
+        " robotjointtemp motort tm wicklungstemperatur temperaturemotor",
     ),
     (
         Meaning(HOUSING_TEMPERATURE),

@@ -131,7 +131,7 @@ def _joint_channels(
     other_position = _first([c for c in positions if c.meaning.side != position.meaning.side])
     velocities = _by_preference(of_joint, VELOCITY)
     same_side = [c for c in velocities if c.meaning.side == position.meaning.side]
-    notes = []
+    notes = [f"joint {joint} is {position.joint_name}"] if position.joint_name else []
     if len(torques) > 1:
         others = ", ".join(c.name for c in torques[1:])
         notes.append(f"torque of joint {joint} is {torques[0].name}; not used: {others}")

@@ -16,6 +16,9 @@ from frictioncli.logs.channels.transmission import Transmission, find_transmissi
 from frictioncli.logs.channels.units import UnitConversion
 from frictioncli.logs.log_source import Refusal
 
+_OF_RATED = ("%", "‰")
+"""Units of torque relative to the rated torque."""
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class JointPlan:
@@ -121,8 +124,9 @@ def plan_joint(
     if channels.velocity is not None and found.velocity is not None:
         velocity = _joint_conversion(found.velocity, channels.velocity, gear)
         conversions[names.VELOCITY] = _scaled(velocity, -1.0 if found.reversed_velocity else 1.0)
-    if torque_unit == "%" and rated_torque is not None:
-        torque_unit, rated = "N·m", rated_torque / 100
+    if torque_unit in _OF_RATED and rated_torque is not None:
+        rated = rated_torque / 100 * units.FACTORS[names.TORQUE][torque_unit]
+        torque_unit = "N·m"
         remarks.notes[:] = [note for note in remarks.notes if "--rated-torque" not in note]
     else:
         rated = 1.0
@@ -162,7 +166,7 @@ def plan_joint(
         channels=channels,
         conversions=conversions,
         position_limit=position_units.RADIAN_LIMIT if limited else None,
-        torque_unit={"A": "A", "mA": "A", "%": "%"}.get(torque_unit, "N·m"),
+        torque_unit={"A": "A", "mA": "A", "%": "%", "‰": "%"}.get(torque_unit, "N·m"),
         torque_side=side,
         notes=tuple(remarks.notes),
         warnings=tuple(remarks.warnings),
@@ -193,7 +197,7 @@ def _torque_unit(channel: LogChannel, forced: Mapping[str, str], remarks: Remark
         return forced[names.TORQUE]
     written = channel.unit or channel.meaning.unit
     unit = units.canonical(written, names.TORQUE) if written else None
-    if unit == "%":
+    if unit in _OF_RATED:
         remarks.notes.append(
             f"{channel.name} is in percent, and so is every torque-like result; with"
             " --rated-torque they are in N·m"

@@ -115,9 +115,8 @@ def _axis_units(
     )
     allowed = possible
     declared_position = forced.get(names.POSITION) or units.canonical(position.unit, names.POSITION)
-    if declared_position == "turn":
-        # no other unit is written so, and any value can be one of turns
-        allowed, why = frozenset({"turn"}), ""
+    if declared_position in units.ONLY_WRITTEN:
+        allowed, why = frozenset({declared_position}), ""
     elif names.POSITION in forced:
         allowed = frozenset({forced[names.POSITION]})
         if not allowed <= possible:
@@ -218,6 +217,12 @@ def _remark_position(
     position = axis.position
     written = units.canonical(position.unit, names.POSITION)
     if names.POSITION in forced or written == found.position:
+        return
+    if position.unit and written is None and not found.evidence:
+        remarks.warnings.append(
+            f"{position.name}: unit {position.unit!r} is not known, taken as {found.position};"
+            " give another with --position-unit, or its size with [scale] position in --map"
+        )
         return
     if written is None and found.position == "deg":
         return

@@ -1,18 +1,23 @@
 """Recognise the columns of a log by name: quantity, joint, side of the gear and unit."""
 
 import re
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass, replace
 
 from frictioncli.logs.channels import units
 from frictioncli.logs.channels.channel_names import (
     MEANINGS,
+    POSITION,
     TIME,
     TOOL,
     Meaning,
 )
+from frictioncli.logs.channels.named_joints import named_joints
 
 _UNIT = re.compile(r"^(?P<name>.*?)[\[(](?P<unit>[^\[\]()]*)[\])]\s*$")
+_UNIT_LAST = re.compile(
+    r"^(?P<name>.+)[_ ](?P<unit>mNm|Nm|mA|degC|deg|rad|(?:deg|rad)[_/]?s|dps|rpm|ms|us|ns)$"
+)
 _JOINT_LAST = re.compile(
     r"^(?P<name>.*?)(?:(?<=[a-z])[AJ]|(?<![ _.\-(\[])[ _.\-(\[]+[AaJj]?[ _]?|)"
     r"(?P<joint>\d{1,2})[)\]]?$"
@@ -33,6 +38,7 @@ _JOINT_IN_FILE_NAME = re.compile(
     r"|(?:^|[_\s-])(?:A|J|(?:axis|joint|achse|motor)[_\s-]?)(\d{1,2})$",
     re.I,
 )
+_BARE_JOINT = re.compile(r"^(?:joint|axis|achse|gelenk)[ _.]?(\d{1,2})$", re.I)
 _ID_COLUMN = re.compile(r"^(?:motor|joint|axis|achse|servo)[ _.]?(?:id|no|nr|number|nummer)$", re.I)
 
 
@@ -57,6 +63,8 @@ class LogChannel:
     is_merged : bool
         Whether it was merged from another file of the same trace; columns of the file itself are
         preferred.
+    joint_name : str
+        Name of the joint where it has one instead of a number; "" otherwise.
     """
 
     column: int
@@ -66,6 +74,7 @@ class LogChannel:
     unit: str
     family: str
     is_merged: bool = False
+    joint_name: str = ""
 
     @property
     def quantity(self) -> str:
@@ -76,16 +85,21 @@ class LogChannel:
 def split_unit(column: str) -> tuple[str, str]:
     """Return a column's name without its unit, and the unit as written ("" where there is none).
 
+    Units stand in brackets, or are the last word of the name.
+
     Examples
     --------
     >>> split_unit("AxisPos_Act1 [deg]")
     ('AxisPos_Act1', 'deg')
+    >>> split_unit("tau_mNm")
+    ('tau', 'mNm')
     >>> split_unit("q(2)")
     ('q(2)', '')
     """
-    found = _UNIT.match(column.strip().strip('"'))
+    bare = column.strip().strip('"')
+    found = _UNIT.match(bare) or _UNIT_LAST.match(bare)
     if found is None or _JOINT_IN_BRACKETS.match(found["unit"].strip()):
-        return column.strip().strip('"'), ""
+        return bare, ""
     name, unit = found["name"].rstrip(), found["unit"].strip()
     if unit in ("x", "y", "z", "rx", "ry", "rz"):  # an axis of a coordinate frame, not a unit
         return f"{name} {unit}", ""
@@ -109,7 +123,8 @@ def recognise_channels(
     """Return the columns whose names are known, in file order.
 
     Where a column has joint number 0, the file counts joints from 0 and all of its joint numbers
-    are raised by one. Of several columns with the same name, the first is taken.
+    are raised by one. Joints that have names and no numbers are numbered in file order. Of several
+    columns with the same name, the first is taken.
 
     Parameters
     ----------
@@ -134,10 +149,43 @@ def recognise_channels(
         if channel is not None:
             is_merged = first_merged is not None and index >= first_merged
             found.append(replace(channel, is_merged=is_merged))
+    if not any(channel.quantity == POSITION for channel in found):
+        found += _bare_joints(columns, {channel.column for channel in found})
+    if all(channel.joint is None for channel in found):
+        return _with_named_joints(found, columns)
     from_zero = any(channel.joint == 0 for channel in found)
     if not from_zero:
         return tuple(found)
     return tuple(c if c.joint is None else replace(c, joint=c.joint + 1) for c in found)
+
+
+def _bare_joints(columns: Sequence[str], known: Collection[int]) -> list[LogChannel]:
+    """Return columns such as ``Joint1``, which are positions where a log has no others."""
+    found = []
+    for index, column in enumerate(columns):
+        name, unit = split_unit(column)
+        joint = _BARE_JOINT.match(name)
+        if joint is not None and index not in known:
+            meaning = MEANINGS["jointposition"]
+            found.append(LogChannel(index, column, meaning, int(joint[1]), unit, "joint"))
+    return found
+
+
+def _with_named_joints(
+    found: Sequence[LogChannel], columns: Sequence[str]
+) -> tuple[LogChannel, ...]:
+    """Return the channels with those of joints that have names, numbered in file order."""
+    parted = [split_unit(column) for column in columns]
+    named = named_joints([name for name, _ in parted])
+    numbers: dict[str, int] = {}
+    channels = {channel.column: channel for channel in found}
+    for column, (joint, quantity) in named.items():
+        number = numbers.setdefault(joint, len(numbers) + 1)
+        meaning, unit = MEANINGS[_key(quantity)], parted[column][1]
+        channels[column] = LogChannel(
+            column, columns[column], meaning, number, unit, _key(quantity), joint_name=joint
+        )
+    return tuple(channels[column] for column in sorted(channels))
 
 
 def _recognised(index: int, column: str) -> LogChannel | None:

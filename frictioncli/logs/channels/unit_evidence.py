@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from frictioncli.arrays import Array
-from frictioncli.logs.channels.units import FACTORS
+from frictioncli.logs.channels.units import FACTORS, ONLY_WRITTEN
 
 _UNSCALED_COST = 0.5
 """Cost of velocity in mdeg/s, that is without scale; velocity in deg/s with time in ms is
@@ -152,8 +152,11 @@ def motion_units(
     for time_unit in dict.fromkeys((time or "s", "s", "ms", "us")):
         for position_unit in positions:
             for velocity_unit, velocity_factor in FACTORS["velocity"].items():
-                if velocity_unit == "turn/s" and velocity_unit != velocity and position != "turn":
-                    continue  # from its values it looks much like rpm
+                if velocity_unit in ONLY_WRITTEN and velocity_unit not in (
+                    velocity,
+                    f"{position}/s",
+                ):
+                    continue
                 expected = (
                     velocity_factor
                     * FACTORS["time"][time_unit]

@@ -16,25 +16,40 @@ if TYPE_CHECKING:
     from frictioncli.arrays import Array
 
 _DEGREES_PER_RADIAN = 180.0 / math.pi
-_TORQUE_FACTORS = {"N·m": 1.0, "mN·m": 1e-3, "N·cm": 1e-2, "kN·m": 1e3}
+_TORQUE_FACTORS = {
+    **{"N·m": 1.0, "mN·m": 1e-3, "N·cm": 1e-2, "kN·m": 1e3},
+    **{"kgf·m": 9.80665, "kgf·cm": 0.0980665},
+    **{"lbf·ft": 1.3558179483, "lbf·in": 0.1129848290, "ozf·in": 0.00706155181},
+}
+_ONLY_WRITTEN_POSITIONS = {"turn": 360.0, "mrad": _DEGREES_PER_RADIAN / 1e3}
 _TEMPERATURE_FACTORS = {"°C": 1.0, "K": 1.0, "°F": 5.0 / 9.0, "m°C": 1e-3, "mK": 1e-3}
 _OFFSETS = {"K": -273.15, "°F": -32.0 * 5.0 / 9.0, "mK": -273.15}
 
 FACTORS: Mapping[str, Mapping[str, float]] = MappingProxyType(
     {
         "time": {"s": 1.0, "ms": 1e-3, "us": 1e-6, "ns": 1e-9, "min": 60.0, "100ns": 1e-7},
-        "position": {"deg": 1.0, "rad": _DEGREES_PER_RADIAN, "udeg": 1e-6, "turn": 360.0},
+        "position": {
+            "deg": 1.0,
+            "rad": _DEGREES_PER_RADIAN,
+            "udeg": 1e-6,
+            **_ONLY_WRITTEN_POSITIONS,
+        },
         "velocity": {
             **{"deg/s": 1.0, "rad/s": _DEGREES_PER_RADIAN, "rpm": 6.0, "mdeg/s": 1e-3},
-            "turn/s": 360.0,
+            **{f"{unit}/s": factor for unit, factor in _ONLY_WRITTEN_POSITIONS.items()},
         },
-        "torque": {**_TORQUE_FACTORS, "A": 1.0, "mA": 1e-3, "%": 1.0},
+        "torque": {**_TORQUE_FACTORS, "A": 1.0, "mA": 1e-3, "%": 1.0, "‰": 0.1},
         "motor_temperature": _TEMPERATURE_FACTORS,
         "housing_temperature": _TEMPERATURE_FACTORS,
         "load": _TORQUE_FACTORS,
     }
 )
 """Factor from each unit to the internal unit, by quantity."""
+
+ONLY_WRITTEN = frozenset(
+    {*_ONLY_WRITTEN_POSITIONS, *(f"{unit}/s" for unit in _ONLY_WRITTEN_POSITIONS)}
+)
+"""Units that are taken only where they are written: by its values one in turn/s looks like rpm."""
 
 _SPELLINGS = {
     "s": "s sec sek second seconds sekunden sekunde",
@@ -44,18 +59,26 @@ _SPELLINGS = {
     "100ns": "100ns",
     "min": "min minutes minuten",
     "deg": "deg ° degree degrees grad",
+    "mrad": "mrad milliradian milliradians",
+    "mrad/s": "mrad/s",
     "rad": "rad radian radians radiant",
     "udeg": "udeg µdeg μdeg µ° μ° u° microdeg microdegree microdegrees 1e-6deg",
     "turn": "turn turns rev revs revolution revolutions rotation rotations umdrehung umdrehungen",
     "turn/s": "turn/s turns/s rev/s revs/s rps hz",
-    "deg/s": "deg/s °/s degree/s degrees/s grad/s deg/sec °/sec deg*s^-1 dps",
-    "rad/s": "rad/s rad/sec rad*s^-1 radian/s",
+    "deg/s": "deg/s °/s degree/s degrees/s grad/s deg/sec °/sec deg*s^-1 dps deg_s degs",
+    "rad/s": "rad/s rad/sec rad*s^-1 radian/s rad_s rads",
     "mdeg/s": "mdeg/s m°/s millideg/s",
-    "rpm": "rpm min-1 1/min u/min min^-1 /min r/min",
-    "N·m": "nm n·m n*m newtonmeter newtonmetre n.m",
+    "rpm": "rpm min-1 tr/min 1/min u/min min^-1 /min r/min",
+    "N·m": "nm n·m n*m newtonmeter newtonmetre n.m n-m",
     "mN·m": "mnm mn·m mn*m",
     "N·cm": "ncm n·cm n*cm",
     "kN·m": "knm kn·m kn*m",
+    "kgf·m": "kgf·m kgf*m kgfm kgf.m kg-m kg·m",
+    "kgf·cm": "kgf·cm kgf*cm kgfcm kgf.cm kg-cm kg·cm",
+    "lbf·ft": "lbf·ft lbf*ft lbfft lb-ft ft-lb ft·lbf",
+    "lbf·in": "lbf·in lbf*in lbfin lb-in in-lb in·lbf",
+    "ozf·in": "ozf·in ozf*in ozfin oz-in in-oz",
+    "‰": "‰ permille",
     "A": "a amp ampere amps arms",
     "mA": "ma milliampere",
     "%": "% percent prozent",
