@@ -23,6 +23,7 @@ from frictioncli.logs.runs.discovery import natural_key
 from frictioncli.model.document import FrictionModel
 from frictioncli.model.equations import COEFFICIENTS, jacobian
 from frictioncli.model.identification import freedom, pair_equations, pair_residual, point_noise
+from frictioncli.model.late_torque import without_delay
 from frictioncli.model.noise import plausible_noise
 from frictioncli.model.observations import Observations, observations
 from frictioncli.model.zero_load import temperature_of
@@ -63,7 +64,7 @@ def change_of_last_run(torques: pd.DataFrame, model: FrictionModel) -> Change | 
         None where there is one run only, or the runs share too few conditions.
     """
     known = temperature_of(torques, model.temperature).notna()
-    rows = torques[known] if known.any() else torques
+    rows = without_delay(torques[known] if known.any() else torques, model.late_by)
     # observations() orders the runs by their plain names
     runs = sorted(rows["run"].unique())
     if len(runs) < 2:

@@ -9,6 +9,7 @@ from frictioncli.correction.replay import PhaseData, phase_data
 from frictioncli.correction.settings import MIDDLE_SPEED, CorrectionSettings
 from frictioncli.errors import NotEnoughData
 from frictioncli.model.document import FrictionModel
+from frictioncli.model.late_torque import without_delay
 from frictioncli.model.zero_load import friction_at_zero_load
 
 
@@ -61,7 +62,8 @@ def correction_phases(
             f"joint {model.joint}: the model has no dependence of friction on temperature"
             f" ({model.parameters['delta'].reason}), so a correction cannot be computed"
         )
-    pairs = friction_at_zero_load(torques, model.friction.alpha)
+    freed = without_delay(torques, model.late_by)
+    pairs = friction_at_zero_load(freed, model.friction.alpha)
     pairs = pairs[pairs["motor_temperature"].notna()]
     if "motor_temperature_reading" not in pairs:
         pairs = pairs.assign(motor_temperature_reading=np.nan)

@@ -102,6 +102,9 @@ class FrictionModel:
         Range of each input in the data.
     notes : tuple of str
         What a user should know before relying on it.
+    delay : ParameterEstimate or None
+        Mean time by which the logged torque is late; its effect was taken off the friction. None
+        where the data do not determine it. [s]
     """
 
     form: str = FORM
@@ -120,6 +123,7 @@ class FrictionModel:
     range: InputRange
     notes: tuple[str, ...] = ()
     separated_by: str = "pairs"
+    delay: ParameterEstimate | None = None
 
     def __post_init__(self) -> None:
         missing = [name for name in PARAMETERS if name not in self.parameters]
@@ -130,6 +134,11 @@ class FrictionModel:
     def friction(self) -> FrictionParameters:
         """The parameters as numbers, for the functions of :mod:`frictioncli.model.friction`."""
         return FrictionParameters(**{name: self.parameters[name].estimate for name in PARAMETERS})
+
+    @property
+    def late_by(self) -> float | None:
+        """Time [s] by which the torque is late; None where it is not known."""
+        return None if self.delay is None else self.delay.estimate
 
     @property
     def knows_temperature(self) -> bool:

@@ -8,10 +8,21 @@ import pandas as pd
 from frictioncli.errors import NotEnoughData
 from frictioncli.model.document import PARAMETERS, FrictionModel, InputRange, ParameterEstimate
 from frictioncli.model.identifiability import Determination, at_bound, determined_fit
-from frictioncli.model.identification import Estimate
+from frictioncli.model.identification import Estimate, with_error_of
+from frictioncli.model.late_torque import (
+    TorqueDelay,
+    late_column,
+    torque_delay,
+    without_delay,
+)
 from frictioncli.model.observations import observations
 from frictioncli.model.paper_method import consecutive_fit
 from frictioncli.model.settings import LEAST_PAIRS, FitSettings
+from frictioncli.wording import quantity_text
+
+_LATE = (
+    "the torque in these logs lags the position by {delay}; what this adds is taken off friction"
+)
 
 __all__ = ["LEAST_PAIRS", "fit_joint"]
 
@@ -44,7 +55,11 @@ def fit_joint(torques: pd.DataFrame, facts: dict[str, Any], settings: FitSetting
         both = settings.method == "paper" and torques["housing_temperature"].notna().any()
         temperature = "mean" if both else "motor"
     known, notes = _with_temperature(torques, temperature, joint)
-    observed = observations(known, temperature)
+    delay = _delay(known, facts, settings, joint)
+    if delay is not None and delay.interval[0] > 0:
+        notes.append(_LATE.format(delay=quantity_text(delay.value, delay.interval, "s")))
+    freed = without_delay(known, None if delay is None else delay.value)
+    observed = observations(freed, temperature)
     n_pairs = len(observed.friction)
     separated_by = facts.get("separated_by", {}).get(str(joint), "pairs")
     if n_pairs < LEAST_PAIRS and separated_by == "regression":
@@ -61,6 +76,9 @@ def fit_joint(torques: pd.DataFrame, facts: dict[str, Any], settings: FitSetting
         estimate, determination = consecutive_fit(known, observed, temperature)
     else:
         estimate, determination = determined_fit(observed)
+    if delay is not None:
+        late = observations(known.assign(friction_torque=late_column(known)), temperature)
+        estimate = with_error_of(estimate, observed, determination.terms, late, delay.error)
     return FrictionModel(
         joint=joint,
         method=settings.method,
@@ -76,7 +94,23 @@ def fit_joint(torques: pd.DataFrame, facts: dict[str, Any], settings: FitSetting
         range=_ranges(known, observed.temperature),
         notes=tuple(notes),
         separated_by=str(separated_by),
+        delay=None
+        if delay is None
+        else ParameterEstimate(
+            estimate=delay.value, ci95=delay.interval, unit="s", determined=True
+        ),
     )
+
+
+def _delay(
+    torques: pd.DataFrame, facts: dict[str, Any], settings: FitSettings, joint: int
+) -> TorqueDelay | None:
+    """Return by how much the torque is late, where it was measured in pairs of moves."""
+    in_pairs = facts.get("separated_by", {}).get(str(joint), "pairs") == "pairs"
+    one_unit = facts.get("load_unit", facts.get("torque_unit")) == facts.get("torque_unit")
+    if settings.method == "paper" or not in_pairs or not one_unit:
+        return None
+    return torque_delay(torques)
 
 
 def _with_temperature(

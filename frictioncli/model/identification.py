@@ -10,7 +10,7 @@ with the weighted derivatives *X* and the covariance *C* of the weighted noise, 
 confidence intervals hold when the experiment is repeated.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -113,6 +113,36 @@ def fit_terms(observed: Observations, terms: tuple[str, ...]) -> Estimate:
         residual=residual,
         rmse=float(np.sqrt(squares / rows)),
     )
+
+
+def with_error_of(
+    estimate: Estimate,
+    observed: Observations,
+    terms: tuple[str, ...],
+    column: Observations,
+    error: float,
+) -> Estimate:
+    """Return an estimate whose covariance allows for an error of what was taken off friction.
+
+    Parameters
+    ----------
+    estimate : Estimate
+        The fit.
+    observed : Observations
+        Friction of one joint, with the correction.
+    terms : tuple of str
+        Coefficients that were fitted.
+    column : Observations
+        The correction per unit, in place of the friction.
+    error : float
+        Standard error of its factor.
+    """
+    weighted = jacobian(weighted_equations(observed, estimate.noise), terms, estimate.parameters)
+    moved = weighted_equations(column, estimate.noise).friction
+    size = np.linalg.norm(weighted, axis=0)
+    size = np.where(size > 0, size, 1.0)
+    change = error * (np.linalg.lstsq(weighted / size, moved, rcond=1e-10)[0] / size)
+    return replace(estimate, covariance=estimate.covariance + np.outer(change, change))
 
 
 def pair_residual(observed: Observations, parameters: FrictionParameters) -> Array:

@@ -52,15 +52,14 @@ def load_figure(results: JointResults) -> Figure:
     grid = stacked(figure, 2 * len(runs), heights, share_x=True)
     alpha = results.model.friction.alpha
     span = results.torques["load_torque"].min(), results.torques["load_torque"].max()
+    friction = results.friction()
     for index, run in enumerate(runs):
         panel, shifted = grid[2 * index], grid[2 * index + 1]
         labels = []
         chosen = representative_pairs(results.pairs[results.pairs["run"] == run])
         for pair in chosen.to_dict("records"):
             style = results.style(pair["speed"])
-            rows = results.torques[
-                (results.torques["run"] == run) & (results.torques["pair"] == pair["pair"])
-            ]
+            rows = friction[(friction["run"] == run) & (friction["pair"] == pair["pair"])]
             load = np.linspace(rows["load_torque"].min(), rows["load_torque"].max(), 80)
             for where, shift in ((panel, 0.0), (shifted, pair["friction_torque"])):
                 points(

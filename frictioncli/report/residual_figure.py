@@ -32,7 +32,7 @@ def residuals(results: JointResults) -> pd.DataFrame:
         One joint's results.
     """
     key = ["run", "pair"]
-    rows = results.torques.merge(results.pairs[[*key, "temperature"]], on=key, how="left")
+    rows = results.friction().merge(results.pairs[[*key, "temperature"]], on=key, how="left")
     modelled = results.predict(
         load=rows["load_torque"], speed=rows["speed"], temperature=rows["temperature"]
     )

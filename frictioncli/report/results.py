@@ -21,6 +21,7 @@ from frictioncli.errors import TableError
 from frictioncli.files import is_there
 from frictioncli.model.document import FrictionModel, read_models
 from frictioncli.model.friction import friction_torque
+from frictioncli.model.late_torque import without_delay
 from frictioncli.model.zero_load import PAIR_KEY, friction_at_zero_load, temperature_of
 from frictioncli.report.belonging import belonging_files
 from frictioncli.report.folder_reading import (
@@ -112,9 +113,8 @@ class JointResults:
     @property
     def rows_meaning(self) -> str:
         """What a row of ``pairs`` is, to follow its noun."""
-        if self.row_noun == "pair":
-            return "of counter-directed moves"
-        return "of samples at one speed, temperature and time, by regression,"
+        by_regression = "of samples at one speed, temperature and time, by regression,"
+        return "of counter-directed moves" if self.row_noun == "pair" else by_regression
 
     @property
     def load_unit(self) -> str:
@@ -162,6 +162,10 @@ class JointResults:
         if not self.model.knows_temperature:
             known = np.zeros_like(known)
         return friction_torque(self.model.friction, load=load, speed=speed, temperature=known)
+
+    def friction(self) -> pd.DataFrame:
+        """Return the torques with friction that is freed of a delay, as it was fitted."""
+        return without_delay(self.torques, self.model.late_by)
 
     def has(self, column: str) -> bool:
         """Return whether any pair has a value in ``column``."""
@@ -292,12 +296,10 @@ def _pairs_of(torques: pd.DataFrame, model: FrictionModel) -> tuple[pd.DataFrame
             f"model.json: has joint {model.joint}, which torques.parquet lacks;"
             " run 'frictioncli fit' again"
         )
-    pairs = friction_at_zero_load(own, model.friction.alpha)
+    pairs = friction_at_zero_load(without_delay(own, model.late_by), model.friction.alpha)
     bins = own.groupby(PAIR_KEY).size().rename("bins").reset_index()
-    pairs = pairs.merge(bins, on=PAIR_KEY).assign(
-        temperature=temperature_of(pairs, model.temperature)
-    )
-    return own, pairs
+    temperature = temperature_of(pairs, model.temperature)
+    return own, pairs.merge(bins, on=PAIR_KEY).assign(temperature=temperature)
 
 
 def _diagnosis_of(

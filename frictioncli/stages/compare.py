@@ -20,6 +20,7 @@ from frictioncli.comparison.text import comparison_text
 from frictioncli.errors import OptionError
 from frictioncli.files import atomic_write, write_text
 from frictioncli.model.document import FrictionModel, read_models
+from frictioncli.model.late_torque import without_delay
 from frictioncli.provenance import Provenance, sha256
 from frictioncli.report.compare_page import compare_html
 from frictioncli.report.figure_files import svg_file
@@ -142,7 +143,7 @@ def _folder(path: Path, name: str, model: FrictionModel) -> ComparedFolder:
             ambient[str(run)] = float(rows["ambient"].mean())
     return ComparedFolder(
         name=name,
-        torques=torques[torques["joint"] == model.joint],
+        torques=without_delay(torques[torques["joint"] == model.joint], model.late_by),
         model=model,
         started_at={run: start for run, start in started_at.items() if start is not None},
         ambient=ambient,

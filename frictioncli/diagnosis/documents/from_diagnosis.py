@@ -142,6 +142,9 @@ def extended_document(diagnosis: Diagnosis, model: FrictionModel) -> ExtendedDoc
         )
         for number, one in enumerate(extension.effects)
     ]
+    if DELAY in {one.name for one in effects}:
+        # it is an effect of this model, and not taken off beforehand
+        stated["delay"] = None
     return ExtendedDocument(
         **stated | {"parameters": parameters},
         effects=tuple(effects),
