@@ -14,6 +14,9 @@ from frictioncli.model.friction import (
     temperature_from_friction,
 )
 
+_LEAST_SMOOTHED = 4
+"""Least number of pairs of a speed in a phase that are smoothed."""
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class PhaseData:
@@ -121,7 +124,9 @@ def smoothed_friction(*, temperature: Array, speed: Array, friction: Array, degr
     temperature, speed, friction : ndarray, shape (pairs,)
         Motor temperature [°C], speed [deg/s] and friction torque [N·m] of the pairs of one phase.
     degree : int
-        Degree of the polynomials; lower where a speed has too few different temperatures.
+        Degree of the polynomials; lower where a speed has too few different temperatures. Fewer
+        than four pairs at different temperatures are left as they are: their mean would not fall
+        with temperature.
 
     Returns
     -------
@@ -141,6 +146,9 @@ def smoothed_friction(*, temperature: Array, speed: Array, friction: Array, degr
     smooth = np.empty_like(friction)
     for level in np.unique(speed):
         rows = speed == level
+        if rows.sum() < _LEAST_SMOOTHED and degree and np.ptp(temperature[rows]) > 0:
+            smooth[rows] = friction[rows]
+            continue
         order = min(degree, len(np.unique(temperature[rows])) - 1, max(rows.sum() // 2 - 1, 0))
         polynomial = np.polynomial.Polynomial.fit(temperature[rows], friction[rows], order)
         smooth[rows] = polynomial(temperature[rows])

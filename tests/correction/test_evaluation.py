@@ -108,6 +108,18 @@ def test_smoothing_keeps_a_cubic_and_removes_noise():
     assert np.sqrt(np.mean((smooth - cubic) ** 2)) < 0.25
 
 
+def test_two_pairs_of_a_speed_are_not_replaced_by_their_mean():
+    """At 20 and 50 °C they differ by the fall with temperature, not by noise."""
+    friction = np.array([60.0, 40.0, 80.0, 70.0, 60.0, 50.0])
+    smooth = smoothed_friction(
+        temperature=np.array([20.0, 50.0, 20.0, 30.0, 40.0, 50.0]),
+        speed=np.array([10.0, 10.0, 50.0, 50.0, 50.0, 50.0]),
+        friction=friction,
+        degree=3,
+    )
+    np.testing.assert_allclose(smooth, friction, atol=1e-9)
+
+
 def test_no_thermal_cycle_is_named():
     with pytest.raises(NotEnoughData, match="no heat-up or cool-down"):
         simulated(torques(0).assign(phase="sweep"))

@@ -15,6 +15,9 @@ from frictioncli.model.zero_load import PAIR_KEY
 _COMMON = 0.05
 """Least share of the pairs at a speed level that is not rare."""
 
+_MOST = 0.5
+"""Least share of the pairs at all common speeds together."""
+
 
 @dataclass(frozen=True, slots=True)
 class Base:
@@ -53,7 +56,9 @@ def candidate_bases(rows: pd.DataFrame, temperature: str) -> list[Base]:
     _, place, count = np.unique(level, return_inverse=True, return_counts=True)
     common = count >= _COMMON * len(pairs)
     samples = [rows]
-    if not common.all() and common.sum() >= 3:
+    # where most speeds are rare, those few that are not have no law of their own
+    mostly = count[common].sum() >= _MOST * len(pairs)
+    if not common.all() and common.sum() >= 3 and mostly:
         samples.append(rows.merge(pairs.loc[common[place], PAIR_KEY], on=PAIR_KEY))
     return [_base(sample, temperature) for sample in samples]
 
