@@ -20,14 +20,11 @@ References
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.linalg.lapack import dpbtrf, dpbtrs
-from scipy.optimize import minimize
 
 from frictioncli.arrays import Array, Indices
 from frictioncli.linear_algebra import inverse_and_determinant
-
-_LEAST_DRIFT = 1e-9
-"""Least variance of the drift, relative to the mean of what is independent between pairs."""
+from frictioncli.model.drift import LEAST_DRIFT, Drift, inverse_diagonal, posterior_factor, solved
+from frictioncli.model.likeliest_noise import NoiseLikelihood, likeliest
 
 _DRIFT_TIMES = 12
 """Number of correlation times tried, from the distance of the pairs to the length of the run."""
@@ -64,7 +61,7 @@ class PairCovariance:
     white : ndarray, shape (pairs,)
         Variance that is independent between pairs. [(N·m)²]
     factor : ndarray, shape (2, pairs)
-        Banded Cholesky factor of the drift's precision plus ``1/white``.
+        Factors of the drift's precision plus ``1/white``.
     log_determinant : float
         Logarithm of the covariance's determinant.
     correlation : ndarray, shape (pairs,)
@@ -81,22 +78,11 @@ class PairCovariance:
 
     def solve(self, right: Array) -> Array:
         """Return the inverse covariance times ``right``, shape (pairs, ...)."""
-        weighted = (right.T / self.white).T
-        smooth, _ = dpbtrs(self.factor, weighted)
-        return weighted - (smooth.T / self.white).T
+        return solved(self.factor, self.white, right)
 
     def inverse_diagonal(self) -> Array:
         """Return the diagonal of the inverse covariance, shape (pairs,) [1/(N·m)²]."""
-        # pivots of the tridiagonal matrix from its start and from its end
-        pivots = np.square(self.factor[1])
-        diagonal = pivots.copy()
-        diagonal[1:] += np.square(self.factor[0, 1:])
-        reverse = np.zeros_like(self.factor)
-        reverse[0, 1:] = (self.factor[0, 1:] * self.factor[1, :-1])[::-1]
-        reverse[1] = diagonal[::-1]
-        backward, _ = dpbtrf(reverse)
-        smooth = 1 / (pivots + np.square(backward[1, ::-1]) - diagonal)
-        return np.asarray((1 - smooth / self.white) / self.white)
+        return inverse_diagonal(self.factor, self.white)
 
     def times(self, right: Array) -> Array:
         """Return the covariance times ``right``, shape (pairs, columns)."""
@@ -142,44 +128,17 @@ def pair_covariance(
     extra : ndarray, shape (pairs,), optional
         Further variance of the pair means, as of an uncertain temperature. [(N·m)²]
     """
-    return _covariance(noise, _Drift.of(time, run, noise.drift_time), bins, extra)
+    return _covariance(noise, Drift.of(time, run, noise.drift_time), bins, extra)
 
 
-@dataclass(frozen=True, slots=True)
-class _Drift:
-    """Drift of variance 1 with one correlation time: its tridiagonal precision."""
-
-    correlation: Array
-    diagonal: Array
-    beside: Array
-    log_determinant: float
-
-    @classmethod
-    def of(cls, time: Array, run: Indices, duration: float) -> "_Drift":
-        step = np.where(np.diff(run) == 0, np.diff(time), np.inf)
-        decay = np.exp(-np.maximum(step, 1e-3) / duration)
-        decay = np.minimum(decay, 1 - 1e-9)
-        correlation = np.concatenate([[0.0], decay])
-        innovation = 1 - np.square(correlation)
-        diagonal = 1 / innovation
-        diagonal[:-1] += np.square(decay) / innovation[1:]
-        determinant = float(np.sum(np.log(innovation)))
-        return cls(correlation, diagonal, -decay / innovation[1:], determinant)
-
-
-def _covariance(noise: Noise, drift: _Drift, bins: Array, extra: Array | float) -> PairCovariance:
+def _covariance(noise: Noise, drift: Drift, bins: Array, extra: Array | float) -> PairCovariance:
     """Return the covariance of pair means whose drift is correlated as given."""
     white = noise.pair**2 + noise.point**2 / bins + extra
     # a drift of zero would have an infinite precision: it is replaced by a negligible one
-    variance = max(noise.drift**2, _LEAST_DRIFT * float(np.mean(white)))
-    banded = np.zeros((2, len(white)))
-    banded[0, 1:] = drift.beside / variance
-    banded[1] = drift.diagonal / variance + 1 / white
-    factor, fault = dpbtrf(banded)
-    if fault:
-        raise np.linalg.LinAlgError("the covariance of the pair means is not positive definite")
+    variance = max(noise.drift**2, LEAST_DRIFT * float(np.mean(white)))
+    factor = posterior_factor(drift.diagonal / variance, drift.beside / variance, white)
     log_determinant = (
-        2 * np.sum(np.log(factor[1]))
+        np.sum(np.log(factor[0]))
         + np.sum(np.log(white))
         + drift.log_determinant
         + len(white) * np.log(variance)
@@ -205,40 +164,11 @@ def restricted_log_likelihood(covariance: PairCovariance, residual: Array, desig
     design : ndarray, shape (pairs, parameters)
         Derivatives of the model by the parameters that were fitted.
     """
-    return _restricted(covariance, np.column_stack([design, residual]))[0]
-
-
-def _restricted(covariance: PairCovariance, columns: Array) -> tuple[float, Array, Array, Array]:
-    """Return the restricted log likelihood, and what its derivatives need.
-
-    The columns are those of the design and the residuals. The inverse covariance times the design,
-    the covariance of its parameters, and the inverse covariance times what they leave come second.
-    """
-    solved = covariance.solve(columns)
-    own = solved[:, -1]
-    products = columns.T @ solved
-    information, projected = products[:-1, :-1], products[:-1, -1]
-    inverse, determinant = inverse_and_determinant(information)
-    coefficients = inverse @ projected
-    quadratic = products[-1, -1] - projected @ coefficients
-    likelihood = covariance.log_determinant + determinant + quadratic
-    left = own - solved[:, :-1] @ coefficients
-    return float(-0.5 * likelihood), solved[:, :-1], inverse, left
-
-
-def _cost(noise: Noise, covariance: PairCovariance, columns: Array) -> tuple[float, Array]:
-    """Return minus the restricted log likelihood and its derivatives by ln(pair), ln(drift)."""
-    likelihood, solved, inverse, left = _restricted(covariance, columns)
-    residual, white = columns[:, -1], covariance.white
-    taken = np.sum((solved @ inverse) * solved, axis=1)
-    diagonal = covariance.inverse_diagonal() - taken
-    pair = noise.pair**2 * (np.sum(diagonal) - left @ left)
-    if noise.drift**2 < _LEAST_DRIFT * float(np.mean(white)):
-        return -likelihood, np.array([pair, 0.0])
-    # the drift's share of the covariance is what is not white
-    square = residual @ left - left @ (white * left)
-    freedom = len(residual) - len(inverse) - diagonal @ white
-    return -likelihood, np.array([pair, freedom - square])
+    solved_design = covariance.solve(design)
+    inverse, determinant = inverse_and_determinant(design.T @ solved_design)
+    projected = residual @ solved_design
+    quadratic = residual @ covariance.solve(residual) - projected @ inverse @ projected
+    return float(-0.5 * (covariance.log_determinant + determinant + quadratic))
 
 
 def plausible_noise(
@@ -289,27 +219,17 @@ def plausible_noise(
     # a drift slower than the run is an offset of the run, as tau_c is
     longest = max(max(np.ptp(time[run == number]) for number in np.unique(run)), 2 * shortest)
 
-    def of(logs: Array, duration: float) -> Noise:
-        pair, drift = np.exp(logs)
-        return Noise(point=point, pair=float(pair), drift=float(drift), drift_time=duration)
-
-    def cost(logs: Array, drift: _Drift, duration: float) -> tuple[float, Array]:
-        noise = of(logs, duration)
-        return _cost(noise, _covariance(noise, drift, bins, extra), columns)
-
-    bounds = [(np.log(scale * 1e-3), np.log(scale * 10))] * 2
-    start = np.log([scale / 2, scale / 2])
-    found = []
-    for duration in np.geomspace(shortest, longest, _DRIFT_TIMES):
-        drift = _Drift.of(time, run, float(duration))
-        best = minimize(
-            cost, start, args=(drift, duration), jac=True, method="L-BFGS-B", bounds=bounds
+    bounds = float(np.log(scale * 1e-3)), float(np.log(scale * 10))
+    durations = np.geomspace(shortest, longest, _DRIFT_TIMES).tolist()
+    drifts = [Drift.of(time, run, duration) for duration in durations]
+    likelihood = NoiseLikelihood.of(columns, point**2 / bins + extra, drifts)
+    logs, values = likeliest(likelihood, np.log([scale / 2, scale / 2]), bounds)
+    weights = np.exp(values - values.max())
+    weights /= weights.sum()
+    found = [
+        (Noise(point=point, pair=pair, drift=drift, drift_time=duration), weight)
+        for (pair, drift), duration, weight in zip(
+            np.exp(logs).tolist(), durations, weights.tolist(), strict=True
         )
-        found.append((of(best.x, float(duration)), -float(best.fun)))
-    highest = max(likelihood for _, likelihood in found)
-    weights = [np.exp(likelihood - highest) for _, likelihood in found]
-    weighted = [
-        (noise, float(weight / sum(weights)))
-        for (noise, _), weight in zip(found, weights, strict=True)
     ]
-    return sorted(weighted, key=lambda entry: -entry[1])
+    return sorted(found, key=lambda entry: -entry[1])
