@@ -14,7 +14,7 @@ from frictioncli.diagnosis.search import planted_torque as module
 from frictioncli.diagnosis.search.catalogue import Catalogue
 from frictioncli.diagnosis.search.cause_search import find_causes
 from frictioncli.diagnosis.search.detectable_size import SHAPES, Rules, detectable_size
-from frictioncli.diagnosis.search.effect_size import left_share
+from frictioncli.diagnosis.search.effect_size import left_shares
 from frictioncli.diagnosis.search.lack_of_fit import Structure
 from frictioncli.diagnosis.search.planted_fits import PlantedFits
 from frictioncli.diagnosis.search.planted_rivals import PlantedRivals
@@ -158,7 +158,7 @@ def test_no_size_is_claimed_where_the_base_leaves_no_more_than_a_form_misses(mon
     """The base leaves a tenth of a load's amount, and a form misses as much."""
     step, effect = step_of(problem(0)), BY_NAME["load_linear"]
     torque = step.problem.basis(effect, {})
-    assert left_share(step.precomputed, torque) == pytest.approx(0.1, abs=0.02)
+    assert left_shares(step.precomputed, [torque])[0] == pytest.approx(0.1, abs=0.02)
     assert size_of(step, effect) is None
     monkeypatch.setattr(module, "_FORM", 0.0)
     monkeypatch.setattr(detectable, "_LEAST_LEFT", 0.0)

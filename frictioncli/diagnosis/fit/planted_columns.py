@@ -1,5 +1,7 @@
 """Inner products of the columns of a model with a torque that is planted into its misfit."""
 
+from dataclasses import dataclass
+
 import numpy as np
 
 from frictioncli.arrays import Array
@@ -8,8 +10,41 @@ from frictioncli.diagnosis.fit.products import Products
 from frictioncli.diagnosis.fit.transformed_columns import Part, TransformedColumns
 
 
+@dataclass(frozen=True, slots=True)
+class WithinProducts:
+    """Inner products of deviations within pairs with those of a part, under no weight.
+
+    Attributes
+    ----------
+    across : (ndarray, ndarray), shape (columns, columns of the part)
+        Of other columns with those of the part in friction and load.
+    own : (ndarray, ndarray), shape (columns of the part, columns of the part)
+        Of its columns with each other.
+    """
+
+    across: tuple[Array, Array]
+    own: tuple[Array, Array]
+
+    @classmethod
+    def of(cls, columns: TransformedColumns, other: Part) -> "WithinProducts":
+        """Return the products of columns with a part, for any variance components.
+
+        Parameters
+        ----------
+        columns : TransformedColumns
+            The columns.
+        other : Part
+            The part.
+        """
+        friction, load = (one.within for one in other.columns.channels)
+        return cls(
+            (columns.within_products(other, 0), columns.within_products(other, 1)),
+            (friction.T @ friction, load.T @ load),
+        )
+
+
 def weighted_products(
-    columns: TransformedColumns, other: Part, variances: Variances
+    columns: TransformedColumns, other: Part, variances: Variances, known: WithinProducts
 ) -> tuple[Array, Array]:
     """Return inner products of columns with a part under given variance components.
 
@@ -21,6 +56,8 @@ def weighted_products(
         The other part.
     variances : Variances
         Variance components.
+    known : WithinProducts
+        Their products of deviations within pairs.
 
     Returns
     -------
@@ -32,9 +69,8 @@ def weighted_products(
     count = other.columns.count
     across, own = np.zeros((columns.count, count)), np.zeros((count, count))
     for channel, noise in enumerate(variances.noise):
-        within = other.columns.channels[channel].within
-        across += columns.within_products(other, channel) / variances.within[channel]
-        own += within.T @ within / variances.within[channel]
+        across += known.across[channel] / variances.within[channel]
+        own += known.own[channel] / variances.within[channel]
         time = columns.noises.indices[noise][0]
         modes = other.modes(channel, time)
         variance = columns.noises.variance(channel, noise) * variances.between[channel]

@@ -18,13 +18,13 @@ from frictioncli.diagnosis.fit.hypotheses import HypothesisTest
 from frictioncli.diagnosis.fit.left_by_base import Z95, left_by
 from frictioncli.diagnosis.noise.significance import statistic_of
 from frictioncli.diagnosis.search.cause import CONVINCING
-from frictioncli.diagnosis.search.effect_size import left_share, left_size
+from frictioncli.diagnosis.search.effect_size import left_shares, left_size, remember_left
 from frictioncli.diagnosis.search.lack_of_fit import Structure
 from frictioncli.diagnosis.search.margin import channel_margin, whole_torque
 from frictioncli.diagnosis.search.planted_fits import SHARED, PlantedFit, PlantedFits
 from frictioncli.diagnosis.search.planted_rivals import PlantedRivals, RivalsOfTorques
 from frictioncli.diagnosis.search.planted_torque import planted_torques
-from frictioncli.diagnosis.search.possible import beyond_bounds, standard_errors
+from frictioncli.diagnosis.search.possible import beyond, standard_errors
 from frictioncli.diagnosis.search.rivals import evidence_missed
 from frictioncli.diagnosis.search.standing import level_of
 from frictioncli.diagnosis.search.understood import MOST_LEFT, is_part
@@ -130,10 +130,12 @@ def detectable_size(
     torques = planted_torques(step.problem, effect, rules.forms)
     if not (np.isfinite(threshold) and torques and margin < most):
         return None
-    shares = [left_share(step.precomputed, one.torque) for one in torques]
+    shares = left_shares(step.precomputed, [one.torque for one in torques])
     told = [one for one, share in zip(torques, shares, strict=True) if share >= _LEAST_LEFT]
     if len(told) < POWER * len(torques):
         return None
+    shapes, columns = [one.shape for one in told], [one.columns for one in told]
+    remember_left(step.precomputed, effect, shapes, columns)
     fits = PlantedFits.of(step, told)
     judge = _Judge(fits, rules, rivals, threshold, margin, ceil(POWER * len(torques)))
     size = _settled_size(judge, most)
@@ -218,7 +220,7 @@ class _Judge:
     def doubtful(self, planted: PlantedFit) -> bool:
         """Return whether an effect is impossible, too small, or not understood."""
         fit, step, errors = planted.fit, self.fits.step, standard_errors(planted.fit)
-        if beyond_bounds(fit, step.problem) or not errors.any():
+        if beyond(fit, self.fits.physical) or not errors.any():
             return True
         if len(errors) == 1 and abs(fit.coefficients[0]) <= Z95 * errors[0]:
             return True

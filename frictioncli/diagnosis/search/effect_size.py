@@ -1,6 +1,6 @@
 """Sizes of fitted effects: their torque, and what the base leaves of it, with intervals."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -9,7 +9,7 @@ from frictioncli.arrays import Array
 from frictioncli.diagnosis.fit.hypotheses import EffectFit
 from frictioncli.diagnosis.fit.left_by_base import Z95, left_by, span_of, visible_size_of
 from frictioncli.diagnosis.search.precomputed import Precomputed
-from frictioncli.effects.base import Basis
+from frictioncli.effects.base import Basis, Effect
 
 _OTHER_FORM = 0.5
 """Share of the discrepancy along an effect that the assumed covariance does not account for."""
@@ -61,18 +61,20 @@ def left_size(known: Precomputed, fit: EffectFit) -> tuple[float, float, float]:
     return size, max(float(size - below), 0.0), float(size + above)
 
 
-def left_share(known: Precomputed, torque: Basis) -> float:
-    """Return the share of a torque that the base leaves [-].
+def left_shares(known: Precomputed, torques: Sequence[Basis]) -> Array:
+    """Return the share of each torque that the base leaves, shape (torques,) [-].
 
     Parameters
     ----------
     known : Precomputed
         The data.
-    torque : Basis
-        The torque, a column in both channels.
+    torques : sequence of Basis
+        The torques, a column in both channels.
     """
-    whole = float(np.linalg.norm(np.vstack(torque)))
-    return float(np.linalg.norm(left_by(known.span, torque))) / whole if whole > 0 else 0.0
+    together = _together(torques)
+    whole = np.linalg.norm(np.vstack(together), axis=0)
+    left = np.linalg.norm(left_by(known.span, together), axis=0)
+    return np.asarray(np.divide(left, whole, where=whole > 0, out=np.zeros_like(whole)))
 
 
 def shown_share(known: Precomputed, fit: EffectFit, others: Sequence[EffectFit]) -> float:
@@ -118,26 +120,62 @@ def _left_products(known: Precomputed, fit: EffectFit) -> tuple[Array, Array]:
     With each other, shape (width, width), and with the columns of the discrepancy, shape (width,
     columns).
     """
-    key = (id(fit.effect), *fit.shape.items())
+    key = _key(fit.effect, fit.shape)
     if key not in known.left:
-        left = _left(known, fit)
-        rows = len(left) / 2
-        products = left.T @ left / rows, left.T @ known.discrepancy.rows / rows
-        known.left[key] = fit.effect, *products
+        remember_left(known, fit.effect, [fit.shape], [known.problem.basis(fit.effect, fit.shape)])
     return known.left[key][1:]
 
 
-def _left(known: Precomputed, fit: EffectFit) -> Array:
-    """Return what the base leaves of an effect's columns, shape (2 * rows, width).
+def remember_left(
+    known: Precomputed,
+    effect: Effect,
+    shapes: Sequence[Mapping[str, float]],
+    columns: Sequence[Basis],
+) -> None:
+    """Work out the products of what the base leaves of an effect's columns in several shapes.
+
+    All at once: to read the columns of the discrepancy takes longer than to multiply them.
+
+    Parameters
+    ----------
+    known : Precomputed
+        The data; it remembers them.
+    effect : Effect
+        The effect.
+    shapes : sequence of mapping of str to float
+        Its shapes.
+    columns : sequence of Basis
+        Its columns in each.
+    """
+    left = _left(known, effect, _together(columns))
+    rows, width = len(left) / 2, len(effect.coefficients)
+    crossed = left.T @ known.discrepancy.rows / rows
+    for number, shape in enumerate(shapes):
+        own = slice(number * width, (number + 1) * width)
+        inner = left[:, own].T @ left[:, own] / rows
+        known.left[_key(effect, shape)] = effect, inner, crossed[own]
+
+
+def _together(bases: Sequence[Basis]) -> Basis:
+    """Return columns beside each other."""
+    friction, load = (np.hstack(channel) for channel in zip(*bases, strict=True))
+    return Basis(friction, load)
+
+
+def _key(effect: Effect, shape: Mapping[str, float]) -> tuple[object, ...]:
+    return (id(effect), *shape.items())
+
+
+def _left(known: Precomputed, effect: Effect, columns: Basis) -> Array:
+    """Return what the base leaves of an effect's columns, shape (2 * rows, columns).
 
     Of an effect of the measurement that stands beside the base, what the base alone leaves.
     """
-    basis = known.problem.basis(fit.effect, fit.shape)
-    span = known.span_of_base if fit.effect.measurement else known.span
-    left = left_by(span, basis)
+    span = known.span_of_base if effect.measurement else known.span
+    left = left_by(span, columns)
     if known.problem.has_load_channel:
         # the channels may have different units: only the one in which it shows counts
         friction, load = np.split(left, 2)
-        other = load if fit.effect.channel == "friction" else friction
+        other = load if effect.channel == "friction" else friction
         other[:] = 0.0
     return left

@@ -21,7 +21,7 @@ from frictioncli.diagnosis.fit.bounded import bounded_coefficients, pseudo_inver
 from frictioncli.diagnosis.fit.columns import basis_columns, joined
 from frictioncli.diagnosis.fit.hypotheses import EffectFit, physical_bounds
 from frictioncli.diagnosis.fit.mixed_model import Variances, evaluate
-from frictioncli.diagnosis.fit.planted_columns import weighted_products
+from frictioncli.diagnosis.fit.planted_columns import WithinProducts, weighted_products
 from frictioncli.diagnosis.fit.transformed_columns import Part
 from frictioncli.diagnosis.fit.variance_components import fit_variances
 from frictioncli.diagnosis.search.planted_torque import PlantedTorque
@@ -41,21 +41,23 @@ class Left:
     ----------
     variances : Variances
         The variance components.
-    objective : float
-        Minus twice the log likelihood of the misfit as it is.
     right : ndarray, shape (columns,)
         Products of the columns with the misfit.
     inner : ndarray, shape (columns, columns)
         Products of the columns with each other.
     inverse : ndarray, shape (torques, width, width)
         Inverse of the products of what is fitted to each torque.
+    plain, alone : ndarray, shape (torques, 3)
+        Minus twice the log likelihood with each torque as a polynomial in its size, the constant
+        first: of what is known, and with what is fitted, whose coefficients have no bounds.
     """
 
     variances: Variances
-    objective: float
     right: Array
     inner: Array
     inverse: Array
+    plain: Array
+    alone: Array
 
 
 @dataclass(frozen=True, slots=True)
@@ -101,6 +103,10 @@ class PlantedFits:
         Torque and columns of the effect, shape by shape, and the column of the base that is freed.
     freed : bool
         Whether there is such a column.
+    within : WithinProducts
+        Products of deviations within pairs of the columns of the step with those of the part.
+    physical : (ndarray, ndarray), shape (coefficients,)
+        Bounds of the coefficients of the effect.
     family : list of Left
         What is left under each set of variance components.
     """
@@ -109,6 +115,8 @@ class PlantedFits:
     torques: tuple[PlantedTorque, ...]
     part: Part
     freed: bool
+    within: WithinProducts
+    physical: tuple[Array, Array]
     family: list[Left] = field(default_factory=list)
 
     @classmethod
@@ -127,7 +135,10 @@ class PlantedFits:
         freed = freed_base(problem)
         bases += [] if freed is None else [freed]
         columns = joined([basis_columns(problem, one) for one in bases])
-        fits = cls(step, tuple(torques), Part(columns, step.precomputed.noises), freed is not None)
+        part = Part(columns, step.precomputed.noises)
+        bounds = physical_bounds(torques[0].effect, problem)
+        within = WithinProducts.of(step.columns, part)
+        fits = cls(step, tuple(torques), part, freed is not None, within, bounds)
         for one in (step.fit.variances, step.precomputed.start):
             fits.add(one)
         return fits
@@ -136,13 +147,21 @@ class PlantedFits:
         """Add variance components to the family."""
         step, part = self.step, self.part
         null = evaluate(step.components, step.products, step.known, variances)
-        across, own = weighted_products(step.columns, part, variances)
+        across, own = weighted_products(step.columns, part, variances, self.within)
         known = across[:-1]
         right = across[-1] - null.coefficients @ known
         inner = own - known.T @ (null.covariance @ known)
-        fitted = [self._places(number)[1] for number in range(len(self.torques))]
-        blocks = np.array([inner[np.ix_(places, places)] for places in fitted])
-        self.family.append(Left(variances, null.objective, right, inner, pseudo_inverse(blocks)))
+        places = [self._places(number) for number in range(len(self.torques))]
+        inverse = pseudo_inverse(np.array([inner[np.ix_(one, one)] for _, one in places]))
+        plain = np.array([(null.objective, 2 * right[at], inner[at, at]) for at, _ in places])
+        fixed = np.array([right[one] for _, one in places])
+        growing = np.array([inner[at, one] for at, one in places])
+        gain = [
+            np.einsum("ti,tij,tj->t", first, inverse, second)
+            for first, second in ((fixed, fixed), (2 * fixed, growing), (growing, growing))
+        ]
+        alone = plain - np.column_stack(gain)
+        self.family.append(Left(variances, right, inner, inverse, plain, alone))
 
     def add_best(self, number: int, size: float) -> None:
         """Add the variance components that suit the step best with a torque of one size.
@@ -175,7 +194,7 @@ class PlantedFits:
         sizes : ndarray, shape (sizes,)
             Its sizes. [unit of its channel]
         """
-        null = self._null(number, sizes)
+        null, _ = self._null(number, sizes)
         return np.asarray(null.min(axis=0) - self._alone(number, sizes).min(axis=0))
 
     def fitted(self, number: int, size: float, members: int | None = None) -> PlantedFit:
@@ -191,25 +210,28 @@ class PlantedFits:
             How many of the family the effect may choose from; by default all.
         """
         one = np.array([size])
-        null = self._null(number, one)[:, 0]
+        null, plain = (found[:, 0] for found in self._null(number, one))
         member = int(np.argmin(self._alone(number, one)[:members, 0]))
         torque, left = self.torques[number], self.family[member]
         place, columns = self._places(number)
         right = left.right[columns] + size * left.inner[place, columns]
         inner = left.inner[np.ix_(columns, columns)]
-        lower, upper = physical_bounds(torque.effect, self.step.problem)
+        lower, upper = self.physical
         if self.freed:
             lower, upper = np.append(lower, 0.0), np.append(upper, np.inf)
         coefficients, gain, free = bounded_coefficients(
             inner[np.newaxis], right[np.newaxis], lower, upper
         )
-        both = free[0][:, np.newaxis] & free[0]
-        covariance = pseudo_inverse(np.where(both, inner, 0.0)[np.newaxis])[0]
+        covariance = left.inverse[number]
+        if not free.all():
+            both = free[0][:, np.newaxis] & free[0]
+            covariance = pseudo_inverse(np.where(both, inner, 0.0)[np.newaxis])[0]
+            covariance = np.where(both, covariance, 0.0)
         own = slice(0, len(torque.coefficients))
         chosen = np.append(place, columns[own])
         rest = np.append(size, -coefficients[0, own])
         # without the effect the freed column may be fitted, too
-        alone = self._plain(number, one, left)[0] - float(gain[0])
+        alone = float(plain[member] - gain[0])
         return PlantedFit(
             number=number,
             size=size,
@@ -217,7 +239,7 @@ class PlantedFits:
                 torque.effect,
                 torque.shape,
                 coefficients[0, own],
-                np.where(both, covariance, 0.0)[own, own],
+                covariance[own, own],
                 max(float(null.min() - alone), 0.0),
                 left.variances,
             ),
@@ -243,33 +265,29 @@ class PlantedFits:
         fitted = np.arange(first + 1, last)
         return first, np.append(fitted, self.part.columns.count - 1) if self.freed else fitted
 
-    def _plain(self, number: int, sizes: Array, left: Left) -> Array:
-        """Return minus twice the log likelihood of what is known with a torque, shape (sizes,)."""
-        place = self._places(number)[0]
-        linear, square = left.right[place], left.inner[place, place]
-        return np.asarray(left.objective + 2 * sizes * linear + np.square(sizes) * square)
+    def _null(self, number: int, sizes: Array) -> tuple[Array, Array]:
+        """Return minus twice the log likelihood of what is known, shape (members, sizes) each.
 
-    def _null(self, number: int, sizes: Array) -> Array:
-        """Return the same with the freed column, where it is positive, shape (members, sizes)."""
-        place, found = self._places(number)[0], []
-        for left in self.family:
-            plain = self._plain(number, sizes, left)
-            if self.freed:
-                right = left.right[-1] + sizes * left.inner[place, -1]
-                inner = max(float(left.inner[-1, -1]), 1e-300)
-                plain = plain - np.square(np.maximum(right, 0.0)) / inner
-            found.append(plain)
-        return np.array(found)
+        With a torque and the freed column, where it is positive; and without that column.
+        """
+        plain = np.array([left.plain[number] for left in self.family]) @ _powers(sizes)
+        if not self.freed:
+            return plain, plain
+        place = self._places(number)[0]
+        fixed, growing, inner = np.array(
+            [(left.right[-1], left.inner[place, -1], left.inner[-1, -1]) for left in self.family]
+        ).T[:, :, np.newaxis]
+        right = np.maximum(fixed + sizes * growing, 0.0)
+        return plain - np.square(right) / np.maximum(inner, 1e-300), plain
 
     def _alone(self, number: int, sizes: Array) -> Array:
         """Return the same with the effect, whose coefficients have no bounds."""
-        place, columns = self._places(number)
-        found = []
-        for left in self.family:
-            right = left.right[columns] + sizes[:, np.newaxis] * left.inner[place, columns]
-            gain = np.sum((right @ left.inverse[number]) * right, axis=1)
-            found.append(self._plain(number, sizes, left) - gain)
-        return np.array(found)
+        return np.asarray(np.array([left.alone[number] for left in self.family]) @ _powers(sizes))
+
+
+def _powers(sizes: Array) -> Array:
+    """Return the powers of sizes up to the second, shape (3, sizes)."""
+    return np.array([np.ones_like(sizes), sizes, np.square(sizes)])
 
 
 def freed_base(problem: Problem) -> Basis | None:

@@ -9,7 +9,7 @@ from frictioncli.arrays import Array
 from frictioncli.diagnosis.fit.bounded import bounded_coefficients, pseudo_inverse
 from frictioncli.diagnosis.fit.hypotheses import EffectFit
 from frictioncli.diagnosis.fit.mixed_model import Variances, evaluate
-from frictioncli.diagnosis.fit.planted_columns import weighted_products
+from frictioncli.diagnosis.fit.planted_columns import WithinProducts, weighted_products
 from frictioncli.diagnosis.fit.transformed_columns import Part, TransformedColumns
 from frictioncli.diagnosis.noise.significance import log_bayes_factor
 from frictioncli.diagnosis.search.catalogue import Catalogue
@@ -51,7 +51,9 @@ class PlantedRivals:
             The variance components.
         """
         left, inverse = self._known(variances)
-        across, _ = weighted_products(self.step.columns, torques, variances)
+        columns = self.step.columns
+        within = WithinProducts.of(columns, torques)
+        across, _ = weighted_products(columns, torques, variances, within)
         alone = TransformedColumns((torques,))
         rights = []
         for number, one in enumerate(left):

@@ -36,7 +36,22 @@ def beyond_bounds(fit: EffectFit, problem: Problem, errors: float = Z95) -> str:
     errors : float, optional
         By how many standard errors it must be beyond them.
     """
-    lower, upper = physical_bounds(fit.effect, problem)
+    return beyond(fit, physical_bounds(fit.effect, problem), errors)
+
+
+def beyond(fit: EffectFit, bounds: tuple[Array, Array], errors: float = Z95) -> str:
+    """Return the same of bounds that are known.
+
+    Parameters
+    ----------
+    fit : EffectFit
+        The effect.
+    bounds : (ndarray, ndarray), shape (coefficients,)
+        Bounds of its coefficients.
+    errors : float, optional
+        By how many standard errors it must be beyond them.
+    """
+    lower, upper = bounds
     is_share = (lower == 0.0) & (upper == 1.0)
     reach = errors * standard_errors(fit) + np.where(is_share, _BEYOND, 0.0)
     beyond = (fit.coefficients < lower - reach) | (fit.coefficients > upper + reach)
