@@ -13,7 +13,7 @@ References
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.linalg.lapack import dpttrf, dpttrs
+from scipy.linalg.lapack import dpttrf, dpttrs, dtbtrs
 
 from frictioncli.arrays import Array, Indices
 
@@ -63,6 +63,23 @@ class Drift:
         diagonal[:-1] += np.square(correlation[1:]) / innovation[1:]
         determinant = float(np.sum(np.log(innovation)))
         return cls(correlation, diagonal, -correlation / innovation, determinant)
+
+
+def correlated(correlation: Array, right: Array) -> Array:
+    """Return the covariance of a drift of variance 1 times columns.
+
+    Parameters
+    ----------
+    correlation : ndarray, shape (pairs,)
+        As of :class:`Drift`.
+    right : ndarray, shape (pairs, ...)
+        The columns.
+    """
+    # a product of a first-order recursion, its innovations and the same recursion backwards
+    banded = np.array([np.ones_like(correlation), -np.append(correlation[1:], 0.0)])
+    backward, _ = dtbtrs(banded, right, uplo="L", trans="T", diag="U")
+    innovation = 1 - np.square(correlation)
+    return np.asarray(dtbtrs(banded, (backward.T * innovation).T, uplo="L", diag="U")[0])
 
 
 def posterior_factor(diagonal: Array, beside: Array, white: Array) -> Array:

@@ -23,7 +23,14 @@ import numpy as np
 
 from frictioncli.arrays import Array, Indices
 from frictioncli.linear_algebra import inverse_and_determinant
-from frictioncli.model.drift import LEAST_DRIFT, Drift, inverse_diagonal, posterior_factor, solved
+from frictioncli.model.drift import (
+    LEAST_DRIFT,
+    Drift,
+    correlated,
+    inverse_diagonal,
+    posterior_factor,
+    solved,
+)
 from frictioncli.model.likeliest_noise import NoiseLikelihood, likeliest
 
 _DRIFT_TIMES = 12
@@ -86,13 +93,7 @@ class PairCovariance:
 
     def times(self, right: Array) -> Array:
         """Return the covariance times ``right``, shape (pairs, columns)."""
-        # the product with exp(-|Δt|/θ), as a first-order recursion forwards and one backwards
-        forward, backward = np.array(right), np.array(right)
-        for i in range(1, len(right)):
-            forward[i] += self.correlation[i] * forward[i - 1]
-        for i in range(len(right) - 2, -1, -1):
-            backward[i] += self.correlation[i + 1] * backward[i + 1]
-        drift = self.drift**2 * (forward + backward - right)
+        drift = self.drift**2 * correlated(self.correlation, right)
         return (right.T * self.white).T + drift
 
     def draw(self, generator: np.random.Generator) -> Array:
