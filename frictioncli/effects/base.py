@@ -148,7 +148,8 @@ class Effect:
         corrected, and no friction cause may explain it instead.
     moments : callable or None
         For an effect that comes and goes: the histories to try, from the table
-        (:mod:`frictioncli.effects.history`). Such a shape may have further stretches.
+        (:mod:`frictioncli.effects.history`). Such a shape may have further stretches; the columns
+        are the same wherever it is there, and zero elsewhere.
     needs : tuple of str
         Columns of the table that must be known and vary for the effect to be tested.
     uses : tuple of str

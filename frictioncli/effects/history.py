@@ -44,6 +44,9 @@ SHAPE = (
 )
 """Shape parameters of the first stretch of a history."""
 
+LASTING: Shape = {"moment": 0.0, "end": 1.0}
+"""History of a change that is there from the first pair to the last."""
+
 
 def stretches(shape: Mapping[str, float]) -> list[Stretch]:
     """Return the stretches of a history, in order; empty ones are left out.

@@ -4,12 +4,15 @@ The response is applied to samples over time, here, and to the columns of an eff
 in the program.
 """
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from scipy.signal import lfilter
 
 from frictioncli.diagnosis.data.late_torque import LateTorque, late_basis
 from frictioncli.effects import BY_NAME
+from tests.diagnosis.dense_noise import problem
 from tests.effects.tables import small
 
 PERIOD = 1e-4
@@ -111,6 +114,31 @@ def test_what_does_not_depend_on_the_angle_is_the_same():
     late = LateTorque(delay=0.05, variance=0.001)
     basis = late_basis(effect, table, shape, late, counted=1.0, alpha=0.0, separate_load=False)
     assert np.array_equal(basis.friction, effect.evaluate(table, shape).friction)
+
+
+@pytest.mark.parametrize("late", [None, LateTorque(delay=0.03, variance=0.0004)])
+@pytest.mark.parametrize("name", ["payload_change", "step_change"])
+def test_a_change_has_the_columns_of_its_effect_in_each_stretch(name, late):
+    """Of some rows of a joint, whose history counts all pairs."""
+    data, effect = replace(problem(0), late=late), BY_NAME[name]
+    for shape in (
+        {"moment": 0.3, "end": 1.0},
+        {"moment": 0.1, "end": 0.2, "moment_2": 0.5, "end_2": 0.75},
+        {"moment": 1.0, "end": 1.0},
+    ):
+        expected = effect.evaluate(data.all_runs, shape)
+        if late is not None:
+            expected = late_basis(
+                effect,
+                data.all_runs,
+                shape,
+                late,
+                counted=data.counted,
+                alpha=data.parameters.alpha,
+                separate_load=data.has_load_channel,
+            )
+        for found, one in zip(data.basis(effect, shape), expected, strict=True):
+            np.testing.assert_allclose(found, one[data.rows], rtol=1e-12, atol=1e-15)
 
 
 def test_nodes_have_the_moments_of_a_filter_behind_a_delay():

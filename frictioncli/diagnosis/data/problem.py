@@ -27,7 +27,8 @@ from frictioncli.diagnosis.data.hidden_temperature import HiddenTemperature
 from frictioncli.diagnosis.data.late_torque import EarlierTables, LateTorque, late_basis
 from frictioncli.diagnosis.data.pair_layout import PairLayout
 from frictioncli.effects.base import Basis, Effect, EffectTable
-from frictioncli.effects.pair_series import rows_of
+from frictioncli.effects.history import LASTING, present
+from frictioncli.effects.pair_series import measured_share, rows_of
 from frictioncli.model.friction import FrictionParameters
 
 
@@ -125,9 +126,24 @@ class Problem:
     counted: float = 1.0
     late: LateTorque | None = None
     _earlier: EarlierTables = field(default_factory=EarlierTables, init=False, repr=False)
+    _lasting: dict[int, tuple[Effect, Array, Basis]] = field(
+        default_factory=dict, init=False, repr=False
+    )
 
     def basis(self, effect: Effect, shape: Mapping[str, float]) -> Basis:
         """Return an effect's columns as the log shows them, evaluated on all runs."""
+        if effect.moments is None:
+            return self._evaluated(effect, shape)
+        # a change has the same columns wherever it is there
+        if id(effect) not in self._lasting:
+            share = measured_share(self.all_runs)[self.rows]
+            self._lasting[id(effect)] = effect, share, self._evaluated(effect, LASTING)
+        _, share, lasting = self._lasting[id(effect)]
+        there = present(share, shape)[:, np.newaxis]
+        return Basis(there * lasting.friction, there * lasting.load)
+
+    def _evaluated(self, effect: Effect, shape: Mapping[str, float]) -> Basis:
+        """Return an effect's columns, evaluated for its shape."""
         if self.late is None or effect.measurement:
             friction, load = effect.evaluate(self.all_runs, shape)
         else:
