@@ -256,6 +256,7 @@ def diagnose_joint(
         margin=margin,
         floor=_floor(found),
         seed=settings.seed,
+        structure=named.structure,
     )
     return Diagnosis(
         joint=joint,

@@ -31,7 +31,7 @@ import numpy as np
 from frictioncli.diagnosis.data.problem import Problem
 from frictioncli.diagnosis.empirical.fitted_columns import FittedColumns, refitted_beside
 from frictioncli.diagnosis.empirical.form_search import LEAST_SCORE, FormSearch, Noises
-from frictioncli.diagnosis.empirical.forms import forms_of
+from frictioncli.diagnosis.empirical.forms import Form, forms_of
 from frictioncli.diagnosis.empirical.located import Located, located, sizes_of_parts
 from frictioncli.diagnosis.empirical.normal_equations import Misfits, NormalEquations
 from frictioncli.diagnosis.empirical.random_functions import (
@@ -45,6 +45,7 @@ from frictioncli.diagnosis.fit.extension import Extension, misfits
 from frictioncli.diagnosis.fit.gain import Gain, gain_of
 from frictioncli.diagnosis.noise.discrepancy import SHARE
 from frictioncli.diagnosis.search.axis_columns import varying_axes
+from frictioncli.diagnosis.search.lack_of_fit import Structure
 from frictioncli.diagnosis.search.step import Step
 from frictioncli.effects.base import Basis
 
@@ -159,6 +160,7 @@ def empirical_term(
     margin: float,
     floor: float,
     seed: int,
+    structure: Structure | None = None,
 ) -> Empirical | None:
     """Return an empirical term for what base and causes leave; None where it is not worth using.
 
@@ -176,6 +178,8 @@ def empirical_term(
         RMS of point and pair noise. [N·m]
     seed : int
         Seed of the block bootstrap.
+    structure : Structure, optional
+        Structure that was located.
     """
     problem, misfit = seen[0], misfits(*seen)
     components = step.precomputed.discrepancy.components
@@ -201,6 +205,8 @@ def empirical_term(
     best, before = free, free.gain.before
     without = np.inf
     candidates = forms_of(_varying(problem))
+    if structure is not None:
+        candidates = [one for one in candidates if _is_along(one, structure)]
     for _ in range(_MOST_TRIED):
         found = search.best(candidates)
         if found.score < LEAST_SCORE or not found.leads:
@@ -265,6 +271,18 @@ def _varying(problem: Problem) -> dict[str, tuple[float, float]]:
     """Return the ranges of the quantities that vary."""
     varying = varying_axes(problem)
     return {axis: ends for axis, ends in ranges_seen(problem.table).items() if axis in varying}
+
+
+def _is_along(form: Form, structure: Structure) -> bool:
+    """Return whether a form may describe structure, or something else beside it.
+
+    It is none of the same quantity that depends on another one as well; and none of the load where
+    the structure is along the angle, which with one payload look alike.
+    """
+    if "load" in form.axes and "position" in structure.axes:
+        return False
+    own, located = set(form.axes), set(structure.axes)
+    return not own > located
 
 
 def _recurs(found: _Estimate) -> bool:

@@ -93,8 +93,6 @@ def axis_columns(problem: Problem) -> dict[tuple[tuple[str, ...], Channel], Arra
     )
     speed = _indicators(problem.layout.level)[problem.layout.row_pair]
     temperature, load = _cosines(table.temperature), _cosines(table.load)
-    # a stroke of less than a turn has finer structure than harmonics of a turn show
-    position = np.hstack([harmonics, _cosines(table.position)])
     time = _cosines(table.clock)[:, :_WAVES]
     warming = _HYSTERESIS * (2 * _rising(problem) - 1)[:, np.newaxis]
     squared = np.square(table.load)[:, np.newaxis] / max(float(np.max(np.square(table.load))), 1e-9)
@@ -105,8 +103,8 @@ def axis_columns(problem: Problem) -> dict[tuple[tuple[str, ...], Channel], Arra
     columns: dict[tuple[tuple[str, ...], Channel], Array] = {
         (("speed",), "friction"): speed,
         (("temperature",), "friction"): np.hstack([temperature, warming * temperature]),
-        (("position",), "friction"): position,
-        (("position",), "load"): position,
+        (("position",), "friction"): harmonics,
+        (("position",), "load"): harmonics,
         (("load",), "friction"): load,
         (("load",), "load"): load,
         (("time",), "load"): np.hstack([time, time * np.cos(angle)[:, np.newaxis]]),
