@@ -146,6 +146,9 @@ class Effect:
     measurement : bool
         Whether it is a property of the measurement and not of the joint: what it explains is
         corrected, and no friction cause may explain it instead.
+    recurs : bool
+        Whether it comes back by itself, as after every rest: a run that lacks it contradicts it,
+        where another effect may have gone.
     moments : callable or None
         For an effect that comes and goes: the histories to try, from the table
         (:mod:`frictioncli.effects.history`). Such a shape may have further stretches; the columns
@@ -183,6 +186,7 @@ class Effect:
     statement: str = ""
     uses: tuple[str, ...] = ()
     measurement: bool = False
+    recurs: bool = False
     moments: Callable[[EffectTable], list[dict[str, float]]] | None = None
 
     @property

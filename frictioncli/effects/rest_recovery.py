@@ -126,6 +126,7 @@ EFFECT = Effect(
     basis=basis,
     needs=("travel", "order"),
     uses=("rest",),
+    recurs=True,
     signature=Signature(
         axis="order",
         claim="Friction is above the model in the first pairs after a rest and then settles.",

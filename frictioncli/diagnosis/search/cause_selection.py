@@ -211,7 +211,7 @@ def _with_test(cause: Cause, test: NewRunTest) -> Cause:
     if test.holds is not False or _is_change(cause):
         return judged
     nothing = abs(test.amplitude) <= max(2 * test.error, _NOTHING)
-    if nothing and cause.test.p_value < BEYOND_DOUBT:
+    if nothing and cause.test.p_value < BEYOND_DOUBT and not cause.fit.effect.recurs:
         return judged
     reason = f"on the held-out run it is {test.amplitude:.2g} times as large"
     return replace(judged, standing="visible", reason=reason)

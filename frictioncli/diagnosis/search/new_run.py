@@ -59,6 +59,10 @@ _MOMENTS = 24
 _STRETCHES = 8
 """Moments between which a stretch of the new run is tried."""
 
+_SHOWN = 0.5
+"""Greatest standard error with which the run can show a cause of the size that is predicted. A run
+in which next to nothing of it is left, as of running-in, does not contradict it."""
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class NewRunTest:
@@ -134,7 +138,7 @@ def _tested(residual: NewRunResidual, shape: Shape) -> NewRunTest:
     holds = None
     if amplitude > _SIGNIFICANT * error and _ALIKE[0] <= amplitude <= _ALIKE[1]:
         holds = True
-    elif amplitude + _TWO_SIDED * error < _ABSENT:
+    elif error < _SHOWN and amplitude + _TWO_SIDED * error < _ABSENT:
         holds = False
     return NewRunTest(holds=holds, amplitude=amplitude, error=error, shape=shape)
 
