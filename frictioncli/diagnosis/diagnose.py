@@ -30,7 +30,7 @@ from frictioncli.diagnosis.search.measurement import beside_the_rest, corrected_
 from frictioncli.diagnosis.search.named_causes import Judging, named_causes
 from frictioncli.diagnosis.search.new_run_changes import changes_on_new_run, with_effect
 from frictioncli.diagnosis.search.new_run_misfit import NewRunMisfit
-from frictioncli.diagnosis.search.new_run_rivals import without_refuted_rivals
+from frictioncli.diagnosis.search.new_run_rivals import refuted_by_return, without_refuted_rivals
 from frictioncli.diagnosis.search.preparation import Preparation
 from frictioncli.diagnosis.search.search_result import SearchResult, given_up_causes
 from frictioncli.diagnosis.search.timing_causes import late_torque
@@ -199,6 +199,7 @@ def diagnose_joint(
         if new is None:
             break
         worse = refuted_by_new_run(judged.named, found.step, new)
+        worse = worse or refuted_by_return(judged.named, found, new)
         if not worse:
             break
         refuted += worse

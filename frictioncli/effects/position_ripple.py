@@ -19,7 +19,7 @@ def basis(table: EffectTable, *, order: float) -> Basis:
     """Return sine and cosine at the order and at twice the order, shape (rows, 4). [-].
 
     Columns are zero where the bins are too wide for the order, or the stroke is shorter than 1.25
-    periods.
+    periods. Of twice the order, the mean over a bin is what is left where the bins are wide for it.
 
     Parameters
     ----------
@@ -31,11 +31,11 @@ def basis(table: EffectTable, *, order: float) -> Basis:
     angles = np.unique(table.position)
     finest = float(np.min(np.diff(angles))) if len(angles) > 1 else 360.0
     long_enough = order * float(np.ptp(angles)) / 360.0 >= _LEAST_PERIODS
+    resolved = 1.0 if long_enough and order <= 180.0 / finest else 0.0
     columns = []
-    for harmonic in (order, 2 * order):
+    for harmonic, left in ((order, 1.0), (2 * order, float(np.sinc(2 * order * finest / 360.0)))):
         phase = harmonic * np.radians(table.angle)
-        resolved = 1.0 if long_enough and harmonic <= 180.0 / finest else 0.0
-        columns += [resolved * np.sin(phase), resolved * np.cos(phase)]
+        columns += [resolved * left * np.sin(phase), resolved * left * np.cos(phase)]
     return friction_only(*columns)
 
 

@@ -12,6 +12,9 @@ _HARMONICS = 12
 _COSINES = 10
 """Cosines over the range of temperature or load."""
 
+_HALF_WAVE = 10.0
+"""Half a period of the finest cosine over a stroke, two usual angle bins. [deg]"""
+
 _HALF = 5.0
 """Order from which on harmonics and cosines become weaker: nature is smooth."""
 
@@ -92,7 +95,14 @@ def axis_columns(problem: Problem) -> dict[tuple[tuple[str, ...], Channel], Arra
         [wave(n * angle) for n in range(1, _HARMONICS + 1) for wave in (np.sin, np.cos)]
     )
     speed = _indicators(problem.layout.level)[problem.layout.row_pair]
-    temperature, load = _cosines(table.temperature), _cosines(table.load)
+    temperature = _cosines(table.temperature)
+    # a stroke of less than a turn has finer structure than harmonics of a turn show; the load has
+    # as many columns, so that which of both it is does not depend on how fine they are
+    halves = max(round(float(np.ptp(table.position)) / _HALF_WAVE), _COSINES)
+    position = np.hstack([harmonics, _cosines(table.position, halves)])
+    load = _cosines(table.load, halves)
+    # friction is the same for loads to either side: with one payload that tells it from the angle
+    of_load = _cosines(np.abs(table.load), halves)
     time = _cosines(table.clock)[:, :_WAVES]
     warming = _HYSTERESIS * (2 * _rising(problem) - 1)[:, np.newaxis]
     squared = np.square(table.load)[:, np.newaxis] / max(float(np.max(np.square(table.load))), 1e-9)
@@ -103,9 +113,9 @@ def axis_columns(problem: Problem) -> dict[tuple[tuple[str, ...], Channel], Arra
     columns: dict[tuple[tuple[str, ...], Channel], Array] = {
         (("speed",), "friction"): speed,
         (("temperature",), "friction"): np.hstack([temperature, warming * temperature]),
-        (("position",), "friction"): harmonics,
-        (("position",), "load"): harmonics,
-        (("load",), "friction"): load,
+        (("position",), "friction"): position,
+        (("position",), "load"): position,
+        (("load",), "friction"): of_load,
         (("load",), "load"): load,
         (("time",), "load"): np.hstack([time, time * np.cos(angle)[:, np.newaxis]]),
         (("load", "speed"), "friction"): squared * speed,
@@ -125,10 +135,10 @@ def axis_columns(problem: Problem) -> dict[tuple[tuple[str, ...], Channel], Arra
     return {place: values for place, values in columns.items() if varying.issuperset(place[0])}
 
 
-def _cosines(values: Array) -> Array:
-    """Return weighted cosines over the range of a quantity, shape (rows, orders)."""
+def _cosines(values: Array, count: int = _COSINES) -> Array:
+    """Return weighted cosines over the range of a quantity, shape (rows, count)."""
     unit = (values - np.min(values)) / max(float(np.ptp(values)), 1e-9)
-    orders = np.arange(1, _COSINES + 1)
+    orders = np.arange(1, count + 1)
     return np.asarray(_weights(orders) * np.cos(np.pi * orders * unit[:, np.newaxis]))
 
 

@@ -19,6 +19,7 @@ References
    doi:10.1080/01621459.1987.10478472.
 """
 
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -49,6 +50,10 @@ _PINNED = 1e-3
 
 _SIGNIFICANT = 5e-3
 """Greatest p-value of structure that no effect explains."""
+
+_TOLD_BY_ANGLE = 10.0
+"""By so much structure along the load must be likelier than another: with one payload and pose the
+load is a function of the angle, and what goes with it goes with the angle, too."""
 
 _NO_DOUBT = 1e-12
 """P-value below which there is no doubt that structure is there."""
@@ -88,7 +93,12 @@ class Structure:
         return " and ".join(self.axes)
 
 
-def unnamed_structure(step: Step, margin: float, alpha: float) -> Structure | None:
+def unnamed_structure(
+    step: Step,
+    margin: float,
+    alpha: float,
+    is_known: Callable[[Structure], bool] = lambda _: False,
+) -> Structure | None:
     """Return the most significant structure beside the causes that is above the margin.
 
     Surely above it, or most probably where there is no doubt that it is there.
@@ -101,8 +111,12 @@ def unnamed_structure(step: Step, margin: float, alpha: float) -> Structure | No
         Smallest size worth a name. [N·m]
     alpha : float
         Significance level.
+    is_known : callable, optional
+        Whether structure belongs to something that is known, and does not count.
     """
     for one in structures(step):
+        if is_known(one):
+            continue
         least = one.size if one.p_value < _NO_DOUBT else one.interval[0]
         smallest = channel_margin(step.problem, one.channel, margin)
         if one.p_value < min(_SIGNIFICANT, alpha) and least > smallest:
@@ -161,7 +175,7 @@ def structures(step: Step) -> list[Structure]:
             )
             for names, channel, statistic, size, interval in found
         ),
-        key=lambda one: -one.statistic,
+        key=lambda one: -one.statistic + _TOLD_BY_ANGLE * (one.axes == ("load",)),
     )
 
 

@@ -19,6 +19,7 @@ from frictioncli.diagnosis.search.search_result import SearchResult
 from frictioncli.diagnosis.search.step import Step
 from frictioncli.effects import BY_NAME
 from frictioncli.effects.base import Effect
+from frictioncli.wording import in_words
 
 
 def without_refuted_rivals(
@@ -38,6 +39,46 @@ def without_refuted_rivals(
         Rows of the new run.
     """
     return tuple(_judged(one, causes, found, new) for one in causes)
+
+
+def refuted_by_return(
+    causes: Sequence[Cause], found: SearchResult, new: Problem
+) -> tuple[Cause, ...]:
+    """Return causes of which a new run shows that they are back, no longer named.
+
+    Each runs in parallel with an effect that comes back by itself, as running-in with friction
+    after a rest: that one then predicts the new run clearly better.
+
+    Parameters
+    ----------
+    causes : sequence of Cause
+        Causes that are named, judged on the new run.
+    found : SearchResult
+        The search that found them.
+    new : Problem
+        Rows of the new run.
+    """
+    weighted_fit = found.step.predicting_fit()
+    tried = {one.name for one in found.catalogue.hypotheses}
+    refuted = []
+    for cause in causes:
+        own = cause.fit.effect
+        others = [one.fit for one in causes if one is not cause]
+        known = {*cause.effects, *(one.effect.name for one in others)}
+        rivals = [BY_NAME[name] for name in own.confounders if name in tried - known]
+        rivals = [one for one in rivals if one.recurs]
+        if not rivals or not predicts_new_run(own) or cause.holds_on_new_run is False:
+            continue
+
+        def missed(fit: EffectFit, others: Sequence[EffectFit] = others) -> float:
+            return missed_of_new_run([*others, fit], found.step.problem, new, weighted_fit)
+
+        least = missed(cause.fit) / WORSE
+        back = [fit for fit in _fitted(rivals, others, found) if missed(fit) < least]
+        if back:
+            reason = f"{in_words(back[0].effect.name)} predicts the held-out run better"
+            refuted.append(replace(cause, standing="visible", reason=reason))
+    return tuple(refuted)
 
 
 def _judged(cause: Cause, causes: Sequence[Cause], found: SearchResult, new: Problem) -> Cause:

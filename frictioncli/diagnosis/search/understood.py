@@ -12,6 +12,10 @@ MOST_LEFT = 1 / 3
 """Structure without a name that is greater than this share of a cause along the same axis says that
 the cause is not understood."""
 
+_FORM = 0.1
+"""Structure along the axes of a cause that is smaller than this share of it is what its equation
+does not match of its form."""
+
 _MOST_BESIDE = 1.0
 """Structure along any axis that is greater than this share of a change of friction says the same:
 what comes and goes at some moments may be a part of anything that varies slowly."""
@@ -49,7 +53,11 @@ def understood(
         Significance level.
     """
     named = tuple(one for one in causes if one.standing == "named")
-    structure = unnamed_structure(step, margin, alpha)
+
+    def is_form(structure: Structure) -> bool:
+        return any(_is_form_of(one, structure) for one in named)
+
+    structure = unnamed_structure(step, margin, alpha, is_form)
     if structure is None:
         return named, None
     kept = tuple(one for one in named if not is_part(one.fit.effect, one.visible, structure))
@@ -58,6 +66,15 @@ def understood(
         rest = [one for one in step.accepted if one.effect.name not in lost]
         structure = unnamed_structure(Step.of(step.precomputed, rest), margin, alpha) or structure
     return kept, structure
+
+
+def _is_form_of(cause: Cause, unnamed: Structure) -> bool:
+    """Return whether structure is the error of a cause's form."""
+    effect = cause.fit.effect
+    along = {_AXES.get(one, one) for one in effect.needs}
+    own = {_AXES.get(one, one) for one in unnamed.axes} <= along
+    same = not effect.measurement and effect.channel == unnamed.channel
+    return same and own and unnamed.size < _FORM * cause.size
 
 
 def is_part(effect: Effect, visible: float, unnamed: Structure) -> bool:
