@@ -1,6 +1,8 @@
 """Delimited text logs: CSV in all its dialects, streamed in blocks of lines."""
 
-from collections.abc import Collection, Iterator
+import os
+from collections.abc import Collection, Iterator, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
@@ -8,8 +10,9 @@ from pathlib import Path
 import numpy as np
 
 from frictioncli.arrays import Numbers
+from frictioncli.logs.formats.compression import STREAM_ERRORS, is_compressed
 from frictioncli.logs.formats.delimited_rows import RowParser, raw_batch
-from frictioncli.logs.formats.dialect import Dialect, detect
+from frictioncli.logs.formats.dialect import Dialect, detect, split
 from frictioncli.logs.formats.encoding import (
     ASCII_BASED,
     HEAD_BYTES,
@@ -20,12 +23,15 @@ from frictioncli.logs.formats.encoding import (
     line_blocks,
     line_blocks_from,
 )
+from frictioncli.logs.formats.moments import settled_form
 from frictioncli.logs.formats.twincat_scope import scope_dialect
 from frictioncli.logs.log_source import MAX_ROW_TEXT, CsvHints, RawBatch, ReadTask, Refusal
 
 _SMALL_FILE = 1 << 20
 """Up to this size the lines at the ends of blocks are joined; in larger files that takes longer
 than it saves. [byte]"""
+_COMPARED_LINES, _LAST_BYTES = 60, 1 << 14
+"""Of the end of a file that is looked at. [lines, byte]"""
 _NUMBER_BYTES = b"0123456789+-eE\r\n"
 
 
@@ -49,8 +55,37 @@ def read_delimited(path: Path, head: bytes, hints: CsvHints) -> "DelimitedText |
     dialect = scope_dialect(lines, hints) or detect(lines, hints)
     if isinstance(dialect, Refusal):
         return dialect
+    dialect = _with_settled_dates(dialect, path, encoding, lines)
     above = head.split(b"\n", dialect.data_line - 1)[: dialect.data_line - 1]
     return DelimitedText(path, encoding, dialect, b"".join(line + b"\n" for line in above))
+
+
+def _with_settled_dates(
+    dialect: Dialect, path: Path, encoding: str, lines: Sequence[str]
+) -> Dialect:
+    """Return the dialect with the order of day and month that the end of the file shows."""
+    if all(form.is_certain for form in dialect.dates.values()):
+        return dialect
+    first, last = (
+        [row for line in part if len(row := split(line, dialect.delimiter)) == len(dialect.columns)]
+        for part in (lines[dialect.data_line - 1 :][:_COMPARED_LINES], _last_lines(path, encoding))
+    )
+    settled = {
+        i: settled_form(form, [row[i] for row in first], [row[i] for row in last])
+        for i, form in dialect.dates.items()
+    }
+    return replace(dialect, dates=settled)
+
+
+def _last_lines(path: Path, encoding: str) -> list[str]:
+    """Return the last whole lines of a file; none where it is compressed."""
+    with suppress(*STREAM_ERRORS), path.open("rb") as stream:
+        if is_compressed(stream):
+            return []
+        stream.seek(max(stream.seek(0, os.SEEK_END) - _LAST_BYTES, 0))
+        text = decode_head(stream.read(), encoding)
+        return text.splitlines()[1:][-_COMPARED_LINES:]
+    return []
 
 
 @dataclass(frozen=True, slots=True)
@@ -92,6 +127,12 @@ class DelimitedText:
     def form(self) -> str:
         """The file's form in words."""
         return f"{self.dialect.text}, {self.encoding.upper()}"
+
+    @property
+    def notes(self) -> tuple[str, ...]:
+        """What is assumed of its dates."""
+        notes = (form.note(self.columns[i]) for i, form in self.dialect.dates.items())
+        return tuple(note for note in notes if note)
 
     def with_same_layout(self, path: Path, head: FileHead) -> "DelimitedText | None":
         """Return a file that begins with the same header and has rows of numbers only.

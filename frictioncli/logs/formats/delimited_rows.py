@@ -1,7 +1,7 @@
 """Rows of a delimited text parsed into numbers: damaged rows are found and named."""
 
 import re
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from itertools import chain
 
@@ -13,6 +13,7 @@ import pyarrow.csv as pcsv
 from frictioncli.arrays import Array, Flags, Numbers
 from frictioncli.logs.formats.dialect import NOT_NUMBERS, Dialect, split
 from frictioncli.logs.formats.encoding import LineBlock
+from frictioncli.logs.formats.moments import MomentForm, seconds
 from frictioncli.logs.formats.plain_numbers import plain_columns
 from frictioncli.logs.log_source import RawBatch
 
@@ -21,6 +22,7 @@ _OUTER_BLANK = re.compile(rb"(?m)^ | (?=\r?$)")
 _NULLS = ["", *NOT_NUMBERS]
 _BLANK_LINES = b" \r\n"
 _PIECE = 1 << 18
+_NO_DATES: Mapping[int, MomentForm] = {}
 _NO_VALUE = 9e34
 """DIAdem writes 9.9e34 where a value is missing. [any unit]"""
 
@@ -54,7 +56,8 @@ class RowParser:
             return RawBatch(block.lines, values, np.empty(0, np.int64), ())
         table = self._table(content, self._types(wanted))
         if table is not None and table.num_rows == block.n_lines:
-            return raw_batch(table, block.lines, wanted, np.empty(0, np.int64), ())
+            dates = self.dialect.dates
+            return raw_batch(table, block.lines, wanted, np.empty(0, np.int64), (), dates)
         line, parts = block.first_line, []
         for piece in _pieces(content):
             parts.append(self._parse_damaged(piece, line, wanted))
@@ -63,7 +66,7 @@ class RowParser:
 
     def _plain_numbers(self, content: bytes, n_lines: int, wanted: list[int]) -> Array | None:
         """Return the wanted columns of text that holds nothing but numbers, else None."""
-        if not self.dialect.dates.isdisjoint(wanted):
+        if not self.dialect.dates.keys().isdisjoint(wanted):
             return None
         form = (self.dialect.delimiter, self.dialect.decimal, len(self.dialect.columns))
         return plain_columns(content, *form, wanted, n_lines)
@@ -93,7 +96,8 @@ class RowParser:
         reasons = tuple(
             "not_a_number" if ok else "wrong_field_count" for ok in has_width[~readable]
         )
-        return raw_batch(table, lines[readable], wanted, lines[~readable], reasons)
+        dates = self.dialect.dates
+        return raw_batch(table, lines[readable], wanted, lines[~readable], reasons, dates)
 
     def _bisected(
         self, rows: list[bytes], types: dict[str, pa.DataType]
@@ -123,11 +127,11 @@ class RowParser:
         return len(fields) == len(self.dialect.columns)
 
     def _look_like_numbers(self, rows: list[bytes], wanted: list[int]) -> Flags:
-        """Return for each row whether its wanted cells look like numbers or dates or are empty."""
+        """Return for each row whether its wanted cells look like numbers or are empty or dates."""
         good = np.ones(len(rows), bool)
         texts = self._table(b"\n".join(rows), {str(i): pa.string() for i in wanted})
         if texts is not None and texts.num_rows == len(rows):
-            for column in set(wanted) - self.dialect.dates:
+            for column in set(wanted).difference(self.dialect.dates):
                 good &= self._are_numbers(texts.column(str(column)))
         return good
 
@@ -205,6 +209,7 @@ def raw_batch(
     wanted: list[int],
     bad_lines: Numbers,
     reasons: tuple[str, ...],
+    dates: Mapping[int, MomentForm] = _NO_DATES,
 ) -> RawBatch:
     """Return a batch of parsed rows; without rows where the table is None."""
     values: dict[int, Array] = {}
@@ -214,39 +219,10 @@ def raw_batch(
             continue
         cells = table.column(str(column))
         if pa.types.is_binary(cells.type):  # whose bytes need not be text
-            texts = [cell.decode("utf-8", "replace") for cell in cells.to_pylist()]
-            values[column] = seconds_since_1970(texts)
+            values[column] = seconds(cells, dates[column])
             continue
         values[column] = _without_placeholders(cells.to_numpy())
     return RawBatch(lines, values, bad_lines, reasons)
-
-
-def seconds_since_1970(texts: list[str]) -> Array:
-    """Return ISO 8601 dates as time since 1970, NaN where a text is no date.
-
-    Parameters
-    ----------
-    texts : list of str, length n
-        Dates; without a time zone they are taken as UTC.
-
-    Returns
-    -------
-    ndarray, shape (n,)
-        Time since 1970-01-01 00:00 UTC. [s]
-
-    Examples
-    --------
-    >>> seconds_since_1970(["1970-01-02 00:00:00,5", ""])
-    array([86400.5,     nan])
-    """
-    import pandas as pd  # takes longer to import than most logs to read
-
-    cleaned = pd.Series([text.strip().replace(",", ".") for text in texts], dtype="str")
-    dates = pd.to_datetime(cleaned, format="ISO8601", errors="coerce", utc=True)
-    # in seconds: nanoseconds would overflow for the year 1
-    epoch = pd.Timestamp("1970-01-01", tz="UTC").as_unit("s")
-    seconds = (dates - epoch) / pd.Timedelta(seconds=1)
-    return np.asarray(seconds.to_numpy(dtype=float), np.float64)
 
 
 def _without_placeholders(numbers: Array) -> Array:

@@ -3,16 +3,17 @@
 import csv
 import re
 from collections import Counter
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 
+from frictioncli.logs.formats.moments import CLOCK, MomentForm, is_moment, moment_form
 from frictioncli.logs.log_source import CsvHints, Refusal
 
 _DELIMITERS = (";", "\t", ",", " ")
 _NAMES = {";": "';'", "\t": "tab", ",": "','", " ": "blanks"}
 _POINT = re.compile(r"\s*[+-]?(\d+(\.\d*)?|\.\d+)([eE][+-]?\d+)?\s*")
 _COMMA = re.compile(r"\s*[+-]?(\d+(,\d*)?|,\d+)([eE][+-]?\d+)?\s*")
-_DATE = re.compile(r"\s*\d{4}-\d\d-\d\d([T ]\d\d:\d\d.*+)?\s*")
 _UNIT_CELL = re.compile(r"\s*+[\[(]?[^\s\d\[\]()]{0,6}(/s\^?[2²]?)?[\])]?\s*")
 _BLANKS_BEFORE_UNIT = re.compile(r"(?<!\s)\s++(?=[\[(])")
 _SAMPLE_LINES = 60
@@ -35,31 +36,38 @@ class Dialect:
         Column names, one per field of a row; "" where the header has none.
     data_line : int
         Line number of the first row, from 1.
-    dates : frozenset of int
-        Columns of ISO 8601 dates.
+    dates : mapping of int to MomentForm
+        Columns of dates or times of day.
     """
 
     delimiter: str
     decimal: str
     columns: tuple[str, ...]
     data_line: int
-    dates: frozenset[int]
+    dates: Mapping[int, MomentForm]
 
     @property
     def text(self) -> str:
         """The form in words."""
         decimal = "comma" if self.decimal == "," else "point"
-        return f"text, {_NAMES[self.delimiter]}, decimal {decimal}"
+        # a date tells more than the time of day beside it
+        forms = sorted(self.dates.values(), key=lambda form: form.order == CLOCK)
+        texts = [form.text for form in forms if form.text][:1]
+        return ", ".join((f"text, {_NAMES[self.delimiter]}, decimal {decimal}", *texts))
 
 
 @dataclass(frozen=True, slots=True)
 class _Candidate:
-    """Delimiter and decimal sign, the number of fields, and the share of cells that are numbers."""
+    """Delimiter and decimal sign, the number of fields, and the share of cells that are numbers.
+
+    ``moments`` is the number of fields where date and time of day are one.
+    """
 
     delimiter: str
     decimal: str
     width: int
     share: float
+    moments: int
 
 
 def split(line: str, delimiter: str) -> list[str]:
@@ -129,14 +137,14 @@ def detect(lines: Sequence[str], hints: CsvHints) -> Dialect | Refusal:
     columns = tuple((names + [""] * best.width)[: best.width])
     if not names:
         columns = tuple(f"column {i + 1}" for i in range(best.width))
-    dates = frozenset(i for i, cell in enumerate(first) if _DATE.fullmatch(cell))
+    dates = _dates([split(line, best.delimiter) for line in lines[start : start + _SAMPLE_LINES]])
     return Dialect(best.delimiter, best.decimal, columns, data_line, dates)
 
 
 def _best_candidate(sample: Sequence[str], hints: CsvHints) -> _Candidate:
     allowed = _DELIMITERS if hints.delimiter is None else (hints.delimiter,)
     candidates = [_candidate(sample, delimiter, hints.decimal) for delimiter in allowed]
-    return max(candidates, key=lambda candidate: (round(candidate.share, 2), candidate.width))
+    return max(candidates, key=lambda candidate: (round(candidate.share, 2), candidate.moments))
 
 
 def _candidate(sample: Sequence[str], delimiter: str, decimal: str | None) -> _Candidate:
@@ -146,14 +154,18 @@ def _candidate(sample: Sequence[str], delimiter: str, decimal: str | None) -> _C
     cells = [cell for row in same for cell in row if cell.strip() and cell not in NOT_NUMBERS]
     share: dict[str, float] = {}
     for sign, pattern in ((".", _POINT), (",", _COMMA)):
-        hits = sum(bool(pattern.fullmatch(cell) or _DATE.fullmatch(cell)) for cell in cells)
+        hits = sum(bool(pattern.fullmatch(cell) or is_moment(cell)) for cell in cells)
         share[sign] = hits / len(cells) if cells else 0.0
     if decimal is None:
         decimal = "," if share[","] > share["."] else "."
     usable = width >= 2
-    return _Candidate(
-        delimiter, decimal, width, share[decimal] * len(same) / len(rows) if usable else 0.0
+    usual = share[decimal] * len(same) / len(rows) if usable else 0.0
+    forms = list(_dates(same).items())
+    split_up = sum(
+        not date.has_clock and clock.order == CLOCK and second == first + 1
+        for (first, date), (second, clock) in pairwise(forms)
     )
+    return _Candidate(delimiter, decimal, width, usual, width - split_up)
 
 
 def _first_row(lines: Sequence[str], form: _Candidate) -> tuple[int, list[str]]:
@@ -162,10 +174,18 @@ def _first_row(lines: Sequence[str], form: _Candidate) -> tuple[int, list[str]]:
     for index, line in enumerate(lines):
         fields = split(line, form.delimiter) if line.strip() else []
         filled = [cell for cell in fields if cell.strip()]
-        hits = sum(bool(pattern.fullmatch(cell) or _DATE.fullmatch(cell)) for cell in filled)
+        hits = sum(bool(pattern.fullmatch(cell) or is_moment(cell)) for cell in filled)
         if len(fields) == form.width and hits and hits >= _LEAST_NUMBERS * len(filled):
             return index, fields
     return len(lines), []
+
+
+def _dates(rows: Sequence[Sequence[str]]) -> dict[int, MomentForm]:
+    """Return the columns of dates and times of day with their forms."""
+    width = len(rows[0]) if rows else 0
+    same = [row for row in rows if len(row) == width]
+    forms = {i: moment_form([row[i] for row in same]) for i in range(width)}
+    return {i: form for i, form in forms.items() if form is not None}
 
 
 def _header(above: Sequence[str], form: _Candidate) -> tuple[list[str], int] | Refusal:

@@ -57,7 +57,7 @@ def scope_dialect(lines: Sequence[str], hints: CsvHints) -> Dialect | None:
         return None
     decimal = hints.decimal or ("," if delimiter != "," and "," in lines[first] else ".")
     unit = "100ns" if _number(rows[first][0]) > _FILETIME else "ms"
-    return Dialect(delimiter, decimal, _columns(keyed, unit), first + 1, frozenset())
+    return Dialect(delimiter, decimal, _columns(keyed, unit), first + 1, {})
 
 
 def scope_start(head: bytes) -> datetime | None:

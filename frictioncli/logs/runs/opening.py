@@ -12,7 +12,6 @@ from frictioncli.logs.channels.mapped_channels import mapped_channels, with_side
 from frictioncli.logs.channels.recognition import LogChannel, recognise_channels
 from frictioncli.logs.channels.units import is_count
 from frictioncli.logs.formats import open_logs
-from frictioncli.logs.formats.twincat_scope import scope_start
 from frictioncli.logs.log_source import LogSource, Refusal
 from frictioncli.logs.runs.discovery import LogFile, LogRun
 from frictioncli.logs.runs.file_joint import joint_of_file
@@ -23,7 +22,7 @@ from frictioncli.logs.runs.integrated_position import (
     with_position,
 )
 from frictioncli.logs.runs.native_scale import ScaledLog, scale_raw_export
-from frictioncli.logs.runs.sidecar import Sidecar, read_sidecar, recorder_start
+from frictioncli.logs.runs.sidecar import Sidecar, read_sidecar, with_own_text
 from frictioncli.logs.runs.trace_files import duplicates_of_native, merge_trace
 from frictioncli.logs.runs.trace_names import is_module, is_program, trace_of
 from frictioncli.logs.settings import IngestSettings
@@ -122,9 +121,7 @@ def open_run(
             source=_scaled(choice, channel_map),
             channels=choice.channels,
             joints=choice.joints,
-            sidecar=_with_own_start(
-                read_sidecar(file.path, names[file.path.parent]), choice.source
-            ),
+            sidecar=with_own_text(read_sidecar(file.path, names[file.path.parent]), choice.source),
         )
         for file, choice in usable.items()
     ]
@@ -221,17 +218,6 @@ def _scaled(choice: _Choice, channel_map: ChannelMap) -> LogSource:
     columns = range(len(choice.source.columns))
     scales = tuple((factors.get(column, 1.0), 0.0) for column in columns)
     return ScaledLog(choice.source, scales, "scaled by the map")
-
-
-def _with_own_start(sidecar: Sidecar, source: LogSource) -> Sidecar:
-    """Return the sidecar with the start that the log's own text tells, where no other is known."""
-    # a source that adds columns holds the one that was read
-    text = source if hasattr(source, "preamble") else getattr(source, "source", None)
-    head = getattr(text, "preamble", b"")
-    start = recorder_start(head) or scope_start(head)
-    if start is None or sidecar.started_at is not None:
-        return sidecar
-    return replace(sidecar, started_at=start, notes=(*sidecar.notes, "start time from its header"))
 
 
 def _choose(

@@ -1,12 +1,14 @@
 """Start and payload of a recording, from the files next to its log."""
 
-from collections.abc import Collection
-from dataclasses import dataclass
+from collections.abc import Collection, Iterator
+from dataclasses import dataclass, replace
 from datetime import UTC, datetime
 from pathlib import Path
+from typing import Any
 
 from frictioncli.logs.formats.diadem_header import read_header
-from frictioncli.logs.log_source import UnreadableLog
+from frictioncli.logs.formats.twincat_scope import scope_start
+from frictioncli.logs.log_source import LogSource, UnreadableLog
 from frictioncli.logs.runs.program_file import read_program
 from frictioncli.logs.runs.trace_names import PROGRAM, trace_of
 
@@ -101,3 +103,31 @@ def recorder_start(head: bytes) -> datetime | None:
         return datetime.fromisoformat(text).replace(tzinfo=UTC)
     except ValueError:
         return None
+
+
+def with_own_text(sidecar: Sidecar, source: LogSource) -> Sidecar:
+    """Return a sidecar with the log's own notes, and its start where no other is known.
+
+    Parameters
+    ----------
+    sidecar : Sidecar
+        What the files next to the log say.
+    source : LogSource
+        The log.
+    """
+    parts = list(_parts(source))
+    own = [note for part in parts for note in getattr(part, "notes", ())]
+    sidecar = replace(sidecar, notes=(*sidecar.notes, *own)) if own else sidecar
+    head = next((part.preamble for part in parts if hasattr(part, "preamble")), b"")
+    start = recorder_start(head) or scope_start(head)
+    if start is None or sidecar.started_at is not None:
+        return sidecar
+    return replace(sidecar, started_at=start, notes=(*sidecar.notes, "start time from its header"))
+
+
+def _parts(source: LogSource) -> Iterator[Any]:
+    """Yield a source, and the sources to which it adds, down to the one that was read."""
+    part: Any = source
+    while part is not None:
+        yield part
+        part = getattr(part, "source", None)
