@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from itertools import pairwise
 
 from frictioncli.logs.formats.moments import CLOCK, MomentForm, is_moment, moment_form
+from frictioncli.logs.formats.no_table import refuse_no_table, refuse_too_short, refuse_unequal
 from frictioncli.logs.log_source import CsvHints, Refusal
 
 _DELIMITERS = (";", "\t", ",", " ")
@@ -15,6 +16,8 @@ _NAMES = {";": "';'", "\t": "tab", ",": "','", " ": "blanks"}
 _POINT = re.compile(r"\s*[+-]?(\d+(\.\d*)?|\.\d+)([eE][+-]?\d+)?\s*")
 _COMMA = re.compile(r"\s*[+-]?(\d+(,\d*)?|,\d+)([eE][+-]?\d+)?\s*")
 _UNIT_CELL = re.compile(r"\s*+[\[(]?[^\s\d\[\]()]{0,6}(/s\^?[2²]?)?[\])]?\s*")
+_COMMENTS = ("%", "#")
+_COMMENT_MARK = re.compile(r"^\s*+[%#]++\s")
 _BLANKS_BEFORE_UNIT = re.compile(r"(?<!\s)\s++(?=[\[(])")
 _SAMPLE_LINES = 60
 _LEAST_NUMBERS = 0.3
@@ -117,7 +120,8 @@ def detect(lines: Sequence[str], hints: CsvHints) -> Dialect | Refusal:
     """
     filled = [line for line in lines if line.strip()]
     if len(filled) < 2:
-        return _refuse_too_short(filled)
+        widest = max((len(split(line, d)) for line in filled for d in _DELIMITERS), default=0)
+        return refuse_too_short(has_header=widest >= 2)
     best = _best_candidate(filled[1:][-_SAMPLE_LINES:], hints)
     if best.share < _LEAST_NUMBERS:
         # the last lines may be text behind good rows: look at all lines, part by part
@@ -125,19 +129,21 @@ def detect(lines: Sequence[str], hints: CsvHints) -> Dialect | Refusal:
         found = [_best_candidate(filled[part : part + _SAMPLE_LINES], hints) for part in parts]
         best = max(found, key=lambda candidate: candidate.share)
     if best.share < _LEAST_NUMBERS:
-        return _refuse_no_table(filled, hints)
+        return refuse_no_table(filled, None if hints.delimiter is None else _NAMES[hints.delimiter])
     start, first = _first_row(lines, best)
     header = _header(lines[:start], best)
     if isinstance(header, Refusal):
         return header
     names, data_line = header
+    dates = _dates([split(line, best.delimiter) for line in lines[start : start + _SAMPLE_LINES]])
     surplus = [cell for cell in first[len(names) :] if cell.strip()]
-    if names and surplus:
-        return _refuse_unequal(len(names), best.width)
+    if names and surplus and len(names) != best.moments:
+        return refuse_unequal(len(names), best.width, best.delimiter)
+    for _, clock in _split_moments(dates) if surplus else ():
+        names.insert(clock, "")
     columns = tuple((names + [""] * best.width)[: best.width])
     if not names:
         columns = tuple(f"column {i + 1}" for i in range(best.width))
-    dates = _dates([split(line, best.delimiter) for line in lines[start : start + _SAMPLE_LINES]])
     return Dialect(best.delimiter, best.decimal, columns, data_line, dates)
 
 
@@ -160,12 +166,7 @@ def _candidate(sample: Sequence[str], delimiter: str, decimal: str | None) -> _C
         decimal = "," if share[","] > share["."] else "."
     usable = width >= 2
     usual = share[decimal] * len(same) / len(rows) if usable else 0.0
-    forms = list(_dates(same).items())
-    split_up = sum(
-        not date.has_clock and clock.order == CLOCK and second == first + 1
-        for (first, date), (second, clock) in pairwise(forms)
-    )
-    return _Candidate(delimiter, decimal, width, usual, width - split_up)
+    return _Candidate(delimiter, decimal, width, usual, width - len(_split_moments(_dates(same))))
 
 
 def _first_row(lines: Sequence[str], form: _Candidate) -> tuple[int, list[str]]:
@@ -188,11 +189,21 @@ def _dates(rows: Sequence[Sequence[str]]) -> dict[int, MomentForm]:
     return {i: form for i, form in forms.items() if form is not None}
 
 
+def _split_moments(dates: Mapping[int, MomentForm]) -> list[tuple[int, int]]:
+    """Return the neighbouring columns of a date and of its time of day."""
+    return [
+        (first, second)
+        for (first, date), (second, clock) in pairwise(dates.items())
+        if not date.has_clock and clock.order == CLOCK and second == first + 1
+    ]
+
+
 def _header(above: Sequence[str], form: _Candidate) -> tuple[list[str], int] | Refusal:
     """Return the column names and the line number of the first row.
 
-    The header is the line with the most names above the first row of numbers; lines between the
-    two are damaged rows. A line of units may follow the header.
+    The header is the line with the most names above the first row of numbers, of equal ones the
+    first, or the last where all are comments; lines between the two are damaged rows. A line of
+    units may follow the header.
     """
     pattern = _COMMA if form.decimal == "," else _POINT
     lines = {
@@ -209,8 +220,18 @@ def _header(above: Sequence[str], form: _Candidate) -> tuple[list[str], int] | R
         return [], 1 + next((i for i, line in enumerate(above) if line.strip()), len(above))
     fitting = {index: fields for index, fields in named.items() if len(fields) <= form.width}
     if not fitting:
-        return _refuse_unequal(len(next(iter(named.values()))), form.width)
-    header = max(fitting, key=lambda index: (len(fitting[index]), -index))
+        closest = min(map(len, named.values()), key=lambda names: names - form.width)
+        return refuse_unequal(closest, form.width, form.delimiter)
+    comments = {i for i in fitting if above[i].lstrip().startswith(_COMMENTS)}
+    header = max(
+        fitting,
+        key=lambda i: (
+            len(fitting[i]),
+            not _are_units(fitting[i]),
+            i not in comments,
+            i if i in comments else -i,
+        ),
+    )
     names = fitting[header]
     below = next((index for index in lines if index > header), None)
     units = lines[below] if below is not None else []
@@ -227,20 +248,13 @@ def _header(above: Sequence[str], form: _Candidate) -> tuple[list[str], int] | R
 def _header_fields(line: str, delimiter: str) -> list[str]:
     """Return the fields of a line without trailing empty ones."""
     if delimiter == " ":
-        # "Zeit [s]" is one field
-        line = _BLANKS_BEFORE_UNIT.sub("", line)
+        line = _COMMENT_MARK.sub("", line).strip()
+        # "Zeit [s]" is one field, "[s] [deg]" are two
+        line = line if line.startswith(("[", "(")) else _BLANKS_BEFORE_UNIT.sub("", line)
     fields = [field.strip().strip('"').strip() for field in split(line, delimiter)]
     while fields and not fields[-1]:
         fields.pop()
     return fields
-
-
-def _refuse_unequal(names: int, width: int) -> Refusal:
-    return Refusal(
-        "wrong_field_count",
-        f"the header names {names} columns but the rows have {width} fields; expected as many;"
-        " a decimal comma in a comma-separated file does this: save it with ';'",
-    )
 
 
 def _are_units(names: Sequence[str]) -> bool:
@@ -270,29 +284,3 @@ def _are_units(names: Sequence[str]) -> bool:
     )
     known = sum(name.strip("[]()").lower() in marks for name in names)
     return known >= 2 and all(_UNIT_CELL.fullmatch(name) for name in names)
-
-
-def _refuse_too_short(filled: Sequence[str]) -> Refusal:
-    if filled and max(len(split(filled[0], d)) for d in _DELIMITERS) >= 2:
-        return Refusal(
-            "too_few_rows", "a header line and no rows; expected at least two rows of numbers"
-        )
-    return Refusal("not_a_log", "text without rows; expected a header line and rows of numbers")
-
-
-def _refuse_no_table(filled: Sequence[str], hints: CsvHints) -> Refusal:
-    if hints.delimiter is not None:
-        return Refusal(
-            "wrong_delimiter",
-            f"the map's delimiter {_NAMES[hints.delimiter]} does not separate numbers; the first"
-            f" line is {filled[0][:120]!r}",
-        )
-    body = "".join(filled[1:])
-    digits = sum(character.isdigit() for character in body)
-    if digits > 0.3 * len(body):
-        return Refusal(
-            "one_column",
-            "no ';', tab, ',' or blank separates the numbers; the first line is"
-            f" {filled[0][:120]!r}; save the log as CSV",
-        )
-    return Refusal("not_a_log", "text, but not a table of numbers")
