@@ -159,7 +159,9 @@ class _InspectedLogs:
         ]
         frame = pd.DataFrame(rows, columns=["run", "recording", "phase", "payload"])
         types = {"phase": object, "payload": float}
-        return frame.astype(types).set_index(["run", "recording"])
+        frame = frame.astype(types).set_index(["run", "recording"])
+        # logs of different joints may be one recording
+        return frame[~frame.index.duplicated()]
 
 
 def _is_integrated(dated: DatedLog) -> bool:
@@ -180,17 +182,17 @@ def _inspect_run(
     """Yield the samples of all logs of a run in the order of time, and record what they hold."""
     manifest = _manifest(run, inspected)
     logs = plan_run(run, manifest, settings, channel_map, constants=inspected.constants)
-    files = {
-        log.file.path: inspect_unusable(run, log.file.path, log.refusal, channel_map, settings)
-        for log in logs.refused
-    }
+    files: dict[Path, list[FileInspection]] = {}
+    for log in logs.refused:
+        found = inspect_unusable(run, log.file.path, log.refusal, channel_map, settings)
+        files.setdefault(log.file.path, []).append(found)
     clock = RunClock(run.name)
     told = {*settings.forced_units(), *channel_map.units}
     for dated, start, chunks in logs.recordings(clock, settings.batch_bytes):
         with SampleStore(folder) as store:
             sink = partial(store_samples, store, dated.planned.log.recording, start)
             file, recording = _inspect_log(dated, chunks, sink, settings, told, inspected.poses)
-            files[file.path] = file
+            files.setdefault(file.path, []).append(file)
             if recording is not None:
                 clock.place(dated, recording)
                 inspected.usable.append(dated)
@@ -199,7 +201,8 @@ def _inspect_run(
     timeline = clock.timeline(has_manifest=manifest.found)
     inspected.time_known &= timeline.known
     inspected.remarks += timeline.warnings
-    inspected.files += [files[file.path] for file in run.files if file.path in files]
+    for file_of_run in run.files:
+        inspected.files += files.get(file_of_run.path, [])
 
 
 def _manifest(run: LogRun, inspected: _InspectedLogs) -> RunManifest:

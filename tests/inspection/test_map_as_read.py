@@ -107,13 +107,14 @@ def test_the_joint_is_that_of_the_id_column(name, tmp_path):
     assert tomllib.loads(text)["joint"] == {"number": 5}
 
 
-def test_an_id_that_changes_tells_no_joint(tmp_path):
+def test_an_id_that_changes_tells_the_joint_of_each_row(tmp_path):
     log = clean_log()
     table = pd.DataFrame({"time": log[TIME], "motor_id": 2, "pos": log[POSITION]})
     table["torque"] = log[TORQUE]
     table.loc[::2, "motor_id"] = 3
     summary = ingest([write(table, tmp_path / "log.csv")], tmp_path / "work")
-    assert list(summary.samples) == [1]
+    assert list(summary.samples) == [2, 3]
+    assert summary.rows_read == len(table)
 
 
 @pytest.mark.skipif(not REAL.is_dir(), reason=f"no real logs beside the project: {REAL}")

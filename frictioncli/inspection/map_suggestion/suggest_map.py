@@ -18,6 +18,7 @@ from frictioncli.logs.log_source import LogSource, Refusal
 from frictioncli.logs.reading_plan import planned_logs
 from frictioncli.logs.runs.discovery import LogFile, discover
 from frictioncli.logs.runs.file_joint import joint_of_file
+from frictioncli.logs.runs.joint_rows import joint_rows
 from frictioncli.logs.runs.opening import open_run
 from frictioncli.logs.settings import IngestSettings
 
@@ -118,8 +119,11 @@ def _looked_at(
     for file in [files[i] for i in spaced] if files else []:
         # not merged with others: with a mapping file, the files of a trace stay separate
         source = open_log(file.path, channel_map.hints)
-        if not isinstance(source, Refusal):
-            usable.append(_Log(source, joint_of_file(file, source), plans.get(file.path, ())))
+        if isinstance(source, Refusal):
+            continue
+        parts = joint_rows(source, settings, channel_map)
+        for part in () if isinstance(parts, Refusal) else parts:
+            usable.append(_Log(part, joint_of_file(file, part), plans.get(file.path, ())))
     if not usable:
         raise LogError("no log can be opened; " + "; ".join(refusals[:4]))
     return usable

@@ -32,6 +32,7 @@ _SMALL_FILE = 1 << 20
 than it saves. [byte]"""
 _COMPARED_LINES, _LAST_BYTES = 60, 1 << 14
 """Of the end of a file that is looked at. [lines, byte]"""
+_LABEL_BYTES = 1 << 22
 _NUMBER_BYTES = b"0123456789+-eE\r\n"
 
 
@@ -134,6 +135,28 @@ class DelimitedText:
         notes = (form.note(self.columns[i]) for i, form in self.dialect.dates.items())
         return tuple(note for note in notes if note)
 
+    def names_in(self, column: int, most: int) -> tuple[str, ...]:
+        """Return the different texts in a column in the order of appearance; none if too many.
+
+        Parameters
+        ----------
+        column : int
+            A column of names; empty cells and cells in damaged rows are none.
+        most : int
+            Greatest number of names.
+        """
+        found: dict[str, None] = {}
+        for block in self._row_blocks(_LABEL_BYTES):
+            found |= dict.fromkeys(RowParser(self.dialect).texts(block.content, column))
+            if len(found) > most:
+                return ()
+        return tuple(found)
+
+    def with_names(self, column: int, names: tuple[str, ...]) -> "DelimitedText":
+        """Return the log with each name in a column read as its place among the names, from 1."""
+        labels = {**self.dialect.labels, column: names}
+        return replace(self, dialect=replace(self.dialect, labels=labels))
+
     def with_same_layout(self, path: Path, head: FileHead) -> "DelimitedText | None":
         """Return a file that begins with the same header and has rows of numbers only.
 
@@ -149,7 +172,7 @@ class DelimitedText:
         DelimitedText or None
             None where the layout differs or has to be detected.
         """
-        if self.dialect.dates or not head.content.startswith(self.preamble):
+        if self.dialect.texts or not head.content.startswith(self.preamble):
             return None
         rows = head.content[len(self.preamble) :]
         delimiter = self.dialect.delimiter.encode()

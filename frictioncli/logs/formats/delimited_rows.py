@@ -1,7 +1,7 @@
 """Rows of a delimited text parsed into numbers: damaged rows are found and named."""
 
 import re
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from dataclasses import dataclass
 from itertools import chain
 
@@ -13,7 +13,7 @@ import pyarrow.csv as pcsv
 from frictioncli.arrays import Array, Flags, Numbers
 from frictioncli.logs.formats.dialect import NOT_NUMBERS, Dialect, split
 from frictioncli.logs.formats.encoding import LineBlock
-from frictioncli.logs.formats.moments import MomentForm, seconds
+from frictioncli.logs.formats.moments import seconds
 from frictioncli.logs.formats.plain_numbers import plain_columns
 from frictioncli.logs.log_source import RawBatch
 
@@ -22,7 +22,6 @@ _OUTER_BLANK = re.compile(rb"(?m)^ | (?=\r?$)")
 _NULLS = ["", *NOT_NUMBERS]
 _BLANK_LINES = b" \r\n"
 _PIECE = 1 << 18
-_NO_DATES: Mapping[int, MomentForm] = {}
 _NO_VALUE = 9e34
 """DIAdem writes 9.9e34 where a value is missing. [any unit]"""
 
@@ -56,17 +55,33 @@ class RowParser:
             return RawBatch(block.lines, values, np.empty(0, np.int64), ())
         table = self._table(content, self._types(wanted))
         if table is not None and table.num_rows == block.n_lines:
-            dates = self.dialect.dates
-            return raw_batch(table, block.lines, wanted, np.empty(0, np.int64), (), dates)
+            nothing = np.empty(0, np.int64)
+            return raw_batch(table, block.lines, wanted, nothing, (), self.dialect)
         line, parts = block.first_line, []
         for piece in _pieces(content):
             parts.append(self._parse_damaged(piece, line, wanted))
             line += piece.count(b"\n")
         return _joined(parts, wanted)
 
+    def texts(self, content: bytes, column: int) -> list[str]:
+        """Return the different texts in a column of some rows, in the order of appearance."""
+        content = self._with_single_blanks(content)
+        table = self._table(content, {str(column): pa.binary()})
+        if table is None:
+            rows = (
+                split(text.decode("utf-8", "replace"), self.dialect.delimiter)
+                for text in content.split(b"\n")
+            )
+            width = len(self.dialect.columns)
+            return list(
+                dict.fromkeys(row[column] for row in rows if len(row) == width and row[column])
+            )
+        cells = pc.unique(table.column(str(column))).to_pylist()
+        return [cell.decode("utf-8", "replace") for cell in cells if cell]
+
     def _plain_numbers(self, content: bytes, n_lines: int, wanted: list[int]) -> Array | None:
         """Return the wanted columns of text that holds nothing but numbers, else None."""
-        if not self.dialect.dates.keys().isdisjoint(wanted):
+        if not self.dialect.texts.isdisjoint(wanted):
             return None
         form = (self.dialect.delimiter, self.dialect.decimal, len(self.dialect.columns))
         return plain_columns(content, *form, wanted, n_lines)
@@ -96,8 +111,8 @@ class RowParser:
         reasons = tuple(
             "not_a_number" if ok else "wrong_field_count" for ok in has_width[~readable]
         )
-        dates = self.dialect.dates
-        return raw_batch(table, lines[readable], wanted, lines[~readable], reasons, dates)
+        bad = lines[~readable]
+        return raw_batch(table, lines[readable], wanted, bad, reasons, self.dialect)
 
     def _bisected(
         self, rows: list[bytes], types: dict[str, pa.DataType]
@@ -127,11 +142,11 @@ class RowParser:
         return len(fields) == len(self.dialect.columns)
 
     def _look_like_numbers(self, rows: list[bytes], wanted: list[int]) -> Flags:
-        """Return for each row whether its wanted cells look like numbers or are empty or dates."""
+        """Return for each row whether its wanted cells look like numbers or are empty or texts."""
         good = np.ones(len(rows), bool)
         texts = self._table(b"\n".join(rows), {str(i): pa.string() for i in wanted})
         if texts is not None and texts.num_rows == len(rows):
-            for column in set(wanted).difference(self.dialect.dates):
+            for column in set(wanted).difference(self.dialect.texts):
                 good &= self._are_numbers(texts.column(str(column)))
         return good
 
@@ -143,8 +158,8 @@ class RowParser:
         return np.asarray(pc.or_(is_null, is_number).to_numpy(), bool)
 
     def _types(self, wanted: list[int]) -> dict[str, pa.DataType]:
-        dates = self.dialect.dates
-        return {str(i): pa.binary() if i in dates else pa.float64() for i in wanted}
+        texts = self.dialect.texts
+        return {str(i): pa.binary() if i in texts else pa.float64() for i in wanted}
 
     def _table(self, content: bytes, types: dict[str, pa.DataType]) -> pa.Table | None:
         """Return the columns of the given types, or None where pyarrow rejects a row."""
@@ -209,7 +224,7 @@ def raw_batch(
     wanted: list[int],
     bad_lines: Numbers,
     reasons: tuple[str, ...],
-    dates: Mapping[int, MomentForm] = _NO_DATES,
+    dialect: Dialect | None = None,
 ) -> RawBatch:
     """Return a batch of parsed rows; without rows where the table is None."""
     values: dict[int, Array] = {}
@@ -218,11 +233,20 @@ def raw_batch(
             values[column] = np.empty(0)
             continue
         cells = table.column(str(column))
-        if pa.types.is_binary(cells.type):  # whose bytes need not be text
-            values[column] = seconds(cells, dates[column])
+        if dialect is not None and pa.types.is_binary(cells.type):  # whose bytes need not be text
+            values[column] = _text_values(cells, column, dialect)
             continue
         values[column] = _without_placeholders(cells.to_numpy())
     return RawBatch(lines, values, bad_lines, reasons)
+
+
+def _text_values(cells: pa.ChunkedArray, column: int, dialect: Dialect) -> Array:
+    """Return the numbers that the texts of a column stand for."""
+    if column in dialect.dates:
+        return seconds(cells, dialect.dates[column])
+    names = pa.array([name.encode() for name in dialect.labels[column]], pa.binary())
+    places = pc.index_in(cells, value_set=names)
+    return np.asarray(pc.add(places.cast(pa.float64()), 1.0).fill_null(np.nan).to_numpy())
 
 
 def _without_placeholders(numbers: Array) -> Array:

@@ -4,7 +4,7 @@ import csv
 import re
 from collections import Counter
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from itertools import pairwise
 
 from frictioncli.logs.formats.moments import CLOCK, MomentForm, is_moment, moment_form
@@ -41,6 +41,8 @@ class Dialect:
         Line number of the first row, from 1.
     dates : mapping of int to MomentForm
         Columns of dates or times of day.
+    labels : mapping of int to tuple of str
+        Columns of names, of which each stands for its place in the tuple, from 1.
     """
 
     delimiter: str
@@ -48,6 +50,12 @@ class Dialect:
     columns: tuple[str, ...]
     data_line: int
     dates: Mapping[int, MomentForm]
+    labels: Mapping[int, tuple[str, ...]] = field(default_factory=dict)
+
+    @property
+    def texts(self) -> frozenset[int]:
+        """Columns whose cells are no numbers but stand for some."""
+        return frozenset((*self.dates, *self.labels))
 
     @property
     def text(self) -> str:

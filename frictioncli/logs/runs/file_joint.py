@@ -5,6 +5,7 @@ from contextlib import suppress
 from frictioncli.logs.channels.recognition import id_column, joint_in_name
 from frictioncli.logs.log_source import LogSource, UnreadableLog
 from frictioncli.logs.runs.discovery import LogFile
+from frictioncli.logs.runs.joint_rows import RowsOfJoint
 
 _FIRST_BYTES = 1 << 14
 _MOST_JOINTS = 100
@@ -21,6 +22,8 @@ def joint_of_file(file: LogFile, source: LogSource) -> int | None:
         Its columns. Of a column such as ``motor_id``, the first rows are read; it tells nothing
         where they differ.
     """
+    if isinstance(source, RowsOfJoint):
+        return source.joint
     in_name = joint_in_name(file.stem)
     column = id_column(source.columns)
     if in_name is not None or column is None:

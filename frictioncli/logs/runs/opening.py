@@ -21,6 +21,7 @@ from frictioncli.logs.runs.integrated_position import (
     scale_to_degrees,
     with_position,
 )
+from frictioncli.logs.runs.joint_rows import parts_by_joint
 from frictioncli.logs.runs.native_scale import ScaledLog, scale_raw_export
 from frictioncli.logs.runs.sidecar import Sidecar, read_sidecar, with_own_text
 from frictioncli.logs.runs.trace_files import duplicates_of_native, merge_trace
@@ -108,8 +109,14 @@ def open_run(
             f"the {native.path.suffix} of the same name has the same recording and is read instead",
         )
     sources = {file: scale_raw_export(source) for file, source in sources.items()}
+    parts, missing = parts_by_joint(sources, settings, channel_map)
+    sources = {part: source for of_file in parts.values() for part, source in of_file.items()}
+    refusals |= missing
     choices = _choices(sources, settings, channel_map)
-    refusals |= {file: one for file, one in choices.items() if isinstance(one, Refusal)}
+    for file, of_file in parts.items():
+        told = [one for part in of_file if isinstance(one := choices.get(part), Refusal)]
+        if told and len(told) == len(of_file):
+            refusals[file] = told[0]
     usable = {file: one for file, one in choices.items() if not isinstance(one, Refusal)}
     recordings = _recording_names(run, usable)
     names = {folder: set(os.listdir(folder)) for folder in {file.path.parent for file in usable}}
@@ -276,6 +283,7 @@ def _may_share_name(files: Sequence[LogFile], choices: Mapping[LogFile, _Choice]
     """Return whether files may share a name: one file, or one trace without common joints."""
     joints = [channels.joint for file in files for channels in choices[file].joints]
     one_trace = len({_trace(file) for file in files}) == 1 and is_module(files[0].stem)
+    one_trace |= len({file.path for file in files}) == 1
     return len(files) == 1 or (one_trace and len(set(joints)) == len(joints))
 
 

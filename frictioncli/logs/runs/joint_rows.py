@@ -1,0 +1,236 @@
+"""Logs whose rows are of one joint each: a column says of which."""
+
+import re
+from collections import Counter
+from collections.abc import Collection, Iterator, Mapping, Sequence
+from contextlib import suppress
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from frictioncli.arrays import Numbers
+from frictioncli.logs.channels.channel_map import ChannelMap
+from frictioncli.logs.channels.recognition import recognise_channels, split_unit
+from frictioncli.logs.formats.delimited import DelimitedText
+from frictioncli.logs.log_source import (
+    LogSource,
+    RawBatch,
+    Refusal,
+    SequentialSource,
+    UnreadableLog,
+)
+from frictioncli.logs.runs.discovery import LogFile
+from frictioncli.logs.settings import IngestSettings
+from frictioncli.wording import list_text
+
+_MOST_JOINTS, _MOST_DIFFERENT = 100, 1000
+_BATCH_BYTES = 1 << 22
+_PART = r"(?:motor|joint|axis|achse|gelenk|servo|actuator|drive)"
+_TOLD_BY = re.compile(rf"(?:{_PART}[ _.]?(?:id|no|nr|number|nummer|index|idx|name)?|id|name)", re.I)
+
+_MAY_BE_OTHER = re.compile(r"id|name", re.I)
+_LEAST_ROWS, _LEAST_SHARE = 10, 0.05
+"""Rows of a joint: a counter of rows has one of each number, and a damaged name has few of those of
+the joint with most. [-]"""
+
+
+@dataclass(frozen=True, slots=True)
+class RowsOfJoint(SequentialSource):
+    """The rows of one joint.
+
+    Attributes
+    ----------
+    source : LogSource
+        The log of all joints.
+    column : int
+        The column that says of which joint a row is.
+    numbers : tuple of float
+        What stands there, for all joints.
+    place : int
+        Place of this joint among them.
+    joint : int
+        Number of the joint, from 1.
+    name : str
+        What stands in the log for the joint.
+    is_first : bool
+        Whether the rows that are of no joint are counted here.
+    notes : tuple of str
+        Which joints the names or numbers are.
+    """
+
+    source: LogSource
+    column: int
+    numbers: tuple[float, ...]
+    place: int
+    joint: int
+    name: str
+    is_first: bool
+    notes: tuple[str, ...] = ()
+
+    @property
+    def path(self) -> Path:
+        """The file."""
+        return self.source.path
+
+    @property
+    def columns(self) -> tuple[str, ...]:
+        """Column names as they stand in the file."""
+        return self.source.columns
+
+    @property
+    def form(self) -> str:
+        """The file's form in words."""
+        return f"{self.source.form}, rows of {self.columns[self.column]} {self.name}"
+
+    def batches(self, columns: Collection[int], size: int) -> Iterator[RawBatch]:
+        """Yield the rows in order, in batches of about ``size`` bytes of the file."""
+        for batch in self.source.batches({*columns, self.column}, size):
+            told = batch.values[self.column]
+            mine = told == self.numbers[self.place]
+            bad, reasons = batch.bad_lines, batch.bad_reasons
+            if self.is_first:
+                unknown = batch.lines[~np.isin(told, self.numbers)]
+                bad = np.concatenate((bad, unknown))
+                reasons = (*reasons, *["missing_value"] * len(unknown))
+            else:
+                bad, reasons = bad[:0], ()
+            values = {column: batch.values[column][mine] for column in columns}
+            yield RawBatch(batch.lines[mine], values, bad, reasons)
+
+    def texts(self, lines: Numbers, size: int) -> Iterator[tuple[int, str]]:
+        """Yield (line, text) for the given line numbers, which must be ascending."""
+        return self.source.texts(lines, size)
+
+
+def joint_rows(
+    source: LogSource, settings: IngestSettings, channel_map: ChannelMap
+) -> Sequence[LogSource] | Refusal:
+    """Return the rows of each joint as a log; the log itself where no column tells joints apart.
+
+    Joints are told by a column such as ``motor_id`` or ``joint_name``. Numbers from 0 are raised by
+    one, names are numbered in the order of first appearance.
+
+    Parameters
+    ----------
+    source : LogSource
+        Any log.
+    settings : IngestSettings
+        Joints to read.
+    channel_map : ChannelMap
+        Joint that the map's columns are of.
+
+    Returns
+    -------
+    sequence of LogSource or Refusal
+        Refused as ``no_torque_channel`` where none of the wanted joints is there.
+    """
+    column = _telling_column(source.columns)
+    if column is None:
+        return [source]
+    found = _told(source, column)
+    if found is None:
+        return [source]
+    source, numbers, names = found
+    raised = 1 if 0.0 in numbers else 0
+    joints = [int(number) + raised for number in numbers]
+    wanted = settings.joints if channel_map.joint is None else (channel_map.joint,)
+    chosen = [place for place, joint in enumerate(joints) if wanted is None or joint in wanted]
+    if not chosen:
+        return Refusal(
+            "no_torque_channel",
+            f"no joint {list_text([str(joint) for joint in wanted or ()])}; column"
+            f" {source.columns[column]} has the rows of joint"
+            f" {list_text([str(joint) for joint in sorted(joints)])}: choose one of them",
+        )
+    told = [f"{names[place]} is joint {joints[place]}" for place in chosen]
+    as_they_are = all(names[place] == str(joints[place]) for place in chosen)
+    notes = () if as_they_are else (f"column {source.columns[column]}: {', '.join(told)}",)
+    return [
+        RowsOfJoint(
+            source,
+            column,
+            numbers,
+            place,
+            joints[place],
+            names[place],
+            is_first=place == chosen[0],
+            notes=notes if place == chosen[0] else (),
+        )
+        for place in chosen
+    ]
+
+
+def parts_by_joint(
+    sources: Mapping[LogFile, LogSource], settings: IngestSettings, channel_map: ChannelMap
+) -> tuple[dict[LogFile, dict[LogFile, LogSource]], dict[LogFile, Refusal]]:
+    """Return the logs in each file, several where each row is of one joint, and refused files.
+
+    Parameters
+    ----------
+    sources : mapping of LogFile to LogSource
+        The opened files.
+    settings, channel_map
+        As of :func:`joint_rows`.
+    """
+    parts: dict[LogFile, dict[LogFile, LogSource]] = {}
+    refusals = {}
+    for file, source in sources.items():
+        found = joint_rows(source, settings, channel_map)
+        if isinstance(found, Refusal):
+            refusals[file] = found
+        else:
+            several = len(found) > 1
+            parts[file] = {LogFile(file.path) if several else file: part for part in found}
+    return parts, refusals
+
+
+def _telling_column(columns: Sequence[str]) -> int | None:
+    """Return the column that may tell joints apart; None where the other columns number them."""
+    if any(channel.joint is not None for channel in recognise_channels(columns)):
+        return None
+    named = (i for i, name in enumerate(columns) if _TOLD_BY.fullmatch(split_unit(name)[0].strip()))
+    return next(named, None)
+
+
+def _told(
+    source: LogSource, column: int
+) -> tuple[LogSource, tuple[float, ...], tuple[str, ...]] | None:
+    """Return the log, what stands for its joints, and their names; None where there are not two."""
+    numbers = _numbers(source, column)
+    if numbers is None or len(numbers) or not isinstance(source, DelimitedText):
+        return (source, numbers, tuple(f"{number:g}" for number in numbers)) if numbers else None
+    names = source.names_in(column, _MOST_DIFFERENT)
+    places = _numbers(source.with_names(column, names), column) if names else None
+    if not places:
+        return None
+    names = tuple(names[int(place) - 1] for place in sorted(places))
+    numbers = tuple(float(place) for place in range(1, len(names) + 1))
+    return source.with_names(column, names), numbers, names
+
+
+def _numbers(source: LogSource, column: int) -> tuple[float, ...] | None:
+    """Return what stands for the joints of a log: nothing where there are no numbers at all.
+
+    None where the numbers are no joints: too many or too few, or in a column that need not be one
+    of joints and whose rows do not take turns. Numbers in few rows are damaged ones.
+    """
+    found: Counter[float] = Counter()
+    changes = 0
+    with suppress(UnreadableLog):
+        for batch in source.batches([column], _BATCH_BYTES):
+            values = batch.values[column]
+            values = values[np.isfinite(values)]
+            changes += int(np.count_nonzero(np.diff(values)))
+            different, rows = np.unique(values, return_counts=True)
+            found.update(dict(zip(different.tolist(), rows.tolist(), strict=True)))
+            if len(found) > _MOST_DIFFERENT:
+                return None
+    if not found:
+        return ()
+    least = max(_LEAST_SHARE * max(found.values()), _LEAST_ROWS)
+    joints = tuple(number for number, rows in found.items() if rows >= least)
+    take_turns = 2 * changes > found.total()
+    is_joint = take_turns or not _MAY_BE_OTHER.fullmatch(split_unit(source.columns[column])[0])
+    known = all(number in range(_MOST_JOINTS) for number in joints)
+    return joints if is_joint and known and 1 < len(joints) <= _MOST_JOINTS else None
