@@ -13,6 +13,7 @@ from frictioncli.logs.channels.torque_constant import TorqueConstant
 from frictioncli.logs.log_source import Refusal
 from frictioncli.logs.runs.opening import OpenedLog, RefusedLog
 from frictioncli.logs.samples.chunks import PlannedLog, plan_log
+from frictioncli.logs.samples.clock_range import with_continuous_clock
 from frictioncli.logs.settings import IngestSettings
 
 Constants = Mapping[int, TorqueConstant | Refusal]
@@ -48,7 +49,7 @@ def planned_logs(
         if isinstance(plans, Refusal):
             refused.append(RefusedLog(log.run, log.file, log.recording, plans))
         else:
-            found.append(plan_log(log, plans))
+            found.append(with_continuous_clock(plan_log(log, plans)))
     return found, refused
 
 

@@ -5,6 +5,7 @@ from collections import Counter
 from collections.abc import Collection, Iterator, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
+from functools import lru_cache
 from pathlib import Path
 
 import numpy as np
@@ -185,12 +186,14 @@ def parts_by_joint(
     return parts, refusals
 
 
-def _telling_column(columns: Sequence[str]) -> int | None:
+@lru_cache
+def _telling_column(columns: tuple[str, ...]) -> int | None:
     """Return the column that may tell joints apart; None where the other columns number them."""
-    if any(channel.joint is not None for channel in recognise_channels(columns)):
-        return None
     named = (i for i, name in enumerate(columns) if _TOLD_BY.fullmatch(split_unit(name)[0].strip()))
-    return next(named, None)
+    column = next(named, None)
+    if column is None or any(c.joint is not None for c in recognise_channels(columns)):
+        return None
+    return column
 
 
 def _told(
