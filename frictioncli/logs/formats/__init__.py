@@ -13,6 +13,7 @@ from frictioncli.logs.formats.delimited import DelimitedText, read_delimited
 from frictioncli.logs.formats.diadem import read_diadem
 from frictioncli.logs.formats.encoding import read_head
 from frictioncli.logs.formats.hdf5 import read_hdf5
+from frictioncli.logs.formats.list_cells import read_list_cells
 from frictioncli.logs.formats.mdf import read_mdf
 from frictioncli.logs.formats.ros import read_ros
 from frictioncli.logs.formats.rtde import read_rtde
@@ -40,6 +41,7 @@ READERS: tuple[Reader, ...] = (
     read_rtde,
     refuse_unsupported,
     read_struct_cells,
+    read_list_cells,
     read_delimited,
 )
 """Tried in this order; the first that recognises the beginning of a file decides."""

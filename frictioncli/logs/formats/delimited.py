@@ -146,7 +146,7 @@ class DelimitedText:
             Greatest number of names.
         """
         found: dict[str, None] = {}
-        for block in self._row_blocks(_LABEL_BYTES):
+        for block in self.row_blocks(_LABEL_BYTES):
             found |= dict.fromkeys(RowParser(self.dialect).texts(block.content, column))
             if len(found) > most:
                 return ()
@@ -199,14 +199,14 @@ class DelimitedText:
             yield ReadTask(partial(self._parse_file, self.rows_bytes, wanted), self.rows_bytes)
             return
         parse = RowParser(self.dialect).parse
-        for block in self._row_blocks(size):
+        for block in self.row_blocks(size):
             yield ReadTask(partial(parse, block, wanted), len(block.content))
 
     def texts(self, lines: Numbers, size: int) -> Iterator[tuple[int, str]]:
         """Yield (line, text) for the given line numbers, which must be ascending."""
         charset = "cp1252" if self.encoding == "cp1252" else "utf-8"
         position = 0
-        for block in self._row_blocks(size):
+        for block in self.row_blocks(size):
             if position == len(lines):
                 return
             content = block.content.removesuffix(b"\n").split(b"\n")
@@ -218,7 +218,7 @@ class DelimitedText:
                 yield int(lines[position]), text[:MAX_ROW_TEXT]
                 position += 1
 
-    def _row_blocks(self, size: int) -> Iterator[LineBlock]:
+    def row_blocks(self, size: int) -> Iterator[LineBlock]:
         """Yield the lines from the first row on."""
         if self.rows_bytes is not None and self.rows_bytes <= _SMALL_FILE:
             yield from self._plain_blocks(min(size, self.rows_bytes + 1))
