@@ -10,6 +10,7 @@ from frictioncli.inspection.inspect import Inspection
 from frictioncli.inspection.remarks import Remark, is_coarse, is_stationary, remarks, unit_of
 from frictioncli.inspection.sufficiency import JointSummary
 from frictioncli.plain_text import printable
+from frictioncli.wording import list_text
 
 WIDTH = 100
 _EXAMPLES = 3
@@ -98,8 +99,10 @@ def _refused(files: list[FileInspection]) -> list[str]:
         shown = ", ".join(_short(names)[:_EXAMPLES])
         more = f" and {len(names) - _EXAMPLES} more" if len(names) > _EXAMPLES else ""
         lines += _bullet(f"{shown}{more}: {printable(refusal, 3 * WIDTH)}")
-    rest = sum(len(names) for names in list(texts.values())[_EXAMPLES:])
-    return [*lines, *(_bullet(f"{rest} more files: {first.reason}") if rest else [])]
+    others = [name for names in list(texts.values())[_EXAMPLES:] for name in names]
+    if not others:
+        return lines
+    return [*lines, *_bullet(f"{list_text(_short(others))}: for similar reasons, see --json")]
 
 
 def _sampling_text(file: FileInspection) -> str:

@@ -51,11 +51,14 @@ class CsvHints:
         ``.`` or ``,``.
     encoding : str or None
         A Python encoding name.
+    period : float or None
+        Time from row to row of a log without a column of time. [s]
     """
 
     delimiter: str | None = None
     decimal: str | None = None
     encoding: str | None = None
+    period: float | None = None
 
 
 @dataclass(frozen=True, slots=True)

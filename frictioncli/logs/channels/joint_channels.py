@@ -169,9 +169,12 @@ def _missing(
     lacking = [name for name in (TIME, POSITION, TORQUE) if name not in quantities] or [what]
     named = [printable(column) for column in columns if column]
     shown = ", ".join(named[:12]) + (f", ... ({len(named)} in all)" if len(named) > 12 else "")
+    advice = (
+        "; for rows without a time give their period in s in the mapping file: [csv] period = 0.005"
+    )
     return Refusal(
         f"no_{what}_channel",
         f"no {' and no '.join(lacking)} channel{which} found; columns found: {shown}; a friction"
         " test needs time, position and torque (or motor current): name them with --map, of which"
-        " 'frictioncli inspect LOGS --suggest-map' writes a first one",
+        " 'frictioncli inspect LOGS --suggest-map' writes a first one" + advice * (TIME in lacking),
     )

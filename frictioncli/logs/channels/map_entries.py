@@ -13,7 +13,7 @@ from frictioncli.logs.channels.channel_names import MAX_JOINT
 from frictioncli.logs.log_source import CsvHints
 from frictioncli.plain_text import printable
 
-CSV_KEYS = ("delimiter", "decimal", "encoding")
+CSV_KEYS = ("delimiter", "decimal", "encoding", "period")
 MAX_COLUMN = 1 << 31
 _MAX_BYTES = 1 << 20  # [byte]
 _DELIMITERS = {";": ";", ",": ",", "\t": "\t", " ": " ", "tab": "\t", "space": " ", "blank": " "}
@@ -74,7 +74,7 @@ def csv_hints(path: Path, section: dict[str, Any]) -> CsvHints:
     MappingError
         If a value is not known.
     """
-    delimiter, decimal, encoding = (section.get(key) for key in CSV_KEYS)
+    delimiter, decimal, encoding, period = (section.get(key) for key in CSV_KEYS)
     if delimiter is not None and not (isinstance(delimiter, str) and delimiter in _DELIMITERS):
         raise MappingError(
             f"{path}: [csv] delimiter = {shown(delimiter)}; expected one of {listed(_DELIMITERS)}"
@@ -89,7 +89,15 @@ def csv_hints(path: Path, section: dict[str, Any]) -> CsvHints:
                 " utf-16"
             )
         encoding = name
-    return CsvHints(None if delimiter is None else _DELIMITERS[delimiter], decimal, encoding)
+    if period is not None and not (
+        isinstance(period, int | float) and period is not True and 0 < period < math.inf
+    ):
+        raise MappingError(
+            f"{path}: [csv] period = {shown(period)}; expected the time from row to row in s,"
+            " for example 0.005"
+        )
+    sign = None if delimiter is None else _DELIMITERS[delimiter]
+    return CsvHints(sign, decimal, encoding, None if period is None else float(period))
 
 
 def _text_encoding(name: Any) -> str | None:

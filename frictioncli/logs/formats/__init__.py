@@ -16,6 +16,7 @@ from frictioncli.logs.formats.hdf5 import read_hdf5
 from frictioncli.logs.formats.list_cells import read_list_cells
 from frictioncli.logs.formats.mdf import read_mdf
 from frictioncli.logs.formats.ros import read_ros
+from frictioncli.logs.formats.row_clock import RowClock
 from frictioncli.logs.formats.rtde import read_rtde
 from frictioncli.logs.formats.split_time import with_joined_time
 from frictioncli.logs.formats.struct_cells import read_struct_cells
@@ -100,13 +101,19 @@ def open_log(
     try:
         head = read_head(path)
         if isinstance(like, DelimitedText):
-            same_layout = like.with_same_layout(path, head)
+            same_layout = like.with_same_layout(path, head) if hints.period is None else None
             if same_layout is not None:
                 return same_layout
         for reader in READERS:
             found = reader(path, head.content, hints)
             if found is not None:
-                return found if isinstance(found, Refusal) else with_joined_time(found)
+                return found if isinstance(found, Refusal) else _with_time(found, hints)
     except UnreadableLog as error:
         return Refusal("unreadable_file", str(error))
     return Refusal("not_a_log", "no known format")
+
+
+def _with_time(source: LogSource, hints: CsvHints) -> LogSource:
+    """Return a source with its time in one column, made from the rows if the user says so."""
+    joined = with_joined_time(source)
+    return joined if hints.period is None else RowClock(joined, hints.period)

@@ -135,6 +135,18 @@ class DelimitedText:
         notes = (form.note(self.columns[i]) for i, form in self.dialect.dates.items())
         return tuple(note for note in notes if note)
 
+    def fault(self, text: str, columns: Collection[int]) -> str:
+        """Return which of the columns is no number in a row, and what was expected; "" if none.
+
+        Parameters
+        ----------
+        text : str
+            The row.
+        columns : collection of int
+            The columns that are read.
+        """
+        return RowParser(self.dialect).fault(text, columns)
+
     def names_in(self, column: int, most: int) -> tuple[str, ...]:
         """Return the different texts in a column in the order of appearance; none if too many.
 

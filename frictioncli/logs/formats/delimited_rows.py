@@ -1,7 +1,7 @@
 """Rows of a delimited text parsed into numbers: damaged rows are found and named."""
 
 import re
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from itertools import chain
 
@@ -22,6 +22,7 @@ _OUTER_BLANK = re.compile(rb"(?m)^ | (?=\r?$)")
 _NULLS = ["", *NOT_NUMBERS]
 _BLANK_LINES = b" \r\n"
 _PIECE = 1 << 18
+_SHOWN = 40
 _NO_VALUE = 9e34
 """DIAdem writes 9.9e34 where a value is missing. [any unit]"""
 
@@ -62,6 +63,22 @@ class RowParser:
             parts.append(self._parse_damaged(piece, line, wanted))
             line += piece.count(b"\n")
         return _joined(parts, wanted)
+
+    def fault(self, text: str, wanted: Iterable[int]) -> str:
+        """Return which wanted cell of a row is no number, and what was expected; "" if none is."""
+        cells = split(text, self.dialect.delimiter)
+        if len(cells) != len(self.dialect.columns):
+            return ""
+        for column in sorted(set(wanted).difference(self.dialect.texts)):
+            if not self._are_numbers(pa.chunked_array([[cells[column]]], pa.string())).all():
+                sign = {".": "point", ",": "comma"}[self.dialect.decimal]
+                example = f"-1234{self.dialect.decimal}5"
+                return (
+                    f"{self.dialect.columns[column] or f'column {column + 1}'} is"
+                    f" {cells[column][:_SHOWN]!r}; expected a number with decimal {sign}, such as"
+                    f" {example}, or an empty cell"
+                )
+        return ""
 
     def texts(self, content: bytes, column: int) -> list[str]:
         """Return the different texts in a column of some rows, in the order of appearance."""

@@ -240,7 +240,7 @@ def _header(above: Sequence[str], form: _Candidate) -> tuple[list[str], int] | R
             i if i in comments else -i,
         ),
     )
-    names = fitting[header]
+    names = _of_pairs(fitting[header], lines, header)
     below = next((index for index in lines if index > header), None)
     units = lines[below] if below is not None else []
     if below is None or len(units) > len(names) or not _are_units(units):
@@ -251,6 +251,18 @@ def _header(above: Sequence[str], form: _Candidate) -> tuple[list[str], int] | R
         names = ["time", *names[1:]]
     paired = zip(names, padded, strict=True)
     return [f"{name} [{unit.strip('[]()')}]" if unit else name for name, unit in paired], below + 2
+
+
+def _of_pairs(names: list[str], lines: Mapping[int, list[str]], header: int) -> list[str]:
+    """Return the names; where they are X and Y in turns, Y has the name of the pair, above."""
+    above = lines.get(max((index for index in lines if index < header), default=-1), [])
+    is_pairs = len(names) > 2 and names == ["X", "Y"] * (len(names) // 2)
+    if not is_pairs or len(above) > len(names) or any(above[1::2]):
+        return names
+    paired = [name for name in above[::2] if name] or [""]
+    if len(paired) != len(names) // 2:
+        return names
+    return [part for i, name in enumerate(paired) for part in ("" if i else "X", name)]
 
 
 def _header_fields(line: str, delimiter: str) -> list[str]:

@@ -1,9 +1,11 @@
 """Why a text is no table of numbers, and what to do."""
 
+import re
 from collections.abc import Sequence
 
 from frictioncli.logs.log_source import Refusal
 
+_ONE_NUMBER = re.compile(r"\s*+[+-]?[\d.,]++(?:[eE][+-]?\d++)?\s*+")
 _LEAST_DIGITS = 0.3
 """Share of the characters that are digits in rows of numbers."""
 
@@ -54,6 +56,14 @@ def refuse_no_table(filled: Sequence[str], delimiter: str | None) -> Refusal:
             f"the map's delimiter {delimiter} does not separate numbers; {first}",
         )
     body = "".join(filled[1:])
+    if all(_ONE_NUMBER.fullmatch(line) for line in filled):
+        return Refusal(
+            "one_column",
+            "one number per line; expected a table: join the files of one recording"
+            " into one, with a header line that names the columns and, in each row, time, position"
+            " and torque of one sample; numbers of several joints that follow each other in a file"
+            " belong in one row",
+        )
     digits = sum(character.isdigit() for character in body)
     if digits > _LEAST_DIGITS * len(body):
         return Refusal(

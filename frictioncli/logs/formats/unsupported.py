@@ -1,5 +1,6 @@
 """Files that are not read: known formats without a reader, and files that are not logs."""
 
+import re
 import zipfile
 from pathlib import Path
 
@@ -17,12 +18,12 @@ _MAGIC: tuple[tuple[bytes, str, str], ...] = (
     (b"%PDF", _NOT_A_LOG, "PDF document"),
     (b"<?xml", _NOT_A_LOG, "XML document"),
     (b"<", _NOT_A_LOG, "XML or HTML document"),
-    (b"{", _NOT_A_LOG, "JSON document"),
     (b"&ACCESS", _NOT_A_LOG, "KRL program"),
     (b"DEFDAT", _NOT_A_LOG, "KRL data list"),
 )
 
 
+_RECORDS = re.compile(rb'"(\w{1,60})"\s{0,4}:\s{0,4}\[\s{0,9}\{')
 _ZIP = b"PK\x03\x04"
 
 
@@ -38,6 +39,23 @@ def _zip_content(path: Path) -> str:
     return f"zip archive of {', '.join(names[:3])}{', ...' * (len(names) > 3)}; unpack it"
 
 
+def _json_content(start: bytes) -> str:
+    """Return what a JSON document may hold, and how it becomes a table."""
+    records = _RECORDS.search(start)
+    if start.startswith(b"[{"):
+        rows = "its list of records"
+    elif records is not None:
+        rows = f"its list {records[1].decode('utf-8', 'replace')!r}"
+    elif b"\n{" in start:
+        rows = "its records, one per line,"
+    else:
+        rows = "its rows"
+    return (
+        f"JSON document; write {rows} as a CSV table with a header line and a column for each"
+        " quantity"
+    )
+
+
 def refuse_unsupported(path: Path, head: bytes, hints: CsvHints) -> Refusal | None:
     """Return why a file cannot be read as a log, or None when it may be a text log."""
     if not head:
@@ -45,6 +63,8 @@ def refuse_unsupported(path: Path, head: bytes, hints: CsvHints) -> Refusal | No
     if head.startswith(_ZIP):
         return Refusal(_NOT_READ, _zip_content(path))
     start = head.removeprefix(b"\xef\xbb\xbf").lstrip(b" \t\r\n")
+    if start.startswith((b"{", b"[{")):
+        return Refusal(_NOT_A_LOG, _json_content(start))
     for magic, reason, what in _MAGIC:
         if start.startswith(magic):
             return Refusal(reason, what)

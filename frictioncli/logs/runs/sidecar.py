@@ -115,7 +115,7 @@ def with_own_text(sidecar: Sidecar, source: LogSource) -> Sidecar:
     source : LogSource
         The log.
     """
-    parts = list(_parts(source))
+    parts = list(parts_of(source))
     own = [note for part in parts for note in getattr(part, "notes", ())]
     sidecar = replace(sidecar, notes=(*sidecar.notes, *own)) if own else sidecar
     head = next((part.preamble for part in parts if hasattr(part, "preamble")), b"")
@@ -125,8 +125,14 @@ def with_own_text(sidecar: Sidecar, source: LogSource) -> Sidecar:
     return replace(sidecar, started_at=start, notes=(*sidecar.notes, "start time from its header"))
 
 
-def _parts(source: LogSource) -> Iterator[Any]:
-    """Yield a source, and the sources to which it adds, down to the one that was read."""
+def parts_of(source: LogSource) -> Iterator[Any]:
+    """Yield a source, and the sources to which it adds, down to the one that was read.
+
+    Parameters
+    ----------
+    source : LogSource
+        A log.
+    """
     part: Any = source
     while part is not None:
         yield part

@@ -9,6 +9,7 @@ from frictioncli.arrays import Array
 from frictioncli.logs.channels import channel_names as names
 from frictioncli.logs.log_source import Refusal, UnreadableLog
 from frictioncli.logs.runs.opening import OpenedLog
+from frictioncli.logs.runs.sidecar import parts_of
 from frictioncli.logs.samples.chunks import LogChunk, PlannedLog
 from frictioncli.logs.samples.differentiation import half_window, max_gap
 from frictioncli.logs.samples.log_rows import NO_VALUES, REASONS, LogRows, RejectedRows
@@ -141,7 +142,7 @@ def read_recording(
     except UnreadableLog as error:
         return Refusal("unreadable_file", str(error))
     counts = rejected.counts()
-    refusal = _refusal(planned.log, rows_read, kept, counts, rejected, float(time[-1]))
+    refusal = _refusal(planned, rows_read, kept, counts, rejected, float(time[-1]))
     return refusal or RecordingSummary(
         planned, registers or _NO_REGISTERS, rows_read, kept, counts or _NO_COUNTS, float(time[-1])
     )
@@ -188,8 +189,13 @@ def _with_payloads(
     return LogRows(rows.lines, rows.time, {**rows.columns, **added})
 
 
+def _tells(part: object) -> bool:
+    """Return whether a source tells which cell of a row is damaged."""
+    return hasattr(part, "fault")
+
+
 def _refusal(
-    log: OpenedLog,
+    planned: PlannedLog,
     rows_read: int,
     kept: int,
     counts: dict[str, int],
@@ -201,11 +207,14 @@ def _refusal(
     n_rejected = sum(counts.values())
     if n_rejected > kept:
         reason = max(counts, key=lambda name: (counts[name], -REASONS.index(name)))
-        line, text = next(iter(log.source.texts(rejected.first_line(reason), _EXAMPLE_BYTES)))
+        source = planned.log.source
+        line, text = next(iter(source.texts(rejected.first_line(reason), _EXAMPLE_BYTES)))
+        faults = (part.fault(text, planned.columns) for part in parts_of(source) if _tells(part))
+        fault = next((f": {fault}" for fault in faults if fault), "")
         return Refusal(
             reason,
             f"{n_rejected} of {rows_read} rows cannot be used, mostly {reason}, for example line"
-            f" {line}: {text}",
+            f" {line}: {text}{fault}",
         )
     if kept >= _MIN_ROWS and duration < _SHORTEST_PERIOD * (kept - 1):
         return Refusal(
