@@ -33,9 +33,13 @@ def basis(table: EffectTable, *, order: float) -> Basis:
     long_enough = order * float(np.ptp(angles)) / 360.0 >= _LEAST_PERIODS
     resolved = 1.0 if long_enough and order <= 180.0 / finest else 0.0
     columns = []
-    for harmonic, left in ((order, 1.0), (2 * order, float(np.sinc(2 * order * finest / 360.0)))):
+    for harmonic in (order, 2 * order):
         phase = harmonic * np.radians(table.angle)
-        columns += [resolved * left * np.sin(phase), resolved * left * np.cos(phase)]
+        left = resolved
+        if harmonic > 180.0 / finest:
+            # the centres of the bins do not show its order, but its phase is tied to the first
+            left *= float(np.sinc(harmonic * finest / 360.0))
+        columns += [left * np.sin(phase), left * np.cos(phase)]
     return friction_only(*columns)
 
 

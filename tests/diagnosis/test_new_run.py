@@ -182,3 +182,12 @@ def test_the_other_causes_are_taken_out_first(torques):
     assert found.holds is False
     assert stretches(found.shape) == [(moment, 0.5)]
     assert when(problem, found) == "in run day1 from 3.7 h on"
+
+
+def test_a_run_in_which_next_to_nothing_is_left_does_not_contradict_a_cause(torques):
+    """Running-in over 10 000 deg is over on the second day, which is 0.5 N·m lower for itself."""
+    lower = torques["friction_torque"] - 0.5 * (torques["run"] == "day2")
+    table = torques.assign(friction_torque=lower)
+    _, found = asked(table, fit_of("run_in", 12.0, distance=10_000.0))
+    assert found.amplitude < -10.0
+    assert found.holds is None

@@ -7,11 +7,12 @@ import numpy as np
 import pytest
 
 from frictioncli.diagnosis.fit.hypotheses import EffectFit
+from frictioncli.diagnosis.search.axis_columns import axis_columns
 from frictioncli.diagnosis.search.cause import Cause
 from frictioncli.diagnosis.search.effect_size import left_size, shown_share
 from frictioncli.diagnosis.search.precomputed import Precomputed
 from frictioncli.diagnosis.search.step import Step
-from frictioncli.diagnosis.search.understood import is_part, understood
+from frictioncli.diagnosis.search.understood import _is_form_of, is_part, understood
 from frictioncli.effects import BY_NAME
 from tests.diagnosis.dense_noise import problem
 from tests.diagnosis.wave_effects import B, effect, wave
@@ -99,3 +100,28 @@ def structure_of(size, *axes, channel="friction"):
 )
 def test_a_cause_is_part_of_structure(name, unnamed, expected):
     assert is_part(BY_NAME[name], 1.0, unnamed) is expected
+
+
+@pytest.mark.parametrize(
+    ("size", "axes", "expected"),
+    [
+        (0.2, ("load", "temperature"), True),
+        (0.2, ("temperature",), True),
+        (0.4, ("load", "temperature"), False),
+        (0.2, ("load", "speed"), False),
+    ],
+)
+def test_structure_of_a_tenth_of_a_cause_along_its_axes_is_the_error_of_its_form(
+    size, axes, expected
+):
+    cause = SimpleNamespace(size=3.0, fit=SimpleNamespace(effect=BY_NAME["load_temperature"]))
+    structure = SimpleNamespace(size=size, axes=axes, channel="friction")
+    assert _is_form_of(cause, structure) is expected
+
+
+def test_structure_of_the_load_is_the_same_for_loads_to_either_side():
+    """As friction is; a bump at one angle is not, and so is told from it with one payload."""
+    data = problem(3)
+    mirrored = replace(data, table=replace(data.table, load=-data.table.load))
+    place = (("load",), "friction")
+    np.testing.assert_allclose(axis_columns(data)[place], axis_columns(mirrored)[place])

@@ -80,7 +80,7 @@ _ALIASES: tuple[tuple[Meaning, str], ...] = (
         " velocityact velact qd dq qdot actualqd statedq robotactualjointvelocities speed"
         " geschwindigkeit achsgeschwindigkeit gelenkgeschwindigkeit axisvelocity jointvel"
         " axisspeed jointspeed actvelo actvel observationvelocity observationqvel velestimate"
-        " vitesse omega",
+        " vitesse omega geschwindigkeitachse",
     ),
     (
         Meaning(VELOCITY, MOTOR_SIDE),
@@ -93,7 +93,7 @@ _ALIASES: tuple[tuple[Meaning, str], ...] = (
         "torque torques jointtorque jointtorques axistorque drehmoment moment tau effort"
         " torqueaxisact actualtorque torqueact mt statetauj tauj measuredtorque achsmoment"
         " gelenkmoment torqact axistorqact acttorque acttorq observationeffort observationtorque"
-        " tauest trq eff couple",
+        " tauest trq eff couple drehmomentachse",
     ),
     (Meaning(TORQUE, JOINT_SIDE, 2), "geartorqact geartorque geartorq getriebemoment"),
     (

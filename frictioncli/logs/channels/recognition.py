@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 from frictioncli.logs.channels import units
 from frictioncli.logs.channels.channel_names import (
     MEANINGS,
+    MOTOR_TEMPERATURE,
     POSITION,
     TIME,
     TOOL,
@@ -194,7 +195,15 @@ def _recognised(index: int, column: str) -> LogChannel | None:
     # words that only say that a value was measured, where the name is not known with them
     plain = [" ".join(_MEASURED.sub("", text).replace("_", " ").split()) for text in texts]
     known = _of_names(index, column, texts, unit)
-    return known or _of_names(index, column, [text for text in plain if text], unit)
+    known = known or _of_names(index, column, [text for text in plain if text], unit)
+    if known is not None and known.quantity == TIME and _is_temperature(unit):
+        return replace(known, meaning=MEANINGS["temperature"])
+    return known
+
+
+def _is_temperature(unit: str) -> bool:
+    """Return whether a unit is one of temperature: ``T [°C]`` is no time."""
+    return bool(unit) and units.canonical(unit, MOTOR_TEMPERATURE) is not None
 
 
 def _of_names(index: int, column: str, texts: Sequence[str], unit: str) -> LogChannel | None:
