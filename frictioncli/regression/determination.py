@@ -15,7 +15,7 @@ from frictioncli.regression.equation import (
     load_torque,
 )
 from frictioncli.regression.estimate import RegressionEstimate
-from frictioncli.regression.identification import DELTA_BOUNDS, identify, some_equations
+from frictioncli.regression.identification import DELTA_BOUNDS, identify, identify_delay
 from frictioncli.regression.preparation import PreparedJoint
 
 LEAST_ROWS = 100
@@ -34,9 +34,6 @@ _STRAIGHT = "the fall with temperature is too weakly curved to separate beta fro
 
 _LEAST_LOAD_SPREAD = 0.05
 """Spread of the squared load, as a share of its mean, below which its term is Coulomb friction."""
-
-_SIGNIFICANT = 3.0
-"""Standard deviations from 0 from which a delay is believed."""
 
 _SAME_SPEED = 0.05
 """Speeds that differ by a smaller share count as one."""
@@ -124,12 +121,25 @@ def regress(prepared: PreparedJoint, joint: int, sign: int | None = None) -> Joi
             f" {LEAST_ROWS}; log longer moves"
         )
     terms, undetermined = _by_excitation(prepared)
-    some = some_equations(equations)
-    estimate = identify(some, terms)
-    chosen = replace(terms, delay=terms.delay and _told(estimate, "delay"))
-    if chosen != terms or some is not equations:
-        estimate = identify(equations, chosen)
-    if "alpha" in terms.friction:
+    estimate, prompt = identify_delay(equations, terms)
+    try:
+        return _determined(prepared, joint, sign, estimate, dict(undetermined))
+    except NotEnoughData:
+        if prompt is None:
+            raise
+    return _determined(prepared, joint, sign, prompt, undetermined)
+
+
+def _determined(
+    prepared: PreparedJoint,
+    joint: int,
+    sign: int | None,
+    estimate: RegressionEstimate,
+    undetermined: dict[str, str],
+) -> JointRegression:
+    """Leave out of a fit what the data do not determine; refuse friction that they do not."""
+    equations, terms = prepared.equations, prepared.terms
+    if "alpha" in estimate.terms.friction:
         # a load that hardly varies would let it hold anything
         fewer = _without_vague_load(estimate, 0, undetermined)
         estimate = estimate if fewer is None else identify(equations, fewer)
@@ -182,10 +192,6 @@ def _by_excitation(prepared: PreparedJoint) -> tuple[EquationTerms, dict[str, st
         reason = "the load torque within it is still determined"
         undetermined["gravity"] = f"angle spans {span:.1f} deg; {reason}"
     return terms, undetermined
-
-
-def _told(estimate: RegressionEstimate, name: str) -> bool:
-    return abs(estimate.parameters[name]) > _SIGNIFICANT * estimate.deviation(name)
 
 
 def _without_vague_load(

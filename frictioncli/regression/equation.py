@@ -7,8 +7,10 @@ r"""Equation of motion of one joint, linear in all but two of its parameters.
     + (\beta + \gamma e^{-\delta T}) \sqrt{|\dot\varphi|} \right)
 
 with all of the right-hand side at :math:`t - d`: the logged torque may lag behind the logged
-position. Only :math:`\delta` and :math:`d` are nonlinear. The load *L* is the gravity of the fit
-before, or that of a load channel, which then stands in place of cosine and sine beside them.
+position. The columns are Taylor series about a known delay, of which the torque of the rows is free
+already, and hold only near it. Only :math:`\delta` and :math:`d` are nonlinear. The load *L* is the
+gravity of the fit before, or that of a load channel, which then stands in place of cosine and sine
+beside them.
 """
 
 from dataclasses import dataclass, replace
@@ -98,6 +100,8 @@ class JointEquations:
         Number of the state of the load, payload and pose, among those of the terms.
     arm : ArmColumns or None
         Columns of the base parameters of the whole arm.
+    known_delay : float
+        Delay that the torque of the rows is free of. [s]
     """
 
     rows: MotionRows
@@ -105,6 +109,7 @@ class JointEquations:
     temperature: Array
     state: Numbers
     arm: ArmColumns | None = None
+    known_delay: float = 0.0
 
     @property
     def velocity(self) -> Array:
@@ -134,9 +139,9 @@ class JointEquations:
         kept : ndarray of bool, shape (rows,)
             Whether each is kept.
         """
-        return JointEquations(
+        return replace(
+            self,
             rows=self.rows.where(kept),
-            speed_from_position=self.speed_from_position,
             temperature=self.temperature[kept],
             state=self.state[kept],
             arm=None if self.arm is None else self.arm.where(kept),
@@ -161,8 +166,9 @@ def load_columns(equations: JointEquations, terms: EquationTerms, delay: float) 
         In the order of :attr:`EquationTerms.load_names`.
     """
     rows, velocity, acceleration = equations.rows, equations.velocity, equations.acceleration
-    angle = np.radians(rows.position - delay * velocity + delay**2 / 2 * acceleration)
-    acceleration = np.radians(acceleration - delay * equations.jerk)
+    rest = delay - equations.known_delay
+    angle = np.radians(rows.position - rest * velocity + rest**2 / 2 * acceleration)
+    acceleration = np.radians(acceleration - rest * equations.jerk)
     columns = [] if equations.arm is None else [*equations.arm.torque.T]
     # the average of a cosine over the filter's weights is smaller than that of the mean angle
     shrink = np.exp(-np.square(np.radians(velocity)) * rows.variance / 2)
@@ -193,7 +199,8 @@ def root_speed(equations: JointEquations, delay: float) -> Array:
     ndarray, shape (rows,)
         Root of the mean speed, less what its changes make of the average. [(deg/s)^0.5]
     """
-    speed = np.maximum(np.abs(equations.velocity - delay * equations.acceleration), 1e-9)
+    rest = delay - equations.known_delay
+    speed = np.maximum(np.abs(equations.velocity - rest * equations.acceleration), 1e-9)
     change = np.square(equations.acceleration) * equations.rows.variance / np.square(speed)
     # the root of a speed that grows from zero is averaged a little below the root of its mean
     return np.asarray(np.sqrt(speed) * (1 - np.minimum(change, 0.5) / 8))

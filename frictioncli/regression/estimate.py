@@ -12,6 +12,9 @@ from frictioncli.regression.equation import EquationTerms
 TOLERANCE = 1e-11
 """Share of the greatest eigenvalue of inner products below which one counts as zero."""
 
+_SIGNIFICANT = 3.0
+"""Standard deviations from 0 from which a parameter is told from it."""
+
 _LEAST_SIZE = 1e-100
 """Of a column that is no column of zeros: its square is a number, too."""
 
@@ -70,10 +73,19 @@ class RegressionEstimate:
         """Coefficients of :func:`~frictioncli.regression.equation.load_columns`."""
         return np.array([self.parameters[name] for name in self.terms.load_names])
 
+    @property
+    def rmse(self) -> float:
+        """Root mean square of the residual [torque unit]."""
+        return float(np.sqrt(np.mean(np.square(self.residual))))
+
     def deviation(self, name: str) -> float:
         """Return the standard deviation of a parameter."""
         index = self.names.index(name)
         return float(np.sqrt(max(self.covariance[index, index], 0.0)))
+
+    def told(self, name: str) -> bool:
+        """Return whether a parameter is told from zero."""
+        return abs(self.parameters[name]) > _SIGNIFICANT * self.deviation(name)
 
     def interval(self, name: str, level: float = 0.95) -> tuple[float, float]:
         """Return the confidence interval of a parameter."""

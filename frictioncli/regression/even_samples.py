@@ -108,6 +108,39 @@ def row_centres(grid: EvenSamples, half: int, spacing: int) -> tuple[Indices, Nu
     return begin[move] + spacing * place, move
 
 
+def later(values: Array, shift: float) -> Array:
+    """Return what an evenly sampled signal is some samples later; at its ends it stays.
+
+    Parameters
+    ----------
+    values : ndarray, shape (samples,)
+        The signal.
+    shift : float
+        By how much later; between samples lies the cubic through the four about it. [samples]
+
+    Examples
+    --------
+    >>> later(np.arange(8.0) ** 3, 0.5)[2:5] - np.array([2.5, 3.5, 4.5]) ** 3
+    array([0., 0., 0.])
+    """
+    whole = int(np.floor(shift))
+    part = shift - whole
+    weights = (
+        -part * (part - 1) * (part - 2) / 6,
+        (part + 1) * (part - 1) * (part - 2) / 2,
+        -(part + 1) * part * (part - 2) / 2,
+        (part + 1) * part * (part - 1) / 6,
+    )
+    place = np.arange(len(values)) + whole
+    return np.asarray(
+        sum(
+            weight * values[np.clip(place + offset, 0, len(values) - 1)]
+            for offset, weight in zip((-1, 0, 1, 2), weights, strict=True)
+            if weight
+        )
+    )
+
+
 def position_jumps(grid: EvenSamples, centre: Indices, half: int) -> Flags:
     """Return whether the position jumps among the neighbours of each row.
 

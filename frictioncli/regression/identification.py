@@ -17,6 +17,8 @@ References
    doi:10.1093/biomet/43.3-4.353.
 """
 
+from dataclasses import replace
+
 import numpy as np
 
 from frictioncli.arrays import Array
@@ -56,6 +58,9 @@ _STEPS = 12
 _CONVERGED = 1e-7
 """Share of the sum of squares by which the last step made it smaller."""
 
+_MUCH_LEFT = 1.05
+"""Ratio of the residuals without and with a delay from which it is believed whatever its error."""
+
 _ROUNDS = 3
 """Rounds of whitening and of the load in the friction."""
 
@@ -88,6 +93,37 @@ def identify(equations: JointEquations, terms: EquationTerms) -> RegressionEstim
     return fit.result()
 
 
+def identify_delay(
+    equations: JointEquations, terms: EquationTerms
+) -> tuple[RegressionEstimate, RegressionEstimate | None]:
+    """Fit the equation with a delay if it is told, or if much more is left without it.
+
+    Far from the known delay the series leave so much that no interval tells the delay. Rows that
+    are free of a delay keep the term whatever its interval.
+
+    Parameters
+    ----------
+    equations : JointEquations
+        The rows.
+    terms : EquationTerms
+        Terms of the equation, perhaps with a delay.
+
+    Returns
+    -------
+    estimate : RegressionEstimate
+        The fit.
+    prompt : RegressionEstimate or None
+        The fit without the delay, where its interval does not tell the delay.
+    """
+    some, prompt = some_equations(equations), None
+    estimate = identify(some, terms)
+    if terms.delay and not equations.known_delay and not estimate.told("delay"):
+        prompt = identify(equations, replace(terms, delay=False))
+        if prompt.rmse < _MUCH_LEFT * estimate.rmse:
+            return prompt, None
+    return (estimate if some is equations else identify(equations, terms)), prompt
+
+
 class _RowFit:
     """State of a fit: nonlinear parameters, load, whitening and weights."""
 
@@ -98,7 +134,7 @@ class _RowFit:
         self.white = Whitening((np.empty(0),), (1.0,))
         self.weight = np.ones(len(rows))
         self.squared_load = np.zeros(len(rows))
-        self.delta, self.delay = 0.05, 0.0
+        self.delta, self.delay = 0.05, equations.known_delay if terms.delay else 0.0
         self.linear = np.zeros(len(terms.linear))
 
     def take(self, other: "_RowFit") -> None:

@@ -15,7 +15,7 @@ import pyarrow as pa
 from frictioncli.arrays import Array, Flags, Indices, Numbers
 from frictioncli.pairs.chunks import SampleChunk, chunks
 from frictioncli.pairs.settings import SteadySettings
-from frictioncli.regression.even_samples import even_samples, position_jumps, row_centres
+from frictioncli.regression.even_samples import even_samples, later, position_jumps, row_centres
 from frictioncli.regression.filters import STEP_TIMES, filter_step, filtered, matched_filters
 
 STANDING = "standing"
@@ -135,6 +135,10 @@ class MotionLog:
         Width of the filter's triangles. [samples]
     period : float
         Sampling period. [s]
+    step_time : float
+        Width of the filter's triangles that was asked for. [s]
+    known_delay : float
+        Delay of the torque that the rows are free of: their torque is that of so much later. [s]
     """
 
     runs: list[str] = field(default_factory=list)
@@ -143,6 +147,8 @@ class MotionLog:
     dropped: dict[str, int] = field(default_factory=dict)
     step: int = 0
     period: float = 0.0
+    step_time: float = STEP_TIMES[0]
+    known_delay: float = 0.0
     moves: int = 0
     parts: list[dict[str, np.ndarray]] = field(default_factory=list)
     noises: list[tuple[float, float]] = field(default_factory=list)
@@ -173,6 +179,7 @@ def motion_rows(
     batches: Iterable[pa.RecordBatch],
     settings: SteadySettings | None = None,
     step_time: float = STEP_TIMES[0],
+    delays: Mapping[int, float] | None = None,
 ) -> dict[int, MotionLog]:
     """Return the filtered rows of the motion of each joint.
 
@@ -184,6 +191,9 @@ def motion_rows(
         ``min_speed`` decides what is standing.
     step_time : float
         Width of the filter's triangles, at least one sampling period. [s]
+    delays : mapping of int to float, optional
+        Delay of the torque by joint, which is taken out of the rows; other joints then have none.
+        [s]
 
     Returns
     -------
@@ -197,11 +207,17 @@ def motion_rows(
     """
     found: dict[int, MotionLog] = {}
     for chunk in chunks(batches, _CHANNELS, settings or SteadySettings()):
-        _add(found.setdefault(chunk.source.joint, MotionLog()), chunk, step_time)
+        joint = chunk.source.joint
+        if delays is not None and joint not in delays:
+            continue
+        if joint not in found:
+            delay = 0.0 if delays is None else delays[joint]
+            found[joint] = MotionLog(step_time=step_time, known_delay=delay)
+        _add(found[joint], chunk)
     return dict(sorted(found.items()))
 
 
-def _add(motion: MotionLog, chunk: SampleChunk, step_time: float) -> None:
+def _add(motion: MotionLog, chunk: SampleChunk) -> None:
     """Add the rows of a chunk of samples."""
     source = chunk.source
     if source.run not in motion.runs:
@@ -213,7 +229,7 @@ def _add(motion: MotionLog, chunk: SampleChunk, step_time: float) -> None:
     if not len(chunk.move_start):
         return
     grid = even_samples(chunk)
-    filters = matched_filters(filter_step(grid.period, step_time), grid.period)
+    filters = matched_filters(filter_step(grid.period, motion.step_time), grid.period)
     motion.step, motion.period = filters.step, grid.period
     spacing = 2 * filters.step
     centre, move = row_centres(grid, filters.half, spacing)
@@ -230,7 +246,15 @@ def _add(motion: MotionLog, chunk: SampleChunk, step_time: float) -> None:
     velocity = filtered(of["velocity"], centre, filters.mean, filters.slope, filters.curvature)
     begin = of["position"][grid.start[move]]
     motion.noises += _noises(of, centre)
-    torque, load = (filtered(of[name], centre, filters.mean)[0] for name in ("torque", "load"))
+    # a measured load belongs to the torque beside it
+    torque, load = (
+        filtered(
+            later(of[name], motion.known_delay / grid.period) if motion.known_delay else of[name],
+            centre,
+            filters.mean,
+        )[0]
+        for name in ("torque", "load")
+    )
     offset = np.arange(-filters.half, filters.half + 1) * grid.period
     ones = np.ones(len(centre), dtype=np.int64)
     motion.parts.append(

@@ -74,6 +74,10 @@ class PreparedJoint:
     other_share: float = 0.0
     payloads: tuple[float, ...] = ()
 
+    def without_delay(self) -> "PreparedJoint":
+        """Return the same rows for an equation without a delay."""
+        return replace(self, terms=replace(self.terms, delay=False))
+
 
 def prepare(
     motion: MotionLog,
@@ -169,6 +173,7 @@ def prepare(
         speed_from_position=from_position,
         temperature=np.nan_to_num(rows.motor_temperature),
         state=number,
+        known_delay=motion.known_delay,
     )
     terms = EquationTerms(
         offset=len(np.unique(equations.direction)) > 1,

@@ -11,12 +11,13 @@ import pyarrow as pa
 
 from frictioncli.errors import NotEnoughData
 from frictioncli.pairs.other_joints import OTHER_MOVES
+from frictioncli.regression.alignment import aligned_regressions
 from frictioncli.regression.arm_bodies import arm_bodies
 from frictioncli.regression.arm_dynamics import ArmModel
 from frictioncli.regression.arm_motion import arm_motions
 from frictioncli.regression.cells import torque_cells
 from frictioncli.regression.determination import JointRegression, regress
-from frictioncli.regression.motion_rows import motion_rows
+from frictioncli.regression.motion_rows import MotionLog, motion_rows
 from frictioncli.regression.preparation import PreparedJoint, prepare, with_wide_enough_filter
 from frictioncli.regression.text import regression_facts, regression_text
 
@@ -147,34 +148,34 @@ def torques_by_regression(
     payload = None if manifest is None else manifest["payload"]
     phase = None if manifest is None else manifest["phase"]
     states = {} if arm is None else arm_motions(read, motions, range(1, arm.joints + 1))
+
+    def regress_joint(joint: int, motion: MotionLog, *, late: bool) -> JointRegression:
+        columns = None if arm is None else partial(arm.columns, joint)
+        prepared = prepare(motion, payload, columns, states.get(joint))
+        _refuse_doubtful(joint, prepared, doubtful=doubtful)
+        return regress(prepared if late else prepared.without_delay(), joint, sign)
+
+    wanted = {joint: motions[joint] for joint in motions if joints is None or joint in joints}
+    standing = [str(joint) for joint, motion in wanted.items() if not motion.moves]
+    moving = {joint: motion for joint, motion in wanted.items() if motion.moves}
     tables, texts, faults = [], [], []
-    standing: list[str] = []
     signs: dict[int, int] = {}
     facts: dict[int, Mapping[str, Any]] = {}
     dropped: dict[str, int] = {}
     samples = 0
     regressions: dict[int, JointRegression] = {}
-    for joint, motion in motions.items():
-        if joints is not None and joint not in joints:
+    for joint, outcome in aligned_regressions(read, moving, regress_joint).items():
+        if isinstance(outcome, NotEnoughData):
+            faults.append(str(outcome))
             continue
-        if not motion.moves:
-            standing.append(str(joint))
-            continue
-        try:
-            columns = None if arm is None else partial(arm.columns, joint)
-            prepared = prepare(motion, payload, columns, states.get(joint))
-            _refuse_doubtful(joint, prepared, doubtful=doubtful)
-            found = regress(prepared, joint, sign)
-        except NotEnoughData as fault:
-            faults.append(str(fault))
-            continue
+        motion, found = outcome
         cells = torque_cells(found, motion, joint, bin_width, phase)
         if cells.table.empty:
             faults.append(f"joint {joint}: no speed and angle is passed often enough")
             continue
         samples += motion.samples
         regressions[joint] = found
-        for reason, count in [*prepared.dropped.items(), *cells.dropped.items()]:
+        for reason, count in [*found.prepared.dropped.items(), *cells.dropped.items()]:
             dropped[reason] = dropped.get(reason, 0) + count
         tables.append(cells.table)
         signs[joint] = found.sign

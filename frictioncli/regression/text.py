@@ -91,9 +91,8 @@ def regression_text(
         for speed, (value, low, high) in found.friction.items()
     )
     lines.append(f"  friction without load{at}: {friction} {torque_unit}")
-    rms = float(np.sqrt(np.mean(np.square(estimate.residual))))
     lines.append(
-        f"  rmse {rms:.3g}, of stretches left out {estimate.held_out:.3g} {torque_unit};"
+        f"  rmse {estimate.rmse:.3g}, of stretches left out {estimate.held_out:.3g} {torque_unit};"
         f" condition number {estimate.condition:.3g}"
     )
     lines += [f"  not determined: {name}: {why}" for name, why in found.undetermined.items()]
@@ -147,7 +146,7 @@ def regression_facts(
             for speed, (value, low, high) in found.friction.items()
         ],
         "friction_temperature": found.temperature,
-        "rmse": float(np.sqrt(np.mean(np.square(estimate.residual)))),
+        "rmse": estimate.rmse,
         "held_out": estimate.held_out,
         "condition": estimate.condition,
         "both_directions": cells.both_ways,
