@@ -26,7 +26,11 @@ from frictioncli.diagnosis.search.cause_search import find_causes
 from frictioncli.diagnosis.search.cause_selection import refuted_by_new_run
 from frictioncli.diagnosis.search.lack_of_fit import Structure
 from frictioncli.diagnosis.search.margin import channel_margin, margin_of
-from frictioncli.diagnosis.search.measurement import beside_the_rest, corrected_without_name
+from frictioncli.diagnosis.search.measurement import (
+    beside_the_rest,
+    clear_effects,
+    corrected_without_name,
+)
 from frictioncli.diagnosis.search.named_causes import Judging, named_causes
 from frictioncli.diagnosis.search.new_run_changes import changes_on_new_run, with_effect
 from frictioncli.diagnosis.search.new_run_misfit import NewRunMisfit
@@ -179,7 +183,7 @@ def diagnose_joint(
     search = partial(
         find_causes, settings=settings, margin=margin, ramps=evidence, preparation=known
     )
-    measurement = known.beside(base).effects
+    measurement = clear_effects(known.beside(base))
     refuted: tuple[Cause, ...] = ()
     while True:
         tried = [one for one in effects if one.name not in {no.fit.effect.name for no in refuted}]

@@ -189,6 +189,18 @@ def measurement_causes(step: Step, effects: Sequence[Effect]) -> tuple[Cause, ..
     return tuple(found)
 
 
+def clear_effects(beside: BesideBase) -> tuple[Effect, ...]:
+    """Return the effects of the measurement beside the base that are clearly there.
+
+    Parameters
+    ----------
+    beside : BesideBase
+        What stands beside the base.
+    """
+    causes = measurement_causes(Step.of(beside.precomputed, []), beside.effects)
+    return tuple(one.fit.effect for one in causes if one.test.p_value < CLEAR)
+
+
 def corrected_without_name(
     judged: Sequence[Cause], causes: Sequence[Cause], problem: Problem
 ) -> tuple[Cause, ...]:
