@@ -90,7 +90,7 @@ class Structure:
     @property
     def axis(self) -> str:
         """The axes in words."""
-        return " and ".join(self.axes)
+        return " and ".join(self.axes).replace("position", "angle")
 
 
 def unnamed_structure(
