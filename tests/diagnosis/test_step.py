@@ -140,7 +140,7 @@ def test_structure_is_found_along_its_axes_with_its_size():
     data = replace(data, friction=data.friction + torque)
     found = structures(Step.of(Precomputed.of(data), []))[0]
     assert (found.axes, found.channel) == (("position", "temperature"), "friction")
-    assert found.axis == "position and temperature"
+    assert found.axis == "angle and temperature"
     assert found.p_value < 1e-6
     rms = np.sqrt(np.mean(torque**2))
     # what the discrepancy may contribute is taken off
