@@ -11,6 +11,7 @@ from frictioncli.errors import NotEnoughData
 from frictioncli.inspection.pair_check import FORWARD, REVERSE
 from frictioncli.model.fitting import LEAST_PAIRS as LEAST_TO_FIT
 from frictioncli.model.identifiability import MIN_SPEED_RATIO, MIN_TEMPERATURE_SPAN
+from frictioncli.model.settings import LEAST_OPPOSING, not_opposing
 from frictioncli.pairs.separation import HalfDifferences, inferred_sign
 from frictioncli.pairs.thermal_phases import SWEEP
 
@@ -18,8 +19,6 @@ YES, IN_PART, NO = "yes", "in part", "no"
 STAGES = ("ingest", "pair", "separate", "fit", "diagnose", "simulate")
 _AS_FAR = "as far as the regression gives torques"
 _SPEEDS_SHOWN = 8
-_LEAST_OPPOSING = 0.8
-"""Least share of pairs in which friction opposes motion. [-]"""
 
 
 @dataclass(frozen=True, slots=True)
@@ -181,15 +180,8 @@ def _separate(joint: int, pairs: pd.DataFrame) -> StageVerdict:
     low, high = pairs["load_low"].min(), pairs["load_high"].max()
     text = f"half difference {friction.mean():.3g} on average, load {low:.3g} to {high:.3g}"
     opposing = float(np.mean(friction > 0))
-    if opposing < _LEAST_OPPOSING:
-        return StageVerdict(
-            "separate",
-            IN_PART,
-            f"{text}, but it opposes motion in {100 * opposing:.0f} % of the pairs only: has"
-            " friction already been removed from this torque, or is it another joint's? Try the"
-            " other torque or current"
-            " columns",
-        )
+    if opposing < LEAST_OPPOSING:
+        return StageVerdict("separate", IN_PART, f"{text}, but {not_opposing(opposing)}")
     return StageVerdict("separate", YES, text)
 
 

@@ -17,7 +17,7 @@ from frictioncli.model.late_torque import (
 )
 from frictioncli.model.observations import observations
 from frictioncli.model.paper_method import consecutive_fit
-from frictioncli.model.settings import LEAST_PAIRS, FitSettings
+from frictioncli.model.settings import LEAST_OPPOSING, LEAST_PAIRS, FitSettings, not_opposing
 from frictioncli.wording import quantity_text
 
 _LATE = (
@@ -61,6 +61,9 @@ def fit_joint(torques: pd.DataFrame, facts: dict[str, Any], settings: FitSetting
     freed = without_delay(known, None if delay is None else delay.value)
     observed = observations(freed, temperature)
     n_pairs = len(observed.friction)
+    opposing = float(np.mean(observed.friction > 0))
+    if opposing < LEAST_OPPOSING:
+        notes.append(f"friction is doubtful: {not_opposing(opposing)}")
     separated_by = facts.get("separated_by", {}).get(str(joint), "pairs")
     if n_pairs < LEAST_PAIRS and separated_by == "regression":
         raise NotEnoughData(

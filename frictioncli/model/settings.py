@@ -11,6 +11,18 @@ TEMPERATURES = ("motor", "housing", "mean")
 LEAST_PAIRS = 3
 """Least number of pairs for a fit."""
 
+LEAST_OPPOSING = 0.8
+"""Least share of pairs in which friction opposes the motion."""
+
+
+def not_opposing(share: float) -> str:
+    """Return what is said where friction opposes the motion in a share of the pairs only."""
+    return (
+        f"it opposes motion in {100 * share:.0f} % of the pairs only: has friction already been"
+        " removed from this torque, or is it another joint's? Try the other torque or current"
+        " columns"
+    )
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class FitSettings:

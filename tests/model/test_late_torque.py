@@ -132,3 +132,11 @@ def test_freed_friction_is_that_of_a_log_without_delay():
 def test_a_load_that_does_not_change_along_the_angle_has_no_late_torque():
     rows = joint(0.0).assign(load_torque=3.0)
     np.testing.assert_allclose(late_column(rows), 0.0, atol=1e-9)
+
+
+def test_friction_that_does_not_oppose_the_motion_is_doubted():
+    rows = joint(0.0)
+    rows.loc[rows["pair"] % 2 == 0, "friction_torque"] *= -1.0
+    (note,) = fit_joint(rows, {}, FitSettings()).notes
+    assert "50 % of the pairs only" in note
+    assert not fit_joint(joint(0.0), {}, FitSettings()).notes
