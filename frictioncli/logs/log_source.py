@@ -150,5 +150,42 @@ class SequentialSource:
             yield ReadTask(partial(_identity, batch), size_read)
 
 
+@dataclass(frozen=True, slots=True)
+class DerivedSource(SequentialSource):
+    """Base of sources that change or add to the rows of another one.
+
+    Attributes
+    ----------
+    source : LogSource
+        The other one.
+    """
+
+    source: LogSource
+
+    @property
+    def path(self) -> Path:
+        """The file."""
+        return self.source.path
+
+    @property
+    def files(self) -> tuple[Path, ...]:
+        """All files that its samples come from."""
+        return self.source.files
+
+    @property
+    def columns(self) -> tuple[str, ...]:
+        """Column names as they stand in the file."""
+        return self.source.columns
+
+    @property
+    def form(self) -> str:
+        """The file's form in words."""
+        return self.source.form
+
+    def texts(self, lines: Numbers, size: int) -> Iterator[tuple[int, str]]:
+        """Yield (line, text) for the given line numbers, which must be ascending."""
+        return self.source.texts(lines, size)
+
+
 def _identity(batch: RawBatch) -> RawBatch:
     return batch

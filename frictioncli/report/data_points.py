@@ -126,7 +126,7 @@ def _of_model(results: JointResults) -> pd.DataFrame:
         temperature=temperature_of(torques, results.model.temperature),
     )
     friction = torques["friction_torque"].to_numpy(float)
-    late = friction - results.friction()["friction_torque"].loc[torques.index].to_numpy(float)
+    freed = results.friction()["friction_torque"].loc[torques.index].to_numpy(float)
     load = torques["load_torque"].to_numpy(float)
     phases = torques["phase"].astype(str)
     rows = pd.DataFrame(
@@ -146,7 +146,7 @@ def _of_model(results: JointResults) -> pd.DataFrame:
     for name, sign in _DIRECTIONS:
         direction = sign * results.model.sign
         rows[f"u_{name}"] = share * load + direction * friction
-        rows[f"base_{name}"] = direction * (friction - late - predicted)
+        rows[f"base_{name}"] = direction * (freed - predicted)
     rows = rows.assign(pair=_numbered(torques, PAIR_KEY)).reset_index(drop=True)
     known = rows[["u_forward", "base_forward"]].notna().all(axis=1)
     return rows[known].reset_index(drop=True)

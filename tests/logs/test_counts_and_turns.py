@@ -1,5 +1,8 @@
 """Logs in turns, in counts of an encoder, or in units that nobody knows."""
 
+from pathlib import Path
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 
@@ -8,6 +11,7 @@ from frictioncli.errors import LogError, MappingError
 from frictioncli.inspection.map_suggestion.suggest_map import suggested_map
 from frictioncli.logs.channels.channel_map import read_map
 from frictioncli.logs.ingest import IngestSettings, ingest
+from frictioncli.logs.runs.native_scale import ScaledLog
 
 from .logs import back_and_forth, write
 
@@ -146,3 +150,9 @@ def test_a_suggested_map_asks_for_the_size_of_a_pulse(tmp_path):
     saved.write_text(text, encoding="utf-8")
     with pytest.raises(MappingError, match=r"\[scale\] position = 0; expected"):
         read_map(saved)
+
+
+def test_a_scaled_log_comes_from_all_files_of_its_trace():
+    files = (Path("trace_KRCIpo.csv"), Path("trace_NextGenDrive#3.csv"))
+    trace = SimpleNamespace(path=files[0], files=files, columns=("t", "q"), form="2 files")
+    assert ScaledLog(trace, ((1.0, 0.0), (2.0, 0.0))).files == files

@@ -2,19 +2,18 @@
 
 from collections.abc import Collection, Iterator
 from dataclasses import dataclass
-from pathlib import Path
 
 import numpy as np
 
-from frictioncli.arrays import Array, Numbers
-from frictioncli.logs.log_source import LogSource, RawBatch, SequentialSource
+from frictioncli.arrays import Array
+from frictioncli.logs.log_source import DerivedSource, RawBatch
 
 _LONGEST_STEP = 0.5
 """A clock that falls by more than this share of its range has begun anew. [-]"""
 
 
 @dataclass(frozen=True, slots=True)
-class ContinuousClock(SequentialSource):
+class ContinuousClock(DerivedSource):
     """A source whose time goes on where its clock begins anew.
 
     Attributes
@@ -27,24 +26,8 @@ class ContinuousClock(SequentialSource):
         Range of the clock. [unit of the column]
     """
 
-    source: LogSource
     time: int
     span: float
-
-    @property
-    def path(self) -> Path:
-        """The file."""
-        return self.source.path
-
-    @property
-    def columns(self) -> tuple[str, ...]:
-        """Column names as they stand in the file."""
-        return self.source.columns
-
-    @property
-    def form(self) -> str:
-        """The file's form in words."""
-        return self.source.form
 
     def batches(self, columns: Collection[int], size: int) -> Iterator[RawBatch]:
         """Yield the rows in order, in batches of about ``size`` bytes of the file."""
@@ -56,10 +39,6 @@ class ContinuousClock(SequentialSource):
             time, last, turns = continued(batch.values[self.time], self.span, last, turns)
             values = {**batch.values, self.time: time}
             yield RawBatch(batch.lines, values, batch.bad_lines, batch.bad_reasons)
-
-    def texts(self, lines: Numbers, size: int) -> Iterator[tuple[int, str]]:
-        """Yield (line, text) for the given line numbers, which must be ascending."""
-        return self.source.texts(lines, size)
 
 
 def continued(

@@ -2,16 +2,14 @@
 
 from collections.abc import Collection, Iterator
 from dataclasses import dataclass
-from pathlib import Path
 
 import numpy as np
 
-from frictioncli.arrays import Numbers
-from frictioncli.logs.log_source import LogSource, RawBatch, SequentialSource
+from frictioncli.logs.log_source import DerivedSource, RawBatch
 
 
 @dataclass(frozen=True, slots=True)
-class RowClock(SequentialSource):
+class RowClock(DerivedSource):
     """A source with a further column: the time since the first row, damaged rows included.
 
     Attributes
@@ -22,13 +20,7 @@ class RowClock(SequentialSource):
         Time from row to row. [s]
     """
 
-    source: LogSource
     period: float
-
-    @property
-    def path(self) -> Path:
-        """The file."""
-        return self.source.path
 
     @property
     def columns(self) -> tuple[str, ...]:
@@ -53,7 +45,3 @@ class RowClock(SequentialSource):
                 values[made] = np.asarray(place * self.period, np.float64)
             rows += len(lines)
             yield RawBatch(batch.lines, values, batch.bad_lines, batch.bad_reasons)
-
-    def texts(self, lines: Numbers, size: int) -> Iterator[tuple[int, str]]:
-        """Yield (line, text) for the given line numbers, which must be ascending."""
-        return self.source.texts(lines, size)

@@ -4,13 +4,11 @@ import re
 from collections.abc import Collection, Iterator, Sequence
 from dataclasses import dataclass
 from functools import partial
-from pathlib import Path
 
-from frictioncli.arrays import Numbers
 from frictioncli.logs.formats.continuous_clock import ContinuousClock
 from frictioncli.logs.formats.delimited import DelimitedText
 from frictioncli.logs.formats.moments import CLOCK, DAY
-from frictioncli.logs.log_source import LogSource, RawBatch, ReadTask
+from frictioncli.logs.log_source import DerivedSource, LogSource, RawBatch, ReadTask
 
 _NANOSECOND = 1e-9  # [s]
 _NO_KEY = re.compile(r"[^a-z0-9]")
@@ -55,7 +53,7 @@ def _pair(columns: Sequence[str]) -> tuple[int, int] | None:
 
 
 @dataclass(frozen=True, slots=True)
-class JoinedTime:
+class JoinedTime(DerivedSource):
     """A source whose time is the sum of two columns.
 
     Attributes
@@ -68,20 +66,9 @@ class JoinedTime:
         What a number in the second column stands for. [s]
     """
 
-    source: LogSource
     seconds: int
     rest: int
     unit: float
-
-    @property
-    def path(self) -> Path:
-        """The file."""
-        return self.source.path
-
-    @property
-    def files(self) -> tuple[Path, ...]:
-        """All files that its samples come from."""
-        return self.source.files
 
     @property
     def columns(self) -> tuple[str, ...]:
@@ -106,10 +93,6 @@ class JoinedTime:
         """Yield in order the tasks that read the batches, each of at most about ``size`` bytes."""
         for task in self.source.tasks(self._with_rest(columns), size):
             yield ReadTask(partial(self._read, task), task.size)
-
-    def texts(self, lines: Numbers, size: int) -> Iterator[tuple[int, str]]:
-        """Yield (line, text) for the given line numbers, which must be ascending."""
-        return self.source.texts(lines, size)
 
     def _with_rest(self, columns: Collection[int]) -> set[int]:
         both = {self.seconds, self.rest}

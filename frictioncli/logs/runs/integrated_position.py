@@ -6,16 +6,15 @@ unknown but for a constant, so that nothing that depends on the angle can be tol
 
 from collections.abc import Collection, Iterator, Sequence
 from dataclasses import dataclass, replace
-from pathlib import Path
 
 import numpy as np
 
-from frictioncli.arrays import Array, Numbers
+from frictioncli.arrays import Array
 from frictioncli.logs.channels import channel_names as names
 from frictioncli.logs.channels import units
 from frictioncli.logs.channels.channel_names import INTEGRATED, JOINT_SIDE, Meaning
 from frictioncli.logs.channels.recognition import LogChannel
-from frictioncli.logs.log_source import LogSource, RawBatch, SequentialSource
+from frictioncli.logs.log_source import DerivedSource, RawBatch
 
 
 def integrable(channels: Sequence[LogChannel]) -> tuple[LogChannel, LogChannel] | None:
@@ -59,7 +58,7 @@ def with_position(
 
 
 @dataclass(frozen=True, slots=True)
-class IntegratedPosition(SequentialSource):
+class IntegratedPosition(DerivedSource):
     """A source with a further column: the integral of its velocity from 0, by trapezoids [deg].
 
     Attributes
@@ -72,15 +71,9 @@ class IntegratedPosition(SequentialSource):
         Factor from velocity times time to deg.
     """
 
-    source: LogSource
     time: int
     velocity: int
     scale: float
-
-    @property
-    def path(self) -> Path:
-        """The file."""
-        return self.source.path
 
     @property
     def columns(self) -> tuple[str, ...]:
@@ -110,10 +103,6 @@ class IntegratedPosition(SequentialSource):
                     last = float(time[finite[-1]]), float(rate[finite[-1]])
             values = batch.values | {made: position}
             yield RawBatch(batch.lines, values, batch.bad_lines, batch.bad_reasons)
-
-    def texts(self, lines: Numbers, size: int) -> Iterator[tuple[int, str]]:
-        """Yield (line, text) for the given line numbers, which must be ascending."""
-        return self.source.texts(lines, size)
 
 
 def _integral(time: Array, rate: Array, last: tuple[float, float]) -> Array:

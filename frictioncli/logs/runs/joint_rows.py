@@ -6,19 +6,17 @@ from collections.abc import Collection, Iterator, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
 from functools import lru_cache
-from pathlib import Path
 
 import numpy as np
 
-from frictioncli.arrays import Numbers
 from frictioncli.logs.channels.channel_map import ChannelMap
 from frictioncli.logs.channels.recognition import recognise_channels, split_unit
 from frictioncli.logs.formats.delimited import DelimitedText
 from frictioncli.logs.log_source import (
+    DerivedSource,
     LogSource,
     RawBatch,
     Refusal,
-    SequentialSource,
     UnreadableLog,
 )
 from frictioncli.logs.runs.discovery import LogFile
@@ -37,7 +35,7 @@ the joint with most. [-]"""
 
 
 @dataclass(frozen=True, slots=True)
-class RowsOfJoint(SequentialSource):
+class RowsOfJoint(DerivedSource):
     """The rows of one joint.
 
     Attributes
@@ -60,7 +58,6 @@ class RowsOfJoint(SequentialSource):
         Which joints the names or numbers are.
     """
 
-    source: LogSource
     column: int
     numbers: tuple[float, ...]
     place: int
@@ -68,16 +65,6 @@ class RowsOfJoint(SequentialSource):
     name: str
     is_first: bool
     notes: tuple[str, ...] = ()
-
-    @property
-    def path(self) -> Path:
-        """The file."""
-        return self.source.path
-
-    @property
-    def columns(self) -> tuple[str, ...]:
-        """Column names as they stand in the file."""
-        return self.source.columns
 
     @property
     def form(self) -> str:
@@ -98,10 +85,6 @@ class RowsOfJoint(SequentialSource):
                 bad, reasons = bad[:0], ()
             values = {column: batch.values[column][mine] for column in columns}
             yield RawBatch(batch.lines[mine], values, bad, reasons)
-
-    def texts(self, lines: Numbers, size: int) -> Iterator[tuple[int, str]]:
-        """Yield (line, text) for the given line numbers, which must be ascending."""
-        return self.source.texts(lines, size)
 
 
 def joint_rows(

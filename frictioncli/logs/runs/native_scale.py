@@ -2,15 +2,14 @@
 
 from collections.abc import Collection, Iterator
 from dataclasses import dataclass
-from pathlib import Path
 
 import numpy as np
 
-from frictioncli.arrays import Array, Numbers
+from frictioncli.arrays import Array
 from frictioncli.logs.channels.recognition import split_unit
 from frictioncli.logs.formats.diadem import DiademRecording, open_recording
 from frictioncli.logs.formats.diadem_header import DamagedHeader
-from frictioncli.logs.log_source import LogSource, RawBatch, SequentialSource, UnreadableLog
+from frictioncli.logs.log_source import DerivedSource, LogSource, RawBatch, UnreadableLog
 
 _COMPARED_BYTES = 1 << 14
 _MIN_ROWS = 3
@@ -20,7 +19,7 @@ _DIGITS = 1e-5
 
 
 @dataclass(frozen=True, slots=True)
-class ScaledLog(SequentialSource):
+class ScaledLog(DerivedSource):
     """A log with linearly scaled columns.
 
     Attributes
@@ -33,19 +32,8 @@ class ScaledLog(SequentialSource):
         Where they are from, in words.
     """
 
-    source: LogSource
     scales: tuple[tuple[float, float], ...]
     note: str = "raw values scaled by the .dat header"
-
-    @property
-    def path(self) -> Path:
-        """The file."""
-        return self.source.path
-
-    @property
-    def columns(self) -> tuple[str, ...]:
-        """Column names as they stand in the file."""
-        return self.source.columns
 
     @property
     def form(self) -> str:
@@ -60,10 +48,6 @@ class ScaledLog(SequentialSource):
                 for column, cells in batch.values.items()
             }
             yield RawBatch(batch.lines, values, batch.bad_lines, batch.bad_reasons)
-
-    def texts(self, lines: Numbers, size: int) -> Iterator[tuple[int, str]]:
-        """Yield (line, text) for the asked lines, which must be ascending."""
-        return self.source.texts(lines, size)
 
 
 def scale_raw_export(source: LogSource) -> LogSource:
