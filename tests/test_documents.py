@@ -94,7 +94,7 @@ def places(value, way=()):
 
 
 @pytest.mark.parametrize("kind", KINDS)
-@settings(max_examples=25)
+@settings(max_examples=12)
 @given(data=st.data())
 def test_what_is_written_is_read_back(kind, data):
     document = data.draw(records(kind))
@@ -102,7 +102,7 @@ def test_what_is_written_is_read_back(kind, data):
 
 
 @pytest.mark.parametrize("kind", KINDS)
-@settings(max_examples=25)
+@settings(max_examples=12)
 @given(data=st.data())
 def test_a_wrong_type_is_refused_with_its_place(kind, data):
     document = json.loads(documents.to_json(data.draw(records(kind))))

@@ -88,6 +88,7 @@ def test_there_is_one_picture_per_effect(asymmetry):
     assert str(work / "challenge") in said
 
 
+@pytest.mark.long
 def test_the_page_shows_planted_effects_as_long_as_they_are_of_these_data(asymmetry, tmp_path):
     work = shutil.copytree(asymmetry[0], tmp_path / "work")
     report(work)
@@ -202,6 +203,7 @@ def test_an_interrupted_call_goes_on_and_does_nothing_twice(
     assert rows_of(tmp_path)["effect"].tolist() == ["none", "position_ripple", "drift"]
 
 
+@pytest.mark.long
 def test_rows_of_other_logs_are_dropped(logs, tmp_path, undiagnosed):
     options = ChallengeSettings(effects=("position_ripple:2",))
     work = tmp_path / "work"

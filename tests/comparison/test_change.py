@@ -88,7 +88,7 @@ def test_earlier_runs_that_differ_widen_the_interval():
     assert (restless.ci95[1] - restless.ci95[0]) / 2 == pytest.approx(expected, rel=0.1)
 
 
-@pytest.mark.parametrize("earlier", [2, pytest.param(5, marks=pytest.mark.long)])
+@pytest.mark.parametrize("earlier", [pytest.param(one, marks=pytest.mark.long) for one in (2, 5)])
 def test_intervals_hold_the_truth_as_often_as_they_say(earlier):
     generator = np.random.default_rng(11)
     held = 0

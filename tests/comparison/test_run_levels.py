@@ -35,7 +35,7 @@ def test_offsets_come_back_without_noise():
     np.testing.assert_allclose(differences(found), offset, atol=2e-3)
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_errors_are_what_the_spread_over_repetitions_shows():
     found = []
     for seed in range(8):

@@ -149,6 +149,7 @@ def test_the_text_says_what_why_and_how(planned):
         assert wanted in said
 
 
+@pytest.mark.long
 def test_the_same_call_gives_the_same_bytes(planned, copy):
     work, said = planned
     again = planned_quickly(copy, ASKED)
@@ -174,6 +175,7 @@ def test_what_is_refused_leaves_nothing_behind(copy, asked, reason):
     assert not list(copy.glob("friction_a*"))
 
 
+@pytest.mark.long
 def test_a_payload_that_there_is_no_time_to_mount_is_left_out(copy):
     planned_quickly(copy, PlanSettings(minutes=5.0, payload=(4.0,), high=60.0))
     assert all("payload" not in one["name"] for one in document(copy)["programme"]["blocks"])

@@ -243,7 +243,7 @@ def test_bounds_forbid_a_name_in_the_search(catalogue):
 
 
 @pytest.mark.parametrize(
-    "seed", [0, *(pytest.param(seed, marks=pytest.mark.slow) for seed in (1, 2, 3))]
+    "seed", [0, *(pytest.param(seed, marks=pytest.mark.long) for seed in (1, 2, 3))]
 )
 def test_the_search_ends_whatever_the_catalogue(catalogue, monkeypatch, seed):
     """Nine random mixtures of five waves, alike and in each other's way, explain a tenth one."""

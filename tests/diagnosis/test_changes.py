@@ -66,8 +66,8 @@ HELD = [
 with_history = pytest.mark.parametrize(
     ("count", "there", "holds", "text"),
     [
-        *(HELD[0], HELD[3]),
-        *(pytest.param(*HELD[number], marks=pytest.mark.long) for number in (1, 2, 4)),
+        HELD[3],
+        *(pytest.param(*HELD[number], marks=pytest.mark.long) for number in (0, 1, 2, 4)),
     ],
     ids=lambda value: getattr(value, "__name__", ""),
 )
@@ -120,10 +120,11 @@ def test_a_payload_on_the_second_of_three_days():
     assert diagnosis.gain.after < 1.25 * diagnosis.floor
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     ("change", "name", "size"),
     [
-        pytest.param(with_payload, "payload_change", [6.0, 0.0], marks=pytest.mark.long),
+        (with_payload, "payload_change", [6.0, 0.0]),
         (with_friction_step, "step_change", [3.0]),
     ],
 )
@@ -150,7 +151,8 @@ def test_a_change_on_the_last_day_only(change, name, size):
     assert np.sqrt(np.mean(squared)) == pytest.approx(diagnosis.gain.after)
 
 
-@pytest.mark.parametrize("seed", [3, pytest.param(4, marks=pytest.mark.long)])
+@pytest.mark.long
+@pytest.mark.parametrize("seed", [3, 4])
 def test_nothing_is_said_of_days_without_a_change(seed):
     diagnosis = diagnose_joint(days(2, seed), "motor", "N·m", DiagnosisSettings())
     assert diagnosis.causes == ()

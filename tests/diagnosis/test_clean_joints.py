@@ -18,7 +18,6 @@ WORLDS = {
 }
 
 QUICK = ("one sample late", "all three")
-LONG = ("an offset of the sensor",)
 
 
 def diagnosed(seed, **world):
@@ -41,11 +40,7 @@ def measured(diagnosis):
     "name",
     [
         *QUICK,
-        *(
-            pytest.param(one, marks=pytest.mark.long if one in LONG else pytest.mark.slow)
-            for one in WORLDS
-            if one not in QUICK
-        ),
+        *(pytest.param(one, marks=pytest.mark.long) for one in WORLDS if one not in QUICK),
     ],
 )
 def test_no_cause_of_friction_or_load_is_named(name):
@@ -75,6 +70,7 @@ def test_a_delay_is_measured():
     assert value == pytest.approx(0.06, abs=max(3 * error, 0.002))
 
 
+@pytest.mark.long
 def test_an_offset_of_the_sensor_is_told_from_a_constant_that_the_gear_carries():
     """Friction feels one of them: 5 N·m that load nothing, beside 3 N·m that do."""
     found = measured(diagnosed(7, offset=5.0, constant=3.0))

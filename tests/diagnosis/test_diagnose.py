@@ -58,9 +58,7 @@ def undetectable(diagnosis):
     return diagnosis_document(diagnosis, DiagnosisSettings()).undetectable
 
 
-@pytest.mark.parametrize(
-    "seed", [0, *(pytest.param(one, marks=pytest.mark.long) for one in (1, 2))]
-)
+@pytest.mark.parametrize("seed", [pytest.param(one, marks=pytest.mark.long) for one in (0, 1, 2)])
 def test_nothing_is_found_where_nothing_is_hidden(seed):
     diagnosis = clean(seed)
     assert diagnosis.verdict == "no_evidence"
@@ -69,6 +67,7 @@ def test_nothing_is_found_where_nothing_is_hidden(seed):
     assert "no cause" in said(diagnosis)
 
 
+@pytest.mark.long
 def test_a_ripple_is_named_with_its_order():
     rows = days(5)
     ripple = 0.8 * np.sin(9.3 * np.radians(rows["position"]) + 0.4)
@@ -80,6 +79,7 @@ def test_a_ripple_is_named_with_its_order():
     assert cause.size == pytest.approx(0.8 / np.sqrt(2), rel=0.1)
 
 
+@pytest.mark.long
 def test_a_spring_shows_in_the_load_and_is_named():
     rows = days(6)
     # gravity takes most of a spring: half a newton metre is left
@@ -147,7 +147,7 @@ def test_a_lagging_gear_is_named_and_pays_on_a_new_day():
     assert diagnosis.gain.interval[0] > 0.2
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_a_lag_does_not_hide_a_ripple():
     rows = lagging(days(9))
     ripple = 1.0 * np.sin(6.7 * np.radians(rows["position"]))

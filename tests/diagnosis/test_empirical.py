@@ -358,7 +358,7 @@ def test_the_extended_model_as_it_is_read_back_predicts_the_new_run(diagnosed):
     assert base.parameters["tau_c"].estimate == diagnosis.base.parameters.tau_c
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_a_joint_with_all_nuisances_and_nothing_hidden_gets_none():
     nuisances = ("all", "friction_zones:0.02")
     rows = simulate_torques(

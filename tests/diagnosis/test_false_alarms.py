@@ -69,6 +69,7 @@ def test_a_discrepancy_that_is_not_there_makes_tests_stricter(every):
         assert np.mean(found[:, EFFECTS.index(name)] < 0.05) <= 0.02
 
 
+@pytest.mark.long
 def test_sixteen_pairs_of_noise_give_no_finding_often():
     """12 joints of 16 pairs: the least p-value of seven effects, corrected for their number."""
     least = len(EFFECTS) * p_values(40, 0.01, 12).min(axis=1)

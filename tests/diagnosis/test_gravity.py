@@ -290,6 +290,7 @@ def test_poses_known_from_the_log_are_no_finding(days):
     assert hidden.verdict != "no_evidence"
 
 
+@pytest.mark.long
 def test_a_payload_in_one_pose_is_found_beside_the_gravity_of_the_others(undeclared_in_a_pose):
     assert named(undeclared_in_a_pose) == [("payload_change",)]
 

@@ -78,6 +78,7 @@ def unknown(tmp_path_factory):
     return chain(folder)
 
 
+@pytest.mark.long
 def test_its_size_is_what_the_simulator_added(disturbed, unknown, tmp_path):
     """The simulator's logs without the disturbance tell bin by bin what it is."""
     synthesize(tmp_path / "logs", settings(0.0))

@@ -53,7 +53,7 @@ def write_day(path, rng, elbow):
     [
         (ELBOW, True),
         pytest.param(ELBOW[1:], True, marks=pytest.mark.long),
-        (ELBOW, False),
+        pytest.param(ELBOW, False, marks=pytest.mark.long),
     ],
     ids=["in turn", "on the second day alone", "not in the log"],
 )

@@ -75,6 +75,7 @@ def test_a_lag_that_is_found_alone_needs_no_second_estimate(searched):
     assert searched({FIRST: ("thermal_lag",)}) == (["thermal_lag"], FIRST)
 
 
+@pytest.mark.long
 def test_a_gear_that_leads_the_motor_may_be_a_sensor_that_lags():
     """Friction warms the gear more than the motor: friction is lower while heating, as with a
     sensor that lags. The sensor takes so much of it that less than the margin is surely left.

@@ -1,6 +1,7 @@
 """A lag of the gear behind a sensor that lags as well: its interval holds what is there."""
 
 import numpy as np
+import pytest
 
 from frictioncli.diagnosis.data.build_problem import build_problems
 from frictioncli.diagnosis.diagnose import diagnose_joint
@@ -13,6 +14,7 @@ SENSOR = 75.0
 """Delay of the sensor. [s]"""
 
 
+@pytest.mark.long
 def test_what_a_slow_sensor_hides_of_a_lag_is_in_its_interval():
     table, gear = torques(Network(motor_heat=1.0, motor_gear=25.0, gear=5000.0))
     of_row = np.repeat(gear, len(BINS))

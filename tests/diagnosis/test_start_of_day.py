@@ -1,6 +1,7 @@
 """Friction that settles within the first minutes of every day, whatever its law."""
 
 import numpy as np
+import pytest
 
 from frictioncli.diagnosis.diagnose import diagnose_joint
 from frictioncli.diagnosis.settings import DiagnosisSettings
@@ -8,6 +9,7 @@ from frictioncli.simulator.settings import SynthesisSettings
 from tests.simulation.torque_table import simulate_torques
 
 
+@pytest.mark.long
 def test_friction_that_settles_after_a_night_is_no_effect_of_speed():
     """The slowest speeds are measured in the first minutes only, in the paper's programme."""
     torques = simulate_torques(

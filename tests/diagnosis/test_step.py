@@ -60,6 +60,7 @@ def test_noise_passes_no_more_often_than_its_p_values_say():
     assert np.mean(np.array(single) < 0.05) < 0.1
 
 
+@pytest.mark.long
 def test_noise_has_no_structure_beyond_chance():
     """The least of fifteen p-values, in 4 problems."""
     least = []
@@ -120,10 +121,8 @@ def test_noise_of_a_measured_load_is_no_structure_along_it():
     assert min(one.p_value for one in in_load) > 1e-3
 
 
-@pytest.mark.parametrize(
-    "every",
-    [pytest.param(20, marks=pytest.mark.long), 32, pytest.param(40, marks=pytest.mark.long)],
-)
+@pytest.mark.long
+@pytest.mark.parametrize("every", [20, 32, 40])
 def test_few_pairs_of_noise_have_no_structure(every):
     """16 to 32 pairs: indicators of speed and temperature are as many, and would fit them all."""
     for seed in range(6):

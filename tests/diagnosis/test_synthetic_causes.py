@@ -50,7 +50,7 @@ SMOOTH = (
     "dress_pack",
 )
 """Effects that at four speeds, or along one stroke, look like a smooth error of 2 % of the base:
-what is said of them must be right, and it may be that nothing is. Their tests are long ones."""
+what is said of them must be right, and it may be that nothing is."""
 
 HIGHEST = 45
 """Motor temperature to which the joint is warmed: half the pairs of the paper. [°C]"""
@@ -69,11 +69,8 @@ BESIDE_A_LAG = ("torque_constant", "payload_change", "position_ripple")
 ELSEWHERE = ("step_change", "payload_change")
 """Effects that test_changes.py finds with size and history; the second stands beside a lag here."""
 
-ALIKE = ("load_velocity", "reversal_transient", "torque_constant")
-"""Effects whose like is found here: those of the load and of the ends of the stroke."""
-
-QUICK = ("thermal_lag", "position_ripple")
-"""One effect that goes with temperature, and one of the stroke."""
+QUICK = ("stribeck", "position_ripple")
+"""One effect that goes with speed, and one of the stroke; a lag stands beside another below."""
 
 
 @functools.cache
@@ -111,12 +108,7 @@ def sets(diagnosis: Diagnosis) -> list[tuple[str, ...]]:
 @pytest.mark.parametrize(
     "name",
     [
-        effect.name
-        if effect.name in QUICK
-        else pytest.param(
-            effect.name,
-            marks=pytest.mark.long if effect.name in (*SMOOTH, *ALIKE) else pytest.mark.slow,
-        )
+        effect.name if effect.name in QUICK else pytest.param(effect.name, marks=pytest.mark.long)
         for effect in EFFECTS
         if effect.name not in ELSEWHERE
     ],
@@ -158,7 +150,8 @@ def test_nothing_is_found_in_a_clean_joint(noise, protocol):
     assert sets(diagnosis) == []
 
 
-@pytest.mark.parametrize("seed", [73, pytest.param(74, marks=pytest.mark.long)])
+@pytest.mark.long
+@pytest.mark.parametrize("seed", [73, 74])
 def test_what_the_catalogue_does_not_list_gets_no_name(seed):
     """Unless its angle of greatest friction is that of the greatest load."""
     diagnosis = diagnosed(("position_temperature:1",), seed)

@@ -66,7 +66,7 @@ def left(problem: Problem, estimate: ThermalEstimate) -> float:
     return float(np.sqrt(np.mean(np.square(warm.friction - warm.table.friction))))
 
 
-@pytest.mark.parametrize("name", ["conduction", "heated"])
+@pytest.mark.parametrize("name", ["conduction", pytest.param("heated", marks=pytest.mark.long)])
 def test_a_hidden_gear_predicts_the_day_kept_out(name):
     """Within 1.25 of the noise where the measured temperature misses many times as much."""
     estimate, (_, new) = estimated(name), days(name)

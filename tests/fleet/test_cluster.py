@@ -36,7 +36,7 @@ pytest.importorskip("distributed", reason="needs the extra 'cluster'")
 QUICK = RunSettings(diagnosis=None)
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_two_workers_one_of_them_killed_give_the_same_bytes(undiagnosed, logs, tmp_path):
     out = tmp_path / "out"
     with (
@@ -99,7 +99,7 @@ def test_workers_of_another_version_are_refused(logs, tmp_path):
 
 @pytest.mark.slow
 @pytest.mark.parametrize(
-    "ended_by", [pytest.param(signal.SIGKILL, marks=pytest.mark.long), signal.SIGSTOP]
+    "ended_by", [signal.SIGKILL, pytest.param(signal.SIGSTOP, marks=pytest.mark.long)]
 )
 def test_a_scheduler_that_goes_is_told_in_the_rows_and_the_next_call_goes_on(
     tmp_path, monkeypatch, ended_by

@@ -93,7 +93,7 @@ def test_two_workers_give_the_same_bytes(alone, logs, tmp_path):
     assert contents(tmp_path / "two") == contents(alone[0])
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_a_worker_killed_in_mid_run_loses_nothing(undiagnosed, logs, tmp_path):
     process = started(logs, "-w", tmp_path / "out", "--workers", 2, *WITHOUT)
     until(lambda: done(tmp_path / "out") and begun(tmp_path / "out"))
@@ -129,7 +129,7 @@ def test_ctrl_c_leaves_what_is_done_and_the_next_call_goes_on(undiagnosed, logs,
     assert contents(out) == contents(undiagnosed)
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_a_joint_that_takes_down_its_process_has_three_tries(tmp_path):
     deaths = {1: 0, 2: 2, 3: 3}
     for number in deaths:

@@ -101,7 +101,7 @@ def test_what_is_unchanged_is_not_done_again(task):
     assert (task.work / "model.json").stat().st_mtime_ns > stamp
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_another_setting_or_version_is_a_reason_to_do_it_again(task, monkeypatch):
     run_joint(task)
     other = replace(task, settings=replace(QUICK, fit=FitSettings(method="paper")))

@@ -109,7 +109,7 @@ def tasks_of(folder, out, *, endless):
         yield JointTask(logs=made, work=out / logs.subfolder, settings=QUICK, report=False)
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_a_joint_that_takes_for_ever_fails_alone(tmp_path):
     tasks = list(tasks_of(tmp_path / "logs", tmp_path / "out", endless={1, 2}))
     outcomes = {one.joint: one for one in run_locally(tasks, 2, timeout=20.0)}
@@ -138,7 +138,7 @@ def test_a_failed_joint_is_told_by_the_status_if_asked_for(tmp_path):
     assert (wrong.returncode, wrong.stdout) == (2, "")
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_a_damaged_output_is_made_again(tmp_path):
     (task, *_) = tasks_of(tmp_path / "logs", tmp_path / "out", endless=())
     (first,) = run_locally([task], 1)

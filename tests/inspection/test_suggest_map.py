@@ -61,7 +61,7 @@ def wide_log(seed, time_unit, position_unit, velocity_unit, kelvin, with_command
     return log, columns
 
 
-@settings(max_examples=25)
+@settings(max_examples=12)
 @given(
     seed=st.integers(0, 10_000),
     order=st.randoms(use_true_random=False),

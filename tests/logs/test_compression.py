@@ -97,7 +97,10 @@ def test_a_damaged_stream_is_refused_by_ingest(tmp_path, ending):
 
 
 @pytest.mark.slow
-@packed
+@pytest.mark.parametrize(
+    "ending",
+    [pytest.param(one, marks=pytest.mark.long if one == ".bz2" else ()) for one in PACKERS],
+)
 def test_memory_is_bounded_whatever_the_decompressed_size(tmp_path, ending):
     """32 MiB of equal lines are compressed to a few kilobytes."""
     lines = b"0;0;0;0;0;0;00;\n" * (1 << 21)

@@ -57,7 +57,7 @@ NAMES = {
 }
 
 
-@settings(max_examples=60, suppress_health_check=[HealthCheck.too_slow])
+@settings(max_examples=40, suppress_health_check=[HealthCheck.too_slow])
 @given(form=FORMS)
 def test_any_form_gives_the_same_samples(form, expected):
     if form["delimiter"] == "," and form["decimal"] == ",":

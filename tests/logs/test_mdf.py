@@ -61,7 +61,7 @@ def refused(path):
     [
         ("4.10", 2),
         pytest.param("4.20", 0, marks=pytest.mark.long),
-        pytest.param("3.30", 0, marks=pytest.mark.slow),
+        pytest.param("3.30", 0, marks=pytest.mark.long),
     ],
 )
 def test_a_measurement_gives_the_samples_of_the_csv(tmp_path, version, compression):
@@ -87,7 +87,7 @@ def test_a_slower_group_is_merged_by_zero_order_hold(tmp_path):
     assert_same_as_csv(path, tmp_path, held)
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_before_and_after_its_samples_a_group_has_no_values(tmp_path):
     """Positions from 1 s to 5 s only: rows outside have none and are counted."""
     part = (TIME >= 1.0) & (TIME <= 5.0)
@@ -128,7 +128,7 @@ def test_zero_order_hold(tmp_path_factory, slow, rows):
     np.testing.assert_array_equal(found, expected)
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_samples_marked_as_invalid_have_no_value(tmp_path):
     invalid = np.zeros(len(TIME), bool)
     invalid[[3, 250]] = True
@@ -138,7 +138,7 @@ def test_samples_marked_as_invalid_have_no_value(tmp_path):
     assert summary.rows_rejected == {"missing_value": 2}
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_scaled_integers(tmp_path):
     """Raw counts with a linear conversion, as data loggers write them."""
     counts = np.round((POSITION + 100) / 0.01).astype(np.uint16)
@@ -197,7 +197,7 @@ def test_without_the_package_the_message_says_how_to_get_it(tmp_path, monkeypatc
     assert "pip install 'frictioncli[mdf]'" in refused(path).text
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_a_block_that_names_itself_as_the_next_ends(tmp_path):
     """asammdf would follow it for ever; the process that uses it has a limit of time."""
     path = tmp_path / "log.mf4"

@@ -40,7 +40,7 @@ def rows_of(text):
     return [line for line in text.split("\n")[1:] if line.strip(" ")]
 
 
-@settings(max_examples=60)
+@settings(max_examples=40)
 @given(
     where=st.lists(st.tuples(st.integers(1, 250), DAMAGE), max_size=12),
     size=st.sampled_from([300, 1 << 22]),

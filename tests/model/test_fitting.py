@@ -166,7 +166,7 @@ def test_unknown_methods_are_refused():
         FitSettings(method="magic")
 
 
-@pytest.mark.parametrize("method", ["joint", pytest.param("paper", marks=pytest.mark.slow)])
+@pytest.mark.parametrize("method", ["joint", pytest.param("paper", marks=pytest.mark.long)])
 @pytest.mark.parametrize("seed", range(3))
 def test_friction_that_rises_with_temperature_leaves_no_nan_in_the_document(method, seed):
     """Gamma then lies on its bound 0, where delta has no meaning and no interval."""

@@ -67,7 +67,7 @@ def small_chunks(monkeypatch):
 
 # the fixture is set once for all examples, as it should be
 shared = settings(
-    max_examples=30,
+    max_examples=20,
     suppress_health_check=[HealthCheck.function_scoped_fixture],
 )
 

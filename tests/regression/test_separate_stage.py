@@ -159,7 +159,8 @@ def write_speeds(path, motion, torque):
     pd.DataFrame(columns).to_csv(path, index=False, float_format="%.7g")
 
 
-@pytest.mark.parametrize("offset", [pytest.param(0.0, marks=pytest.mark.long), 1.5])
+@pytest.mark.long
+@pytest.mark.parametrize("offset", [0.0, 1.5])
 def test_a_log_without_positions_is_regressed_by_its_velocity(offset, tmp_path):
     """Sines of a motor on a bench: no gravity, but inertia, friction and an offset."""
     generator = np.random.default_rng(31)
@@ -257,7 +258,7 @@ def test_a_log_without_angles_has_no_gravity(tmp_path):
     assert middle["estimate"] == pytest.approx(8.0 + 2.0 * np.sqrt(middle["speed"]), rel=0.02)
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_both_ways_agree_on_a_simulated_joint(tmp_path):
     """Logs of the simulator, with noise from pair to pair: the same friction by both ways."""
     settings = SynthesisSettings(joint_kind="plain", noise_kind="pair", runs=1, seed=7)

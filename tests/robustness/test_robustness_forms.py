@@ -14,7 +14,7 @@ from tests.studies.fuzz_process import GOOD
 from tests.studies.fuzz_recordings import WRITERS
 from tests.studies.soak import soaked
 
-INPUTS = {"work": 3}
+INPUTS = {"work": 1}
 """Inputs that are tried of each form, where it is not six: a stage takes longer than a reading."""
 
 

@@ -46,7 +46,10 @@ def test_a_run_killed_at_random_times(whole):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("stage", STAGES)
+@pytest.mark.parametrize(
+    "stage",
+    [pytest.param(one, marks=() if one == "ingest" else pytest.mark.long) for one in STAGES],
+)
 def test_a_stage_killed_before_each_of_its_changes_on_disk(worlds, stage):
     number = 0
     while True:

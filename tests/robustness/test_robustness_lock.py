@@ -109,7 +109,7 @@ def test_tables_that_belong_together_need_no_warning(work):
     assert "warning" not in fit(copied).text
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_a_table_made_from_a_replaced_one_is_told(work):
     pairs = digests(work)["pairs.parquet"]
     pair(work, PairingSettings(bin_width=2.0))

@@ -29,7 +29,7 @@ def lines_of(layout, content):
 
 
 @pytest.mark.parametrize("name", TEXTS)
-@settings(max_examples=8)
+@settings(max_examples=5)
 @given(damages=st.lists(DAMAGE, max_size=10), size=st.sampled_from([600, 1 << 22]))
 def test_every_line_is_kept_or_rejected(name, damages, size):
     layout = TEXTS[name]

@@ -29,9 +29,8 @@ def old(tmp_path):
     "words",
     [
         *(["pair"], ["separate"], ["fit"], ["simulate"], ["evaluate"], ["export", "--to", "json"]),
-        pytest.param(["diagnose"], marks=pytest.mark.long),
+        *(pytest.param([one], marks=pytest.mark.long) for one in ("diagnose", "plan")),
         pytest.param(["report"], marks=pytest.mark.slow),
-        pytest.param(["plan"], marks=pytest.mark.slow),
         *(["simulate", "--extended"], ["compare"]),
     ],
     ids=lambda words: " ".join(words),

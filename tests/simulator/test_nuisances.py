@@ -86,7 +86,13 @@ def test_every_nuisance_is_compared():
     assert set(ON_TORQUE) | ON_OTHERS == set(NUISANCES)
 
 
-@pytest.mark.parametrize("name", ON_TORQUE)
+@pytest.mark.parametrize(
+    "name",
+    [
+        pytest.param(name, marks=() if number % 4 == 0 else pytest.mark.long)
+        for number, name in enumerate(ON_TORQUE)
+    ],
+)
 def test_bins_show_the_change_of_torque_that_traces_show(traced, name):
     chosen = settings(f"{name}:{ON_TORQUE[name]}")
     of_traces = change(traced(chosen), traced(settings()))

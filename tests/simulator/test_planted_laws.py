@@ -40,6 +40,10 @@ NO_SHAPE = {
 """Entries without a shape; the planted laws are of another exponent or rounded all the same."""
 
 
+COSTLY = ("stribeck", "thermal_lag", "inertia", "rest_recovery", "dress_pack")
+"""Entries with several shapes or a history, whose best shape takes long to find."""
+
+
 def settings(*effects: str, seed: int = 1) -> SynthesisSettings:
     return SynthesisSettings(
         seed=seed, joint_kind="plain", noise_scale=0.0, runs=2, highest=50, effects=effects
@@ -111,7 +115,14 @@ def _refined(
     return min(misfit(start), float(refined.fun))
 
 
-@pytest.mark.parametrize("name", [one for one in EFFECTS if one in BY_NAME and one not in ONE_FORM])
+@pytest.mark.parametrize(
+    "name",
+    [
+        pytest.param(one, marks=pytest.mark.long if one in COSTLY else ())
+        for one in EFFECTS
+        if one in BY_NAME and one not in ONE_FORM
+    ],
+)
 def test_best_shape_of_the_catalogue_leaves_a_part(clean, name):
     table, problem = clean
     misfits = []
