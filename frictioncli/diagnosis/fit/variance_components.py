@@ -50,19 +50,32 @@ def fit_variances(
     *starts : Variances
         Where to start.
     """
-    fits = [_fitted_from(components, products, known, start) for start in starts]
+    fits: list[MixedFit] = []
+    for start in starts:
+        found = {one.variances.noise for one in fits}
+        fits.append(_fitted_from(components, products, known, start, found))
     return min(fits, key=lambda one: one.objective)
 
 
 def _fitted_from(
-    components: Components, products: AnyProducts, known: int, start: Variances
+    components: Components,
+    products: AnyProducts,
+    known: int,
+    start: Variances,
+    found: set[tuple[int, int]],
 ) -> MixedFit:
-    """Return the most probable fit that is reached from one start."""
+    """Return the most probable fit that is reached from one start.
+
+    It ends early where it comes to noise models of which a fit is found already: maxima differ by
+    what the noise takes.
+    """
     best = evaluate(components, products, known, start)
     if not _is_allowed(components, start):
         best = replace(best, objective=np.inf)
     for _ in range(_ROUNDS):
         variances = _with_likeliest_noise(components, products, best)
+        if variances.noise in found:
+            break
         chosen = products.chosen(variances.noise)
         before = np.inf
         for _ in range(_ITERATIONS):
