@@ -98,23 +98,24 @@ dist: $(VENV)/tested
 	rm -rf dist
 	$(BIN)/python -m build
 
+# without compiling packages, most modules of which are never imported: half of the time
 $(VENV)/installed: pyproject.toml frictioncli/logs/formats/_plain_numbers.c
 	$(PYTHON) -m venv $(VENV)
-	$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable .
+	$(BIN)/python -m pip install --quiet --no-compile --disable-pip-version-check --editable .
 	touch $@
 
 # one installation for both: each builds the C extensions anew
 $(VENV)/tested: pyproject.toml frictioncli/logs/formats/_plain_numbers.c
 	$(PYTHON) -m venv $(VENV)
-	$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable '.[dev]'
+	$(BIN)/python -m pip install --quiet --no-compile --disable-pip-version-check --editable '.[dev]'
 	touch $(VENV)/installed $@
 
 $(VENV)/documented: $(VENV)/installed
-	$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable '.[docs]'
+	$(BIN)/python -m pip install --quiet --no-compile --disable-pip-version-check --editable '.[docs]'
 	touch $@
 
 $(VENV)/studied: $(VENV)/tested
-	$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable '.[dev,study]'
+	$(BIN)/python -m pip install --quiet --no-compile --disable-pip-version-check --editable '.[dev,study]'
 	touch $@
 
 clean:
