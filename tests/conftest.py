@@ -16,11 +16,11 @@ settings.load_profile("fixed")
 
 
 LONGEST = (
-    *("test_synthetic_causes", "test_cluster", "test_diagnose", "test_changes", "test_fleet"),
-    *("test_processes", "test_mdf", "test_challenge", "test_empirical", "test_gravity"),
-    *("test_clean_joints", "test_plan", "test_docs", "test_robustness_disk", "test_step"),
-    *("test_robustness_forms", "test_page_in_chromium", "test_commands", "test_robustness_bombs"),
-    *("test_robustness_kill",),
+    *("test_docs", "test_cluster", "test_empirical", "test_diagnose", "test_challenge"),
+    *("test_processes", "test_fleet", "test_robustness_disk", "test_synthetic_causes", "test_mdf"),
+    *("test_robustness_patterns", "test_plan", "test_gravity", "test_joint", "test_commands"),
+    *("test_robustness_kill", "test_robustness_forms", "test_thermal_estimate", "test_page"),
+    *("test_suggest_map", "test_page_in_chromium", "test_other_joint"),
 )
 """Modules that take longest, the longest first."""
 
