@@ -20,6 +20,9 @@ _EXCEEDING = 1.5
 _OF_UNIFORM = float(np.sqrt(12.0))
 """Range of a uniform distribution in standard deviations: physics alone tells that much."""
 
+_RETURNED = 0.2
+"""Least share of what has decayed that must have come back to be seen to come back."""
+
 
 def beyond_bounds(fit: EffectFit, problem: Problem, errors: float = Z95) -> str:
     """Return which coefficient of an effect is physically impossible; empty if none is.
@@ -139,6 +142,24 @@ def undetermined(fit: EffectFit, problem: Problem) -> str:
         if _OF_UNIFORM * error > high - low
     )
     return next(unknown, "")
+
+
+def is_seen_once(fit: EffectFit, problem: Problem) -> bool:
+    """Return whether what comes back after every rest has only decayed, once.
+
+    Parameters
+    ----------
+    fit : EffectFit
+        The effect, fitted beside the base.
+    problem : Problem
+        The joint's rows.
+    """
+    if not fit.effect.recurs or len(problem.runs) > 1:
+        return False
+    of_pairs = problem.layout.means(problem.basis(fit.effect, fit.shape).friction[:, :1])[:, 0]
+    in_time = of_pairs[np.argsort(problem.layout.time, kind="stable")]
+    returned = np.maximum(np.diff(in_time), 0.0).sum()
+    return bool(returned < _RETURNED * np.ptp(in_time))
 
 
 def times_its_range(fit: EffectFit, problem: Problem) -> float:
