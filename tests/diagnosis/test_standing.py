@@ -8,6 +8,7 @@ import pytest
 from frictioncli.diagnosis.fit.hypotheses import EffectFit, HypothesisTest, physical_bounds
 from frictioncli.diagnosis.noise.significance import NullDistribution
 from frictioncli.diagnosis.search.cause import Cause
+from frictioncli.diagnosis.search.confounded import confounded
 from frictioncli.diagnosis.search.standing import with_standing, without_cancelling
 from frictioncli.effects import BY_NAME
 from tests.diagnosis.dense_noise import problem
@@ -205,18 +206,44 @@ def warming(joint, share):
     return replace(joint, table=table)
 
 
-@pytest.mark.parametrize("name", GRADUAL)
-def test_temperature_and_time_that_go_together_give_no_name(joint, name):
+def beyond_doubt(joint, name):
+    """Return a cause of this name within its bounds, with small errors."""
     effect = BY_NAME[name]
     lower, upper = physical_bounds(effect, joint)
     middle = tuple(0.3 * low + 0.7 * high for low, high in zip(lower, upper, strict=True))
     errors = tuple(0.01 * abs(one) for one in middle)
-    shape = {axis.name: axis.lower for axis in effect.shape}
-    one = cause(effect, middle, errors, shape=shape)
+    return cause(effect, middle, errors, shape={axis.name: axis.lower for axis in effect.shape})
+
+
+@pytest.mark.parametrize("name", GRADUAL)
+def test_temperature_and_time_that_go_together_give_no_name(joint, name):
+    one = beyond_doubt(joint, name)
     ((apart, _),) = standing(warming(joint, 0.5), one)
     ((together, reason),) = standing(warming(joint, 1.0), one)
     assert (apart, together) == ("named", "undetermined")
     assert "temperature and time change together" in reason
+
+
+@pytest.mark.parametrize("name", ["drift", "run_in", "rest_recovery"])
+def test_what_changes_gradually_has_no_name_in_a_log_without_temperature(joint, name):
+    """The joint may have warmed up. One that is logged, of motor or housing, tells."""
+    nowhere = np.full(len(joint.table.time), np.nan)
+    without = replace(joint.table, motor_temperature=nowhere, housing_temperature=nowhere)
+    one = beyond_doubt(joint, name)
+    ((found, reason),) = standing(replace(joint, table=without), one)
+    assert (found, "no temperature" in reason) == ("undetermined", True)
+    at_housing = replace(without, housing_temperature=np.zeros_like(nowhere))
+    for table in (joint.table, at_housing):
+        ((found, reason),) = standing(replace(joint, table=table), one)
+        assert "no temperature" not in reason
+
+
+def test_a_step_needs_no_temperature(joint):
+    """A joint warms up gradually."""
+    nowhere = np.full(len(joint.table.time), np.nan)
+    without = replace(joint.table, motor_temperature=nowhere, housing_temperature=nowhere)
+    assert not confounded(BY_NAME["step_change"], replace(joint, table=without))
+    assert not confounded(BY_NAME["linear_viscous"], replace(joint, table=without))
 
 
 @pytest.mark.parametrize("name", ["load_velocity", "torque_delay", "linear_viscous"])

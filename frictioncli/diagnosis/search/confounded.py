@@ -40,6 +40,11 @@ _GOES_WITH_TIME = (
     "temperature and time change together in these data, and either could be the cause"
 )
 
+_NO_TEMPERATURE = (
+    "the log has no temperature, and a joint that warms up or cools down would look the same; log"
+    " that of the motor or the housing"
+)
+
 _GOES_WITH_RUN = (
     "every run has its own speed, and any other difference between the runs could be the cause"
 )
@@ -77,8 +82,11 @@ def confounded(effect: Effect, problem: Problem) -> str:
     problem : Problem
         The joint's rows.
     """
-    if _goes_with_time(effect, problem):
-        return _GOES_WITH_TIME
+    if _is_gradual(effect):
+        if not _has_temperature(problem):
+            return _NO_TEMPERATURE
+        if _temperature_goes_with_time(problem):
+            return _GOES_WITH_TIME
     if effect is BACKLASH and float(np.ptp(np.log(problem.layout.speed))) < np.log(_ONE_SPEED):
         return _GOES_WITH_DELAY
     return _GOES_WITH_RUN if _goes_with_run(effect, problem) else ""
@@ -205,17 +213,30 @@ def turns_elsewhere(problem: Problem) -> bool:
     return max(found) > _TURNS_APART * float(np.ptp(position))
 
 
-def _goes_with_time(effect: Effect, problem: Problem) -> bool:
-    """Return whether an effect is of temperature or of time, which go together in these data.
+def _is_gradual(effect: Effect) -> bool:
+    """Return whether an effect changes gradually with temperature or with time.
+
+    A change at a moment does not, nor does a lag, which shows at each speed by how friction falls
+    with temperature there.
+    """
+    if effect.measurement or effect.moments is not None or "temperature_slope" in effect.needs:
+        return False
+    return not _GRADUAL.isdisjoint(effect.needs)
+
+
+def _has_temperature(problem: Problem) -> bool:
+    table = problem.table
+    return any(
+        bool(np.isfinite(one).any()) for one in (table.motor_temperature, table.housing_temperature)
+    )
+
+
+def _temperature_goes_with_time(problem: Problem) -> bool:
+    """Return whether temperature and time go together in these data.
 
     Where the joint mostly warms up, what goes with temperature goes with time as well: a drift
-    looks like friction that depends on temperature. A change at a moment does not, nor does a lag,
-    which shows at each speed by how friction falls with temperature there.
+    looks like friction that depends on temperature.
     """
-    if effect.measurement or effect.moments is not None or _GRADUAL.isdisjoint(effect.needs):
-        return False
-    if "temperature_slope" in effect.needs:
-        return False
     table = problem.table
     known = np.column_stack([table.measured_temperature, table.clock])
     means = pd.DataFrame(problem.layout.means(known))
