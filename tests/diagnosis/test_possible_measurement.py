@@ -144,11 +144,25 @@ def test_a_play_is_measured_where_the_data_tell_it():
     assert beside["backlash"] == pytest.approx(0.8, abs=0.3)
 
 
-def test_a_part_of_the_load_is_no_more_than_the_greatest_load():
+def test_a_part_of_the_constant_is_no_more_than_that_and_a_tenth_of_the_load():
+    """An offset of the sensor and a counterbalance may cancel each other, but not by much."""
     problem = problem_of(coarse())
+    constant, tenth = problem.gravity[2], np.abs(problem.table.load).max() / 10
     lower, upper = physical_bounds(BY_NAME["load_offset"], problem)
-    assert upper[0] == -lower[0] == pytest.approx(np.abs(problem.table.load).max())
-    assert upper[0] < 1.1 * WEIGHT
+    assert upper[0] == pytest.approx(max(constant, 0) + tenth)
+    assert lower[0] == pytest.approx(min(constant, 0) - tenth)
+    assert upper[0] < 0.11 * WEIGHT + abs(constant)
+
+
+def test_friction_that_grows_with_a_load_of_one_sign_is_no_offset():
+    """Over -60 to 60 deg it looks like one of -40 N·m, of a constant of 0."""
+    rows = coarse(2, noise=0.1, weight=150.0, speeds=(5.0, 15.0, 40.0, 100.0))
+    rows = rows[np.abs(rows["position"]) < 65.0]
+    load = rows["load_torque"]
+    growing = rows.assign(friction_torque=rows["friction_torque"] + 80 * TRUTH["alpha"] * load)
+    beside, refused = stands(problem_of(growing))
+    assert "load_offset" not in beside
+    assert "possible is -14.8 to 14.8" in refused["load_offset"]
 
 
 def test_every_bound_of_the_measurement_is_of_a_log_that_there_is():

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from frictioncli.arrays import Array
+from frictioncli.diagnosis.data.gravity import NAMES
 from frictioncli.diagnosis.data.problem import Problem
 from frictioncli.diagnosis.fit.columns import ModelColumns, main_channel, reduced
 from frictioncli.diagnosis.fit.mixed_model import Variances
@@ -18,6 +19,9 @@ from frictioncli.quantities import TORQUE
 _USUAL_FRICTION = 20.0
 """Mean friction torque up to which the catalogue's bounds in units of torque hold; the bounds of a
 joint with more friction grow in proportion. [N·m]"""
+
+_CANCELLED = 0.1
+"""Share of the greatest load that an offset and a constant that the gear carries may cancel."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -86,7 +90,9 @@ def hypothesis_of(
 def physical_bounds(effect: Effect, problem: Problem) -> tuple[Array, Array]:
     """Return the bounds of an effect's coefficients on a joint, shape (coefficients,) each.
 
-    A part of the load, as that which does not load the gear, is no more than the greatest load.
+    A constant that does not load the gear is a part of the constant of gravity, or beyond it by a
+    tenth of the greatest load: the offset of a sensor and a constant that is carried may cancel
+    each other. Without that bound it would stand for any friction that grows with the load.
 
     Parameters
     ----------
@@ -100,8 +106,18 @@ def physical_bounds(effect: Effect, problem: Problem) -> tuple[Array, Array]:
     lower = np.array([parameter.lower for parameter in effect.coefficients])
     upper = np.array([parameter.upper for parameter in effect.coefficients])
     of_load = effect.measurement & np.array([one.of_load for one in effect.coefficients])
-    whole = np.where(of_load, np.max(np.abs(problem.table.load), initial=0.0), np.inf)
-    return np.maximum(lower * factors, -whole), np.minimum(upper * factors, whole)
+    low, high = _of_constant(problem)
+    return (
+        np.maximum(lower * factors, np.where(of_load, low, -np.inf)),
+        np.minimum(upper * factors, np.where(of_load, high, np.inf)),
+    )
+
+
+def _of_constant(problem: Problem) -> tuple[float, float]:
+    """Return how much of the constant of gravity may not load the gear, at least and at most."""
+    constant = float(problem.gravity[NAMES.index("offset")])
+    beyond = _CANCELLED * float(np.max(np.abs(problem.table.load), initial=0.0))
+    return min(constant, 0.0) - beyond, max(constant, 0.0) + beyond
 
 
 def informative_shapes(effect: Effect, problem: Problem) -> list[dict[str, float]]:

@@ -9,6 +9,7 @@ from frictioncli.diagnosis.data.problem import Problem
 from frictioncli.diagnosis.fit.hypotheses import EffectFit, physical_bounds
 from frictioncli.diagnosis.fit.left_by_base import Z95
 from frictioncli.effects.parameter import Parameter
+from frictioncli.quantities import TORQUE
 from frictioncli.wording import in_words, number_text
 
 _BEYOND = 0.25
@@ -80,7 +81,12 @@ def with_unit(parameter: Parameter, value: float) -> str:
     value : float
         Its value, in the parameter's unit.
     """
-    return number_text(value) + (f" {parameter.unit}" if parameter.unit != "1" else "")
+    return number_text(value) + _unit(parameter)
+
+
+def _unit(parameter: Parameter) -> str:
+    """Return the unit behind a number; none of torque, which is that of the log."""
+    return "" if parameter.unit == "1" or TORQUE in parameter.unit else f" {parameter.unit}"
 
 
 def _larger_than_whole(fit: EffectFit, errors: float) -> str:
@@ -136,8 +142,9 @@ def undetermined(fit: EffectFit, problem: Problem) -> str:
         The joint's rows.
     """
     unknown = (
-        f"these data determine its {in_words(parameter.name)} only to ±{Z95 * error:.2g}"
-        f" {parameter.unit}; possible is {low:.3g} to {high:.3g} {parameter.unit}"
+        f"these data determine its {in_words(parameter.name)} only to"
+        f" ±{Z95 * error:.2g}{_unit(parameter)}; possible is {low:.3g} to"
+        f" {high:.3g}{_unit(parameter)}"
         for parameter, _, error, low, high in _coefficients(fit, problem)
         if _OF_UNIFORM * error > high - low
     )
