@@ -51,7 +51,7 @@ POSE = Quantity(
     "pose", "", "", "number of the pose of the other joints; none while one of them moves"
 )
 LOAD = Quantity("load", "L", "N·m", "load torque from a channel of its own")
-PAYLOAD = Quantity("payload", "m", "kg", "payload given by the manifest or the program that ran")
+PAYLOAD = Quantity("payload", "m", "kg", "payload given by manifest, log or the program that ran")
 FRICTION_TORQUE = Quantity("friction_torque", "τ", TORQUE, "friction torque, opposes the motion")
 LOAD_TORQUE = Quantity("load_torque", "L", TORQUE, "load torque: gravity and external load")
 TEMPERATURE_PARAMETER = Quantity(

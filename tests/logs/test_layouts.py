@@ -176,7 +176,7 @@ def test_a_velocity_column_without_values_is_not_used(tmp_path, value):
     columns["AxisVel_Act2[°/s]"] = np.full(len(TIME), value)
     summary = ingest([write(tmp_path / "log.csv", columns)], tmp_path / "work")
     check(samples(tmp_path / "work"), velocity_error=5.0)
-    assert any("empty or zero throughout" in note for note in summary.notes)
+    assert any("empty or zero in the rows looked at" in note for note in summary.notes)
 
 
 def test_joints_that_are_left_out_are_named(tmp_path):
@@ -196,3 +196,23 @@ def test_the_work_folder_among_the_logs_is_not_read(tmp_path):
     for _ in range(2):
         summary = ingest([tmp_path], tmp_path / "friction-run")
     assert summary.files_rejected == ()
+
+
+def told(tmp_path, payload, name="payload [kg]"):
+    """Return the payloads of the samples of a log with such a column."""
+    columns = {"time": TIME, "q_1 [deg]": POSITION, "qd_1 [deg/s]": VELOCITY, "tau_1 [Nm]": TORQUE}
+    log = write(tmp_path / "log.csv", columns | {name: payload}, delimiter=",")
+    summary = ingest([log], tmp_path / "work")
+    return samples(tmp_path / "work")["payload"].to_numpy(float), " ".join(summary.notes)
+
+
+def test_what_a_gripper_carries_is_read(tmp_path):
+    half = np.where(TIME < 3.0, 0.0, 1500.0)
+    found, _ = told(tmp_path, half, "payload (g)")
+    np.testing.assert_allclose(found, half / 1000)
+
+
+def test_a_measured_payload_has_too_many_values_to_tell_moves_apart(tmp_path):
+    found, notes = told(tmp_path, 2.0 + 0.01 * np.sin(TIME))
+    assert np.isnan(found).all()
+    assert "holds no payloads" in notes

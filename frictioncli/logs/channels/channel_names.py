@@ -14,7 +14,7 @@ OTHER_SPEED = "other_speed"
 OTHER_JOINTS = "other_joints"
 """Not a channel of a log: which other joints move, from their positions."""
 PAYLOAD = "payload"
-"""Not a channel of a log: what the program that ran says is carried."""
+"""What is carried: a channel of a log, or what the program that ran says."""
 POSE = "pose"
 """Not a channel of a log: where the other joints stand, as a number."""
 
@@ -24,7 +24,16 @@ INTEGRATED = "integral of velocity"
 TOOL = "tool"
 MAX_JOINT = 32767
 """Largest number of a joint, which the tables keep in 16 bits."""
-CHANNELS = (TIME, POSITION, VELOCITY, TORQUE, MOTOR_TEMPERATURE, HOUSING_TEMPERATURE, LOAD)
+CHANNELS = (
+    TIME,
+    POSITION,
+    VELOCITY,
+    TORQUE,
+    MOTOR_TEMPERATURE,
+    HOUSING_TEMPERATURE,
+    LOAD,
+    PAYLOAD,
+)
 
 JOINT_SIDE = "joint"
 MOTOR_SIDE = "motor"
@@ -116,6 +125,7 @@ _ALIASES: tuple[tuple[Meaning, str], ...] = (
         " oberflaechentemperatur housingtempact",
     ),
     (Meaning(LOAD), "load loadtorque lastmoment loadtorqueact"),
+    (Meaning(PAYLOAD, unit="kg"), "payload payloadmass payloadact nutzlast traglast"),
     (Meaning(TOOL, rank=0), "xact toolx tcpx robotcartesiancoordtoolx x"),
     (Meaning(TOOL, rank=1), "yact tooly tcpy robotcartesiancoordtooly y"),
     (Meaning(TOOL, rank=2), "zact toolz tcpz robotcartesiancoordtoolz z"),

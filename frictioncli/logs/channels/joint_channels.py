@@ -8,6 +8,7 @@ from frictioncli.logs.channels.channel_names import (
     LOAD,
     MOTOR_SIDE,
     MOTOR_TEMPERATURE,
+    PAYLOAD,
     POSITION,
     TIME,
     TORQUE,
@@ -32,7 +33,7 @@ class JointChannels:
         Measured on either side of the gear.
     other_position : LogChannel or None
         Position on the other side of the gear; the two positions determine the gear ratio.
-    motor_temperature, housing_temperature, load : LogChannel or None
+    motor_temperature, housing_temperature, load, payload : LogChannel or None
         Further columns.
     other_torques : tuple of LogChannel
         Further torques and motor currents.
@@ -49,6 +50,7 @@ class JointChannels:
     motor_temperature: LogChannel | None = None
     housing_temperature: LogChannel | None = None
     load: LogChannel | None = None
+    payload: LogChannel | None = None
     other_torques: tuple[LogChannel, ...] = ()
     notes: tuple[str, ...] = ()
 
@@ -125,7 +127,10 @@ def _joint_channels(
     of_joint: Sequence[LogChannel],
     usable: Sequence[LogChannel],
 ) -> JointChannels:
-    """Return the columns of a joint; temperatures may be ``usable`` ones without a joint number."""
+    """Return the columns of a joint; ``usable`` ones without a joint number may be of all joints.
+
+    They are temperatures, and the payload.
+    """
     torques = _by_preference(of_joint, TORQUE)
     position = min(positions, key=lambda c: (c.is_merged, c.meaning.side == MOTOR_SIDE))
     other_position = _first([c for c in positions if c.meaning.side != position.meaning.side])
@@ -145,6 +150,7 @@ def _joint_channels(
         motor_temperature=_first(_by_preference(usable, MOTOR_TEMPERATURE)),
         housing_temperature=_first(_by_preference(usable, HOUSING_TEMPERATURE)),
         load=_first(_by_preference(of_joint, LOAD)),
+        payload=_first(_by_preference(usable, PAYLOAD)),
         other_torques=tuple(torques[1:]),
         notes=tuple(notes),
     )

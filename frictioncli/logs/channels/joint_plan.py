@@ -10,6 +10,7 @@ from frictioncli.logs.channels import position_units, units
 from frictioncli.logs.channels.joint_channels import JointChannels
 from frictioncli.logs.channels.motion_units import JointMotion, Remarks, joint_motion
 from frictioncli.logs.channels.recognition import LogChannel
+from frictioncli.logs.channels.state_channels import state_conversions
 from frictioncli.logs.channels.survey import LARGEST, Survey
 from frictioncli.logs.channels.torque_constant import TorqueConstant
 from frictioncli.logs.channels.transmission import Transmission, find_transmission
@@ -150,12 +151,7 @@ def plan_joint(
             f" read in {torque_unit}"
         )
     conversions[names.TORQUE] = _scaled(torque, factor)
-    _add_temperatures(channels, survey, forced, conversions, remarks)
-    if channels.load is not None:
-        written = units.canonical(channels.load.unit, names.LOAD)
-        conversions[names.LOAD] = units.conversion_from(
-            forced.get(names.LOAD) or written or "N·m", names.LOAD
-        )
+    conversions |= state_conversions(channels, survey, forced, remarks)
     at_joint = channels.position.meaning.side != names.MOTOR_SIDE
     limited = (
         found.position == "rad"
@@ -178,11 +174,11 @@ def plan_joint(
 def _without_zero_velocity(
     channels: JointChannels, survey: Survey, remarks: Remarks
 ) -> JointChannels:
-    """Return the channels without a velocity that is empty or zero throughout."""
+    """Return the channels without a velocity that is empty or zero in the survey."""
     velocity = channels.velocity
     if velocity is None or not survey.n_rows or np.any(survey.pooled(velocity)):
         return channels
-    remarks.notes.append(f"{velocity.name} is empty or zero throughout: not used")
+    remarks.notes.append(f"{velocity.name} is empty or zero in the rows looked at first: not used")
     return replace(channels, velocity=None)
 
 
@@ -277,32 +273,3 @@ def _torque_side(
         f"{name} is converted to the joint side by the gear ratio {gear.ratio:.4g}"
     )
     return names.JOINT_SIDE, gear.ratio
-
-
-def _add_temperatures(
-    channels: JointChannels,
-    survey: Survey,
-    forced: Mapping[str, str],
-    conversions: dict[str, UnitConversion],
-    remarks: Remarks,
-) -> None:
-    for quantity, channel in (
-        (names.MOTOR_TEMPERATURE, channels.motor_temperature),
-        (names.HOUSING_TEMPERATURE, channels.housing_temperature),
-    ):
-        if channel is None:
-            continue
-        conversion = units.infer_temperature_unit(
-            survey.pooled(channel),
-            units.canonical(channel.unit, quantity),
-            forced.get(quantity),
-            quantity,
-        )
-        if conversion is None:
-            remarks.notes.append(
-                f"{channel.name} has no temperature (empty, zero, or outside -30..150 °C): left out"
-            )
-            continue
-        conversions[quantity] = conversion
-        if conversion.note:
-            remarks.notes.append(f"{channel.name}: {conversion.note}")

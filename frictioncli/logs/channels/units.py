@@ -42,6 +42,7 @@ FACTORS: Mapping[str, Mapping[str, float]] = MappingProxyType(
         "motor_temperature": _TEMPERATURE_FACTORS,
         "housing_temperature": _TEMPERATURE_FACTORS,
         "load": _TORQUE_FACTORS,
+        "payload": {"kg": 1.0, "g": 1e-3, "lb": 0.45359237},
     }
 )
 """Factor from each unit to the internal unit, by quantity."""
@@ -78,6 +79,9 @@ _SPELLINGS = {
     "lbf·ft": "lbf·ft lbf*ft lbfft lb-ft ft-lb ft·lbf",
     "lbf·in": "lbf·in lbf*in lbfin lb-in in-lb in·lbf",
     "ozf·in": "ozf·in ozf*in ozfin oz-in in-oz",
+    "kg": "kg kilogram kilograms kilogramm",
+    "g": "g gram grams gramm",
+    "lb": "lb lbs pound pounds",
     "‰": "‰ permille",
     "A": "a amp ampere amps arms",
     "mA": "ma milliampere",
