@@ -177,7 +177,8 @@ def interval_text(low: float, high: float) -> str:
 def quantity_text(value: float, interval: tuple[float, float] | None, unit: str) -> str:
     """Return an estimate with its unit and, in brackets, its interval.
 
-    Times below half a second are stated in milliseconds.
+    Times below half a second are stated in milliseconds. An interval without width, of an estimate
+    on a bound, is left out: it would say that the value is known exactly.
 
     Parameters
     ----------
@@ -194,6 +195,8 @@ def quantity_text(value: float, interval: tuple[float, float] | None, unit: str)
     '1.9 N·m (1.5 to 2.3)'
     >>> quantity_text(0.0121, (0.0112, 0.0131), "s"), quantity_text(0.254, None, "1")
     ('12 ms (11 to 13)', '0.25')
+    >>> quantity_text(0.162, (0.162, 0.162), "N·m")
+    '0.16 N·m'
     """
     known = (value, *(interval or ()))
     if unit == "s" and max(abs(one) for one in known) < _SHORT:
@@ -203,7 +206,8 @@ def quantity_text(value: float, interval: tuple[float, float] | None, unit: str)
             "ms",
         )
     noun = "" if unit == "1" else f" {unit}"
-    if interval is None or not all(math.isfinite(one) for one in known):
+    finite = all(math.isfinite(one) for one in known)
+    if interval is None or not finite or interval[0] == interval[1]:
         return f"{number_text(value, 2)}{noun}"
     estimate, low, high = _alike(known, interval)
     return f"{estimate}{noun} ({low} to {high})"

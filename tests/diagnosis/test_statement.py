@@ -25,5 +25,12 @@ def test_the_torque_of_an_effect_may_be_certain_where_its_coefficients_are_not(n
     assert "90" not in without.removeprefix(effect.summary)
 
 
+def test_a_size_that_may_be_a_hundred_times_as_large_is_not_stated():
+    """An interval of a logarithm may reach from next to nothing to more than any joint has."""
+    effect = BY_NAME["run_in"]
+    assert "(1 to 50)" in said(effect, (1.0, 50.0))
+    assert said(effect, (1e-3, 1e17)).endswith("but not its parameters.")
+
+
 def test_an_order_is_no_coefficient():
     assert "7" in said(BY_NAME["position_ripple"], (-2.0, 16.0))

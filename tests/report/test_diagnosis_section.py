@@ -82,7 +82,10 @@ def test_section_says_what_was_found(diagnosed):
     assert (seen.effects, seen.kind, seen.p_value) == ("inertia", "load", "below 1e−300")
     assert seen.size == "0.05 N·m (0.03 to 0.07) RMS in the friction"
     assert seen.standing == ("too small to name: the base leaves 0.05 N·m, less than 0.10 N·m")
-    assert section.margin == "Effects below 0.10 N·m are not named (--margin)."
+    assert section.margin == (
+        "Effects below 0.10 N·m are not named (the least margin; 'frictioncli diagnose --margin'"
+        " sets another)."
+    )
     assert "run day-2, which was not used for fitting" in section.gain
     assert "50 % less (95 % interval: 40 % less to 60 % less)" in section.gain
     assert section.detectable.rows[0][2] == "0.40"

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 
 import msgspec
 
+from frictioncli.diagnosis.documents.torque_units import TorqueUnits
 from frictioncli.diagnosis.empirical.describe import described, formula_with_numbers
 from frictioncli.diagnosis.empirical.estimate import Empirical
 from frictioncli.diagnosis.empirical.located import Located
@@ -147,15 +148,15 @@ def term_record(found: Empirical, torque_unit: str) -> EmpiricalRecord:
     )
 
 
-def gain_record(found: Empirical, torque_unit: str) -> EmpiricalGainRecord:
+def gain_record(found: Empirical, units: TorqueUnits) -> EmpiricalGainRecord:
     """Return what an empirical term gains as ``diagnosis.json`` has it.
 
     Parameters
     ----------
     found : Empirical
         The term.
-    torque_unit : str
-        Unit of torque.
+    units : TorqueUnits
+        Units of torque and of load.
     """
     gain = found.gain
     return EmpiricalGainRecord(
@@ -168,11 +169,11 @@ def gain_record(found: Empirical, torque_unit: str) -> EmpiricalGainRecord:
         ci95=gain.interval,
         noise_floor=gain.floor,
         ranges=found.term.ranges,
-        parts=tuple(_located_record(one, torque_unit) for one in found.parts),
+        parts=tuple(_located_record(one, units) for one in found.parts),
     )
 
 
-def _located_record(part: Located, torque_unit: str) -> LocatedRecord:
+def _located_record(part: Located, units: TorqueUnits) -> LocatedRecord:
     form = part.form
     return LocatedRecord(
         axes=part.axes,
@@ -180,6 +181,6 @@ def _located_record(part: Located, torque_unit: str) -> LocatedRecord:
         size=part.size,
         ci95=part.interval,
         share=part.share,
-        description=None if form is None else described(form, torque_unit),
+        description=None if form is None else described(form, *units),
         formula=None if form is None else formula_with_numbers(form),
     )

@@ -22,7 +22,6 @@ from frictioncli.diagnosis.documents.extended_document import (
 )
 from frictioncli.diagnosis.documents.parameters import (
     Z95,
-    TorqueUnits,
     extension_coefficients,
     extension_parameters,
     fitted_parameters,
@@ -36,6 +35,7 @@ from frictioncli.diagnosis.documents.structure_record import (
     unnamed_record,
 )
 from frictioncli.diagnosis.documents.thermal_record import record_of_lag
+from frictioncli.diagnosis.documents.torque_units import TorqueUnits
 from frictioncli.diagnosis.fit.extension import Extension
 from frictioncli.diagnosis.ramps.evidence import RampEstimate
 from frictioncli.diagnosis.search.cause import Cause
@@ -46,9 +46,6 @@ from frictioncli.effects import torque_delay, torque_filter
 from frictioncli.effects.history_text import history_text
 from frictioncli.model.document import PARAMETERS, FrictionModel
 from frictioncli.model.friction import FrictionParameters
-
-_LOAD_UNIT = "N·m"
-"""Unit of a load channel."""
 
 
 def diagnosis_document(
@@ -92,7 +89,7 @@ def diagnosis_document(
         ),
         empirical=None
         if diagnosis.empirical is None
-        else gain_record(diagnosis.empirical, diagnosis.torque_unit),
+        else gain_record(diagnosis.empirical, TorqueUnits.of(diagnosis)),
         remainder=remainder_record(diagnosis),
         detectable=detectable,
         undetectable=undetectable_reasons(diagnosis, settings, detectable),
@@ -100,7 +97,7 @@ def diagnosis_document(
         ramps=None if ramps is None else ramps_record(ramps, diagnosis.torque_unit),
         settling=diagnosis.settling,
         torque_unit=diagnosis.torque_unit,
-        load_unit=_LOAD_UNIT if diagnosis.base.has_load_channel else None,
+        load_unit=TorqueUnits.of(diagnosis).load if diagnosis.base.has_load_channel else None,
         runs=diagnosis.runs,
         held_out=diagnosis.held_out,
         settings=settings,
@@ -138,7 +135,7 @@ def extended_document(diagnosis: Diagnosis, model: FrictionModel) -> ExtendedDoc
             equation=one.effect.equation,
             channel=one.effect.channel,
             shape=one.shape,
-            coefficients=extension_coefficients(extension, number, _units(diagnosis)),
+            coefficients=extension_coefficients(extension, number, TorqueUnits.of(diagnosis)),
         )
         for number, one in enumerate(extension.effects)
     ]
@@ -170,7 +167,7 @@ def _cause_record(diagnosis: Diagnosis, cause: Cause, number: int) -> CauseRecor
     """Return a named cause; its parameters are those of the extended model."""
     effect, extension = cause.fit.effect, _stated(diagnosis)
     assert extension is not None  # there is one wherever there is a cause
-    parameters = extension_parameters(extension, effect.name, _units(diagnosis))
+    parameters = extension_parameters(extension, effect.name, TorqueUnits.of(diagnosis))
     record = _record(diagnosis, cause, parameters, f"diagnosis-{number}.svg")
     if diagnosis.thermal is None or effect.name != LAG:
         return record
@@ -179,13 +176,8 @@ def _cause_record(diagnosis: Diagnosis, cause: Cause, number: int) -> CauseRecor
 
 def _visible_record(diagnosis: Diagnosis, cause: Cause) -> CauseRecord:
     """Return a cause that is not named; its parameters are those of its own fit."""
-    parameters = fitted_parameters(cause.fit, _units(diagnosis))
+    parameters = fitted_parameters(cause.fit, TorqueUnits.of(diagnosis))
     return _record(diagnosis, cause, parameters, None)
-
-
-def _units(diagnosis: Diagnosis) -> TorqueUnits:
-    unit = diagnosis.torque_unit
-    return TorqueUnits(unit, _LOAD_UNIT if diagnosis.base.has_load_channel else unit)
 
 
 def _record(

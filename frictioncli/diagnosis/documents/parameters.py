@@ -2,36 +2,25 @@
 
 from collections.abc import Mapping
 from string import Formatter
-from typing import NamedTuple
 
 import numpy as np
 
 from frictioncli.arrays import Array
 from frictioncli.diagnosis.documents.extended_document import ParameterRecord
+from frictioncli.diagnosis.documents.torque_units import TorqueUnits
 from frictioncli.diagnosis.fit.extension import Extension
 from frictioncli.diagnosis.fit.hypotheses import EffectFit
 from frictioncli.effects.base import Effect
-from frictioncli.effects.parameter import Parameter
-from frictioncli.quantities import TORQUE
 from frictioncli.wording import quantity_text
 
 Z95 = 1.96
 """Half-width of a 95 % interval in standard errors."""
 
 
+_VAGUE = 100.0
+"""Ratio of the ends of an interval from which its parameter counts as not determined."""
+
 _NO_SIZE = "These data determine the torque that it adds, but not its parameters."
-
-
-class TorqueUnits(NamedTuple):
-    """Units of torque: that of the log, and that of the load, which may have its own channel."""
-
-    torque: str
-    load: str
-
-    def of(self, effect: Effect, parameter: Parameter) -> str:
-        """Return the unit of a coefficient."""
-        in_load = parameter.of_load or effect.channel == "load"
-        return parameter.unit.replace(TORQUE, self.load if in_load else self.torque)
 
 
 def fitted_parameters(fit: EffectFit, units: TorqueUnits) -> dict[str, ParameterRecord]:
@@ -92,7 +81,7 @@ def statement(
     """Return what is said of an effect that was found, with the values of its parameters.
 
     The torque of an effect may be certain where its coefficients are not, as they compensate its
-    shape: no number is stated that may have either sign.
+    shape: no number is stated that may have either sign, or be a hundred times as large.
 
     Parameters
     ----------
@@ -109,9 +98,14 @@ def statement(
     text = words or effect.statement or effect.summary
     fields = {name for _, name, _, _ in Formatter().parse(text)}
     stated = [parameters[one.name] for one in effect.coefficients if one.name in fields]
-    if stated and all(one.ci95 and one.ci95[0] < 0 < one.ci95[1] for one in stated):
+    if stated and all(one.ci95 and _is_vague(*one.ci95) for one in stated):
         return f"{effect.summary} {_NO_SIZE}"
     return text.format_map(values)
+
+
+def _is_vague(low: float, high: float) -> bool:
+    """Return whether an interval tells neither a sign nor an order of magnitude."""
+    return low < 0 < high or max(abs(low), abs(high)) > _VAGUE * min(abs(low), abs(high))
 
 
 def _coefficients(
@@ -121,7 +115,7 @@ def _coefficients(
         parameter.name: ParameterRecord(
             estimate=float(value),
             ci95=(float(low), float(high)),
-            unit=units.of(fit.effect, parameter),
+            unit=units.of_coefficient(fit.effect, parameter),
         )
         for parameter, value, low, high in zip(
             fit.effect.coefficients, fit.coefficients, *interval, strict=True

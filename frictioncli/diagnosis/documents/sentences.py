@@ -3,6 +3,7 @@
 from frictioncli.diagnosis.documents.document import OTHER_JOINT, CauseRecord, DiagnosisDocument
 from frictioncli.diagnosis.documents.empirical_record import EmpiricalGainRecord
 from frictioncli.diagnosis.search.effect_size import TAKEN_BY_BASE
+from frictioncli.diagnosis.search.margin import LEAST_MARGIN
 from frictioncli.effects import BY_NAME
 from frictioncli.wording import in_words, list_text, number_text, quantity_text
 
@@ -53,6 +54,8 @@ def finding_text(cause: CauseRecord) -> str:
 def size_text(cause: CauseRecord, document: DiagnosisDocument) -> str:
     """Return the size of a cause with its interval, where it shows and what the base leaves of it.
 
+    Of an effect with several coefficients only what the base leaves is known.
+
     Parameters
     ----------
     cause : CauseRecord
@@ -68,7 +71,9 @@ def size_text(cause: CauseRecord, document: DiagnosisDocument) -> str:
     text = f"{quantity_text(cause.size, cause.size_ci95, unit)} RMS in the {cause.channel}"
     left = cause.visible_size
     if left is None or left >= _LEFT_BY_BASE * cause.size:
-        return text
+        several = cause.effects and len(BY_NAME[cause.effects[0]].coefficients) > 1
+        only_that = several and left == cause.size
+        return f"{text} beyond what the base model absorbs" if only_that else text
     remaining = quantity_text(left, cause.visible_ci95, unit)
     return f"{text}, of which {remaining} would remain after refitting the base model"
 
@@ -152,6 +157,10 @@ def margin_text(document: DiagnosisDocument) -> str:
     if document.load_margin is not None:
         least = f"{number_text(document.load_margin, 2)} {document.unit_of('load')}"
         return f"Effects below {margin} (--margin), and {least} in the load, are not named."
+    if document.torque_unit == "N·m" and document.margin == LEAST_MARGIN:
+        # that may be all friction of a small drive
+        how = "the least margin; 'frictioncli diagnose --margin' sets another"
+        return f"Effects below {margin} are not named ({how})."
     return f"Effects below {margin} are not named (--margin)."
 
 
@@ -234,13 +243,14 @@ def empirical_text(document: DiagnosisDocument) -> str:
         f"An empirical term for the unexplained part reduces the misfit {on} from"
         f" {number_text(found.rmse_before, 2)} to {number_text(found.rmse_after, 2)} {unit} (RMS):"
         f" {found.reduction:.0%} less ({low} to {high}).{what} It names no cause and is valid only"
-        f" {_within_text(found)}."
+        f" {_within_text(found, document.unit_of('load'))}."
     )
 
 
-def _within_text(found: EmpiricalGainRecord) -> str:
+def _within_text(found: EmpiricalGainRecord, load_unit: str) -> str:
     """Return the ranges of an empirical term."""
-    words = {"position": "deg", "speed": "deg/s", "temperature": "°C", "load": "N·m of load"}
+    load = f"{load_unit} of load"
+    words = {"position": "deg", "speed": "deg/s", "temperature": "°C", "load": load}
     ranges = [
         f"{number_text(low, 3)} to {number_text(high, 3)} {words[axis]}"
         for axis, (low, high) in found.ranges.items()

@@ -5,6 +5,7 @@ import numpy as np
 from frictioncli.diagnosis.diagnose import Diagnosis
 from frictioncli.diagnosis.documents.document import CauseRecord, StructureRecord
 from frictioncli.diagnosis.documents.empirical_record import LocatedRecord, gain_record
+from frictioncli.diagnosis.documents.torque_units import TorqueUnits
 from frictioncli.diagnosis.empirical.describe import experiment
 
 
@@ -84,14 +85,14 @@ def known_interval(interval: tuple[float, float]) -> tuple[float, float] | None:
 def _forms(diagnosis: Diagnosis) -> tuple[LocatedRecord, ...]:
     if diagnosis.empirical is None:
         return ()
-    return gain_record(diagnosis.empirical, diagnosis.torque_unit).forms
+    return gain_record(diagnosis.empirical, TorqueUnits.of(diagnosis)).forms
 
 
 def _experiment(diagnosis: Diagnosis) -> str:
     """Return what to measure next about the largest form; empty without one."""
     found = diagnosis.empirical
     form = found.parts[0].form if found is not None else None
-    return "" if form is None else experiment(form)
+    return "" if form is None else experiment(form, TorqueUnits.of(diagnosis).load)
 
 
 def _in_words(forms: tuple[LocatedRecord, ...]) -> str:

@@ -11,16 +11,19 @@ _PLACES = {
     "position": "at {} deg",
     "speed": "at {} deg/s",
     "temperature": "at {} °C",
-    "load": "at a load of {} N·m",
+    "load": "at a load of {} <load unit>",
 }
 
-_UNITS = {"position": "deg", "speed": "deg/s", "temperature": "°C", "load": "N·m of load"}
+_LOAD_UNIT = "<load unit>"
+"""What stands in a text for the unit of load, which is that of the log."""
+
+_UNITS = {"position": "deg", "speed": "deg/s", "temperature": "°C", "load": f"{_LOAD_UNIT} of load"}
 
 _LEAST_LAG = 0.001
 """Delay from which on it is said. [s]"""
 
 
-def described(form: FormFunction, unit: str) -> str:
+def described(form: FormFunction, unit: str, load_unit: str = "N·m") -> str:
     """Return a form in words, as "a bump of friction of 5.5 N·m at 86 deg, 6.8 deg wide".
 
     The width is the standard deviation of a peak that falls like a normal distribution.
@@ -29,8 +32,8 @@ def described(form: FormFunction, unit: str) -> str:
     ----------
     form : FormFunction
         The form with its parameters.
-    unit : str
-        Unit of torque.
+    unit, load_unit : str
+        Units of torque and of load.
 
     Examples
     --------
@@ -46,7 +49,7 @@ def described(form: FormFunction, unit: str) -> str:
     >>> described(form, "N·m")
     'a dent of friction of 1.4 N·m at 45.3 °C, 1.9 °C wide (standard deviation)'
     """
-    return _WORDS[form.kind](form, unit)
+    return _WORDS[form.kind](form, unit).replace(_LOAD_UNIT, load_unit)
 
 
 def formula_with_numbers(form: FormFunction) -> str:
@@ -61,13 +64,15 @@ def formula_with_numbers(form: FormFunction) -> str:
     return f"{form.formula}; {', '.join(f'{name} = {one:.5g}' for name, one in values.items())}"
 
 
-def experiment(form: FormFunction) -> str:
+def experiment(form: FormFunction, load_unit: str = "N·m") -> str:
     """Return what to measure next to learn what a form is.
 
     Parameters
     ----------
     form : FormFunction
         The form with its parameters.
+    load_unit : str, optional
+        Unit of load.
     """
     axis = form.axes[0]
     if form.kind in ("peak", BUMP):
@@ -76,21 +81,23 @@ def experiment(form: FormFunction) -> str:
             low, high = (_number(centre * math.exp(way * 2 * width)) for way in (-1, 1))
         else:
             low, high = (_number(centre + way * 3 * width) for way in (-1, 1))
-        return _AROUND[axis].format(low=low, high=high, bins=number_text(width / 2, 2))
+        bins = number_text(width / 2, 2)
+        return _AROUND[axis].format(low=low, high=high, bins=bins, load=load_unit)
     return _NEXT[form.kind]
 
 
 _AROUND = {
     "position": "Move through {low} to {high} deg at three speeds, some of them slow, cold and"
     " warm, with and without a payload, in bins of {bins} deg or less: damage of gear or bearing"
-    " stays at its angle at all speeds; an effect of load grows with the load.",
+    " stays at its angle at all speeds; an effect of load grows with the load; what a gripper"
+    " carries on some moves only is told apart where the log has a column payload.",
     "speed": "Measure at six speeds or more from {low} to {high} deg/s in random order, cold and"
     " warm: a resonance stays at its speed; a change of lubrication shifts with temperature.",
     "temperature": "Go through {low} to {high} °C twice, heating and cooling, at another rate and"
     " on another day: an effect of temperature returns at the same temperature; an effect of time"
     " does not.",
-    "load": "Measure with another payload, or in another pose, so that loads of {low} to {high} N·m"
-    " occur at other angles: an effect of load moves with them.",
+    "load": "Measure with another payload, or in another pose, so that loads of {low} to {high}"
+    " {load} occur at other angles: an effect of load moves with them.",
 }
 """What to measure around a peak."""
 
@@ -159,9 +166,10 @@ def _step(form: FormFunction, unit: str) -> str:
 def _lifting(form: FormFunction, unit: str) -> str:
     torque, exponent = form.coefficients["torque"], form.shape["exponent"]
     more = "more" if torque > 0 else "less"
+    power = number_text(exponent, 2)
     return (
-        f"lifting that takes {_size(torque, unit)} {more} at a load of 50 N·m, and lowering that"
-        f" gives as much less back, as the load to the power {number_text(exponent, 2)}"
+        f"lifting that takes {_size(torque, unit)} {more} at a load of 50 {_LOAD_UNIT}, and"
+        f" lowering that gives as much less back, as the load to the power {power}"
     )
 
 
