@@ -21,6 +21,7 @@ from frictioncli.correction.settings import CorrectionSettings, EvaluationGrid, 
 from frictioncli.correction.uncertainty import replay_with_filter
 from frictioncli.errors import NotEnoughData
 from frictioncli.model.document import FrictionModel
+from frictioncli.wording import number_text
 
 _MOST_COUNTS = 15
 """Most numbers of corrections that a line of text lists."""
@@ -293,9 +294,8 @@ def evaluation_text(rows: pd.DataFrame, unit: str) -> str:
             " settings give the same number, their median"
         )
         for phase, part in group.groupby("phase", sort=False):
-            lines.append(
-                f"  {phase:9s} none: {uncorrected[phase]:.2f}  {_by_count(part, 'first_degree')}"
-            )
+            none = number_text(uncorrected[phase])
+            lines.append(f"  {phase:9s} none: {none}  {_by_count(part, 'first_degree')}")
             if (part["criterion"] == "uncertainty").any():
                 lines.append(f"  {'':9s} by uncertainty  {_by_count(part, 'uncertainty')}")
     return "\n".join(lines)
@@ -304,6 +304,6 @@ def evaluation_text(rows: pd.DataFrame, unit: str) -> str:
 def _by_count(rows: pd.DataFrame, criterion: str) -> str:
     chosen = rows[rows["criterion"] == criterion]
     median = chosen.groupby("corrections")["epsilon"].median()
-    texts = [f"{count}: {value:.2f}" for count, value in median.head(_MOST_COUNTS).items()]
+    texts = [f"{count}: {number_text(value)}" for count, value in median.head(_MOST_COUNTS).items()]
     more = len(median) - len(texts)
     return "  ".join(texts + ([f"({more} more)"] if more > 0 else []))

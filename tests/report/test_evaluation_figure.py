@@ -65,6 +65,8 @@ def test_one_convention_for_several_settings_of_one_number(two_runs):
     none = two_runs.evaluation[two_runs.evaluation["criterion"] == "none"].iloc[[0]]
     table = pd.concat([rows, none.assign(run="day-1", phase=rows["phase"].iloc[0])])
     assert "5: 1.90" in evaluation_text(table, "N·m")
+    small = table.assign(epsilon=table["epsilon"] / 1000)
+    assert "5: 0.00190" in evaluation_text(small, "A")
     needed = corrections_needed(replace(two_runs, evaluation=table))
     assert needed is not None
     assert needed.value.startswith("5 in")
