@@ -89,7 +89,7 @@ def diagnosis_document(
         ),
         empirical=None
         if diagnosis.empirical is None
-        else gain_record(diagnosis.empirical, TorqueUnits.of(diagnosis)),
+        else gain_record(diagnosis.empirical, TorqueUnits.of_diagnosis(diagnosis)),
         remainder=remainder_record(diagnosis),
         detectable=detectable,
         undetectable=undetectable_reasons(diagnosis, settings, detectable),
@@ -97,7 +97,9 @@ def diagnosis_document(
         ramps=None if ramps is None else ramps_record(ramps, diagnosis.torque_unit),
         settling=diagnosis.settling,
         torque_unit=diagnosis.torque_unit,
-        load_unit=TorqueUnits.of(diagnosis).load if diagnosis.base.has_load_channel else None,
+        load_unit=TorqueUnits.of_diagnosis(diagnosis).load
+        if diagnosis.base.has_load_channel
+        else None,
         runs=diagnosis.runs,
         held_out=diagnosis.held_out,
         settings=settings,
@@ -135,7 +137,9 @@ def extended_document(diagnosis: Diagnosis, model: FrictionModel) -> ExtendedDoc
             equation=one.effect.equation,
             channel=one.effect.channel,
             shape=one.shape,
-            coefficients=extension_coefficients(extension, number, TorqueUnits.of(diagnosis)),
+            coefficients=extension_coefficients(
+                extension, number, TorqueUnits.of_diagnosis(diagnosis)
+            ),
         )
         for number, one in enumerate(extension.effects)
     ]
@@ -167,7 +171,7 @@ def _cause_record(diagnosis: Diagnosis, cause: Cause, number: int) -> CauseRecor
     """Return a named cause; its parameters are those of the extended model."""
     effect, extension = cause.fit.effect, _stated(diagnosis)
     assert extension is not None  # there is one wherever there is a cause
-    parameters = extension_parameters(extension, effect.name, TorqueUnits.of(diagnosis))
+    parameters = extension_parameters(extension, effect.name, TorqueUnits.of_diagnosis(diagnosis))
     record = _record(diagnosis, cause, parameters, f"diagnosis-{number}.svg")
     if diagnosis.thermal is None or effect.name != LAG:
         return record
@@ -176,7 +180,7 @@ def _cause_record(diagnosis: Diagnosis, cause: Cause, number: int) -> CauseRecor
 
 def _visible_record(diagnosis: Diagnosis, cause: Cause) -> CauseRecord:
     """Return a cause that is not named; its parameters are those of its own fit."""
-    parameters = fitted_parameters(cause.fit, TorqueUnits.of(diagnosis))
+    parameters = fitted_parameters(cause.fit, TorqueUnits.of_diagnosis(diagnosis))
     return _record(diagnosis, cause, parameters, None)
 
 

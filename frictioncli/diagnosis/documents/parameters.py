@@ -115,7 +115,7 @@ def _coefficients(
         parameter.name: ParameterRecord(
             estimate=float(value),
             ci95=(float(low), float(high)),
-            unit=units.of_coefficient(fit.effect, parameter),
+            unit=units.of(fit.effect, parameter),
         )
         for parameter, value, low, high in zip(
             fit.effect.coefficients, fit.coefficients, *interval, strict=True

@@ -85,14 +85,14 @@ def known_interval(interval: tuple[float, float]) -> tuple[float, float] | None:
 def _forms(diagnosis: Diagnosis) -> tuple[LocatedRecord, ...]:
     if diagnosis.empirical is None:
         return ()
-    return gain_record(diagnosis.empirical, TorqueUnits.of(diagnosis)).forms
+    return gain_record(diagnosis.empirical, TorqueUnits.of_diagnosis(diagnosis)).forms
 
 
 def _experiment(diagnosis: Diagnosis) -> str:
     """Return what to measure next about the largest form; empty without one."""
     found = diagnosis.empirical
     form = found.parts[0].form if found is not None else None
-    return "" if form is None else experiment(form, TorqueUnits.of(diagnosis).load)
+    return "" if form is None else experiment(form, TorqueUnits.of_diagnosis(diagnosis).load)
 
 
 def _in_words(forms: tuple[LocatedRecord, ...]) -> str:

@@ -18,12 +18,12 @@ class TorqueUnits(NamedTuple):
     load: str
 
     @classmethod
-    def of(cls, diagnosis: Diagnosis) -> "TorqueUnits":
+    def of_diagnosis(cls, diagnosis: Diagnosis) -> "TorqueUnits":
         """Return the units of a diagnosis; a load in a channel of its own is in N·m."""
         unit = diagnosis.torque_unit
         return cls(unit, _OF_LOAD_CHANNEL if diagnosis.base.has_load_channel else unit)
 
-    def of_coefficient(self, effect: Effect, parameter: Parameter) -> str:
+    def of(self, effect: Effect, parameter: Parameter) -> str:
         """Return the unit of a coefficient."""
         in_load = parameter.of_load or effect.channel == "load"
         return parameter.unit.replace(TORQUE, self.load if in_load else self.torque)
