@@ -37,6 +37,7 @@ _UNITS = {
     "motor_temperature": "°C",
     "housing_temperature": "°C",
     "load": "N·m",
+    "payload": "kg",
 }
 
 

@@ -7,7 +7,9 @@ import pandas as pd
 import pytest
 
 from frictioncli import schemas, tables
+from frictioncli.inspection.inspect import inspect
 from frictioncli.inspection.map_suggestion.suggest_map import suggested_map
+from frictioncli.inspection.text import text
 from frictioncli.logs.ingest import ingest
 from frictioncli.logs.settings import IngestSettings
 from tests.logs.logs import REAL
@@ -20,9 +22,9 @@ TIME, POSITION, VELOCITY, TORQUE, _ = COLUMNS
 
 def both_ways(logs, folder, **settings):
     """Return the samples without a map and with the suggested one, their facts, and the map."""
-    text = suggested_map(logs, IngestSettings(**settings))
+    suggested = suggested_map(logs, IngestSettings(**settings))
     map_file = folder / "channels.toml"
-    map_file.write_text(text, encoding="utf-8")
+    map_file.write_text(suggested, encoding="utf-8")
     tried = (IngestSettings(**settings), IngestSettings(**settings, map_file=map_file))
     found, facts = [], []
     for number, one in enumerate(tried):
@@ -30,7 +32,7 @@ def both_ways(logs, folder, **settings):
         ingest(logs, work, one)
         found.append(tables.read(work / "samples.parquet", schemas.SAMPLES))
         facts.append(tables.facts(work / "samples.parquet"))
-    return found, facts, text
+    return found, facts, suggested
 
 
 def same_torque(found, facts, joint):
@@ -130,3 +132,15 @@ def test_real_logs_with_the_suggested_map(folder, joint, tmp_path):
     assert len(one) == len(two) > 0
     # temperature and load of another file of a trace are not part of a map
     np.testing.assert_allclose(np.sort(one["torque"]), np.sort(two["torque"]), rtol=1e-9)
+
+
+def test_the_map_keeps_what_a_gripper_carries(tmp_path):
+    """With a map that names the torque, nothing else is read by its name."""
+    log = clean_log()
+    log["payload [g]"] = np.where(np.arange(len(log)) < len(log) / 2, 0.0, 2500.0)
+    write(log, tmp_path / "logs" / "log.csv")
+    found, _, text_of_map = both_ways([tmp_path / "logs"], tmp_path)
+    assert 'payload = "g"' in text_of_map
+    assert sorted(found[0]["payload"].unique()) == [0.0, 2.5]
+    np.testing.assert_array_equal(found[0]["payload"], found[1]["payload"])
+    assert "payload [g]: 0 to 2.5 kg" in text(inspect([tmp_path / "logs"], IngestSettings()))

@@ -16,6 +16,7 @@ _PER_COUNT = {
     names.LOAD: "N·m per count",
     names.MOTOR_TEMPERATURE: "°C per count",
     names.HOUSING_TEMPERATURE: "°C per count",
+    names.PAYLOAD: "kg per count",
 }
 
 _MAX_COMMENT = 180

@@ -124,6 +124,7 @@ def suggest_columns(
         names.TIME: _guess_time(time, times, motion),
         names.POSITION: motion.position,
         names.VELOCITY: motion.velocity,
+        names.PAYLOAD: None if plan is None else _payload_as_read(plan),
     }
     torque = torque_as_read(columns, dependences, plan) if plan is not None else None
     if torque is not None and plan is not None:
@@ -138,6 +139,14 @@ def suggest_columns(
     travel = float(np.abs(np.diff(motion.degrees)).sum())
     found = {name: guess for name, guess in guesses.items() if guess is not None}
     return _at_side(Suggestion(found, number, travel), plan)
+
+
+def _payload_as_read(plan: JointPlan) -> ColumnGuess | None:
+    """Return the payload that is read without a map; None where the log has none."""
+    channel, conversion = plan.channels.payload, plan.conversions.get(names.PAYLOAD)
+    if channel is None or conversion is None:
+        return None
+    return ColumnGuess(channel.column, "its name says so", LIKELY, conversion.unit)
 
 
 def _without_position(
