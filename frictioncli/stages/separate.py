@@ -21,6 +21,7 @@ from frictioncli.pairs.separation import (
 )
 from frictioncli.pairs.separation import separate as separate_pairs
 from frictioncli.pairs.settings import PairingSettings, SeparationSettings
+from frictioncli.pairs.two_loads import loads_in_turns
 from frictioncli.provenance import Provenance, input_hashes
 from frictioncli.stages.prefetch import prefetch
 from frictioncli.stages.stage import StageResult, existing, stage
@@ -179,6 +180,9 @@ def _write(
         facts |= {"load_unit": "N·m"} if ranges.load_is_measured else {}
         torques.facts = facts
     text = separation_text(ranges, by_pairs, facts, given=settings.sign is not None)
+    if by_pairs:
+        unit = str(facts.get("torque_unit", "N·m"))
+        texts += loads_in_turns(tables.batches(source, schemas.PAIRS), by_pairs, unit)
     return StageResult(work / TORQUES, "\n".join([*([text] if text else []), *texts]))
 
 
