@@ -357,3 +357,21 @@ def test_times_that_no_clock_has_are_no_hindrance(tmp_path):
     with warnings.catch_warnings():
         warnings.simplefilter("error")
         assert "[channels]" in suggested_map([path], IngestSettings())
+
+
+def test_the_form_of_the_text_is_repeated(tmp_path):
+    """Without it the log would have no time, and numbers that are none."""
+    log = clean_log(4)
+    path = tmp_path / "logs" / "day1" / "log.txt"
+    path.parent.mkdir(parents=True)
+    log.drop(columns=TIME).to_csv(path, sep="\t", decimal=",", index=False, encoding="utf-16")
+    form = {"delimiter": "\t", "decimal": ",", "encoding": "utf-16", "period": 0.01}
+    own, suggested = tmp_path / "own.toml", tmp_path / "suggested.toml"
+    own.write_text(
+        '[csv]\ndelimiter = "tab"\ndecimal = ","\nencoding = "utf-16"\nperiod = 0.01\n'
+    )
+    suggested.write_text(suggested_map([path], IngestSettings(map_file=own)), encoding="utf-8")
+    assert tomllib.loads(suggested.read_text(encoding="utf-8"))["csv"] == form
+    ingest([path.parent], tmp_path / "work", IngestSettings(map_file=suggested))
+    samples = tables.read(tmp_path / "work" / "samples.parquet", schemas.SAMPLES)
+    np.testing.assert_allclose(samples["time"], log[TIME] - log[TIME].iloc[0], atol=1e-9)

@@ -1,11 +1,15 @@
 """Text of a suggested mapping file, with reasons, confidence and alternatives in comments."""
 
+import json
+from dataclasses import asdict
+
 from frictioncli.inspection.map_suggestion.columns import ColumnGuess
 from frictioncli.inspection.map_suggestion.log_head import LogHead
 from frictioncli.inspection.map_suggestion.suggestion import Suggestion
 from frictioncli.logs.channels import channel_names as names
 from frictioncli.logs.channels import units
 from frictioncli.logs.channels.recognition import split_unit
+from frictioncli.logs.log_source import CsvHints
 from frictioncli.plain_text import escaped, printable
 
 _PER_COUNT = {
@@ -23,7 +27,13 @@ _MAX_COMMENT = 180
 """Longest text in a comment. [characters]"""
 
 
-def map_text(suggestion: Suggestion, head: LogHead, source: str, check: str = "") -> str:
+def map_text(
+    suggestion: Suggestion,
+    head: LogHead,
+    source: str,
+    check: str = "",
+    hints: CsvHints | None = None,
+) -> str:
     """Return the text of the mapping file (TOML).
 
     Parameters
@@ -36,6 +46,8 @@ def map_text(suggestion: Suggestion, head: LogHead, source: str, check: str = ""
         The name of the log.
     check : str, optional
         What came of pairing moves with it.
+    hints : CsvHints, optional
+        What the user's mapping file says of the form of the text; the suggested one repeats it.
     """
     columns = len(head.values) + len(head.constants)
     lines = [
@@ -69,6 +81,9 @@ def map_text(suggestion: Suggestion, head: LogHead, source: str, check: str = ""
         lines += [f"{quantity} = 0  # fill in: {_PER_COUNT[quantity]}" for quantity in counted]
     if suggestion.torque_side != names.JOINT_SIDE:
         lines += ["", "[side]", f'torque = "{suggestion.torque_side}"']
+    given = {key: value for key, value in asdict(hints or CsvHints()).items() if value is not None}
+    if given:
+        lines += ["", "[csv]", *(f"{key} = {json.dumps(value)}" for key, value in given.items())]
     lines += ["", "[joint]", f"number = {suggestion.joint}"]
     if suggestion.gear_ratio is not None:
         lines.append(f"gear_ratio = {suggestion.gear_ratio:.6g}")

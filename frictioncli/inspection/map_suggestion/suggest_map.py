@@ -77,10 +77,11 @@ def suggested_map(logs: Sequence[Path], settings: IngestSettings | None = None) 
     if best is None:
         raise LogError(reasons[0])
     suggestion, head, name = best
-    check = check_by_pairing(map_text(suggestion, head, name), logs, settings)
-    return map_text(
-        suggestion.doubted() if check.is_doubtful else suggestion, head, name, check.text
-    )
+    hints = channel_map.hints
+    text = map_text(suggestion, head, name, hints=hints)
+    check = check_by_pairing(text, logs, settings)
+    believed = suggestion.doubted() if check.is_doubtful else suggestion
+    return map_text(believed, head, name, check.text, hints)
 
 
 @dataclass(frozen=True, slots=True)
