@@ -8,6 +8,9 @@ _MOST_NAMES = 5
 _SHORT = 0.5
 """Times below are stated in milliseconds. [s]"""
 
+_NEAR_ZERO = 0.02
+"""Share of the half-width of an interval below which the distance of an end from zero is nothing."""
+
 
 def speed_text(speed: float) -> str:
     """Return a speed with its unit, with one decimal or, below 1 deg/s, with two digits.
@@ -193,6 +196,8 @@ def quantity_text(value: float, interval: tuple[float, float] | None, unit: str)
     --------
     >>> quantity_text(1.94, (1.52, 2.31), "N·m")
     '1.9 N·m (1.5 to 2.3)'
+    >>> quantity_text(1.2, (0.4, 3.6), "N·m")
+    '1.2 N·m (0.4 to 3.6)'
     >>> quantity_text(0.0121, (0.0112, 0.0131), "s"), quantity_text(0.254, None, "1")
     ('12 ms (11 to 13)', '0.25')
     >>> quantity_text(0.162, (0.162, 0.162), "N·m")
@@ -246,5 +251,9 @@ def _alike(values: Sequence[float], interval: tuple[float, float]) -> list[str]:
         return [number_text(value) for value in values]
     # a half-width of 0.95 counts as 1
     decimals = max(-math.floor(math.log10(1.1 * half)), 0)
+    nearest = min(abs(interval[0]), abs(interval[1]))
+    if interval[0] * interval[1] > 0 and nearest > _NEAR_ZERO * half:
+        # an interval without zero does not read as one that begins there
+        decimals = max(decimals, -math.floor(math.log10(nearest / 0.95)))
     rounded = [round(value, decimals) + 0.0 for value in values]
     return [f"{value:.{decimals}f}".replace("-", "−") for value in rounded]

@@ -214,6 +214,8 @@ def _against(cause: CauseRecord, document: DiagnosisDocument) -> list[str]:
 
 
 def _parameter(name: str, stated: ParameterRecord) -> str:
+    if stated.has_only_a_sign:
+        return f"{in_words(name)} not determined"
     return f"{in_words(name)} {quantity_text(stated.estimate, stated.ci95, stated.unit)}"
 
 

@@ -168,6 +168,8 @@ def _cells(stated: object) -> tuple[str, str]:
         return number_text(estimate, 4), "–"
     if ci95[0] == ci95[1]:
         return number_text(estimate, 4), "at its bound"
+    if isinstance(stated, ParameterRecord) and stated.has_only_a_sign:
+        return number_text(estimate, 4), "not determined"
     return number_text(estimate, 4), f"{number_text(ci95[0])} to {number_text(ci95[1])}"
 
 
@@ -194,7 +196,7 @@ def poorly_determined(parameters: dict[str, ParameterRecord]) -> str:
         low, high = one.ci95
         if low == high:
             bound.append(in_words(name))
-        elif low <= 0.0 <= high:
+        elif not one.is_determined:
             lost.append(in_words(name))
         elif high - low > 2 * _IMPRECISE * abs(one.estimate):
             percent = 50 * (high - low) / abs(one.estimate)

@@ -7,9 +7,11 @@ from frictioncli.diagnosis.documents.parameters import statement
 from frictioncli.effects import BY_NAME
 
 
-def said(effect, interval):
+def said(effect, interval, estimate=None):
+    if estimate is None:
+        estimate = sum(interval) / 2
     parameters = {
-        one.name: ParameterRecord(estimate=sum(interval) / 2, ci95=interval, unit=one.unit)
+        one.name: ParameterRecord(estimate=estimate, ci95=interval, unit=one.unit)
         for one in (*effect.shape, *effect.coefficients)
     }
     return statement(effect, parameters)
@@ -30,6 +32,15 @@ def test_a_size_that_may_be_a_hundred_times_as_large_is_not_stated():
     effect = BY_NAME["run_in"]
     assert "(1 to 50)" in said(effect, (1.0, 50.0))
     assert said(effect, (1e-3, 1e17)).endswith("but not its parameters.")
+
+
+def test_a_stiffness_of_which_only_the_sign_is_known_is_not_stated():
+    """An interval of the logarithm: a spring is there, with any stiffness."""
+    spring = BY_NAME["dress_pack"]
+    assert "1.2" in said(spring, (0.4, 3.6), 1.2)
+    text = said(spring, (1e-10, 8e9), 0.8)
+    assert text.startswith(spring.summary)
+    assert text.endswith("but not its parameters.")
 
 
 def test_an_order_is_no_coefficient():

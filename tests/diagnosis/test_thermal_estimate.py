@@ -5,6 +5,7 @@ the last day is kept out.
 """
 
 import functools
+from dataclasses import replace
 from types import SimpleNamespace
 
 import numpy as np
@@ -160,6 +161,17 @@ def test_a_statement_gives_time_shares_and_what_a_mix_would_leave():
     assert text.startswith("The gear follows the motor (")
     assert "the housing (" in text
     assert " min (" in text
+
+
+def test_what_the_gear_follows_is_not_stated_where_both_shares_may_be_any():
+    found = estimated("conduction")
+    shares = ("lag_share", "housing_lag_share")
+    unknown = {name: replace(found.estimates[name], low=0.0, high=1.0) for name in shares}
+    known = temperature_statement(found, "N·m")
+    text = temperature_statement(replace(found, estimates={**found.estimates, **unknown}), "N·m")
+    assert text.startswith("The gear follows the motor, the housing or both (these data")
+    assert "%)" not in text.split(".")[0]
+    assert text.partition("with a time")[2] == known.partition("with a time")[2]
 
 
 def test_friction_is_simulated_at_the_hidden_temperature():

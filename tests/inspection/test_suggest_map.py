@@ -367,9 +367,7 @@ def test_the_form_of_the_text_is_repeated(tmp_path):
     log.drop(columns=TIME).to_csv(path, sep="\t", decimal=",", index=False, encoding="utf-16")
     form = {"delimiter": "\t", "decimal": ",", "encoding": "utf-16", "period": 0.01}
     own, suggested = tmp_path / "own.toml", tmp_path / "suggested.toml"
-    own.write_text(
-        '[csv]\ndelimiter = "tab"\ndecimal = ","\nencoding = "utf-16"\nperiod = 0.01\n'
-    )
+    own.write_text('[csv]\ndelimiter = "tab"\ndecimal = ","\nencoding = "utf-16"\nperiod = 0.01\n')
     suggested.write_text(suggested_map([path], IngestSettings(map_file=own)), encoding="utf-8")
     assert tomllib.loads(suggested.read_text(encoding="utf-8"))["csv"] == form
     ingest([path.parent], tmp_path / "work", IngestSettings(map_file=suggested))

@@ -59,3 +59,6 @@ def test_poorly_determined_parameters_stand_beside_the_name(diagnosed):
     assert found.doubt == "boundary torque not determined"
     assert any("boundary torque not determined" in one for one in found.against)
     assert poorly_determined({}) == ""
+    any_size = ParameterRecord(estimate=0.8, ci95=(1e-10, 8e9), unit="N·m")
+    found = with_parameters({"boundary_torque": any_size})
+    assert found.doubt == found.parameters == "boundary torque not determined"

@@ -19,6 +19,9 @@ from frictioncli.model.friction import FrictionParameters
 
 _NO_GRAVITY = GravityCoefficients(cosine=0.0, sine=0.0, offset=0.0)
 
+_MAGNITUDES = 100.0
+"""Ratio of the ends of an interval from which on it does not tell the order of magnitude."""
+
 
 class ParameterRecord(msgspec.Struct, frozen=True, kw_only=True):
     """A fitted parameter.
@@ -36,6 +39,21 @@ class ParameterRecord(msgspec.Struct, frozen=True, kw_only=True):
     estimate: float
     ci95: tuple[float, float] | None
     unit: str
+
+    @property
+    def is_determined(self) -> bool:
+        """Whether its interval tells its sign and its order of magnitude."""
+        return self._excludes_zero and not self.has_only_a_sign
+
+    @property
+    def has_only_a_sign(self) -> bool:
+        """Whether its interval tells its sign, but not its order of magnitude."""
+        near, far = sorted(map(abs, self.ci95 or (0.0, 0.0)))
+        return self._excludes_zero and far > _MAGNITUDES * near
+
+    @property
+    def _excludes_zero(self) -> bool:
+        return self.ci95 is not None and self.ci95[0] * self.ci95[1] > 0
 
 
 class EffectRecord(msgspec.Struct, frozen=True, kw_only=True):

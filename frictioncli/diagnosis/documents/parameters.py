@@ -17,9 +17,6 @@ Z95 = 1.96
 """Half-width of a 95 % interval in standard errors."""
 
 
-_VAGUE = 100.0
-"""Ratio of the ends of an interval from which its parameter counts as not determined."""
-
 _NO_SIZE = "These data determine the torque that it adds, but not its parameters."
 
 
@@ -81,7 +78,7 @@ def statement(
     """Return what is said of an effect that was found, with the values of its parameters.
 
     The torque of an effect may be certain where its coefficients are not, as they compensate its
-    shape: no number is stated that may have either sign, or be a hundred times as large.
+    shape: no number is stated of coefficients that are not determined.
 
     Parameters
     ----------
@@ -98,14 +95,9 @@ def statement(
     text = words or effect.statement or effect.summary
     fields = {name for _, name, _, _ in Formatter().parse(text)}
     stated = [parameters[one.name] for one in effect.coefficients if one.name in fields]
-    if stated and all(one.ci95 and _is_vague(*one.ci95) for one in stated):
+    if stated and not any(one.ci95 is None or one.is_determined for one in stated):
         return f"{effect.summary} {_NO_SIZE}"
     return text.format_map(values)
-
-
-def _is_vague(low: float, high: float) -> bool:
-    """Return whether an interval tells neither a sign nor an order of magnitude."""
-    return low < 0 < high or max(abs(low), abs(high)) > _VAGUE * min(abs(low), abs(high))
 
 
 def _coefficients(

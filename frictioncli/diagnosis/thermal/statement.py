@@ -11,6 +11,9 @@ _MOSTLY = 0.05
 _ABSENT = 0.01
 """Shares, and degrees, below this are not told."""
 
+_UNKNOWN = 0.9
+"""Width of the interval of a share from which on the share is not determined."""
+
 
 def temperature_statement(estimate: ThermalEstimate, unit: str) -> str:
     """Return what is said of the temperature of friction, with the rivals that a user can choose.
@@ -51,6 +54,10 @@ def _network_text(estimate: ThermalEstimate) -> str:
     hidden = "housing_time_constant" in parts
     cover = "a housing that is not measured" if hidden else "the housing"
     followed = []
+    shares = [parts[name] for name in ("lag_share", "housing_lag_share") if name in parts]
+    if len(shares) > 1 and all(one.high - one.low > _UNKNOWN for one in shares):
+        followed.append(f"the motor, {cover} or both (these data do not determine which)")
+        lag = housing = 0.0
     if lag > _ABSENT:
         followed.append(f"the motor ({100 * lag:.0f} %)" if lag < 1 - _MOSTLY else "the motor")
     if housing > _ABSENT:
