@@ -5,11 +5,14 @@ from collections.abc import Sequence
 
 _MOST_NAMES = 5
 
+_SPELLINGS = {"run_in": "run-in", "stribeck": "Stribeck friction", "coulomb": "Coulomb"}
+"""Parts of identifiers that are written otherwise in a sentence."""
+
 _SHORT = 0.5
 """Times below are stated in milliseconds. [s]"""
 
 _NEAR_ZERO = 0.02
-"""Share of the half-width of an interval below which the distance of an end from zero is nothing."""
+"""Least distance of an end of an interval from zero that shows, as a share of its half-width."""
 
 
 def speed_text(speed: float) -> str:
@@ -71,13 +74,20 @@ def probability_text(share: float) -> str:
 
 
 def in_words(name: str) -> str:
-    """Return an identifier, such as an effect's name, with spaces for underscores.
+    """Return an identifier, such as an effect's name, as it is written in a sentence.
 
     Parameters
     ----------
     name : str
-        The identifier.
+        The identifier, or a text with some.
+
+    Examples
+    --------
+    >>> in_words("thermal_lag"), in_words("run_in"), in_words("coulomb_temperature")
+    ('thermal lag', 'run-in', 'Coulomb temperature')
     """
+    for identifier, written in _SPELLINGS.items():
+        name = name.replace(identifier, written)
     return name.replace("_", " ")
 
 

@@ -11,6 +11,12 @@ from frictioncli.effects.parameter import Parameter
 _REFERENCE = 40.0
 """Temperature at which the Stribeck velocity is stated. [°C]"""
 
+EXTRAPOLATED = (
+    "Boundary friction falls to 37 % at {velocity}, below the slowest move; extrapolated to"
+    " standstill, it is {boundary_torque}."
+)
+"""What is said where boundary friction has largely vanished at all speeds measured."""
+
 
 def basis(table: EffectTable, *, velocity: float, exponent: float, shift: float) -> Basis:
     """Return the share of the full boundary friction, shape (rows, 1). [-].

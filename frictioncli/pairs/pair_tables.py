@@ -259,8 +259,10 @@ def pairing_text(
     for joint in sorted(counts.speeds):
         kind = "note" if other_motion.tells_poses_apart(joint) else "warning"
         lines += [f"{kind}: {text}" for text in other_motion.texts([joint])]
-    dropped = "; ".join(f"{reason} {count}" for reason, count in facts["dropped"].items() if count)
+    dropped = "; ".join(
+        f"{reason} {count:,}" for reason, count in facts["dropped"].items() if count
+    )
     lines.append(
-        f"samples: {facts['samples']} read, {counts.samples} in pairs; dropped: {dropped or 0}"
+        f"samples: {facts['samples']:,} read, {counts.samples:,} in pairs; dropped: {dropped or 0}"
     )
     return "\n".join(lines)

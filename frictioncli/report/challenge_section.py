@@ -54,14 +54,14 @@ def planted_text(challenge: pd.DataFrame) -> PlantedText:
 def _cells(row: Row) -> tuple[str, ...]:
     unit = row["unit"]
     size = row["asked"] if row["size"] is None else row["size"]
-    names = row["names"].replace("_", " ")
+    names = in_words(row["names"])
     structure = f"structure along {row['structure']}" if row["structure"] else ""
     claimed = "" if row["claimed"] is None else f"{number_text(row['claimed'], 2)} {unit}"
     found = found_text(row)
     return (
         in_words(row["effect"]),
         names or structure or "none",
-        mark(row).replace("_", " "),
+        in_words(mark(row)),
         f"{number_text(size)} {unit}",
         claimed,
         f"{found} {unit}" if found else "",

@@ -25,6 +25,9 @@ from frictioncli.wording import (
     speed_text,
 )
 
+_LEAST_HOURS = 100.0
+"""Least time between first and last run for a rate per 1000 h. [h]"""
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class CauseOfChangeText:
@@ -129,8 +132,8 @@ def _verdict(document: ComparisonDocument) -> str:
     if document.verdict == "no_evidence":
         return f"No change was found, and one of {margin} is excluded. First run to last: {trend}."
     return (
-        f"Undecided: no change was found, but one of {margin} is not excluded. First run to last:"
-        f" {trend}."
+        f"Undetermined: no change was found, but one of {margin} is not excluded. First run to"
+        f" last: {trend}."
     )
 
 
@@ -159,7 +162,8 @@ def _key_numbers(document: ComparisonDocument) -> list[KeyNumber]:
     if document.last_run is not None:
         numbers.append(_change_number("last run against the earlier ones", document.last_run))
     per_1000_h = document.trend.per_1000_h
-    if per_1000_h is not None:
+    days = document.runs[-1].days or 0.0
+    if per_1000_h is not None and 24 * days >= _LEAST_HOURS:
         numbers.append(
             _key_number("per 1000 h of calendar time", per_1000_h.estimate, per_1000_h.ci95)
         )

@@ -6,7 +6,8 @@ from frictioncli.report.page_tables import TextTable
 from frictioncli.wording import in_words, number_text, speed_text
 
 UNDETECTABLE = "cannot be shown by these data"
-FOUND = "found in these data"
+FOUND = "found"
+NONE = "–"
 
 _PHASES = {"heat-up": "rising", "cool-down": "falling"}
 _AXIS_UNITS = {"temperature": "°C", "angle": "deg"}
@@ -29,25 +30,32 @@ def detectable_table(document: DiagnosisDocument, unit: str) -> TextTable:
     one_unit = document.unit_of("load") == unit
     return TextTable(
         title="Smallest size of each effect that would be named in 80 % of cases",
-        header=("effect", "what it is", f"RMS [{unit}]" if one_unit else "RMS"),
+        header=("effect", f"RMS [{unit}]" if one_unit else "RMS", "what it is"),
         rows=tuple(
             (
                 in_words(name),
-                BY_NAME[name].summary if name in BY_NAME else "",
                 _size_cell(document, name, stated=not one_unit),
+                _described(document, name),
             )
             for name in names
         ),
-        texts=2,
+        remarks=True,
     )
+
+
+def _described(document: DiagnosisDocument, name: str) -> str:
+    """Return what an effect is, and why it has no size if it has none."""
+    summary = BY_NAME[name].summary if name in BY_NAME else ""
+    if document.detectable[name] is not None or name in document.found:
+        return summary
+    why = document.undetectable.get(name, UNDETECTABLE)
+    return f"{summary} {why[:1].upper()}{why[1:]}.".lstrip()
 
 
 def _size_cell(document: DiagnosisDocument, name: str, *, stated: bool) -> str:
     size = document.detectable[name]
-    if size is None and name in document.found:
-        return FOUND
     if size is None:
-        return document.undetectable.get(name, UNDETECTABLE)
+        return FOUND if name in document.found else NONE
     channel = BY_NAME[name].channel if name in BY_NAME else "friction"
     return f"{number_text(size, 2)} {document.unit_of(channel)}" if stated else number_text(size, 2)
 

@@ -8,7 +8,7 @@ from msgspec import UNSET
 from frictioncli.design.document import BlockRecord
 from frictioncli.report.page_tables import TextTable
 from frictioncli.report.results import JointResults
-from frictioncli.wording import count_text, duration_text, list_text, number_text
+from frictioncli.wording import count_text, duration_text, in_words, list_text, number_text
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -61,7 +61,7 @@ def experiment(results: JointResults) -> Experiment | None:
             header=("parameter", "estimate", "now", "after", "unit"),
             rows=tuple(
                 (
-                    one.parameter.replace(".", ": ").replace("_", " "),
+                    in_words(one.parameter.replace(".", ": ")),
                     number_text(one.estimate),
                     f"±{number_text(one.half_width_now, 2)}",
                     f"±{number_text(one.half_width_after, 2)}",

@@ -58,7 +58,7 @@ def _how_much(results: JointResults) -> Answer:
     return Answer(
         question="How much",
         value=f"{number_text(point.friction)} {results.unit}",
-        text=f"at {point.conditions}; {span} {results.unit} measured",
+        text=f"at {point.motion}; all pairs {span} {results.unit}; unloaded",
     )
 
 
@@ -69,7 +69,7 @@ def _how_sure(results: JointResults, document: DiagnosisDocument | None) -> Answ
         return Answer(
             question="How sure",
             value=f"±{number_text(results.model.rmse)} {unit}",
-            text="RMS misfit of equation (16)",
+            text="RMS misfit, equation (16)",
         )
     where = "on its own training data"
     if document and gain.basis == "new_run":
@@ -78,12 +78,12 @@ def _how_sure(results: JointResults, document: DiagnosisDocument | None) -> Answ
         return Answer(
             question="How sure",
             value=f"±{number_text(gain.rmse_before)} {unit}",
-            text=f"RMS misfit of equation (16), {where}",
+            text=f"RMS misfit, equation (16), {where}",
         )
     return Answer(
         question="How sure",
         value=f"±{number_text(gain.rmse_before)} {unit}",
-        text=f"RMS misfit of equation (16); extended model ±{number_text(gain.rmse_after)} {unit},"
+        text=f"RMS misfit, equation (16); extended model ±{number_text(gain.rmse_after)} {unit},"
         f" {where}",
     )
 

@@ -54,10 +54,15 @@ class OperatingPoint:
     extended_error: float | None
 
     @property
+    def motion(self) -> str:
+        """Speed and temperature as text."""
+        warm = f", {self.temperature:.0f} °C" if np.isfinite(self.temperature) else ""
+        return f"{speed_text(self.speed)}{warm}"
+
+    @property
     def conditions(self) -> str:
         """Speed, temperature and load as text."""
-        warm = f", {self.temperature:.0f} °C" if np.isfinite(self.temperature) else ""
-        return f"{speed_text(self.speed)}{warm}, no load"
+        return f"{self.motion}, no load"
 
 
 def operating_point(results: JointResults) -> OperatingPoint:

@@ -36,6 +36,8 @@ class TextTable:
         Cells.
     texts : int
         Number of leading columns that hold text; the others hold numbers.
+    remarks : bool
+        Whether the last column holds text too.
     marked : tuple of int
         Indices of the rows that are highlighted.
     groups : tuple of (str, int)
@@ -46,6 +48,7 @@ class TextTable:
     header: tuple[str, ...]
     rows: tuple[tuple[str, ...], ...]
     texts: int = 1
+    remarks: bool = False
     marked: tuple[int, ...] = ()
     groups: tuple[tuple[str, int], ...] = ()
 

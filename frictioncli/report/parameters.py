@@ -172,8 +172,8 @@ def _undetermined_causes(results: JointResults, diagnosis: DiagnosisDocument | N
     if diagnosis is None:
         return ["The errors of the simulated torque have not been diagnosed."]
     sentences = [
-        f"Which of {list_text([in_words(name) for name in cause.effects])} is the cause: these"
-        f" data cannot distinguish them. {cause.experiment}"
+        f"These data cannot distinguish {list_text([in_words(name) for name in cause.effects])}."
+        f" {cause.experiment}"
         for cause in diagnosis.causes
         if len(cause.effects) > 1
     ]
@@ -183,12 +183,10 @@ def _undetermined_causes(results: JointResults, diagnosis: DiagnosisDocument | N
         if size is None and name not in diagnosis.found
     ]
     if undetectable:
-        sentences.append(
-            f"Whether there is {' or '.join(undetectable)}: these data cannot show it."
-        )
+        sentences.append(f"Effects that these data cannot show: {', '.join(undetectable)}.")
     if len(results.runs) == 1:
         sentences.append(
-            "How well the model predicts another day, and whether a slow change is a drift or"
-            " an offset: there is only one run."
+            "One run shows neither how well the model predicts another day, nor whether a slow"
+            " change is a drift or an offset."
         )
     return sentences

@@ -91,12 +91,12 @@ def test_what_is_left_is_said_with_size_and_axis():
 def test_detectable_sizes_are_said():
     said = lines(sets=[["drift"]], detectable={"stribeck": 0.2, "run_in": None, "drift": 1.5})
     assert said[-1] == (
-        "Smallest effects that would be named in 80 % of cases: 0.20 N·m RMS (stribeck) to 1.5 N·m"
-        " (drift)."
+        "Smallest effects that would be named in 80 % of cases: 0.20 N·m RMS (Stribeck"
+        " friction) to 1.5 N·m (drift)."
     )
     alone = lines(sets=[["drift"]], detectable={"stribeck": 0.2, "run_in": None})
     assert alone[-1] == (
-        "Smallest effect that would be named in 80 % of cases: 0.20 N·m RMS (stribeck)."
+        "Smallest effect that would be named in 80 % of cases: 0.20 N·m RMS (Stribeck friction)."
     )
     assert lines(detectable={"run_in": None})[-1] == "These data cannot show any of the effects."
 
@@ -105,7 +105,9 @@ def test_what_the_base_takes_entirely_is_said():
     why = {"run_in": TAKEN_BY_BASE, "load_linear": LACKING, "velocity_exponent": TAKEN_BY_BASE}
     sizes = {"stribeck": 0.2} | dict.fromkeys(why)
     said = (
-        "Cannot be distinguished from the base model with these data: run in and velocity exponent."
+        "Cannot be distinguished from the base model with these data: run-in and velocity exponent."
     )
-    assert lines(detectable=sizes, undetectable=why)[-1].endswith(f"N·m RMS (stribeck). {said}")
+    assert lines(detectable=sizes, undetectable=why)[-1].endswith(
+        f"N·m RMS (Stribeck friction). {said}"
+    )
     assert lines(detectable=dict.fromkeys(why), undetectable=why)[-1].endswith(f"effects. {said}")

@@ -1,10 +1,15 @@
 """What is said of an effect that was found, with its numbers."""
 
+from types import SimpleNamespace
+
+import numpy as np
 import pytest
 
 from frictioncli.diagnosis.documents.extended_document import ParameterRecord
+from frictioncli.diagnosis.documents.from_diagnosis import words_for
 from frictioncli.diagnosis.documents.parameters import statement
 from frictioncli.effects import BY_NAME
+from frictioncli.effects.stribeck import EXTRAPOLATED
 
 
 def said(effect, interval, estimate=None):
@@ -41,6 +46,21 @@ def test_a_stiffness_of_which_only_the_sign_is_known_is_not_stated():
     text = said(spring, (1e-10, 8e9), 0.8)
     assert text.startswith(spring.summary)
     assert text.endswith("but not its parameters.")
+
+
+def test_boundary_friction_below_the_slowest_move_is_said_to_be_extrapolated():
+    parameters = {
+        "velocity": ParameterRecord(estimate=2.3, ci95=(1.0, 8.7), unit="deg/s"),
+        "boundary_torque": ParameterRecord(estimate=73.0, ci95=(12.0, 459.0), unit="N·m"),
+    }
+    moves = SimpleNamespace(speed=np.array([4.0, 20.0]))
+    diagnosis = SimpleNamespace(base=SimpleNamespace(table=moves))
+    effect = BY_NAME["stribeck"]
+    assert words_for(diagnosis, effect, parameters) == EXTRAPOLATED
+    text = statement(effect, parameters, EXTRAPOLATED)
+    assert "extrapolated to standstill, it is 73 N·m" in text
+    moves.speed[0] = 2.0
+    assert words_for(diagnosis, effect, parameters) is None
 
 
 def test_an_order_is_no_coefficient():

@@ -20,7 +20,7 @@ def page_of(found, pages=None):
     [
         ("changed", "The joint has changed. "),
         ("no_evidence", "No change was found, and one of "),
-        ("undetermined", "Undecided: "),
+        ("undetermined", "Undetermined: "),
     ],
 )
 def test_the_verdict_comes_first_with_the_trend(verdict, begins):

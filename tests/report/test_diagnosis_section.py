@@ -18,7 +18,7 @@ from frictioncli.diagnosis.search.effect_size import TAKEN_BY_BASE
 from frictioncli.errors import TableError
 from frictioncli.report.diagnosis_captions import cause_title
 from frictioncli.report.diagnosis_section import diagnosis_figures, diagnosis_section
-from frictioncli.report.diagnosis_tables import FOUND, UNDETECTABLE, detectable_table
+from frictioncli.report.diagnosis_tables import FOUND, NONE, UNDETECTABLE, detectable_table
 from frictioncli.report.diagnosis_text import cause_texts, gain_sentence, verdict_sentence
 from frictioncli.report.drawing import draw_figure
 from frictioncli.report.page import write_report
@@ -67,11 +67,11 @@ def test_what_did_not_last_is_not_predicted_on_the_new_run(diagnosed, diagnosed_
 def test_section_says_what_was_found(diagnosed):
     section = diagnosis_section(diagnosed)
     assert "2.10 N·m (RMS, day-1)" in section.verdict
-    assert "The model lacks stribeck." in section.verdict
+    assert "The model lacks Stribeck friction." in section.verdict
     assert "one of direction asymmetry and dress pack" in section.verdict
     assert "There is also structure" in section.verdict
     assert [one.effects for one in section.causes] == [
-        "stribeck 97 %",
+        "Stribeck friction 97 %",
         "direction asymmetry 60 % or dress pack 40 %",
     ]
     first = section.causes[0]
@@ -88,11 +88,11 @@ def test_section_says_what_was_found(diagnosed):
     )
     assert "run day-2, which was not used for fitting" in section.gain
     assert "50 % less (95 % interval: 40 % less to 60 % less)" in section.gain
-    assert section.detectable.rows[0][2] == "0.40"
-    assert section.detectable.rows[1][2] == UNDETECTABLE
-    assert (
-        section.detectable.rows[2][2]
-        == "cannot be distinguished from the base model with these data"
+    assert section.detectable.rows[0][1] == "0.40"
+    assert [row[1] for row in section.detectable.rows[1:3]] == [NONE, NONE]
+    assert section.detectable.rows[1][2].endswith(f" C{UNDETECTABLE[1:]}.")
+    assert section.detectable.rows[2][2].endswith(
+        " Cannot be distinguished from the base model with these data."
     )
     assert section.worst.rows[0] == (
         "temperature 25.0 to 31.0 °C",
@@ -167,7 +167,7 @@ def test_verdict_tells_joint_measurement_and_what_did_not_last_apart():
         verdict="ambiguous",
     )
     sentence = verdict_sentence(document, "N·m")
-    assert "The model lacks stribeck. The model lacks one of drift and run in" in sentence
+    assert "The model lacks Stribeck friction. The model lacks one of drift and run-in" in sentence
     assert (
         "Payload change: a change that did not last: present in run day-1, absent on the held-out"
         " run (day-2)."
@@ -238,7 +238,7 @@ def test_page_has_the_section_after_the_figures_escaped_and_the_same_twice(
     names = {path.name for path in page.parent.glob("diagnosis-*")}
     stems = ("simulation", "maps", "1", "2", "gain")
     assert names == {f"diagnosis-{stem}.{kind}" for stem in stems for kind in ("svg", "png")}
-    assert UNDETECTABLE in text
+    assert UNDETECTABLE[1:] in text
     known = re.findall(r'\bid="([^"]+)"', text)
     assert len(known) == len(set(known))
     # the whole page's bytes are compared elsewhere; drawing takes long
@@ -257,8 +257,14 @@ def test_an_effect_that_is_named_is_never_said_to_be_undetectable():
         detectable=sizes,
         undetectable=dict.fromkeys(("thermal_lag", "drift"), TAKEN_BY_BASE),
     )
-    rows = {row[0]: row[-1] for row in detectable_table(document, "N·m").rows}
-    assert rows == {"thermal lag": FOUND, "drift": TAKEN_BY_BASE, "run in": "1.0"}
+    rows = {row[0]: row[1:] for row in detectable_table(document, "N·m").rows}
+    assert {name: row[0] for name, row in rows.items()} == {
+        "thermal lag": FOUND,
+        "drift": NONE,
+        "run-in": "1.0",
+    }
+    reason = TAKEN_BY_BASE.removeprefix("c")
+    assert [reason in row[1] for row in rows.values()] == [False, True, False]
     assert detectable_text(document).endswith("with these data: drift.")
 
 
@@ -266,11 +272,11 @@ def test_smallest_sizes_of_effects_on_a_load_channel_have_its_unit():
     sizes = {"stribeck": 0.5, "payload_change": 2.0, "drift": None}
     document = diagnosis(sets=[], detectable=sizes)
     table = detectable_table(document, "N·m")
-    assert table.header[-1] == "RMS [N·m]"
-    assert [row[-1] for row in table.rows][::2] == ["0.50", "2.0"]
+    assert table.header[1] == "RMS [N·m]"
+    assert [row[1] for row in table.rows][::2] == ["0.50", "2.0"]
     current = structs.replace(document, torque_unit="A", load_unit="N·m")
     table = detectable_table(current, "A")
-    assert table.header[-1] == "RMS"
-    cells = dict(zip((row[0] for row in table.rows), (row[-1] for row in table.rows), strict=True))
+    assert table.header[1] == "RMS"
+    cells = dict(zip((row[0] for row in table.rows), (row[1] for row in table.rows), strict=True))
     assert cells[table.rows[0][0]] == "0.50 A"
     assert "2.0 N·m" in cells.values()

@@ -42,7 +42,7 @@ def test_evidence_shows_residuals_the_term_and_what_is_left(diagnosed, diagnosis
     assert "friction: measured − simulated [N·m]" in shown
     assert "speed |φ'| [deg/s]" in shown
     assert "probability [%]" in shown
-    assert {"stribeck", "drift", "all others"} <= set(shown)
+    assert {"Stribeck friction", "drift", "all others"} <= set(shown)
 
 
 def test_bars_show_the_whole_credible_set_first():

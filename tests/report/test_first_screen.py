@@ -57,14 +57,14 @@ def test_how_much_is_equation_16_at_the_medians(diagnosed):
 def test_how_sure_is_the_misfit_on_the_new_run(diagnosed, two_runs):
     said = by_question(diagnosed)["How sure"]
     assert said == (
-        "±2.00 N·m RMS misfit of equation (16); extended model ±1.00 N·m, tested on day-2"
+        "±2.00 N·m RMS misfit, equation (16); extended model ±1.00 N·m, tested on day-2"
     )
-    assert by_question(two_runs)["How sure"] == "±1.13 N·m RMS misfit of equation (16)"
+    assert by_question(two_runs)["How sure"] == "±1.13 N·m RMS misfit, equation (16)"
 
 
 def test_what_is_wrong_names_the_causes(diagnosed, two_runs):
     said = by_question(diagnosed)["What the simulation gets wrong"]
-    assert "stribeck" in said
+    assert "Stribeck friction" in said
     assert "not diagnosed yet" in by_question(two_runs)["What the simulation gets wrong"]
 
 
@@ -87,7 +87,7 @@ def test_structure_without_a_name_is_said_beside_the_causes(diagnosed):
     )
     changed = replace(diagnosed, diagnosis=replace(diagnosed.diagnosis, document=document))
     said = by_question(changed)["What the simulation gets wrong"]
-    assert said.startswith("stribeck")
+    assert said.startswith("Stribeck friction")
     assert "and structure without a name" in said
     assert said.endswith("1.2 N·m unexplained, structure over angle")
 

@@ -59,7 +59,7 @@ def test_groups_count_the_joints():
 def test_cells_are_those_of_the_row():
     page = fleet_page([NAMED, FAILED], ["robot=A/joint=4/report/index.html", ""])
     assert column(page, "page") == [None, "robot=A/joint=4/report/index.html"]
-    assert column(page, "causes") == ["000.csv: 'abc'", "thermal lag; drift or run in"]
+    assert column(page, "causes") == ["000.csv: 'abc'", "thermal lag; drift or run-in"]
     assert column(page, "change")[1] == [0.2, -0.5, 0.9]
     assert column(page, "friction_40")[1] == pytest.approx(DONE["friction_40"], rel=1e-6)
     points, band = column(page, "friction_by_run")[1]

@@ -28,7 +28,7 @@ def test_both_models_stand_side_by_side(diagnosed, two_runs):
     assert "RMS torque error 2.00 N·m on run day-2, not used for fitting" in base.use
     assert "RMS torque error 1.00 N·m on run day-2, not used for fitting" in extended.use
     assert base.text in formula_text(diagnosed.model)
-    assert [name for name, _, _ in extended.terms] == ["stribeck", "direction asymmetry"]
+    assert [name for name, _, _ in extended.terms] == ["Stribeck friction", "direction asymmetry"]
     assert "ts*exp(-(v/vs)^k)" in extended.text
     assert "velocity = 8" in extended.text
     assert len(model_cards(two_runs)) == 1
@@ -39,7 +39,7 @@ def test_the_table_has_the_parameters_of_both_with_intervals(diagnosed, two_runs
     rows = {row[0]: row[1:] for row in table.rows}
     assert rows["τc"][:2] == ("10.57", "10.0 to 11.1")
     assert float(rows["τc"][2]) != 10.57
-    assert rows["stribeck: boundary torque"] == ("–", "–", "3.000", "2.50 to 3.50", "N·m")
+    assert rows["Stribeck friction: boundary torque"] == ("–", "–", "3.000", "2.50 to 3.50", "N·m")
     assert parameters_table(two_runs) is None
 
 

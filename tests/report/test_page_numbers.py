@@ -11,7 +11,7 @@ import pytest
 from frictioncli import schemas, tables
 from frictioncli.report import drawing
 from frictioncli.report.page import write_report
-from frictioncli.wording import number_text
+from frictioncli.wording import in_words, number_text
 from tests.report.page_numbers import Page, agrees, numbers
 
 FIXED = {
@@ -135,9 +135,9 @@ def test_pairs_are_those_of_the_torques(page, work):
 
 def test_smallest_sizes_are_those_of_the_diagnosis(page, documents):
     stated = documents["diagnosis"]["detectable"]
-    rows = {row[0]: row[-1] for row in table(page, "Smallest size of each effect")[1:]}
+    rows = {row[0]: row[1] for row in table(page, "Smallest size of each effect")[1:]}
     for name, size in stated.items():
-        shown = rows[name.replace("_", " ")]
+        shown = rows[in_words(name)]
         if size is not None and numbers(shown):
             assert agrees(numbers(shown)[0], [size])
 
@@ -206,7 +206,7 @@ def derived(work, documents):
 
 def operating_point(page, documents):
     """Friction at the operating point of the first screen, by equation (16)."""
-    stated = [text for _, tag, text in page.texts if tag == "dd" and "no load; " in text]
+    stated = [text for _, tag, text in page.texts if tag == "dd" and "; unloaded" in text]
     speed, temperature = (float(one) for one in numbers(stated[0])[:2])
     values = {n: one["estimate"] for n, one in documents["model"]["parameters"].items()}
     viscous = values["beta"] + values["gamma"] * np.exp(-values["delta"] * temperature)

@@ -54,8 +54,8 @@ def test_limitations_are_stated(correlated, without_temperature):
     assert sentences == [
         "β is known only roughly: 0.500 to 3.50 N·m.",
         "τc and β are not determined separately (correlation −0.95): they compensate each other.",
-        "Which of run in and drift is the cause: these data cannot distinguish them. Rest a day.",
-        "Whether there is drift: these data cannot show it.",
+        "These data cannot distinguish run-in and drift. Rest a day.",
+        "Effects that these data cannot show: drift.",
     ]
     alone = limitations(without_temperature, None)
     assert alone[0] == ("γ is not determined: the log has no temperature; merged into beta.")

@@ -105,7 +105,7 @@ def test_parameters(two_runs, without_temperature):
     [
         ("no_evidence", [], GOOD, "No cause"),
         ("named", ["thermal_lag"], FAIR, "lacks thermal lag"),
-        ("ambiguous", ["run_in", "drift"], FAIR, "lacks run in or drift"),
+        ("ambiguous", ["run_in", "drift"], FAIR, "lacks run-in or drift"),
         ("unnamed", [], POOR, "no known effect"),
     ],
 )

@@ -83,7 +83,7 @@ def test_verdict_tells_the_causes_and_their_worth(two_runs):
     assert summary_text(two_runs, logged).endswith("The measurement adds torque delay.")
     both = diagnosis(causes=(cause(["stribeck"]), delay))
     assert summary_text(two_runs, both).endswith(
-        "The function does not model stribeck, and the measurement adds torque delay."
+        "The function does not model Stribeck friction, and the measurement adds torque delay."
     )
 
 

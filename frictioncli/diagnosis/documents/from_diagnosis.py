@@ -1,5 +1,6 @@
 """``diagnosis.json`` and ``extended-model.json`` of a diagnosis."""
 
+from collections.abc import Mapping
 from dataclasses import fields, replace
 
 import numpy as np
@@ -42,7 +43,8 @@ from frictioncli.diagnosis.search.cause import Cause
 from frictioncli.diagnosis.search.timing_causes import DELAY, FILTER
 from frictioncli.diagnosis.settings import DiagnosisSettings
 from frictioncli.diagnosis.thermal.refine import LAG
-from frictioncli.effects import torque_delay, torque_filter
+from frictioncli.effects import stribeck, torque_delay, torque_filter
+from frictioncli.effects.base import Effect
 from frictioncli.effects.history_text import history_text
 from frictioncli.model.document import PARAMETERS, FrictionModel
 from frictioncli.model.friction import FrictionParameters
@@ -188,7 +190,7 @@ def _record(
     diagnosis: Diagnosis, cause: Cause, parameters: dict[str, ParameterRecord], figure: str | None
 ) -> CauseRecord:
     effect = cause.fit.effect
-    said = statement(effect, parameters)
+    said = statement(effect, parameters, words_for(diagnosis, effect, parameters))
     if cause.effects == (DELAY,) and diagnosis.timing is not None:
         delay, time_constant = map(_seconds, diagnosis.timing.estimates())
         parameters = {"delay": delay}
@@ -223,6 +225,26 @@ def _record(
         figure=figure,
         experiment=effect.experiment,
     )
+
+
+def words_for(
+    diagnosis: Diagnosis, effect: Effect, parameters: Mapping[str, ParameterRecord]
+) -> str | None:
+    """Return the sentence on an effect where its own would mislead; None where it does not.
+
+    Parameters
+    ----------
+    diagnosis : Diagnosis
+        The diagnosis.
+    effect : Effect
+        The effect.
+    parameters : mapping of str to ParameterRecord
+        Its parameters.
+    """
+    slowest = float(np.min(diagnosis.base.table.speed))
+    if effect.name == stribeck.EFFECT.name and parameters["velocity"].estimate < slowest:
+        return stribeck.EXTRAPOLATED
+    return None
 
 
 def _seconds(found: RampEstimate) -> ParameterRecord:

@@ -20,6 +20,7 @@ from frictioncli.diagnosis.documents.sentences import (
     size_text,
     standing_text,
 )
+from frictioncli.wording import list_text
 
 
 def verdict_text(document: DiagnosisDocument) -> str:
@@ -33,7 +34,8 @@ def verdict_text(document: DiagnosisDocument) -> str:
     unit = document.torque_unit
     first = (
         f"joint {document.joint}: {document.verdict}; the simulated torque differs from the"
-        f" measured one by {document.simulation.rmse:.3g} {unit} (RMS)"
+        f" measured one by {document.simulation.rmse:.3g} {unit} (RMS,"
+        f" {list_text(document.runs)})"
     )
     lines = [line for cause in document.named_causes for line in _cause_lines(cause, document)]
     lines += [
