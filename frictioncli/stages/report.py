@@ -7,7 +7,7 @@ from frictioncli.files import check_own
 from frictioncli.stages.stage import StageResult, stage
 from frictioncli.workfiles import REPORT
 
-_OWN = re.compile(r"index\.html|[^/]+\.(svg|png)|data/[^/]+\.(csv|parquet|json)")
+_OWN = re.compile(r"index\.html|[^/]+\.(svg|png)|data/[^/]+\.(csv|parquet|json|src|dat|script)")
 
 
 @stage

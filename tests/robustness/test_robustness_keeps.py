@@ -4,7 +4,7 @@ import shutil
 
 import pytest
 
-from frictioncli.errors import FrictionError, LogError, OptionError
+from frictioncli.errors import FrictionError, LogError, OptionError, TableError
 from frictioncli.files import write_text
 from frictioncli.fleet import fleet as fleets
 from frictioncli.fleet.fleet import run_fleet
@@ -46,6 +46,15 @@ def test_a_folder_of_the_user_is_not_replaced_by_a_report(tmp_path, name):
     with pytest.raises(FrictionError, match="which frictioncli did not write"):
         report(tmp_path)
     assert own.read_text(encoding="utf-8") == "mine"
+
+
+@pytest.mark.parametrize("name", ["friction_a2.src", "friction_a2.dat", "friction_a2_check.script"])
+def test_a_report_that_offers_a_robot_program_is_replaced(tmp_path, name):
+    offered = tmp_path / "report" / "data" / name
+    offered.parent.mkdir(parents=True)
+    offered.write_text("", encoding="utf-8")
+    with pytest.raises(TableError):  # there are no torques to report on; the folder is no reason
+        report(tmp_path)
 
 
 def test_a_folder_in_the_place_of_a_file_stays(tmp_path):
