@@ -287,7 +287,7 @@ def verdict(joints: Sequence[Joint]) -> str:
     text = f"{reached} of {len(GATES)} gates are reached."
     if missed:
         parts = [f"{one.what}: {one.text(joints)}, must be {one.must}" for one in missed]
-        text += " **Missed** are: " + "; ".join(parts) + "."
+        text += " Missed: " + "; ".join(parts) + "."
     if unmeasured:
         text += " Not measured: " + "; ".join(unmeasured) + "."
     return text

@@ -13,28 +13,28 @@ _TEXT = """# Structure without a name
 
 **{reached} of {gates} gates are reached.{missed}**
 
-Laws that are not in the catalogue, added to the torques of simulated joints with all nuisances
-(those of the [blind study](blind.md)), 1 N·m RMS each over two days; the second day is kept out.
-None of the formulas is one that the analysis uses for its descriptions: bumps are raised cosines or
-Lorentz curves, peaks hyperbolic secants. `make unnamed` makes this page.
-Each law is planted in each programme listed, in a joint of its own, of which the number is given.
-Thresholds of the search for forms were chosen with other joints, 100 to 111, which gave 22 of 24,
-20 of 22, and 22 of 24 in the second, fourth and fifth row of the table.
+Laws that are not in the catalogue are added to the torques of simulated joints with all nuisances
+of the [blind study](blind.md), 1 N·m RMS each over two days; the second day is held out. The
+formulas differ from those with which the analysis describes structure: bumps are raised cosines or
+Lorentz curves, peaks are hyperbolic secants. `make unnamed` makes this page. Each law is planted
+once per programme, each time in a different joint, whose number is given. The thresholds of the
+search for forms were chosen on other joints, 100 to 111, which gave 22 of 24, 20 of 22, and 22 of
+24 in the second, fourth and fifth row of the first table.
 
-*Left* is what base model and measurement effects leave of a law on the day seen; less than the
-*margin*, 0.5 % of the friction, is not looked for. A law of which 1 N·m leaves less is planted a
-second time, so much larger that 0.75 N·m is left, as of most others. The *size* stated is compared
-with what the base model alone leaves. *Gain* is that of the empirical term on the day kept out, as
-a share of what knowing the law would give: the same joint diagnosed without it. It can exceed 1,
-since the term also takes up what the nuisances leave.
+*Left* is what base model and measurement effects leave of a law on the first day. Less than the
+*margin*, 0.5 % of the friction, is not searched for. Where 1 N·m leaves less, the law is planted
+again, so large that 0.75 N·m is left, as of most others. The *size* stated is compared with what
+the base model alone leaves. *Gain* is the improvement by the empirical term on the held-out day, as
+a share of the improvement by knowing the law, which is that of the same joint diagnosed without it.
+It can exceed 1, since the term also absorbs what the nuisances leave.
 
-Nuisances may leave more than the margin. A form that leads is evidence beyond what they leave; free
-functions are not, and are used only where they surely explain more than the root sum of squares of
-margin and 0.75 % of the friction, which is expected of any joint: 0.47 N·m here.
+Nuisances may leave more than the margin. A form that beats all others is evidence of something
+else; a free function is not. It is used only where it clearly explains more than margin and 0.75 %
+of the friction together (root sum of squares, 0.47 N·m here), which any joint may have.
 
-What goes with temperature is hard to tell from drift where the joint heats up and cools down once
-or twice: the noise is estimated anew beside each form, and a form needs very strong evidence
-against drift.
+Where a joint heats up and cools down only once or twice, an effect of temperature is hard to
+distinguish from drift. So the noise is estimated again with each form, and a form needs very strong
+evidence against drift.
 
 ## Gates
 | figure | must reach | measured | |
@@ -45,8 +45,8 @@ against drift.
 {head}
 {laws}
 
-What is described as nothing is located only, if at all: no form led the others, or none did as well
-as the free function.
+"Nothing" in the last column means that no form was better than all others, or none as good as the
+free function; the structure is then located at most.
 """
 
 _HEAD = (
