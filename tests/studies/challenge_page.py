@@ -72,9 +72,9 @@ def gates(cases: dict[str, list[Row]]) -> str:
             [1 / CLOSE <= one <= CLOSE for one in ratios],
         ),
         "",
-        f"Beside these, {count_text(len(beyond), 'trial')} at the usual size where the diagnosis"
-        " says that it is too small for these data:"
-        f" {sum(bool(row['right_in_set']) for row in beyond)} were found all the same.\n",
+        f"In {count_text(len(beyond), 'further trial')} the diagnosis says that the usual size is"
+        " too small for these data; the effect was found in"
+        f" {sum(bool(row['right_in_set']) for row in beyond)} of them.\n",
     ]
     return "\n".join(lines)
 
