@@ -127,7 +127,7 @@ def at_bound(estimate: Estimate) -> dict[str, str]:
             if abs(estimate.parameters.delta / bound - 1) < 1e-3:
                 flags["delta"] = f"at the bound {bound:g} of its search range"
         if "delta" not in flags and estimate.interval("delta")[0] <= 0:
-            flags["delta"] = "the data do not show that friction falls with temperature"
+            flags["delta"] = "its interval includes 0, no fall with temperature"
     return flags
 
 

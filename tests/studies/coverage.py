@@ -65,7 +65,7 @@ def main(repetitions: int) -> None:
     lines = [
         "# Do the intervals hold?",
         "",
-        "Share of 95 % intervals of `fit` that hold the truth, and the same for the textbook",
+        "Share of 95 % intervals of `fit` that contain the true value, and the same for the textbook",
         f"formula that takes all rows as independent. {repetitions} simulated thermal cycles per",
         "line, made by `tests/equation_16.py`: the paper's cycle at four speeds with 34 angle",
         "bins, points of 0.3 N·m, pairs of 0.25 N·m where not said otherwise. Widths are relative",
