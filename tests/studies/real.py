@@ -29,33 +29,34 @@ from tests.studies.real_text import Tried, section, table
 PAGE = Path(__file__).parents[2] / "docs" / "real.md"
 
 _HEAD = (
-    "Logs that nobody here wrote, from public repositories; they are not part of this one. `make"
+    "Logs written by others, from public repositories; they are not part of this one. `make"
     " real REAL=FOLDER` runs every folder in FOLDER and writes this page: `run` unaided with"
-    " default settings, then with the map that `inspect --suggest-map` suggests. Beside it stand"
-    " figures of an independent script (`tests/studies/real_independent.py`), about thirty lines"
-    " per set, which shares no code with the program: half differences there and back in 5-degree"
-    " bins, or least squares of all samples. Sentences in quotation marks, on channels and on what"
-    " is not determined are the program's own. Intervals of friction by pairs are of the mean over"
-    " pairs of one speed, taken as independent; those of a regression are its own. Deviation is"
-    " the program's friction over the independent one, minus 1, at the speeds shown. The figures"
-    " that defend each diagnosis are in [real-diagnoses.md](real-diagnoses.md)."
+    " default settings, then with the map that `inspect --suggest-map` suggests. For"
+    " comparison, an independent script (`tests/studies/real_independent.py`), about thirty"
+    " lines per set, computes half differences there and back in 5-degree bins, or least"
+    " squares of all samples; it shares no code with the program. Sentences in quotation"
+    " marks, on channels and on what is not determined are the program's own. Intervals of"
+    " friction from pairs are those of the mean over pairs of one speed, taken as independent;"
+    " those of a regression are its own. Deviation is the program's friction divided by the"
+    " independent one, minus 1, at the speeds shown. The figures for each diagnosis are in"
+    " [real-diagnoses.md](real-diagnoses.md)."
 )
 
 _LIMITS = (
-    "No log has a known friction. The independent figures are another reading of the same files by"
-    " people who knew what the program says; they share its columns, its idea of half a"
-    " difference, and any fault of the sensors. Agreement says that nothing was lost on the way,"
-    " not that the joint has this friction.",
-    "The independent script has no intervals, and averages over temperature, load and angle by"
-    " other weights than the program does: a few per cent of deviation are expected where friction"
-    " changes with them, as in the xArm6.",
-    "Few robots, most of them small, and few speeds. Nothing here tests friction over a wide span"
-    " of speed, temperature and load at once.",
-    "These logs were at hand while the program was written. How it does on logs that nobody has"
-    " seen, this page cannot say.",
-    "The true cause of no diagnosis is known, but for the weight in the hand of the xArm6.",
-    "What a user would call right or wrong is our own view, written by hand into the list of cases"
-    " (`tests/studies/real_cases.py`); it may lag behind the program.",
+    "No log has a known friction. The independent figures come from the same files, by people"
+    " who knew the program's results; they share its columns, its half differences and any"
+    " fault of the sensors. Agreement shows that nothing was lost on the way, not that the"
+    " joint has this friction.",
+    "The independent script has no intervals, and it averages over temperature, load and"
+    " angle with other weights than the program: where friction changes with these, as in the"
+    " xArm6, deviations of a few per cent are expected.",
+    "There are few robots, most of them small, and few speeds. Nothing here tests friction"
+    " over a wide range of speed, temperature and load at once.",
+    "These logs were at hand while the program was written. The page does not show how the"
+    " program does on other logs.",
+    "The true cause is known of no diagnosis except for the weight in the hand of the xArm6.",
+    "The judgements of refusals and results are our own, written by hand into the list of"
+    " cases (`tests/studies/real_cases.py`); they may be older than the program.",
 )
 
 

@@ -145,7 +145,7 @@ def section(tried: Tried) -> str:
     if case.refused and tried.unaided.refusal:
         parts.append(f"Is the refusal right? {case.refused}")
     if case.doubt and not final.refusal:
-        parts.append(f"What a user would call wrong: {case.doubt}")
+        parts.append(f"Doubtful about the result: {case.doubt}")
     return "\n\n".join(parts)
 
 
@@ -220,14 +220,14 @@ def _by_hand(tried: Tried) -> str:
     else:
         offered = f"The suggested map {_against(tried.unaided, tried.suggested)}."
     if tried.written is None:
-        return f"By hand: nothing was written. {offered}"
+        return f"No map was written by hand. {offered}"
     if tried.written.refusal:
         return (
             f"By hand: with a map that a person wrote ({tried.case.map}) it is refused. {offered}"
         )
     return (
-        f"By hand: a map was written once ({tried.case.map}); against the result"
-        f" {'unaided' if not tried.unaided.refusal else 'with the suggested map'} it"
+        f"By hand: a map was written once ({tried.case.map}); compared with the"
+        f" {'unaided result' if not tried.unaided.refusal else 'result of the suggested map'} it"
         f" {_against(tried.shown, tried.written)}. {offered}"
     )
 
