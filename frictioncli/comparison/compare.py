@@ -27,6 +27,7 @@ from frictioncli.comparison.settings import USUAL_MARGIN, ComparisonSettings
 from frictioncli.diagnosis.data.build_problem import build_problems
 from frictioncli.errors import NotEnoughData
 from frictioncli.model.zero_load import temperature_of
+from frictioncli.wording import count_text
 
 _LEAST_PAIRS = 3
 """Least number of pairs in a run."""
@@ -196,8 +197,9 @@ def _check_pairs(history: RunHistory, usable: pd.DataFrame) -> None:
         count = int(pairs.get(number, 0))
         if count < _LEAST_PAIRS:
             raise NotEnoughData(
-                f"{run.label}: {count} pair(s) of counter-directed moves that can be used, expected"
-                f" at least {_LEAST_PAIRS} in each run; leave the run out, or log more moves"
+                f"{run.label}: {count_text(count, 'pair')} of counter-directed moves that can be"
+                f" used, expected at least {_LEAST_PAIRS} in each run; leave the run out, or log"
+                " more moves"
             )
 
 

@@ -4,6 +4,7 @@ from frictioncli.comparison.causes import CauseOfChange
 from frictioncli.comparison.compare import Comparison
 from frictioncli.comparison.day_to_day import LevelEstimate
 from frictioncli.comparison.from_comparison import load_unit
+from frictioncli.wording import probability_text
 
 _WEAK = (
     "two runs do not show how much a joint varies from day to day: the interval relies on an"
@@ -68,7 +69,7 @@ def _estimate_text(comparison: Comparison, estimate: LevelEstimate) -> str:
 
 
 def _cause_text(comparison: Comparison, cause: CauseOfChange) -> str:
-    shares = [f"{name} ({cause.probabilities[name]:.0%})" for name in cause.effects]
+    shares = [f"{name} ({probability_text(cause.probabilities[name])})" for name in cause.effects]
     since = ""
     if cause.change_point is not None:
         since = f" since {comparison.history.runs[cause.change_point].label}"

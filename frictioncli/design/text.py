@@ -7,6 +7,7 @@ from itertools import groupby
 from frictioncli.design.from_plan import interval_records, raised_chances
 from frictioncli.design.plan import Plan
 from frictioncli.design.programs.robot_program import SAFETY_NOTE
+from frictioncli.wording import probability_text
 
 _LIKELY = 0.01
 """Least probability of a rival that is mentioned."""
@@ -22,7 +23,9 @@ def plan_text(
         + (f", and {plan.check_timings[-1].end / 60:.0f} min on the next day" if plan.check else "")
     ]
     for number, question in enumerate(plan.criterion.open_questions.questions):
-        shares = ", ".join(f"{name} {share:.0%}" for name, share in question.probabilities.items())
+        shares = ", ".join(
+            f"{name} {probability_text(share)}" for name, share in question.probabilities.items()
+        )
         now, after = plan.expected[0].decision[number], plan.expected[-1].decision[number]
         lines.append(f"  open: {shares}; the right name alone: {_chance(now)} now,")
         last = plan.after_check.decision[number]
@@ -88,13 +91,14 @@ def _blocks_text(plan: Plan, first: int, last: int, *, tell: bool) -> list[str]:
         raised = raised_chances(question, before, after, place)
         for truth, rival, old, new in [one for one in raised if likely[one[0]] >= _LIKELY][:2]:
             lines.append(
-                f"         rules out {rival} if {truth} is the cause: {old:.0%} to {new:.0%}"
+                f"         rules out {rival} if {truth} is the cause:"
+                f" {100 * old:.0f} to {100 * new:.0f} %"
             )
     return lines
 
 
 def _chance(value: float) -> str:
-    return "less than 1 %" if value < 0.01 else f"{value:.0%}"
+    return "less than 1 %" if value < 0.01 else f"{100 * value:.0f} %"
 
 
 def _too_little(value: float) -> str:

@@ -18,7 +18,7 @@ from frictioncli.model.late_torque import (
 from frictioncli.model.observations import observations
 from frictioncli.model.paper_method import consecutive_fit
 from frictioncli.model.settings import LEAST_OPPOSING, LEAST_PAIRS, FitSettings, not_opposing
-from frictioncli.wording import quantity_text
+from frictioncli.wording import count_text, quantity_text
 
 _LATE = (
     "the torque in these logs lags the position by {delay}; what this adds is taken off friction"
@@ -67,13 +67,14 @@ def fit_joint(torques: pd.DataFrame, facts: dict[str, Any], settings: FitSetting
     separated_by = facts.get("separated_by", {}).get(str(joint), "pairs")
     if n_pairs < LEAST_PAIRS and separated_by == "regression":
         raise NotEnoughData(
-            f"joint {joint}: {n_pairs} group(s) of one speed, temperature and time found by"
-            f" regression, expected at least {LEAST_PAIRS}; log more motion"
+            f"joint {joint}: {count_text(n_pairs, 'group')} of one speed, temperature and time"
+            f" found by regression, expected at least {LEAST_PAIRS}; log more motion"
         )
     if n_pairs < LEAST_PAIRS:
         raise NotEnoughData(
-            f"joint {joint}: {n_pairs} pair(s) of counter-directed moves found, expected at least"
-            f" {LEAST_PAIRS}; log more moves, or loosen the options of 'frictioncli pair'"
+            f"joint {joint}: {count_text(n_pairs, 'pair')} of counter-directed moves found,"
+            f" expected at least {LEAST_PAIRS}; log more moves, or loosen the options of"
+            " 'frictioncli pair'"
         )
     if settings.method == "paper":
         estimate, determination = consecutive_fit(known, observed, temperature)

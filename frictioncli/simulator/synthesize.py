@@ -68,7 +68,8 @@ class SynthesisSummary:
 
     def files_text(self) -> str:
         """Return the text about the files."""
-        lines = [f"{self.folder}: {len(self.runs)} simulated run(s), seed {self.seed}"]
+        noun = "run" if len(self.runs) == 1 else "runs"
+        lines = [f"{self.folder}: {len(self.runs)} simulated {noun}, seed {self.seed}"]
         lines += [
             f"  {run.name}: {run.recordings} recordings, {run.rows} samples; "
             f"heat-up {run.heating / 60.0:.0f} min, cool-down {run.cooling / 60.0:.0f} min"

@@ -145,7 +145,7 @@ def test_missing_housing_temperature_is_named():
 
 def test_too_few_pairs_are_named():
     table = torques(9)
-    with pytest.raises(NotEnoughData, match=r"2 pair\(s\)"):
+    with pytest.raises(NotEnoughData, match="2 pairs of"):
         fitted(table[table["pair"] < 2])
 
 

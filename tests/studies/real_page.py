@@ -26,13 +26,13 @@ _LONGEST = 420
 """Characters of a refusal; that of many files repeats itself."""
 
 _HEAD = (
-    "Logs that nobody here wrote, from public repositories; they are not part of this one."
+    "Logs written by others, from public repositories; they are not part of this one."
     " `make real-diagnoses REAL=FOLDER` reads them from FOLDER and writes this page. Each went"
     " through the chain with default settings and, where its channels cannot be found, a mapping"
     " file (`tests/studies/real_maps`). Sentences on findings are the program's own; what is known"
-    " from elsewhere and what we think of the result stand apart. Figures: means of measured minus"
-    " simulated torque with twice their standard error over pairs, against the quantity in which"
-    " the finding shows."
+    " from elsewhere and our opinion of the result are marked as such. Figures: means of measured"
+    " minus simulated torque with twice their standard error over pairs, against the quantity in"
+    " which the finding shows."
 )
 
 

@@ -234,7 +234,7 @@ def empirical_text(document: DiagnosisDocument) -> str:
     on = "on pairs not used for fitting"
     if found.basis == "new_run":
         on = f"on run {document.held_out}, not used for fitting,"
-    low, high = (f"{share:.0%}".replace("-", "−") for share in found.ci95)
+    low, high = (f"{100 * share:.0f}".replace("-", "−") for share in found.ci95)
     what = ""
     # structure that a form describes is said already
     if found.forms and (document.structure is None or document.structure.formula is None):
@@ -242,8 +242,8 @@ def empirical_text(document: DiagnosisDocument) -> str:
     return (
         f"An empirical term for the unexplained part reduces the misfit {on} from"
         f" {number_text(found.rmse_before, 2)} to {number_text(found.rmse_after, 2)} {unit} (RMS):"
-        f" {found.reduction:.0%} less ({low} to {high}).{what} It names no cause and is valid only"
-        f" {_within_text(found, document.unit_of('load'))}."
+        f" {100 * found.reduction:.0f} % less ({low} to {high}).{what} It names no cause and is"
+        f" valid only {_within_text(found, document.unit_of('load'))}."
     )
 
 

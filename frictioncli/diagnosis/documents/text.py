@@ -20,7 +20,7 @@ from frictioncli.diagnosis.documents.sentences import (
     size_text,
     standing_text,
 )
-from frictioncli.wording import list_text
+from frictioncli.wording import list_text, probability_text
 
 
 def verdict_text(document: DiagnosisDocument) -> str:
@@ -57,7 +57,9 @@ def verdict_text(document: DiagnosisDocument) -> str:
 
 
 def _cause_lines(cause: CauseRecord, document: DiagnosisDocument) -> Iterator[str]:
-    shares = [f"{name} ({cause.probabilities.get(name, 0.0):.0%})" for name in cause.effects]
+    shares = [
+        f"{name} ({probability_text(cause.probabilities.get(name, 0.0))})" for name in cause.effects
+    ]
     kind = "measurement: " if cause.is_measurement else ""
     yield f"{kind}{' or '.join(shares)}: {finding_text(cause)}"
     yield f"  size: {size_text(cause, document)}; p-value {chance_text(cause)}"
@@ -85,6 +87,10 @@ def _visible_lines(cause: CauseRecord, document: DiagnosisDocument) -> Iterator[
         yield f"  found: {note}"
 
 
+def _percent(share: float) -> str:
+    return f"{100 * share:.0f}".replace("-", "−")
+
+
 def _gain_text(gain: GainRecord, document: DiagnosisDocument) -> str:
     unit = document.torque_unit
     where = (
@@ -94,6 +100,7 @@ def _gain_text(gain: GainRecord, document: DiagnosisDocument) -> str:
     )
     return (
         f"extended model: {gain.rmse_before:.3g} -> {gain.rmse_after:.3g} {unit} {where}, a gain of"
-        f" {gain.reduction:.0%} ({gain.ci95[0]:.0%} to {gain.ci95[1]:.0%}); noise floor"
+        f" {100 * gain.reduction:.0f} % ({_percent(gain.ci95[0])} to {_percent(gain.ci95[1])});"
+        f" noise floor"
         f" {gain.noise_floor:.2g} {unit}"
     )

@@ -185,10 +185,14 @@ def _moving_peak(form: FormFunction, unit: str) -> str:
     )
 
 
+def _times(order: float) -> str:
+    return "once" if order == 1 else f"{order:g} times"
+
+
 def _warm_wave(form: FormFunction, unit: str) -> str:
     growth = math.hypot(form.coefficients["cosine_per_10K"], form.coefficients["sine_per_10K"])
     return (
-        f"friction that goes up and down {form.shape['order']:g} times per turn, by an"
+        f"friction that goes up and down {_times(form.shape['order'])} per turn, by an"
         f" amount that changes by {_size(growth, unit)} per 10 °C"
     )
 
@@ -196,9 +200,9 @@ def _warm_wave(form: FormFunction, unit: str) -> str:
 def _turning_wave(form: FormFunction, unit: str) -> str:
     size = math.hypot(form.coefficients["cosine"], form.coefficients["sine"])
     return (
-        f"friction that goes up and down {form.shape['order']:g} times per turn by up to"
-        f" {_size(size, unit)}, the other way round below {_number(form.shape['turn'])} deg/s than"
-        " above"
+        f"friction that goes up and down {_times(form.shape['order'])} per turn by up to"
+        f" {_size(size, unit)}, with opposite signs below and above"
+        f" {_number(form.shape['turn'])} deg/s"
     )
 
 

@@ -68,6 +68,8 @@ def beyond(fit: EffectFit, bounds: tuple[Array, Array], errors: float = Z95) -> 
 
 def _impossible_value(parameter: Parameter, value: float) -> str:
     shown = with_unit(parameter, value)
+    if parameter.unit.startswith("%"):
+        return f"it would be {shown}, which is physically impossible"
     return f"its {in_words(parameter.name)} would be {shown}, which is physically impossible"
 
 
