@@ -38,7 +38,8 @@ class CorrectionSettings:
         metadata=option("Speed of correction pairs [deg/s]; default: 2/3 of the highest."),
     )
     smoothing_degree: int = field(
-        default=3, metadata=option("Degree of the polynomial that smooths (21).")
+        default=3,
+        metadata=option("Degree of the polynomial that smooths friction for epsilon (21)."),
     )
 
     def __post_init__(self) -> None:

@@ -101,7 +101,7 @@ class SynthesisSettings:
         default=(),
         metadata=option(
             "Effect to hide, repeatable; SIZE is its RMS at constant speed [N·m], 0.5 to 2 if not"
-            " given. A change may be NAME@vanishing or NAME@recurring. A wrong name lists all.",
+            " given. A change may be NAME@vanishing or NAME@recurring. An unknown name lists all.",
             "--effect",
             metavar="NAME[:SIZE]",
         ),
@@ -109,7 +109,7 @@ class SynthesisSettings:
     nuisances: tuple[str, ...] = field(
         default=(),
         metadata=option(
-            "Nuisance of joint or log, repeatable; all: each at an ordinary size. A wrong name"
+            "Nuisance of joint or log, repeatable; all: each at an ordinary size. An unknown name"
             " lists all; units are those of truth.json [s, N·m, deg, °C, %].",
             "--nuisance",
             metavar="NAME[:SIZE]",
