@@ -48,7 +48,7 @@ def _described(document: DiagnosisDocument, name: str) -> str:
     summary = BY_NAME[name].summary if name in BY_NAME else ""
     if document.detectable[name] is not None or name in document.found:
         return summary
-    why = document.undetectable.get(name, UNDETECTABLE)
+    why = document.undetectable.get(name, UNDETECTABLE).removesuffix(" with these data")
     return f"{summary} {why[:1].upper()}{why[1:]}.".lstrip()
 
 

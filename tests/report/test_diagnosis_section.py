@@ -91,9 +91,7 @@ def test_section_says_what_was_found(diagnosed):
     assert section.detectable.rows[0][1] == "0.40"
     assert [row[1] for row in section.detectable.rows[1:3]] == [NONE, NONE]
     assert section.detectable.rows[1][2].endswith(f" C{UNDETECTABLE[1:]}.")
-    assert section.detectable.rows[2][2].endswith(
-        " Cannot be distinguished from the base model with these data."
-    )
+    assert section.detectable.rows[2][2].endswith(" Cannot be distinguished from the base model.")
     assert section.worst.rows[0] == (
         "temperature 25.0 to 31.0 °C",
         "rising",
@@ -263,7 +261,7 @@ def test_an_effect_that_is_named_is_never_said_to_be_undetectable():
         "drift": NONE,
         "run-in": "1.0",
     }
-    reason = TAKEN_BY_BASE.removeprefix("c")
+    reason = TAKEN_BY_BASE.removeprefix("c").removesuffix(" with these data")
     assert [reason in row[1] for row in rows.values()] == [False, True, False]
     assert detectable_text(document).endswith("with these data: drift.")
 
