@@ -76,7 +76,7 @@ def _as_c(joint: DeployedModel, settings: ExportSettings) -> tuple[str, tuple[st
     notes = _left_out(joint)
     text = c_header(joint, [*_origin(joint), FORM, *notes, *_accuracy(joint)])
     return text, notes or (
-        "nothing is lost: friction, its inverse and the correction of (17)-(20)",
+        "nothing is lost: friction, its inverse and the corrections by equations (17) to (20)",
     )
 
 
