@@ -5,8 +5,10 @@ import json
 import numpy as np
 import pytest
 
+from frictioncli.errors import LogError
 from frictioncli.inspection.inspect import inspect
 from frictioncli.logs.formats import open_log
+from frictioncli.logs.ingest import IngestSettings, ingest
 from frictioncli.logs.log_source import CsvHints, Refusal
 from tests.command_line import invoke
 
@@ -83,6 +85,15 @@ def test_a_cell_that_is_no_number_is_named(tmp_path):
     (file,) = inspect([tmp_path / "log.csv"]).files
     assert "line 3" in file.refusal
     assert "torque [Nm] is '1.234,5'; expected a number with decimal comma" in file.refusal
+
+
+def test_a_log_with_an_added_column_names_its_damaged_cells(tmp_path):
+    """The position that is integrated, and the time that a period gives, stand in no cell."""
+    (tmp_path / "log.csv").write_text("velocity [deg/s],torque [Nm]\n" + "1.0,1.2.3\n" * 40)
+    chart = tmp_path / "map.toml"
+    chart.write_text("[csv]\nperiod = 0.01\n", encoding="utf-8")
+    with pytest.raises(LogError, match=r"line 2: 1\.0,1\.2\.3: torque .* expected a number"):
+        ingest([tmp_path / "log.csv"], tmp_path / "work", IngestSettings(map_file=chart))
 
 
 def test_rows_without_a_time_are_told_to_give_the_period(tmp_path):

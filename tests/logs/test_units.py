@@ -59,6 +59,31 @@ def test_motion_ratio(position_factor, velocity_factor, ratio):
     assert unit_evidence.motion_ratio([motion]) == pytest.approx(ratio, rel=0.01)
 
 
+@pytest.mark.parametrize("channel", ["time", "position", "velocity"])
+@pytest.mark.parametrize("value", [9.2e18, -1e4, 300.0, 0.0])
+@pytest.mark.parametrize("row", [0, 7, 100, -1])
+def test_one_damaged_value_does_not_change_the_motion_ratio(channel, value, row):
+    """A clock in ms beside rad and rad/s: without the ratio the log is 1000 times too slow."""
+    time, position, velocity, _ = back_and_forth()
+    values = {"time": 1000 * time, "position": position.copy(), "velocity": velocity.copy()}
+    values[channel][row] = value
+    ratio = unit_evidence.motion_ratio([unit_evidence.RawMotion(**values)])
+    assert ratio == pytest.approx(1e-3, rel=0.01)
+
+
+@pytest.mark.parametrize(("begin", "damaged"), [(1.7e12, -1.0), (0.0, 1e18)])
+def test_a_damaged_first_time_does_not_change_the_unit(begin, damaged, tmp_path):
+    """Times since 1970 are known by their size: in ms here, or else in s from the begin."""
+    time, position, _, torque = back_and_forth()
+    per_second = 1000 if begin else 1
+    clock = begin + per_second * time
+    clock[0] = damaged
+    columns = {"time": clock, "position [deg]": position, "torque [Nm]": torque}
+    ingest([write(tmp_path / "log.csv", columns)], tmp_path / "work")
+    found = samples(tmp_path / "work")["time"]
+    np.testing.assert_allclose(np.diff(found), np.diff(time)[: len(found) - 1], atol=1e-3)
+
+
 def test_rest_and_noise_have_no_motion_ratio():
     time = np.arange(0, 5, 0.01)
     rng = np.random.default_rng(1)

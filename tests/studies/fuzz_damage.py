@@ -5,7 +5,7 @@ import random
 from collections.abc import Callable
 from dataclasses import dataclass
 
-from tests.studies.fuzz_layouts import Layout
+from tests.studies.fuzz_layout import Layout
 
 _CELLS = (
     b"nan",
@@ -210,7 +210,7 @@ ROW_DAMAGE: tuple[tuple[str, Callable[[bytes, random.Random], bytes]], ...] = (
 
 def _header(layout: Layout, draw: random.Random) -> Case:
     """Damage the lines before the first row."""
-    head = list(layout.head)
+    head = list(layout.head) or [b""]
     cells, delimiter = _cells(head[-1])
     at = draw.randrange(len(cells))
     kind = draw.randrange(8)

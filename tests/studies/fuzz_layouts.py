@@ -3,8 +3,7 @@
 import gzip
 import io
 import lzma
-from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field
+from collections.abc import Mapping
 
 import numpy as np
 import pyarrow as pa
@@ -12,89 +11,10 @@ import pyarrow.feather
 import pyarrow.parquet as pq
 from numpy.typing import NDArray
 
-from tests.logs.logs import back_and_forth
+from tests.studies.fuzz_layout import CALM, POSITION, TIME, TORQUE, VELOCITY, Layout, text_layout
+from tests.studies.fuzz_logger_layouts import logger_layouts
 
-TIME, POSITION, VELOCITY, TORQUE = back_and_forth(seconds=3.0)
-TORQUE = TORQUE + np.round(np.arange(len(TIME)) * 0.001, 3)  # every row is one of a kind
 _RATIO = 90.72
-_CALM = np.full(len(TIME), 31.0)
-
-
-def _as_is(content: bytes) -> bytes:
-    return content
-
-
-@dataclass(frozen=True, slots=True)
-class Layout:
-    """A folder of logs whose rows are known.
-
-    Attributes
-    ----------
-    name : str
-        Which layout.
-    log : str
-        File that is damaged most.
-    head, rows : tuple of bytes
-        Its lines before the first row, and its rows: one line each, without line ends.
-    newline : bytes
-        What ends a line.
-    pack : callable
-        From text as bytes to the file's content.
-    others : mapping of str to bytes
-        Further files of the folder.
-    map_file : str or None
-        Which of them is the mapping file.
-    gear_ratio : float or None
-        What the user says of a log of the motor's side.
-    joint : int
-        Whose rows they are; a damaged log may seem to have more.
-    binary : bytes
-        The log where it is no text; there are no lines then.
-    position, torque : ndarray of float, shape (n,)
-        What the rows say, in deg and in the log's own unit of torque.
-    """
-
-    name: str
-    log: str
-    head: tuple[bytes, ...] = ()
-    rows: tuple[bytes, ...] = ()
-    newline: bytes = b"\n"
-    pack: Callable[[bytes], bytes] = _as_is
-    others: Mapping[str, bytes] = field(default_factory=dict)
-    map_file: str | None = None
-    gear_ratio: float | None = None
-    joint: int = 2
-    binary: bytes = b""
-    position: NDArray[np.float64] = field(default_factory=lambda: POSITION)
-    torque: NDArray[np.float64] = field(default_factory=lambda: TORQUE)
-
-    def content(self, head: list[bytes] | None = None, rows: list[bytes] | None = None) -> bytes:
-        """Return the log's bytes, with other lines where they are given."""
-        if self.binary:
-            return self.binary
-        lines = [*(self.head if head is None else head), *(self.rows if rows is None else rows)]
-        return self.pack(self.newline.join(lines) + self.newline)
-
-
-def _text(
-    name: str,
-    columns: Mapping[str, NDArray[np.float64]],
-    *,
-    delimiter: str = ";",
-    decimal: str = ".",
-    encoding: str = "utf-8",
-    bom: bool = False,
-    digits: int = 9,
-    **more,
-) -> Layout:
-    """Return a delimited layout; the truth is what the written digits say."""
-    header = delimiter.join(columns).encode(encoding)
-    rows = [
-        delimiter.join(f"{value:.{digits}f}".replace(".", decimal) for value in row).encode()
-        for row in zip(*columns.values(), strict=True)
-    ]
-    mark = b"\xef\xbb\xbf" if bom else b""
-    return Layout(name, more.pop("log", "log.csv"), (mark + header,), tuple(rows), **more)
 
 
 def _kuka(**more: NDArray[np.float64]) -> dict[str, NDArray[np.float64]]:
@@ -102,7 +22,7 @@ def _kuka(**more: NDArray[np.float64]) -> dict[str, NDArray[np.float64]]:
         "Zeit[sec]": TIME,
         "AxisPos_Act2[°]": POSITION,
         "GearTorq_Act2[Nm]": TORQUE,
-        "Motortemperatur2[°C]": _CALM,
+        "Motortemperatur2[°C]": CALM,
         **more,
     }
 
@@ -115,9 +35,9 @@ def _universal_robots() -> Layout:
             f"actual_q_{joint}": np.radians(POSITION) * moves,
             f"actual_qd_{joint}": np.radians(VELOCITY) * moves,
             f"actual_current_{joint}": TORQUE * moves,
-            f"joint_temperatures_{joint}": _CALM,
+            f"joint_temperatures_{joint}": CALM,
         }
-    return _text("Universal Robots", columns, delimiter=" ", digits=12, newline=b"\r\n\r\n")
+    return text_layout("Universal Robots", columns, delimiter=" ", digits=12, newline=b"\r\n\r\n")
 
 
 def _variable_logger() -> Layout:
@@ -136,7 +56,7 @@ def _mapped() -> Layout:
         "Pos_1": POSITION,
         "Velocity_1": VELOCITY,
         "Current_1": TORQUE,
-        "Temp_1": _CALM,
+        "Temp_1": CALM,
     }
     chart = """[channels]
 time = "Time (s)"
@@ -154,7 +74,7 @@ motor_temperature = "degC"
 [joint]
 number = 2
 """
-    return _text(
+    return text_layout(
         "mapping file",
         columns,
         delimiter=",",
@@ -176,7 +96,7 @@ def _with_manifest() -> Layout:
     manifest = (
         "file;started_at;phase;payload;ambient\nlog.csv;2024-05-17T09:30:00;heat-up;2.5;21,5\n"
     )
-    return _text("manifest", _kuka(), others={"manifest.csv": manifest.encode()})
+    return text_layout("manifest", _kuka(), others={"manifest.csv": manifest.encode()})
 
 
 def _with_motion_information() -> Layout:
@@ -184,7 +104,7 @@ def _with_motion_information() -> Layout:
         "#BEGINMOTIONINFO\nTIME: 0.66\nMODULE: /R1/FRICTION\nTYPE: PTP\nSIGNAL: END\nLINE: 12\n"
         "VELOCITIES: {a1 100, a2 50}\nTOOL: {x 0, y 0, z 0, a 0, b 0, c 0}\n#ENDMOTIONINFO\n"
     )
-    return _text(
+    return text_layout(
         "KUKA trace, _PROG.TXT",
         _kuka(),
         encoding="cp1252",
@@ -199,7 +119,7 @@ def _columns() -> pa.Table:
             "time [s]": TIME,
             "position_2 [deg]": POSITION,
             "torque_2 [Nm]": TORQUE,
-            "motor_temperature_2 [degC]": _CALM,
+            "motor_temperature_2 [degC]": CALM,
         }
     )
 
@@ -242,21 +162,21 @@ def layouts() -> tuple[Layout, ...]:
     """Return every layout."""
     plain = _kuka()
     return (
-        _text("KUKA A", plain | {"AxisVel_Act2[°/s]": VELOCITY}, encoding="cp1252"),
-        _text("KUKA B", plain, delimiter="\t"),
-        _text(
+        text_layout("KUKA A", plain | {"AxisVel_Act2[°/s]": VELOCITY}, encoding="cp1252"),
+        text_layout("KUKA B", plain, delimiter="\t"),
+        text_layout(
             "KUKA C",
             {
                 "Istmoment_A2 (Nm)": TORQUE,
                 "Istposition_A2 (°)": POSITION * _RATIO,
-                "Motortemperatur_A2 (K)": _CALM + 273.15,
+                "Motortemperatur_A2 (K)": CALM + 273.15,
                 "Sample": TIME * 1000,
             },
             bom=True,
             gear_ratio=_RATIO,
             torque=TORQUE * _RATIO,
         ),
-        _text(
+        text_layout(
             "KUKA D",
             {
                 "Zeit(s)": TIME,
@@ -267,10 +187,10 @@ def layouts() -> tuple[Layout, ...]:
             gear_ratio=_RATIO,
             torque=TORQUE * _RATIO,
         ),
-        _text("decimal comma", plain, decimal=",", newline=b"\r\n"),
+        text_layout("decimal comma", plain, decimal=",", newline=b"\r\n"),
         _quoted(),
         _universal_robots(),
-        _text(
+        text_layout(
             "Franka",
             {
                 "time": TIME * 1000,
@@ -286,11 +206,16 @@ def layouts() -> tuple[Layout, ...]:
         _mapped(),
         _with_manifest(),
         _with_motion_information(),
-        _text("UTF-16", plain, pack=lambda text: text.decode("utf-8", "replace").encode("utf-16")),
-        _text("gzip", plain, log="log.csv.gz", pack=lambda text: gzip.compress(text, 1, mtime=0)),
-        _text("xz", plain, log="log.csv.xz", pack=lambda text: lzma.compress(text, preset=0)),
+        text_layout(
+            "UTF-16", plain, pack=lambda text: text.decode("utf-8", "replace").encode("utf-16")
+        ),
+        text_layout(
+            "gzip", plain, log="log.csv.gz", pack=lambda text: gzip.compress(text, 1, mtime=0)
+        ),
+        text_layout("xz", plain, log="log.csv.xz", pack=lambda text: lzma.compress(text, preset=0)),
         _diadem("DIAdem header", damaged="dat"),
         _diadem("DIAdem samples", damaged="r64"),
         Layout("Parquet", "log.parquet", binary=_parquet()),
         Layout("Feather", "log.feather", binary=_feather()),
+        *logger_layouts(),
     )

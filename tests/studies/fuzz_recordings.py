@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from pyarrow import feather
 from scipy.io import savemat
 
-from tests.studies.fuzz_layouts import POSITION, TIME, TORQUE, VELOCITY
+from tests.studies.fuzz_layout import POSITION, TIME, TORQUE, VELOCITY
 
 COLUMNS = {"time": TIME, "position_2": POSITION, "velocity_2": VELOCITY, "torque_2": TORQUE}
 

@@ -3,12 +3,16 @@
 from pathlib import Path
 
 import numpy as np
+import pandas as pd
 import pyarrow.parquet as pq
 
 from tests.studies.fuzz_damage import Case
 
 _NEIGHBOURS = 12
 """Rows about a damaged one that may go with it: it is not known which of them is wrong."""
+
+_SAME_TIME = 1e-4
+"""Greatest difference of a row's time. [s]"""
 
 
 def contradiction(case: Case, work: Path) -> str:
@@ -28,38 +32,57 @@ def contradiction(case: Case, work: Path) -> str:
     for _, one in recordings.iterrows():
         key = (samples["recording"] == one["recording"]) & (samples["joint"] == one["joint"])
         kept = int(key.sum())
-        lost = int((rows["recording"] == one["recording"]).sum())
-        if kept != one["rows_kept"] or lost != one["rows_rejected"]:
-            return f"{kept} samples and {lost} rejected rows, but {dict(one)}"
-        if kept + lost != one["rows_read"]:
-            return f"{kept} kept + {lost} rejected is not {one['rows_read']} read"
+        if kept != one["rows_kept"]:
+            return f"{kept} samples, but {dict(one)}"
+        if kept + one["rows_rejected"] != one["rows_read"]:
+            return f"{kept} kept + {one['rows_rejected']} rejected is not {one['rows_read']} read"
         if not (np.diff(samples["time"][key]) > 0).all():
             return "time does not grow"
+    for name, of_it in recordings.groupby("recording"):
+        lost = int((rows["recording"] == name).sum())
+        counts = of_it["rows_rejected"]
+        # a row is of all joints, or each is of one
+        if not (counts == lost).all() and counts.sum() != lost:
+            return f"{lost} rejected rows of {name}, but {counts.to_list()}"
     values = samples[["time", "position", "velocity", "torque"]].to_numpy()
     if not np.isfinite(values).all():
         return "a sample is no number"
-    if case.lines is not None and case.lines != recordings["rows_read"].iloc[0]:
-        return f"{case.lines} lines, but {recordings['rows_read'].iloc[0]} rows read"
+    read = recordings["rows_read"]
+    read = read.iloc[0] if case.layout.joints is None else read.sum()
+    if case.lines is not None and case.lines != read:
+        return f"{case.lines} lines, but {read} rows read"
     if case.whole is not None and case.touched is not None:
-        own = samples[samples["joint"] == case.layout.joint]
-        return _values(case, own["position"].to_numpy(), own["torque"].to_numpy())
+        return _values(case, samples[samples["joint"] == case.layout.joint])
     return ""
 
 
-def _values(case: Case, position: np.ndarray, torque: np.ndarray) -> str:
+def _values(case: Case, own: pd.DataFrame) -> str:
     """Compare the samples with the rows that nothing has touched."""
     assert case.whole is not None
     assert case.touched is not None
-    whole = list(case.whole)
-    expected = np.column_stack((case.layout.position, case.layout.torque))[whole]
-    found = np.column_stack((position, torque))
+    log = case.layout
+    whole = [i for i in case.whole if log.joints is None or log.joints[i] == log.joint]
+    expected = [log.torque] if log.position is None else [log.position, log.torque]
+    names = ["torque"] if log.position is None else ["position", "torque"]
     # rows are one of a kind: six digits tell which is which
-    known = {tuple(row) for row in np.round(expected, 6).tolist()}
-    known |= {tuple(row) for row in np.round(expected + 1e-7, 6).tolist()}
-    strange = [row for row in np.round(found, 6).tolist() if tuple(row) not in known]
+    known = {}
+    for shift in (1e-7, 0.0):
+        rounded = np.round(np.column_stack(expected)[whole] + shift, 6).tolist()
+        known |= {tuple(row): place for row, place in zip(rounded, whole, strict=True)}
+    found = [known.get(tuple(row)) for row in np.round(own[names].to_numpy(), 6).tolist()]
+    strange = [place for place, row in enumerate(found) if row is None]
     if len(strange) > case.touched:
-        return f"{len(strange)} samples are none of the {len(whole)} whole rows: {strange[:3]}"
+        some = own[names].iloc[strange[:3]].to_numpy().tolist()
+        return f"{len(strange)} samples are none of the {len(whole)} whole rows: {some}"
     least = len(whole) - _NEIGHBOURS * (case.touched + 1)
     if len(found) - len(strange) < least:
         return f"only {len(found) - len(strange)} of {len(whole)} whole rows were kept"
-    return ""
+    if log.time is None or len(found) == len(strange):
+        return ""
+    shifts = [
+        time - log.time[row]
+        for time, row in zip(own["time"].to_list(), found, strict=True)
+        if row is not None
+    ]
+    other = int(np.count_nonzero(np.abs(shifts - np.median(shifts)) > _SAME_TIME))
+    return f"{other} of {len(shifts)} whole rows have another time" if other else ""

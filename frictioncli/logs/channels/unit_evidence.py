@@ -3,6 +3,7 @@
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.lib.stride_tricks import sliding_window_view
 
 from frictioncli.arrays import Array
 from frictioncli.logs.channels.units import FACTORS, ONLY_WRITTEN
@@ -12,6 +13,9 @@ _UNSCALED_COST = 0.5
 preferred."""
 OUTLIER_FACTOR = 1e6
 """A value so many times larger than the 95 % quantile of absolute values is damaged."""
+
+_SPIKE_FACTOR = 10
+"""A velocity so many times larger than those before and after it, and than usual, is damaged."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -70,24 +74,30 @@ def _window_ratios(motion: RawMotion) -> Array:
         return np.empty(0)
     # a single damaged value must not raise the threshold of motion for all others
     speed = np.abs(motion.velocity)
-    usual = speed <= OUTLIER_FACTOR * (float(np.quantile(speed, 0.95)) or np.inf)
+    usually = float(np.quantile(speed, 0.95)) or np.inf
+    beside = np.maximum(np.append(speed[1], speed[:-1]), np.append(speed[1:], speed[-2]))
+    usual = speed / _SPIKE_FACTOR <= np.maximum(usually, beside)
+    usual &= speed / OUTLIER_FACTOR <= usually
     if not usual.all():
         motion = RawMotion(motion.time[usual], motion.position[usual], motion.velocity[usual])
     steps = np.diff(motion.time)
     if not np.any(steps > 0):
         return np.empty(0)
-    with np.errstate(over="ignore", invalid="ignore"):  # damaged times of 1e300 are left out below
-        increments = steps * (motion.velocity[1:] + motion.velocity[:-1]) / 2
-        integral = np.concatenate(([0.0], np.cumsum(increments)))
     period = float(np.median(steps))
     width = 1 if len(steps) < 200 else 8
-    with np.errstate(over="ignore", invalid="ignore"):
-        by_velocity = integral[width:] - integral[:-width]
+    if len(steps) < width:
+        return np.empty(0)
+    with np.errstate(over="ignore", invalid="ignore"):  # damaged values are left out below
+        increments = steps * (motion.velocity[1:] + motion.velocity[:-1]) / 2
+        # a sum of its own for each window: a damaged time would cost all later ones their digits
+        by_velocity = sliding_window_view(increments, width).sum(axis=1)
         by_position = motion.position[width:] - motion.position[:-width]
         elapsed = motion.time[width:] - motion.time[:-width]
-    known = np.isfinite(by_velocity) & np.isfinite(by_position)
-    without_gap = known & (elapsed > 0) & (elapsed < 2 * width * period)
-    fastest = np.max(np.abs(by_velocity), initial=0.0, where=known)
+        longest = 2 * width * period
+        even = sliding_window_view(np.abs(steps) < longest, width).all(axis=1)
+    known = np.isfinite(by_velocity) & np.isfinite(by_position) & even
+    without_gap = known & (elapsed > 0) & (elapsed < longest)
+    fastest = np.max(np.abs(by_velocity), initial=0.0, where=without_gap)
     moving = np.abs(by_velocity) > 0.3 * fastest
     return by_position[without_gap & moving] / by_velocity[without_gap & moving]
 

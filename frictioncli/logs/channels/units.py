@@ -201,10 +201,11 @@ def infer_time_unit(times: "list[Array]", declared: str | None) -> str:
 
     if declared is not None:
         return declared
-    starts = [abs(float(t[0])) for t in times if len(t)]
-    start = float(np.median(starts)) if starts else 0.0
+    # the first one of a log may be damaged
+    sizes = [abs(float(np.median(t))) for t in times if len(t)]
+    size = float(np.median(sizes)) if sizes else 0.0
     for limit, unit in ((1e17, "ns"), (1e14, "us"), (1e11, "ms")):
-        if start > limit:
+        if size > limit:
             return unit
     return "s"
 

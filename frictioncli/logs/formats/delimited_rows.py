@@ -69,7 +69,9 @@ class RowParser:
         cells = split(text, self.dialect.delimiter)
         if len(cells) != len(self.dialect.columns):
             return ""
-        for column in sorted(set(wanted).difference(self.dialect.texts)):
+        # other sources add columns, which stand in no cell
+        known = set(range(len(cells))).difference(self.dialect.texts)
+        for column in sorted(known.intersection(wanted)):
             if not self._are_numbers(pa.chunked_array([[cells[column]]], pa.string())).all():
                 sign = {".": "point", ",": "comma"}[self.dialect.decimal]
                 example = f"-1234{self.dialect.decimal}5"
