@@ -51,6 +51,8 @@ def check(summary, work, joints):
         ((0, 1, 2), "motor_id", {1: 0, 2: 1, 3: 2}),
         ((1, 2, 3), "Joint No", {1: 0, 2: 1, 3: 2}),
         ((11, 12, 7), "servo_id", {11: 0, 12: 1, 7: 2}),
+        # addresses of a bus
+        ((0x142, 0x141, 0x200), "motor_id", {2: 0, 1: 1, 3: 2}),
         (("hip", "knee", "ankle"), "joint_name", {1: 0, 2: 1, 3: 2}),
         (("z_axis", '"a, axis"', "m"), "axis", {1: 0, 2: 1, 3: 2}),
     ],
@@ -77,6 +79,24 @@ def test_a_column_of_names_that_do_not_take_turns_may_name_other_things(tmp_path
     path = long_log(tmp_path / "log.csv", ("cold", "warm", "hot"), "name", "blocks")
     recordings = inspect([path]).files
     assert [joint.joint for file in recordings for joint in file.joints] == [1]
+
+
+def test_addresses_on_a_bus_are_told(tmp_path):
+    path = long_log(tmp_path / "log.csv", (322, 321, 512))
+    notes = "\n".join(ingest([path], tmp_path / "work").notes)
+    assert "column motor_id: 321 is joint 1, 322 is joint 2, 512 is joint 3" in notes
+
+
+@pytest.mark.parametrize("column", ["motor [°C]", "motor", "drive"])
+def test_a_column_named_by_what_it_measures_is_no_joint(tmp_path, column):
+    """A temperature in whole degrees, which rises through the log."""
+    rows = [
+        f"{t:.3f},{p:.6f},{u},{30 + i // 100}"
+        for i, (t, p, u) in enumerate(zip(TIME, POSITION, TORQUE, strict=True))
+    ]
+    (tmp_path / "log.csv").write_text(f"time [s],q [deg],torque [Nm],{column}\n" + "\n".join(rows))
+    summary = ingest([tmp_path / "log.csv"], tmp_path / "work")
+    assert dict(summary.samples) == {1: len(TIME)}
 
 
 @pytest.mark.parametrize(

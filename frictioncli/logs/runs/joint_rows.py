@@ -24,11 +24,15 @@ from frictioncli.logs.settings import IngestSettings
 from frictioncli.wording import list_text
 
 _MOST_JOINTS, _MOST_DIFFERENT = 100, 1000
+_LARGEST = 1e9
+"""Numbers of joints are below 100; larger ones are addresses on a bus, up to this one."""
 _BATCH_BYTES = 1 << 22
 _PART = r"(?:motor|joint|axis|achse|gelenk|servo|actuator|drive)"
 _TOLD_BY = re.compile(rf"(?:{_PART}[ _.]?(?:id|no|nr|number|nummer|index|idx|name)?|id|name)", re.I)
 
 _MAY_BE_OTHER = re.compile(r"id|name", re.I)
+_MAY_MEASURE = re.compile(r"id|name|motor|servo|actuator|drive", re.I)
+"""Columns that may be of other things than joints: of texts, and of numbers."""
 _LEAST_ROWS, _LEAST_SHARE = 10, 0.05
 """Rows of a joint: a counter of rows has one of each number, and a damaged name has few of those of
 the joint with most. [-]"""
@@ -93,7 +97,7 @@ def joint_rows(
     """Return the rows of each joint as a log; the log itself where no column tells joints apart.
 
     Joints are told by a column such as ``motor_id`` or ``joint_name``. Numbers from 0 are raised by
-    one, names are numbered in the order of first appearance.
+    one, names are numbered in the order of first appearance, addresses on a bus in ascending order.
 
     Parameters
     ----------
@@ -116,8 +120,7 @@ def joint_rows(
     if found is None:
         return [source]
     source, numbers, names = found
-    raised = 1 if 0.0 in numbers else 0
-    joints = [int(number) + raised for number in numbers]
+    joints = _joint_numbers(numbers)
     wanted = settings.joints if channel_map.joint is None else (channel_map.joint,)
     chosen = [place for place, joint in enumerate(joints) if wanted is None or joint in wanted]
     if not chosen:
@@ -172,22 +175,33 @@ def parts_by_joint(
 @lru_cache
 def _telling_column(columns: tuple[str, ...]) -> int | None:
     """Return the column that may tell joints apart; None where the other columns number them."""
-    named = (i for i, name in enumerate(columns) if _TOLD_BY.fullmatch(split_unit(name)[0].strip()))
-    column = next(named, None)
+    parted = (split_unit(name) for name in columns)
+    told = (not unit and _TOLD_BY.fullmatch(name.strip()) is not None for name, unit in parted)
+    column = next((i for i, is_told in enumerate(told) if is_told), None)
     if column is None or any(c.joint is not None for c in recognise_channels(columns)):
         return None
     return column
+
+
+def _joint_numbers(numbers: Sequence[float]) -> list[int]:
+    """Return the joints that numbers stand for: themselves, from 1, or their places by size."""
+    if max(numbers) < _MOST_JOINTS:
+        raised = 1 if 0.0 in numbers else 0
+        return [int(number) + raised for number in numbers]
+    places = {number: place for place, number in enumerate(sorted(numbers), 1)}
+    return [places[number] for number in numbers]
 
 
 def _told(
     source: LogSource, column: int
 ) -> tuple[LogSource, tuple[float, ...], tuple[str, ...]] | None:
     """Return the log, what stands for its joints, and their names; None where there are not two."""
-    numbers = _numbers(source, column)
+    numbers = _numbers(source, column, _MAY_MEASURE)
     if numbers is None or len(numbers) or not isinstance(source, DelimitedText):
-        return (source, numbers, tuple(f"{number:g}" for number in numbers)) if numbers else None
+        return (source, numbers, tuple(f"{number:.0f}" for number in numbers)) if numbers else None
     names = source.names_in(column, _MOST_DIFFERENT)
-    places = _numbers(source.with_names(column, names), column) if names else None
+    with_names = source.with_names(column, names)
+    places = _numbers(with_names, column, _MAY_BE_OTHER) if names else None
     if not places:
         return None
     names = tuple(names[int(place) - 1] for place in sorted(places))
@@ -195,7 +209,9 @@ def _told(
     return source.with_names(column, names), numbers, names
 
 
-def _numbers(source: LogSource, column: int) -> tuple[float, ...] | None:
+def _numbers(
+    source: LogSource, column: int, may_be_other: re.Pattern[str]
+) -> tuple[float, ...] | None:
     """Return what stands for the joints of a log: nothing where there are no numbers at all.
 
     None where the numbers are no joints: too many or too few, or in a column that need not be one
@@ -217,6 +233,6 @@ def _numbers(source: LogSource, column: int) -> tuple[float, ...] | None:
     least = max(_LEAST_SHARE * max(found.values()), _LEAST_ROWS)
     joints = tuple(number for number, rows in found.items() if rows >= least)
     take_turns = 2 * changes > found.total()
-    is_joint = take_turns or not _MAY_BE_OTHER.fullmatch(split_unit(source.columns[column])[0])
-    known = all(number in range(_MOST_JOINTS) for number in joints)
+    is_joint = take_turns or not may_be_other.fullmatch(source.columns[column].strip())
+    known = all(number.is_integer() and 0 <= number <= _LARGEST for number in joints)
     return joints if is_joint and known and 1 < len(joints) <= _MOST_JOINTS else None
