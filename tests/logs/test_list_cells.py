@@ -8,7 +8,7 @@ import pytest
 from frictioncli import schemas, tables
 from frictioncli.logs.formats import open_log
 from frictioncli.logs.ingest import IngestSettings, ingest
-from frictioncli.logs.log_source import CsvHints
+from frictioncli.logs.log_source import CsvHints, Refusal
 
 from .logs import back_and_forth
 
@@ -66,3 +66,25 @@ def test_lists_of_another_length_and_torn_rows_are_counted(tmp_path):
     rejected = tables.read(tmp_path / "work" / "rejected.parquet", schemas.REJECTED)
     assert list(rejected["row"]) == [51, 61, 71]
     assert rejected["text"][1] == lines[60]
+
+
+def test_lists_without_a_usual_length_are_told(tmp_path):
+    path = written(tmp_path / "log.csv", list)
+    lines = path.read_text().splitlines()
+    lines[1:] = [
+        line.replace('"[-', '"[' + "0.5, " * (i % 5) + "-") for i, line in enumerate(lines[1:])
+    ]
+    path.write_text("\n".join(lines))
+    found = open_log(path, CsvHints())
+    assert isinstance(found, Refusal)
+    assert "the lists in position [deg] have 3 to 7 members; expected as many" in found.text
+
+
+def test_lists_beside_columns_of_numbers_are_passed_over(tmp_path):
+    rows = [
+        f"{t:.6f};{p:.6f};{u};[{', '.join('1' * (1 + i % 4))}]"
+        for i, (t, p, u) in enumerate(zip(TIME, POSITION, TORQUE, strict=True))
+    ]
+    header = "time [s];position [deg];torque [Nm];contacts"
+    (tmp_path / "log.csv").write_text("\n".join([header, *rows]) + "\n")
+    assert ingest([tmp_path / "log.csv"], tmp_path / "work").rows_kept == len(TIME)

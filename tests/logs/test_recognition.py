@@ -124,3 +124,10 @@ def test_an_all_zero_torque_is_no_torque(tmp_path):
     columns["GearTorq_Act2[Nm]"] *= 0
     with pytest.raises(LogError, match="holds only zeros"):
         ingest([write(tmp_path / "log.csv", columns)], tmp_path / "work")
+
+
+@pytest.mark.parametrize(("count", "joints"), [(1, 0), (2, 2), (99, 99), (100, 0)])
+def test_names_are_of_joints_where_there_are_some_and_not_hundreds(count, joints):
+    columns = [f"knee{i}x_{what}" for i in range(count) for what in ("pos", "torque")]
+    found = {channel.joint for channel in recognise_channels(["t", *columns])} - {None}
+    assert len(found) == joints

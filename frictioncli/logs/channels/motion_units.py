@@ -103,8 +103,7 @@ def _axis_units(
     """
     position = axis.position
     family = survey.family(position)
-    motions = [motion for member in family for motion in _motions(survey, axis.time, member, None)]
-    largest, span = position_units.position_range(motions)
+    largest, span = _position_range(survey, axis.time, family)
     on_motor = position.meaning.side == names.MOTOR_SIDE
     usual = position_units.usual_position_unit(largest=largest, span=span, on_motor=on_motor)
     possible, why = position_units.possible_position_units(
@@ -149,7 +148,7 @@ def _axis_units(
         usual=usual,
     )
     if (declared_position, declared_velocity) == (None, None) and wraps_as_of_mit_protocol(
-        [motion.position for motion in motions]
+        [motion.position for motion in _motions_of(survey, axis.time, family)]
     ):
         found = _mit_units(axis, found, remarks)
         why = "it wraps at ±12.5, as positions of the MIT motor protocol do"
@@ -255,6 +254,22 @@ def _remark_velocity(
         remarks.warnings.append(
             f"{velocity.name} has the sign opposite to the change of position: sign reversed"
         )
+
+
+def _position_range(
+    survey: Survey, time: LogChannel, family: list[LogChannel]
+) -> tuple[float, float]:
+    """Return the largest absolute position and the largest range of positions that share a unit."""
+    columns = (time.column, *(member.column for member in family))
+    if columns not in survey.position_ranges:
+        motions = _motions_of(survey, time, family)
+        survey.position_ranges[columns] = position_units.position_range(motions)
+    return survey.position_ranges[columns]
+
+
+def _motions_of(survey: Survey, time: LogChannel, family: list[LogChannel]) -> list[RawMotion]:
+    """Return the surveyed positions of some axes in each log."""
+    return [motion for member in family for motion in _motions(survey, time, member, None)]
 
 
 def _motions(

@@ -16,6 +16,8 @@ _BODY = re.compile(
 
 _COMMAND = re.compile(r"cmd|command|target|desired|setpoint|soll|goal|reference", re.I)
 
+_MOST_JOINTS = 99
+"""As many joints as a log may have by their numbers, which have two digits."""
 _OF_JOINTS = (POSITION, VELOCITY, TORQUE)
 _LONGEST = 3
 """Greatest number of words of a quantity's name, as in ``actual joint position``."""
@@ -24,8 +26,8 @@ _LONGEST = 3
 def named_joints(names: Sequence[str]) -> dict[int, tuple[str, str]]:
     """Return the joint's name, and the name of the quantity, of columns that have both.
 
-    A joint has a position and a torque of its name, and only where two joints have such names does
-    a name stand for one.
+    A joint has a position and a torque of its name, and only where two joints have such names, and
+    not hundreds, does a name stand for one.
 
     Parameters
     ----------
@@ -48,7 +50,7 @@ def named_joints(names: Sequence[str]) -> dict[int, tuple[str, str]]:
     for joint, text in found.values():
         quantities.setdefault(joint, set()).add(MEANINGS[_key(text)].quantity)
     joints = {name for name, of_it in quantities.items() if {POSITION, TORQUE} <= of_it}
-    if len(joints) < 2:
+    if not 2 <= len(joints) <= _MOST_JOINTS:
         return {}
     return {column: parts for column, parts in found.items() if parts[0] in joints}
 

@@ -2,7 +2,7 @@
 
 from collections.abc import Iterator, Sequence
 from contextlib import suppress
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 
@@ -34,10 +34,16 @@ class Survey:
         Raw values by column, one dict per log; rows without time are left out.
     channels : tuple of LogChannel
         The recognised columns of the layout.
+    position_ranges : dict of tuple to (float, float)
+        What was found of positions that share a unit, kept for all joints: with many joints it
+        would take most of the time of reading.
     """
 
     heads: tuple[dict[int, Array], ...]
     channels: tuple[LogChannel, ...]
+    position_ranges: dict[tuple[int, ...], tuple[float, float]] = field(
+        default_factory=dict, repr=False, compare=False
+    )
 
     @property
     def n_rows(self) -> int:

@@ -21,7 +21,7 @@ _LIST = re.compile(r"\s*+(?:array\('\w',\s*+)?[\[(]([^\[\]()]*+)[\])]\)?\s*+")
 _TYPE = re.compile(rb"array\('\w', ?")
 _MARKS = b"[]()\"'"
 _DELIMITERS = (";", "\t", ",")
-_INSPECTED_LINES = 20
+_INSPECTED_LINES, _SHOWN = 20, 40
 
 
 def read_list_cells(path: Path, head: bytes, hints: CsvHints) -> "ListCells | Refusal | None":
@@ -45,8 +45,11 @@ def read_list_cells(path: Path, head: bytes, hints: CsvHints) -> "ListCells | Re
     if len(names) < 2 or not forms:
         return None
     form, count = forms.most_common(1)[0]
-    if 2 * count <= len(rows) or all(members is None for members in form):
+    if all(members is None for members in form):
         return None
+    if 2 * count <= len(rows):
+        # a list among columns of numbers may be of anything
+        return _refuse_unequal(names, forms) if isinstance(detect(lines, hints), Refusal) else None
     flat = [delimiter.join(_flat_names(names, form))]
     flat += [_flat(line.encode(), delimiter.encode()).decode() for line in lines[above + 1 :]]
     dialect = detect([""] * above + flat, replace(hints, delimiter=delimiter))
@@ -110,6 +113,19 @@ def _form(row: Sequence[str]) -> tuple[int | None, ...]:
     """Return for each cell of a row the number of members of its list; None where it is none."""
     lists = (_LIST.fullmatch(cell) for cell in row)
     return tuple(None if found is None else found[1].count(",") + 1 for found in lists)
+
+
+def _refuse_unequal(names: Sequence[str], forms: Counter[tuple[int | None, ...]]) -> Refusal | None:
+    """Return the refusal of lists without a usual length; None where no column has lists only."""
+    for name, lengths in zip(names, zip(*forms.elements(), strict=True), strict=True):
+        different = sorted({members for members in lengths if members is not None})
+        if len(different) > 1 and None not in lengths:
+            return Refusal(
+                "wrong_field_count",
+                f"the lists in {name[:_SHOWN]} have {different[0]} to {different[-1]} members;"
+                " expected as many in every row, one for each joint",
+            )
+    return None
 
 
 def _flat_names(names: Sequence[str], form: Sequence[int | None]) -> Iterator[str]:
