@@ -68,6 +68,19 @@ def test_a_clock_that_is_set_back_otherwise_is_not_continued(tmp_path, back):
     assert not any("begins anew" in note for note in summary.notes)
 
 
+@pytest.mark.parametrize("damaged", [0, 1.5, 65_535, 70_000, 2**62, -(2**62)])
+@pytest.mark.parametrize("row", [50, 127, 128, 129])
+def test_a_damaged_time_does_not_hide_the_turn(tmp_path, damaged, row):
+    """The clock begins anew in row 128; a damaged time costs its row, and one beside at most."""
+    clock = counts(1e3, 16, 64_000, signed=False)
+    assert clock[127] > clock[128]
+    clock[row] = damaged
+    summary = ingest([written(tmp_path / "log.csv", clock, "time [ms]")], tmp_path / "work")
+    assert summary.rows_kept >= len(TIME) - 2
+    samples = tables.read(tmp_path / "work" / "samples.parquet", schemas.SAMPLES)
+    assert samples["time"].iloc[-1] == pytest.approx(TIME[-1], abs=1e-6)
+
+
 def test_a_damaged_time_is_no_turn():
     time = np.array([1.0, 2.0, 65_000.0, 4.0, 5.0])
     found, last, turns = continued(time, 65_536.0)

@@ -103,7 +103,9 @@ def test_a_map_scales_the_velocity_that_is_integrated(tmp_path):
     np.testing.assert_allclose(samples["position"], integral, atol=1e-4)
 
 
-@pytest.mark.parametrize("value", ["0", "inf", "nan", "true", '"2"', "[2]"])
+@pytest.mark.parametrize(
+    "value", ["0", "inf", "nan", "1e308", "-1e-308", "9" * 400, "true", '"2"', "[2]"]
+)
 def test_a_scale_is_a_number(value, tmp_path):
     path = tmp_path / "map.toml"
     path.write_text(f"[scale]\nposition = {value}\n", encoding="utf-8")

@@ -84,6 +84,12 @@ def test_a_damaged_first_time_does_not_change_the_unit(begin, damaged, tmp_path)
     np.testing.assert_allclose(np.diff(found), np.diff(time)[: len(found) - 1], atol=1e-3)
 
 
+def test_tiny_velocities_have_no_motion_ratio():
+    time, position, velocity, _ = back_and_forth()
+    motion = unit_evidence.RawMotion(time, position, velocity * 1e-310)
+    assert unit_evidence.motion_ratio([motion]) is None
+
+
 def test_rest_and_noise_have_no_motion_ratio():
     time = np.arange(0, 5, 0.01)
     rng = np.random.default_rng(1)

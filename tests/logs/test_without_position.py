@@ -82,6 +82,34 @@ def test_the_integral_does_not_depend_on_batches(batch_bytes, tmp_path):
     np.testing.assert_allclose(table["position"], position - position[0], atol=0.1)
 
 
+@pytest.mark.parametrize("channel", ["time [s]", "velocity [deg/s]"])
+@pytest.mark.parametrize("value", [1e9, -1e18, 1e308])
+def test_a_damaged_value_costs_its_row(channel, value, tmp_path):
+    """The integral of all later rows would be beyond every limit, or tell other units."""
+    time, position, velocity, torque = back_and_forth()
+    columns = {"time [s]": time, "velocity [deg/s]": velocity, "torque [Nm]": torque}
+    columns[channel] = columns[channel].copy()
+    columns[channel][100] = value
+    pd.DataFrame(columns).to_parquet(tmp_path / "log.parquet")
+    summary = ingest([tmp_path / "log.parquet"], tmp_path / "work")
+    assert summary.rows_kept == len(time) - 1
+    table = tables.read(tmp_path / "work" / "samples.parquet", schemas.SAMPLES)
+    expected = np.delete(position, 100) - position[0]
+    # two periods at 40 deg/s may be missing
+    np.testing.assert_allclose(table["position"], expected, atol=1.1)
+    np.testing.assert_allclose(table["time"], np.delete(time, 100), atol=1e-9)
+
+
+def test_a_motor_may_turn_any_number_of_times(tmp_path):
+    """At 3000 rpm the angle is 1.8e6 deg after 100 s, more than any sensor shows."""
+    time = np.arange(0.0, 100.0, 0.05)
+    columns = {"time [s]": time, "velocity [rpm]": np.full(len(time), 3000.0)}
+    path = write(tmp_path / "log.csv", columns | {"torque [Nm]": np.ones(len(time))})
+    assert ingest([path], tmp_path / "work").rows_kept == len(time)
+    table = tables.read(tmp_path / "work" / "samples.parquet", schemas.SAMPLES)
+    np.testing.assert_allclose(table["position"], 18_000 * time, rtol=1e-9)
+
+
 def test_several_joints_without_position_are_refused(tmp_path):
     """An arm carries a load that depends on the angles."""
     time, _, velocity, torque = back_and_forth()

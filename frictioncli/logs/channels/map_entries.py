@@ -2,7 +2,6 @@
 
 import codecs
 import difflib
-import math
 import tomllib
 from collections.abc import Collection, Sequence
 from pathlib import Path
@@ -19,6 +18,9 @@ _MAX_BYTES = 1 << 20  # [byte]
 _DELIMITERS = {";": ";", ",": ",", "\t": "\t", " ": " ", "tab": "\t", "space": " ", "blank": " "}
 _NO_TEXT = frozenset({"idna", "punycode", "undefined", "unicode_escape", "raw_unicode_escape"})
 """Encodings that name something else than the characters of a text."""
+_LARGEST = 1e30
+"""Factors beyond this, or smaller than its inverse, are of no log, and products are infinite."""
+_USUAL = "not 0 nor beyond 1e±30"
 _SAMPLE = "t;1,5\t-2.5e3\r\n"
 
 
@@ -89,15 +91,14 @@ def csv_hints(path: Path, section: dict[str, Any]) -> CsvHints:
                 " utf-16"
             )
         encoding = name
-    if period is not None and not (
-        isinstance(period, int | float) and period is not True and 0 < period < math.inf
-    ):
+    seconds = _factor(period)
+    if period is not None and not (seconds is not None and seconds > 0):
         raise MappingError(
             f"{path}: [csv] period = {shown(period)}; expected the time from row to row in s,"
             " for example 0.005"
         )
     sign = None if delimiter is None else _DELIMITERS[delimiter]
-    return CsvHints(sign, decimal, encoding, None if period is None else float(period))
+    return CsvHints(sign, decimal, encoding, seconds)
 
 
 def _text_encoding(name: Any) -> str | None:
@@ -149,15 +150,15 @@ def ratio(path: Path, key: str, value: Any) -> float | None:
     Raises
     ------
     MappingError
-        If it is no number, 0 or infinite.
+        If it is no number, 0, infinite, or of a size that no log has.
     """
     number = _factor(value)
     if value is None or number is not None:
         return number
     meaning = {
-        "gear_ratio": "motor turns per joint turn, not 0",
-        "rated_torque": "N·m at 100 %, not 0",
-        "torque_constant": "'auto', or N·m/A, not 0",
+        "gear_ratio": f"motor turns per joint turn, {_USUAL}",
+        "rated_torque": f"N·m at 100 %, {_USUAL}",
+        "torque_constant": f"'auto', or N·m/A, {_USUAL}",
     }[key]
     raise MappingError(f"{path}: [joint] {key} = {shown(value)}; expected {meaning}")
 
@@ -177,26 +178,26 @@ def scale(path: Path, name: str, value: Any) -> float:
     Raises
     ------
     MappingError
-        If it is no number, 0 or infinite.
+        If it is no number, 0, infinite, or of a size that no log has.
     """
     number = _factor(value)
     if number is None:
         raise MappingError(
             f"{path}: [scale] {name} = {shown(value)}; expected the number by which the column is"
-            " multiplied, not 0"
+            f" multiplied, {_USUAL}"
         )
     return number
 
 
 def _factor(value: Any) -> float | None:
-    """Return a number that is neither 0 nor infinite, None for anything else."""
+    """Return a number that is neither 0 nor of a size beyond all use, None for anything else."""
     if not isinstance(value, int | float) or isinstance(value, bool):
         return None
     try:
         number = float(value)
     except OverflowError:
         return None
-    return number if math.isfinite(number) and number != 0 else None
+    return number if 1 / _LARGEST <= abs(number) <= _LARGEST else None
 
 
 def torque_constant(path: Path, value: Any) -> float | str | None:

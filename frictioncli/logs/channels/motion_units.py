@@ -112,6 +112,8 @@ def _axis_units(
         on_motor=on_motor,
         path_per_angle=_tool_path_per_angle(survey, family),
     )
+    if position.name == names.INTEGRATED:  # in deg by construction, however far it goes
+        possible, why = frozenset({"deg"}), ""
     allowed = possible
     declared_position = forced.get(names.POSITION) or units.canonical(position.unit, names.POSITION)
     if declared_position in units.ONLY_WRITTEN:

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.lib.stride_tricks import sliding_window_view
 
-from frictioncli.arrays import Array
+from frictioncli.arrays import Array, Flags
 from frictioncli.logs.channels.units import FACTORS, ONLY_WRITTEN
 
 _UNSCALED_COST = 0.5
@@ -69,15 +69,39 @@ def motion_ratio(motions: list[RawMotion]) -> float | None:
     return median if median != 0 and spread < abs(median) / 3 else None
 
 
+def isolated(values: Array, factor: float) -> Flags:
+    """Return which values are many times larger than those before and after, and than most others.
+
+    Parameters
+    ----------
+    values : ndarray, shape (n,)
+        A channel without NaN.
+    factor : float
+        How many times. [-]
+
+    Returns
+    -------
+    ndarray of bool, shape (n,)
+
+    Examples
+    --------
+    >>> isolated(np.array([0.0, 1.0, 2.0, 1e4, -2.0, -1.0]), 10)
+    array([False, False, False,  True, False, False])
+    """
+    size = np.abs(values)
+    if len(size) < 3:
+        return np.zeros(len(size), bool)
+    beside = np.maximum(np.append(size[1], size[:-1]), np.append(size[1:], size[-2]))
+    return np.asarray(size / factor > np.maximum(np.quantile(size, 0.8), beside))
+
+
 def _window_ratios(motion: RawMotion) -> Array:
     if len(motion.velocity) != len(motion.time):
         return np.empty(0)
     # a single damaged value must not raise the threshold of motion for all others
     speed = np.abs(motion.velocity)
-    usually = float(np.quantile(speed, 0.95)) or np.inf
-    beside = np.maximum(np.append(speed[1], speed[:-1]), np.append(speed[1:], speed[-2]))
-    usual = speed / _SPIKE_FACTOR <= np.maximum(usually, beside)
-    usual &= speed / OUTLIER_FACTOR <= usually
+    usual = speed / OUTLIER_FACTOR <= (float(np.quantile(speed, 0.95)) or np.inf)
+    usual &= ~isolated(speed, _SPIKE_FACTOR)
     if not usual.all():
         motion = RawMotion(motion.time[usual], motion.position[usual], motion.velocity[usual])
     steps = np.diff(motion.time)
@@ -99,7 +123,10 @@ def _window_ratios(motion: RawMotion) -> Array:
     without_gap = known & (elapsed > 0) & (elapsed < longest)
     fastest = np.max(np.abs(by_velocity), initial=0.0, where=without_gap)
     moving = np.abs(by_velocity) > 0.3 * fastest
-    return by_position[without_gap & moving] / by_velocity[without_gap & moving]
+    counted = without_gap & moving
+    with np.errstate(over="ignore"):
+        ratios = by_position[counted] / by_velocity[counted]
+    return ratios[np.isfinite(ratios)]
 
 
 @dataclass(frozen=True, slots=True)

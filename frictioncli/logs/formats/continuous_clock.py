@@ -49,7 +49,7 @@ def continued(
     Parameters
     ----------
     time : ndarray, shape (n,)
-        Times by the clock; NaN where there is none.
+        Times by the clock; NaN where there is none. Those beyond its range stay as they are.
     span : float
         Range of the clock.
     last : float
@@ -71,7 +71,7 @@ def continued(
     >>> continued(np.array([86399.0, 0.5, np.nan, 1.5]), 86400.0)
     (array([86399. , 86400.5,     nan, 86401.5]), 1.5, 1)
     """
-    known = np.flatnonzero(np.isfinite(time))
+    known = np.flatnonzero(np.abs(time) <= span)  # the clock shows no others: they are damaged
     if not len(known):
         return time, last, turns
     shown = time[known]

@@ -5,6 +5,8 @@ from collections.abc import Collection, Iterator, Sequence
 from dataclasses import dataclass
 from functools import partial
 
+import numpy as np
+
 from frictioncli.logs.formats.continuous_clock import ContinuousClock
 from frictioncli.logs.formats.delimited import DelimitedText
 from frictioncli.logs.formats.moments import CLOCK, DAY
@@ -104,6 +106,7 @@ class JoinedTime(DerivedSource):
     def _joined(self, batch: RawBatch) -> RawBatch:
         if self.rest not in batch.values:
             return batch
-        time = batch.values[self.seconds] + batch.values[self.rest] * self.unit
+        with np.errstate(over="ignore", invalid="ignore"):  # infinite times are rejected later
+            time = batch.values[self.seconds] + batch.values[self.rest] * self.unit
         values = {**batch.values, self.seconds: time, self.rest: time}
         return RawBatch(batch.lines, values, batch.bad_lines, batch.bad_reasons)

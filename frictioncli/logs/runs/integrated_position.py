@@ -14,7 +14,11 @@ from frictioncli.logs.channels import channel_names as names
 from frictioncli.logs.channels import units
 from frictioncli.logs.channels.channel_names import INTEGRATED, JOINT_SIDE, Meaning
 from frictioncli.logs.channels.recognition import LogChannel
+from frictioncli.logs.channels.unit_evidence import isolated
 from frictioncli.logs.log_source import DerivedSource, RawBatch
+
+_DAMAGED = 1000
+"""A velocity or a step of time so many times larger than others is damaged. [-]"""
 
 
 def integrable(channels: Sequence[LogChannel]) -> tuple[LogChannel, LogChannel] | None:
@@ -113,9 +117,15 @@ def _integral(time: Array, rate: Array, last: tuple[float, float]) -> Array:
         return integral
     before = last if np.isfinite(last[0]) else (float(time[good][0]), float(rate[good][0]))
     t, v = np.append(before[0], time[good]), np.append(before[1], rate[good])
-    # a clock that is set back adds nothing
-    steps = np.maximum(np.diff(t), 0.0)
-    integral[good] = np.cumsum(steps * (v[1:] + v[:-1]) / 2)
+    # a damaged velocity, or a clock that leaps or is set back, would move all later positions
+    v[isolated(v, _DAMAGED)] = 0.0
+    with np.errstate(over="ignore", invalid="ignore"):
+        steps = np.diff(t)
+        ahead = steps > 0
+        longest = _DAMAGED * float(np.median(steps[ahead])) if ahead.any() else 0.0
+        steps = np.where(ahead & (steps <= longest), steps, 0.0)
+        travel = steps * (v[1:] + v[:-1]) / 2
+    integral[good] = np.cumsum(np.where(np.isfinite(travel), travel, 0.0))
     return integral
 
 

@@ -43,10 +43,11 @@ class ScaledLog(DerivedSource):
     def batches(self, columns: Collection[int], size: int) -> Iterator[RawBatch]:
         """Yield the rows in order, about ``size`` bytes of the file at a time."""
         for batch in self.source.batches(columns, size):
-            values = {
-                column: cells * self.scales[column][0] + self.scales[column][1]
-                for column, cells in batch.values.items()
-            }
+            with np.errstate(over="ignore"):  # infinite values are rejected later
+                values = {
+                    column: cells * self.scales[column][0] + self.scales[column][1]
+                    for column, cells in batch.values.items()
+                }
             yield RawBatch(batch.lines, values, batch.bad_lines, batch.bad_reasons)
 
 

@@ -171,6 +171,8 @@ def convert_chunk(batch: RawBatch, planned: PlannedLog) -> LogChunk:
         for plan in planned.plans
         for name in (names.POSITION, names.TORQUE, names.VELOCITY)
         if name in plan.conversions
+        # an integral of velocity has no largest value, and is there where the velocity is
+        if (name, plan.channels.position.name) != (names.POSITION, names.INTEGRATED)
     ]
     rows = drop_missing_values(rows, required, rejected)
     return LogChunk(rows, rejected, len(batch.lines) + len(batch.bad_lines))

@@ -15,6 +15,8 @@ _BITS = (16, 32)
 _BATCH_BYTES = 1 << 22
 _LEAST_CELL, _MOST_PACKED = 2, 100
 """Bytes of a number with its delimiter, and bytes of text in one of a compressed file."""
+_MOST_DAMAGED = 0.05
+"""Share of times that a counter may not show. [-]"""
 _MOST_PERIODS = 50
 """Longest step across the end of the range."""
 
@@ -65,22 +67,27 @@ def _most_rows(source: LogSource) -> float:
 
 
 def _begins_anew(source: LogSource, time: int, span: float, period: float) -> bool:
-    """Return whether the first large fall of a clock is one from the end to the beginning."""
+    """Return whether the first large fall of a clock is one from the end to the beginning.
+
+    Falls to a damaged time, from which the clock leaps back at once, are passed over.
+    """
     last = np.nan
     with suppress(UnreadableLog):
         for batch in source.batches([time], _BATCH_BYTES):
             counts = batch.values[time]
-            counts = np.append(last, counts[np.isfinite(counts)])
-            if np.any(counts[1:] != np.round(counts[1:])):
+            counts = counts[np.isfinite(counts)]
+            shown = (counts == np.round(counts)) & (np.abs(counts) < span)
+            if np.count_nonzero(~shown) > 1 + _MOST_DAMAGED * len(counts):
                 return False
-            falls = np.flatnonzero(counts[:-1] - counts[1:] > span / 2)
-            end = int(falls[0]) + 1 if len(falls) else len(counts)
-            if np.any(np.abs(counts[1:end]) >= span):
-                return False
-            if len(falls):
-                step = counts[end] - counts[end - 1] + span
-                ends = span - _MOST_PERIODS * period, span / 2 - _MOST_PERIODS * period
-                from_end = counts[end - 1] >= (ends[0] if counts[end] >= 0 else ends[1])
-                return bool(from_end and 0 < step <= _MOST_PERIODS * period)
+            counts = np.append(last, counts[shown])
+            steps = np.diff(counts)
+            falls = steps < -span / 2
+            falls[:-1] &= steps[1:] < span / 2
+            if falls.any():
+                fall = int(np.argmax(falls))
+                before, after = counts[fall], counts[fall + 1]
+                end = span if after >= 0 else span / 2
+                longest = _MOST_PERIODS * period
+                return bool(before >= end - longest and 0 < after - before + span <= longest)
             last = float(counts[-1])
     return False
