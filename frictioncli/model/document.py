@@ -20,6 +20,12 @@ TemperatureKind = Annotated[str, msgspec.Meta(pattern="^(motor|housing|mean)$")]
 PARAMETERS = ("tau_c", "alpha", "beta", "gamma", "delta")
 """Names of the parameters of equation (16), in the order in which they are shown."""
 
+_LARGEST = 1e30
+"""No parameter is larger; sums and squares of larger ones would be infinite. [any unit]"""
+
+_LONGEST_DELAY = 1.0
+"""No torque is later; ``fit`` finds delays of up to 0.2 s. [s]"""
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ParameterEstimate:
@@ -129,6 +135,13 @@ class FrictionModel:
         missing = [name for name in PARAMETERS if name not in self.parameters]
         if missing:
             raise ValueError(f"parameters: expected {', '.join(missing)} as well")
+        unusual = [name for name in PARAMETERS if abs(self.parameters[name].estimate) > _LARGEST]
+        if unusual:
+            raise ValueError(f"parameters: expected {', '.join(unusual)} below {_LARGEST:g}")
+        if not 0 <= self.rmse <= _LARGEST:
+            raise ValueError("rmse: expected an error, from 0")
+        if self.late_by is not None and not abs(self.late_by) <= _LONGEST_DELAY:
+            raise ValueError(f"delay: expected at most {_LONGEST_DELAY:g} s")
 
     @property
     def friction(self) -> FrictionParameters:

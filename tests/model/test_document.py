@@ -54,3 +54,30 @@ def test_anything_else_is_refused(tmp_path, text):
 def test_a_missing_model_names_the_command(tmp_path):
     with pytest.raises(TableError, match="frictioncli fit"):
         read_models(tmp_path / "model.json")
+
+
+@pytest.mark.parametrize(
+    ("change", "told"),
+    [
+        (lambda of: of.update(rmse=-1.0), "rmse: expected an error"),
+        (lambda of: of["parameters"]["beta"].update(estimate=1e308), "expected beta below"),
+        (lambda of: of.update(delay={**of["parameters"]["beta"], "estimate": -5.0}), "at most 1 s"),
+    ],
+)
+def test_values_that_no_fit_gives_are_refused(change, told, tmp_path):
+    path = tmp_path / "model.json"
+    write_models(path, [model()], Provenance("fit"))
+    document = json.loads(path.read_text(encoding="utf-8"))
+    change(document)
+    path.write_text(json.dumps(document), encoding="utf-8")
+    with pytest.raises(TableError, match=f"{told}.*run 'frictioncli fit' again"):
+        read_models(path)
+
+
+def test_a_model_of_a_release_without_delay_is_read(tmp_path):
+    path = tmp_path / "model.json"
+    write_models(path, [model()], Provenance("fit"))
+    document = json.loads(path.read_text(encoding="utf-8"))
+    del document["delay"]
+    path.write_text(json.dumps(document), encoding="utf-8")
+    assert read_models(path)[0].late_by is None

@@ -32,6 +32,9 @@ SHARED = 2
 """Number of sets of variance components that are known without anything planted, and that all
 effects beside a step share; they come first."""
 
+_NOTHING = 1e-300
+"""Squared length of a column of which nothing is left."""
+
 
 @dataclass(frozen=True, slots=True)
 class Left:
@@ -278,7 +281,9 @@ class PlantedFits:
             [(left.right[-1], left.inner[place, -1], left.inner[-1, -1]) for left in self.family]
         ).T[:, :, np.newaxis]
         right = np.maximum(fixed + sizes * growing, 0.0)
-        return plain - np.square(right) / np.maximum(inner, 1e-300), plain
+        # a column of which nothing is left beside what is known gains nothing
+        own = np.broadcast_to(inner > _NOTHING, right.shape)
+        return plain - np.divide(np.square(right), inner, np.zeros_like(right), where=own), plain
 
     def _alone(self, number: int, sizes: Array) -> Array:
         """Return the same with the effect, whose coefficients have no bounds."""
