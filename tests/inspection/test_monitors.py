@@ -7,6 +7,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from frictioncli.inspection.inspect import inspect
+from frictioncli.inspection.monitors.log_histogram import LogHistogram
 from frictioncli.inspection.remarks import remarks
 from frictioncli.logs.settings import IngestSettings
 
@@ -95,6 +96,13 @@ def test_samples_missing_between_others(tmp_path):
     found, _ = look(log.drop(index=[300, 301, 640, 900]), tmp_path)
     assert found.sampling.missing_samples == 4
     assert found.sampling.gaps == 0
+
+
+def test_a_damaged_step_is_no_number_of_missing_samples():
+    """1e300 s over a period of 1e-10 s is more than a number can be."""
+    steps = LogHistogram()
+    steps.add(np.array([1e-10] * 50 + [3e-10, 1e300]))
+    assert steps.missing_samples(1e-10, 5e-10) == 2
 
 
 def test_duplicated_times(tmp_path):

@@ -94,8 +94,9 @@ class LogHistogram:
     def missing_samples(self, period: float, longest: float) -> int:
         """Return how many samples are missing in steps of several periods, up to ``longest``."""
         values = self._values
-        skipped = np.where(values < longest, np.round(values / period) - 1, 0)
-        return int((np.maximum(skipped, 0) * self._counts).sum())
+        counted = values < longest
+        skipped = np.maximum(np.round(values[counted] / period) - 1, 0)
+        return int((skipped * self._counts[counted]).sum())
 
     @property
     def _values(self) -> Array:
