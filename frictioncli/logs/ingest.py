@@ -268,14 +268,15 @@ def _no_usable_log(refused: Sequence[RefusedLog]) -> FrictionError:
     ordered = sorted(
         refused, key=lambda log: log.refusal.reason in ("not_a_log", "format_not_read")
     )
-    alike: dict[str, list[RefusedLog]] = {}
+    # a file may hold several logs
+    alike: dict[str, dict[Path, None]] = {}
     for log in ordered:
-        alike.setdefault(log.refusal.text, []).append(log)
+        alike.setdefault(log.refusal.text, {})[log.file.path] = None
     lines = []
-    for text, logs in list(alike.items())[:_FILES_NAMED]:
-        others = f" and {len(logs) - 1} more" if len(logs) > 1 else ""
-        lines.append(f"{logs[0].file.path}{others}: {text}")
-    unnamed = sum(len(logs) for logs in list(alike.values())[_FILES_NAMED:])
+    for text, paths in list(alike.items())[:_FILES_NAMED]:
+        others = f" and {len(paths) - 1} more" if len(paths) > 1 else ""
+        lines.append(f"{next(iter(paths))}{others}: {text}")
+    unnamed = sum(len(paths) for paths in list(alike.values())[_FILES_NAMED:])
     if unnamed:
         lines.append(f"and {unnamed} more files")
     kind = (

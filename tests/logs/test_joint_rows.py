@@ -1,5 +1,6 @@
 """Long tables: each row is of one joint, which a column of numbers or names tells."""
 
+import gzip
 from pathlib import Path
 
 import numpy as np
@@ -114,6 +115,17 @@ def test_a_joint_that_is_not_there(tmp_path):
     told = "no joint 9; column motor_id has the rows of joint 1, 2 and 3: choose one of them"
     with pytest.raises(LogError, match=told):
         ingest([path], tmp_path / "work", IngestSettings(joints=(9,)))
+
+
+def test_a_file_that_is_refused_for_all_its_joints_is_named_once(tmp_path):
+    names = ("hip" * 40, "knee" * 30, "ankle" * 24)  # more than is read to tell the form
+    packed = gzip.compress(long_log(tmp_path / "log.csv", names, "joint_name").read_bytes())
+    path = tmp_path / "log.csv.gz"
+    path.write_bytes(packed[:-20])
+    with pytest.raises(LogError, match="cannot be read beyond line") as told:
+        ingest([path], tmp_path / "work")
+    assert f"{path}: " in str(told.value)
+    assert "more" not in str(told.value)
 
 
 def test_joints_sampled_one_after_the_other(tmp_path):

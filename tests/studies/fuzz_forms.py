@@ -28,6 +28,7 @@ STATUS = (0, 2, 3)
 """Exit status that a call may have."""
 
 _TOML = (
+    *("1e308", "-1e308", "1e-308", "1e9", "1e-9", "0.5", "-2"),
     *("0", "-1", "1e999", "nan", "-inf", "true", "[]", "{}", '""', '"x"', "1979-05-27", "0x10"),
     *(
         "9" * 400,
@@ -105,6 +106,10 @@ def maps(folder: Path, base: Path, draw: random.Random) -> Input:
             'torque = "N·m"',
             "[csv]",
             'delimiter = ";"',
+            "period = 0.012",
+            "[scale]",
+            "position = 1.0",
+            "torque = -1.0",
             "[joint]",
             "number = 2",
             "gear_ratio = 1.0",

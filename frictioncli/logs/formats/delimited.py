@@ -25,7 +25,14 @@ from frictioncli.logs.formats.encoding import (
 )
 from frictioncli.logs.formats.moments import settled_form
 from frictioncli.logs.formats.twincat_scope import scope_dialect
-from frictioncli.logs.log_source import MAX_ROW_TEXT, CsvHints, RawBatch, ReadTask, Refusal
+from frictioncli.logs.log_source import (
+    MAX_ROW_TEXT,
+    CsvHints,
+    RawBatch,
+    ReadTask,
+    Refusal,
+    UnreadableLog,
+)
 
 _SMALL_FILE = 1 << 20
 """Up to this size the lines at the ends of blocks are joined; in larger files that takes longer
@@ -158,10 +165,11 @@ class DelimitedText:
             Greatest number of names.
         """
         found: dict[str, None] = {}
-        for block in self.row_blocks(_LABEL_BYTES):
-            found |= dict.fromkeys(RowParser(self.dialect).texts(block.content, column))
-            if len(found) > most:
-                return ()
+        with suppress(UnreadableLog):  # reported when the whole log is read
+            for block in self.row_blocks(_LABEL_BYTES):
+                found |= dict.fromkeys(RowParser(self.dialect).texts(block.content, column))
+                if len(found) > most:
+                    return ()
         return tuple(found)
 
     def with_names(self, column: int, names: tuple[str, ...]) -> "DelimitedText":
