@@ -141,14 +141,15 @@ def test_rows_of_no_joint_are_counted_once(tmp_path, names):
     lines[200] = "0.1,,1,1,1"
     lines[300] = f"1.188,{names[1]},x,1,1"
     lines[400] = "1.6,damaged,1,1,1"
+    lines[500] = "2.0,-1,1,1,1"
     path.write_text("\n".join(lines))
     summary = ingest([path], tmp_path / "work")
     assert summary.rows_read == 3 * len(TIME)
     assert summary.rows_kept + sum(summary.rows_rejected.values()) == summary.rows_read
     assert summary.rows_rejected["wrong_field_count"] == 1
-    assert sum(summary.rows_rejected.values()) == 4
+    assert sum(summary.rows_rejected.values()) == 5
     rejected = tables.read(tmp_path / "work" / "rejected.parquet", schemas.REJECTED)
-    assert sorted(rejected["row"]) == [101, 201, 301, 401]
+    assert sorted(rejected["row"]) == [101, 201, 301, 401, 501]
     assert "torn" in set(rejected["text"])
 
 

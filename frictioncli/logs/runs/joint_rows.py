@@ -212,15 +212,16 @@ def _told(
 def _numbers(
     source: LogSource, column: int, may_be_other: re.Pattern[str]
 ) -> tuple[float, ...] | None:
-    """Return what stands for the joints of a log: nothing where there are no numbers at all.
+    """Return what stands for the joints of a log: nothing where there are hardly any numbers.
 
     None where the numbers are no joints: too many or too few, or in a column that need not be one
     of joints and whose rows do not take turns. Numbers in few rows are damaged ones.
     """
     found: Counter[float] = Counter()
-    changes = 0
+    changes = rows_read = 0
     with suppress(UnreadableLog):
         for batch in source.batches([column], _BATCH_BYTES):
+            rows_read += len(batch.lines) + len(batch.bad_lines)
             values = batch.values[column]
             values = values[np.isfinite(values)]
             changes += int(np.count_nonzero(np.diff(values)))
@@ -228,7 +229,8 @@ def _numbers(
             found.update(dict(zip(different.tolist(), rows.tolist(), strict=True)))
             if len(found) > _MOST_DIFFERENT:
                 return None
-    if not found:
+    # a number among names is a damaged one
+    if found.total() <= _LEAST_SHARE * rows_read:
         return ()
     least = max(_LEAST_SHARE * max(found.values()), _LEAST_ROWS)
     joints = tuple(number for number, rows in found.items() if rows >= least)
