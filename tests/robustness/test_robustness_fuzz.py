@@ -15,7 +15,7 @@ LAYOUTS = layouts()
 
 @pytest.mark.parametrize("layout", range(len(LAYOUTS)), ids=[layout.name for layout in LAYOUTS])
 def test_damaged_logs_are_read_truly_or_refused(layout):
-    numbers = range(layout, 8 * len(LAYOUTS), len(LAYOUTS))
+    numbers = range(layout, 4 * len(LAYOUTS), len(LAYOUTS))
     found = [examine_here(number) for number in numbers]
     assert {one.layout for one in found} == {LAYOUTS[layout].name}
     assert [one for one in found if one.outcome not in GOOD] == []
@@ -33,7 +33,7 @@ def test_what_is_whole_is_read_and_the_study_sees_when_it_is_not(layout, tmp_pat
         tmp_path / "work",
         IngestSettings(map_file=chart, gear_ratio=layout.gear_ratio),
     )
-    rows = len(layout.position)
+    rows = len(layout.torque)
     whole = Case(layout, "", {}, touched=0, whole=tuple(range(rows)), lines=rows)
     assert contradiction(whole, tmp_path / "work") == ""
     path = tmp_path / "work" / "samples.parquet"

@@ -51,17 +51,20 @@ def contradiction(case: Case, work: Path) -> str:
     read = read.iloc[0] if case.layout.joints is None else read.sum()
     if case.lines is not None and case.lines != read:
         return f"{case.lines} lines, but {read} rows read"
-    if case.whole is not None and case.touched is not None:
-        return _values(case, samples[samples["joint"] == case.layout.joint])
-    return ""
+    if case.whole is None or case.touched is None:
+        return ""
+    of_rows = case.layout.joints
+    joints = [case.layout.joint] if of_rows is None else sorted(set(of_rows))
+    found = (_values(case, samples[samples["joint"] == joint], joint) for joint in joints)
+    return next(filter(None, found), "")
 
 
-def _values(case: Case, own: pd.DataFrame) -> str:
-    """Compare the samples with the rows that nothing has touched."""
+def _values(case: Case, own: pd.DataFrame, joint: int) -> str:
+    """Compare the samples of a joint with its rows that nothing has touched."""
     assert case.whole is not None
     assert case.touched is not None
     log = case.layout
-    whole = [i for i in case.whole if log.joints is None or log.joints[i] == log.joint]
+    whole = [i for i in case.whole if log.joints is None or log.joints[i] == joint]
     expected = [log.torque] if log.position is None else [log.position, log.torque]
     names = ["torque"] if log.position is None else ["position", "torque"]
     # rows are one of a kind: six digits tell which is which
