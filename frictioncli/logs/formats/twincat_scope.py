@@ -57,6 +57,9 @@ def scope_dialect(lines: Sequence[str], hints: CsvHints) -> Dialect | None:
         return None
     decimal = hints.decimal or ("," if delimiter != "," and "," in lines[first] else ".")
     unit = "100ns" if _number(rows[first][0]) > _FILETIME else "ms"
+    # rows that begin with a number are damaged ones; what stands above begins with a key
+    while rows[first - 1] and _number(rows[first - 1][0]) == _number(rows[first - 1][0]):
+        first -= 1
     return Dialect(delimiter, decimal, _columns(keyed, unit), first + 1, {})
 
 
