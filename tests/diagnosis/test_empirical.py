@@ -98,8 +98,8 @@ def test_columns_are_what_the_base_leaves_and_the_term_is_their_sum():
     before = misfits(data, extend(data, step.predicting_fit(), []))
     without = replace(data, friction=data.friction - added.friction, load=data.load - added.load)
     again = extend(without, step.predicting_fit(), [])
-    # what is left without it has the base that is stated beside it, within far less than its errors
-    apart = np.abs(again.changes - empirical.beside.changes)
+    # what is left without it has the base that it is added to, within far less than its errors
+    apart = np.abs(again.changes - empirical.without.changes)
     assert (apart < 0.02 * empirical.beside.errors[:5]).all()
     assert np.std(misfits(without, again)[0]) < 0.7 * np.std(before[0])
 

@@ -47,9 +47,10 @@ def test_the_base_beside_a_form_is_that_of_the_joint_without_it():
     chosen = [names.index(name) for name in ("gamma", "delta", "beta")]
     assert (near[chosen] < 0.3 * far[chosen]).all()
     assert (near < 2 * empirical.beside.errors[: len(names)]).all()
-    # the term itself has no part of the base but that of its small random functions
-    changes = np.array([empirical.term.base_changes[name] for name in names])
-    assert (np.abs(changes) < 0.3 * far)[chosen].all()
+    # what the term adds to the base is that, but for the part of its small random functions
+    added = np.array([empirical.term.base_changes[name] for name in names])
+    changes = empirical.beside.changes - empirical.without.changes
+    assert (np.abs(added - changes) < 0.3 * far)[chosen].all()
 
 
 def test_causes_beside_a_form_are_those_of_the_joint_without_it():
@@ -71,12 +72,31 @@ def test_base_and_form_together_predict_another_day():
     """From the parameters that are stated, by hand: no worse than the noise of that day."""
     seen, new, without = problem(3, friction=warm_peak), problem(4, friction=warm_peak), problem(4)
     empirical, _ = found(seen, new=new)
-    left = misfits(new, empirical.beside)
+    left = misfits(new, empirical.without)
     added = empirical.term.at(new)
     rms = np.sqrt(np.mean(new.squared(left[0] - added.friction, left[1] - added.load)))
     assert rms == pytest.approx(empirical.gain.after, rel=1e-9)
     best = np.sqrt(np.mean(without.squared(without.friction_misfit, without.load_misfit)))
     assert rms < 1.05 * best
+
+
+def test_beyond_the_measured_range_the_model_is_the_one_without_the_term():
+    """A step most of which the base takes: a base refitted beside it would be off beyond."""
+    data = problem(3, friction=lambda rows: 6.0 * (rows.motor_temperature > 45.0))
+    empirical, biased = found(data)
+    (form,) = empirical.term.forms
+    assert (form.kind, form.axes) == ("step", ("temperature",))
+    assert form.coefficients["step"] == pytest.approx(6.0, rel=0.2)
+    # the base beside it is another one by more than a newton metre
+    moved = misfits(data, biased)[0] - misfits(data, empirical.beside)[0]
+    assert np.ptp(moved) > 1.0
+    warmer = data.table.temperature + 2 * np.ptp(data.table.temperature)
+    outside = replace(data, table=replace(data.table, temperature=warmer))
+    added = empirical.term.at(outside)
+    assert not added.friction.any()
+    assert not added.load.any()
+    np.testing.assert_array_equal(empirical.without.changes, biased.changes)
+    np.testing.assert_array_equal(empirical.without.gravity, biased.gravity)
 
 
 def test_a_run_in_which_a_cause_does_not_hold_is_predicted_without_it():
@@ -94,8 +114,8 @@ def test_a_run_in_which_a_cause_does_not_hold_is_predicted_without_it():
 
     empirical = empirical_term(step, (data, beside), (new, holding), margin=0.2, floor=0.3, seed=0)
     assert asked[0] is beside
-    assert asked[1] is empirical.beside
-    left = misfits(new, replace(empirical.beside, effects=()))
+    assert asked[1] is empirical.without
+    left = misfits(new, replace(empirical.without, effects=()))
     added = empirical.term.at(new)
     rms = np.sqrt(np.mean(new.squared(left[0] - added.friction, left[1] - added.load)))
     assert rms == pytest.approx(empirical.gain.after, rel=1e-9)

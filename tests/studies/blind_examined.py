@@ -123,6 +123,12 @@ def _true(truth: Truth) -> dict[str, object]:
     }
 
 
+def _parameters(model: Mapping[str, Any]) -> Mapping[str, Any]:
+    """Return the parameters of friction, beside the forms of what has no name if there are any."""
+    beside = (model.get("empirical") or {}).get("parameters_beside")
+    return beside or model["parameters"]
+
+
 def _said(said: Said, *, with_sizes: bool) -> dict[str, object]:
     diagnosis = said.diagnosis
     gain = diagnosis.get("gain") or {}
@@ -132,7 +138,7 @@ def _said(said: Said, *, with_sizes: bool) -> dict[str, object]:
         "visible_json": _json([_cause(one) for one in diagnosis.get("visible", ())]),
         "structure_json": _json(_structure(diagnosis)),
         "parameters_json": _json(
-            {name: _parameter(said.model["parameters"].get(name, {})) for name in PARAMETERS}
+            {name: _parameter(_parameters(said.model).get(name, {})) for name in PARAMETERS}
         ),
         "detectable_json": _json(diagnosis["detectable"]) if with_sizes else "",
         "after": f"{gain['rmse_after']:.5g}" if gain else "",

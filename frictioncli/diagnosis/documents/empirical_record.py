@@ -1,7 +1,7 @@
 """The empirical term in documents: as the extended model carries it, and what it gains."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import msgspec
 
@@ -11,6 +11,7 @@ from frictioncli.diagnosis.empirical.estimate import Empirical
 from frictioncli.diagnosis.empirical.located import Located
 from frictioncli.diagnosis.empirical.term import FADING, EmpiricalTerm
 from frictioncli.diagnosis.noise.cosine_series import Range
+from frictioncli.model.document import ParameterEstimate
 
 _NOTE = "empirical: what was measured and no known cause explains; not a cause"
 
@@ -41,6 +42,9 @@ class EmpiricalRecord(EmpiricalTerm):
         Share of a range within which it falls to nothing beyond each end. [1]
     size : float
         Its RMS over the rows that it was estimated from. [torque unit]
+    parameters_beside : mapping of str to ParameterEstimate
+        Parameters of friction as fitted beside the forms, with intervals: what they are if the
+        forms are true. The model is not evaluated with them; empty without forms.
     """
 
     note: str = _NOTE
@@ -49,6 +53,7 @@ class EmpiricalRecord(EmpiricalTerm):
     units: Mapping[str, str]
     fading: float = FADING
     size: float
+    parameters_beside: Mapping[str, ParameterEstimate] = field(default_factory=dict)
 
 
 class LocatedRecord(msgspec.Struct, frozen=True, kw_only=True):
@@ -125,7 +130,9 @@ class EmpiricalGainRecord(msgspec.Struct, frozen=True, kw_only=True):
         return tuple(one for one in self.parts if one.description)
 
 
-def term_record(found: Empirical, torque_unit: str) -> EmpiricalRecord:
+def term_record(
+    found: Empirical, torque_unit: str, parameters_beside: Mapping[str, ParameterEstimate]
+) -> EmpiricalRecord:
     """Return an empirical term as ``extended-model.json`` has it.
 
     Parameters
@@ -134,6 +141,8 @@ def term_record(found: Empirical, torque_unit: str) -> EmpiricalRecord:
         The term.
     torque_unit : str
         Unit of torque.
+    parameters_beside : mapping of str to ParameterEstimate
+        Parameters of friction as fitted beside its forms.
     """
     term = found.term
     return EmpiricalRecord(
@@ -145,6 +154,7 @@ def term_record(found: Empirical, torque_unit: str) -> EmpiricalRecord:
         torque_unit=torque_unit,
         units={axis: _UNITS[axis] for axis in term.ranges},
         size=found.size,
+        parameters_beside=parameters_beside if term.forms else {},
     )
 
 

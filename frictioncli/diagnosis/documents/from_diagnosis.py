@@ -46,7 +46,7 @@ from frictioncli.diagnosis.thermal.refine import LAG
 from frictioncli.effects import stribeck, torque_delay, torque_filter
 from frictioncli.effects.base import Effect
 from frictioncli.effects.history_text import history_text
-from frictioncli.model.document import PARAMETERS, FrictionModel
+from frictioncli.model.document import PARAMETERS, FrictionModel, ParameterEstimate
 from frictioncli.model.friction import FrictionParameters
 
 
@@ -123,16 +123,7 @@ def extended_document(diagnosis: Diagnosis, model: FrictionModel) -> ExtendedDoc
     if extension is None:
         return ExtendedDocument(**stated, effects=())
     base, form = diagnosis.base.parameters, diagnosis.base.gravity_form
-    parameters = dict(model.parameters)
-    for name, change, error in zip(
-        extension.names, extension.changes, extension.errors, strict=False
-    ):
-        value = getattr(base, name) + float(change)
-        parameters[name] = replace(
-            parameters[name],
-            estimate=value,
-            ci95=(value - Z95 * float(error), value + Z95 * float(error)),
-        )
+    parameters = _base_parameters(extension, base, model.parameters)
     effects = [
         EffectRecord(
             name=one.effect.name,
@@ -157,16 +148,34 @@ def extended_document(diagnosis: Diagnosis, model: FrictionModel) -> ExtendedDoc
         gravity_about=gravity_document(diagnosis.base.gravity, form),
         gravity=gravity_document(extension.gravity, form),
         hidden_temperature=diagnosis.base.hidden or UNSET,
-        empirical=term_record(diagnosis.empirical, diagnosis.torque_unit)
-        if diagnosis.empirical
-        else UNSET,
+        empirical=UNSET
+        if diagnosis.empirical is None
+        else term_record(
+            diagnosis.empirical,
+            diagnosis.torque_unit,
+            _base_parameters(diagnosis.empirical.beside, base, model.parameters),
+        ),
         late_torque=diagnosis.base.late or UNSET,
     )
 
 
+def _base_parameters(
+    extension: Extension, about: FrictionParameters, known: Mapping[str, ParameterEstimate]
+) -> dict[str, ParameterEstimate]:
+    """Return the base's parameters of an extension with intervals; others as they are known."""
+    found = dict(known)
+    for name, change, error in zip(
+        extension.names, extension.changes, extension.errors, strict=False
+    ):
+        value = getattr(about, name) + float(change)
+        reach = Z95 * float(error)
+        found[name] = replace(found[name], estimate=value, ci95=(value - reach, value + reach))
+    return found
+
+
 def _stated(diagnosis: Diagnosis) -> Extension | None:
-    """Return the extension whose parameters are stated: fitted beside the empirical term."""
-    return diagnosis.extension if diagnosis.empirical is None else diagnosis.empirical.beside
+    """Return the extension whose parameters are stated: what the empirical term is added to."""
+    return diagnosis.extension if diagnosis.empirical is None else diagnosis.empirical.without
 
 
 def _cause_record(diagnosis: Diagnosis, cause: Cause, number: int) -> CauseRecord:

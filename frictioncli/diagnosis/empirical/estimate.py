@@ -18,13 +18,14 @@ must explain most of what the free functions do, and predict the blocks as well.
 another form may be there instead that is nearly as likely, the term has no form. A form that
 explains too little of the blocks makes way for the next.
 
-A form is evidence beyond that discrepancy. Free functions are not: any joint has some, which recur
-on every run. Without a form a term is used only where it surely explains more than the root sum of
-squares of the smallest size worth a name and of the discrepancy that is expected of any joint.
+A form is evidence beyond that discrepancy, also where the data do not tell which of several of one
+quantity it is. Free functions are not: any joint has some, which recur on every run. Without a form
+a term is used only where it surely explains more than the root sum of squares of the smallest size
+worth a name and of the discrepancy that is expected of any joint.
 """
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -85,7 +86,10 @@ class Empirical:
         Reduction of the misfit that base and causes leave, on the held-out run of the diagnosis, or
         on the blocks kept out of the estimate.
     beside : Extension
-        Base and causes beside it: refitted beside its forms.
+        Base and causes refitted beside its forms: what their parameters are if the forms are true.
+    without : Extension
+        Base and causes that the term is added to: the base as fitted without it, to which all
+        returns where the term fades; causes as in the former.
     """
 
     term: EmpiricalTerm
@@ -94,6 +98,7 @@ class Empirical:
     kept_out: float
     gain: Gain
     beside: Extension
+    without: Extension
 
 
 NewRun = tuple[Problem, Callable[[Extension], Extension]]
@@ -203,25 +208,30 @@ def empirical_term(
     small = functions_of(problem, components, step.precomputed.start.amplitude)
     search = FormSearch.of(step, fitted, small, misfit)
     best, before = free, free.gain.before
-    without = np.inf
+    without, evident = np.inf, False
     candidates = forms_of(_varying(problem))
     if structure is not None:
         candidates = [one for one in candidates if _is_along(one, structure)]
     for _ in range(_MOST_TRIED):
         found = search.best(candidates)
-        if found.score < LEAST_SCORE or not found.leads:
+        if found.score < LEAST_SCORE or not found.is_located:
             break
         tried = search.beside(found, function_of_form(fitted, found.form, found.shape))
         more = estimated(tried.functions, tried.noise)
         alone = reduced(more.equations.of_forms())
         added = float(np.sqrt(max(before**2 - alone.after**2, 0.0)))
-        if added < margin or more.gain.after >= without or not _recurs(more):
+        is_worse = added < margin or more.gain.after >= without or not _recurs(more)
+        is_most = _explained(alone) >= _MOST_OF_IT * _explained(free.gain)
+        evident = evident or (is_most and not is_worse)
+        if not found.leads:
+            break
+        if is_worse:
             candidates.remove(found.form)
             continue
         search, before, without = tried, alone.after, more.gain.after
         freely = estimated([*_forms(search), *smooth], search.noise)
         best = min(best, more, freely, key=lambda one: one.gain.after)
-        if _explained(alone) >= _MOST_OF_IT * _explained(free.gain):
+        if is_most:
             described = more
         if len(search.forms) == _MOST_FORMS:
             break
@@ -229,9 +239,9 @@ def empirical_term(
     if described is not None and described.gain.after <= _AS_GOOD * best.gain.after:
         chosen = described
     used = _used(chosen, seen, new, margin=margin, floor=floor, seed=seed)
-    if used is not None and chosen is free and min(_sure(free.gain), _sure(used.gain)) < least:
-        return None
-    return used
+    if used is None or chosen is not free or evident:
+        return used
+    return None if min(_sure(free.gain), _sure(used.gain)) < least else used
 
 
 def _used(
@@ -245,9 +255,10 @@ def _used(
 ) -> Empirical | None:
     """Return an estimate as a term, if it explains enough of the held-out run, too."""
     term, gain, beside = found.term(), found.gain, found.refitted(seen[1])
+    without = replace(beside, changes=seen[1].changes, gravity=seen[1].gravity)
     if new is not None:
         rows, holding = new
-        before, left = (misfits(rows, holding(one)) for one in (seen[1], beside))
+        before, left = (misfits(rows, holding(one)) for one in (seen[1], without))
         after = _without(left, term.at(rows))
         gain = reduced_by(rows, before, after, basis="new_run", floor=floor, seed=seed)
         if not _is_worth_using(gain, margin):
@@ -260,6 +271,7 @@ def _used(
         kept_out=_explained(found.gain),
         gain=gain,
         beside=beside,
+        without=without,
     )
 
 

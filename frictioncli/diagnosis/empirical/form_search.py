@@ -68,6 +68,8 @@ class FoundForm:
         Base, causes, discrepancy and noise beside it.
     leads : bool
         Whether its score is far enough above that of any form that may be there instead.
+    is_located : bool
+        Whether all forms that may be there instead are of the same quantities, in the same channel.
     """
 
     form: Form
@@ -75,6 +77,7 @@ class FoundForm:
     score: float
     fit: MixedFit
     leads: bool = True
+    is_located: bool = True
 
     @property
     def places(self) -> frozenset[str]:
@@ -193,7 +196,9 @@ class FormSearch:
         again = self._judged(first.form, misfit.refined(first.form, (first.shape, 0.0))[0])
         first = max(first, again, key=lambda one: one.score)
         rivals = [one for one in others if self._is_rival(one, first, misfit)]
-        return replace(first, leads=all(_is_behind(one, first) for one in rivals))
+        near = [one for one in rivals if not _is_behind(one, first)]
+        alike = all(_place_of(one) == _place_of(first) for one in near)
+        return replace(first, leads=not near, is_located=alike)
 
     def _weighted(self, noise: Noises) -> WeightedMisfit:
         return WeightedMisfit.of(self.fitted, noise, self.functions, self.misfit)
@@ -228,6 +233,10 @@ class FormSearch:
         both = misfit.together([(one.form, one.shape) for one in (first, other)])
         beside = both - misfit.together([(other.form, other.shape)])
         return beside - self._price(first.form) < LEAST_SCORE
+
+
+def _place_of(found: FoundForm) -> tuple[frozenset[str], str]:
+    return found.places, found.form.channel
 
 
 def _is_behind(rival: FoundForm, first: FoundForm) -> bool:

@@ -141,10 +141,11 @@ def _left(problem: Problem, both: Basis) -> tuple[Array, Array]:
 
 
 def term_of(problem: Problem, functions: Sequence[Function], coefficients: Array) -> EmpiricalTerm:
-    """Return the term that coefficients of functions make.
+    """Return the term that coefficients of functions make, less what the base takes of them.
 
-    What the base takes of random functions is a part of it; what it takes of forms is not, since
-    the base is refitted beside them.
+    The base stays as it was fitted without the term, to which all returns where the term fades. A
+    form may be much larger than what the base leaves of it: a base refitted beside it would be
+    wrong where it is not.
 
     Parameters
     ----------
@@ -160,8 +161,9 @@ def term_of(problem: Problem, functions: Sequence[Function], coefficients: Array
     taken = np.zeros(len(problem.names) + len(problem.gravity))
     for one, own in zip(functions, np.split(coefficients, ends), strict=True):
         values = (one.scale * own).tolist()
+        # of a form the rows beyond are what causes take
+        taken += one.taken[: len(taken)] @ own
         if isinstance(one.what, CosineSeries):
-            taken += one.taken @ own
             smooth.append(
                 SmoothFunction(
                     axes=one.what.axes,

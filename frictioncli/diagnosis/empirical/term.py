@@ -2,7 +2,7 @@ r"""An empirical term: torque by angle, speed and temperature for which no cause
 
 It is a sum of forms that describe what was found (:mod:`frictioncli.diagnosis.empirical.forms`) and
 of series of cosines (:mod:`frictioncli.diagnosis.noise.cosine_series`), less what the base model
-takes of them, because its parameters were fitted without them,
+takes of both, because its parameters were fitted without them,
 
 .. math::
     r(x) = w(x) \left( \sum_k a_k f_k(x) + \sum_k \gamma_k c_k(x)
