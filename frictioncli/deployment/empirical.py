@@ -232,11 +232,16 @@ def _c_amount(axis: str) -> str:
 
 
 def _c_peak(form: FormFunction) -> list[str]:
+    return [f"exp(-0.5 * pow({_c_away(form)}, 2.0))"]
+
+
+def _c_away(form: FormFunction) -> str:
+    """Return the distance from a centre in widths, of the speed in its logarithm."""
     (axis,), shape = form.axes, form.shape
     away = f"{_c_amount(axis)} - ({shape['centre']!r})"
     if axis == "speed":
         away = f"log((speed > 1e-9 ? speed : 1e-9) / {shape['centre']!r})"
-    return [f"exp(-0.5 * pow(({away}) / {shape['width']!r}, 2.0))"]
+    return f"({away}) / {shape['width']!r}"
 
 
 def _c_bend(form: FormFunction) -> list[str]:
@@ -246,8 +251,7 @@ def _c_bend(form: FormFunction) -> list[str]:
 
 
 def _c_step(form: FormFunction) -> list[str]:
-    away = f"({_c_amount(form.axes[0])} - ({form.shape['centre']!r})) / {form.shape['width']!r}"
-    return [f"0.5 * erfc(-({away}) * {float(np.sqrt(0.5))!r})"]
+    return [f"0.5 * erfc(-({_c_away(form)}) * {float(np.sqrt(0.5))!r})"]
 
 
 def _c_lifting(form: FormFunction) -> list[str]:

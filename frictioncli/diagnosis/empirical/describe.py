@@ -83,7 +83,7 @@ def experiment(form: FormFunction, load_unit: str = "N·m") -> str:
             low, high = (_number(centre + way * 3 * width) for way in (-1, 1))
         bins = number_text(width / 2, 2)
         return _AROUND[axis].format(low=low, high=high, bins=bins, load=load_unit)
-    return _NEXT[form.kind]
+    return _AT_STEP[axis] if form.kind == "step" else _NEXT[form.kind]
 
 
 _AROUND = {
@@ -101,13 +101,23 @@ _AROUND = {
 }
 """What to measure around a peak."""
 
+_AT_STEP = {
+    "position": "Move across this angle at three speeds, some of them slow, cold and warm, with and"
+    " without a payload, and with anything that may touch there (a hose, a cover) taken off.",
+    "speed": "Measure at six speeds or more on both sides of this one, in random order, cold and"
+    " warm, with other gains of the servo if these change there.",
+    "temperature": "Go through this temperature twice, heating and cooling, at another rate and on"
+    " another day, with anything that switches there (a fan, a heater) once on and once off.",
+    "load": "Measure with another payload, or in another pose, so that this load occurs at another"
+    " angle: an effect of load moves with it.",
+}
+"""What to measure about a step."""
+
 _BEND = "Measure more values on both sides of the bend, in random order, on another day."
 
 _NEXT = {
     "bend_above": _BEND,
     "bend_below": _BEND,
-    "step": "Go through this temperature twice, heating and cooling, at another rate and on another"
-    " day, with anything that switches there (a fan, a heater) once on and once off.",
     "lifting": "Measure with two payloads: a loss in lifting grows with the load to its power;"
     " an error of the mass grows in proportion.",
     "moving_peak": "Measure at six speeds or more around the peak, at three constant temperatures.",
@@ -120,6 +130,10 @@ _NEXT = {
 
 def _of(form: FormFunction) -> str:
     return "friction" if form.channel == "friction" else "the load"
+
+
+def _that(form: FormFunction) -> str:
+    return "friction that" if form.channel == "friction" else "a load that"
 
 
 def _size(value: float, unit: str) -> str:
@@ -151,16 +165,17 @@ def _bend(form: FormFunction, unit: str) -> str:
     # below the bend a positive coefficient falls towards it
     way = "rises" if (slope > 0) == above else "falls"
     where = f"{'above' if above else 'below'} {_number(form.shape['start'])} {_UNITS[axis]}"
-    return f"friction that {way} by {_size(slope, unit)} per 10 {_UNITS[axis]} {where}"
+    return f"{_that(form)} {way} by {_size(slope, unit)} per 10 {_UNITS[axis]} {where}"
 
 
 def _step(form: FormFunction, unit: str) -> str:
-    step = form.coefficients["step"]
-    return (
-        f"friction that {'rises' if step > 0 else 'falls'} by {_size(step, unit)} at"
-        f" {_number(form.shape['centre'])} °C, within about"
-        f" {number_text(4 * form.shape['width'], 2)} °C"
-    )
+    (axis,), step, width = form.axes, form.coefficients["step"], form.shape["width"]
+    within = f"{number_text(4 * width, 2)} {_UNITS[axis]}"
+    if axis == "speed":
+        within = f"a factor of {number_text(math.exp(4 * width), 2)}"
+    place = _PLACES[axis].format(_number(form.shape["centre"]))
+    way = "rises" if step > 0 else "falls"
+    return f"{_that(form)} {way} by {_size(step, unit)} {place}, within about {within}"
 
 
 def _lifting(form: FormFunction, unit: str) -> str:

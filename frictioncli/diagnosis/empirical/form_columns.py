@@ -43,12 +43,7 @@ def columns_of(
 
 
 def _peak_columns(axes: tuple[str, ...], table: EffectTable, shape: Shape) -> Array:
-    (axis,) = axes
-    if axis == "speed":
-        away = np.log(np.maximum(table.speed, 1e-9) / shape["centre"])
-    else:
-        away = _amount(axis, table) - shape["centre"]
-    return np.exp(-np.square(away / shape["width"]) / 2)[:, np.newaxis]
+    return np.exp(-np.square(_away(axes, table, shape)) / 2)[:, np.newaxis]
 
 
 def _bump(table: EffectTable, shape: Shape) -> Basis:
@@ -70,8 +65,7 @@ def _below(axes: tuple[str, ...], table: EffectTable, shape: Shape) -> Array:
 
 
 def _step(axes: tuple[str, ...], table: EffectTable, shape: Shape) -> Array:
-    away = (_amount(axes[0], table) - shape["centre"]) / shape["width"]
-    return np.asarray(ndtr(away)[:, np.newaxis])
+    return np.asarray(ndtr(_away(axes, table, shape))[:, np.newaxis])
 
 
 def _lifting(axes: tuple[str, ...], table: EffectTable, shape: Shape) -> Array:
@@ -98,6 +92,16 @@ def _turning_wave(axes: tuple[str, ...], table: EffectTable, shape: Shape) -> Ar
 def _waves(table: EffectTable, order: float) -> Array:
     angle = order * np.radians(table.position)
     return np.column_stack([np.cos(angle), np.sin(angle)])
+
+
+def _away(axes: tuple[str, ...], table: EffectTable, shape: Shape) -> Array:
+    """Return distances from a centre in widths, of the speed in its logarithm."""
+    (axis,) = axes
+    if axis == "speed":
+        away = np.log(np.maximum(table.speed, 1e-9) / shape["centre"])
+    else:
+        away = _amount(axis, table) - shape["centre"]
+    return np.asarray(away / shape["width"])
 
 
 def _amount(axis: str, table: EffectTable) -> Array:

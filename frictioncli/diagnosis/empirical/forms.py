@@ -14,6 +14,7 @@ from itertools import product
 
 import numpy as np
 
+from frictioncli.arrays import Array
 from frictioncli.diagnosis.empirical.form_columns import BUMP, Shape, columns_of
 from frictioncli.diagnosis.noise.cosine_series import Range
 from frictioncli.effects.base import Basis, EffectTable
@@ -34,8 +35,23 @@ _NARROWEST = {"position": 0.012, "speed": 0.05, "temperature": 0.02, "load": 0.0
 _WIDEST = 0.25
 """Standard deviation of a peak as a share of the range."""
 
-_STEEPEST = 0.1
-"""Greatest width of a step as a share of the range: wider ones look like the base."""
+_STEEPNESS = {
+    "position": (0.012, 0.04),
+    "speed": (0.02, 0.08),
+    "temperature": (0.02, 0.1),
+    "load": (0.02, 0.06),
+}
+"""Least and greatest width of a step as a share of the range: wider ones look like the base, or
+like any smooth function of the angle."""
+
+_STEEPNESSES = 4
+"""Widths of a step that are tried."""
+
+_DISTANCES = {
+    axis: "ln(v / centre)" if axis == "speed" else f"({symbol} - centre)"
+    for axis, symbol in SYMBOLS.items()
+}
+"""Distances from the centre of a form, of the speed in its logarithm."""
 
 _LAGS = (0.0, 0.025, 0.05, 0.075, 0.1)
 """Delays of a torque behind the angle. [s]"""
@@ -152,10 +168,11 @@ def forms_of(ranges: Mapping[str, Range]) -> list[Form]:
             found = [_late(plain)]
         if axis != "load":
             found.append(_peak(axis, "load", within))
-        if axis != "position":
-            found += [_bend(axis, way, within) for way in ("above", "below")]
-    if "temperature" in ranges:
-        found.append(_step(ranges["temperature"]))
+        # what touches at an angle, as an end stop or a hose, may carry as well as rub
+        channels = ("friction", "load") if axis == "position" else ("friction",)
+        for channel in channels:
+            found += [_bend(axis, way, channel, within) for way in ("above", "below")]
+            found.append(_step(axis, channel, within))
     if "load" in ranges:
         found.append(
             Form(
@@ -201,24 +218,37 @@ def forms_of(ranges: Mapping[str, Range]) -> list[Form]:
 
 def _peak(axis: str, channel: str, within: Range) -> Form:
     """Return a peak, or a dent, at one value of a quantity; of the speed in its logarithm."""
-    low, high = within
-    if axis == "speed":
-        span, unit, centres = float(np.log(high / low)), "1", np.geomspace(low, high, _PEAKS)
-        distance = "ln(v / centre)"
-    else:
-        span, unit, centres = high - low, UNITS[axis], np.linspace(low, high, _PEAKS)
-        distance = f"({SYMBOLS[axis]} - centre)"
-    widths = np.geomspace(_NARROWEST[axis] * span, _WIDEST * span, _WIDTHS)
     return Form(
         kind="peak",
         axes=(axis,),
         channel=channel,
-        shape=(
-            ShapeAxis("centre", UNITS[axis], tuple(centres.tolist()), axis == "speed"),
-            ShapeAxis("width", unit, tuple(widths.tolist()), logarithmic=True),
+        shape=_centre_and_width(
+            axis, within, _places(axis, within, _PEAKS), (_NARROWEST[axis], _WIDEST), _WIDTHS
         ),
         coefficients=("peak",),
-        formula=f"peak exp(-({distance} / width)^2 / 2)",
+        formula=f"peak exp(-({_DISTANCES[axis]} / width)^2 / 2)",
+    )
+
+
+def _places(axis: str, within: Range, count: int) -> Array:
+    """Return places over a range, those of the speed in equal ratios."""
+    return (np.geomspace if axis == "speed" else np.linspace)(*within, count)
+
+
+def _centre_and_width(
+    axis: str, within: Range, centres: Array, shares: Range, count: int
+) -> tuple[ShapeAxis, ShapeAxis]:
+    """Return place and width of a form, which is one of the logarithm of the speed.
+
+    The width lies between two shares of the range.
+    """
+    low, high = within
+    speed = axis == "speed"
+    span = float(np.log(high / low)) if speed else high - low
+    widths = span * np.geomspace(*shares, count)
+    return (
+        ShapeAxis("centre", UNITS[axis], tuple(centres.tolist()), logarithmic=speed),
+        ShapeAxis("width", "1" if speed else UNITS[axis], tuple(widths.tolist()), True),
     )
 
 
@@ -234,35 +264,33 @@ def _late(plain: Form) -> Form:
     )
 
 
-def _bend(axis: str, way: str, within: Range) -> Form:
-    """Return friction that grows, or falls, linearly on one side of a value of a quantity."""
+def _bend(axis: str, way: str, channel: str, within: Range) -> Form:
+    """Return torque that grows, or falls, linearly on one side of a value of a quantity."""
     inner = np.linspace(*within, _PEAKS + 2)[1:-1]
     beyond = f"{SYMBOLS[axis]} - start" if way == "above" else f"start - {SYMBOLS[axis]}"
     return Form(
         kind=f"bend_{way}",
         axes=(axis,),
-        channel="friction",
+        channel=channel,
         shape=(ShapeAxis("start", UNITS[axis], tuple(inner.tolist())),),
         coefficients=("per_10",),
         formula=f"per_10 max(0, {beyond}) / 10",
     )
 
 
-def _step(within: Range) -> Form:
-    """Return friction that is another one above a temperature, as where a fan goes on."""
-    low, high = within
-    inner = np.linspace(low, high, _PEAKS + 2)[1:-1]
-    widths = np.geomspace(_NARROWEST["temperature"] * (high - low), _STEEPEST * (high - low), 4)
+def _step(axis: str, channel: str, within: Range) -> Form:
+    """Return torque that is another one above a value of a quantity.
+
+    As where a fan goes on, where a servo changes its gains, or where a hose touches.
+    """
+    inner = _places(axis, within, _PEAKS + 2)[1:-1]
     return Form(
         kind="step",
-        axes=("temperature",),
-        channel="friction",
-        shape=(
-            ShapeAxis("centre", "°C", tuple(inner.tolist())),
-            ShapeAxis("width", "°C", tuple(widths.tolist()), logarithmic=True),
-        ),
+        axes=(axis,),
+        channel=channel,
+        shape=_centre_and_width(axis, within, inner, _STEEPNESS[axis], _STEEPNESSES),
         coefficients=("step",),
-        formula="step Phi((T - centre) / width), Phi: cumulative normal distribution",
+        formula=f"step Phi({_DISTANCES[axis]} / width), Phi: cumulative normal distribution",
     )
 
 
