@@ -24,7 +24,7 @@ from frictioncli.diagnosis.ramps.timing_rivals import TimingRivals
 from frictioncli.diagnosis.search.cause import Cause
 from frictioncli.diagnosis.search.cause_search import find_causes
 from frictioncli.diagnosis.search.cause_selection import refuted_by_new_run
-from frictioncli.diagnosis.search.lack_of_fit import Structure
+from frictioncli.diagnosis.search.lack_of_fit import Structure, unnamed_structure
 from frictioncli.diagnosis.search.margin import channel_margin, margin_of
 from frictioncli.diagnosis.search.measurement import (
     beside_the_rest,
@@ -263,13 +263,17 @@ def diagnose_joint(
         seed=settings.seed,
         structure=named.structure,
     )
+    structure = named.structure
+    if structure is None and not causes and empirical is not None:
+        # an effect of the measurement that is not corrected may hold a part of it
+        structure = unnamed_structure(step, 0.0, settings.alpha)
     return Diagnosis(
         joint=joint,
         torque_unit=torque_unit,
-        verdict=verdict_of(causes, named.structure),
+        verdict=verdict_of(causes, structure),
         causes=causes,
         visible=visible,
-        structure=named.structure,
+        structure=structure,
         gain=gain,
         corrected=corrected,
         extension=extension,

@@ -22,6 +22,9 @@ _AXES = {
     "load": "the load",
 }
 
+_LEAST_SHARE = 0.1
+"""Share of the mean square of an empirical term from which on a part of it is told."""
+
 _LEFT_BY_BASE = 0.95
 """Share of its size from which on it is not worth saying what the base model leaves of a cause."""
 
@@ -239,12 +242,25 @@ def empirical_text(document: DiagnosisDocument) -> str:
     # structure that a form describes is said already
     if found.forms and (document.structure is None or document.structure.formula is None):
         what = f" It describes {', and '.join(one.description or '' for one in found.forms)}."
+    if not found.forms:
+        what = f" It varies with {list_text(_parts(found, unit))}."
     return (
         f"An empirical term for the unexplained part reduces the misfit {on} from"
         f" {number_text(found.rmse_before, 2)} to {number_text(found.rmse_after, 2)} {unit} (RMS):"
         f" {100 * found.reduction:.0f} % less ({low} to {high}).{what} It names no cause and is"
         f" valid only {_within_text(found, document.unit_of('load'))}."
     )
+
+
+def _parts(found: EmpiricalGainRecord, unit: str) -> list[str]:
+    """Return the larger parts of an empirical term, with sizes and intervals."""
+    large = [one for one in found.parts if one.share >= _LEAST_SHARE]
+    return [
+        f"{list_text(one.axes).replace('position', 'angle')} in the {one.channel}"
+        f" ({number_text(one.size, 2)} {unit} RMS, {number_text(one.ci95[0], 2)} to"
+        f" {number_text(one.ci95[1], 2)})"
+        for one in large or found.parts[:1]
+    ]
 
 
 def _within_text(found: EmpiricalGainRecord, load_unit: str) -> str:
