@@ -131,13 +131,17 @@ def _samples(path: Path, joint: int) -> pd.DataFrame:
 def timing_of(diagnosis: DiagnosisDocument) -> LogTiming:
     """Return how late a log holds torque, where its diagnosis tells a delay or a filter.
 
+    Of a set of both it is the one whose parameters are stated; what physics or the starts of moves
+    contradict is none.
+
     Parameters
     ----------
     diagnosis : DiagnosisDocument
         The diagnosis of the log as it is.
     """
     for cause in (*diagnosis.causes, *diagnosis.visible):
-        if cause.effects in (("torque_delay",), ("torque_filter",)):
+        is_timing = bool(cause.effects) and set(cause.effects) <= {"torque_delay", "torque_filter"}
+        if is_timing and cause.standing != "undetermined":
             values = {
                 name: max(one.estimate, 0.0)
                 for name, one in cause.parameters.items()

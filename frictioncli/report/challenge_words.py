@@ -10,6 +10,9 @@ from frictioncli.wording import count_text
 
 _FOUR_OF_FIVE = 0.8
 
+_SHAPES = 5
+"""Shapes of which a claim is made."""
+
 
 def rows_of_table(frame: pd.DataFrame) -> list[Row]:
     """Return the rows of a table that was read; None where a value is missing.
@@ -43,7 +46,7 @@ def mark(row: Row) -> str:
     elif row["right_in_set"]:
         told.append("found in a set")
     else:
-        told.append("not found")
+        told.append("not found" + (", below the size claimed" if _is_below_claim(row) else ""))
     if row["wrong"]:
         told.append(f"WRONG: {row['wrong']}")
     return ", ".join(told)
@@ -86,10 +89,12 @@ def summary(rows: Sequence[Row]) -> list[str]:
         lines.append(f"trials with a wrong new name: {wrong} of {count_text(len(done), 'trial')}")
     ratios = claim_ratios(rows)
     if ratios:
+        shapes = len({row["seed"] for row in done})
+        note = f" (of {count_text(shapes, 'shape')}; it is claimed for four of five, try --draws 5)"
         within = sum(1 / 1.5 <= one <= 1.5 for one in ratios.values())
         lines.append(
             f"claimed detectable size within a factor of 1.5 of the size found: {within} of"
-            f" {count_text(len(ratios), 'effect')}"
+            f" {count_text(len(ratios), 'effect')}{note if shapes < _SHAPES else ''}"
         )
     return lines
 
@@ -97,6 +102,12 @@ def summary(rows: Sequence[Row]) -> list[str]:
 def can_show(row: Row) -> bool:
     """Return whether the diagnosis of the log calls an effect detectable in its planted size."""
     return row["claimed"] is not None and row["size"] is not None and row["claimed"] <= row["size"]
+
+
+def _is_below_claim(row: Row) -> bool:
+    """Return whether the diagnosis of the log itself says that a size is too small to be found."""
+    claimed, size = row["claimed"], row["size"]
+    return claimed is not None and size is not None and size < claimed
 
 
 def claim_ratios(rows: Sequence[Row]) -> dict[str, float]:

@@ -126,6 +126,18 @@ def test_noise_has_hardly_any_structure(found):
     assert one.size < 0.12
 
 
+def test_what_goes_with_the_load_goes_with_the_angle_too_where_there_is_one_payload(found):
+    problem = found.judged
+    load = problem.table.load
+    heavier = np.where(problem.layout.row_pair % 2 == 0, load, 1.6 * load)
+    two = replace(problem, table=replace(problem.table, load=heavier))
+    nothing = np.zeros_like(load)
+    for rows, axis in ((problem, "position"), (two, "load")):
+        carried = 2.0 * np.square(rows.table.load / np.max(np.abs(rows.table.load)))
+        one = largest_structure(rows, carried - carried.mean(), nothing)
+        assert (one.axis, one.channel) == (axis, "friction")
+
+
 def write(path, **changed):
     path.write_text(json.dumps(DIAGNOSIS_DOCUMENT | changed), encoding="utf-8")
 

@@ -1,7 +1,8 @@
 """What the terminal says of a diagnosis."""
 
 from frictioncli.diagnosis.documents.document import RemainderRecord
-from frictioncli.diagnosis.documents.sentences import lasting_text, size_text
+from frictioncli.diagnosis.documents.empirical_record import EmpiricalGainRecord, LocatedRecord
+from frictioncli.diagnosis.documents.sentences import empirical_text, lasting_text, size_text
 from frictioncli.diagnosis.documents.text import verdict_text
 from frictioncli.diagnosis.search.effect_size import LACKING, TAKEN_BY_BASE
 from tests.report.diagnosis_documents import cause, diagnosis
@@ -111,3 +112,30 @@ def test_what_the_base_takes_entirely_is_said():
         f"N·m RMS (Stribeck friction). {said}"
     )
     assert lines(detectable=dict.fromkeys(why), undetectable=why)[-1].endswith(f"effects. {said}")
+
+
+def test_the_larger_parts_of_an_empirical_term_are_told_with_their_sizes():
+    parts = [
+        LocatedRecord(axes=axes, channel=channel, size=size, ci95=(0.4, 0.7), share=share)
+        for axes, channel, size, share in (
+            (("position", "temperature"), "friction", 0.5, 0.7),
+            (("speed",), "load", 0.3, 0.25),
+            (("temperature",), "friction", 0.1, 0.05),
+        )
+    ]
+    gain = EmpiricalGainRecord(
+        size=0.6,
+        size_kept_out=0.5,
+        basis="kept_out_blocks",
+        rmse_before=0.8,
+        rmse_after=0.5,
+        reduction=0.4,
+        ci95=(0.3, 0.5),
+        noise_floor=0.4,
+        ranges={"position": (10.0, 90.0)},
+        parts=tuple(parts),
+    )
+    assert (
+        "It varies with angle and temperature in the friction (0.50 N·m RMS, 0.40 to 0.70) and"
+        " speed in the load (0.30 N·m RMS, 0.40 to 0.70). It names no cause"
+    ) in empirical_text(diagnosis(empirical=gain))

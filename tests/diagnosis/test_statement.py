@@ -30,6 +30,8 @@ def test_the_torque_of_an_effect_may_be_certain_where_its_coefficients_are_not(n
     assert without.startswith(effect.summary)
     assert without.endswith("but not its parameters.")
     assert "90" not in without.removeprefix(effect.summary)
+    # nor any order of magnitude, as of a spring whose rest angle the data do not tell
+    assert said(effect, (2e-16, 2e16)) == without
 
 
 def test_a_size_that_may_be_a_hundred_times_as_large_is_not_stated():

@@ -42,6 +42,7 @@ def row(**changes):
     ("changes", "told"),
     [
         ({}, "not found"),
+        ({"claimed": 1.5}, "not found, below the size claimed"),
         (FOUND, "found"),
         (FOUND | {"right_alone": False}, "found in a set"),
         (FOUND | {"already": True}, "already there"),
@@ -89,13 +90,17 @@ def test_claims_are_compared_with_the_size_found_and_fail_where_none_was():
         row(effect="stribeck"),
     ]
     assert claim_ratios(rows) == pytest.approx({"drift": 1.25, "inertia": 0.0})
-    assert summary(rows)[-1].endswith("1 of 2 effects")
+    told = summary(rows)[-1]
+    assert "the size found: 1 of 2 effects" in told
+    # one shape may be much easier or harder than four of five
+    assert told.endswith("(of 1 shape; it is claimed for four of five, try --draws 5)")
 
 
 def test_of_several_shapes_the_size_counts_at_which_four_of_five_are_found():
     sizes = [0.4, 0.1, None, 0.25, 0.2]
     rows = [row(seed=seed, size_found=size, size_found_low=0.05) for seed, size in enumerate(sizes)]
     assert claim_ratios(rows) == pytest.approx({"drift": 0.5 / 0.4})
+    assert summary(rows)[-1].endswith("1 of 1 effect")
     rows[0]["size_found"] = None
     assert claim_ratios(rows) == {"drift": 0.0}
 

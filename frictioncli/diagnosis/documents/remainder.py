@@ -26,6 +26,9 @@ from frictioncli.diagnosis.search.new_run_changes import ADEQUATE
 _BINS = 8
 """Bins of equal filling along an axis of many values."""
 
+_TOLD = 0.02
+"""Spread of the load at an angle, relative to its whole spread, below which the angle tells it."""
+
 _AXES = {
     "position": "position",
     "speed": "speed",
@@ -97,6 +100,9 @@ def largest_structure(problem: Problem, friction: Array, load: Array | None) -> 
         Misfit in both channels; no load where it is not simulated. [N·m]
     """
     varying = varying_axes(problem)
+    if _told_by_angle(problem):
+        # which of both it is, no data show: structure along the angle is the simpler statement
+        varying -= {"load"}
     channels = {"friction": friction} if load is None else {"friction": friction, "load": load}
     found = [
         AxisStructure(axis, channel, _size(values, _bins(getattr(problem.table, column)), pair))
@@ -106,6 +112,14 @@ def largest_structure(problem: Problem, friction: Array, load: Array | None) -> 
         for pair in [problem.layout.row_pair]
     ]
     return max(found, key=lambda one: one.size)
+
+
+def _told_by_angle(problem: Problem) -> bool:
+    """Return whether the load is a function of the angle, as with one payload and pose."""
+    load = problem.table.load
+    angles, place = np.unique(np.round(problem.table.position, 3), return_inverse=True)
+    mean = np.bincount(place, load) / np.bincount(place)
+    return bool(len(angles) > 1 and np.std(load - mean[place]) < _TOLD * np.std(load))
 
 
 def _bins(values: Array) -> Indices:

@@ -71,8 +71,7 @@ def unnamed_record(diagnosis: Diagnosis) -> CauseRecord:
         p_value=structure.p_value,
         seen_in=along,
         figure=None,
-        experiment=_experiment(diagnosis)
-        or f"Measure more values of {along}, in random order, on another day.",
+        experiment=_experiment(diagnosis) or _experiment_along(found.axis),
     )
 
 
@@ -93,6 +92,16 @@ def _experiment(diagnosis: Diagnosis) -> str:
     found = diagnosis.empirical
     form = found.parts[0].form if found is not None else None
     return "" if form is None else experiment(form, TorqueUnits.of_diagnosis(diagnosis).load)
+
+
+def _experiment_along(axes: tuple[str, ...]) -> str:
+    """Return what to measure next about structure that no form describes."""
+    if axes == ("position",):
+        return (
+            "Move through the whole stroke in narrow angle bins, at three speeds, cold and warm,"
+            " and with another payload: it then stays at its angle, or moves with the load."
+        )
+    return f"Measure more values of {_along(axes)}, in random order, on another day."
 
 
 def _in_words(forms: tuple[LocatedRecord, ...]) -> str:
