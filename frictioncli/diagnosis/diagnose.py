@@ -16,6 +16,7 @@ import pandas as pd
 from frictioncli.diagnosis.data.problem import Misfit, Problem
 from frictioncli.diagnosis.data.worst_misfits import worst_misfits
 from frictioncli.diagnosis.empirical.estimate import Empirical, empirical_term
+from frictioncli.diagnosis.empirical.unexplained import unexplained
 from frictioncli.diagnosis.fit.extension import Extension, extend, measured_gain
 from frictioncli.diagnosis.fit.gain import Gain
 from frictioncli.diagnosis.ramps.evidence import RampEvidence, RampLog, ramp_evidence
@@ -24,7 +25,7 @@ from frictioncli.diagnosis.ramps.timing_rivals import TimingRivals
 from frictioncli.diagnosis.search.cause import Cause
 from frictioncli.diagnosis.search.cause_search import find_causes
 from frictioncli.diagnosis.search.cause_selection import refuted_by_new_run
-from frictioncli.diagnosis.search.lack_of_fit import Structure, unnamed_structure
+from frictioncli.diagnosis.search.lack_of_fit import Structure
 from frictioncli.diagnosis.search.margin import channel_margin, margin_of
 from frictioncli.diagnosis.search.measurement import (
     beside_the_rest,
@@ -253,20 +254,16 @@ def diagnose_joint(
             floor=_floor(found),
             seed=settings.seed,
         )
-    beside = extension or extend(problem, weighted_fit, [])
     empirical = empirical_term(
         step,
-        (problem, beside),
+        (problem, extension or extend(problem, weighted_fit, [])),
         (new, lambda one: predicting(one, causes)) if new else None,
         margin=margin,
         floor=_floor(found),
         seed=settings.seed,
         structure=named.structure,
     )
-    structure = named.structure
-    if structure is None and not causes and empirical is not None:
-        # an effect of the measurement that is not corrected may hold a part of it
-        structure = unnamed_structure(step, 0.0, settings.alpha)
+    structure = unexplained(named.structure, causes, empirical, step, settings.alpha)
     return Diagnosis(
         joint=joint,
         torque_unit=torque_unit,

@@ -1,11 +1,14 @@
 """Base and causes beside the forms of what has no name: as if it were not there."""
 
 from dataclasses import replace
+from functools import cache
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
 from frictioncli.diagnosis.empirical.estimate import empirical_term
+from frictioncli.diagnosis.empirical.unexplained import unexplained
 from frictioncli.diagnosis.fit.extension import extend, misfits
 from frictioncli.diagnosis.search.precomputed import Precomputed
 from frictioncli.diagnosis.search.step import Step
@@ -35,9 +38,34 @@ def found(data, names=(), new=None):
     return term, beside
 
 
+@cache
+def with_peak():
+    return found(problem(3, friction=warm_peak))
+
+
+def test_a_form_is_structure_where_no_property_of_the_joint_is_named():
+    """Whatever the test along the axes says, whose functions have more parameters."""
+    empirical, _ = with_peak()
+    step = Step.of(Precomputed.of(problem(3)), [])
+    delay, drift = (
+        SimpleNamespace(fit=SimpleNamespace(effect=BY_NAME[name]))
+        for name in ("torque_delay", "drift")
+    )
+    for causes in ((), (delay,)):
+        one = unexplained(None, causes, empirical, step, 0.05)
+        assert (one.axes, one.channel) == (("temperature",), "friction")
+        assert one.size == empirical.parts[0].size
+        assert one.p_value < 1e-6
+    assert unexplained(one, (drift,), empirical, step, 0.05) is one
+    assert unexplained(None, (delay, drift), empirical, step, 0.05) is None
+    assert unexplained(None, (), None, step, 0.05) is None
+    # without a form only what the test along the axes shows: of this joint nothing
+    assert unexplained(None, (), replace(empirical, p_value=None), step, 0.05) is None
+
+
 def test_the_base_beside_a_form_is_that_of_the_joint_without_it():
     """The same noise without the peak: its parameters are the other route."""
-    empirical, biased = found(problem(3, friction=warm_peak))
+    empirical, biased = with_peak()
     _, plain = found(problem(3))
     (form,) = empirical.term.forms
     assert form.axes == ("temperature",)

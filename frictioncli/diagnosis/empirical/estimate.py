@@ -30,25 +30,33 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from frictioncli.diagnosis.data.problem import Problem
-from frictioncli.diagnosis.empirical.fitted_columns import FittedColumns, refitted_beside
+from frictioncli.diagnosis.empirical.estimated import (
+    Estimate,
+    explained,
+    is_worth_using,
+    recurs,
+    reduced_by,
+    surely_explained,
+    without_term,
+)
+from frictioncli.diagnosis.empirical.fitted_columns import FittedColumns
 from frictioncli.diagnosis.empirical.form_search import LEAST_SCORE, FormSearch, Noises
 from frictioncli.diagnosis.empirical.forms import Form, forms_of
-from frictioncli.diagnosis.empirical.located import Located, located, sizes_of_parts
-from frictioncli.diagnosis.empirical.normal_equations import Misfits, NormalEquations
+from frictioncli.diagnosis.empirical.located import Located, located
+from frictioncli.diagnosis.empirical.normal_equations import NormalEquations
 from frictioncli.diagnosis.empirical.random_functions import (
     Function,
     function_of_form,
     functions_of,
-    term_of,
 )
 from frictioncli.diagnosis.empirical.term import EmpiricalTerm, ranges_seen
 from frictioncli.diagnosis.fit.extension import Extension, misfits
-from frictioncli.diagnosis.fit.gain import Gain, gain_of
+from frictioncli.diagnosis.fit.gain import Gain
 from frictioncli.diagnosis.noise.discrepancy import SHARE
 from frictioncli.diagnosis.search.axis_columns import varying_axes
 from frictioncli.diagnosis.search.lack_of_fit import Structure
 from frictioncli.diagnosis.search.step import Step
-from frictioncli.effects.base import Basis
+from frictioncli.distributions import chi2_tail
 
 _MOST_FORMS = 2
 """Greatest number of forms."""
@@ -56,9 +64,6 @@ _MOST_FORMS = 2
 _MOST_TRIED = 8
 """Greatest number of forms that are tried: one that explains too little makes way for the next, as
 what is left of a form that has not quite the shape of the law."""
-
-_LEAST_OF_PART = 1 / 3
-"""Share of itself with which a form must show in each part of the pairs alone."""
 
 _MOST_OF_IT = 2 / 3
 """Share of what the free functions explain that forms must explain alone, as RMS: the rest may be
@@ -90,6 +95,10 @@ class Empirical:
     without : Extension
         Base and causes that the term is added to: the base as fitted without it, to which all
         returns where the term fades; causes as in the former.
+    statistic : float
+        Twice the log likelihood ratio of the first of its forms; 0 without any.
+    p_value : float or None
+        Probability that noise gives as much, corrected for the number of forms that were tried.
     """
 
     term: EmpiricalTerm
@@ -99,62 +108,12 @@ class Empirical:
     gain: Gain
     beside: Extension
     without: Extension
+    statistic: float = 0.0
+    p_value: float | None = None
 
 
 NewRun = tuple[Problem, Callable[[Extension], Extension]]
 """Rows of a run that was kept out, and what of base and causes holds there."""
-
-
-def reduced_by(
-    problem: Problem, before: Misfits, after: Misfits, *, basis: str, floor: float, seed: int
-) -> Gain:
-    """Return by how much a term reduces a misfit.
-
-    Parameters
-    ----------
-    problem : Problem
-        The rows.
-    before, after : (ndarray, ndarray), shape (rows,)
-        What is left of both channels without and with the term. [N·m]
-    basis : {"new_run", "within_run"}
-        Whether these rows were new to base and causes.
-    floor : float
-        RMS of point and pair noise. [N·m]
-    seed : int
-        Seed of the block bootstrap.
-    """
-    squares = problem.squared(*before), problem.squared(*after)
-    return gain_of(problem, *squares, basis=basis, floor=floor, seed=seed)
-
-
-def _without(misfit: Misfits, term: Basis) -> Misfits:
-    """Return what a term leaves of a misfit."""
-    return misfit[0] - term.friction, misfit[1] - term.load
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class _Estimate:
-    """Functions with their normal equations, and what they gain on blocks kept out."""
-
-    functions: list[Function]
-    equations: NormalEquations
-    gain: Gain
-
-    def term(self) -> EmpiricalTerm:
-        return term_of(self.equations.problem, self.functions, self.equations.coefficients())
-
-    def refitted(self, extension: Extension) -> Extension:
-        """Return base and causes refitted beside the forms."""
-        taken = [one.taken for one in self.functions if one.is_form]
-        if not taken:
-            return extension
-        chosen = self.equations.of_form
-        return refitted_beside(
-            extension,
-            np.hstack(taken),
-            self.equations.coefficients()[chosen],
-            self.equations.covariance()[np.ix_(chosen, chosen)],
-        )
 
 
 def empirical_term(
@@ -190,19 +149,19 @@ def empirical_term(
     components = step.precomputed.discrepancy.components
 
     def reduced(equations: NormalEquations) -> Gain:
-        left = _without(misfit, equations.predicted_blocks())
+        left = without_term(misfit, equations.predicted_blocks())
         return reduced_by(problem, misfit, left, basis="within_run", floor=floor, seed=seed)
 
-    def estimated(functions: Sequence[Function], noise: Noises) -> _Estimate:
+    def estimated(functions: Sequence[Function], noise: Noises) -> Estimate:
         equations = NormalEquations.of(problem, functions, noise, misfit)
-        return _Estimate(functions=list(functions), equations=equations, gain=reduced(equations))
+        return Estimate(functions=list(functions), equations=equations, gain=reduced(equations))
 
     smooth = functions_of(problem, components, step.fit.variances.amplitude)
     if not smooth:
         return None
     free, described = estimated(smooth, step.noise()), None
     least = float(np.hypot(margin, SHARE * np.mean(np.abs(problem.friction))))
-    if not _is_worth_using(free.gain, margin):
+    if not is_worth_using(free.gain, margin):
         return None
     fitted = FittedColumns.of(problem, step.predicting_fit(), seen[1].effects)
     small = functions_of(problem, components, step.precomputed.start.amplitude)
@@ -212,6 +171,7 @@ def empirical_term(
     candidates = forms_of(_varying(problem))
     if structure is not None:
         candidates = [one for one in candidates if _is_along(one, structure)]
+    number, accepted = len(candidates), []
     for _ in range(_MOST_TRIED):
         found = search.best(candidates)
         if found.score < LEAST_SCORE or not found.is_located:
@@ -220,14 +180,15 @@ def empirical_term(
         more = estimated(tried.functions, tried.noise)
         alone = reduced(more.equations.of_forms())
         added = float(np.sqrt(max(before**2 - alone.after**2, 0.0)))
-        is_worse = added < margin or more.gain.after >= without or not _recurs(more)
-        is_most = _explained(alone) >= _MOST_OF_IT * _explained(free.gain)
+        is_worse = added < margin or more.gain.after >= without or not recurs(more)
+        is_most = explained(alone) >= _MOST_OF_IT * explained(free.gain)
         evident = evident or (is_most and not is_worse)
         if not found.leads:
             break
         if is_worse:
             candidates.remove(found.form)
             continue
+        accepted.append(found)
         search, before, without = tried, alone.after, more.gain.after
         freely = estimated([*_forms(search), *smooth], search.noise)
         best = min(best, more, freely, key=lambda one: one.gain.after)
@@ -239,13 +200,17 @@ def empirical_term(
     if described is not None and described.gain.after <= _AS_GOOD * best.gain.after:
         chosen = described
     used = _used(chosen, seen, new, margin=margin, floor=floor, seed=seed)
-    if used is None or chosen is not free or evident:
+    if used is not None and chosen is described:
+        first = accepted[0]
+        chance = number * chi2_tail(first.statistic, first.form.parameters)
+        return replace(used, statistic=first.statistic, p_value=min(1.0, chance))
+    if used is None or evident:
         return used
-    return None if min(_sure(free.gain), _sure(used.gain)) < least else used
+    return None if min(surely_explained(free.gain), surely_explained(used.gain)) < least else used
 
 
 def _used(
-    found: _Estimate,
+    found: Estimate,
     seen: tuple[Problem, Extension],
     new: NewRun | None,
     *,
@@ -259,16 +224,16 @@ def _used(
     if new is not None:
         rows, holding = new
         before, left = (misfits(rows, holding(one)) for one in (seen[1], without))
-        after = _without(left, term.at(rows))
+        after = without_term(left, term.at(rows))
         gain = reduced_by(rows, before, after, basis="new_run", floor=floor, seed=seed)
-        if not _is_worth_using(gain, margin):
+        if not is_worth_using(gain, margin):
             return None
     added = term.at(seen[0])
     return Empirical(
         term=term,
         parts=located(found.functions, found.equations, term.forms),
         size=float(np.sqrt(np.mean(seen[0].squared(added.friction, added.load)))),
-        kept_out=_explained(found.gain),
+        kept_out=explained(found.gain),
         gain=gain,
         beside=beside,
         without=without,
@@ -295,28 +260,3 @@ def _is_along(form: Form, structure: Structure) -> bool:
         return False
     own, located = set(form.axes), set(structure.axes)
     return not own > located
-
-
-def _recurs(found: _Estimate) -> bool:
-    """Return whether each form shows in each part of the pairs alone."""
-    sizes = sizes_of_parts(found.functions, found.equations)
-    return all(
-        shares.min() >= _LEAST_OF_PART
-        for one, (_, shares) in zip(found.functions, sizes, strict=True)
-        if one.is_form
-    )
-
-
-def _explained(gain: Gain) -> float:
-    """Return the RMS of what a term explains of rows that it has not seen [N·m]."""
-    return float(np.sqrt(max(gain.before**2 - gain.after**2, 0.0)))
-
-
-def _sure(gain: Gain) -> float:
-    """Return the lower end of the 95 % interval of what a term explains, as RMS [N·m]."""
-    return gain.before * float(np.sqrt(max(1 - (1 - max(gain.interval[0], 0.0)) ** 2, 0.0)))
-
-
-def _is_worth_using(gain: Gain, margin: float) -> bool:
-    """Return whether a term explains more of rows that it has not seen than is worth a name."""
-    return gain.interval[0] > 0 and _explained(gain) >= margin

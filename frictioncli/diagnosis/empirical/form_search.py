@@ -62,8 +62,10 @@ class FoundForm:
         The form.
     shape : mapping of str to float
         Its shape parameters.
+    statistic : float
+        Twice the log likelihood ratio.
     score : float
-        Twice the log likelihood ratio, less the price of its parameters.
+        The same, less the price of its parameters.
     fit : MixedFit
         Base, causes, discrepancy and noise beside it.
     leads : bool
@@ -74,6 +76,7 @@ class FoundForm:
 
     form: Form
     shape: Shape
+    statistic: float
     score: float
     fit: MixedFit
     leads: bool = True
@@ -216,8 +219,9 @@ class FormSearch:
         products = self.step.columns.beside(self.step.products, parts)
         starts = self.fit.variances, precomputed.start
         fit = fit_variances(self.components, products, self.step.known, *starts)
-        score = self.fit.objective - fit.objective - self._price(form)
-        return FoundForm(form=form, shape=shape, score=score, fit=fit)
+        statistic = self.fit.objective - fit.objective
+        score = statistic - self._price(form)
+        return FoundForm(form=form, shape=shape, statistic=statistic, score=score, fit=fit)
 
     def _is_rival(self, other: FoundForm, first: FoundForm, misfit: WeightedMisfit) -> bool:
         """Return whether a form may be there instead of another one, rather than beside it.
