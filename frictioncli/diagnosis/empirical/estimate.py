@@ -31,7 +31,7 @@ import numpy as np
 
 from frictioncli.diagnosis.data.problem import Problem
 from frictioncli.diagnosis.empirical.estimated import (
-    Estimate,
+    EstimatedFunctions,
     explained,
     is_worth_using,
     recurs,
@@ -152,9 +152,11 @@ def empirical_term(
         left = without_term(misfit, equations.predicted_blocks())
         return reduced_by(problem, misfit, left, basis="within_run", floor=floor, seed=seed)
 
-    def estimated(functions: Sequence[Function], noise: Noises) -> Estimate:
+    def estimated(functions: Sequence[Function], noise: Noises) -> EstimatedFunctions:
         equations = NormalEquations.of(problem, functions, noise, misfit)
-        return Estimate(functions=list(functions), equations=equations, gain=reduced(equations))
+        return EstimatedFunctions(
+            functions=list(functions), equations=equations, gain=reduced(equations)
+        )
 
     smooth = functions_of(problem, components, step.fit.variances.amplitude)
     if not smooth:
@@ -210,7 +212,7 @@ def empirical_term(
 
 
 def _used(
-    found: Estimate,
+    found: EstimatedFunctions,
     seen: tuple[Problem, Extension],
     new: NewRun | None,
     *,

@@ -19,7 +19,7 @@ _LEAST_OF_PART = 1 / 3
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Estimate:
+class EstimatedFunctions:
     """Functions with their normal equations, and what they gain on blocks kept out.
 
     Attributes
@@ -95,12 +95,12 @@ def without_term(misfit: Misfits, term: Basis) -> Misfits:
     return misfit[0] - term.friction, misfit[1] - term.load
 
 
-def recurs(found: Estimate) -> bool:
+def recurs(found: EstimatedFunctions) -> bool:
     """Return whether each form shows in each part of the pairs alone.
 
     Parameters
     ----------
-    found : Estimate
+    found : EstimatedFunctions
         Functions, some of them forms.
     """
     sizes = sizes_of_parts(found.functions, found.equations)
