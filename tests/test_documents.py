@@ -1,7 +1,7 @@
 """Documents: what is written is read back, and a damaged one is refused with file and place."""
 
 import json
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import msgspec
 import numpy as np
@@ -79,8 +79,10 @@ def _fields(info):
         return gravities()
     strategies = {field.name: _values(field.type) for field in info.fields}
     if issubclass(info.cls, FrictionModel):
-        estimates = records(ParameterEstimate)
+        # what no fit gives is refused
+        estimates = st.builds(replace, records(ParameterEstimate), estimate=st.floats(-1, 1))
         strategies["parameters"] = st.fixed_dictionaries(dict.fromkeys(PARAMETERS, estimates))
+        strategies |= {"rmse": st.floats(0, 9), "delay": st.none() | estimates}
     return st.builds(info.cls, **strategies)
 
 
