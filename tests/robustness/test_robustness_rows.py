@@ -16,7 +16,12 @@ from frictioncli.logs.ingest import IngestSettings, ingest
 from tests.studies.fuzz_damage import ROW_DAMAGE
 from tests.studies.fuzz_layouts import layouts
 
-TEXTS = {layout.name: layout for layout in layouts() if not layout.binary}
+TEXTS = {
+    layout.name: layout
+    for layout in layouts()
+    # a line of a long table belongs to one joint only; the study counts the lines of each
+    if not layout.binary and layout.joints is None
+}
 UNPACK = {"gzip": gzip.decompress, "xz": lzma.decompress}
 ENCODING = {"KUKA A": "cp1252", "KUKA trace, _PROG.TXT": "cp1252", "UTF-16": "utf-16"}
 DAMAGE = st.tuples(st.integers(0, 249), st.sampled_from(ROW_DAMAGE), st.integers(0, 1 << 32))
@@ -29,7 +34,7 @@ def lines_of(layout, content):
 
 
 @pytest.mark.parametrize("name", TEXTS)
-@settings(max_examples=5)
+@settings(max_examples=4)
 @given(damages=st.lists(DAMAGE, max_size=10), size=st.sampled_from([600, 1 << 22]))
 def test_every_line_is_kept_or_rejected(name, damages, size):
     layout = TEXTS[name]
