@@ -146,6 +146,17 @@ def settling_text(document: DiagnosisDocument) -> str:
     )
 
 
+def percent_text(share: float) -> str:
+    """Return a share in per cent without its sign %, as of the ends of an interval.
+
+    Parameters
+    ----------
+    share : float
+        Share of 1; below 0 where it got worse.
+    """
+    return f"{100 * share:.0f}".replace("-", "−")
+
+
 def margin_text(document: DiagnosisDocument) -> str:
     """Return the smallest size worth a name; empty where the document does not say it.
 
@@ -237,7 +248,7 @@ def empirical_text(document: DiagnosisDocument) -> str:
     on = "on pairs not used for fitting"
     if found.basis == "new_run":
         on = f"on run {document.held_out}, not used for fitting,"
-    low, high = (f"{100 * share:.0f}".replace("-", "−") for share in found.ci95)
+    low, high = map(percent_text, found.ci95)
     what = ""
     # structure that a form describes is said already
     if found.forms and (document.structure is None or document.structure.formula is None):

@@ -15,6 +15,7 @@ from frictioncli.diagnosis.documents.sentences import (
     lasting_text,
     margin_text,
     note_text,
+    percent_text,
     remainder_text,
     settling_text,
     size_text,
@@ -87,10 +88,6 @@ def _visible_lines(cause: CauseRecord, document: DiagnosisDocument) -> Iterator[
         yield f"  found: {note}"
 
 
-def _percent(share: float) -> str:
-    return f"{100 * share:.0f}".replace("-", "−")
-
-
 def _gain_text(gain: GainRecord, document: DiagnosisDocument) -> str:
     unit = document.torque_unit
     where = (
@@ -98,9 +95,9 @@ def _gain_text(gain: GainRecord, document: DiagnosisDocument) -> str:
         if gain.basis == "new_run"
         else "on its own training data (optimistic)"
     )
+    low, high = map(percent_text, gain.ci95)
     return (
         f"extended model: {gain.rmse_before:.3g} -> {gain.rmse_after:.3g} {unit} {where}, a gain of"
-        f" {100 * gain.reduction:.0f} % ({_percent(gain.ci95[0])} to {_percent(gain.ci95[1])});"
-        f" noise floor"
-        f" {gain.noise_floor:.2g} {unit}"
+        f" {100 * gain.reduction:.0f} % ({low} to {high});"
+        f" noise floor {gain.noise_floor:.2g} {unit}"
     )
