@@ -121,11 +121,8 @@ def test_a_hidden_effect_is_in_a_set_of_few(name):
     assert all(len(one) <= 3 for one in sets(diagnosis))
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize(
-    "name",
-    [BESIDE_A_LAG[0], *(pytest.param(one, marks=pytest.mark.long) for one in BESIDE_A_LAG[1:])],
-)
+@pytest.mark.long
+@pytest.mark.parametrize("name", BESIDE_A_LAG)
 def test_a_lag_and_another_effect_are_both_found(name):
     effect, seed = hidden(name)
     diagnosis = diagnosed(("thermal_lag:1", effect), seed, days=DAYS.get(name, 2))

@@ -7,6 +7,8 @@ import pytest
 from frictioncli.report.fleet_page import fleet_html
 from frictioncli.wording import change_text, number_text
 
+TEXTS = "return [...document.querySelectorAll(arguments[0])].map((cell) => cell.textContent)"
+
 ROBOTS = 100
 HOSTILE = "<img src=x onerror='window.broken = 1'>"
 
@@ -47,8 +49,7 @@ def opened(chromium, tmp_path_factory):
 
 def texts(driver, place):
     """Texts of a column, from 1, of the rows that are drawn."""
-    cells = driver.find_elements("css selector", f'[data-part="rows"] td:nth-child({place})')
-    return [cell.get_attribute("textContent") for cell in cells]
+    return driver.execute_script(TEXTS, f'[data-part="rows"] td:nth-child({place})')
 
 
 def click(driver, heading):
