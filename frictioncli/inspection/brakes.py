@@ -6,8 +6,8 @@ from collections.abc import Sequence
 import numpy as np
 
 from frictioncli.logs.channels import channel_names as names
+from frictioncli.logs.channels.column_name import split_unit
 from frictioncli.logs.channels.joint_plan import JointPlan
-from frictioncli.logs.channels.recognition import split_unit
 from frictioncli.logs.log_source import LogSource
 from frictioncli.logs.samples.row_checks import LIMITS
 

@@ -5,6 +5,7 @@ import pytest
 
 from frictioncli import schemas, tables
 from frictioncli.errors import LogError
+from frictioncli.logs.channels import units
 from frictioncli.logs.channels.joint_channels import assign_channels
 from frictioncli.logs.channels.recognition import joint_in_name, recognise_channels
 from frictioncli.logs.ingest import IngestSettings, ingest
@@ -90,6 +91,110 @@ def test_missing_channels_are_named(columns, reason):
 
 
 @pytest.mark.parametrize(
+    ("column", "quantity", "joint", "unit"),
+    [
+        ("torque_nm", "torque", None, "N·m"),
+        ("TORQUE_NM_2", "torque", 2, "N·m"),
+        ("Torque in Nm", "torque", None, "N·m"),
+        ("tau_Ncm", "torque", None, "N·cm"),
+        ("torque_percent", "torque", None, "%"),
+        ("Position/deg", "position", None, "deg"),
+        ("pos_rad_2", "position", 2, "rad"),
+        ("J3 pos degrees", "position", 3, "deg"),
+        ("vel_rad_per_s", "velocity", None, "rad/s"),
+        ("SPEED_DEG_PER_SEC", "velocity", None, "deg/s"),
+        ("omega_radps", "velocity", None, "rad/s"),
+        ("Winkel in Grad", "position", None, "deg"),
+        ("t_s", "time", None, "s"),
+        ("T1_C", "motor_temperature", 1, "°C"),
+        ("T_K", "motor_temperature", None, "K"),
+        ("motor_temp_C", "motor_temperature", None, "°C"),
+        ("temp_K", "motor_temperature", None, "K"),
+    ],
+)
+def test_units_are_the_last_words_of_a_known_name(column, quantity, joint, unit):
+    (found,) = recognise_channels([column])
+    assert (found.quantity, found.joint) == (quantity, joint)
+    assert units.canonical(found.unit, quantity) == unit
+
+
+@pytest.mark.parametrize(
+    "column",
+    ["current_B", "velocity_percent", "position_rev", "T_s", "t_k", "phase_C"],
+)
+def test_a_last_word_that_means_something_else_is_no_unit(column):
+    """A phase, the share of an override, a way, the temperature of a surface, a sample's number."""
+    assert recognise_channels([column]) == ()
+
+
+@pytest.mark.parametrize(
+    ("columns", "expected"),
+    [
+        (["t", "theta", "tau", "T"], ["time", "position", "torque", "motor_temperature"]),
+        (["t", "theta", "T"], ["time", "position", "time"]),
+        (["T", "theta", "tau"], ["time", "position", "torque"]),
+        (["t", "T", "tau", "motor_temp"], ["time", "time", "torque", "motor_temperature"]),
+    ],
+)
+def test_a_capital_t_is_the_temperature_beside_a_time_and_a_torque(columns, expected):
+    assert [channel.quantity for channel in recognise_channels(columns)] == expected
+
+
+@pytest.mark.parametrize(
+    ("column", "joint"),
+    [
+        ("robot.joint_2.position", 2),
+        ("arm/joint_4/position", 4),
+        ("joint_states.position[1]", 1),
+        ("/arm/joint_3/position", 3),
+        ("commanded.joint_2.position", None),
+        ("/arm/joint_3/command/position", None),
+        ("/target/joint_3/position", None),
+    ],
+)
+def test_the_last_parts_of_a_path_tell_what_is_measured(column, joint):
+    found = recognise_channels([column])
+    assert [(one.quantity, one.joint) for one in found] == ([("position", joint)] if joint else [])
+
+
+@pytest.mark.parametrize(
+    ("columns", "unit"),
+    [
+        (["t", "q", "current_A"], "A"),
+        (["t", "q", "motor current_amps"], "A"),
+        (["t", "q", "current_A", "current_B", "current_C"], None),
+    ],
+)
+def test_a_current_in_ampere_is_not_that_of_a_phase(columns, unit):
+    found = [one for one in recognise_channels(columns) if one.quantity == "torque"]
+    assert [one.unit for one in found] == ([unit] if unit else [])
+
+
+@pytest.mark.parametrize(
+    "columns",
+    [
+        ["Tiempo (s)", "Posición (grados)", "Velocidad (grados/s)", "Temperatura (°C)"],
+        ["tempo", "posizione", "velocità", "temperatura motore"],
+    ],
+)
+def test_names_in_other_languages(columns):
+    found = [channel.quantity for channel in recognise_channels(columns)]
+    assert found == ["time", "position", "velocity", "motor_temperature"]
+
+
+def test_a_log_of_one_joint_with_a_name():
+    columns = ["time", "left_knee_pos", "left_knee_torque", "target_pos"]
+    found = recognise_channels(columns)
+    assert [(one.quantity, one.joint_name) for one in found] == [
+        ("time", ""),
+        ("position", "left_knee"),
+        ("torque", "left_knee"),
+    ]
+    beside = recognise_channels(["position", "torque", *columns])
+    assert {one.joint_name for one in beside} == {""}
+
+
+@pytest.mark.parametrize(
     ("stem", "joint"),
     [("robot_NextGenDrive#3", 3), ("log_A2", 2), ("warm-up_j2", 2), ("log_2", None), ("s10", None)],
 )
@@ -126,8 +231,8 @@ def test_an_all_zero_torque_is_no_torque(tmp_path):
         ingest([write(tmp_path / "log.csv", columns)], tmp_path / "work")
 
 
-@pytest.mark.parametrize(("count", "joints"), [(1, 0), (2, 2), (99, 99), (100, 0)])
-def test_names_are_of_joints_where_there_are_some_and_not_hundreds(count, joints):
+@pytest.mark.parametrize(("count", "joints"), [(1, 1), (2, 2), (99, 99), (100, 0)])
+def test_names_are_of_joints_where_there_are_not_hundreds(count, joints):
     columns = [f"knee{i}x_{what}" for i in range(count) for what in ("pos", "torque")]
     found = {channel.joint for channel in recognise_channels(["t", *columns])} - {None}
     assert len(found) == joints

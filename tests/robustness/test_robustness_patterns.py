@@ -12,12 +12,12 @@ import pytest
 
 import frictioncli
 
-SECONDS = 2e-5
-"""Processor time per character; a linear pattern needs 5e-7 s, a quadratic one 7e-9 s times the
-length of the text."""
+SECONDS = 1e-5
+"""Processor time per character; a linear pattern needs 5e-7 to 5e-6 s, a quadratic one 1e-9 s or
+more times the length of the text."""
 
 BEFORE = ("", "A: ", "{ ", "a [", "2024-05-17T09:30 ")
-LONG, SHORT = 100_000, 10_000
+LONG, SHORT = 100_000, 20_000
 REPEATED = dict.fromkeys((" ", "1", '"', "[", "(", "{"), LONG) | dict.fromkeys(
     (
         *("\t", "\r", "\n", "]", "A", "a", "_", ".", ",", ":", "-", "?", "é"),

@@ -9,7 +9,8 @@ from frictioncli.inspection.map_suggestion.log_head import LogHead
 from frictioncli.inspection.map_suggestion.measured_or_commanded import is_command
 from frictioncli.logs.channels import channel_names as names
 from frictioncli.logs.channels import units
-from frictioncli.logs.channels.recognition import LogChannel, recognise_channels, split_unit
+from frictioncli.logs.channels.column_name import split_unit
+from frictioncli.logs.channels.recognition import LogChannel, recognise_channels
 
 SURE, LIKELY, GUESS = "sure", "likely", "a guess"
 

@@ -9,7 +9,7 @@ from frictioncli.arrays import Array
 from frictioncli.inspection.map_suggestion.log_head import LogHead
 from frictioncli.logs.channels import channel_names as names
 from frictioncli.logs.channels import position_units, unit_evidence
-from frictioncli.logs.channels.recognition import unit_in_name
+from frictioncli.logs.channels.column_name import unit_in_name
 from frictioncli.logs.channels.unit_evidence import MotionUnits
 from frictioncli.logs.channels.units import FACTORS, ONLY_WRITTEN
 

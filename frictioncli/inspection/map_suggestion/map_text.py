@@ -8,7 +8,7 @@ from frictioncli.inspection.map_suggestion.log_head import LogHead
 from frictioncli.inspection.map_suggestion.suggestion import Suggestion
 from frictioncli.logs.channels import channel_names as names
 from frictioncli.logs.channels import units
-from frictioncli.logs.channels.recognition import split_unit
+from frictioncli.logs.channels.column_name import split_unit
 from frictioncli.logs.log_source import CsvHints
 from frictioncli.plain_text import escaped, printable
 

@@ -24,7 +24,7 @@ from frictioncli.inspection.map_suggestion.measured_or_commanded import (
 from frictioncli.inspection.map_suggestion.time_columns import TimeColumn, possible_time_units
 from frictioncli.logs.channels import channel_names as names
 from frictioncli.logs.channels import position_units, units
-from frictioncli.logs.channels.recognition import unit_in_name
+from frictioncli.logs.channels.column_name import unit_in_name
 
 _ACCELERATION = re.compile(r"acc|beschl", re.I)
 _SURE_COSINE = 0.999

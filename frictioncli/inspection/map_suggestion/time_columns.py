@@ -7,7 +7,8 @@ import numpy as np
 from frictioncli.inspection.map_suggestion.log_head import LogHead
 from frictioncli.logs.channels import channel_names as names
 from frictioncli.logs.channels import units
-from frictioncli.logs.channels.recognition import recognise_channels, split_unit
+from frictioncli.logs.channels.column_name import split_unit
+from frictioncli.logs.channels.recognition import recognise_channels
 
 _LEAST_GROWING = 0.98
 """Least share of steps that are positive."""

@@ -22,8 +22,8 @@ from frictioncli.inspection.map_suggestion.measured_or_commanded import (
 )
 from frictioncli.logs.channels import channel_names as names
 from frictioncli.logs.channels import units
+from frictioncli.logs.channels.column_name import unit_in_name
 from frictioncli.logs.channels.joint_plan import JointPlan
-from frictioncli.logs.channels.recognition import unit_in_name
 
 _LEAST_SPEED = 0.1
 """Least speed of a moving joint, as a share of the highest speed."""

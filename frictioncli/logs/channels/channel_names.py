@@ -68,16 +68,18 @@ _ALIASES: tuple[tuple[Meaning, str], ...] = (
     (
         Meaning(TIME),
         "zeit time t timestamp zeitstempel sekunden seconds elapsed elapsedtime robottime tsec"
-        " timesec times zeits temps datetime recordtime controllertime sec",
+        " timesec times zeits temps datetime recordtime controllertime sec"
+        " tiempo tempo",
     ),
-    (Meaning(TIME, rank=1, unit="ms"), "sample timems zeitms timestampms"),
+    (Meaning(TIME, rank=1, unit="ms"), "sample timems zeitms timestampms millis timemillis"),
     (
         Meaning(POSITION),
         "axisposact axispos axisact axisactmeas position positions pos jointposition jointpositions"
         " actualposition actualjointposition positionact actpos posact q actualq aipos mp stateq"
         " robotactualjointpositions angle jointangle winkel achswinkel gelenkwinkel istwinkel"
         " axisangle axisposition achsposition jointpos qact observationstate observationqpos"
-        " posestimate positionachse theta",
+        " posestimate positionachse theta linkposition linkangle outputposition outputangle"
+        " posicion posicin posizione",
     ),
     (
         Meaning(POSITION, MOTOR_SIDE),
@@ -89,34 +91,41 @@ _ALIASES: tuple[tuple[Meaning, str], ...] = (
         " velocityact velact qd dq qdot actualqd statedq robotactualjointvelocities speed"
         " geschwindigkeit achsgeschwindigkeit gelenkgeschwindigkeit axisvelocity jointvel"
         " axisspeed jointspeed actvelo actvel observationvelocity observationqvel velestimate"
-        " vitesse omega geschwindigkeitachse",
+        " vitesse omega geschwindigkeitachse thetadot linkvelocity outputvelocity"
+        " velocidad velocita velocit",
     ),
     (
         Meaning(VELOCITY, MOTOR_SIDE),
         "istgeschwindigkeit motorvelocity motorspeed motorvel motorgeschwindigkeit",
     ),
     (Meaning(TORQUE, MOTOR_SIDE, 0), "drivemotortorqact motortorqact drivemotortorq"),
-    (Meaning(TORQUE, "", 0), "istmoment istdrehmoment motortorque motormoment motortorq"),
+    (
+        Meaning(TORQUE, "", 0),
+        "istmoment istdrehmoment motortorque motormoment motortorq taum taumotor motortau",
+    ),
     (
         Meaning(TORQUE, JOINT_SIDE, 1),
         "torque torques jointtorque jointtorques axistorque drehmoment moment tau effort"
         " torqueaxisact actualtorque torqueact mt statetauj tauj measuredtorque achsmoment"
         " gelenkmoment torqact axistorqact acttorque acttorq observationeffort observationtorque"
-        " tauest trq eff couple drehmomentachse",
+        " tauest trq eff couple drehmomentachse jointeffort jointefforts acttrq trqact"
+        " linktorque outputtorque coppia",
     ),
     (Meaning(TORQUE, JOINT_SIDE, 2), "geartorqact geartorque geartorq getriebemoment"),
     (
         Meaning(TORQUE, MOTOR_SIDE, 3, "A"),
         "iststrom strom current currents motorcurrent motorstrom actualcurrent actualjointcurrent"
         " robotactualjointcurrent currentact actcurrent curr jointcurrent macur observationcurrent"
-        " iqmeasured currentmotor",
+        " iqmeasured currentmotor iq iqa iqact iqactual qcurrent currentq qaxiscurrent motoriq",
     ),
     (Meaning(TORQUE, MOTOR_SIDE, 3, "%"), "curract"),
     (
         Meaning(MOTOR_TEMPERATURE),
         "motortemperatur motortemperature motortemperatures mottemp motortemp motortempact"
         " temperatur temperature temperatures temp jointtemperature jointtemperatures jointtemp"
-        " robotjointtemp motort tm wicklungstemperatur temperaturemotor",
+        " robotjointtemp motort tm wicklungstemperatur temperaturemotor"
+        " servotemperature servotemp actuatortemperature actuatortemp statortemperature statortemp"
+        " coiltemperature coiltemp temperatura temperaturamotor temperaturamotore",
     ),
     (
         Meaning(HOUSING_TEMPERATURE),

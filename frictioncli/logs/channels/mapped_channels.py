@@ -6,7 +6,8 @@ from dataclasses import replace
 
 from frictioncli.logs.channels.channel_map import ChannelMap
 from frictioncli.logs.channels.channel_names import JOINT_SIDE, POSITION, TIME, TORQUE, Meaning
-from frictioncli.logs.channels.recognition import LogChannel, recognise_channels, split_unit
+from frictioncli.logs.channels.column_name import split_unit
+from frictioncli.logs.channels.recognition import LogChannel, recognise_channels
 from frictioncli.logs.log_source import Refusal
 from frictioncli.plain_text import whole_number
 

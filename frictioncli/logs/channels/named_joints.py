@@ -14,7 +14,8 @@ _BODY = re.compile(
 )
 """What names of joints contain; other words in front of a quantity say what kind it is of."""
 
-_COMMAND = re.compile(r"cmd|command|target|desired|setpoint|soll|goal|reference", re.I)
+COMMAND = re.compile(r"cmd|command|target|desired|setpoint|soll|goal|reference", re.I)
+"""Words of names that tell what was asked for, not what was measured."""
 
 _MOST_JOINTS = 99
 """As many joints as a log may have by their numbers, which have two digits."""
@@ -23,16 +24,18 @@ _LONGEST = 3
 """Greatest number of words of a quantity's name, as in ``actual joint position``."""
 
 
-def named_joints(names: Sequence[str]) -> dict[int, tuple[str, str]]:
+def named_joints(names: Sequence[str], least: int = 2) -> dict[int, tuple[str, str]]:
     """Return the joint's name, and the name of the quantity, of columns that have both.
 
-    A joint has a position and a torque of its name, and only where two joints have such names, and
-    not hundreds, does a name stand for one.
+    A joint has a position and a torque of its name, and only where enough joints have such names,
+    and not hundreds, does a name stand for one.
 
     Parameters
     ----------
     names : sequence of str
         Names of the columns, without units.
+    least : int, optional
+        How many joints are enough: one where a log has no other position.
 
     Returns
     -------
@@ -50,7 +53,7 @@ def named_joints(names: Sequence[str]) -> dict[int, tuple[str, str]]:
     for joint, text in found.values():
         quantities.setdefault(joint, set()).add(MEANINGS[_key(text)].quantity)
     joints = {name for name, of_it in quantities.items() if {POSITION, TORQUE} <= of_it}
-    if not 2 <= len(joints) <= _MOST_JOINTS:
+    if not least <= len(joints) <= _MOST_JOINTS:
         return {}
     return {column: parts for column, parts in found.items() if parts[0] in joints}
 
@@ -61,7 +64,7 @@ def _parted(name: str) -> tuple[str, str] | None:
     if name.startswith("/") and len(path) > 1:
         # the name of a topic is no joint's: of a joint's values at least the last part differs
         return (path[-2], path[-1]) if _is_quantity(path[-1]) else None
-    if _COMMAND.search(name):
+    if COMMAND.search(name):
         return None
     words = _PARTS.split(name)
     for count in range(1, min(_LONGEST, len(words) - 1) + 1):

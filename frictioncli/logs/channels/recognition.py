@@ -4,41 +4,23 @@ import re
 from collections.abc import Collection, Sequence
 from dataclasses import dataclass, replace
 
-from frictioncli.logs.channels import units
 from frictioncli.logs.channels.channel_names import (
     MEANINGS,
     MOTOR_TEMPERATURE,
     POSITION,
     TIME,
-    TOOL,
+    TORQUE,
     Meaning,
 )
+from frictioncli.logs.channels.column_name import key_of, known_name, split_unit
 from frictioncli.logs.channels.named_joints import named_joints
 
-_UNIT = re.compile(r"^(?P<name>.*?)[\[(](?P<unit>[^\[\]()]*)[\])]\s*$")
-_UNIT_LAST = re.compile(
-    r"^(?P<name>.+)[_ ](?P<unit>mNm|Nm|mA|degC|deg|rad|(?:deg|rad)[_/]?s|dps|rpm|ms|us|ns)$"
-)
-_JOINT_LAST = re.compile(
-    r"^(?P<name>.*?)(?:(?<=[a-z])[AJ]|(?<![ _.\-(\[])[ _.\-(\[]+[AaJj]?[ _]?|)"
-    r"(?P<joint>\d{1,2})[)\]]?$"
-)
-_JOINT_FIRST = re.compile(
-    r"^(?:joint|axis|axle|achse|gelenk|motor|[aj])[ _.]?(?P<joint>\d{1,2})[ _.\-]+(?P<name>.+)$",
-    re.I,
-)
-_MEASURED = re.compile(
-    r"(?:^|(?<=[ _.\-]))(?:feedback|fbk|fb|actual|act|measured|meas|ist|value|averaged|average|avg)"
-    r"(?=$|[ _.\-])",
-    re.I,
-)
-_NO_KEY = re.compile(r"[^a-z0-9]")
-_JOINT_IN_BRACKETS = re.compile(r"^[AaJj]?\d{1,2}$")
 _JOINT_IN_FILE_NAME = re.compile(
     r"NextGenDrive#(\d{1,2})"
     r"|(?:^|[_\s-])(?:A|J|(?:axis|joint|achse|motor)[_\s-]?)(\d{1,2})$",
     re.I,
 )
+_AMPERE = re.compile(r"^(?P<name>.+)_A(?:mps?)?$", re.I)
 _BARE_JOINT = re.compile(r"^(?:joint|axis|achse|gelenk)[ _.]?(\d{1,2})$", re.I)
 _ID_COLUMN = re.compile(r"^(?:motor|joint|axis|achse|servo)[ _.]?(?:id|no|nr|number|nummer)$", re.I)
 
@@ -83,41 +65,6 @@ class LogChannel:
         return self.meaning.quantity
 
 
-def split_unit(column: str) -> tuple[str, str]:
-    """Return a column's name without its unit, and the unit as written ("" where there is none).
-
-    Units stand in brackets, or are the last word of the name.
-
-    Examples
-    --------
-    >>> split_unit("AxisPos_Act1 [deg]")
-    ('AxisPos_Act1', 'deg')
-    >>> split_unit("tau_mNm")
-    ('tau', 'mNm')
-    >>> split_unit("q(2)")
-    ('q(2)', '')
-    """
-    bare = column.strip().strip('"')
-    found = _UNIT.match(bare) or _UNIT_LAST.match(bare)
-    if found is None or _JOINT_IN_BRACKETS.match(found["unit"].strip()):
-        return bare, ""
-    name, unit = found["name"].rstrip(), found["unit"].strip()
-    if unit in ("x", "y", "z", "rx", "ry", "rz"):  # an axis of a coordinate frame, not a unit
-        return f"{name} {unit}", ""
-    return name, unit
-
-
-def unit_in_name(column: str, quantity: str) -> str | None:
-    """Return the unit of a quantity that a column's name has in brackets, None where it has none.
-
-    Examples
-    --------
-    >>> unit_in_name("pos_estimate [turns]", "position")
-    'turn'
-    """
-    return units.canonical(split_unit(column)[1], quantity)
-
-
 def recognise_channels(
     columns: Sequence[str], first_merged: int | None = None
 ) -> tuple[LogChannel, ...]:
@@ -150,6 +97,9 @@ def recognise_channels(
         if channel is not None:
             is_merged = first_merged is not None and index >= first_merged
             found.append(replace(channel, is_merged=is_merged))
+    found = _with_symbol(found)
+    if not any(channel.quantity == TORQUE for channel in found):
+        found += _currents_in_ampere(columns)
     if not any(channel.quantity == POSITION for channel in found):
         found += _bare_joints(columns, {channel.column for channel in found})
     if all(channel.joint is None for channel in found):
@@ -158,6 +108,32 @@ def recognise_channels(
     if not from_zero:
         return tuple(found)
     return tuple(c if c.joint is None else replace(c, joint=c.joint + 1) for c in found)
+
+
+def _with_symbol(found: Sequence[LogChannel]) -> list[LogChannel]:
+    """Return the channels where ``T`` beside another time and a torque is the temperature."""
+    quantities = [channel.quantity for channel in found]
+    if quantities.count(TIME) < 2 or TORQUE not in quantities or MOTOR_TEMPERATURE in quantities:
+        return list(found)
+    meaning = MEANINGS["temperature"]
+    return [
+        replace(channel, meaning=meaning) if channel.name.strip() == "T" else channel
+        for channel in found
+    ]
+
+
+def _currents_in_ampere(columns: Sequence[str]) -> list[LogChannel]:
+    """Return columns such as ``current_A`` of a log without other torques; not those of phases."""
+    names = {column.strip().lower() for column in columns}
+    found = []
+    for index, column in enumerate(columns):
+        parts = _AMPERE.match(column.strip())
+        known = known_name(parts["name"], "A") if parts else None
+        if parts is None or known is None or known.meaning.unit != "A":
+            continue
+        if f"{parts['name']}_b".lower() not in names:
+            found.append(LogChannel(index, column, known.meaning, known.joint, "A", known.family))
+    return found
 
 
 def _bare_joints(columns: Sequence[str], known: Collection[int]) -> list[LogChannel]:
@@ -177,62 +153,25 @@ def _with_named_joints(
 ) -> tuple[LogChannel, ...]:
     """Return the channels with those of joints that have names, numbered in file order."""
     parted = [split_unit(column) for column in columns]
-    named = named_joints([name for name, _ in parted])
+    has_position = any(channel.quantity == POSITION for channel in found)
+    named = named_joints([name for name, _ in parted], least=2 if has_position else 1)
     numbers: dict[str, int] = {}
     channels = {channel.column: channel for channel in found}
     for column, (joint, quantity) in named.items():
         number = numbers.setdefault(joint, len(numbers) + 1)
-        meaning, unit = MEANINGS[_key(quantity)], parted[column][1]
+        meaning, unit = MEANINGS[key_of(quantity)], parted[column][1]
         channels[column] = LogChannel(
-            column, columns[column], meaning, number, unit, _key(quantity), joint_name=joint
+            column, columns[column], meaning, number, unit, key_of(quantity), joint_name=joint
         )
     return tuple(channels[column] for column in sorted(channels))
 
 
 def _recognised(index: int, column: str) -> LogChannel | None:
     name, unit = split_unit(column)
-    texts = _candidate_names(name)
-    # words that only say that a value was measured, where the name is not known with them
-    plain = [" ".join(_MEASURED.sub("", text).replace("_", " ").split()) for text in texts]
-    known = _of_names(index, column, texts, unit)
-    known = known or _of_names(index, column, [text for text in plain if text], unit)
-    if known is not None and known.quantity == TIME and _is_temperature(unit):
-        return replace(known, meaning=MEANINGS["temperature"])
-    return known
-
-
-def _is_temperature(unit: str) -> bool:
-    """Return whether a unit is one of temperature: ``T [°C]`` is no time."""
-    return bool(unit) and units.canonical(unit, MOTOR_TEMPERATURE) is not None
-
-
-def _of_names(index: int, column: str, texts: Sequence[str], unit: str) -> LogChannel | None:
-    """Return the channel that the first known one of several spellings of a name stands for."""
-    for text in texts:
-        meaning = MEANINGS.get(_key(text))
-        if meaning is not None:
-            return LogChannel(index, column, meaning, None, unit, _key(text))
-        for pattern in (_JOINT_FIRST, _JOINT_LAST):
-            parts = pattern.match(text)
-            meaning = MEANINGS.get(_key(parts["name"])) if parts else None
-            if parts and meaning and meaning.quantity not in (TIME, TOOL):
-                joint = int(parts["joint"])
-                return LogChannel(index, column, meaning, joint, unit, _key(parts["name"]))
-    return None
-
-
-def _candidate_names(name: str) -> tuple[str, ...]:
-    """Return a name, or of a ROS topic such as ``/joints/joint_2/position`` its last parts."""
-    if not name.startswith("/"):
-        return (name,)
-    parts = name.split("/")
-    return "_".join(parts[-2:]), parts[-1]
-
-
-def _key(name: str) -> str:
-    """Return a name as a key of :data:`MEANINGS`."""
-    lower = name.lower().replace("ä", "ae").replace("ö", "oe").replace("ü", "ue")
-    return _NO_KEY.sub("", lower.replace("ß", "ss"))
+    known = known_name(name, unit)
+    if known is None:
+        return None
+    return LogChannel(index, column, known.meaning, known.joint, unit, known.family)
 
 
 def joint_in_name(stem: str) -> int | None:

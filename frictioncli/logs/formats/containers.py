@@ -8,7 +8,8 @@ from pathlib import Path
 import numpy as np
 
 from frictioncli.arrays import Array, Numbers
-from frictioncli.logs.channels.recognition import recognise_channels, split_unit
+from frictioncli.logs.channels.column_name import split_unit
+from frictioncli.logs.channels.recognition import recognise_channels
 from frictioncli.logs.log_source import (
     MAX_ROW_TEXT,
     RawBatch,

@@ -10,7 +10,8 @@ from functools import lru_cache
 import numpy as np
 
 from frictioncli.logs.channels.channel_map import ChannelMap
-from frictioncli.logs.channels.recognition import recognise_channels, split_unit
+from frictioncli.logs.channels.column_name import split_unit
+from frictioncli.logs.channels.recognition import recognise_channels
 from frictioncli.logs.formats.delimited import DelimitedText
 from frictioncli.logs.log_source import (
     DerivedSource,

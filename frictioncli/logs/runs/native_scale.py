@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from frictioncli.arrays import Array
-from frictioncli.logs.channels.recognition import split_unit
+from frictioncli.logs.channels.column_name import split_unit
 from frictioncli.logs.formats.diadem import DiademRecording, open_recording
 from frictioncli.logs.formats.diadem_header import DamagedHeader
 from frictioncli.logs.log_source import DerivedSource, LogSource, RawBatch, UnreadableLog

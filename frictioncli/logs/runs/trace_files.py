@@ -8,7 +8,8 @@ import numpy as np
 
 from frictioncli.logs.channels import channel_names as names
 from frictioncli.logs.channels import units
-from frictioncli.logs.channels.recognition import LogChannel, recognise_channels, split_unit
+from frictioncli.logs.channels.column_name import split_unit
+from frictioncli.logs.channels.recognition import LogChannel, recognise_channels
 from frictioncli.logs.formats.diadem import DiademRecording
 from frictioncli.logs.log_source import LogSource, UnreadableLog
 from frictioncli.logs.runs.discovery import LogFile

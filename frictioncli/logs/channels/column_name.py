@@ -1,0 +1,191 @@
+"""The parts of a column's name: quantity, joint number and unit."""
+
+import re
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+from frictioncli.logs.channels import units
+from frictioncli.logs.channels.channel_names import (
+    MEANINGS,
+    MOTOR_TEMPERATURE,
+    TIME,
+    TOOL,
+    Meaning,
+)
+from frictioncli.logs.channels.named_joints import COMMAND
+
+_UNIT = re.compile(r"^(?P<name>.*?)[\[(](?P<unit>[^\[\]()]*)[\])]\s*$")
+_UNIT_LAST = re.compile(
+    r"^(?P<name>.+)[_ ](?P<unit>mNm|Nm|mA|degC|deg|rad|(?:deg|rad)[_/]?s|dps|rpm|ms|us|ns)$"
+)
+_UNIT_OF_QUANTITY = re.compile(
+    r"^(?P<name>.+?)(?:[_ ]in)?[_ /,](?P<unit>"
+    r"(?:deg(?:rees?)?|grad|°|rad(?:ians?)?)(?:(?:[_ ]per[_ ]|[_/])?s(?:ec)?|ps)?|rpm|turns|revs"
+    r"|[mk]?N[_ .·*]?m|N[_ .·*]?cm|mA|percent|pct|%|deg[_ ]?[CF]|°[CF]|[CFK]|celsius|kelvin"
+    r"|s|sec|seconds?|[mun]s|kg|g)(?P<joint>[_ ][AJ]?\d{1,2})?$",
+    re.I,
+)
+_JOINT_LAST = re.compile(
+    r"^(?P<name>.*?)(?:(?<=[a-z])[AJ]|(?<![ _.\-(\[])[ _.\-(\[]+[AaJj]?[ _]?|)"
+    r"(?P<joint>\d{1,2})[)\]]?$"
+)
+_JOINT_FIRST = re.compile(
+    r"^(?:joint|axis|axle|achse|gelenk|motor|[aj])[ _.]?(?P<joint>\d{1,2})[ _.\-]+(?P<name>.+)$",
+    re.I,
+)
+_MEASURED = re.compile(
+    r"(?:^|(?<=[ _.\-]))(?:feedback|fbk|fb|actual|act|measured|meas|ist|value|averaged|average|avg"
+    r"|joint[ _]?states?)(?=$|[ _.\-])",
+    re.I,
+)
+_SYMBOL = re.compile(r"^T[ _]?(?P<joint>\d{1,2})$", re.I)
+_PER = re.compile(r"[_ ]per[_ ]|_(?=s(?:ec)?$)", re.I)
+_NO_KEY = re.compile(r"[^a-z0-9]")
+_JOINT_IN_BRACKETS = re.compile(r"^[AaJj]?\d{1,2}$")
+_JOINT_ALONE = re.compile(r"^(?:joint|axis|achse|gelenk|motor|[aj])[ _]?\d{1,2}$", re.I)
+_PARTS = re.compile(r"[/.]")
+
+
+@dataclass(frozen=True, slots=True)
+class KnownName:
+    """What a name without its unit stands for.
+
+    Attributes
+    ----------
+    meaning : Meaning
+        Quantity, side of the gear and rank.
+    joint : int or None
+        Joint number as it is written; None where the name has none.
+    family : str
+        The name without joint number.
+    """
+
+    meaning: Meaning
+    joint: int | None
+    family: str
+
+
+def split_unit(column: str) -> tuple[str, str]:
+    """Return a column's name without its unit, and the unit as written ("" where there is none).
+
+    Units stand in brackets, or are the last words of the name, before the joint's number or after
+    it. Units of few letters, and those that also mean something else, count behind a known name of
+    their quantity only: ``temp_C`` has one, ``phase_C`` has none.
+
+    Examples
+    --------
+    >>> split_unit("AxisPos_Act1 [deg]")
+    ('AxisPos_Act1', 'deg')
+    >>> split_unit("tau_mNm")
+    ('tau', 'mNm')
+    >>> split_unit("torque_nm_2")
+    ('torque_2', 'nm')
+    >>> split_unit("q(2)")
+    ('q(2)', '')
+    """
+    bare = column.strip().strip('"')
+    found = _UNIT.match(bare)
+    known = _split_known(bare) if found is None else None
+    if known is not None:
+        return known
+    found = found or _UNIT_LAST.match(bare)
+    if found is None or _JOINT_IN_BRACKETS.match(found["unit"].strip()):
+        return bare, ""
+    name, unit = found["name"].rstrip(), found["unit"].strip()
+    if unit in ("x", "y", "z", "rx", "ry", "rz"):  # an axis of a coordinate frame, not a unit
+        return f"{name} {unit}", ""
+    return name, unit
+
+
+def _split_known(bare: str) -> tuple[str, str] | None:
+    """Return what :func:`split_unit` does where the unit is one of the quantity that has the name.
+
+    ``T_s`` is no time, and ``t_k`` no temperature: that of a surface, and a number of a sample.
+    """
+    found = _UNIT_OF_QUANTITY.match(bare)
+    if found is None:
+        return None
+    unit = _PER.sub("/", found["unit"]).replace("_", " ")
+    known = known_name(found["name"], unit)
+    if known is None or units.canonical(unit, known.meaning.quantity) is None:
+        return None
+    if found["name"] == ("T" if known.meaning.quantity == TIME else "t"):
+        return None
+    return found["name"] + (found["joint"] or ""), unit
+
+
+def unit_in_name(column: str, quantity: str) -> str | None:
+    """Return the unit of a quantity that a column's name has in brackets, None where it has none.
+
+    Examples
+    --------
+    >>> unit_in_name("pos_estimate [turns]", "position")
+    'turn'
+    """
+    return units.canonical(split_unit(column)[1], quantity)
+
+
+def known_name(name: str, unit: str) -> KnownName | None:
+    """Return what a name without its unit stands for, None where it is not known.
+
+    ``T [°C]`` and ``T2 [°C]`` are no times.
+
+    Parameters
+    ----------
+    name, unit : str
+        As of :func:`split_unit`.
+
+    Examples
+    --------
+    >>> known_name("arm.joint_2.position", "").joint
+    2
+    >>> known_name("T3", "degC").meaning.quantity
+    'motor_temperature'
+    """
+    known = _first_known(_spellings(name))
+    if not unit or units.canonical(unit, MOTOR_TEMPERATURE) is None:
+        return known
+    if known is not None and known.meaning.quantity == TIME:
+        return replace(known, meaning=MEANINGS["temperature"])
+    symbol = _SYMBOL.match(name)
+    if known is None and symbol is not None:
+        return KnownName(MEANINGS["temperature"], int(symbol["joint"]), "t")
+    return known
+
+
+def _first_known(texts: Sequence[str]) -> KnownName | None:
+    """Return what the first known one of several spellings of a name stands for."""
+    for text in texts:
+        meaning = MEANINGS.get(key_of(text))
+        if meaning is not None:
+            return KnownName(meaning, None, key_of(text))
+        for pattern in (_JOINT_FIRST, _JOINT_LAST):
+            parts = pattern.match(text)
+            meaning = MEANINGS.get(key_of(parts["name"])) if parts else None
+            if parts and meaning and meaning.quantity not in (TIME, TOOL):
+                return KnownName(meaning, int(parts["joint"]), key_of(parts["name"]))
+    return None
+
+
+def _spellings(name: str) -> list[str]:
+    """Return a name, and of a path that commands nothing its last parts.
+
+    Of ROS topics such as ``/joints/joint_2/position`` these alone, of ``arm.joint_2.position`` as
+    well. Then the same without words that only say that a value was measured.
+    """
+    texts, path = [name], _PARTS.split(name)
+    if COMMAND.search(name):
+        return texts
+    if name.startswith("/"):
+        path = name.split("/")
+        texts = ["_".join(path[-2:]), path[-1]]
+    elif len(path) > 2 and _JOINT_ALONE.match(path[-2]):
+        texts.append("_".join(path[-2:]))
+    plain = [" ".join(_MEASURED.sub("", text).replace("_", " ").split()) for text in texts]
+    return [*texts, *(text for text in plain if text)]
+
+
+def key_of(name: str) -> str:
+    """Return a name as a key of :data:`MEANINGS`."""
+    lower = name.lower().replace("ä", "ae").replace("ö", "oe").replace("ü", "ue")
+    return _NO_KEY.sub("", lower.replace("ß", "ss"))
