@@ -37,6 +37,8 @@ from .logs import back_and_forth, kuka_columns, write
         ("Motortemperatur2", "motor_temperature", 2, "joint"),
         ("MOT_TEMP_A2", "motor_temperature", 2, "joint"),
         ("Temp_1", "motor_temperature", 1, "joint"),
+        ("T_motor", "motor_temperature", None, "joint"),
+        ("T_housing [°C]", "housing_temperature", None, "joint"),
         ("Gehäusetemperatur [°C]", "housing_temperature", None, "joint"),
         ("housing_temperature_3", "housing_temperature", 3, "joint"),
         ("AxisPos_CmdIpo2[°]", None, None, None),
@@ -88,6 +90,18 @@ def test_missing_channels_are_named(columns, reason):
     assert refusal.reason == reason
     assert "--map" in refusal.text
     assert ", ".join(columns) in refusal.text
+
+
+@pytest.mark.parametrize("column", ["T_oil", "gearTemp2 [°C]", "Kelvin"])
+def test_a_temperature_of_unknown_name_is_not_left_out_in_silence(column):
+    columns = ["t", "q", "tau", column]
+    (joint,) = assign_channels(recognise_channels(columns), columns, joints=None, file_joint=1)
+    (note,) = joint.notes
+    assert column in note
+    assert "motor_temperature" in note
+    known = [*columns, "T_motor"]
+    (joint,) = assign_channels(recognise_channels(known), known, joints=None, file_joint=1)
+    assert not joint.notes
 
 
 @pytest.mark.parametrize(

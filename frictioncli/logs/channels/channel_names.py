@@ -123,15 +123,16 @@ _ALIASES: tuple[tuple[Meaning, str], ...] = (
         Meaning(MOTOR_TEMPERATURE),
         "motortemperatur motortemperature motortemperatures mottemp motortemp motortempact"
         " temperatur temperature temperatures temp jointtemperature jointtemperatures jointtemp"
-        " robotjointtemp motort tm wicklungstemperatur temperaturemotor"
+        " robotjointtemp motort tm wicklungstemperatur temperaturemotor tmotor tmot tempmotor"
         " servotemperature servotemp actuatortemperature actuatortemp statortemperature statortemp"
-        " coiltemperature coiltemp temperatura temperaturamotor temperaturamotore",
+        " coiltemperature coiltemp temperatura temperaturamotor temperaturamotore"
+        " temperaturmotor windingtemperature windingtemp twinding",
     ),
     (
         Meaning(HOUSING_TEMPERATURE),
         "gehaeusetemperatur gehausetemperatur housingtemperature housingtemp gehaeusetemp"
         " casetemperature casingtemperature surfacetemperature gehuse gehusetemperatur tc"
-        " oberflaechentemperatur housingtempact",
+        " oberflaechentemperatur housingtempact thousing temphousing tgehaeuse tcase tempcase",
     ),
     (Meaning(LOAD), "load loadtorque lastmoment loadtorqueact"),
     (Meaning(PAYLOAD, unit="kg"), "payload payloadmass payloadact nutzlast traglast"),

@@ -1,5 +1,6 @@
 """Choose the columns that are used for each joint of a log."""
 
+import re
 from collections.abc import Collection, Iterable, Sequence
 from dataclasses import dataclass, replace
 
@@ -17,6 +18,9 @@ from frictioncli.logs.channels.channel_names import (
 from frictioncli.logs.channels.recognition import LogChannel
 from frictioncli.logs.log_source import Refusal
 from frictioncli.plain_text import printable
+
+_LIKE_TEMPERATURE = re.compile(r"temp|celsius|kelvin|°c|degc|^t[ _.\-]", re.I)
+_SHOWN = 4
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -113,11 +117,27 @@ def assign_channels(
             chosen.append(_joint_channels(joint, times[0], positions, of_joint, usable))
     if chosen:
         lacking = sorted({*(joints or ()), *wanted} - {found.joint for found in chosen})
-        without = tuple(f"joint {joint}: no position and torque channel" for joint in lacking)
-        return replace(chosen[0], notes=(*chosen[0].notes, *without)), *chosen[1:]
+        notes = [f"joint {joint}: no position and torque channel" for joint in lacking]
+        if not any(one.motor_temperature or one.housing_temperature for one in chosen):
+            notes += _unread_temperatures(channels, columns)
+        return replace(chosen[0], notes=(*chosen[0].notes, *notes)), *chosen[1:]
     if not times:
         return _missing("time", "", channels, columns)
     return _missing("position", f" of joint {', '.join(map(str, wanted))}", channels, columns)
+
+
+def _unread_temperatures(channels: Sequence[LogChannel], columns: Sequence[str]) -> list[str]:
+    """Return a note on columns that may be temperatures and whose names are not known."""
+    known = {channel.column for channel in channels}
+    names = [name for number, name in enumerate(columns) if name and number not in known]
+    like = [printable(name) for name in names if _LIKE_TEMPERATURE.search(name)]
+    if not like:
+        return []
+    shown = ", ".join(like[:_SHOWN]) + (f", ... ({len(like)} in all)" if len(like) > _SHOWN else "")
+    return [
+        f"no temperature is read; not used: {shown}; if one is that of the motor or the housing,"
+        " name it with --map (motor_temperature or housing_temperature)"
+    ]
 
 
 def _joint_channels(
