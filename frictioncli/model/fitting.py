@@ -10,7 +10,7 @@ from frictioncli.model.document import PARAMETERS, FrictionModel, InputRange, Pa
 from frictioncli.model.identifiability import Determination, at_bound, determined_fit
 from frictioncli.model.identification import Estimate, with_error_of
 from frictioncli.model.late_torque import (
-    TorqueDelay,
+    UNKNOWN_ERROR,
     late_column,
     torque_delay,
     without_delay,
@@ -22,6 +22,11 @@ from frictioncli.wording import count_text, quantity_text
 
 _LATE = (
     "the torque in these logs lags the position by {delay}; what this adds is taken off friction"
+)
+
+_MAY_BE_LATE = (
+    "these moves do not tell whether the torque lags the position; the intervals allow for a delay"
+    f" or an advance of up to {2e3 * UNKNOWN_ERROR:.0f} ms, which here counts as much as the noise"
 )
 
 __all__ = ["LEAST_PAIRS", "fit_joint"]
@@ -55,7 +60,9 @@ def fit_joint(torques: pd.DataFrame, facts: dict[str, Any], settings: FitSetting
         both = settings.method == "paper" and torques["housing_temperature"].notna().any()
         temperature = "mean" if both else "motor"
     known, notes = _with_temperature(torques, temperature, joint)
-    delay = _delay(known, facts, settings, joint)
+    delay, may_be_late = None, _may_be_late(facts, settings, joint)
+    if may_be_late:
+        delay = torque_delay(known)
     if delay is not None and delay.interval[0] > 0:
         notes.append(_LATE.format(delay=quantity_text(delay.value, delay.interval, "s")))
     freed = without_delay(known, None if delay is None else delay.value)
@@ -80,9 +87,13 @@ def fit_joint(torques: pd.DataFrame, facts: dict[str, Any], settings: FitSetting
         estimate, determination = consecutive_fit(known, observed, temperature)
     else:
         estimate, determination = determined_fit(observed)
-    if delay is not None:
+    if may_be_late:
         late = observations(known.assign(friction_torque=late_column(known)), temperature)
-        estimate = with_error_of(estimate, observed, determination.terms, late, delay.error)
+        error = UNKNOWN_ERROR if delay is None else delay.error
+        widened = with_error_of(estimate, observed, determination.terms, late, error)
+        if delay is None and _is_mostly_added(estimate, widened):
+            notes.append(_MAY_BE_LATE)
+        estimate = widened
     return FrictionModel(
         joint=joint,
         method=settings.method,
@@ -106,15 +117,17 @@ def fit_joint(torques: pd.DataFrame, facts: dict[str, Any], settings: FitSetting
     )
 
 
-def _delay(
-    torques: pd.DataFrame, facts: dict[str, Any], settings: FitSettings, joint: int
-) -> TorqueDelay | None:
-    """Return by how much the torque is late, where it was measured in pairs of moves."""
+def _may_be_late(facts: dict[str, Any], settings: FitSettings, joint: int) -> bool:
+    """Return whether torques are of pairs of moves, in which a delay looks like friction."""
     in_pairs = facts.get("separated_by", {}).get(str(joint), "pairs") == "pairs"
     one_unit = facts.get("load_unit", facts.get("torque_unit")) == facts.get("torque_unit")
-    if settings.method == "paper" or not in_pairs or not one_unit:
-        return None
-    return torque_delay(torques)
+    return settings.method != "paper" and in_pairs and one_unit
+
+
+def _is_mostly_added(estimate: Estimate, widened: Estimate) -> bool:
+    """Return whether at least half of the variance of some parameter was added."""
+    before, after = (np.diag(one.covariance) for one in (estimate, widened))
+    return bool(np.any(after > 2.0 * before))
 
 
 def _with_temperature(

@@ -45,6 +45,9 @@ _TOLERANCE = 1e-9
 
 _Z95 = 1.959963984540054
 
+UNKNOWN_ERROR = 0.01
+"""Standard deviation of a delay that the data do not tell: a sample, or a usual filter. [s]"""
+
 
 @dataclass(frozen=True, slots=True)
 class TorqueDelay:

@@ -112,6 +112,18 @@ def test_the_intervals_of_a_fit_hold_the_friction_of_a_joint_whose_torque_is_lat
     assert any("lags the position" in note for note in model.notes) == (delay > 0)
 
 
+def test_where_no_moves_tell_a_delay_the_intervals_allow_for_one():
+    """Fast moves below 50 deg and slow ones above: no angle has both speeds."""
+    rows = joint(0.015, speeds=(20.0, 100.0))
+    rows = rows[(rows["speed"] > 50.0) == (rows["position"] < 50.0)]
+    model = fit_joint(rows, {}, FitSettings())
+    assert model.delay is None
+    for name, truth in (("tau_c", TAU_C), ("alpha", ALPHA), ("beta", BETA)):
+        low, high = model.parameters[name].ci95
+        assert low <= truth <= high, name
+    assert any("do not tell whether the torque lags" in note for note in model.notes)
+
+
 def test_the_paper_s_method_takes_torques_as_they_are():
     up = joint(0.03)
     down = up.assign(pair=up["pair"] + 1000, time=1e5 - up["time"])
