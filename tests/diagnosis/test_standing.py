@@ -238,12 +238,24 @@ def test_what_changes_gradually_has_no_name_in_a_log_without_temperature(joint, 
         assert "no temperature" not in reason
 
 
-def test_a_step_needs_no_temperature(joint):
-    """A joint warms up gradually."""
+@pytest.mark.parametrize(("pause", "expected"), [(30.0, "named"), (600.0, "undetermined")])
+def test_without_temperature_a_step_across_a_pause_may_be_one_of_temperature(
+    joint, pause, expected
+):
+    """A joint warms up gradually while it is logged, and unseen between two recordings."""
     nowhere = np.full(len(joint.table.time), np.nan)
-    without = replace(joint.table, motor_temperature=nowhere, housing_temperature=nowhere)
-    assert not confounded(BY_NAME["step_change"], replace(joint, table=without))
-    assert not confounded(BY_NAME["linear_viscous"], replace(joint, table=without))
+    pair = joint.layout.row_pair
+    begun = pair >= len(joint.layout.time) // 2
+    table = replace(joint.table, clock=20.0 * pair + pause * begun)
+    without = replace(table, motor_temperature=nowhere, housing_temperature=nowhere)
+    one = replace(joint, table=without, all_runs=without)
+    step = replace(beyond_doubt(joint, "step_change"), visible_interval=(0.5, 0.9))
+    step = replace(step, fit=replace(step.fit, shape={"moment": 0.5, "end": 1.0}))
+    ((found, reason),) = standing(one, step)
+    assert found == expected
+    assert ("no temperature" in reason) == (expected != "named")
+    assert standing(replace(joint, table=table, all_runs=table), step)[0][0] == "named"
+    assert not confounded(BY_NAME["linear_viscous"], one)
 
 
 @pytest.mark.parametrize("name", ["load_velocity", "torque_delay", "linear_viscous"])

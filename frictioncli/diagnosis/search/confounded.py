@@ -45,6 +45,9 @@ _NO_TEMPERATURE = (
     " that of the motor or the housing"
 )
 
+_PAUSE = 120.0
+"""Time from pair to pair in which the temperature of a joint may become another one. [s]"""
+
 _GOES_WITH_RUN = (
     "every run has its own speed, and any other difference between the runs could be the cause"
 )
@@ -120,12 +123,34 @@ def at_start_of_runs(fit: EffectFit, problem: Problem) -> str:
     """
     if fit.effect is not STEP_CHANGE:
         return ""
-    table = problem.all_runs
-    share = measured_share(table)[problem.rows]
-    _, heads = np.unique(problem.layout.row_pair, return_index=True)
-    there = present(share[heads], fit.shape)
+    there = _pairs_with_it(fit, problem)
     # absence with the opposite sign is the same
     return _AT_START if any(_is_start(one, problem) for one in (there, ~there)) else ""
+
+
+def after_pauses(fit: EffectFit, problem: Problem) -> str:
+    """Return why a step of friction may be one of a temperature that nobody logged; empty if not.
+
+    Parameters
+    ----------
+    fit : EffectFit
+        The effect, with its history.
+    problem : Problem
+        The joint's rows.
+    """
+    if fit.effect is not STEP_CHANGE or _has_temperature(problem):
+        return ""
+    clock = problem.layout.means(problem.table.clock[:, np.newaxis])[:, 0]
+    order = np.argsort(clock, kind="stable")
+    changes = np.diff(_pairs_with_it(fit, problem)[order].astype(int)) != 0
+    return _NO_TEMPERATURE if np.any(np.diff(clock[order])[changes] > _PAUSE) else ""
+
+
+def _pairs_with_it(fit: EffectFit, problem: Problem) -> Flags:
+    """Return in which pairs a change is there, shape (pairs,)."""
+    share = measured_share(problem.all_runs)[problem.rows]
+    _, heads = np.unique(problem.layout.row_pair, return_index=True)
+    return present(share[heads], fit.shape)
 
 
 def _is_start(there: Flags, problem: Problem) -> bool:

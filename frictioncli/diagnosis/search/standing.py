@@ -11,6 +11,7 @@ from frictioncli.diagnosis.fit.columns import main_channel
 from frictioncli.diagnosis.fit.left_by_base import Z95
 from frictioncli.diagnosis.search.cause import CONVINCING, Cause
 from frictioncli.diagnosis.search.confounded import (
+    after_pauses,
     at_start_of_runs,
     confounded,
     without_forms_of_ends,
@@ -103,7 +104,8 @@ def _judged(cause: Cause, problem: Problem, margin: float, alpha: float) -> Caus
     if not (cause.test.p_value < alpha and cause.test.log_bayes_factor > CONVINCING):
         return replace(cause, standing="undetermined", reason="it may be noise")
     doubt = _impossible(cause, problem)
-    doubt = doubt or confounded(cause.fit.effect, problem) or at_start_of_runs(cause.fit, problem)
+    doubt = doubt or confounded(cause.fit.effect, problem)
+    doubt = doubt or after_pauses(cause.fit, problem) or at_start_of_runs(cause.fit, problem)
     if doubt:
         return replace(cause, standing="undetermined", reason=doubt)
     if low > margin:
