@@ -71,6 +71,9 @@ def fit_joint(torques: pd.DataFrame, facts: dict[str, Any], settings: FitSetting
     opposing = float(np.mean(observed.friction > 0))
     if opposing < LEAST_OPPOSING:
         notes.append(f"friction is doubtful: {not_opposing(opposing)}")
+    two_loads = facts.get("two_loads", {}).get(str(joint))
+    if two_loads:
+        notes.append(f"friction is doubtful: {two_loads}")
     separated_by = facts.get("separated_by", {}).get(str(joint), "pairs")
     if n_pairs < LEAST_PAIRS and separated_by == "regression":
         raise NotEnoughData(

@@ -46,6 +46,12 @@ _COLUMNS = [
 
 _ROUNDS = 15
 
+_AS_LIKELY = 1.05
+"""Misfit of groups, relative to the least, up to which they are as likely."""
+
+_ONE_SPEED = 0.2
+"""Width of a class of speeds, in the logarithm."""
+
 
 @dataclass(frozen=True, slots=True)
 class TwoLoads:
@@ -57,25 +63,29 @@ class TwoLoads:
         RMS of their difference over the angles. [torque unit]
     mixed : float
         Share of the pairs whose moves carry different ones.
+    sure : bool
+        Whether that share is beyond doubt. Where the load goes with the speed, friction that the
+        speed has and a load in one direction look alike.
     """
 
     difference: float
     mixed: float
+    sure: bool = True
 
-    def text(self, joint: int, unit: str) -> str:
-        """Return a warning with what to do."""
+    def text(self, unit: str) -> str:
+        """Return what a user should know, and what to do."""
+        carry, counts = ("carry", "counts") if self.sure else ("may carry", "would count")
         return (
-            f"joint {joint}: warning: its moves carry two loads in turns, which differ by"
-            f" {self.difference:.2g} {unit}; in {self.mixed:.0%} of the pairs both moves carry"
-            " different ones, and half of the difference counts as friction: log what is carried"
+            f"its moves carry two loads in turns, which differ by {self.difference:.2g} {unit}; in {self.mixed:.0%} of the pairs both moves {carry}"
+            f" different ones, and half of the difference {counts} as friction: log what is carried"
             " (column payload, in kg)"
         )
 
 
 def loads_in_turns(
     batches: Iterable[pa.RecordBatch], signs: Mapping[int, int], unit: str
-) -> list[str]:
-    """Return a warning for each joint whose pairs are of moves with different loads.
+) -> dict[int, str]:
+    """Return a warning for each joint whose pairs are of moves with different loads, by joint.
 
     Parameters
     ----------
@@ -94,11 +104,11 @@ def loads_in_turns(
                 of_joint.append(rows)
         if all(sum(map(len, parts)) >= _MOST_ROWS for parts in kept.values()):
             break
-    texts = []
+    texts = {}
     for joint, parts in kept.items():
         found = two_loads(pd.concat(parts), signs[joint]) if parts else None
         if found is not None and found.mixed >= _MIXED:
-            texts.append(found.text(joint, unit))
+            texts[joint] = found.text(unit)
     return texts
 
 
@@ -121,21 +131,29 @@ def two_loads(pairs: pd.DataFrame, sign: int) -> TwoLoads | None:
         return None
     moves = _Moves.of(rows, pair, sign)
     one = moves.fit(np.zeros(2 * count))
-    group = moves.first_groups(one)
-    for _ in range(_ROUNDS):
-        two = moves.fit(group)
-        better = moves.better_groups(two)
-        if np.array_equal(better, group) or better.min() == better.max():
-            break
-        group = better
-    forward, reverse = group[:count], group[count:]
-    in_turns = min(float(np.mean(group)), 1 - float(np.mean(group)))
-    changes = max(float(np.mean(np.diff(side) != 0)) for side in (forward, reverse))
-    left = float(np.linalg.norm(two.residual)) / max(float(np.linalg.norm(one.residual)), 1e-300)
-    if left > _LEFT or min(in_turns, changes) < _RARE:
+    whole = max(float(np.linalg.norm(one.residual)), 1e-300)
+    found = [moves.grouped(start) for start in (moves.first_groups(one), *moves.by_speed(count))]
+    least = min(fit.left for fit, _ in found)
+    likely = [one for one in found if one[0].left <= _AS_LIKELY * least and _is_in_turns(one[1])]
+    if least > _LEFT * whole or not likely:
         return None
-    difference = float(np.sqrt(np.mean(np.square(moves.gravity @ two.difference))))
-    return TwoLoads(difference, float(np.mean(forward != reverse)))
+    fit, group = max(likely, key=lambda one: _mixed(one[1]))
+    difference = float(np.sqrt(np.mean(np.square(moves.gravity @ fit.difference))))
+    sure = min(_mixed(group) for _, group in likely) >= _MIXED
+    return TwoLoads(difference, _mixed(group), sure)
+
+
+def _mixed(group: Array) -> float:
+    """Return the share of the pairs whose moves are of different groups."""
+    forward, reverse = np.split(group, 2)
+    return float(np.mean(forward != reverse))
+
+
+def _is_in_turns(group: Array) -> bool:
+    """Return whether both groups are common, and follow each other often."""
+    share = float(np.mean(group))
+    changes = max(float(np.mean(np.diff(side) != 0)) for side in np.split(group, 2))
+    return min(share, 1 - share, changes) >= _RARE
 
 
 @dataclass(frozen=True, slots=True)
@@ -147,6 +165,11 @@ class _Fit:
     alpha: float
     difference: Array
     residual: Array
+
+    @property
+    def left(self) -> float:
+        """Length of the residual."""
+        return float(np.linalg.norm(self.residual))
 
 
 @dataclass(frozen=True, slots=True)
@@ -198,6 +221,30 @@ class _Moves:
             squared = np.square(self.gravity @ found[:3] + second @ found[7:])
         residual = self.torque - columns @ found
         return _Fit(found[:3], found[3:6], float(found[6]), found[7:], residual)
+
+    def grouped(self, group: Array) -> tuple[_Fit, Array]:
+        """Return the fit and the groups to which a start leads."""
+        fit = self.fit(group)
+        for _ in range(_ROUNDS):
+            better = self.better_groups(fit)
+            if np.array_equal(better, group) or better.min() == better.max():
+                break
+            group = better
+            fit = self.fit(group)
+        return fit, group
+
+    def by_speed(self, count: int) -> list[Array]:
+        """Return groups of the moves in one direction at one speed, for each that is common."""
+        root = np.zeros(2 * count)
+        root[self.move] = np.abs(self.friction[:, 1])
+        level = np.unique(np.round(2.0 * np.log(root) / _ONE_SPEED), return_inverse=True)[1]
+        forward = np.arange(2 * count) < count
+        groups = [
+            ((level == one) & side).astype(float)
+            for one in range(int(level.max()) + 1)
+            for side in (forward, ~forward)
+        ]
+        return [one for one in groups if float(np.mean(one)) >= _RARE]
 
     def first_groups(self, fit: _Fit) -> Array:
         """Return groups by how much more load each move has, cut where both scatter least."""

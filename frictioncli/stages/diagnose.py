@@ -70,7 +70,12 @@ def diagnose(
     write_joints(work / DIAGNOSIS, diagnoses, main_joint, provenance)
     write_joints(work / EXTENDED, extended, main_joint, provenance)
     texts = (verdict_text(document) for document in diagnoses.values())
-    return StageResult(work / DIAGNOSIS, "\n".join([*texts, *faults]))
+    doubts = [
+        f"joint {joint}: causes are doubtful: {text}"
+        for joint, text in facts.get("two_loads", {}).items()
+        if int(joint) in diagnoses
+    ]
+    return StageResult(work / DIAGNOSIS, "\n".join([*texts, *doubts, *faults]))
 
 
 def has_finding(work: Path, *, named_only: bool) -> bool:

@@ -172,6 +172,11 @@ def _write(
     facts["separated_by"] = {
         str(joint): PAIRED if joint in by_pairs else REGRESSED for joint in signs
     }
+    unit = str(facts.get("torque_unit", "N·m"))
+    pairs = tables.batches(source, schemas.PAIRS) if by_pairs else ()
+    in_turns = loads_in_turns(pairs, by_pairs, unit)
+    if in_turns:
+        facts["two_loads"] = {str(joint): text for joint, text in in_turns.items()}
     provenance = Provenance("separate", _told(settings), input_hashes(inputs))
     ranges = TorqueRanges()
     with tables.TableWriter(work / TORQUES, schemas.TORQUES, provenance) as torques:
@@ -180,9 +185,7 @@ def _write(
         facts |= {"load_unit": "N·m"} if ranges.load_is_measured else {}
         torques.facts = facts
     text = separation_text(ranges, by_pairs, facts, given=settings.sign is not None)
-    if by_pairs:
-        unit = str(facts.get("torque_unit", "N·m"))
-        texts += loads_in_turns(tables.batches(source, schemas.PAIRS), by_pairs, unit)
+    texts += [f"joint {joint}: warning: {text}" for joint, text in in_turns.items()]
     return StageResult(work / TORQUES, "\n".join([*([text] if text else []), *texts]))
 
 
