@@ -50,7 +50,7 @@ class EffectTable:
     time : ndarray, shape (rows,)
         Middle of the pair since the run's first sample. [s]
     clock : ndarray, shape (rows,)
-        Time on one clock for all runs, where dates are known; else runs follow each other. [s]
+        Time on one clock for all runs, which follow each other without a pause. [s]
     speed, position : ndarray, shape (rows,)
         Speed of the pair and centre of the angle bin. [deg/s], [deg]
     angle : ndarray, shape (rows,)

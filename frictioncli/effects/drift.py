@@ -60,7 +60,10 @@ EFFECT = Effect(
             " and the change is still there on the next cold start."
         ),
     ),
-    statement="Friction changes with time, by {rate} at the start.",
+    statement=(
+        "Friction changes steadily with the time logged, by {rate} at the start; the time between"
+        " runs does not count."
+    ),
     confounders=("run_in", "step_change", "thermal_lag"),
     experiment=(
         "Return to the start temperature and repeat the first pairs; repeat them on the next day."
