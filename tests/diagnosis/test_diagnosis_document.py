@@ -13,6 +13,7 @@ from frictioncli.diagnosis.documents.document import read_diagnoses
 from frictioncli.diagnosis.documents.from_diagnosis import diagnosis_document
 from frictioncli.diagnosis.documents.parameters import TorqueUnits
 from frictioncli.diagnosis.documents.remainder import largest_structure, remainder_record
+from frictioncli.diagnosis.documents.structure_record import structure_record, unnamed_record
 from frictioncli.diagnosis.search.lack_of_fit import Structure
 from frictioncli.diagnosis.settings import DiagnosisSettings
 from frictioncli.effects import BY_NAME
@@ -92,6 +93,21 @@ def test_structure_is_stated_by_columns_and_stands_among_the_causes(found):
     assert document.causes[-1].claim == document.structure.description
     assert "along angle and speed" in document.structure.description
     assert document.structure.ci95 == document.causes[-1].size_ci95 == (0.5, 0.9)
+
+
+def test_structure_along_a_load_that_the_angle_tells_may_be_along_the_angle(found):
+    """Two payloads, of which the angle tells neither, show that it is the load."""
+    along = {"axes": ("load",), "channel": "load", "p_value": 1e-9, "statistic": 90.0}
+    structure = Structure(**along, size=0.7, interval=(0.5, 0.9))
+    table = found.base.table
+    heavier = np.where(found.base.layout.row_pair % 2 == 0, table.load, 1.6 * table.load)
+    two = replace(found.base, table=replace(table, load=heavier))
+    for base, told in ((found.base, True), (two, False)):
+        one = replace(found, structure=structure, base=base)
+        record = unnamed_record(one)
+        assert structure_record(one).axis == ("load",)
+        assert ("along the angle" in record.claim) == told
+        assert ("another payload" in record.experiment) == told
 
 
 def test_what_is_left_on_the_new_run_is_found_along_its_axis(found):

@@ -20,14 +20,11 @@ from frictioncli.diagnosis.data.problem import Problem
 from frictioncli.diagnosis.diagnose import Diagnosis, predicting
 from frictioncli.diagnosis.documents.document import RemainderRecord
 from frictioncli.diagnosis.fit.extension import misfits
-from frictioncli.diagnosis.search.axis_columns import varying_axes
+from frictioncli.diagnosis.search.axis_columns import told_by_angle, varying_axes
 from frictioncli.diagnosis.search.new_run_changes import ADEQUATE
 
 _BINS = 8
 """Bins of equal filling along an axis of many values."""
-
-_TOLD = 0.02
-"""Spread of the load at an angle, relative to its whole spread, below which the angle tells it."""
 
 _AXES = {
     "position": "position",
@@ -100,7 +97,7 @@ def largest_structure(problem: Problem, friction: Array, load: Array | None) -> 
         Misfit in both channels; no load where it is not simulated. [N·m]
     """
     varying = varying_axes(problem)
-    if _told_by_angle(problem):
+    if told_by_angle(problem):
         # which of both it is, no data show: structure along the angle is the simpler statement
         varying -= {"load"}
     channels = {"friction": friction} if load is None else {"friction": friction, "load": load}
@@ -112,14 +109,6 @@ def largest_structure(problem: Problem, friction: Array, load: Array | None) -> 
         for pair in [problem.layout.row_pair]
     ]
     return max(found, key=lambda one: one.size)
-
-
-def _told_by_angle(problem: Problem) -> bool:
-    """Return whether the load is a function of the angle, as with one payload and pose."""
-    load = problem.table.load
-    angles, place = np.unique(np.round(problem.table.position, 3), return_inverse=True)
-    mean = np.bincount(place, load) / np.bincount(place)
-    return bool(len(angles) > 1 and np.std(load - mean[place]) < _TOLD * np.std(load))
 
 
 def _bins(values: Array) -> Indices:

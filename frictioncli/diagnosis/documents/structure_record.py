@@ -7,6 +7,7 @@ from frictioncli.diagnosis.documents.document import CauseRecord, StructureRecor
 from frictioncli.diagnosis.documents.empirical_record import LocatedRecord, gain_record
 from frictioncli.diagnosis.documents.torque_units import TorqueUnits
 from frictioncli.diagnosis.empirical.describe import experiment
+from frictioncli.diagnosis.search.axis_columns import told_by_angle
 
 
 def structure_record(diagnosis: Diagnosis) -> StructureRecord | None:
@@ -35,7 +36,7 @@ def structure_record(diagnosis: Diagnosis) -> StructureRecord | None:
     return StructureRecord(
         axis=structure.axes,
         channel=structure.channel,
-        description=_residuals(structure.channel, structure.axes),
+        description=_residuals(structure.channel, structure.axes) + _or_angle(diagnosis),
         size=structure.size,
         ci95=known_interval(structure.interval),
     )
@@ -71,7 +72,7 @@ def unnamed_record(diagnosis: Diagnosis) -> CauseRecord:
         p_value=structure.p_value,
         seen_in=along,
         figure=None,
-        experiment=_experiment(diagnosis) or _experiment_along(found.axis),
+        experiment=_experiment(diagnosis) or _experiment_along(found.axis, _or_angle(diagnosis)),
     )
 
 
@@ -94,9 +95,17 @@ def _experiment(diagnosis: Diagnosis) -> str:
     return "" if form is None else experiment(form, TorqueUnits.of_diagnosis(diagnosis).load)
 
 
-def _experiment_along(axes: tuple[str, ...]) -> str:
+def _or_angle(diagnosis: Diagnosis) -> str:
+    """Return that structure along the load may be one along the angle; empty if it may not."""
+    structure = diagnosis.structure
+    if structure is None or structure.axes != ("load",) or not told_by_angle(diagnosis.base):
+        return ""
+    return " The load is the same at the same angle here: it may as well be along the angle."
+
+
+def _experiment_along(axes: tuple[str, ...], or_angle: str) -> str:
     """Return what to measure next about structure that no form describes."""
-    if axes == ("position",):
+    if axes == ("position",) or or_angle:
         return (
             "Move through the whole stroke in narrow angle bins, at three speeds, cold and warm,"
             " and with another payload: it then stays at its angle, or moves with the load."

@@ -42,6 +42,9 @@ _LEAST_RELATIVE = 0.05
 _LEAST_LOAD = 0.02
 """Least spread of a simulated load relative to the mean friction: less carries no structure."""
 
+_TOLD = 0.02
+"""Spread of the load at an angle, relative to its whole spread, below which the angle tells it."""
+
 _LEAST_ANGLE = 5.0
 """Least spread of the joint angle. [deg]"""
 
@@ -72,6 +75,20 @@ def varying_axes(problem: Problem) -> frozenset[str]:
     }
     varying = (name for name, (values, spread) in least.items() if _spread(values) > spread)
     return frozenset(["time", *varying])
+
+
+def told_by_angle(problem: Problem) -> bool:
+    """Return whether the load is a function of the angle, as with one payload and pose.
+
+    Parameters
+    ----------
+    problem : Problem
+        The rows.
+    """
+    load = problem.table.load
+    angles, place = np.unique(np.round(problem.table.position, 3), return_inverse=True)
+    mean = np.bincount(place, load) / np.bincount(place)
+    return bool(len(angles) > 1 and np.std(load - mean[place]) < _TOLD * np.std(load))
 
 
 def _spread(values: Array) -> float:
