@@ -26,6 +26,9 @@ _VAGUE = 0.5
 _NEGLIGIBLE = 0.05
 """A load term that may be zero is kept if its upper bound is below this share of the friction."""
 
+_NOISY = 4.0
+"""Variance of the squared load, relative to that of its noise, from which the load is more."""
+
 
 @dataclass(frozen=True, slots=True)
 class Determination:
@@ -184,7 +187,9 @@ def _by_interval(
         # a user will ask for loads at least as great as the friction
         greatest = max(float(np.max(squares)), friction**2)
         doubtful = low <= 0 and high * greatest > _NEGLIGIBLE * friction
-        if vague or doubtful or np.ptp(squares) <= np.square(3 * estimate.noise.point):
+        # what noise of the size of a bin's makes of the square of a load
+        of_noise = _NOISY * float(np.mean(4.0 * squares)) * estimate.noise.point**2
+        if vague or doubtful or np.var(squares) <= of_noise:
             return chosen.without(
                 "alpha",
                 f"load spans {np.sqrt(np.min(squares)):.3g} to {np.sqrt(np.max(squares)):.3g}, too"

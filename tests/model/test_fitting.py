@@ -124,6 +124,18 @@ def test_a_small_load_drops_alpha():
     assert "load spans" in model.parameters["alpha"].reason
 
 
+@pytest.mark.parametrize("constant", [0.0, 14.0])
+def test_noise_of_a_joint_without_gravity_is_no_load(constant):
+    """What scatters in one direction of motion is in friction and load alike."""
+    table = torques(6, load=2.0)
+    one_way = np.random.default_rng(1).exponential(0.5, len(table))
+    noisy = table.assign(
+        friction_torque=table["friction_torque"] + one_way / 2, load_torque=constant + one_way / 2
+    )
+    alpha = fitted(noisy).parameters["alpha"]
+    assert (alpha.determined, alpha.estimate) == (False, 0.0)
+
+
 def test_a_parameter_at_its_bound_is_flagged():
     truth = TRUTH | {"beta": -1.5}
     model = fitted(torques(8, truth=truth, drift=0.05))
