@@ -76,7 +76,8 @@ class TwoLoads:
         """Return what a user should know, and what to do."""
         carry, counts = ("carry", "counts") if self.sure else ("may carry", "would count")
         return (
-            f"its moves carry two loads in turns, which differ by {self.difference:.2g} {unit}; in {self.mixed:.0%} of the pairs both moves {carry}"
+            f"its moves carry two loads in turns, which differ by {self.difference:.2g} {unit}; in"
+            f" {self.mixed:.0%} of the pairs both moves {carry}"
             f" different ones, and half of the difference {counts} as friction: log what is carried"
             " (column payload, in kg)"
         )

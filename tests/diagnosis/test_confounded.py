@@ -111,6 +111,30 @@ def test_a_step_at_the_start_of_runs_may_be_friction_after_a_rest(joint, parts, 
     assert standing(joint, of("payload_change", 0.6, shape=shape))[0][0] == "named"
 
 
+@pytest.mark.parametrize(
+    ("parts", "expected"),
+    [
+        # the second half of each of two runs, as the joint is warm
+        ([(0.25, 0.5), (0.75, 1.0)], "undetermined"),
+        # from the middle of a run on, for good
+        ([(0.25, 1.0)], "named"),
+    ],
+)
+def test_a_step_that_comes_in_each_run_at_a_temperature_may_be_one_of_temperature(
+    joint, parts, expected
+):
+    pairs = len(joint.layout.time)
+    row_pair = joint.layout.row_pair
+    step = of("step_change", 0.6, shape=history(parts))
+    daily = 20.0 + 40.0 * ((np.arange(pairs) % (pairs // 2)) / pairs)[row_pair]
+    weather = 20.0 + 10.0 * np.sin(1.7 * np.arange(pairs))[row_pair]
+    for temperature, standing_then in ((daily, expected), (weather, "named")):
+        table = replace(joint.table, measured_temperature=temperature)
+        ((found, reason),) = standing(replace(joint, table=table), step)
+        assert found == standing_then
+        assert ("depends on temperature" in reason) == (found != "named")
+
+
 def test_a_play_at_one_speed_may_be_a_delay(joint):
     play = of("backlash", 0.7)
     assert standing(joint, play) == [("named", "")]

@@ -34,6 +34,15 @@ def test_bins_passed_before_the_time_in_either_direction_are_left_out(speed, kep
     assert (position.min(), position.max()) == kept
 
 
+@pytest.mark.parametrize(("seconds", "kept"), [(0.02, 4), (0.08, 2), (0.3, 0)])
+def test_a_short_stroke_counts_on_the_time_after_the_acceleration(seconds, kept):
+    """Of four bins both ends are the first of a direction, 0.11 s after it at 45 deg/s."""
+    rows = torques(45.0).iloc[:4]
+    assert settled(rows, seconds).sum() == kept
+    # a long one does not need to
+    assert not settled(torques(45.0), 0.02)[[0, -1]].any()
+
+
 def test_without_a_delay_nothing_is_left_out():
     assert settled(torques(200.0), 0.0).all()
 

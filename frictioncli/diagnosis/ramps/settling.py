@@ -6,7 +6,9 @@ segment still remembers the start of the move: friction that was lower and inert
 .. math:: t_s = D + 2 \sqrt{S}
 
 5 % of it is left behind a filter of first order. The bins before that time, in either direction,
-would look like inertia or like friction after a reversal.
+would look like inertia or like friction after a reversal. A segment begins some time after the
+acceleration, which is not counted on, but where a pair would lose most of its bins: twice
+:math:`t_s` after the acceleration 0.25 % are left.
 """
 
 import math
@@ -21,9 +23,19 @@ from frictioncli.diagnosis.data.problem import Problem
 from frictioncli.diagnosis.ramps.evidence import RampLog
 from frictioncli.diagnosis.ramps.timing import TorqueTiming, torque_timing
 from frictioncli.model.zero_load import PAIR_KEY
+from frictioncli.pairs.settings import SteadySettings
 
 _TIME_CONSTANTS = 2.0
 """Square roots of the variance that are waited for beside the mean time."""
+
+_DROPPED = SteadySettings().settling
+"""Usual time between the acceleration and the start of a segment. [s]"""
+
+_PART_DROPPED = 1 / 3
+"""That time in a short segment, relative to the time of its bins."""
+
+_HALF = 0.5
+"""Share of the bins of a pair of which more must be settled by themselves."""
 
 _SETTLED = 1e-9
 """Share of the settling time within which a bin counts as settled."""
@@ -81,8 +93,15 @@ def settled(torques: pd.DataFrame, seconds: float) -> Flags:
     position = torques["position"].to_numpy(float)
     pairs = torques.groupby(PAIR_KEY, sort=False, observed=True)["position"]
     low, high = (pairs.transform(end).to_numpy(float) for end in ("min", "max"))
-    passed = np.minimum(position - low, high - position)
-    return np.asarray(passed >= (1 - _SETTLED) * seconds * torques["speed"].to_numpy(float))
+    speed = torques["speed"].to_numpy(float)
+    passed = np.minimum(position - low, high - position) / speed
+    found = passed >= (1 - _SETTLED) * seconds
+    before = np.minimum(_DROPPED, _PART_DROPPED * (high - low) / speed)
+    share = pd.Series(found, torques.index).groupby(
+        [torques[name] for name in PAIR_KEY], sort=False, observed=True
+    )
+    few = share.transform("mean").to_numpy(float) <= _HALF
+    return np.asarray(found | (few & (before + passed >= 2.0 * seconds)))
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

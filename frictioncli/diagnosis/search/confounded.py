@@ -45,6 +45,18 @@ _NO_TEMPERATURE = (
     " that of the motor or the housing"
 )
 
+_AT_TEMPERATURE = (
+    "it comes in each run at the same temperature, where friction that depends on temperature would"
+    " look the same"
+)
+
+_APART = 0.98
+"""Share of pairs of pairs, one with a change and one without, of which the same is warmer, from
+which the change goes with the temperature."""
+
+_SEVERAL = 2
+"""Runs in which a change comes or goes, from which it recurs."""
+
 _PAUSE = 120.0
 """Time from pair to pair in which the temperature of a joint may become another one. [s]"""
 
@@ -144,6 +156,32 @@ def after_pauses(fit: EffectFit, problem: Problem) -> str:
     order = np.argsort(clock, kind="stable")
     changes = np.diff(_pairs_with_it(fit, problem)[order].astype(int)) != 0
     return _NO_TEMPERATURE if np.any(np.diff(clock[order])[changes] > _PAUSE) else ""
+
+
+def at_temperature(fit: EffectFit, problem: Problem) -> str:
+    """Return why a step of friction may be one of temperature; empty if it is not.
+
+    It comes or goes in several runs, and all pairs with it are warmer than those without, or all
+    are colder.
+
+    Parameters
+    ----------
+    fit : EffectFit
+        The effect, with its history.
+    problem : Problem
+        The joint's rows.
+    """
+    if fit.effect is not STEP_CHANGE or not _has_temperature(problem):
+        return ""
+    there, run = _pairs_with_it(fit, problem), problem.layout.run
+    own = [there[run == one] for one in np.unique(run)]
+    if sum(bool(one.any() and not one.all()) for one in own) < _SEVERAL:
+        return ""
+    temperature = problem.table.measured_temperature[:, np.newaxis]
+    rank = pd.Series(problem.layout.means(temperature)[:, 0]).rank().to_numpy()
+    with_it, without = int(there.sum()), int((~there).sum())
+    warmer = (float(rank[there].sum()) - with_it * (with_it + 1) / 2) / (with_it * without)
+    return _AT_TEMPERATURE if max(warmer, 1 - warmer) >= _APART else ""
 
 
 def _pairs_with_it(fit: EffectFit, problem: Problem) -> Flags:

@@ -13,6 +13,7 @@ from frictioncli.diagnosis.search.cause import CONVINCING, Cause
 from frictioncli.diagnosis.search.confounded import (
     after_pauses,
     at_start_of_runs,
+    at_temperature,
     confounded,
     without_forms_of_ends,
     without_forms_of_others,
@@ -105,7 +106,8 @@ def _judged(cause: Cause, problem: Problem, margin: float, alpha: float) -> Caus
         return replace(cause, standing="undetermined", reason="it may be noise")
     doubt = _impossible(cause, problem)
     doubt = doubt or confounded(cause.fit.effect, problem)
-    doubt = doubt or after_pauses(cause.fit, problem) or at_start_of_runs(cause.fit, problem)
+    for doubtful in (after_pauses, at_start_of_runs, at_temperature):
+        doubt = doubt or doubtful(cause.fit, problem)
     if doubt:
         return replace(cause, standing="undetermined", reason=doubt)
     if low > margin:
