@@ -95,6 +95,16 @@ def test_pure_deviation_is_that_of_the_noise(share):
     assert np.mean(found) == pytest.approx(0.3**2, rel=0.02)
 
 
+def test_a_payload_that_comes_and_goes_is_no_noise():
+    """It is there in a third of the pairs, and comes and goes within groups of neighbours."""
+    layout, rows, position = experiment(2, pairs=90)
+    carried = (layout.row_pair // 12) % 3 == 1
+    course = 4.0 * np.cos(np.radians(position)) * carried
+    with_payload = rows + course[:, np.newaxis]
+    layout = layout.with_noise_from(with_payload, position)
+    assert layout.pure_deviation(with_payload, position) == pytest.approx(0.3, rel=0.1)
+
+
 def test_whitened_deviations_are_white():
     """Pooled deviations of many draws: variance 1 along every direction but the constant."""
     generator = np.random.default_rng(8)

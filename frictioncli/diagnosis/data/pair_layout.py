@@ -6,6 +6,7 @@ speed are pooled by angle, which keeps their inner products with every effect th
 these pairs, and made white.
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -19,6 +20,9 @@ from frictioncli.diagnosis.data.within_noise import (
     whitening,
     within_noise_of,
 )
+
+_JUMP = 16.0
+"""Mean square of a change from pair to pair, relative to the usual one, that is no noise."""
 
 _POOLED = 5
 """Neighbouring pairs at one speed whose deviations are pooled."""
@@ -155,11 +159,13 @@ class PairLayout:
         -------
         list of (float, ndarray, ndarray)
             Of each block: the speed [deg/s], its rows, shape (pairs, bins), and the scatter, shape
-            (columns, pairs, bins).
+            (columns, pairs, bins). Where the course changes suddenly, as by another payload, a
+            block ends.
         """
         deviations = rows - self.means(rows)[self.row_pair]
         found = []
-        for chosen in self.blocks:
+        levels = [int(self.level[self.row_pair[one[0, 0]]]) for one in self.blocks]
+        for chosen in _without_jumps(self.blocks, levels, deviations):
             values = np.moveaxis(deviations[chosen], -1, 0)
             speed = float(self.speed[self.row_pair[chosen[0, 0]]])
             found.append((speed, chosen, values - values.mean(axis=1, keepdims=True)))
@@ -289,6 +295,32 @@ def _white(noise: WithinNoise, keys: pd.DataFrame, speed: Array, block: Indices)
             known[key] = whitening(noise.correlation(position, at))[0]
         parts.append(known[key])
     return csr_array(block_diag(parts, format="csr"))
+
+
+def _without_jumps(
+    blocks: Sequence[Indices], levels: Sequence[int], deviations: Array
+) -> list[Indices]:
+    """Return blocks that end where two neighbours differ far more than others at their speed.
+
+    Parameters
+    ----------
+    blocks : sequence of ndarray of int, shape (pairs, bins)
+        Rows of the pairs of each block.
+    levels : sequence of int
+        Speed level of each block.
+    deviations : ndarray, shape (rows, columns)
+        Deviations of the bins from the means of their pairs.
+    """
+    squares = [np.mean(np.square(np.diff(deviations[one], axis=0)), axis=1) for one in blocks]
+    at_level: dict[int, list[Array]] = {}
+    for level, own in zip(levels, squares, strict=True):
+        at_level.setdefault(level, []).append(own)
+    usual = {level: np.median(np.concatenate(own), axis=0) for level, own in at_level.items()}
+    found: list[Indices] = []
+    for chosen, level, own in zip(blocks, levels, squares, strict=True):
+        ends = 1 + np.flatnonzero(np.any(own > _JUMP * usual[level], axis=1))
+        found += [part for part in np.split(chosen, ends) if len(part) > 1]
+    return found
 
 
 def _same_bins(row_pair: Indices, block: Indices, position: Array) -> tuple[Indices, ...]:
