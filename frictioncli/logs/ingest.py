@@ -211,17 +211,10 @@ def _read_logs(
 
 
 def _add_knots(run: str, timeline: Timeline, ingested: IngestedLogs) -> None:
-    """Add the knots of the motor temperatures of a run, with a note for quantized registers."""
+    """Add the knots of the motor temperatures of a run."""
     for joint in timeline.joints:
         knots = run_knots(timeline.registers(joint), starts_known=timeline.known)
         ingested.knots[run, joint] = knots
-        distinct = {id(one): one for one in knots if one is not None}.values()
-        if distinct:
-            count = sum(one.n_changes for one in distinct)
-            ingested.notes.append(
-                f"run {run}: motor temperature of joint {joint} has steps of"
-                f" {next(iter(distinct)).step:g} °C: interpolated between {count} of them"
-            )
 
 
 def _write_tables(

@@ -156,7 +156,11 @@ class IngestedLogs:
             ),
             "position": _common("position", ((n, _position_kind(plan)) for n, plan in plans)),
             **_constants(plan for _, plan in plans),
-            "notes": [*_grouped_by_remark(notes, len(recordings)), *self.notes],
+            "notes": [
+                *_grouped_by_remark(notes, len(recordings)),
+                *_interpolated(self.knots),
+                *self.notes,
+            ],
             "warnings": [*_grouped_by_remark(warnings, len(recordings)), *self.warnings],
             "poses": self.poses.facts(),
             "time_known": all(timeline.known for timeline in self.timelines.values()),
@@ -265,6 +269,26 @@ def _with_others(remarks: Sequence[str]) -> str:
     if len(set(joints)) == len(remarks):
         return f"{remarks[0]} (joints {', '.join(joints[1:])} alike)"
     return f"{remarks[0]} (and {len(remarks) - 1} like it)"
+
+
+def _interpolated(knots: Mapping[tuple[str, int], tuple[Knots | None, ...]]) -> list[str]:
+    """Return a note on quantized motor temperatures for each joint and step of its register."""
+    found: dict[tuple[int, float], dict[str, int]] = {}
+    for (run, joint), of_run in knots.items():
+        distinct = {id(one): one for one in of_run if one is not None}.values()
+        if distinct:
+            steps = found.setdefault((joint, next(iter(distinct)).step), {})
+            steps[run] = sum(one.n_changes for one in distinct)
+    texts = []
+    for (joint, step), counts in found.items():
+        low, high = min(counts.values()), max(counts.values())
+        between = f"{low}" if low == high else f"{low} to {high}"
+        where = f"run {next(iter(counts))}" if len(counts) == 1 else f"each of {len(counts)} runs"
+        texts.append(
+            f"motor temperature of joint {joint} has steps of {step:g} °C: interpolated between"
+            f" {between} of them in {where}"
+        )
+    return texts
 
 
 def _rejected_lines(files: Sequence[RejectedFile]) -> list[str]:

@@ -108,6 +108,16 @@ def test_two_recordings_minutes_apart(tmp_path):
     assert any("steps of 1 °C" in note for note in summary.notes)
 
 
+def test_runs_of_one_register_share_a_note(tmp_path):
+    for number, slope in enumerate((0.03, 0.05), start=1):
+        columns = kuka_columns(180.0)
+        columns["MotorTemp_Act2[K]"] = np.round(290.0 + slope * columns["Zeit[sec]"])
+        write(tmp_path / f"day{number}" / "log.csv", columns)
+    summary = ingest([tmp_path / "day1", tmp_path / "day2"], tmp_path / "work")
+    (note,) = (one for one in summary.notes if "steps of 1 °C" in one)
+    assert "between 5 to 9 of them in each of 2 runs" in note
+
+
 def test_fine_resolution_is_left_alone(tmp_path):
     columns = kuka_columns()
     columns["Motortemperatur2[°C]"] = np.round(30 + columns["Zeit[sec]"] / 16, 2)
