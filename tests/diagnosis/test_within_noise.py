@@ -101,8 +101,19 @@ def test_a_payload_that_comes_and_goes_is_no_noise():
     carried = (layout.row_pair // 12) % 3 == 1
     course = 4.0 * np.cos(np.radians(position)) * carried
     with_payload = rows + course[:, np.newaxis]
-    layout = layout.with_noise_from(with_payload, position)
+    layout = layout.split_at_jumps(with_payload, position).with_noise_from(with_payload, position)
     assert layout.pure_deviation(with_payload, position) == pytest.approx(0.3, rel=0.1)
+
+
+def test_pooled_deviations_keep_what_a_payload_for_some_pairs_changes():
+    layout, rows, position = experiment(2, pairs=90)
+    carried = (layout.row_pair // 12) % 3 == 1
+    course = (4.0 * np.cos(np.radians(position)) * carried)[:, np.newaxis]
+    split = layout.split_at_jumps(rows + course, position)
+    own = (course - split.means(course)[layout.row_pair])[:, 0]
+    assert np.sum(np.square(split.contrasts(course))) == pytest.approx(np.sum(np.square(own)))
+    assert np.sum(np.square(layout.contrasts(course))) < 0.9 * np.sum(np.square(own))
+    assert layout.split_at_jumps(rows, position) is layout
 
 
 def test_whitened_deviations_are_white():

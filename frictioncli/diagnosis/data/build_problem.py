@@ -189,8 +189,9 @@ def _assembled(
         position=position,
         noise=noise,
     )
+    channels = rows[["friction_torque", "load_torque"]].to_numpy(float)
+    layout = layout.split_at_jumps(channels, position)
     if noise is None:
-        channels = rows[["friction_torque", "load_torque"]].to_numpy(float)
         layout = layout.with_noise_from(channels, position)
     motor = rows["motor_temperature"].to_numpy(float)
     friction = rows["friction_torque"].to_numpy(float)

@@ -6,7 +6,6 @@ speed are pooled by angle, which keeps their inner products with every effect th
 these pairs, and made white.
 """
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -14,18 +13,18 @@ import pandas as pd
 from scipy.sparse import block_diag, csr_array
 
 from frictioncli.arrays import Array, Indices
+from frictioncli.diagnosis.data.pair_neighbours import (
+    jumps_of,
+    neighbours,
+    same_bins,
+    stretches_of,
+)
 from frictioncli.diagnosis.data.within_noise import (
     LEAST_FREEDOM,
     WithinNoise,
     whitening,
     within_noise_of,
 )
-
-_JUMP = 16.0
-"""Mean square of a change from pair to pair, relative to the usual one, that is no noise."""
-
-_POOLED = 5
-"""Neighbouring pairs at one speed whose deviations are pooled."""
 
 _SAME_SPEED = 0.02
 """Relative width of a speed level."""
@@ -65,6 +64,9 @@ class PairLayout:
         Middle of each pair. [s]
     level : ndarray of int, shape (pairs,)
         Speed level of each pair.
+    stretch : ndarray of int, shape (pairs,)
+        Number of the stretch of each pair: the course over the angle of the pairs of a run at one
+        speed changes suddenly between two stretches, as by another payload.
     averaging : sparse matrix, shape (pairs, rows)
         Means of pairs.
     pooling : sparse matrix, shape (groups, rows)
@@ -86,6 +88,7 @@ class PairLayout:
     run: Indices
     time: Array
     level: Indices
+    stretch: Indices
     speed: Array
     averaging: csr_array
     pooling: csr_array
@@ -104,6 +107,7 @@ class PairLayout:
         speed: Array,
         position: Array,
         noise: WithinNoise | None = None,
+        stretch: Indices | None = None,
     ) -> "PairLayout":
         """Return the layout of rows whose pairs are numbered from 0 in order.
 
@@ -117,11 +121,12 @@ class PairLayout:
             Centre of each row's angle bin. [deg]
         noise : WithinNoise, optional
             Noise within pairs; by default it is white.
+        stretch : ndarray of int, shape (pairs,), optional
+            Number of the stretch of each pair; by default all are of one.
         """
         level = speed_level(speed)
-        pairs = pd.DataFrame({"run": run, "level": level})
-        pairs["block"] = pairs.groupby(["run", "level"]).cumcount() // _POOLED
-        block = pairs.groupby(["run", "level", "block"]).ngroup().to_numpy()
+        stretch = np.zeros(len(run), np.intp) if stretch is None else stretch
+        block = neighbours(run, level, stretch)
         keys = pd.DataFrame({"block": block[row_pair], "position": position})
         group = keys.groupby(["block", "position"]).ngroup().to_numpy()
         weight = 1 / np.sqrt(np.bincount(group))
@@ -138,13 +143,14 @@ class PairLayout:
             run=run,
             time=time,
             level=level,
+            stretch=stretch,
             speed=speed,
             averaging=csr_array((of_pair / bins).T),
             pooling=pooling,
             pooled_means=csr_array(pooling @ of_pair),
             white=_white(noise, keys, speed, block) if noise.share > 0 else None,
             noise=noise,
-            blocks=_same_bins(row_pair, block, position),
+            blocks=same_bins(row_pair, block, position),
         )
 
     def pure_error(self, rows: Array) -> list[tuple[float, Indices, Array]]:
@@ -159,17 +165,45 @@ class PairLayout:
         -------
         list of (float, ndarray, ndarray)
             Of each block: the speed [deg/s], its rows, shape (pairs, bins), and the scatter, shape
-            (columns, pairs, bins). Where the course changes suddenly, as by another payload, a
-            block ends.
+            (columns, pairs, bins).
         """
         deviations = rows - self.means(rows)[self.row_pair]
         found = []
-        levels = [int(self.level[self.row_pair[one[0, 0]]]) for one in self.blocks]
-        for chosen in _without_jumps(self.blocks, levels, deviations):
+        for chosen in self.blocks:
             values = np.moveaxis(deviations[chosen], -1, 0)
             speed = float(self.speed[self.row_pair[chosen[0, 0]]])
             found.append((speed, chosen, values - values.mean(axis=1, keepdims=True)))
         return found
+
+    def split_at_jumps(self, rows: Array, position: Array) -> "PairLayout":
+        """Return the layout with a new stretch wherever the course over the angle changes suddenly.
+
+        That is where two neighbours that cross the same bins at one speed differ far more than
+        others at this speed.
+
+        Parameters
+        ----------
+        rows : ndarray, shape (rows, channels)
+            Measured torque in each channel. [N·m]
+        position : ndarray, shape (rows,)
+            Centre of each row's angle bin. [deg]
+        """
+        deviations = rows - self.means(rows)[self.row_pair]
+        jumps = jumps_of(deviations, self.row_pair, self.run, self.level, position)
+        if not jumps.any():
+            return self
+        return self._again(position, self.noise, stretches_of(jumps, self.run, self.level))
+
+    def _again(self, position: Array, noise: WithinNoise, stretch: Indices) -> "PairLayout":
+        return PairLayout.of(
+            row_pair=self.row_pair,
+            run=self.run,
+            time=self.time,
+            speed=self.speed,
+            position=position,
+            noise=noise,
+            stretch=stretch,
+        )
 
     def with_noise_from(self, rows: Array, position: Array) -> "PairLayout":
         """Return the layout with the noise within pairs that is estimated from some rows.
@@ -187,14 +221,7 @@ class PairLayout:
                 for speed, chosen, scatter in self.pure_error(rows)
             ]
         )
-        return PairLayout.of(
-            row_pair=self.row_pair,
-            run=self.run,
-            time=self.time,
-            speed=self.speed,
-            position=position,
-            noise=noise,
-        )
+        return self._again(position, noise, self.stretch)
 
     def contrasts(self, rows: Array) -> Array:
         """Return deviations from the pair means, pooled over neighbouring pairs.
@@ -236,9 +263,8 @@ class PairLayout:
     @property
     def within_freedom(self) -> int:
         """Degrees of freedom of the pooled deviations from the pair means."""
-        levels = pd.DataFrame({"run": self.run, "level": self.level})
-        blocks = -(-levels.groupby(["run", "level"]).size() // _POOLED)
-        return max(self.pooling.shape[0] - int(blocks.sum()), 1)
+        blocks = int(neighbours(self.run, self.level, self.stretch).max(initial=-1)) + 1
+        return max(self.pooling.shape[0] - blocks, 1)
 
     def point_deviation(self, residual: Array) -> float:
         """Return the standard deviation of an angle bin about the mean of its pair [N·m].
@@ -295,40 +321,3 @@ def _white(noise: WithinNoise, keys: pd.DataFrame, speed: Array, block: Indices)
             known[key] = whitening(noise.correlation(position, at))[0]
         parts.append(known[key])
     return csr_array(block_diag(parts, format="csr"))
-
-
-def _without_jumps(
-    blocks: Sequence[Indices], levels: Sequence[int], deviations: Array
-) -> list[Indices]:
-    """Return blocks that end where two neighbours differ far more than others at their speed.
-
-    Parameters
-    ----------
-    blocks : sequence of ndarray of int, shape (pairs, bins)
-        Rows of the pairs of each block.
-    levels : sequence of int
-        Speed level of each block.
-    deviations : ndarray, shape (rows, columns)
-        Deviations of the bins from the means of their pairs.
-    """
-    squares = [np.mean(np.square(np.diff(deviations[one], axis=0)), axis=1) for one in blocks]
-    at_level: dict[int, list[Array]] = {}
-    for level, own in zip(levels, squares, strict=True):
-        at_level.setdefault(level, []).append(own)
-    usual = {level: np.median(np.concatenate(own), axis=0) for level, own in at_level.items()}
-    found: list[Indices] = []
-    for chosen, level, own in zip(blocks, levels, squares, strict=True):
-        ends = 1 + np.flatnonzero(np.any(own > _JUMP * usual[level], axis=1))
-        found += [part for part in np.split(chosen, ends) if len(part) > 1]
-    return found
-
-
-def _same_bins(row_pair: Indices, block: Indices, position: Array) -> tuple[Indices, ...]:
-    """Return the rows of the pairs of each block that cross the same bins, shape (pairs, bins)."""
-    starts = np.flatnonzero(np.diff(row_pair, prepend=-1))
-    ends = np.append(starts[1:], len(row_pair))
-    alike: dict[tuple[int, bytes], list[Indices]] = {}
-    for pair, (start, end) in enumerate(zip(starts, ends, strict=True)):
-        key = (int(block[pair]), position[start:end].tobytes())
-        alike.setdefault(key, []).append(np.arange(start, end))
-    return tuple(np.array(rows) for rows in alike.values() if len(rows) > 1 and len(rows[0]) > 2)

@@ -220,6 +220,7 @@ class Problem:
             speed=table.speed[np.flatnonzero(np.diff(row_pair, prepend=-1))],
             position=table.position,
             noise=self.layout.noise,
+            stretch=self.layout.stretch[pairs],
         )
         return replace(
             self,
