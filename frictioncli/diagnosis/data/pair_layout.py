@@ -10,7 +10,7 @@ from dataclasses import dataclass
 
 import numpy as np
 import pandas as pd
-from scipy.sparse import block_diag, csr_array
+from scipy.sparse import csr_array
 
 from frictioncli.arrays import Array, Indices
 from frictioncli.diagnosis.data.pair_neighbours import (
@@ -18,6 +18,7 @@ from frictioncli.diagnosis.data.pair_neighbours import (
     neighbours,
     same_bins,
     stretches_of,
+    white_of,
 )
 from frictioncli.diagnosis.data.within_noise import (
     LEAST_FREEDOM,
@@ -148,7 +149,7 @@ class PairLayout:
             averaging=csr_array((of_pair / bins).T),
             pooling=pooling,
             pooled_means=csr_array(pooling @ of_pair),
-            white=_white(noise, keys, speed, block) if noise.share > 0 else None,
+            white=white_of(noise, keys, speed, block) if noise.share > 0 else None,
             noise=noise,
             blocks=same_bins(row_pair, block, position),
         )
@@ -306,18 +307,3 @@ class PairLayout:
         if freedom < LEAST_FREEDOM:
             return None
         return np.sqrt(square / freedom)
-
-
-def _white(noise: WithinNoise, keys: pd.DataFrame, speed: Array, block: Indices) -> csr_array:
-    """Return the matrix that makes pooled deviations white, block by block."""
-    pairs_speed = pd.Series(speed).groupby(block).mean().to_numpy()
-    groups = keys.drop_duplicates().sort_values(["block", "position"])
-    known: dict[tuple[float, bytes], Array] = {}
-    parts = []
-    for number, own in groups.groupby("block")["position"]:
-        position, at = own.to_numpy(), float(pairs_speed[number])
-        key = (round(at, 1), position.tobytes())
-        if key not in known:
-            known[key] = whitening(noise.correlation(position, at))[0]
-        parts.append(known[key])
-    return csr_array(block_diag(parts, format="csr"))

@@ -6,18 +6,14 @@ from dataclasses import replace
 import numpy as np
 import pandas as pd
 
-from frictioncli.arrays import Array, Flags
+from frictioncli.arrays import Array
 from frictioncli.diagnosis.data.problem import Problem
-from frictioncli.diagnosis.fit.hypotheses import EffectFit
 from frictioncli.diagnosis.search.cause import Cause
 from frictioncli.diagnosis.search.effect_size import FORM
 from frictioncli.effects.backlash import EFFECT as BACKLASH
 from frictioncli.effects.base import Effect
-from frictioncli.effects.history import present
 from frictioncli.effects.inertia import EFFECT as INERTIA
-from frictioncli.effects.pair_series import measured_share
 from frictioncli.effects.reversal_transient import EFFECT as REVERSAL_TRANSIENT
-from frictioncli.effects.step_change import EFFECT as STEP_CHANGE
 from frictioncli.wording import in_words
 
 _TOGETHER = 0.8
@@ -25,9 +21,6 @@ _TOGETHER = 0.8
 
 _WITHIN_RUNS = 0.05
 """Share of the variance of the logarithm of speed that must be within runs."""
-
-_START_OF_RUN = 0.15
-"""Share of the pairs of a run that are at its start."""
 
 _TURNS_APART = 0.1
 """Standard deviation of the ends of moves at one speed in one run, relative to the whole stroke,
@@ -40,25 +33,10 @@ _GOES_WITH_TIME = (
     "temperature and time change together in these data, and either could be the cause"
 )
 
-_NO_TEMPERATURE = (
+NO_TEMPERATURE = (
     "the log has no temperature, and a joint that warms up or cools down would look the same; log"
     " that of the motor or the housing"
 )
-
-_AT_TEMPERATURE = (
-    "it comes in each run at the same temperature, where friction that depends on temperature would"
-    " look the same"
-)
-
-_APART = 0.98
-"""Share of pairs of pairs, one with a change and one without, of which the same is warmer, from
-which the change goes with the temperature."""
-
-_SEVERAL = 2
-"""Runs in which a change comes or goes, from which it recurs."""
-
-_PAUSE = 120.0
-"""Time from pair to pair in which the temperature of a joint may become another one. [s]"""
 
 _GOES_WITH_RUN = (
     "every run has its own speed, and any other difference between the runs could be the cause"
@@ -68,8 +46,6 @@ _ONE_SPEED = 1.1
 """Ratio of the highest to the lowest speed up to which all moves have one speed."""
 
 _GOES_WITH_DELAY = "all moves have one speed, at which a delay of the torque looks the same"
-
-_AT_START = "it is there only at the start of runs, where friction after a rest would look the same"
 
 _UNKNOWN_ENDS = (
     "the moves reverse at different angles each time, which the ends of the paired range do not"
@@ -98,8 +74,8 @@ def confounded(effect: Effect, problem: Problem) -> str:
         The joint's rows.
     """
     if _is_gradual(effect):
-        if not _has_temperature(problem):
-            return _NO_TEMPERATURE
+        if not has_temperature(problem):
+            return NO_TEMPERATURE
         if _temperature_goes_with_time(problem):
             return _GOES_WITH_TIME
     if effect is BACKLASH and float(np.ptp(np.log(problem.layout.speed))) < np.log(_ONE_SPEED):
@@ -121,83 +97,6 @@ def unclaimed(effect: Effect, problem: Problem) -> str:
     if not reason and effect.name in _FROM_ENDS and turns_elsewhere(problem):
         return _UNKNOWN_ENDS
     return reason
-
-
-def at_start_of_runs(fit: EffectFit, problem: Problem) -> str:
-    """Return why a step of friction may be friction after a rest; empty if it is not.
-
-    Parameters
-    ----------
-    fit : EffectFit
-        The effect, with its history.
-    problem : Problem
-        The joint's rows.
-    """
-    if fit.effect is not STEP_CHANGE:
-        return ""
-    there = _pairs_with_it(fit, problem)
-    # absence with the opposite sign is the same
-    return _AT_START if any(_is_start(one, problem) for one in (there, ~there)) else ""
-
-
-def after_pauses(fit: EffectFit, problem: Problem) -> str:
-    """Return why a step of friction may be one of a temperature that nobody logged; empty if not.
-
-    Parameters
-    ----------
-    fit : EffectFit
-        The effect, with its history.
-    problem : Problem
-        The joint's rows.
-    """
-    if fit.effect is not STEP_CHANGE or _has_temperature(problem):
-        return ""
-    clock = problem.layout.means(problem.table.clock[:, np.newaxis])[:, 0]
-    order = np.argsort(clock, kind="stable")
-    changes = np.diff(_pairs_with_it(fit, problem)[order].astype(int)) != 0
-    return _NO_TEMPERATURE if np.any(np.diff(clock[order])[changes] > _PAUSE) else ""
-
-
-def at_temperature(fit: EffectFit, problem: Problem) -> str:
-    """Return why a step of friction may be one of temperature; empty if it is not.
-
-    It comes or goes in several runs, and all pairs with it are warmer than those without, or all
-    are colder.
-
-    Parameters
-    ----------
-    fit : EffectFit
-        The effect, with its history.
-    problem : Problem
-        The joint's rows.
-    """
-    if fit.effect is not STEP_CHANGE or not _has_temperature(problem):
-        return ""
-    there, run = _pairs_with_it(fit, problem), problem.layout.run
-    own = [there[run == one] for one in np.unique(run)]
-    if sum(bool(one.any() and not one.all()) for one in own) < _SEVERAL:
-        return ""
-    temperature = problem.table.measured_temperature[:, np.newaxis]
-    rank = pd.Series(problem.layout.means(temperature)[:, 0]).rank().to_numpy()
-    with_it, without = int(there.sum()), int((~there).sum())
-    warmer = (float(rank[there].sum()) - with_it * (with_it + 1) / 2) / (with_it * without)
-    return _AT_TEMPERATURE if max(warmer, 1 - warmer) >= _APART else ""
-
-
-def _pairs_with_it(fit: EffectFit, problem: Problem) -> Flags:
-    """Return in which pairs a change is there, shape (pairs,)."""
-    share = measured_share(problem.all_runs)[problem.rows]
-    _, heads = np.unique(problem.layout.row_pair, return_index=True)
-    return present(share[heads], fit.shape)
-
-
-def _is_start(there: Flags, problem: Problem) -> bool:
-    """Return whether some pairs are the first of their runs, few of each."""
-    for run in np.unique(problem.layout.run):
-        own = there[problem.layout.run == run]
-        if own.sum() > _START_OF_RUN * len(own) or not own[: own.sum()].all():
-            return False
-    return bool(there.any())
 
 
 def without_forms_of_ends(causes: Sequence[Cause], problem: Problem) -> tuple[Cause, ...]:
@@ -287,7 +186,14 @@ def _is_gradual(effect: Effect) -> bool:
     return not _GRADUAL.isdisjoint(effect.needs)
 
 
-def _has_temperature(problem: Problem) -> bool:
+def has_temperature(problem: Problem) -> bool:
+    """Return whether the log has a temperature of the motor or of the housing.
+
+    Parameters
+    ----------
+    problem : Problem
+        The joint's rows.
+    """
     table = problem.table
     return any(
         bool(np.isfinite(one).any()) for one in (table.motor_temperature, table.housing_temperature)

@@ -11,12 +11,14 @@ from frictioncli.diagnosis.fit.columns import main_channel
 from frictioncli.diagnosis.fit.left_by_base import Z95
 from frictioncli.diagnosis.search.cause import CONVINCING, Cause
 from frictioncli.diagnosis.search.confounded import (
-    after_pauses,
-    at_start_of_runs,
-    at_temperature,
     confounded,
     without_forms_of_ends,
     without_forms_of_others,
+)
+from frictioncli.diagnosis.search.doubtful_steps import (
+    after_pauses,
+    at_start_of_runs,
+    at_temperature,
 )
 from frictioncli.diagnosis.search.margin import channel_margin
 from frictioncli.diagnosis.search.possible import (

@@ -1,0 +1,109 @@
+"""Steps of friction that may be something else: by when they come, and at which temperature."""
+
+import numpy as np
+import pandas as pd
+
+from frictioncli.arrays import Flags
+from frictioncli.diagnosis.data.problem import Problem
+from frictioncli.diagnosis.fit.hypotheses import EffectFit
+from frictioncli.diagnosis.search.confounded import NO_TEMPERATURE, has_temperature
+from frictioncli.effects.history import present
+from frictioncli.effects.pair_series import measured_share
+from frictioncli.effects.step_change import EFFECT as STEP_CHANGE
+
+_START_OF_RUN = 0.15
+"""Share of the pairs of a run that are at its start."""
+
+_AT_TEMPERATURE = (
+    "it comes in each run at the same temperature, where friction that depends on temperature would"
+    " look the same"
+)
+
+_APART = 0.98
+"""Share of pairs of pairs, one with a change and one without, of which the same is warmer, from
+which the change goes with the temperature."""
+
+_SEVERAL = 2
+"""Runs in which a change comes or goes, from which it recurs."""
+
+_PAUSE = 120.0
+"""Time from pair to pair in which the temperature of a joint may become another one. [s]"""
+
+_AT_START = "it is there only at the start of runs, where friction after a rest would look the same"
+
+
+def at_start_of_runs(fit: EffectFit, problem: Problem) -> str:
+    """Return why a step of friction may be friction after a rest; empty if it is not.
+
+    Parameters
+    ----------
+    fit : EffectFit
+        The effect, with its history.
+    problem : Problem
+        The joint's rows.
+    """
+    if fit.effect is not STEP_CHANGE:
+        return ""
+    there = _pairs_with_it(fit, problem)
+    # absence with the opposite sign is the same
+    return _AT_START if any(_is_start(one, problem) for one in (there, ~there)) else ""
+
+
+def after_pauses(fit: EffectFit, problem: Problem) -> str:
+    """Return why a step of friction may be one of a temperature that nobody logged; empty if not.
+
+    Parameters
+    ----------
+    fit : EffectFit
+        The effect, with its history.
+    problem : Problem
+        The joint's rows.
+    """
+    if fit.effect is not STEP_CHANGE or has_temperature(problem):
+        return ""
+    clock = problem.layout.means(problem.table.clock[:, np.newaxis])[:, 0]
+    order = np.argsort(clock, kind="stable")
+    changes = np.diff(_pairs_with_it(fit, problem)[order].astype(int)) != 0
+    return NO_TEMPERATURE if np.any(np.diff(clock[order])[changes] > _PAUSE) else ""
+
+
+def at_temperature(fit: EffectFit, problem: Problem) -> str:
+    """Return why a step of friction may be one of temperature; empty if it is not.
+
+    It comes or goes in several runs, and all pairs with it are warmer than those without, or all
+    are colder.
+
+    Parameters
+    ----------
+    fit : EffectFit
+        The effect, with its history.
+    problem : Problem
+        The joint's rows.
+    """
+    if fit.effect is not STEP_CHANGE or not has_temperature(problem):
+        return ""
+    there, run = _pairs_with_it(fit, problem), problem.layout.run
+    own = [there[run == one] for one in np.unique(run)]
+    if sum(bool(one.any() and not one.all()) for one in own) < _SEVERAL:
+        return ""
+    temperature = problem.table.measured_temperature[:, np.newaxis]
+    rank = pd.Series(problem.layout.means(temperature)[:, 0]).rank().to_numpy()
+    with_it, without = int(there.sum()), int((~there).sum())
+    warmer = (float(rank[there].sum()) - with_it * (with_it + 1) / 2) / (with_it * without)
+    return _AT_TEMPERATURE if max(warmer, 1 - warmer) >= _APART else ""
+
+
+def _pairs_with_it(fit: EffectFit, problem: Problem) -> Flags:
+    """Return in which pairs a change is there, shape (pairs,)."""
+    share = measured_share(problem.all_runs)[problem.rows]
+    _, heads = np.unique(problem.layout.row_pair, return_index=True)
+    return present(share[heads], fit.shape)
+
+
+def _is_start(there: Flags, problem: Problem) -> bool:
+    """Return whether some pairs are the first of their runs, few of each."""
+    for run in np.unique(problem.layout.run):
+        own = there[problem.layout.run == run]
+        if own.sum() > _START_OF_RUN * len(own) or not own[: own.sum()].all():
+            return False
+    return bool(there.any())
