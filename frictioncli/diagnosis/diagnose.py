@@ -2,8 +2,7 @@
 
 The misfit of the base model (16) plus gravity is searched for effects of the catalogue
 (:mod:`frictioncli.diagnosis.search`). Causes that improve the prediction extend the model; a test
-of the lack of fit tells what no effect explains; the gain is measured on a run that was held out,
-where there is one.
+of the lack of fit tells what no effect explains; the gain is measured on a held-out run, if any.
 """
 
 from collections.abc import Sequence
@@ -44,7 +43,7 @@ from frictioncli.diagnosis.settings import DiagnosisSettings
 from frictioncli.diagnosis.thermal.estimate import ThermalEstimate
 from frictioncli.diagnosis.thermal.lag_search import search_with_lag
 from frictioncli.diagnosis.thermal.refine import LAG, settled
-from frictioncli.diagnosis.thermal.slow_sensor import with_slow_sensor
+from frictioncli.diagnosis.thermal.slow_sensor import sizes_behind_sensor, with_slow_sensor
 from frictioncli.effects import EFFECTS
 from frictioncli.effects.base import Effect
 from frictioncli.errors import NotEnoughData
@@ -231,6 +230,7 @@ def diagnose_joint(
                 lag, fits, lambda rows, among: extend(rows, weighted_fit, among)
             )
             problem, new = lag.problem, lag.new
+        causes = sizes_behind_sensor(causes, extension, step, named.measurement, base)
     appeared: tuple[Cause, ...] = ()
     if new:
         before = extension or extend(problem, weighted_fit, [])

@@ -45,7 +45,7 @@ def test_a_named_cause_says_its_kind_and_an_interval_that_holds_its_size(found):
 
 
 def test_what_is_visible_has_parameters_of_its_own_fit(found):
-    named = found.causes[0]
+    named = replace(found.causes[0], size_interval=None)
     count = len(named.fit.coefficients)
     fit = replace(
         named.fit, coefficients=np.arange(1.0, count + 1), covariance=0.04 * np.eye(count)
@@ -67,7 +67,7 @@ def test_what_is_visible_has_parameters_of_its_own_fit(found):
 
 
 def test_size_of_a_single_coefficient_has_its_relative_interval(found):
-    named = found.causes[0]
+    named = replace(found.causes[0], size_interval=None)
     fit = replace(named.fit, coefficients=np.array([-2.0]), covariance=np.array([[0.25]]))
     effect = SimpleNamespace(**{name: getattr(fit.effect, name) for name in fit.effect.__slots__})
     effect.kind, effect.coefficients = "friction", fit.effect.coefficients[:1]

@@ -108,7 +108,8 @@ def test_the_effect_stands_at_its_place(torques):
         "payload_change",
         "load_offset",
     ]
-    assert both.errors[-3:-1] == pytest.approx([2.0, 3.0])
+    # a twentieth of the coefficients besides, for what differs from day to day
+    assert both.errors[-3:-1] == pytest.approx([np.sqrt(4.0025), np.sqrt(9.0025)])
     assert both.errors[-1] == extension.errors[-1]
     assert len(both.shape_errors) == len(extension.shape_errors) + 2
 

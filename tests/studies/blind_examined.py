@@ -53,6 +53,7 @@ POWER = 5
 _OF_CAUSE = (
     *("effects", "kind", "channel", "standing", "holds_on_new_run", "size", "p_value", "reason"),
     *("visible_size", "visible_ci95", "size_ci95", "seen_in", "when", "probabilities"),
+    "only_on_new_run",
 )
 """What is kept of a cause, where the diagnosis says it."""
 

@@ -132,16 +132,17 @@ def size_intervals(joints: Sequence[Joint]) -> list[bool]:
     """Return whether intervals of what is left of an effect hold what is left of it.
 
     Left by the base and by those effects of the measurement that the diagnosis set beside it: what
-    it gave up leaves more. What begins on the day kept out leaves nothing on the day seen, and what
-    is said of it is of the other.
+    it gave up leaves more. Of a change that is said to begin on the day kept out its torque on
+    that day counts, by whatever little of it the day seen has.
     """
     found = []
     for joint in of_kind(joints, "single", "pair"):
         for one in joint.hidden:
             for cause in joint.causes:
-                if one["name"] in cause["effects"] and one["left_beside"] > 0:
-                    known = cause.get("visible_ci95")
-                    found.append(held_by(known or (None, None), one["left_beside"]))
+                begins = cause.get("only_on_new_run", False)
+                truth = one["on_new_run"] if begins else one["left_beside"]
+                if one["name"] in cause["effects"] and truth > 0:
+                    found.append(held_by(cause.get("visible_ci95") or (None, None), truth))
     return [one for one in found if one is not None]
 
 

@@ -1,7 +1,7 @@
 """What is true of a joint of the blind study, and what of it can be seen at all."""
 
 from collections.abc import Callable, Collection, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -61,6 +61,8 @@ class Hidden:
     raw, left : float
         RMS of its torque in the runs seen, and of what the base and the columns of the measurement
         leave of it. [N·m]
+    on_new_run : float
+        RMS of its torque on the day kept out. [N·m]
     coefficient : str
         Coefficient of the catalogue that means the same; empty without one.
     value : float or None
@@ -70,8 +72,9 @@ class Hidden:
     """
 
     name: str
-    raw: float
-    left: float
+    raw: float = 0.0
+    left: float = 0.0
+    on_new_run: float = 0.0
     coefficient: str = ""
     value: float | None = None
     stretches: tuple[tuple[float, float], ...] = ()
@@ -152,8 +155,11 @@ def truth_of(world: World) -> Truth:
     return Truth(
         torques=torques,
         hidden=tuple(
-            _hidden(
-                world, _rms(signal), _rms(_off(base, signal)), torques, without[name], planted[name]
+            replace(
+                _hidden(world, torques, without[name], planted[name]),
+                raw=_rms(signal),
+                left=_rms(_off(base, signal)),
+                on_new_run=0.0 if new is None else _rms(_signal(new, without[name])),
             )
             for name, signal in signals.items()
         ),
@@ -170,14 +176,9 @@ def truth_of(world: World) -> Truth:
 
 
 def _hidden(
-    world: World,
-    raw: float,
-    left: float,
-    torques: pd.DataFrame,
-    without: pd.DataFrame,
-    planted: PlantedEffect,
+    world: World, torques: pd.DataFrame, without: pd.DataFrame, planted: PlantedEffect
 ) -> Hidden:
-    """Return what is true of one effect, from the torques with and without it."""
+    """Return what is true of one effect but its sizes, from the torques with and without it."""
     name = planted.name
     coefficient, value = "", None
     if name in COUNTERPARTS and not world.history:
@@ -185,8 +186,6 @@ def _hidden(
         value = counterpart(planted)
     return Hidden(
         name=name,
-        raw=raw,
-        left=left,
         coefficient=coefficient,
         value=value,
         stretches=_stretches(torques, without) if name in CHANGES else (),

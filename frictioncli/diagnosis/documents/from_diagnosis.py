@@ -275,6 +275,8 @@ def _size_interval(cause: Cause) -> tuple[float, float] | None:
     The size of an effect with one coefficient is in proportion to it; that of others is what the
     base leaves of them.
     """
+    if cause.size_interval is not None:
+        return known_interval(cause.size_interval)
     if len(cause.fit.coefficients) != 1:
         return known_interval(cause.visible_interval)
     value = abs(float(cause.fit.coefficients[0]))

@@ -79,6 +79,17 @@ class Extension(Refit):
         start += sum(len(one.effect.coefficients) for one in self.effects[:number])
         return slice(start, start + len(self.effects[number].effect.coefficients))
 
+    def shape_place(self, number: int) -> slice:
+        """Return the place of an effect's shape parameters, behind all other parameters.
+
+        Parameters
+        ----------
+        number : int
+            Number of the effect, from 0.
+        """
+        start = len(self.errors) + sum(len(one.effect.shape) for one in self.effects[:number])
+        return slice(start, start + len(self.effects[number].effect.shape))
+
     def may_be_zero(self, number: int) -> bool:
         """Return whether an effect's only coefficient may be zero.
 
@@ -151,13 +162,7 @@ def extend(problem: Problem, weighted_fit: WeightedFit, effects: Sequence[Effect
     """
     fitted = refit(problem, weighted_fit, effects)
     columns = fitted_rows(problem, fitted.effects)
-    derivatives = [
-        _shape_derivative(problem, one, axis) for one in fitted.effects for axis in one.effect.shape
-    ]
-    friction, load = (
-        np.column_stack([columns[channel], *(one[channel] for one in derivatives)])
-        for channel in (0, 1)
-    )
+    friction, load = with_shapes(problem, fitted.effects)
 
     def errors_of(friction: Array, load: Array) -> Array:
         covariance = weighted_fit.error_covariance(friction, load, whole=True)
@@ -171,7 +176,7 @@ def extend(problem: Problem, weighted_fit: WeightedFit, effects: Sequence[Effect
         gravity=fitted.gravity,
         effects=fitted.effects,
         errors=errors[:count],
-        fixed_shape_errors=errors_of(*columns) if derivatives else errors,
+        fixed_shape_errors=errors_of(*columns) if len(errors) > count else errors,
         shape_errors=errors[count:],
     )
 
@@ -215,6 +220,26 @@ def fitted_rows(problem: Problem, effects: Sequence[EffectFit]) -> tuple[Array, 
     """
     bases = [base_rows(problem), *(problem.basis(one.effect, one.shape) for one in effects)]
     friction, load = (np.hstack([basis[channel] for basis in bases]) for channel in (0, 1))
+    return friction, load
+
+
+def with_shapes(problem: Problem, effects: Sequence[EffectFit]) -> tuple[Array, Array]:
+    """Return the same, and behind them the derivatives of the effects by their shape parameters.
+
+    Parameters
+    ----------
+    problem : Problem
+        The rows.
+    effects : sequence of EffectFit
+        Effects with their shapes and coefficients.
+    """
+    derivatives = [
+        _shape_derivative(problem, one, axis) for one in effects for axis in one.effect.shape
+    ]
+    friction, load = (
+        np.column_stack([columns, *(one[channel] for one in derivatives)])
+        for channel, columns in enumerate(fitted_rows(problem, effects))
+    )
     return friction, load
 
 

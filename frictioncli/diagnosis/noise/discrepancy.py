@@ -113,21 +113,23 @@ class Discrepancy:
         """Number of columns of each function, shape (components,)."""
         return np.array([one.columns.stop - one.columns.start for one in self.components], float)
 
-    def unseen(self, amplitude: Array) -> Array:
+    def torques(self, amplitude: Array) -> Array:
         """Return all columns with coefficients of variance 1, shape (2 * rows, columns) [N·m].
-
-        What they add along the base's columns is an error of its parameters.
 
         Parameters
         ----------
         amplitude : ndarray, shape (components,)
             Logarithm of the amplitude of each function.
         """
-        size = _UNSEEN * np.exp(amplitude)
-        return np.hstack(
-            [np.zeros((len(self.rows), 0))]
-            + [scale * one for scale, one in zip(size, self.whole, strict=True)]
-        )
+        scaled = [size * one for size, one in zip(np.exp(amplitude), self.whole, strict=True)]
+        return np.hstack([np.zeros((len(self.rows), 0)), *scaled])
+
+    def unseen(self, amplitude: Array) -> Array:
+        """Return the same where no data show the amplitudes, of which these are the medians.
+
+        What they add along the base's columns is an error of its parameters.
+        """
+        return _UNSEEN * self.torques(amplitude)
 
     def along(self, torque: Array, amplitude: Array) -> float:
         """Return the standard deviation of the discrepancy along a torque, as its RMS [N·m].

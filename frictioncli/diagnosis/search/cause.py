@@ -25,6 +25,9 @@ class Cause:
         Probability of each effect that could replace it.
     size : float
         RMS in its channel. [N·m]
+    size_interval : (float, float) or None
+        95 % interval of that where it is not that of what is visible, nor in proportion to an only
+        coefficient of the fit. [N·m]
     visible : float
         RMS of its residual after a fit of the base model. [N·m]
     visible_interval : (float, float)
@@ -50,6 +53,7 @@ class Cause:
     size: float
     visible: float
     visible_interval: tuple[float, float] = (0.0, float("inf"))
+    size_interval: tuple[float, float] | None = None
     shown: float = 1.0
     standing: str = "named"
     reason: str = ""

@@ -6,6 +6,7 @@ from typing import Any
 import numpy as np
 
 from frictioncli.arrays import Array
+from frictioncli.diagnosis.data.problem import Problem
 from frictioncli.diagnosis.fit.hypotheses import EffectFit
 from frictioncli.diagnosis.fit.left_by_base import Z95, left_by, span_of, visible_size_of
 from frictioncli.diagnosis.search.precomputed import Precomputed
@@ -172,10 +173,25 @@ def _left(known: Precomputed, effect: Effect, columns: Basis) -> Array:
     Of an effect of the measurement that stands beside the base, what the base alone leaves.
     """
     span = known.span_of_base if effect.measurement else known.span
-    left = left_by(span, columns)
-    if known.problem.has_load_channel:
-        # the channels may have different units: only the one in which it shows counts
-        friction, load = np.split(left, 2)
-        other = load if effect.channel == "friction" else friction
-        other[:] = 0.0
-    return left
+    return shown_of(known.problem, effect, left_by(span, columns))
+
+
+def shown_of(problem: Problem, effect: Effect, both: Array) -> Array:
+    """Return torque in the channels that count for the size of an effect, others zero.
+
+    The channels may have different units: only the one in which the effect shows counts.
+
+    Parameters
+    ----------
+    problem : Problem
+        The rows.
+    effect : Effect
+        The effect.
+    both : ndarray, shape (2 * rows, columns)
+        Torque, friction above load.
+    """
+    if not problem.has_load_channel:
+        return both
+    friction, load = np.split(both, 2)
+    parts = (friction, 0.0 * load) if effect.channel == "friction" else (0.0 * friction, load)
+    return np.vstack(parts)

@@ -129,6 +129,8 @@ def with_effect(extension: Extension, fit: EffectFit, place: int) -> Extension:
     coefficients = known + sum(len(one.coefficients) for one in before)
     shapes = sum(len(one.effect.shape) for one in before)
     errors = np.sqrt(np.maximum(np.diag(fit.covariance), 0.0))
+    # what is weak and differs from day to day is there as well, and looks like a part of it
+    errors = np.hypot(errors, _FORM * np.abs(fit.coefficients))
     return replace(
         extension,
         effects=(*before, fit, *extension.effects[place:]),

@@ -1,0 +1,145 @@
+"""Sizes of named causes as the extended model has them: these are stated.
+
+Causes are found under the noise and the discrepancy that suit them best. At a few speeds, or near a
+few angles, discrepancy may then explain what the form of an effect misses, and the effect is as
+large as the many other rows have it. The extended model is fitted to all rows alike, so that it has
+what the residuals show of an effect at face value; its errors allow for noise, for discrepancy, for
+effects of the measurement that are not fitted, and for the shapes.
+"""
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from frictioncli.arrays import Array
+from frictioncli.diagnosis.data.problem import Problem
+from frictioncli.diagnosis.fit.extension import Extension, with_shapes
+from frictioncli.diagnosis.fit.hypotheses import EffectFit
+from frictioncli.diagnosis.fit.left_by_base import Z95, left_by, span_of, visible_size
+from frictioncli.diagnosis.fit.weighted_fit import WeightedFit
+from frictioncli.diagnosis.search.cause import Cause
+from frictioncli.diagnosis.search.effect_size import FORM, shown_of
+from frictioncli.diagnosis.search.measurement import beside_the_rest
+from frictioncli.diagnosis.search.step import Step
+from frictioncli.effects.base import Basis
+
+
+def span_at_measured(base: Problem, measurement: Sequence[Cause]) -> Array:
+    """Return what can take torque from a cause: base and measurement, at a measured temperature.
+
+    Parameters
+    ----------
+    base : Problem
+        The rows with the base model about the measured temperature.
+    measurement : sequence of Cause
+        Effects of the measurement beside the base.
+
+    Returns
+    -------
+    ndarray, shape (2 * rows, rank)
+        An orthonormal basis.
+    """
+    return span_of(base, [base.basis(one.fit.effect, {}) for one in measurement])
+
+
+def sizing_fit(
+    step: Step, measurement: Sequence[Cause], fitted: Sequence[EffectFit]
+) -> WeightedFit:
+    """Return the fit by which sizes are stated: of all rows alike, beside what is not fitted.
+
+    What stands out of base and measurement is along torque that the data show: unlike that of a
+    parameter of the base, its error by the discrepancy is as large as they tell.
+
+    Parameters
+    ----------
+    step : Step
+        Base and causes, with the noise that suits them best.
+    measurement : sequence of Cause
+        Effects of the measurement beside the base.
+    fitted : sequence of EffectFit
+        The effects that extend the model.
+    """
+    torques = step.precomputed.discrepancy.torques(step.fit.variances.amplitude)
+    friction, load = np.split(torques, 2)
+    fit = replace(step.predicting_fit(), discrepancy=(friction, load))
+    return beside_the_rest(step.problem, fit, measurement, fitted)
+
+
+def stated_sizes(
+    causes: Sequence[Cause],
+    extension: Extension,
+    problem: Problem,
+    weighted_fit: WeightedFit,
+    span: Array,
+) -> tuple[Cause, ...]:
+    """Return named causes with the sizes that the extended model gives them.
+
+    Effects of the measurement keep theirs.
+
+    Parameters
+    ----------
+    causes : sequence of Cause
+        Causes that are named, in the order of the first effects of the extension.
+    extension : Extension
+        The extended model.
+    problem : Problem
+        The rows, as the causes were found.
+    weighted_fit : WeightedFit
+        As of :func:`sizing_fit`.
+    span : ndarray, shape (2 * rows, rank)
+        What can take torque from a cause, as of :func:`span_at_measured`.
+    """
+    friction, load = with_shapes(problem, extension.effects)
+    covariance = weighted_fit.error_covariance(friction, load, whole=True)
+    found = []
+    for number, cause in enumerate(causes):
+        if cause.fit.effect.measurement:
+            found.append(cause)
+            continue
+        own = np.r_[extension.place(number), extension.shape_place(number)]
+        columns = Basis(friction[:, own], load[:, own])
+        among = covariance[np.ix_(own, own)]
+        found.append(_stated(cause, extension, number, problem, (span, columns, among)))
+    return tuple(found)
+
+
+def _stated(
+    cause: Cause,
+    extension: Extension,
+    number: int,
+    problem: Problem,
+    fitted: tuple[Array, Basis, Array],
+) -> Cause:
+    """Return a cause with its sizes, from the span, its columns and the covariance of these."""
+    span, columns, covariance = fitted
+    one = extension.effects[number]
+    shapes = np.zeros(len(one.effect.shape))
+    # to first order a change of the shape is a change of torque, and adds to no size by itself
+    coefficients = np.concatenate([one.coefficients, shapes])
+
+    def size_of(both: Array) -> tuple[float, tuple[float, float]]:
+        shown = shown_of(problem, one.effect, both)
+        size, low, high = visible_size(shown, coefficients, covariance)
+        below, above = np.hypot([size - low, high - size], Z95 * FORM * size)
+        return size, (max(float(size - below), 0.0), float(size + above))
+
+    visible, interval = size_of(left_by(span, columns))
+    size, size_interval = visible, None
+    if len(one.coefficients) == 1:
+        in_friction = one.effect.channel == "friction"
+        torque = columns.friction if in_friction else columns.load
+        size, size_interval = size_of(_in_one(torque, in_friction=in_friction))
+    return replace(
+        cause,
+        size=size,
+        size_interval=size_interval,
+        visible=visible,
+        visible_interval=interval,
+    )
+
+
+def _in_one(torque: Array, *, in_friction: bool) -> Array:
+    """Return torque in one channel, friction above load."""
+    nothing = np.zeros_like(torque)
+    return np.vstack([torque, nothing] if in_friction else [nothing, torque])
