@@ -21,7 +21,7 @@ from tests.studies.blind_page_tables import (
     unlisted_table,
     wrong_table,
 )
-from tests.studies.blind_page_values import interval_table, power_table
+from tests.studies.blind_page_values import bounds_text, interval_table, power_table
 from tests.studies.blind_rows import Joint
 from tests.studies.blind_worlds import CHANGE_SIZE, KINDS, plan
 
@@ -63,6 +63,7 @@ def page(joints: Sequence[Joint], stale: int) -> str:
         nuisance=_nuisance(joints),
         reachable=_reachable(joints),
         gates=gate_table(joints),
+        bounds=bounds_text(joints),
         before=before_table(joints),
         alarms=alarm_table(joints),
         wrong=wrong_table(joints),

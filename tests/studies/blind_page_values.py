@@ -1,5 +1,6 @@
 """Tables of the blind study that are about numbers: intervals, and sizes that would be found."""
 
+import textwrap
 from collections.abc import Sequence
 
 import numpy as np
@@ -9,6 +10,7 @@ from frictioncli.model.friction import PUBLISHED
 from tests.studies.blind_gates import (
     coefficient_intervals,
     held_by,
+    in_catalogue,
     meaningful,
     measurement_intervals,
     size_intervals,
@@ -35,6 +37,56 @@ def interval_table(joints: Sequence[Joint]) -> str:
         flags = measurement_intervals(joints, (name,))
         lines.append([f"measurement, {name}", share(flags), ""])
     return table(("95 % intervals", "hold the truth", "median relative error"), lines)
+
+
+def bounds_text(joints: Sequence[Joint]) -> str:
+    """Return what limits two of the gates: the margin, and what one day tells of the next."""
+    return "\n\n".join(filter(None, [_of_margin(joints), _of_days(joints)]))
+
+
+def _of_margin(joints: Sequence[Joint]) -> str:
+    """Return on how many joints with a lag and another effect both can have a name."""
+    pairs = [one for one in of_kind(joints, "pair") if one.possible]
+    if not pairs:
+        return ""
+    both = sum(one.shows for one in pairs)
+    return _filled(
+        f"*A lag and another effect.* On {len(pairs) - both} of {len(pairs)} joints base model and"
+        " measurement effects together leave less than the margin of one of the two. What is below"
+        f" the margin gets no name, whatever the program: both can be named on {both} joints"
+        f" ({both / len(pairs):.0%}), and on others only where an effect of the measurement was"
+        " given up, so that more is left."
+    )
+
+
+def _of_days(joints: Sequence[Joint]) -> str:
+    """Return how far the day kept out can be predicted by one who knows the law of friction."""
+    known = [one for one in in_catalogue(joints) if one.world.kind != "network"]
+    named = [one for one in known if one.held]
+    if not named:
+        return ""
+
+    def medians(among: Sequence[Joint]) -> tuple[float, float, float]:
+        after = np.array([one.over_floor for one in among])
+        oracle = np.array([one.numbers["reachable"] / one.numbers["floor"] for one in among])
+        floor = np.array([one.numbers["floor"] for one in among])
+        beyond = floor * np.sqrt(np.maximum(after**2 - oracle**2, 0.0))
+        return float(np.median(after)), float(np.median(oracle)), float(np.median(beyond))
+
+    (said, oracle, _), (of_named, oracle_of_named, beyond) = medians(known), medians(named)
+    return _filled(
+        f"*Day kept out over noise floor.* Without networks the median is {said:.2f}"
+        f" ({len(known)} joints). An oracle from whose data the hidden effect is taken out, so that"
+        " base model and measurement effects are all there is to fit, has"
+        f" {oracle:.2f}: nuisances differ from day to day. On the {len(named)} joints on which the"
+        f" program has the right name the medians are {of_named:.2f} and {oracle_of_named:.2f}; the"
+        f" extended model adds {beyond:.2f} N·m to the error of the oracle, as root of the"
+        " difference of squares."
+    )
+
+
+def _filled(text: str) -> str:
+    return textwrap.fill(text, 100)
 
 
 def power_table(joints: Sequence[Joint]) -> str:
