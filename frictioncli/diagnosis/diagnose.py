@@ -18,32 +18,29 @@ from frictioncli.diagnosis.empirical.estimate import Empirical, empirical_term
 from frictioncli.diagnosis.empirical.unexplained import unexplained
 from frictioncli.diagnosis.fit.extension import Extension, extend, measured_gain
 from frictioncli.diagnosis.fit.gain import Gain
+from frictioncli.diagnosis.found_causes import found_causes
 from frictioncli.diagnosis.ramps.evidence import RampEvidence, RampLog, ramp_evidence
 from frictioncli.diagnosis.ramps.settling import Settling, settled_problems
 from frictioncli.diagnosis.ramps.timing_rivals import TimingRivals
 from frictioncli.diagnosis.search.cause import Cause
 from frictioncli.diagnosis.search.cause_search import find_causes
-from frictioncli.diagnosis.search.cause_selection import refuted_by_new_run
 from frictioncli.diagnosis.search.lack_of_fit import Structure
 from frictioncli.diagnosis.search.margin import channel_margin, margin_of
 from frictioncli.diagnosis.search.measurement import (
     beside_the_rest,
-    clear_effects,
     corrected_without_name,
 )
-from frictioncli.diagnosis.search.named_causes import Judging, named_causes
+from frictioncli.diagnosis.search.named_causes import named_causes
 from frictioncli.diagnosis.search.new_run_changes import changes_on_new_run, with_effect
 from frictioncli.diagnosis.search.new_run_misfit import NewRunMisfit
-from frictioncli.diagnosis.search.new_run_rivals import refuted_by_return, without_refuted_rivals
 from frictioncli.diagnosis.search.preparation import Preparation
 from frictioncli.diagnosis.search.search_result import SearchResult, given_up_causes
 from frictioncli.diagnosis.search.timing_causes import late_torque
 from frictioncli.diagnosis.search.verdict import verdict_of, visible_causes
 from frictioncli.diagnosis.settings import DiagnosisSettings
 from frictioncli.diagnosis.thermal.estimate import ThermalEstimate
-from frictioncli.diagnosis.thermal.lag_search import search_with_lag
 from frictioncli.diagnosis.thermal.refine import LAG, settled
-from frictioncli.diagnosis.thermal.slow_sensor import sizes_behind_sensor, with_slow_sensor
+from frictioncli.diagnosis.thermal.slow_sensor import sizes_behind_sensor
 from frictioncli.effects import EFFECTS
 from frictioncli.effects.base import Effect
 from frictioncli.errors import NotEnoughData
@@ -140,6 +137,7 @@ def diagnose_joint(
     settings: DiagnosisSettings,
     effects: Sequence[Effect] = EFFECTS,
     ramps: RampLog | None = None,
+    doubt: str = "",
 ) -> Diagnosis:
     """Diagnose one joint.
 
@@ -158,6 +156,9 @@ def diagnose_joint(
         The catalogue.
     ramps : RampLog, optional
         Measurements outside the constant-velocity segments.
+    doubt : str, optional
+        Why no cause but those of the measurement can have a name, as where moves carry two loads
+        in turns; empty where some can.
 
     Raises
     ------
@@ -176,46 +177,34 @@ def diagnose_joint(
     rows = settled_problems(torques, temperature, held_out, ramps, LEAST_PAIRS)
     known = Preparation()
     late = late_torque(rows.problem, rows.timing, known.beside)
-    base = replace(rows.problem, late=late)
-    base_new = rows.new and replace(rows.new, late=late)
+    base = replace(rows.problem, late=late, doubt=doubt)
+    base_new = rows.new and replace(rows.new, late=late, doubt=doubt)
     margin = margin_of(base, torque_unit, settings)
     evidence = ramp_evidence(ramps, base, temperature) if ramps else None
     search = partial(
         find_causes, settings=settings, margin=margin, ramps=evidence, preparation=known
     )
-    measurement = clear_effects(known.beside(base))
-    refuted: tuple[Cause, ...] = ()
-    while True:
-        tried = [one for one in effects if one.name not in {no.fit.effect.name for no in refuted}]
-        found, lag = search_with_lag(base, base_new, tried, search, margin, measurement)
-        found = with_slow_sensor(found)
-        problem, new = (base, base_new) if lag is None else (lag.problem, lag.new)
-        judging = Judging(
-            problem=problem,
-            new=new,
-            measured=(base, base_new),
-            preparation=known,
-            starts=rows.timing,
-            margin=margin,
-            alpha=settings.alpha,
-        )
-        judged = judging.judged(found)
-        if new is None:
-            break
-        worse = refuted_by_new_run(judged.named, found.step, new)
-        worse = worse or refuted_by_return(judged.named, found, new)
-        if not worse:
-            break
-        refuted += worse
-    if new is not None:
-        judged = replace(judged, causes=without_refuted_rivals(judged.causes, found, new))
-    named = named_causes(judging, judged)
+    result = found_causes(
+        base,
+        base_new,
+        effects,
+        search,
+        preparation=known,
+        starts=rows.timing,
+        margin=margin,
+        alpha=settings.alpha,
+    )
+    found, lag = result.search, result.lag
+    problem, new = result.judging.problem, result.judging.new
+    named = named_causes(result.judging, result.judged)
     causes, step = named.causes, named.step
     corrected = corrected_without_name(named.others, causes, problem)
     names = {one.fit.effect.name for one in corrected}
     rest = [one for one in named.others if one.fit.effect.name not in names]
     given_up = given_up_causes(found, settings.alpha)
-    visible = visible_causes((*rest, *corrected, *given_up, *refuted, *found.refused), problem)
+    visible = visible_causes(
+        (*rest, *corrected, *given_up, *result.refuted, *found.refused), problem
+    )
     extension = gain = None
     if lag is not None and not any(cause.fit.effect.name == LAG for cause in causes):
         # what is not named does not move the temperature of the extended model

@@ -45,6 +45,7 @@ def diagnose(
     torques = tables.read(work / TORQUES, schemas.TORQUES)
     facts = tables.facts(work / TORQUES)
     unit = facts.get("torque_unit", "N·m")
+    two_loads = facts.get("two_loads", {})
     ramps = ramp_logs(work / RAMPS, facts.get("sign", {}))
     inputs = existing(work / TORQUES, work / MODEL, work / RAMPS)
     diagnoses, extended, faults = {}, {}, []
@@ -54,7 +55,12 @@ def diagnose(
             if rows.empty:
                 raise NotEnoughData(f"{work / TORQUES} has no rows of joint {model.joint}")
             diagnosis = diagnose_joint(
-                rows, model.temperature, unit, settings, ramps=ramps.get(model.joint)
+                rows,
+                model.temperature,
+                unit,
+                settings,
+                ramps=ramps.get(model.joint),
+                doubt=two_loads.get(str(model.joint), ""),
             )
         except NotEnoughData as fault:
             faults.append(str(fault))
@@ -71,8 +77,8 @@ def diagnose(
     write_joints(work / EXTENDED, extended, main_joint, provenance)
     texts = (verdict_text(document) for document in diagnoses.values())
     doubts = [
-        f"joint {joint}: causes are doubtful: {text}"
-        for joint, text in facts.get("two_loads", {}).items()
+        f"joint {joint}: no cause of friction has a name: {text}"
+        for joint, text in two_loads.items()
         if int(joint) in diagnoses
     ]
     return StageResult(work / DIAGNOSIS, "\n".join([*texts, *doubts, *faults]))

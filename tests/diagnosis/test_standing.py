@@ -238,6 +238,15 @@ def test_what_changes_gradually_has_no_name_in_a_log_without_temperature(joint, 
         assert "no temperature" not in reason
 
 
+def test_where_moves_may_carry_two_loads_no_cause_of_friction_has_a_name(joint):
+    """What the load adds in one direction is in the friction of both."""
+    doubtful = replace(joint, doubt="its moves may carry two loads")
+    for name in ("direction_asymmetry", "stribeck", "dress_pack"):
+        assert confounded(BY_NAME[name], doubtful) == doubtful.doubt
+        assert not confounded(BY_NAME[name], joint)
+    assert not confounded(BY_NAME["torque_delay"], doubtful)
+
+
 @pytest.mark.parametrize(("pause", "expected"), [(30.0, "named"), (600.0, "undetermined")])
 def test_without_temperature_a_step_across_a_pause_may_be_one_of_temperature(
     joint, pause, expected

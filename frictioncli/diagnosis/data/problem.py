@@ -104,6 +104,8 @@ class Problem:
         Sign convention of the torques: +1 where forward is load plus friction, else -1.
     late : LateTorque or None
         Response behind which the torque was logged; none where it is not known to be late.
+    doubt : str
+        Why no cause but those of the measurement can have a name; empty where some can.
     """
 
     table: EffectTable
@@ -125,6 +127,7 @@ class Problem:
     hidden: HiddenTemperature | None = None
     counted: float = 1.0
     late: LateTorque | None = None
+    doubt: str = ""
     _earlier: EarlierTables = field(default_factory=EarlierTables, init=False, repr=False)
     _lasting: dict[int, tuple[Effect, Array, Basis]] = field(
         default_factory=dict, init=False, repr=False

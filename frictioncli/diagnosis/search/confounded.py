@@ -73,6 +73,8 @@ def confounded(effect: Effect, problem: Problem) -> str:
     problem : Problem
         The joint's rows.
     """
+    if problem.doubt and not effect.measurement:
+        return problem.doubt
     if _is_gradual(effect):
         if not has_temperature(problem):
             return NO_TEMPERATURE

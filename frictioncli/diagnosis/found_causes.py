@@ -1,0 +1,104 @@
+"""Search for the causes of one joint, repeated until those that are named hold on a new run."""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+
+from frictioncli.diagnosis.data.problem import Problem
+from frictioncli.diagnosis.ramps.timing import TorqueTiming
+from frictioncli.diagnosis.search.cause import Cause
+from frictioncli.diagnosis.search.cause_selection import refuted_by_new_run
+from frictioncli.diagnosis.search.measurement import clear_effects
+from frictioncli.diagnosis.search.named_causes import JudgedCauses, Judging
+from frictioncli.diagnosis.search.new_run_rivals import refuted_by_return, without_refuted_rivals
+from frictioncli.diagnosis.search.preparation import Preparation
+from frictioncli.diagnosis.search.search_result import SearchResult
+from frictioncli.diagnosis.thermal.lag_search import search_with_lag
+from frictioncli.diagnosis.thermal.refine import RefinedLag
+from frictioncli.diagnosis.thermal.slow_sensor import with_slow_sensor
+from frictioncli.effects.base import Effect
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class FoundCauses:
+    """Result of the search.
+
+    Attributes
+    ----------
+    search : SearchResult
+        The last search.
+    judged : JudgedCauses
+        What it found, with its standing.
+    judging : Judging
+        By what that was judged.
+    lag : RefinedLag or None
+        The lag of the gear, where it is one of the causes: then the rows are linear about the
+        temperature of the gear.
+    refuted : tuple of Cause
+        Causes of earlier searches that the new run refutes.
+    """
+
+    search: SearchResult
+    judged: JudgedCauses
+    judging: Judging
+    lag: RefinedLag | None
+    refuted: tuple[Cause, ...]
+
+
+def found_causes(
+    base: Problem,
+    new: Problem | None,
+    effects: Sequence[Effect],
+    search: Callable[..., SearchResult],
+    *,
+    preparation: Preparation,
+    starts: TorqueTiming | None,
+    margin: float,
+    alpha: float,
+) -> FoundCauses:
+    """Search for causes; without those that a new run refutes, search again.
+
+    Parameters
+    ----------
+    base, new : Problem, Problem or None
+        The rows seen, and those of a run that was held out, about the measured temperature.
+    effects : sequence of Effect
+        The catalogue.
+    search : callable
+        As of :func:`frictioncli.diagnosis.thermal.lag_search.search_with_lag`.
+    preparation : Preparation
+        What is known of the rows.
+    starts : TorqueTiming or None
+        Delay and filter by the starts of moves.
+    margin : float
+        Smallest size worth a name. [N·m]
+    alpha : float
+        Significance level.
+    """
+    measurement = clear_effects(preparation.beside(base))
+    refuted: tuple[Cause, ...] = ()
+    while True:
+        gone = {one.fit.effect.name for one in refuted}
+        tried = [one for one in effects if one.name not in gone]
+        found, lag = search_with_lag(base, new, tried, search, margin, measurement)
+        found = with_slow_sensor(found)
+        judging = Judging(
+            problem=base if lag is None else lag.problem,
+            new=new if lag is None else lag.new,
+            measured=(base, new),
+            preparation=preparation,
+            starts=starts,
+            margin=margin,
+            alpha=alpha,
+        )
+        judged = judging.judged(found)
+        worse: tuple[Cause, ...] = ()
+        if judging.new is not None:
+            worse = refuted_by_new_run(judged.named, found.step, judging.new)
+            worse = worse or refuted_by_return(judged.named, found, judging.new)
+        if not worse:
+            break
+        refuted += worse
+    if judging.new is not None:
+        kept = without_refuted_rivals(judged.causes, found, judging.new)
+        judged = replace(judged, causes=kept)
+    return FoundCauses(search=found, judged=judged, judging=judging, lag=lag, refuted=refuted)
