@@ -9,6 +9,7 @@ from scipy import stats
 from frictioncli.diagnosis.data.build_problem import simulated
 from frictioncli.diagnosis.fit.columns import base_rows, residual_of_base
 from frictioncli.diagnosis.fit.hypotheses import EffectFit, hypothesis_of
+from frictioncli.diagnosis.search.axis_columns import axis_columns, friction_tells_load
 from frictioncli.diagnosis.search.catalogue import Catalogue
 from frictioncli.diagnosis.search.effect_size import left_size, rms_size
 from frictioncli.diagnosis.search.lack_of_fit import structures
@@ -161,13 +162,37 @@ def test_drift_beyond_what_any_joint_has_is_structure_along_the_time(drift, foun
 
 
 def test_a_peak_at_one_load_is_structure_along_the_load():
-    """A function of the load, which the angle gives, needs fewer columns than one of the angle."""
+    """Friction is the same for loads to either side, which no bump at an angle is."""
     data = problem(4)
-    peak = 1.5 * np.exp(-np.square((data.table.load - 20.0) / 8.0))
+    peak = 1.5 * np.exp(-np.square((np.abs(data.table.load) - 20.0) / 8.0))
     data = replace(data, friction=data.friction + peak)
     first = structures(Step.of(Precomputed.of(data), []))[0]
     assert (first.axes, first.channel) == (("load",), "friction")
     assert first.p_value < 1e-6
+
+
+@pytest.mark.parametrize("angles", [(78.0,), (40.0, 56.0, 72.0, 88.0)])
+def test_narrow_bumps_at_angles_are_structure_along_the_angle(angles):
+    """One bump stands at a load to one side; those of a tooth that comes round, at any loads."""
+    data = problem(4)
+    away = np.subtract.outer(data.table.position, angles)
+    bumps = 1.5 * np.sum(1 / (1 + (away / 3.0) ** 4), axis=1)
+    first = structures(Step.of(Precomputed.of(replace(data, friction=data.friction + bumps)), []))[
+        0
+    ]
+    assert (first.axes, first.channel) == (("position",), "friction")
+    assert first.p_value < 1e-6
+
+
+def test_where_each_load_is_at_one_angle_the_angle_is_stated():
+    """An arm that is lifted over less than a quarter turn: no data tell one from the other."""
+    data = problem(4)
+    table = data.table
+    angle = np.radians(table.position / 2.0)
+    lifted = replace(data, table=replace(table, load=95.0 * np.cos(angle)))
+    assert friction_tells_load(data)
+    assert not friction_tells_load(lifted)
+    assert (("load",), "friction") not in axis_columns(lifted)
 
 
 def test_a_p_value_is_that_of_the_statistic_times_the_hypotheses():

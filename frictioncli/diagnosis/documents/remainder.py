@@ -20,7 +20,7 @@ from frictioncli.diagnosis.data.problem import Problem
 from frictioncli.diagnosis.diagnose import Diagnosis, predicting
 from frictioncli.diagnosis.documents.document import RemainderRecord
 from frictioncli.diagnosis.fit.extension import misfits
-from frictioncli.diagnosis.search.axis_columns import told_by_angle, varying_axes
+from frictioncli.diagnosis.search.axis_columns import load_over_angle, varying_axes
 from frictioncli.diagnosis.search.new_run_changes import ADEQUATE
 
 _BINS = 8
@@ -97,8 +97,8 @@ def largest_structure(problem: Problem, friction: Array, load: Array | None) -> 
         Misfit in both channels; no load where it is not simulated. [N·m]
     """
     varying = varying_axes(problem)
-    if told_by_angle(problem):
-        # which of both it is, no data show: structure along the angle is the simpler statement
+    if load_over_angle(problem) is not None:
+        # bins do not show which of both it is: structure along the angle is the simpler statement
         varying -= {"load"}
     channels = {"friction": friction} if load is None else {"friction": friction, "load": load}
     found = [

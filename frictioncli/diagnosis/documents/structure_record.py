@@ -7,7 +7,7 @@ from frictioncli.diagnosis.documents.document import CauseRecord, StructureRecor
 from frictioncli.diagnosis.documents.empirical_record import LocatedRecord, gain_record
 from frictioncli.diagnosis.documents.torque_units import TorqueUnits
 from frictioncli.diagnosis.empirical.describe import experiment
-from frictioncli.diagnosis.search.axis_columns import told_by_angle
+from frictioncli.diagnosis.search.axis_columns import friction_tells_load, load_over_angle
 
 
 def structure_record(diagnosis: Diagnosis) -> StructureRecord | None:
@@ -97,8 +97,10 @@ def _experiment(diagnosis: Diagnosis) -> str:
 
 def _or_angle(diagnosis: Diagnosis) -> str:
     """Return that structure along the load may be one along the angle; empty if it may not."""
-    structure = diagnosis.structure
-    if structure is None or structure.axes != ("load",) or not told_by_angle(diagnosis.base):
+    structure, base = diagnosis.structure, diagnosis.base
+    if structure is None or structure.axes != ("load",) or load_over_angle(base) is None:
+        return ""
+    if structure.channel == "friction" and friction_tells_load(base):
         return ""
     return " The load is the same at the same angle here: it may as well be along the angle."
 

@@ -5,6 +5,7 @@ import numpy as np
 from frictioncli.arrays import Array, Indices
 from frictioncli.diagnosis.data.problem import Problem
 from frictioncli.effects.base import Channel
+from frictioncli.linear_algebra import orthonormal_basis
 
 _HARMONICS = 12
 """Harmonics of the joint angle."""
@@ -12,8 +13,12 @@ _HARMONICS = 12
 _COSINES = 10
 """Cosines over the range of temperature or load."""
 
-_HALF_WAVE = 10.0
-"""Half a period of the finest cosine over a stroke, two usual angle bins. [deg]"""
+_HALF_WAVES = (5.0, 10.0)
+"""Half a period of the finest cosine over a stroke, a usual angle bin; and two, where moves over
+different parts of the stroke are too few for more. [deg]"""
+
+_MOST_OF_PAIRS = 0.5
+"""Greatest number of columns that differ from pair to pair, as a share of the pairs."""
 
 _HALF = 5.0
 """Order from which on harmonics and cosines become weaker: nature is smooth."""
@@ -42,14 +47,18 @@ _LEAST_RELATIVE = 0.05
 _LEAST_LOAD = 0.02
 """Least spread of a simulated load relative to the mean friction: less carries no structure."""
 
-_TOLD = 0.02
-"""Spread of the load at an angle, relative to its whole spread, below which the angle tells it."""
-
 _LEAST_ANGLE = 5.0
 """Least spread of the joint angle. [deg]"""
 
 _LEAST_TEMPERATURE = 1.0
 """Least spread of the temperature: one step of a register. [°C]"""
+
+_TOLD = 0.02
+"""Spread of the load at an angle, relative to its whole spread, below which the angle tells it."""
+
+_TWICE = 0.5
+"""Share of the angles whose amount of load must occur at other angles too, so that friction which
+depends on the load differs from friction which depends on the angle."""
 
 
 def varying_axes(problem: Problem) -> frozenset[str]:
@@ -77,22 +86,51 @@ def varying_axes(problem: Problem) -> frozenset[str]:
     return frozenset(["time", *varying])
 
 
-def told_by_angle(problem: Problem) -> bool:
-    """Return whether the load is a function of the angle, as with one payload and pose.
+def _spread(values: Array) -> float:
+    return float(np.ptp(np.quantile(values, _CENTRAL)))
+
+
+def load_over_angle(problem: Problem) -> Array | None:
+    """Return the load at each angle; None where it is no function of the angle.
+
+    With one payload and pose it is one, and what goes with the load goes with the angle, too.
+
+    Parameters
+    ----------
+    problem : Problem
+        The rows.
+
+    Returns
+    -------
+    ndarray, shape (angles,), or None
+        The mean load at each angle, in the order of angles. [N·m]
+    """
+    load = problem.table.load
+    angles, place = np.unique(np.round(problem.table.position, 3), return_inverse=True)
+    mean = np.bincount(place, load) / np.bincount(place)
+    is_told = len(angles) > 1 and np.std(load - mean[place]) < _TOLD * np.std(load)
+    return mean if is_told else None
+
+
+def friction_tells_load(problem: Problem) -> bool:
+    """Return whether friction along the load differs from friction along the angle.
+
+    Friction is the same for loads to either side. Where most amounts of load occur at one angle
+    only, functions of the load are functions of the angle, and the angle is the simpler statement.
 
     Parameters
     ----------
     problem : Problem
         The rows.
     """
-    load = problem.table.load
-    angles, place = np.unique(np.round(problem.table.position, 3), return_inverse=True)
-    mean = np.bincount(place, load) / np.bincount(place)
-    return bool(len(angles) > 1 and np.std(load - mean[place]) < _TOLD * np.std(load))
-
-
-def _spread(values: Array) -> float:
-    return float(np.ptp(np.quantile(values, _CENTRAL)))
+    load = load_over_angle(problem)
+    if load is None:
+        return True
+    amount = np.abs(load)
+    rises = np.diff(amount) > 0
+    branches = np.split(amount, np.flatnonzero(rises[1:] != rises[:-1]) + 2)
+    within = [(amount >= one.min()) & (amount <= one.max()) for one in branches]
+    return bool(np.mean(np.sum(within, axis=0) > 1) > _TWICE)
 
 
 def axis_columns(problem: Problem) -> dict[tuple[tuple[str, ...], Channel], Array]:
@@ -115,11 +153,16 @@ def axis_columns(problem: Problem) -> dict[tuple[tuple[str, ...], Channel], Arra
     temperature = _cosines(table.temperature)
     # a stroke of less than a turn has finer structure than harmonics of a turn show; the load has
     # as many columns, so that which of both it is does not depend on how fine they are
-    halves = max(round(float(np.ptp(table.position)) / _HALF_WAVE), _COSINES)
-    position = np.hstack([harmonics, _cosines(table.position, halves)])
+    for half_wave in _HALF_WAVES:
+        halves = max(round(float(np.ptp(table.position)) / half_wave), _COSINES)
+        position = np.hstack([harmonics, _cosines(table.position, halves)])
+        if can_be_judged(problem, position):
+            break
     load = _cosines(table.load, halves)
     # friction is the same for loads to either side: with one payload that tells it from the angle
-    of_load = _cosines(np.abs(table.load), halves)
+    amount = np.abs(table.load)
+    part = float(np.ptp(amount)) / max(float(np.ptp(table.load)), 1e-9)
+    of_load = _cosines(amount, max(round(part * halves), _COSINES))
     time = _cosines(table.clock)[:, :_WAVES]
     warming = _HYSTERESIS * (2 * _rising(problem) - 1)[:, np.newaxis]
     squared = np.square(table.load)[:, np.newaxis] / max(float(np.max(np.square(table.load))), 1e-9)
@@ -149,7 +192,24 @@ def axis_columns(problem: Problem) -> dict[tuple[tuple[str, ...], Channel], Arra
     if problem.has_load_channel:
         # along a measured load its own noise is structure
         del columns[("load",), "load"]
+    if not friction_tells_load(problem):
+        del columns[("load",), "friction"]
     return {place: values for place, values in columns.items() if varying.issuperset(place[0])}
+
+
+def can_be_judged(problem: Problem, columns: Array) -> bool:
+    """Return whether columns leave enough pairs to know the noise of the pair means by.
+
+    Parameters
+    ----------
+    problem : Problem
+        The rows.
+    columns : ndarray, shape (rows, columns)
+        The columns.
+    """
+    means = problem.layout.means(columns)
+    rank = orthonormal_basis(means, tolerance=1e-7).shape[1]
+    return bool(rank <= _MOST_OF_PAIRS * len(means))
 
 
 def _cosines(values: Array, count: int = _COSINES) -> Array:

@@ -25,22 +25,17 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from frictioncli.arrays import Array
-from frictioncli.diagnosis.data.problem import Problem
 from frictioncli.diagnosis.fit.columns import reduced
 from frictioncli.diagnosis.fit.left_by_base import Z95, left_by, span_of
 from frictioncli.diagnosis.fit.mixed_model import Components, MixedFit, Variances
 from frictioncli.diagnosis.fit.transformed_columns import Part
 from frictioncli.diagnosis.fit.variance_components import fit_variances
 from frictioncli.diagnosis.noise.discrepancy import SPEED_RIPPLE
-from frictioncli.diagnosis.search.axis_columns import axis_columns
+from frictioncli.diagnosis.search.axis_columns import axis_columns, can_be_judged
 from frictioncli.diagnosis.search.margin import channel_margin
 from frictioncli.diagnosis.search.step import Step
 from frictioncli.distributions import chi2_exceeded, chi2_tail
 from frictioncli.effects.base import Basis, Channel
-from frictioncli.linear_algebra import orthonormal_basis
-
-_MOST_OF_PAIRS = 0.5
-"""Greatest number of columns that differ from pair to pair, as a share of the pairs."""
 
 _DRIFT = 0.015
 """Greatest RMS of a drift that is no structure, relative to the mean friction."""
@@ -139,7 +134,7 @@ def structures(step: Step) -> list[Structure]:
     axes = {
         place: columns
         for place, columns in axis_columns(problem).items()
-        if _can_be_judged(problem, columns)
+        if can_be_judged(problem, columns)
     }
     expected = expected_components(step)
     known = step.precomputed.start
@@ -255,10 +250,3 @@ def _drift(step: Step, expected: Components, null: MixedFit, number: int) -> _Fo
     channel: Channel = "load" if number else "friction"
     interval = float(np.sqrt(low)), float(np.sqrt(high))
     return ("time",), channel, null.objective - fit.objective, float(np.sqrt(square)), interval
-
-
-def _can_be_judged(problem: Problem, columns: Array) -> bool:
-    """Return whether columns leave enough pairs to know the noise of the pair means by."""
-    means = problem.layout.means(columns)
-    rank = orthonormal_basis(means, tolerance=1e-7).shape[1]
-    return rank <= _MOST_OF_PAIRS * len(means)
