@@ -10,6 +10,7 @@ import pytest
 from frictioncli.diagnosis.empirical.estimate import empirical_term
 from frictioncli.diagnosis.empirical.unexplained import unexplained
 from frictioncli.diagnosis.fit.extension import extend, misfits
+from frictioncli.diagnosis.search.lack_of_fit import structures
 from frictioncli.diagnosis.search.precomputed import Precomputed
 from frictioncli.diagnosis.search.step import Step
 from frictioncli.effects import BY_NAME
@@ -61,6 +62,25 @@ def test_a_form_is_structure_where_no_property_of_the_joint_is_named():
     assert unexplained(None, (), None, step, 0.05) is None
     # without a form only what the test along the axes shows: of this joint nothing
     assert unexplained(None, (), replace(empirical, p_value=None), step, 0.05) is None
+
+
+@pytest.mark.parametrize(
+    ("fading", "axes"), [(25.0, ("position", "speed")), (np.inf, ("position",))]
+)
+def test_structure_that_fades_with_speed_is_along_the_angle_and_the_speed(fading, axes):
+    """Cogging: a ripple of the load that is gone at high speed, or one at all speeds."""
+
+    def cogging(rows):
+        wave = np.cos(np.radians(6 * rows.position) + 1.0)
+        return 4.0 * wave * np.exp(-rows.speed / fading)
+
+    data = problem(3, load=cogging)
+    empirical, _ = found(data)
+    step = Step.of(Precomputed.of(data), [])
+    first = structures(step)[0]
+    assert (first.axes, first.channel) == (("position",), "load")
+    one = unexplained(first, (), empirical, step, 0.05)
+    assert (one.axes, one.channel) == (axes, "load")
 
 
 def test_the_base_beside_a_form_is_that_of_the_joint_without_it():

@@ -1,11 +1,15 @@
 """Structure without a name that only the empirical term shows."""
 
 from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
 
 from frictioncli.diagnosis.empirical.estimate import Empirical
 from frictioncli.diagnosis.search.cause import Cause
 from frictioncli.diagnosis.search.lack_of_fit import Structure, unnamed_structure
 from frictioncli.diagnosis.search.step import Step
+from frictioncli.diagnosis.search.understood import MOST_LEFT
 
 
 def unexplained(
@@ -24,7 +28,8 @@ def unexplained(
     Parameters
     ----------
     structure : Structure or None
-        Structure that the test along every axis found.
+        Structure that the test along every axis found. Where it changes along another quantity by a
+        large share of its size, it is along both.
     causes : sequence of Cause
         Causes that are named.
     empirical : Empirical or None
@@ -34,6 +39,8 @@ def unexplained(
     alpha : float
         Significance level.
     """
+    if structure is not None and empirical is not None:
+        return _with_second_axis(structure, empirical)
     if structure is not None or empirical is None:
         return structure
     if any(not one.fit.effect.measurement for one in causes):
@@ -48,4 +55,23 @@ def unexplained(
         statistic=empirical.statistic,
         size=largest.size,
         interval=largest.interval,
+    )
+
+
+def _with_second_axis(structure: Structure, empirical: Empirical) -> Structure:
+    """Return structure along one axis with the one along which it changes, if it does.
+
+    What fades with speed differs between speeds, and shows along the angle besides: the test along
+    an axis sees its mean. Without a form, the term has both as functions of their own.
+    """
+    sizes = {
+        one.axes: one.size
+        for one in empirical.parts
+        if one.form is None and one.channel == structure.channel
+    }
+    own = sizes.pop(structure.axes, np.inf)
+    pairs = {axes: size for axes, size in sizes.items() if set(axes) > set(structure.axes)}
+    second = max(pairs, key=lambda axes: pairs[axes], default=structure.axes)
+    return (
+        replace(structure, axes=second) if pairs.get(second, 0.0) > MOST_LEFT * own else structure
     )
