@@ -4,7 +4,10 @@ import numpy as np
 import pytest
 
 from frictioncli.diagnosis.fit.columns import base_rows
+from frictioncli.diagnosis.fit.hypotheses import EffectFit
 from frictioncli.diagnosis.fit.left_by_base import left_by, span_of, visible_size
+from frictioncli.diagnosis.search.effect_size import shows_elsewhere
+from frictioncli.diagnosis.search.precomputed import Precomputed
 from frictioncli.effects import BY_NAME
 from frictioncli.effects.base import Basis
 from tests.diagnosis.dense_noise import problem
@@ -101,3 +104,20 @@ def test_nothing_is_left_of_nothing():
     assert visible_size(
         np.repeat([[1.0], [0.0]], 5, axis=0), np.array([2.0]), np.zeros((1, 1))
     ) == (2.0, 2.0, 2.0)
+
+
+@pytest.mark.parametrize(
+    ("name", "shape", "coefficients", "where"),
+    [
+        # gravity takes a constant from the load, and the gear is unloaded by it
+        ("direction_asymmetry", {"exponent": 1.0}, (1.0, 0.0, 0.0), "friction"),
+        ("direction_asymmetry", {"exponent": 1.0}, (1.0, 0.5, 0.0), ""),
+        ("dress_pack", {"rest": -40.0, "stiffening": 0.0}, (1.0,), ""),
+        ("position_ripple", {"order": 9.0}, (1.0, 0.0, 0.0, 0.0), ""),
+    ],
+)
+def test_an_effect_of_the_load_shows_in_the_load(joint, name, shape, coefficients, where):
+    effect, values = BY_NAME[name], np.array(coefficients)
+    fit = EffectFit(effect, shape, values, np.zeros((len(values),) * 2), 0.0)
+    reason = shows_elsewhere(Precomputed.of(joint), fit)
+    assert reason == (f"it would show in the {where} rather than in the load" if where else "")

@@ -23,7 +23,12 @@ from frictioncli.diagnosis.noise.significance import (
 from frictioncli.diagnosis.ramps.evidence import RampEvidence, with_ramp_evidence
 from frictioncli.diagnosis.search.catalogue import Catalogue
 from frictioncli.diagnosis.search.cause import CONVINCING, Cause
-from frictioncli.diagnosis.search.effect_size import left_size, shown_share, sizes_of
+from frictioncli.diagnosis.search.effect_size import (
+    left_size,
+    shown_share,
+    shows_elsewhere,
+    sizes_of,
+)
 from frictioncli.diagnosis.search.margin import channel_margin, strength
 from frictioncli.diagnosis.search.measurement import measurement_causes
 from frictioncli.diagnosis.search.possible import beyond_bounds
@@ -232,7 +237,8 @@ class _Search:
         coefficients[free] = fit.coefficients[place]
         covariance[np.ix_(free, free)] = fit.covariance[np.ix_(place, place)]
         unbounded = replace(newest, coefficients=coefficients, covariance=covariance)
-        return beyond_bounds(unbounded, self.precomputed.problem)
+        reason = beyond_bounds(unbounded, self.precomputed.problem)
+        return reason or shows_elsewhere(self.precomputed, newest)
 
     def cancelling(self, accepted: Sequence[EffectFit]) -> tuple[EffectFit, str] | None:
         """Return an accepted effect that cancels one of the measurement, and the reason.

@@ -19,6 +19,10 @@ FORM = 0.05
 """Standard deviation of what the form of an effect misses, relative to its size: no joint follows
 the equation of an entry exactly, nor does the base take as much of it as of that."""
 
+_LEAST_IN_CHANNEL = 0.1
+"""Least share of what the base leaves of an effect, as mean square, that is in its own channel. Of
+a linear spring that is relaxed far from the middle of a quarter turn, a sixth is."""
+
 TAKEN_BY_BASE = "cannot be distinguished from the base model with these data"
 """Reason why an effect has no detectable size: with half of all friction it would not be named."""
 
@@ -100,6 +104,31 @@ def shown_share(known: Precomputed, fit: EffectFit, others: Sequence[EffectFit])
     misfit = np.concatenate([problem.friction_misfit, problem.load_misfit])
     length = float(torque @ torque)
     return float(misfit @ torque) / length if length > 0 else 1.0
+
+
+def shows_elsewhere(known: Precomputed, fit: EffectFit) -> str:
+    """Return why an effect is not what the residuals show; empty if it may be.
+
+    Of what the base leaves of it a part must be in its own channel. A spring beside a gravity that
+    is smaller by nearly as much leaves the load as it is and unloads the gear: friction that such a
+    spring explains is no spring's.
+
+    Parameters
+    ----------
+    known : Precomputed
+        The data.
+    fit : EffectFit
+        The effect.
+    """
+    columns = known.problem.basis(fit.effect, fit.shape)
+    squares = np.square(_left(known, fit.effect, columns) @ fit.coefficients)
+    own, other = (float(np.sum(one)) for one in np.split(squares, 2))
+    elsewhere = "load"
+    if fit.effect.channel == "load":
+        own, other, elsewhere = other, own, "friction"
+    if own >= _LEAST_IN_CHANNEL * (own + other):
+        return ""
+    return f"it would show in the {elsewhere} rather than in the {fit.effect.channel}"
 
 
 def _other_form(known: Precomputed, fit: EffectFit, inner: Array, crossed: Array) -> float:
