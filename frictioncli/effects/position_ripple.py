@@ -11,7 +11,7 @@ import numpy as np
 from frictioncli.effects.base import Basis, Effect, EffectTable, Signature, friction_only
 from frictioncli.effects.parameter import Parameter
 
-_LEAST_PERIODS = 1.25
+LEAST_PERIODS = 1.25
 """Over fewer periods a ripple cannot be distinguished from a load term."""
 
 
@@ -30,7 +30,7 @@ def basis(table: EffectTable, *, order: float) -> Basis:
     """
     angles = np.unique(table.position)
     finest = float(np.min(np.diff(angles))) if len(angles) > 1 else 360.0
-    long_enough = order * float(np.ptp(angles)) / 360.0 >= _LEAST_PERIODS
+    long_enough = order * float(np.ptp(angles)) / 360.0 >= LEAST_PERIODS
     resolved = 1.0 if long_enough and order <= 180.0 / finest else 0.0
     columns = []
     for harmonic in (order, 2 * order):

@@ -297,3 +297,18 @@ def test_friction_wholly_at_a_measured_temperature_is_no_fit_on_a_bound(joint):
     ((found, reason),) = standing(joint, cause(coefficients=(0.0,), errors=(0.0,)))
     assert found == "undetermined"
     assert "on a bound" in reason
+
+
+@pytest.mark.parametrize(("periods", "expected"), [(1.27, "undetermined"), (1.6, "named")])
+def test_a_ripple_that_hardly_repeats_is_any_smooth_function(joint, periods, expected):
+    """At the least order that a stroke shows, two harmonics follow friction to the fourth power."""
+    stroke = float(np.ptp(joint.table.position))
+    ripple = cause(
+        BY_NAME["position_ripple"],
+        (1.0, 0.5, 0.2, 0.1),
+        (0.1,) * 4,
+        shape={"order": 360.0 * periods / stroke},
+    )
+    ((found, reason),) = standing(joint, ripple)
+    assert found == expected
+    assert ("smooth" in reason) == (expected != "named")

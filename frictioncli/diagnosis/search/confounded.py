@@ -13,6 +13,8 @@ from frictioncli.diagnosis.search.effect_size import FORM
 from frictioncli.effects.backlash import EFFECT as BACKLASH
 from frictioncli.effects.base import Effect
 from frictioncli.effects.inertia import EFFECT as INERTIA
+from frictioncli.effects.position_ripple import EFFECT as POSITION_RIPPLE
+from frictioncli.effects.position_ripple import LEAST_PERIODS
 from frictioncli.effects.reversal_transient import EFFECT as REVERSAL_TRANSIENT
 from frictioncli.wording import in_words
 
@@ -57,6 +59,15 @@ _LOOKS_LIKE_ENDS = (
     " the same"
 )
 
+_SELDOM = 1.1
+"""Order of a ripple relative to the least that a stroke shows, up to which it is no more than that:
+any smooth function of the angle is the likeliest there."""
+
+_LOOKS_LIKE_SMOOTH = (
+    "over the angles measured it would hardly repeat, and any smooth dependence of friction on the"
+    " angle looks the same"
+)
+
 _LOOKS_LIKE_FORM = "errors in the form of {other} may look the same"
 
 _GRADUAL = frozenset({"temperature", "motor_temperature", "clock", "travel"})
@@ -99,6 +110,22 @@ def unclaimed(effect: Effect, problem: Problem) -> str:
     if not reason and effect.name in _FROM_ENDS and turns_elsewhere(problem):
         return _UNKNOWN_ENDS
     return reason
+
+
+def hardly_repeats(fit: EffectFit, problem: Problem) -> str:
+    """Return why a ripple may be any smooth function of the angle; empty if it repeats.
+
+    Parameters
+    ----------
+    fit : EffectFit
+        The effect, with its shape.
+    problem : Problem
+        The joint's rows.
+    """
+    if fit.effect is not POSITION_RIPPLE:
+        return ""
+    least = LEAST_PERIODS * 360.0 / float(np.ptp(problem.table.position))
+    return _LOOKS_LIKE_SMOOTH if fit.shape["order"] < _SELDOM * least else ""
 
 
 def without_forms_of_ends(causes: Sequence[Cause], problem: Problem) -> tuple[Cause, ...]:

@@ -12,6 +12,7 @@ from frictioncli.diagnosis.fit.left_by_base import Z95
 from frictioncli.diagnosis.search.cause import CONVINCING, Cause
 from frictioncli.diagnosis.search.confounded import (
     confounded,
+    hardly_repeats,
     without_forms_of_ends,
     without_forms_of_others,
 )
@@ -108,7 +109,7 @@ def _judged(cause: Cause, problem: Problem, margin: float, alpha: float) -> Caus
         return replace(cause, standing="undetermined", reason="it may be noise")
     doubt = _impossible(cause, problem)
     doubt = doubt or confounded(cause.fit.effect, problem)
-    for doubtful in (after_pauses, at_start_of_runs, at_temperature):
+    for doubtful in (after_pauses, at_start_of_runs, at_temperature, hardly_repeats):
         doubt = doubt or doubtful(cause.fit, problem)
     if doubt:
         return replace(cause, standing="undetermined", reason=doubt)
