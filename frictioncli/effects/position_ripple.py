@@ -15,11 +15,16 @@ LEAST_PERIODS = 1.25
 """Over fewer periods a ripple cannot be distinguished from a load term."""
 
 
+_LEAST_ANGLES = 10
+"""Twice its parameters: over fewer angle bins they follow any function of the angle."""
+
+
 def basis(table: EffectTable, *, order: float) -> Basis:
     """Return sine and cosine at the order and at twice the order, shape (rows, 4). [-].
 
-    Columns are zero where the bins are too wide for the order, or the stroke is shorter than 1.25
-    periods. Of twice the order, the mean over a bin is what is left where the bins are wide for it.
+    Columns are zero where the bins are too wide for the order, or fewer than 10, or the stroke is
+    shorter than 1.25 periods. Of twice the order, the mean over a bin is what is left where the
+    bins are wide for it.
 
     Parameters
     ----------
@@ -31,7 +36,8 @@ def basis(table: EffectTable, *, order: float) -> Basis:
     angles = np.unique(table.position)
     finest = float(np.min(np.diff(angles))) if len(angles) > 1 else 360.0
     long_enough = order * float(np.ptp(angles)) / 360.0 >= LEAST_PERIODS
-    resolved = 1.0 if long_enough and order <= 180.0 / finest else 0.0
+    enough = long_enough and len(angles) >= _LEAST_ANGLES
+    resolved = 1.0 if enough and order <= 180.0 / finest else 0.0
     columns = []
     for harmonic in (order, 2 * order):
         phase = harmonic * np.radians(table.angle)

@@ -48,9 +48,16 @@ def test_dress_pack_stiffens_on_both_sides_of_its_rest():
 
 def test_ripple_repeats_with_its_order():
     """Order 4 has a period of 90 deg, its second harmonic one of 45 deg."""
-    found = friction("position_ripple", small(position=22.5 * np.arange(6)), order=4.0)
+    found = friction("position_ripple", small(position=22.5 * np.arange(10)), order=4.0)
     period = [[0, 1, 0, 1], [1, 0, 0, -1], [0, -1, 0, 1], [-1, 0, 0, -1]]
-    assert found == pytest.approx(np.array([*period, *period[:2]], dtype=float), abs=1e-12)
+    assert found == pytest.approx(np.array([*period, *period, *period[:2]], float), abs=1e-12)
+
+
+def test_ripple_over_fewer_than_ten_angles_is_not_judged():
+    """A sine, a cosine and those of twice the order go through four of six values, whatever."""
+    assert np.any(friction("position_ripple", small(position=20.0 * np.arange(10)), order=4.0))
+    found = friction("position_ripple", small(position=20.0 * np.arange(9)), order=4.0)
+    np.testing.assert_array_equal(found, np.zeros((9, 4)))
 
 
 def test_ripple_that_does_not_come_back_is_not_judged():
@@ -62,7 +69,7 @@ def test_ripple_that_does_not_come_back_is_not_judged():
 
 def test_a_second_harmonic_finer_than_the_bins_is_its_mean_over_a_bin():
     """Bins of 30 deg sample at most 6 periods per turn: order 4, of its double the mean."""
-    centres = 30.0 * np.arange(5)
+    centres = 30.0 * np.arange(12)
     found = np.array(friction("position_ripple", small(position=centres), order=4.0))
     fine = centres[:, np.newaxis] + np.linspace(-15.0, 15.0, 3001)
     mean = np.trapezoid(np.cos(8 * np.radians(fine)), fine, axis=1) / 30.0
