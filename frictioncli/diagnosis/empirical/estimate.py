@@ -256,9 +256,10 @@ def _is_along(form: Form, structure: Structure) -> bool:
     """Return whether a form may describe structure, or something else beside it.
 
     It is none of the same quantity that depends on another one as well; and none of the load where
-    the structure is along the angle, which with one payload look alike.
+    friction has structure along the angle, of which the test tells the load. Of a load torque it
+    does not: with one payload both look alike, and the simpler form decides.
     """
     if "load" in form.axes and "position" in structure.axes:
-        return False
+        return form.channel == structure.channel == "load"
     own, located = set(form.axes), set(structure.axes)
     return not own > located
