@@ -6,7 +6,7 @@ import pytest
 from frictioncli.diagnosis.fit.columns import base_rows
 from frictioncli.diagnosis.fit.hypotheses import EffectFit
 from frictioncli.diagnosis.fit.left_by_base import left_by, span_of, visible_size
-from frictioncli.diagnosis.search.effect_size import shows_elsewhere
+from frictioncli.diagnosis.search.effect_size import elsewhere
 from frictioncli.diagnosis.search.precomputed import Precomputed
 from frictioncli.effects import BY_NAME
 from frictioncli.effects.base import Basis
@@ -119,5 +119,5 @@ def test_nothing_is_left_of_nothing():
 def test_an_effect_of_the_load_shows_in_the_load(joint, name, shape, coefficients, where):
     effect, values = BY_NAME[name], np.array(coefficients)
     fit = EffectFit(effect, shape, values, np.zeros((len(values),) * 2), 0.0)
-    reason = shows_elsewhere(Precomputed.of(joint), fit)
+    reason = elsewhere(Precomputed.of(joint), fit)
     assert reason == (f"it would show in the {where} rather than in the load" if where else "")

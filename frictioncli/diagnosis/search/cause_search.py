@@ -23,12 +23,7 @@ from frictioncli.diagnosis.noise.significance import (
 from frictioncli.diagnosis.ramps.evidence import RampEvidence, with_ramp_evidence
 from frictioncli.diagnosis.search.catalogue import Catalogue
 from frictioncli.diagnosis.search.cause import CONVINCING, Cause
-from frictioncli.diagnosis.search.effect_size import (
-    left_size,
-    shown_share,
-    shows_elsewhere,
-    sizes_of,
-)
+from frictioncli.diagnosis.search.effect_size import elsewhere, left_size, shown_share, sizes_of
 from frictioncli.diagnosis.search.margin import channel_margin, strength
 from frictioncli.diagnosis.search.measurement import measurement_causes
 from frictioncli.diagnosis.search.possible import beyond_bounds
@@ -220,12 +215,11 @@ class _Search:
         return _LEAST_SHARE * channel_margin(problem, effect.channel, self.margin)
 
     def impossible(self, accepted: Sequence[EffectFit]) -> str:
-        """Return why the last of some effects is impossible: the data ask for more than bounds.
+        """Return why the last of some effects is impossible, or not shown by its own channel.
 
         Once accepted its coefficients that lie on no bound are free, and would explain what is
         another's. A lag of the gear is possible where friction is linear about a hidden
-        temperature, which was found within physical bounds: what it asks for beyond them is
-        another's, which the search has yet to find.
+        temperature, which was found within physical bounds: beyond them it asks for another's.
         """
         newest = accepted[-1]
         if newest.effect is THERMAL_LAG and self.precomputed.problem.hidden is not None:
@@ -237,8 +231,8 @@ class _Search:
         coefficients[free] = fit.coefficients[place]
         covariance[np.ix_(free, free)] = fit.covariance[np.ix_(place, place)]
         unbounded = replace(newest, coefficients=coefficients, covariance=covariance)
-        reason = beyond_bounds(unbounded, self.precomputed.problem)
-        return reason or shows_elsewhere(self.precomputed, newest)
+        known = self.precomputed
+        return beyond_bounds(unbounded, known.problem) or elsewhere(known, newest)
 
     def cancelling(self, accepted: Sequence[EffectFit]) -> tuple[EffectFit, str] | None:
         """Return an accepted effect that cancels one of the measurement, and the reason.

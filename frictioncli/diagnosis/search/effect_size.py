@@ -106,7 +106,7 @@ def shown_share(known: Precomputed, fit: EffectFit, others: Sequence[EffectFit])
     return float(misfit @ torque) / length if length > 0 else 1.0
 
 
-def shows_elsewhere(known: Precomputed, fit: EffectFit) -> str:
+def elsewhere(known: Precomputed, fit: EffectFit) -> str:
     """Return why an effect is not what the residuals show; empty if it may be.
 
     Of what the base leaves of it a part must be in its own channel. A spring beside a gravity that
@@ -123,12 +123,12 @@ def shows_elsewhere(known: Precomputed, fit: EffectFit) -> str:
     columns = known.problem.basis(fit.effect, fit.shape)
     squares = np.square(_left(known, fit.effect, columns) @ fit.coefficients)
     own, other = (float(np.sum(one)) for one in np.split(squares, 2))
-    elsewhere = "load"
+    where = "load"
     if fit.effect.channel == "load":
-        own, other, elsewhere = other, own, "friction"
+        own, other, where = other, own, "friction"
     if own >= _LEAST_IN_CHANNEL * (own + other):
         return ""
-    return f"it would show in the {elsewhere} rather than in the {fit.effect.channel}"
+    return f"it would show in the {where} rather than in the {fit.effect.channel}"
 
 
 def _other_form(known: Precomputed, fit: EffectFit, inner: Array, crossed: Array) -> float:
