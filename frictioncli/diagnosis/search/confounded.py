@@ -8,6 +8,7 @@ import pandas as pd
 
 from frictioncli.arrays import Array
 from frictioncli.diagnosis.data.problem import Problem
+from frictioncli.diagnosis.fit.hypotheses import EffectFit
 from frictioncli.diagnosis.search.cause import Cause
 from frictioncli.diagnosis.search.effect_size import FORM
 from frictioncli.effects.backlash import EFFECT as BACKLASH
