@@ -135,9 +135,14 @@
   }
   box.hidden = false;
   for (const name of ["find", "only"]) part(name).addEventListener("input", redraw);
-  new IntersectionObserver((seen) => {
-    if (seen.some((one) => one.isIntersecting) && drawn < chosen.length) draw(AT_ONCE);
-  }, { rootMargin: "600px" }).observe(part("more"));
+  const end = new IntersectionObserver((seen) => {
+    if (!seen.some((one) => one.isIntersecting) || drawn >= chosen.length) return;
+    draw(AT_ONCE);
+    // whoever scrolls on at once never leaves the end: it is told anew whether it is in view
+    end.unobserve(part("more"));
+    end.observe(part("more"));
+  }, { rootMargin: "600px" });
+  end.observe(part("more"));
   addEventListener("beforeprint", () => draw(MOST_PRINTED));
   redraw();
 })();

@@ -207,7 +207,7 @@ def without_a_name(work, form=None):
 
 def test_structure_without_a_name_gets_blocks_that_spread_over_all_inputs(copy):
     without_a_name(copy)
-    said = planned_quickly(copy, PlanSettings(minutes=25.0))
+    said = str(plan(copy, PlanSettings(minutes=25.0)))
     assert "no known effect explains" in said
     blocks = document(copy)["programme"]["blocks"]
     steps = [step for block in blocks for step in block["steps"]]
