@@ -43,10 +43,17 @@ def waits_for(path, process):
         time.sleep(0.005)
 
 
+def waits_until_held(work, process):
+    """Wait until a process writes into a folder: its lock is there a moment before it is locked."""
+    while all(path.name == ".lock" for path in work.glob("*")):
+        assert process.poll() is None, process.stderr.read()
+        time.sleep(0.005)
+
+
 @pytest.mark.slow
 def test_of_two_runs_into_one_folder_the_second_is_refused(done, tmp_path):
     first = started("run", done / "logs", "-w", tmp_path / "work")
-    waits_for(tmp_path / "work" / ".lock", first)
+    waits_until_held(tmp_path / "work", first)
     os.kill(first.pid, signal.SIGSTOP)  # it holds the folder for as long as we like
     try:
         for command in (("run", done / "logs"), ("ingest", done / "logs"), ("pair",), ("report",)):
