@@ -30,7 +30,7 @@ from frictioncli.diagnosis.search.measurement import (
     beside_the_rest,
     corrected_without_name,
 )
-from frictioncli.diagnosis.search.named_causes import named_causes
+from frictioncli.diagnosis.search.named_causes import Judging, named_causes
 from frictioncli.diagnosis.search.new_run_changes import changes_on_new_run, with_effect
 from frictioncli.diagnosis.search.new_run_misfit import NewRunMisfit
 from frictioncli.diagnosis.search.preparation import Preparation
@@ -184,16 +184,16 @@ def diagnose_joint(
     search = partial(
         find_causes, settings=settings, margin=margin, ramps=evidence, preparation=known
     )
-    result = found_causes(
-        base,
-        base_new,
-        effects,
-        search,
+    judging = Judging(
+        problem=base,
+        new=base_new,
+        measured=(base, base_new),
         preparation=known,
         starts=rows.timing,
         margin=margin,
         alpha=settings.alpha,
     )
+    result = found_causes(judging, effects, search)
     found, lag = result.search, result.lag
     problem, new = result.judging.problem, result.judging.new
     named = named_causes(result.judging, result.judged)

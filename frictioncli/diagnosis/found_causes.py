@@ -3,14 +3,11 @@
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
-from frictioncli.diagnosis.data.problem import Problem
-from frictioncli.diagnosis.ramps.timing import TorqueTiming
 from frictioncli.diagnosis.search.cause import Cause
 from frictioncli.diagnosis.search.cause_selection import refuted_by_new_run
 from frictioncli.diagnosis.search.measurement import clear_effects
 from frictioncli.diagnosis.search.named_causes import JudgedCauses, Judging
 from frictioncli.diagnosis.search.new_run_rivals import refuted_by_return, without_refuted_rivals
-from frictioncli.diagnosis.search.preparation import Preparation
 from frictioncli.diagnosis.search.search_result import SearchResult
 from frictioncli.diagnosis.thermal.lag_search import search_with_lag
 from frictioncli.diagnosis.thermal.refine import RefinedLag
@@ -45,51 +42,30 @@ class FoundCauses:
 
 
 def found_causes(
-    base: Problem,
-    new: Problem | None,
-    effects: Sequence[Effect],
-    search: Callable[..., SearchResult],
-    *,
-    preparation: Preparation,
-    starts: TorqueTiming | None,
-    margin: float,
-    alpha: float,
+    judging: Judging, effects: Sequence[Effect], search: Callable[..., SearchResult]
 ) -> FoundCauses:
     """Search for causes; without those that a new run refutes, search again.
 
     Parameters
     ----------
-    base, new : Problem, Problem or None
-        The rows seen, and those of a run that was held out, about the measured temperature.
+    judging : Judging
+        The rows about the measured temperature, and by what causes are judged.
     effects : sequence of Effect
         The catalogue.
     search : callable
         As of :func:`frictioncli.diagnosis.thermal.lag_search.search_with_lag`.
-    preparation : Preparation
-        What is known of the rows.
-    starts : TorqueTiming or None
-        Delay and filter by the starts of moves.
-    margin : float
-        Smallest size worth a name. [N·m]
-    alpha : float
-        Significance level.
     """
-    measurement = clear_effects(preparation.beside(base))
+    base, new = judging.measured
+    measurement = clear_effects(judging.preparation.beside(base))
     refuted: tuple[Cause, ...] = ()
     while True:
         gone = {one.fit.effect.name for one in refuted}
         tried = [one for one in effects if one.name not in gone]
-        found, lag = search_with_lag(base, new, tried, search, margin, measurement)
+        found, lag = search_with_lag(base, new, tried, search, judging.margin, measurement)
         found = with_slow_sensor(found)
-        judging = Judging(
-            problem=base if lag is None else lag.problem,
-            new=new if lag is None else lag.new,
-            measured=(base, new),
-            preparation=preparation,
-            starts=starts,
-            margin=margin,
-            alpha=alpha,
-        )
+        judging = judging.without_lag()
+        if lag is not None:
+            judging = replace(judging, problem=lag.problem, new=lag.new)
         judged = judging.judged(found)
         worse: tuple[Cause, ...] = ()
         if judging.new is not None:

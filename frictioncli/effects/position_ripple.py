@@ -14,7 +14,6 @@ from frictioncli.effects.parameter import Parameter
 LEAST_PERIODS = 1.25
 """Over fewer periods a ripple cannot be distinguished from a load term."""
 
-
 _LEAST_ANGLES = 10
 """Twice its parameters: over fewer angle bins they follow any function of the angle."""
 

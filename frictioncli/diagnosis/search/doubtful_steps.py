@@ -32,8 +32,8 @@ _PAUSE = 120.0
 _AT_START = "it is there only at the start of runs, where friction after a rest would look the same"
 
 
-def at_start_of_runs(fit: EffectFit, problem: Problem) -> str:
-    """Return why a step of friction may be friction after a rest; empty if it is not.
+def doubtful_step(fit: EffectFit, problem: Problem) -> str:
+    """Return why a step of friction may be something else; empty if not, and for other effects.
 
     Parameters
     ----------
@@ -44,45 +44,35 @@ def at_start_of_runs(fit: EffectFit, problem: Problem) -> str:
     """
     if fit.effect is not STEP_CHANGE:
         return ""
-    there = _pairs_with_it(fit, problem)
+    share = measured_share(problem.all_runs)[problem.rows]
+    _, heads = np.unique(problem.layout.row_pair, return_index=True)
+    there = present(share[heads], fit.shape)
+    if has_temperature(problem):
+        return _at_start_of_runs(there, problem) or _at_temperature(there, problem)
+    return _after_pauses(there, problem) or _at_start_of_runs(there, problem)
+
+
+def _after_pauses(there: Flags, problem: Problem) -> str:
+    """Return why a step may be one of a temperature that nobody logged; empty if it is not."""
+    clock = problem.layout.means(problem.table.clock[:, np.newaxis])[:, 0]
+    order = np.argsort(clock, kind="stable")
+    changes = np.diff(there[order].astype(int)) != 0
+    return NO_TEMPERATURE if np.any(np.diff(clock[order])[changes] > _PAUSE) else ""
+
+
+def _at_start_of_runs(there: Flags, problem: Problem) -> str:
+    """Return why a step may be friction after a rest; empty if it is not."""
     # absence with the opposite sign is the same
     return _AT_START if any(_is_start(one, problem) for one in (there, ~there)) else ""
 
 
-def after_pauses(fit: EffectFit, problem: Problem) -> str:
-    """Return why a step of friction may be one of a temperature that nobody logged; empty if not.
-
-    Parameters
-    ----------
-    fit : EffectFit
-        The effect, with its history.
-    problem : Problem
-        The joint's rows.
-    """
-    if fit.effect is not STEP_CHANGE or has_temperature(problem):
-        return ""
-    clock = problem.layout.means(problem.table.clock[:, np.newaxis])[:, 0]
-    order = np.argsort(clock, kind="stable")
-    changes = np.diff(_pairs_with_it(fit, problem)[order].astype(int)) != 0
-    return NO_TEMPERATURE if np.any(np.diff(clock[order])[changes] > _PAUSE) else ""
-
-
-def at_temperature(fit: EffectFit, problem: Problem) -> str:
-    """Return why a step of friction may be one of temperature; empty if it is not.
+def _at_temperature(there: Flags, problem: Problem) -> str:
+    """Return why a step may be one of the temperature; empty if it is not.
 
     It comes or goes in several runs, and all pairs with it are warmer than those without, or all
     are colder.
-
-    Parameters
-    ----------
-    fit : EffectFit
-        The effect, with its history.
-    problem : Problem
-        The joint's rows.
     """
-    if fit.effect is not STEP_CHANGE or not has_temperature(problem):
-        return ""
-    there, run = _pairs_with_it(fit, problem), problem.layout.run
+    run = problem.layout.run
     own = [there[run == one] for one in np.unique(run)]
     if sum(bool(one.any() and not one.all()) for one in own) < _SEVERAL:
         return ""
@@ -91,13 +81,6 @@ def at_temperature(fit: EffectFit, problem: Problem) -> str:
     with_it, without = int(there.sum()), int((~there).sum())
     warmer = (float(rank[there].sum()) - with_it * (with_it + 1) / 2) / (with_it * without)
     return _AT_TEMPERATURE if max(warmer, 1 - warmer) >= _APART else ""
-
-
-def _pairs_with_it(fit: EffectFit, problem: Problem) -> Flags:
-    """Return in which pairs a change is there, shape (pairs,)."""
-    share = measured_share(problem.all_runs)[problem.rows]
-    _, heads = np.unique(problem.layout.row_pair, return_index=True)
-    return present(share[heads], fit.shape)
 
 
 def _is_start(there: Flags, problem: Problem) -> bool:

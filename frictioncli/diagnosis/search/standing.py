@@ -16,11 +16,7 @@ from frictioncli.diagnosis.search.confounded import (
     without_forms_of_ends,
     without_forms_of_others,
 )
-from frictioncli.diagnosis.search.doubtful_steps import (
-    after_pauses,
-    at_start_of_runs,
-    at_temperature,
-)
+from frictioncli.diagnosis.search.doubtful_steps import doubtful_step
 from frictioncli.diagnosis.search.margin import channel_margin
 from frictioncli.diagnosis.search.possible import (
     beyond_bounds,
@@ -109,8 +105,7 @@ def _judged(cause: Cause, problem: Problem, margin: float, alpha: float) -> Caus
         return replace(cause, standing="undetermined", reason="it may be noise")
     doubt = _impossible(cause, problem)
     doubt = doubt or confounded(cause.fit.effect, problem)
-    for doubtful in (after_pauses, at_start_of_runs, at_temperature, hardly_repeats):
-        doubt = doubt or doubtful(cause.fit, problem)
+    doubt = doubt or doubtful_step(cause.fit, problem) or hardly_repeats(cause.fit, problem)
     if doubt:
         return replace(cause, standing="undetermined", reason=doubt)
     if low > margin:

@@ -115,7 +115,7 @@ def _split_known(bare: str) -> tuple[str, str] | None:
 
 
 def unit_in_name(column: str, quantity: str) -> str | None:
-    """Return the unit of a quantity that a column's name has in brackets, None where it has none.
+    """Return the unit of a quantity that a column's name has, None where it has none.
 
     Examples
     --------
