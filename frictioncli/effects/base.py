@@ -15,6 +15,8 @@ from frictioncli.arrays import Array, Indices
 from frictioncli.effects.parameter import Parameter
 
 Channel = Literal["friction", "load"]
+CHANNELS: tuple[Channel, Channel] = ("friction", "load")
+
 Kind = Literal["friction", "load", "measurement"]
 
 REFERENCE_TEMPERATURE = 25.0

@@ -220,8 +220,10 @@ def test_a_catalogue_s_inner_products_are_those_of_its_columns_under_the_noise(j
                     precomputed.noises.indices[variances.noise[channel]],
                 )
             )
-            means = np.hstack([part.columns.channels[channel].means for part in known.parts])
-            within = known.within(channel)
+            means, within = (
+                np.hstack([getattr(part.columns.channels[channel], name) for part in known.parts])
+                for name in ("means", "within")
+            )
             expected += within.T @ columns.within / variances.within[channel]
             expected += means.T @ inverse @ columns.means / variances.between[channel]
             square += columns.within.T @ columns.within / variances.within[channel]

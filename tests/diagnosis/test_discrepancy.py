@@ -8,7 +8,7 @@ import pytest
 from frictioncli.diagnosis.fit.columns import base_rows
 from frictioncli.diagnosis.fit.left_by_base import span_of
 from frictioncli.diagnosis.fit.mixed_model import evaluate, weights_of
-from frictioncli.diagnosis.fit.products import Products
+from frictioncli.diagnosis.fit.products import Places, Products
 from frictioncli.diagnosis.noise.discrepancy import SPEED_RIPPLE, discrepancy_of
 from frictioncli.diagnosis.search.precomputed import Precomputed
 from frictioncli.diagnosis.search.step import Step
@@ -24,9 +24,18 @@ def smooth_of(joint, share=0.01):
     return discrepancy_of(joint, span_of(joint), share)
 
 
+def orthogonal(smooth):
+    """Return what the base leaves of all columns, friction above load."""
+    friction, load = smooth.shown
+    columns = np.zeros((2 * len(friction), smooth.columns.count))
+    columns[: len(friction), : friction.shape[1]] = friction
+    columns[len(friction) :, friction.shape[1] :] = load
+    return columns - smooth.span @ (smooth.span.T @ columns)
+
+
 def parts(smooth, one):
-    """Return a function's columns in its own channel and in the other."""
-    friction, load = np.split(smooth.rows[:, one.columns], 2)
+    """Return what the base leaves of a function in its own channel and in the other."""
+    friction, load = np.split(orthogonal(smooth)[:, one.columns], 2)
     return (friction, load) if one.channel == "friction" else (load, friction)
 
 
@@ -42,10 +51,16 @@ def test_what_the_base_leaves_of_each_function_has_its_size(joint):
         assert square == pytest.approx(weight(one) ** 2)
     ends = [one.columns.stop for one in smooth.components]
     assert [one.columns.start for one in smooth.components] == [0, *ends[:-1]]
-    assert ends[-1] == smooth.rows.shape[1] == smooth.columns.count == smooth.widths.sum()
-    base = np.vstack(base_rows(joint))
-    across = base.T @ smooth.rows / np.linalg.norm(base, axis=0)[:, None]
-    assert np.abs(across / np.linalg.norm(smooth.rows, axis=0)).max() < 1e-6
+    assert ends[-1] == smooth.columns.count == smooth.widths.sum()
+
+
+def test_a_torque_meets_what_the_base_leaves_of_the_functions(joint):
+    """Products with any torque are those with the columns that are orthogonal to the base."""
+    smooth, base = smooth_of(joint), np.vstack(base_rows(joint))
+    columns = orthogonal(smooth)
+    assert np.abs(base.T @ columns).max() < 1e-6 * np.linalg.norm(base) * np.linalg.norm(columns)
+    torques = np.random.default_rng(4).normal(size=(len(columns), 3))
+    np.testing.assert_allclose(smooth.crossed(torques), torques.T @ columns, atol=1e-8)
 
 
 def test_all_together_are_about_one_per_cent_of_the_friction_beforehand(joint):
@@ -54,11 +69,11 @@ def test_all_together_are_about_one_per_cent_of_the_friction_beforehand(joint):
     Inertia where the speed is not constant comes beside that.
     """
     smooth = smooth_of(joint)
-    gamma = np.random.default_rng(0).normal(size=(smooth.rows.shape[1], 300))
+    gamma = np.random.default_rng(0).normal(size=(smooth.columns.count, 300))
     for one in smooth.components:
         if one.axes == SPEED_RIPPLE:
             gamma[one.columns] = 0.0
-    square = 2 * np.mean(np.square(smooth.rows @ gamma))
+    square = 2 * np.mean(np.square(orthogonal(smooth) @ gamma))
     found = smooth.amplitude * np.sqrt(square)
     assert found / np.mean(joint.friction) == pytest.approx(0.01, rel=0.1)
     assert smooth_of(joint, 0.03).amplitude == pytest.approx(3 * smooth.amplitude)
@@ -85,7 +100,7 @@ def test_functions_depend_on_their_axes_and_on_the_base_alone(joint):
                 left[own, i] -= (np.bincount(place, columns[own, i]) / count)[place]
             return left
 
-        columns, known = within(smooth.rows[:, one.columns]), within(base)
+        columns, known = within(orthogonal(smooth)[:, one.columns]), within(base)
         fitted = known @ np.linalg.lstsq(known, columns, rcond=1e-12)[0]
         np.testing.assert_allclose(columns, fitted, atol=1e-5)
 
@@ -100,7 +115,7 @@ def test_a_ripple_of_the_speed_grows_with_its_square(joint):
     table = joint.table
     order = 6 * np.radians(table.position)
     torque = np.concatenate([np.zeros(len(order)), np.square(table.speed / 100.0) * np.cos(order)])
-    span, own = span_of(joint), smooth.rows[:, one.columns]
+    span, own = span_of(joint), orthogonal(smooth)[:, one.columns]
     torque -= span @ (span.T @ torque)
     left = torque - own @ np.linalg.lstsq(own, torque, rcond=None)[0]
     assert np.linalg.norm(left) < 0.1 * np.linalg.norm(torque)
@@ -113,7 +128,7 @@ def test_errors_of_form_are_those_of_the_exponents_and_of_coulomb_friction(joint
     table, p = joint.table, joint.parameters
     decay = p.beta + p.gamma * np.exp(-p.delta * table.temperature)
     bent = decay * (table.speed**0.5001 - table.speed**0.4999) / 2e-4
-    span, own = span_of(joint), smooth.rows[:, one.columns]
+    span, own = span_of(joint), orthogonal(smooth)[:, one.columns]
     for torque in (bent, 0.1 * (table.temperature - 40.0)):
         column = np.concatenate([torque, 0 * torque])
         column -= span @ (span.T @ column)
@@ -148,7 +163,7 @@ def test_what_no_data_show_of_a_function_has_the_size_expected_of_the_whole(join
         expected = np.mean(np.square(np.exp(amplitude[number]) * size * drawn))
         assert square == pytest.approx(expected, rel=0.05)
         # what the base leaves of it is spanned by the columns that data show
-        span = np.hstack([smooth.rows[:, one.columns], np.vstack(base_rows(joint))])
+        span = np.hstack([orthogonal(smooth)[:, one.columns], np.vstack(base_rows(joint))])
         size = np.linalg.norm(span, axis=0)
         fitted = span / size @ np.linalg.lstsq(span / size, own, rcond=1e-12)[0]
         np.testing.assert_allclose(own, fitted, atol=1e-6)
@@ -167,7 +182,7 @@ def test_an_asymmetry_of_the_stroke_is_as_large_as_its_lowest_orders_say(joint):
     assert 0.85 < squares[0] / squares.sum() < 0.97
     angle = joint.table.position
     side = np.tanh((angle - np.mean(angle)) / (np.ptp(angle) / 5))
-    likeness = own[: len(angle), 0] @ side / np.linalg.norm(own[:, 0]) / np.linalg.norm(side)
+    likeness = own[:, 0] @ side / np.linalg.norm(own[:, 0]) / np.linalg.norm(side)
     assert abs(likeness) > 0.9
 
 
@@ -176,7 +191,7 @@ def test_the_unit_of_speed_does_not_matter_for_errors_of_form(joint):
     smooth = smooth_of(joint)
     place = next(i for i, one in enumerate(smooth.components) if "form" in one.axes)
     table = joint.table
-    ratio = smooth.whole[place][: len(table.speed), 0] / (table.viscous * np.sqrt(table.speed))
+    ratio = smooth.whole[place][:, 0] / (table.viscous * np.sqrt(table.speed))
     slope, level = np.polyfit(np.log(table.speed), ratio, 1)
     middle = np.exp(-level / slope)
     assert middle == pytest.approx(np.exp(np.mean(np.log(table.speed))))
@@ -201,7 +216,7 @@ def test_a_load_that_is_measured_apart_has_its_share_of_discrepancy_in_its_own_u
     )
     assert milli.amplitude == pytest.approx(apart.amplitude)
     scale = np.repeat(np.array([[1.0], [1000.0]]), len(joint.load), axis=0)
-    np.testing.assert_allclose(milli.rows / scale, apart.rows, rtol=1e-9, atol=1e-9)
+    np.testing.assert_allclose(orthogonal(milli) / scale, orthogonal(apart), rtol=1e-9, atol=1e-9)
 
 
 def test_no_share_is_no_discrepancy(joint):
@@ -229,15 +244,26 @@ def test_only_the_part_that_the_base_leaves_counts(joint):
     ridge = weights_of(components, step.fit.variances, count)
     assert not ridge[: components.base].any()
     assert (ridge[components.base : count] > 0).all()
+    within, between, places = [], [], step.products.places
+    size = np.zeros(count + 1)
+    for channel in (0, 1):
+        products = step.products.within[channel], step.products.between[channel]
+        size[places.shown(channel)] += np.diag(products[0] + products[1][0])
     shift = np.eye(count + 1)
     generator = np.random.default_rng(0)
-    size = np.sqrt(np.diag(step.products.within[0] + step.products.between[0][0]))
     shift[: components.base, components.base : count] = generator.normal(
         size=(components.base, count - components.base)
-    ) / np.maximum(size[: components.base, np.newaxis], 1e-9)
+    ) / np.maximum(np.sqrt(size[: components.base, np.newaxis]), 1e-9)
+    for channel in (0, 1):
+        # once moved, all columns show in both channels
+        shown = shift[places.shown(channel)]
+        within.append(shown.T @ step.products.within[channel] @ shown)
+        between.append(shown.T @ step.products.between[channel] @ shown)
+    none = np.zeros(0, int)
     moved = Products(
-        within=tuple(shift.T @ one @ shift for one in step.products.within),
-        between=tuple(shift.T @ one @ shift for one in step.products.between),
+        places=Places((none, none), np.arange(count + 1)),
+        within=tuple(within),
+        between=tuple(between),
     )
     before = evaluate(components, step.products, count, step.fit.variances)
     after = evaluate(components, moved, count, step.fit.variances)

@@ -33,7 +33,7 @@ def fit_of(discrepancy):
     """Return the fit of all rows alike, beside so much discrepancy."""
     noise = Noise(point=POINT, pair=PAIR, drift=0.0, drift_time=100.0)
     weights = Weights.of(DATA.layout, noise, np.zeros(len(DATA.layout.time))).alike()
-    return WeightedFit(weights, weights, discrepancy)
+    return WeightedFit(weights, weights, () if discrepancy is None else (discrepancy,))
 
 
 def torque_of(name, size):

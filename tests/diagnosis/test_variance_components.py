@@ -13,6 +13,7 @@ import pytest
 from scipy.linalg import block_diag
 from scipy.optimize import minimize
 
+from frictioncli.diagnosis.fit.block_cholesky import BlockCholesky
 from frictioncli.diagnosis.fit.columns import ChannelColumns, ModelColumns
 from frictioncli.diagnosis.fit.mixed_model import Components, Variances, evaluate
 from frictioncli.diagnosis.fit.transformed_columns import NoiseModels, Part, TransformedColumns
@@ -237,6 +238,58 @@ def test_a_column_that_no_data_see_changes_nothing():
     fit = evaluate(world.components, products, BASE + sum(WIDTHS), at)
     assert np.isfinite(fit.objective)
     assert fit.coefficients[1] == pytest.approx(0.0, abs=1e-12)
+
+
+def test_functions_that_show_in_one_channel_are_fitted_as_columns_that_are_zero_in_the_other():
+    """The dense model has them as columns of zeros; the one in blocks does not have them at all."""
+    world = World(5)
+    friction, load = (slice(one.start, one.stop) for one in world.functions[:2])
+    for part in world.columns[1]:
+        part[:, friction] = 0.0
+    for part in world.columns[0]:
+        part[:, load] = 0.0
+    known, data = world._part(world.columns), world.transformed.parts[1]
+    base, further = slice(0, BASE), slice(load.stop, BASE + sum(WIDTHS))
+    parts = (
+        known.take(base),
+        replace(known.take(friction), shown=(0,)),
+        replace(known.take(load), shown=(1,)),
+        known.take(further),
+        data,
+    )
+    whole, blocks = (TransformedColumns(one).products() for one in ((known, data), parts))
+    assert blocks.within[0].shape[0] == whole.within[0].shape[0] - WIDTHS[1]
+    at, count = variances(world, np.random.default_rng(5)), BASE + sum(WIDTHS)
+    dense, found = (evaluate(world.components, one, count, at) for one in (whole, blocks))
+    assert found.objective == pytest.approx(dense.objective, rel=1e-12)
+    np.testing.assert_allclose(found.coefficients, dense.coefficients, rtol=1e-8, atol=1e-10)
+    np.testing.assert_allclose(found.covariance, dense.covariance, rtol=1e-8, atol=1e-10)
+    fits = [fit_variances(world.components, one, count, at) for one in (whole, blocks)]
+    assert fits[1].objective == pytest.approx(fits[0].objective, rel=1e-10)
+
+
+@pytest.mark.parametrize("widths", [(3, 4), (0, 4), (3, 0), (0, 0)])
+def test_a_factor_in_blocks_is_that_of_the_whole_matrix(widths):
+    generator = np.random.default_rng(sum(widths))
+    first, second = (np.arange(0, widths[0]), np.arange(6, 6 + widths[1]))
+    matrix = np.zeros((14, 14))
+    for _ in range(20):
+        for absent in (first, second):
+            row = generator.normal(size=14)
+            row[absent] = 0.0
+            matrix += np.outer(row, row)
+    used = np.setdiff1d(np.arange(14), np.concatenate([first, second]))
+    own = [matrix[np.ix_(one, one)] for one in (first, second)]
+    across = [matrix[np.ix_(one, used)] for one in (first, second)]
+    factor = BlockCholesky.of(((first, second), used), own, across, matrix[np.ix_(used, used)])
+    np.testing.assert_allclose(factor.inverse(), np.linalg.inv(matrix), rtol=1e-9, atol=1e-12)
+    right = generator.normal(size=14)
+    np.testing.assert_allclose(factor.solve(right), np.linalg.solve(matrix, right), rtol=1e-9)
+    leading = np.sort(np.concatenate([first, second, used[:-2]]))
+    determinant = np.linalg.slogdet(matrix[np.ix_(leading, leading)])[1]
+    assert 2 * factor.logarithms()[leading].sum() == pytest.approx(determinant)
+    negative = -matrix[np.ix_(used, used)]
+    assert BlockCholesky.of(((first, second), used), own, across, negative) is None
 
 
 def test_strengths_begin_with_no_drift():

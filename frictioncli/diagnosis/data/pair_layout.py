@@ -250,7 +250,8 @@ class PairLayout:
         rows : ndarray, shape (rows, columns)
             Values of each angle bin.
         """
-        if not rows.any():
+        # most columns that are not zero are so in their first row
+        if not (rows[:1].any() or rows.any()):
             shape = rows.shape[1:]
             return np.zeros((self.pooling.shape[0], *shape)), np.zeros((len(self.bins), *shape))
         means = self.means(rows)

@@ -23,14 +23,11 @@ from frictioncli.diagnosis.data.problem import Problem
 from frictioncli.diagnosis.empirical.form_columns import columns_of
 from frictioncli.diagnosis.empirical.forms import forms_of
 from frictioncli.diagnosis.noise.cosine_series import AXES, CosineSeries, Range, coordinate
-from frictioncli.effects.base import Basis, EffectTable
+from frictioncli.effects.base import CHANNELS, Basis, EffectTable
 from frictioncli.errors import TableError
 
 FADING = 0.1
 """Share of a range within which the term falls to nothing beyond each end."""
-
-CHANNELS = ("friction", "load")
-"""Torques that the term adds to."""
 
 INPUTS = ("position", "speed", "temperature", "load")
 """What the term depends on, and has ranges of."""

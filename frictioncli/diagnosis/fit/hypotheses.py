@@ -8,7 +8,7 @@ import numpy as np
 from frictioncli.arrays import Array
 from frictioncli.diagnosis.data.gravity import NAMES
 from frictioncli.diagnosis.data.problem import Problem
-from frictioncli.diagnosis.fit.columns import ModelColumns, main_channel, reduced
+from frictioncli.diagnosis.fit.columns import ModelColumns, basis_columns, joined, main_channel
 from frictioncli.diagnosis.fit.mixed_model import Variances
 from frictioncli.diagnosis.noise.significance import NullDistribution
 from frictioncli.effects.base import Effect
@@ -70,11 +70,7 @@ def hypothesis_of(
     tried = informative_shapes(effect, problem) if shapes is None else list(shapes)
     bases = [problem.basis(effect, shape) for shape in tried]
     rms = [np.sqrt(np.mean(np.square(main_channel(basis, effect)), axis=0)) for basis in bases]
-    columns = reduced(
-        problem.layout,
-        np.hstack([basis.friction for basis in bases]),
-        np.hstack([basis.load for basis in bases]),
-    )
+    columns = joined([basis_columns(problem, basis) for basis in bases])
     lower, upper = physical_bounds(effect, problem)
     return Hypothesis(
         name=effect.name,

@@ -22,16 +22,19 @@ References
    related problems," J. Am. Stat. Assoc. 72(358), 1977, doi:10.1080/01621459.1977.10480998.
 """
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
-from scipy.linalg import lapack
 
 from frictioncli.arrays import Array
-from frictioncli.diagnosis.fit.products import AnyProducts
+from frictioncli.diagnosis.fit.block_cholesky import BlockCholesky
+from frictioncli.diagnosis.fit.products import AnyProducts, ChosenProducts, Places
 
 _RIDGE = 1e-10
 """Added to the diagonal of columns of unit length: what no data determine stays finite."""
+
+_STRONGER_RIDGES = (1e-6, 1e-3)
+"""The same where rounding makes the products of many columns indefinite."""
 
 _VANISHING = 6.0
 """Difference of the logarithms of amplitudes beyond which a function is as good as none."""
@@ -192,14 +195,36 @@ class MixedFit:
         Minus twice the logarithm of the restricted likelihood times the prior.
     coefficients : ndarray, shape (columns,)
         Of the columns in order; those of the random functions are predictions.
-    covariance : ndarray, shape (columns, columns)
-        Their covariance.
+    factor : BlockCholesky
+        Factor of the normal equations of columns of unit length.
+    size : ndarray, shape (columns,)
+        Length of each column.
     """
 
     variances: Variances
     objective: float
     coefficients: Array
-    covariance: Array
+    factor: BlockCholesky
+    size: Array
+    _covariance: list[Array] = field(default_factory=list, init=False, repr=False)
+
+    @property
+    def covariance(self) -> Array:
+        """Covariance of the coefficients, shape (columns, columns)."""
+        if not self._covariance:
+            self._covariance.append(self.factor.inverse() / np.outer(self.size, self.size))
+        return self._covariance[0]
+
+    def covariances(self) -> tuple[Array, Array]:
+        """Return the covariance of the coefficients that show in friction, and in load.
+
+        Those of a channel's own columns come first.
+        """
+        found = []
+        for channel, own in enumerate(self.factor.sets[0]):
+            size = self.size[np.concatenate([own, self.factor.sets[1]])]
+            found.append(self.factor.inverse_beside(channel) / np.outer(size, size))
+        return found[0], found[1]
 
 
 def weights_of(components: Components, variances: Variances, count: int) -> Array:
@@ -209,11 +234,6 @@ def weights_of(components: Components, variances: Variances, count: int) -> Arra
     for place, value in zip(components.functions, precision, strict=True):
         ridge[place] = value
     return ridge
-
-
-def scales_of(variances: Variances) -> Array:
-    """Return the variances within pairs and of pair means: of friction, then of load."""
-    return np.array([variances.within, variances.between]).T.ravel()
 
 
 def evaluate(
@@ -237,7 +257,7 @@ def evaluate(
 
 
 def evaluate_chosen(
-    components: Components, chosen: Array, known: int, variances: Variances
+    components: Components, chosen: ChosenProducts, known: int, variances: Variances
 ) -> MixedFit:
     """Return the same from the products under the noise models that are chosen.
 
@@ -245,34 +265,29 @@ def evaluate_chosen(
     ----------
     components : Components
         What the variance components belong to.
-    chosen : ndarray, shape (4, columns, columns)
+    chosen : ChosenProducts
         Inner products of all columns under the noise models of the variance components.
     known : int
         Number of columns of the null hypothesis.
     variances : Variances
         The variance components.
     """
-    gram = ((1 / scales_of(variances)) @ chosen.reshape(4, -1)).reshape(chosen.shape[1:])
-    count = len(gram) - 1
-    ridge = weights_of(components, variances, count)
-    size = np.sqrt(np.diagonal(gram)[:count] + ridge)
+    places = chosen.places
+    count = places.count - 1
+    products = chosen.weighted(variances.within, variances.between)
+    diagonal, right = np.zeros(count + 1), np.zeros(count + 1)
+    for channel, product in enumerate(products):
+        shown = places.shown(channel)
+        diagonal[shown] += np.diagonal(product)
+        right[shown] += product[-1]
+    length = right[-1]
+    right = right[:-1]
+    size = np.sqrt(diagonal[:-1] + weights_of(components, variances, count))
     size = np.where(size > 0, size, 1.0)
-    inverse_sizes = np.outer(1 / size, 1 / size)
-    # the matrix is symmetric: what is contiguous for numpy is so for LAPACK once transposed
-    scaled = gram[:count, :count] * inverse_sizes
-    scaled[np.diag_indices(count)] = 1.0 + _RIDGE
-    factor, fault = lapack.dpotrf(scaled.T, lower=True)
-    if fault:
-        scaled[np.diag_indices(count)] = 1.0 + 1e-6
-        factor, _ = lapack.dpotrf(scaled.T, lower=True)
-    logarithms = np.log(np.diagonal(factor)) + np.log(size)
-    half, _ = lapack.dpotri(factor, lower=True, overwrite_c=True)
-    covariance = half.T + half
-    covariance[np.diag_indices(count)] = np.diagonal(half)
-    covariance *= inverse_sizes
-    right = gram[:count, count]
-    coefficients = covariance @ right
-    square = max(float(gram[count, count] - coefficients @ right), 1e-300)
+    factor = _factor(products, size, places)
+    logarithms = factor.logarithms() + np.log(size)
+    coefficients = factor.solve(right / size) / size
+    square = max(float(length - coefficients @ right), 1e-300)
     objective = square + 2 * float(np.sum(logarithms[:known]))
     for channel in (0, 1):
         objective += components.within[channel] * np.log(variances.within[channel])
@@ -285,5 +300,37 @@ def evaluate_chosen(
         variances=variances,
         objective=float(objective),
         coefficients=coefficients,
-        covariance=covariance,
+        factor=factor,
+        size=size,
     )
+
+
+def _factor(products: list[Array], size: Array, places: Places) -> BlockCholesky:
+    """Return the factor of the products of columns of unit length.
+
+    Parameters
+    ----------
+    products : list of ndarray, shape (shown, shown)
+        Of the columns that show in friction and load, the misfit last.
+    size : ndarray, shape (columns,)
+        Length of each column; with it, of a random function the prior counts.
+    places : Places
+        Where the columns show.
+    """
+    shared = places.shared[:-1]
+    among = np.zeros((len(shared), len(shared)))
+    own, across = [], []
+    for place, product in zip(places.own, products, strict=True):
+        width = len(place)
+        rows = product[:width, :-1] / size[place, np.newaxis]
+        own.append(rows[:, :width] / size[place])
+        across.append(rows[:, width:] / size[shared])
+        among += product[width:-1, width:-1]
+    among /= np.outer(size[shared], size[shared])
+    for ridge in (_RIDGE, *_STRONGER_RIDGES):
+        for one in (*own, among):
+            np.fill_diagonal(one, 1.0 + ridge)
+        factor = BlockCholesky.of((places.own, shared), own, across, among)
+        if factor is not None:
+            return factor
+    raise np.linalg.LinAlgError("products of columns are not those of real numbers")

@@ -1,6 +1,6 @@
 """Inner products of the columns of a model with a torque that is planted into its misfit."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -16,8 +16,8 @@ class WithinProducts:
 
     Attributes
     ----------
-    across : (ndarray, ndarray), shape (columns, columns of the part)
-        Of other columns with those of the part in friction and load.
+    across : (ndarray, ndarray), shape (shown, columns of the part)
+        Of the other columns that show in friction and load with those of the part.
     own : (ndarray, ndarray), shape (columns of the part, columns of the part)
         Of its columns with each other.
     """
@@ -69,13 +69,15 @@ def weighted_products(
     count = other.columns.count
     across, own = np.zeros((columns.count, count)), np.zeros((count, count))
     for channel, noise in enumerate(variances.noise):
-        across += known.across[channel] / variances.within[channel]
         own += known.own[channel] / variances.within[channel]
         time = columns.noises.indices[noise][0]
         modes = other.modes(channel, time)
         variance = columns.noises.variance(channel, noise) * variances.between[channel]
         scaled = modes / variance[:, np.newaxis]
-        across += columns.modes(channel, time).T @ scaled
+        across[columns.places.shown(channel)] += (
+            known.across[channel] / variances.within[channel]
+            + columns.modes(channel, time).T @ scaled
+        )
         own += modes.T @ scaled
     return across, own
 
@@ -100,12 +102,12 @@ def with_torque(
         across = columns.within_products(torque, channel)[:, 0]
         own = np.sum(np.square(deviations))
         within.append(_with_last(products.within[channel], across, own))
-        of_means = [torque.across(one, channel)[:, :, 0] for one in columns.parts]
+        of_means = [torque.across(one, channel)[:, :, 0] for one in columns.shown(channel)]
         across, own = np.concatenate(of_means, axis=1), torque.across(torque, channel)[:, 0, 0]
         between.append(_with_last(products.between[channel], across, own))
     *parts, misfit = columns.parts
     added = Part(misfit.columns.plus(torque.columns), columns.noises)
-    found = Products(within=(within[0], within[1]), between=(between[0], between[1]))
+    found = replace(products, within=(within[0], within[1]), between=(between[0], between[1]))
     return TransformedColumns((*parts, added)), found
 
 

@@ -1,4 +1,8 @@
-"""Columns of a model in the eigenvectors of the noise, each part transformed once."""
+"""Columns of a model in the eigenvectors of the noise, each part transformed once.
+
+Inner products of a channel are those of the columns that show in it: a function of the friction
+channel has none in the load channel.
+"""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
@@ -7,7 +11,7 @@ import numpy as np
 
 from frictioncli.arrays import Array
 from frictioncli.diagnosis.fit.columns import ModelColumns
-from frictioncli.diagnosis.fit.products import BorderedProducts, Products
+from frictioncli.diagnosis.fit.products import BorderedProducts, Places, Products
 from frictioncli.diagnosis.noise.spectra import STRENGTHS, NoiseIndex, Spectra
 
 
@@ -75,10 +79,13 @@ class Part:
         The columns.
     noises : NoiseModels
         Noise models of their pair means.
+    shown : (0,), (1,) or (0, 1)
+        Channels in which they may show: 0 for friction, 1 for load.
     """
 
     columns: ModelColumns
     noises: NoiseModels
+    shown: tuple[int, ...] = (0, 1)
     _modes: dict[tuple[int, int], Array] = field(default_factory=dict)
     _across: dict[tuple[int, int], tuple["Part", Array]] = field(default_factory=dict)
 
@@ -105,7 +112,7 @@ class Part:
     def take(self, chosen: slice | list[int]) -> "Part":
         """Return some of the columns."""
         modes = {key: values[:, chosen] for key, values in self._modes.items()}
-        return Part(self.columns.take(chosen), self.noises, modes)
+        return Part(self.columns.take(chosen), self.noises, self.shown, modes)
 
     def modes(self, channel: int, time: int) -> Array:
         """Return pair means in the eigenvectors of a correlation time, shape (pairs, columns)."""
@@ -142,17 +149,33 @@ class TransformedColumns:
         """Number of columns."""
         return sum(part.columns.count for part in self.parts)
 
+    @property
+    def places(self) -> Places:
+        """Where the columns show."""
+        counts = [part.columns.count for part in self.parts]
+        shown = [part.shown for part in self.parts]
+        friction, load, both = (
+            np.flatnonzero(np.repeat([one == where for one in shown], counts))
+            for where in ((0,), (1,), (0, 1))
+        )
+        return Places((friction, load), both)
+
+    def shown(self, channel: int) -> list[Part]:
+        """Return the parts that show in a channel, those that show in no other first."""
+        shown = [part for part in self.parts if channel in part.shown]
+        return sorted(shown, key=lambda part: len(part.shown))
+
     def modes(self, channel: int, time: int) -> Array:
-        """Return pair means in the eigenvectors of a correlation time, shape (pairs, columns)."""
+        """Return pair means in the eigenvectors of a correlation time, shape (pairs, shown)."""
         if (channel, time) not in self._modes:
             self._modes[channel, time] = np.hstack(
-                [part.modes(channel, time) for part in self.parts]
+                [part.modes(channel, time) for part in self.shown(channel)]
             )
         return self._modes[channel, time]
 
     def within(self, channel: int) -> Array:
-        """Return deviations within pairs, shape (contrasts, columns)."""
-        return np.hstack([part.columns.channels[channel].within for part in self.parts])
+        """Return deviations within pairs of the columns that show, shape (contrasts, shown)."""
+        return np.hstack([part.columns.channels[channel].within for part in self.shown(channel)])
 
     def within_products(self, other: Part, channel: int) -> Array:
         """Return inner products of deviations within pairs with those of another part.
@@ -166,21 +189,24 @@ class TransformedColumns:
 
         Returns
         -------
-        ndarray, shape (columns, columns of the other)
+        ndarray, shape (shown, columns of the other)
         """
         columns = other.columns.channels[channel].within
-        return np.vstack([one.columns.channels[channel].within.T @ columns for one in self.parts])
+        shown = self.shown(channel)
+        return np.vstack([one.columns.channels[channel].within.T @ columns for one in shown])
 
     def products(self) -> Products:
         """Return inner products of all columns."""
         within = [one.T @ one for one in (self.within(0), self.within(1))]
         between = [
-            _joined(
-                [[_inner_products(one, two, channel) for two in self.parts] for one in self.parts]
-            )
-            for channel in (0, 1)
+            _joined([[_inner_products(one, two, channel) for two in shown] for one in shown])
+            for channel, shown in enumerate((self.shown(0), self.shown(1)))
         ]
-        return Products(within=(within[0], within[1]), between=(between[0], between[1]))
+        return Products(
+            places=self.places,
+            within=(within[0], within[1]),
+            between=(between[0], between[1]),
+        )
 
     def bordered(self, products: Products, own: Sequence[Part]) -> Products:
         """Return inner products with further columns before the last one, the misfit.
@@ -202,21 +228,22 @@ class TransformedColumns:
         products : Products
             Inner products of these columns.
         own : sequence of Part
-            The further columns.
+            The further columns, which may show in both channels.
         """
         new = TransformedColumns(tuple(own))
         within = [new.within(channel) for channel in (0, 1)]
+        shown = self.shown(0), self.shown(1)
         across_within, across, of_own = (
             [
-                np.vstack([one.columns.channels[channel].within.T @ columns for one in self.parts])
-                for channel, columns in enumerate(within)
+                np.vstack([one.columns.channels[channel].within.T @ columns for one in parts])
+                for channel, (columns, parts) in enumerate(zip(within, shown, strict=True))
             ],
             *(
                 [
                     _joined([[one.across(part, channel) for one in own] for part in parts])
-                    for channel in (0, 1)
+                    for channel, parts in enumerate(both)
                 ]
-                for parts in (self.parts, own)
+                for both in (shown, (own, own))
             ),
         )
         return BorderedProducts(

@@ -18,9 +18,8 @@ from frictioncli.diagnosis.fit.mixed_model import (
     Variances,
     evaluate,
     evaluate_chosen,
-    scales_of,
 )
-from frictioncli.diagnosis.fit.products import AnyProducts
+from frictioncli.diagnosis.fit.products import AnyProducts, ChosenProducts, Places
 
 _ROUNDS = 2
 """Rounds in which the noise models are chosen anew."""
@@ -99,33 +98,55 @@ def _is_allowed(components: Components, variances: Variances) -> bool:
     return all(one <= most for one, most in zip(drifts, components.most_drift, strict=True))
 
 
-def _updated(components: Components, chosen: Array, fit: MixedFit) -> Variances:
+def _updated(components: Components, chosen: ChosenProducts, fit: MixedFit) -> Variances:
     """Return variance components that are more probable: fixed-point and Newton steps."""
-    variances, covariance = fit.variances, fit.covariance
+    variances, covariances = fit.variances, fit.covariances()
     residual = np.append(-fit.coefficients, 1.0)
-    squares = (chosen @ residual) @ residual
-    known = np.zeros(chosen.shape[1:])
-    known[:-1, :-1] = covariance
-    taken = chosen.reshape(4, -1) @ known.ravel() / scales_of(variances)
-    freedom = np.array([(one, components.pairs) for one in components.within], float).ravel()
-    divisor = np.maximum(np.maximum(freedom - taken, 0.2 * freedom), 1.0)
-    scales = np.maximum(squares / divisor, LEAST_VARIANCE).tolist()
+    within, between = (
+        _updated_variances(*one)
+        for one in zip(
+            chosen.squares(residual),
+            chosen.traces(covariances),
+            (variances.within, variances.between),
+            (components.within, (components.pairs,) * 2),
+            strict=True,
+        )
+    )
     return replace(
         variances,
-        within=(scales[0], scales[2]),
-        between=(scales[1], scales[3]),
-        amplitude=_updated_amplitude(components, fit),
+        within=within,
+        between=between,
+        amplitude=_updated_amplitude(components, fit, chosen.places, covariances),
     )
 
 
-def _updated_amplitude(components: Components, fit: MixedFit) -> Array:
+def _updated_variances(
+    squares: list[float],
+    traces: list[float],
+    before: tuple[float, float],
+    counts: tuple[int, int],
+) -> tuple[float, float]:
+    """Return more probable variances of friction and load, from squares of the residuals."""
+    found = []
+    for square, trace, variance, count in zip(squares, traces, before, counts, strict=True):
+        divisor = max(count - trace / variance, 0.2 * count, 1.0)
+        found.append(max(square / divisor, LEAST_VARIANCE))
+    return found[0], found[1]
+
+
+def _updated_amplitude(
+    components: Components, fit: MixedFit, shown: Places, covariances: tuple[Array, Array]
+) -> Array:
     """Return logarithms of amplitudes that are more probable, shape (functions,)."""
     before, places = fit.variances.amplitude, components.functions
     if not places:
         return before
+    diagonal = np.empty(len(fit.coefficients))
+    for channel, covariance in enumerate(covariances):
+        diagonal[shown.shown(channel)[:-1]] = np.diagonal(covariance)
     precision = np.exp(-2 * before)
     square = precision * _sums(np.square(fit.coefficients), places)
-    freedom = components.widths - precision * _sums(np.diagonal(fit.covariance), places)
+    freedom = components.widths - precision * _sums(diagonal, places)
     spread = np.square(components.spread)
     slope = square - freedom - (before - components.prior) / spread
     curvature = 2 * np.maximum(np.maximum(square, 0.5 * freedom), 1e-3) + 1 / spread
@@ -146,13 +167,16 @@ def _with_likeliest_noise(
     The base is fitted anew under every noise model; the other coefficients stay.
     """
     base = components.base
-    left = np.append(-fit.coefficients[base:], 1.0)
+    # the base is fitted anew
+    left = np.append(-fit.coefficients, 1.0)
+    left[:base] = 0.0
     bases = components.bases or [BaseProducts.of(one) for one in products.of_base(base)]
     noise, scales = [], []
-    for channel in (0, 1):
-        products_with_left = products.with_rest(channel, base, left)
-        whole = products_with_left[:, base:] @ left
-        explained = bases[channel].explained(products_with_left[:, :base])
+    for channel, own in enumerate(products.places.own):
+        combination = left[products.places.shown(channel)]
+        with_left = products.with_combination(channel, combination)
+        whole = with_left @ combination
+        explained = bases[channel].explained(with_left[:, len(own) : len(own) + base])
         square = np.maximum(whole - explained, 1e-300)
         freedom = max(components.pairs - bases[channel].rank, 1)
         cost = freedom * np.log(square) + components.determinants[channel]

@@ -96,14 +96,14 @@ class WeightedFit:
     ----------
     friction, load : Weights
         Weights of both channels.
-    discrepancy : (ndarray, ndarray), shape (rows, functions), or None
-        Columns of the discrepancy, and of all else that is not fitted, in both channels, with
-        coefficients of variance 1; None for none. [N·m]
+    unfitted : tuple of (ndarray, ndarray), shape (rows, columns)
+        Columns in both channels of the discrepancy, and of all else that is not fitted, with
+        coefficients of variance 1. [N·m]
     """
 
     friction: Weights
     load: Weights
-    discrepancy: tuple[Array, Array] | None = None
+    unfitted: tuple[tuple[Array, Array], ...] = ()
 
     def beside(self, friction: Array, load: Array) -> "WeightedFit":
         """Return the fit with further torque that is there or not, and is not fitted.
@@ -113,10 +113,7 @@ class WeightedFit:
         friction, load : ndarray, shape (rows, columns)
             Its columns in both channels, with coefficients of variance 1. [N·m]
         """
-        before = self.discrepancy
-        if before is not None:
-            friction, load = np.hstack([before[0], friction]), np.hstack([before[1], load])
-        return replace(self, discrepancy=(friction, load))
+        return replace(self, unfitted=(*self.unfitted, (friction, load)))
 
     def coefficients(self, friction: Array, load: Array, targets: tuple[Array, Array]) -> Array:
         """Return least-squares coefficients of columns, shape (columns,).
@@ -148,10 +145,10 @@ class WeightedFit:
         first, second = self.friction.weighted(friction), self.load.weighted(load)
         bread = _inverse(first, second)
         meat = first.T @ self.friction.correlated(first) + second.T @ self.load.correlated(second)
-        if whole and self.discrepancy is not None:
-            smooth = first.T @ self.friction.weighted(self.discrepancy[0])
-            smooth += second.T @ self.load.weighted(self.discrepancy[1])
-            meat = meat + smooth @ smooth.T
+        for columns in self.unfitted if whole else ():
+            crossed = first.T @ self.friction.weighted(columns[0])
+            crossed += second.T @ self.load.weighted(columns[1])
+            meat = meat + crossed @ crossed.T
         return np.asarray(bread @ meat @ bread)
 
 

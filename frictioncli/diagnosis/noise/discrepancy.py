@@ -31,9 +31,9 @@ import numpy as np
 
 from frictioncli.arrays import Array
 from frictioncli.diagnosis.data.problem import Problem
-from frictioncli.diagnosis.fit.columns import ModelColumns, reduced
+from frictioncli.diagnosis.fit.columns import ModelColumns, joined, reduced
 from frictioncli.diagnosis.noise.cosine_series import HALF, CosineSeries, ranges_of
-from frictioncli.effects.base import Channel, EffectTable
+from frictioncli.effects.base import CHANNELS, Channel, EffectTable
 
 SHARE = 0.0075
 """RMS of the whole discrepancy that is expected beforehand, relative to the mean friction.
@@ -88,22 +88,26 @@ class Discrepancy:
     Attributes
     ----------
     components : tuple of Component
-        The functions.
-    rows : ndarray, shape (2 * rows, columns)
-        Their columns, friction above load, orthogonal to the base: of a main
-        effect the squares sum to 1 on average.
-    whole : tuple of ndarray, shape (2 * rows, columns)
-        Columns of each function before the base is taken out: of a function as a whole the squares
-        sum to 1 on average, and its lowest orders weigh more.
+        The functions, those of friction first.
+    span : ndarray, shape (2 * rows, rank)
+        Orthonormal basis of the base's columns, friction above load.
+    shown : (ndarray, ndarray), shape (rows, columns)
+        Columns of the functions of friction in friction, and of those of load in load: of what the
+        base leaves of a main effect the squares sum to 1 on average.
+    whole : tuple of ndarray, shape (rows, columns)
+        Columns of each function in its channel as a whole: the squares sum to 1 on average, and
+        its lowest orders weigh more.
     columns : ModelColumns
-        The former, reduced.
+        All columns of ``shown``, reduced. They are not orthogonal to the base: where its
+        coefficients are free, the likelihood is the same.
     amplitude : float
         RMS of a main effect that is expected beforehand; in a load channel of the log it is as
         large a share of the load. [N·m]
     """
 
     components: tuple[Component, ...]
-    rows: Array
+    span: Array
+    shown: tuple[Array, Array]
     whole: tuple[Array, ...]
     columns: ModelColumns
     amplitude: float
@@ -113,6 +117,12 @@ class Discrepancy:
         """Number of columns of each function, shape (components,)."""
         return np.array([one.columns.stop - one.columns.start for one in self.components], float)
 
+    @property
+    def places(self) -> tuple[slice, slice]:
+        """Columns of the functions of friction, and of those of load."""
+        first = self.shown[0].shape[1]
+        return slice(0, first), slice(first, self.columns.count)
+
     def torques(self, amplitude: Array) -> Array:
         """Return all columns with coefficients of variance 1, shape (2 * rows, columns) [N·m].
 
@@ -121,8 +131,14 @@ class Discrepancy:
         amplitude : ndarray, shape (components,)
             Logarithm of the amplitude of each function.
         """
-        scaled = [size * one for size, one in zip(np.exp(amplitude), self.whole, strict=True)]
-        return np.hstack([np.zeros((len(self.rows), 0)), *scaled])
+        count = sum(one.shape[1] for one in self.whole)
+        found = np.zeros((len(self.span), count))
+        first = 0
+        for size, of, one in zip(np.exp(amplitude), self.components, self.whole, strict=True):
+            last = first + one.shape[1]
+            _half(found, of.channel)[:, first:last] = size * one
+            first = last
+        return found
 
     def unseen(self, amplitude: Array) -> Array:
         """Return the same where no data show the amplitudes, of which these are the medians.
@@ -131,28 +147,29 @@ class Discrepancy:
         """
         return _UNSEEN * self.torques(amplitude)
 
-    def along(self, torque: Array, amplitude: Array) -> float:
+    def crossed(self, torques: Array) -> Array:
+        """Return products of torques with what the base leaves of the columns.
+
+        Parameters
+        ----------
+        torques : ndarray, shape (2 * rows, torques)
+            Torques, friction above load. [N·m]
+
+        Returns
+        -------
+        ndarray, shape (torques, columns)
+        """
+        along = torques - self.span @ (self.span.T @ torques)
+        parts = zip(np.split(along, 2), self.shown, strict=True)
+        return np.hstack([one.T @ columns for one, columns in parts])
+
+    def along_products(self, products: Array, mean_square: float, amplitude: Array) -> float:
         """Return the standard deviation of the discrepancy along a torque, as its RMS [N·m].
 
         Parameters
         ----------
-        torque : ndarray, shape (2 * rows,)
-            A torque, friction above load. [N·m]
-        amplitude : ndarray, shape (components,)
-            Logarithm of the amplitude of each function.
-        """
-        rows = len(torque) / 2
-        return self.along_products(
-            torque @ self.rows / rows, float(torque @ torque) / rows, amplitude
-        )
-
-    def along_products(self, products: Array, mean_square: float, amplitude: Array) -> float:
-        """Return the same from mean products of the torque.
-
-        Parameters
-        ----------
         products : ndarray, shape (columns,)
-            Mean products with the columns of the discrepancy.
+            Mean products of the torque with the columns, as of :meth:`crossed`.
         mean_square : float
             Mean square of the torque. [(N·m)²]
         amplitude : ndarray, shape (components,)
@@ -189,33 +206,53 @@ def discrepancy_of(problem: Problem, span: Array, share: float = SHARE) -> Discr
     apart = problem.has_load_channel and mean > 0
     loads = float(np.mean(np.abs(problem.load))) / mean if apart else 1.0
     components: list[Component] = []
-    left, whole, first, squares = [np.zeros((2 * rows, 0))], [], 0, 0.0
+    shown: list[Array] = []
+    whole: list[Array] = []
+    squares = 0.0
     for channel, axes, values in parts:
-        zeros = np.zeros_like(values)
-        columns = np.vstack([values, zeros] if channel == "friction" else [zeros, values])
-        orthogonal = columns - span @ (span.T @ columns)
-        if np.sum(np.square(orthogonal)) <= _LEAST_LEFT * np.sum(np.square(columns)):
+        base = _half(span, channel)
+        along = base.T @ values
+        square = float(np.sum(np.square(values)))
+        if square - float(np.sum(np.square(along))) <= _LEAST_LEFT * square:
             continue
         weight = weight_of(axes, channel)
+        of_errors = _of_errors(axes, values)
         if axes == FORM:
-            orthogonal = orthogonal @ _orthonormal_combination(orthogonal)
+            orthogonal = -span @ along
+            _half(orthogonal, channel)[:] += values
+            combination = _orthonormal_combination(orthogonal)
+            values, along = values @ combination, along @ combination
+        left = float(np.sum(np.square(values)) - np.sum(np.square(along)))
         unit = loads if channel == "load" else 1.0
-        scale = unit * weight * np.sqrt(rows / float(np.sum(np.square(orthogonal))))
-        left.append(scale * orthogonal)
-        whole.append(unit * (_FORM_ERRORS if axes == FORM else weight) * _of_errors(axes, columns))
-        components.append(Component(axes, channel, slice(first, first + orthogonal.shape[1])))
-        first += orthogonal.shape[1]
+        shown.append(unit * weight * np.sqrt(rows / left) * values)
+        whole.append(unit * (_FORM_ERRORS if axes == FORM else weight) * of_errors)
+        first = components[-1].columns.stop if components else 0
+        components.append(Component(axes, channel, slice(first, first + values.shape[1])))
         if axes != SPEED_RIPPLE and not (apart and channel == "load"):
             squares += weight**2
-    together = np.hstack(left)
-    friction, load = np.split(together, 2)
+    none, both = np.zeros((rows, 0)), list(zip(components, shown, strict=True))
+    channels = [
+        np.hstack([none, *(one for of, one in both if of.channel == channel)])
+        for channel in CHANNELS
+    ]
     return Discrepancy(
         components=tuple(components),
-        rows=together,
+        span=span,
+        shown=(channels[0], channels[1]),
         whole=tuple(whole),
-        columns=reduced(problem.layout, friction, load),
+        columns=joined(
+            [
+                reduced(problem.layout, channels[0], np.zeros_like(channels[0])),
+                reduced(problem.layout, np.zeros_like(channels[1]), channels[1]),
+            ]
+        ),
         amplitude=share * mean / np.sqrt(max(squares, 1.0)),
     )
+
+
+def _half(rows: Array, channel: Channel) -> Array:
+    """Return the rows of a channel, of friction above load."""
+    return np.split(rows, 2)[CHANNELS.index(channel)]
 
 
 def weight_of(axes: tuple[str, ...], channel: Channel) -> float:
@@ -245,7 +282,7 @@ def _of_errors(axes: tuple[str, ...], columns: Array) -> Array:
         size = np.linalg.norm(columns, axis=0)
         columns = columns / np.where(size > 0, size, np.inf)
     squares = float(np.sum(np.square(columns)))
-    return np.asarray(columns * np.sqrt(len(columns) / 2 / squares))
+    return np.asarray(columns * np.sqrt(len(columns) / squares))
 
 
 def _orthonormal_combination(columns: Array) -> Array:

@@ -108,11 +108,13 @@ class Catalogue:
         for channel in (0, 1):
             if not self._shows(channel, number):
                 continue
-            scale = variances.within[channel]
-            across += self._across_within(channel, known)[:, place] / scale
             modes, weight = self._modes(channel, place, variances)
             time = self.precomputed.noises.indices[variances.noise[channel]][0]
-            across += known.modes(channel, time).T @ (modes * weight[:, np.newaxis])
+            across[known.places.shown(channel)] += self._across_within(channel, known)[
+                :, place
+            ] / variances.within[channel] + known.modes(channel, time).T @ (
+                modes * weight[:, np.newaxis]
+            )
         return across
 
     def _modes(self, channel: int, place: slice, variances: Variances) -> tuple[Array, Array]:
@@ -187,9 +189,9 @@ class Catalogue:
         return self._shown[channel, number]
 
     def _across_within(self, channel: int, known: TransformedColumns) -> Array:
-        """Return inner products of deviations with those of known columns."""
+        """Return inner products of deviations with those of known columns that show."""
         found = []
-        for part in known.parts:
+        for part in known.shown(channel):
             key = (channel, id(part))
             if key not in self._within:
                 own = self.part.columns.channels[channel].within

@@ -179,7 +179,7 @@ def remember_left(
     """
     left = _left(known, effect, _together(columns))
     rows, width = len(left) / 2, len(effect.coefficients)
-    crossed = left.T @ known.discrepancy.rows / rows
+    crossed = known.discrepancy.crossed(left) / rows
     for number, shape in enumerate(shapes):
         own = slice(number * width, (number + 1) * width)
         inner = left[:, own].T @ left[:, own] / rows

@@ -114,9 +114,11 @@ class Precomputed:
             smooth = before.discrepancy
         expected = np.full(len(smooth.components), np.log(max(smooth.amplitude, _LEAST_NOISE)))
         span = span_of(problem, bases) if bases else span_of_base
-        columns = TransformedColumns(
-            (Part(joined([base, smooth.columns]), noises), Part(misfit, noises))
-        )
+        functions = [
+            Part(smooth.columns.take(place), noises, (channel,))
+            for channel, place in enumerate(smooth.places)
+        ]
+        columns = TransformedColumns((Part(base, noises), *functions, Part(misfit, noises)))
         quiet = [
             max(spectra.white, deviation**2 * 1e-6, LEAST_VARIANCE)
             for spectra, deviation in zip(noises.spectra, point, strict=True)

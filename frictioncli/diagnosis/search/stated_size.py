@@ -62,7 +62,7 @@ def sizing_fit(
     """
     torques = step.precomputed.discrepancy.torques(step.fit.variances.amplitude)
     friction, load = np.split(torques, 2)
-    fit = replace(step.predicting_fit(), discrepancy=(friction, load))
+    fit = replace(step.predicting_fit(), unfitted=((friction, load),))
     return beside_the_rest(step.problem, fit, measurement, fitted)
 
 

@@ -80,8 +80,8 @@ class Step:
             )
             for one in accepted
         ]
-        before, misfit = precomputed.columns.parts
-        columns = TransformedColumns((before, *own, misfit))
+        *before, misfit = precomputed.columns.parts
+        columns = TransformedColumns((*before, *own, misfit))
         products = precomputed.columns.bordered(precomputed.products, own)
         components = precomputed.components
         return cls(
@@ -197,7 +197,7 @@ class Step:
         return WeightedFit(
             Weights.of(layout, friction, extra),
             Weights.of(layout, load, np.zeros_like(extra)),
-            (smooth[0], smooth[1]),
+            ((smooth[0], smooth[1]),),
         )
 
     def predicting_fit(self) -> WeightedFit:
