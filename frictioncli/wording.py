@@ -116,7 +116,7 @@ def thousands_text(count: int) -> str:
 
 
 def duration_text(seconds: float) -> str:
-    """Return a duration in minutes, or in hours and minutes from three hours on.
+    """Return a duration in minutes; in seconds below one, in hours and minutes from three hours on.
 
     Parameters
     ----------
@@ -125,10 +125,12 @@ def duration_text(seconds: float) -> str:
 
     Examples
     --------
-    >>> duration_text(5490.0), duration_text(17490.0)
-    ('92 min', '4 h 52 min')
+    >>> duration_text(23.0), duration_text(5490.0), duration_text(17490.0)
+    ('23 s', '92 min', '4 h 52 min')
     """
     minutes = seconds / 60.0
+    if minutes < 1.0:
+        return f"{number_text(seconds, 2)} s"
     if minutes >= 180.0:
         hours, rest = divmod(round(minutes), 60)
         return f"{hours} h {rest:02d} min"
@@ -182,7 +184,7 @@ def interval_text(low: float, high: float) -> str:
     Examples
     --------
     >>> interval_text(0.0112, 0.0131), interval_text(1.52, 2.31), interval_text(-120.0, 940.0)
-    ('0.011 to 0.013', '1.5 to 2.3', '−120 to 940')
+    ('0.0112 to 0.0131', '1.5 to 2.3', '−120 to 940')
     """
     return " to ".join(_alike((low, high), (low, high)))
 
@@ -209,7 +211,7 @@ def quantity_text(value: float, interval: tuple[float, float] | None, unit: str)
     >>> quantity_text(1.2, (0.4, 3.6), "N·m")
     '1.2 N·m (0.4 to 3.6)'
     >>> quantity_text(0.0121, (0.0112, 0.0131), "s"), quantity_text(0.254, None, "1")
-    ('12 ms (11 to 13)', '0.25')
+    ('12.1 ms (11.2 to 13.1)', '0.25')
     >>> quantity_text(0.162, (0.162, 0.162), "N·m")
     '0.16 N·m'
     """
@@ -255,12 +257,14 @@ def change_text(value: float, interval: tuple[float, float], unit: str) -> str:
 
 
 def _alike(values: Sequence[float], interval: tuple[float, float]) -> list[str]:
-    """Return values with the decimals that show an interval's half-width with one digit."""
+    """Return values with the decimals that show an interval's half-width with one digit.
+
+    Two digits where the first is 1, since one would be off by up to a third of the half-width.
+    """
     half = (interval[1] - interval[0]) / 2
     if not math.isfinite(half) or not half >= 1e-5:
         return [number_text(value) for value in values]
-    # a half-width of 0.95 counts as 1
-    decimals = max(-math.floor(math.log10(1.1 * half)), 0)
+    decimals = max(-math.floor(math.log10(half / 2)), 0)
     nearest = min(abs(interval[0]), abs(interval[1]))
     if interval[0] * interval[1] > 0 and nearest > _NEAR_ZERO * half:
         # an interval without zero does not read as one that begins there

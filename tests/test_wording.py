@@ -26,9 +26,9 @@ def test_what_is_not_known_is_not_stated():
 
 
 def test_short_times_are_in_milliseconds():
-    assert quantity_text(0.012, (0.011, 0.013), "s") == "12 ms (11 to 13)"
+    assert quantity_text(0.012, (0.011, 0.013), "s") == "12.0 ms (11.0 to 13.0)"
     assert quantity_text(0.51, (0.3, 0.7), "s") == "0.5 s (0.3 to 0.7)"
 
 
 def test_intervals_alone():
-    assert interval_text(0.0123, 0.0456) == "0.01 to 0.05"
+    assert interval_text(0.0123, 0.0456) == "0.012 to 0.046"

@@ -80,7 +80,7 @@ def test_section_says_what_was_found(diagnosed):
     assert [one.claim for one in section.unnamed] == ["Residuals have structure along angle."]
     (seen,) = section.visible
     assert (seen.effects, seen.kind, seen.p_value) == ("inertia", "load", "below 1e−300")
-    assert seen.size == "0.05 N·m (0.03 to 0.07) RMS in the friction"
+    assert seen.size == "0.050 N·m (0.031 to 0.069) RMS in the friction"
     assert seen.standing == ("too small to name: the base leaves 0.05 N·m, less than 0.10 N·m")
     assert section.margin == (
         "Effects below 0.10 N·m are not named (the least margin; 'frictioncli diagnose --margin'"
