@@ -37,7 +37,7 @@ def map_caption(results: JointResults, *, extended: bool) -> str:
         "Mean of measured minus simulated torque per cell, red where more was measured than"
         f" simulated, blue where less; grey: no data.{beside} Friction reverses with direction;"
         " load does not. Each has its own scale. A trend or a patch is structure; a random pattern"
-        " is noise. Choose a cell, by mouse or keyboard, to see its points in the chart below."
+        " is noise."
     )
 
 

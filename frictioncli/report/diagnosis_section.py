@@ -138,6 +138,7 @@ def diagnosis_figures(diagnosis: Reloaded | None) -> list[FigureSpec]:
             "Where the simulated torque is wrong",
             partial(map_caption, extended=bool(diagnosis.seen.terms)),
             partial(residual_map_figure, diagnosis=diagnosis),
+            printed=True,
         ),
     ]
     for index, cause in enumerate(diagnosis.causes):
@@ -148,6 +149,7 @@ def diagnosis_figures(diagnosis: Reloaded | None) -> list[FigureSpec]:
                 cause_title(cause, index + 1),
                 partial(evidence_caption, cause=cause, fitted=fitted),
                 partial(evidence_figure, diagnosis=diagnosis, index=index),
+                printed=True,
             )
         )
     if document.gain is not None:
@@ -167,5 +169,14 @@ def _figure(
     title: str,
     caption: Callable[[JointResults], str],
     draw: Callable[[JointResults], Figure],
+    *,
+    printed: bool = False,
 ) -> FigureSpec:
-    return FigureSpec(name=name, title=title, caption=caption, missing=nothing_missing, draw=draw)
+    return FigureSpec(
+        name=name,
+        title=title,
+        caption=caption,
+        missing=nothing_missing,
+        draw=draw,
+        printed=printed,
+    )

@@ -30,6 +30,8 @@ class DrawnFigure:
         SVG element; empty if the figure could not be drawn.
     png : bytes
         Content of the PNG file; empty if it was not asked for.
+    printed : bool
+        Whether it belongs to the summary that is printed.
     """
 
     name: str
@@ -37,6 +39,7 @@ class DrawnFigure:
     text: str
     svg: Markup
     png: bytes
+    printed: bool = False
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -115,6 +118,7 @@ def draw_figure(
             text=spec.caption(results),
             svg=Markup(svg(figure, name, str(escape(spec.title)))),
             png=png_bytes(figure) if png else b"",
+            printed=spec.printed,
         )
 
 

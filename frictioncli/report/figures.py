@@ -60,6 +60,8 @@ class FigureSpec:
         Returns why it cannot be drawn and what would be needed; empty if it can be drawn.
     draw : callable
         Draws the figure.
+    printed : bool
+        Whether it belongs to the summary that is printed.
     """
 
     name: str
@@ -67,6 +69,7 @@ class FigureSpec:
     caption: Callable[[JointResults], str]
     missing: Callable[[JointResults], str]
     draw: Callable[[JointResults], Figure]
+    printed: bool = False
 
 
 def _load_caption(results: JointResults) -> str:
@@ -219,6 +222,7 @@ FIGURES = (
         caption=partial(_temperature_caption, kind="motor"),
         missing=motor_temperature_missing,
         draw=partial(friction_temperature_figure, kind="motor"),
+        printed=True,
     ),
     FigureSpec(
         name="fig6",
@@ -240,6 +244,7 @@ FIGURES = (
         caption=_speed_caption,
         missing=speeds_missing,
         draw=speed_figure,
+        printed=True,
     ),
     FigureSpec(
         name="fig9",
@@ -261,6 +266,7 @@ FIGURES = (
         caption=_evaluation_caption,
         missing=evaluation_missing,
         draw=error_figure,
+        printed=True,
     ),
     FigureSpec(
         name="residuals",

@@ -102,12 +102,16 @@ def overview_figure(results: JointResults) -> Figure:
     figure = Figure(figsize=(WIDTH, 3.9), layout="constrained")
     (panel,) = stacked(figure, 1)
     _draw_pairs(panel, results)
-    fastest = float(results.pairs["speed"].max())
+    slowest, fastest = (float(f(results.pairs["speed"])) for f in (np.min, np.max))
     speeds = np.linspace(0.0, np.sqrt(1.04 * fastest), 160) ** 2
     for temperature, colour in _temperatures(results, point):
         curve = results.predict(load=0.0, speed=speeds, temperature=temperature)
         known = f"{temperature:.0f} °C" if np.isfinite(temperature) else "equation (16)"
-        panel.plot(speeds, curve, color=colour, linewidth=1.6, label=known)
+        measured = (speeds >= slowest) & (speeds <= fastest)
+        panel.plot(speeds, curve, color=colour, linewidth=1.0, linestyle=":")
+        panel.plot(
+            speeds, np.where(measured, curve, np.nan), color=colour, linewidth=1.6, label=known
+        )
     panel.errorbar(
         [point.speed],
         [point.friction],
@@ -178,7 +182,8 @@ def _caption(results: JointResults) -> str:
     )
     extended = "; the thick bar that of the extended model" if point.extended_error else ""
     return (
-        f"Friction by equation (16){warm}; dashes: measured pairs, heating red, cooling blue."
+        f"Friction by equation (16){warm}, dotted beyond the measured speeds; dashes: measured"
+        " pairs, heating red, cooling blue."
         f" Point: {number_text(point.friction)} {results.unit} at {point.conditions}. The thin bar"
         f" spans 95 % of the misfits of equation (16){extended}."
     )
@@ -190,4 +195,5 @@ OVERVIEW = FigureSpec(
     caption=_caption,
     missing=nothing_missing,
     draw=overview_figure,
+    printed=True,
 )

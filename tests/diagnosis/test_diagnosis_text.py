@@ -27,7 +27,7 @@ def test_a_property_of_the_log_is_said_to_be_corrected():
     assert said[1].endswith(
         "The torque in these logs lags the position by 12 ms (11 to 13); corrected."
     )
-    assert said[2] == "size: 0.9 N·m (0.8 to 1.0) RMS in the friction; p-value 1e−09"
+    assert said[2] == "size: 0.90 N·m (0.80 to 1.00) RMS in the friction; p-value 1e−09"
 
 
 def test_a_change_that_did_not_last_says_when_it_was_there():
@@ -61,11 +61,11 @@ def test_size_says_what_a_refit_of_the_base_model_would_leave():
 def test_what_is_not_named_is_listed_with_its_reason():
     small = cause(["drift"], standing="negligible", reason="below 0.23 N·m", size=0.12)
     said = lines(sets=[["stribeck"]], visible=(small,), margin=0.23)
-    assert said[-3] == (
+    assert said[-4] == (
         "not named: drift, 0.12 N·m RMS in the friction, p-value 1e−09; too small to"
         " name: below 0.23 N·m"
     )
-    assert said[-2] == "Effects below 0.23 N·m are not named (--margin)."
+    assert said[-3] == "Effects below 0.23 N·m are not named (--margin)."
     assert "no cause is named" in lines(verdict="no_evidence", visible=(small,))
     assert "no cause found" in lines(verdict="no_evidence")
 
@@ -90,16 +90,38 @@ def test_what_is_left_is_said_with_size_and_axis():
 
 
 def test_detectable_sizes_are_said():
-    said = lines(sets=[["drift"]], detectable={"stribeck": 0.2, "run_in": None, "drift": 1.5})
+    said = lines(detectable={"stribeck": 0.2, "run_in": None, "drift": 1.5})
     assert said[-1] == (
         "Smallest effects that would be named in 80 % of cases: 0.20 N·m RMS (Stribeck"
         " friction) to 1.5 N·m (drift)."
     )
-    alone = lines(sets=[["drift"]], detectable={"stribeck": 0.2, "run_in": None})
+    alone = lines(detectable={"stribeck": 0.2, "run_in": None})
     assert alone[-1] == (
         "Smallest effect that would be named in 80 % of cases: 0.20 N·m RMS (Stribeck friction)."
     )
-    assert lines(detectable={"run_in": None})[-1] == "These data cannot show any of the effects."
+    assert lines(detectable={"run_in": None})[-1] == (
+        "The smallest size that would be named is not known for any effect."
+    )
+
+
+def test_detectable_sizes_of_friction_and_load_are_said_in_their_own_units():
+    sizes = {"payload_change": 0.33, "dress_pack": 0.5, "stribeck": 0.02}
+    assert lines(torque_unit="A", load_unit="N·m", detectable=sizes)[-1] == (
+        "Smallest effects that would be named in 80 % of cases: 0.33 N·m RMS (payload change) to"
+        " 0.50 N·m (dress pack) and 0.020 A RMS (Stribeck friction)."
+    )
+
+
+def test_what_would_settle_a_cause_is_not_taken_for_the_plan():
+    said = lines(causes=(STEP,))
+    assert f"settled by: {STEP.experiment}" in said
+    assert said[-1].startswith("next: 'frictioncli plan'")
+    assert not any(line.startswith("next:") for line in lines(verdict="no_evidence"))
+
+
+def test_values_of_several_possible_effects_are_said_to_be_those_of_the_first():
+    either = cause(["linear_viscous", "quadratic_drag"], statement="Drag grows to 0.2 N·m.")
+    assert lines(causes=(either,))[1].endswith(": If linear viscous: Drag grows to 0.2 N·m.")
 
 
 def test_what_the_base_takes_entirely_is_said():
@@ -111,7 +133,7 @@ def test_what_the_base_takes_entirely_is_said():
     assert lines(detectable=sizes, undetectable=why)[-1].endswith(
         f"N·m RMS (Stribeck friction). {said}"
     )
-    assert lines(detectable=dict.fromkeys(why), undetectable=why)[-1].endswith(f"effects. {said}")
+    assert lines(detectable=dict.fromkeys(why), undetectable=why)[-1].endswith(f"effect. {said}")
 
 
 def test_the_larger_parts_of_an_empirical_term_are_told_with_their_sizes():

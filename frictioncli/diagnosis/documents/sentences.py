@@ -43,6 +43,8 @@ def alternatives_text(cause: CauseRecord) -> str:
 def finding_text(cause: CauseRecord) -> str:
     """Return a cause in a sentence with values; a property of the log is said to be corrected.
 
+    Of several possible effects the values are those of the first.
+
     Parameters
     ----------
     cause : CauseRecord
@@ -50,8 +52,8 @@ def finding_text(cause: CauseRecord) -> str:
     """
     said = cause.statement or cause.claim
     if cause.is_measurement and cause.standing == "named" and OTHER_JOINT not in cause.effects:
-        return f"{said.removesuffix('.')}; corrected."
-    return said
+        said = f"{said.removesuffix('.')}; corrected."
+    return f"If {in_words(cause.effects[0])}: {said}" if len(cause.effects) > 1 else said
 
 
 def size_text(cause: CauseRecord, document: DiagnosisDocument) -> str:
@@ -186,29 +188,27 @@ def detectable_text(document: DiagnosisDocument) -> str:
     document : DiagnosisDocument
         The joint's diagnosis.
     """
-    known = sorted(
-        (size, name)
-        for name, size in document.detectable.items()
-        # sizes in another unit are not compared
-        if size is not None and document.unit_of(BY_NAME[name].channel) == document.torque_unit
-    )
+    by_unit: dict[str, list[tuple[float, str]]] = {}
+    for name, size in document.detectable.items():
+        if size is not None:
+            by_unit.setdefault(document.unit_of(BY_NAME[name].channel), []).append((size, name))
     taken = [
         in_words(name)
         for name, why in document.undetectable.items()
         if why == TAKEN_BY_BASE and name not in document.found
     ]
     hidden = f" {TAKEN_BY_BASE[0].upper()}{TAKEN_BY_BASE[1:]}: {list_text(taken)}." if taken else ""
-    if not known:
-        return f"These data cannot show any of the effects.{hidden}"
-    unit = document.torque_unit
-    (least, easiest), (most, hardest) = known[0], known[-1]
-    sizes = f"{number_text(least, 2)} {unit} RMS ({in_words(easiest)})"
-    if len(known) == 1:
-        return f"Smallest effect that would be named in 80 % of cases: {sizes}.{hidden}"
-    return (
-        f"Smallest effects that would be named in 80 % of cases: {sizes}"
-        f" to {number_text(most, 2)} {unit} ({in_words(hardest)}).{hidden}"
-    )
+    if not by_unit:
+        return f"The smallest size that would be named is not known for any effect.{hidden}"
+    ranges = []
+    for unit, sizes in by_unit.items():
+        (least, easiest), (most, hardest) = min(sizes), max(sizes)
+        text = f"{number_text(least, 2)} {unit} RMS ({in_words(easiest)})"
+        if len(sizes) > 1:
+            text += f" to {number_text(most, 2)} {unit} ({in_words(hardest)})"
+        ranges.append(text)
+    noun = "Smallest effects" if sum(map(len, by_unit.values())) > 1 else "Smallest effect"
+    return f"{noun} that would be named in 80 % of cases: {list_text(ranges)}.{hidden}"
 
 
 def remainder_text(document: DiagnosisDocument) -> str:

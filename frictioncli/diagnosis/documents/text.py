@@ -23,9 +23,11 @@ from frictioncli.diagnosis.documents.sentences import (
 )
 from frictioncli.wording import list_text, probability_text
 
+_PLAN = "next: 'frictioncli plan' proposes what to measure in the time available (--minutes)"
+
 
 def verdict_text(document: DiagnosisDocument) -> str:
-    """Return what is wrong, where, why we think so, what it is worth, what to measure next.
+    """Return what is wrong, where, why we think so, what it is worth, what would settle it.
 
     Parameters
     ----------
@@ -53,6 +55,7 @@ def verdict_text(document: DiagnosisDocument) -> str:
         settling_text(document),
         margin_text(document),
         detectable_text(document),
+        _PLAN if document.causes else "",
     ]
     return "\n  ".join([first, *(line for line in lines if line)])
 
@@ -67,7 +70,7 @@ def _cause_lines(cause: CauseRecord, document: DiagnosisDocument) -> Iterator[st
     if lasting := lasting_text(cause, document):
         yield f"  when: {lasting}"
     yield f"  seen: {cause.claim}"
-    yield f"  next: {cause.experiment}"
+    yield f"  settled by: {cause.experiment}"
 
 
 def _left(cause: CauseRecord, document: DiagnosisDocument) -> Iterator[str]:
@@ -76,7 +79,7 @@ def _left(cause: CauseRecord, document: DiagnosisDocument) -> Iterator[str]:
         f"structure that no known effect explains: {cause.claim}"
         f" {size_text(cause, document)}; p-value {chance_text(cause)}"
     )
-    yield f"  next: {cause.experiment}"
+    yield f"  settled by: {cause.experiment}"
 
 
 def _visible_lines(cause: CauseRecord, document: DiagnosisDocument) -> Iterator[str]:

@@ -1,5 +1,6 @@
 """The page as a reader has it: in a browser, narrow and wide, dark, on paper, without scripts."""
 
+import base64
 import json
 import re
 
@@ -317,6 +318,25 @@ def test_the_page_follows_a_dark_screen(opened):
         ]
     assert found["light"][0] == "rgb(255, 255, 255)"
     assert all(light != dark for light, dark in zip(*found.values(), strict=True))
+
+
+def test_print_is_a_summary_that_says_what_it_leaves_out(opened):
+    driver = opened()
+    shown = """return [...document.querySelectorAll(arguments[0])].filter(
+        (element) => element.checkVisibility()).map((element) => element.id)"""
+    assert driver.execute_script(shown, ".printed") == []
+    on_screen = driver.execute_script(shown, "figure")
+    driver.execute_cdp_cmd("Emulation.setEmulatedMedia", {"media": "print"})
+    printed = driver.execute_script(shown, "figure")
+    assert {"overview", "fig5", "fig8", "fig11"} <= {*printed}
+    assert not {"fig3", "fig9", "residuals"} & {*printed}
+    assert {*printed} < {*on_screen}
+    assert driver.execute_script(shown, ".explorer, #origin, #downloads, #effects") == []
+    assert len(driver.execute_script(shown, ".printed")) == 1
+    sheet = driver.execute_cdp_cmd("Page.printToPDF", {"printBackground": True})
+    pages = base64.b64decode(sheet["data"]).count(b"/Type /Page\n")
+    driver.execute_cdp_cmd("Emulation.setEmulatedMedia", {"media": ""})
+    assert 5 < pages <= 15
 
 
 def test_marks_of_the_explorer_tell_their_values(opened):
