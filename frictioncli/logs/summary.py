@@ -94,7 +94,7 @@ class IngestSummary:
             + (f" ({reasons})" if reasons else ""),
             "samples: "
             + ", ".join(f"joint {joint}: {count:,}" for joint, count in self.samples.items())
-            + f"; {self.duration:,.1f} s of motion logs",
+            + f"; {self.duration:,.1f} s recorded",
             f"torque in {self.torque_unit} at the {self.torque_side}",
             *_rejected_lines(self.files_rejected),
             *(f"note: {note}" for note in self.notes),

@@ -12,7 +12,7 @@ from frictioncli import documents
 from frictioncli.model.friction import FORM, FrictionParameters
 from frictioncli.model.noise import Noise
 from frictioncli.provenance import Provenance
-from frictioncli.wording import count_text
+from frictioncli.wording import count_text, duration_text
 
 TemperatureKind = Annotated[str, msgspec.Meta(pattern="^(motor|housing|mean)$")]
 """Which temperature the friction function is given: motor, housing, or the mean of both."""
@@ -165,8 +165,9 @@ class FrictionModel:
 
     def table(self) -> str:
         """Return the parameters with units and 95 % intervals, and what is not determined."""
+        warm = f" on {self.temperature} temperature" if self.knows_temperature else ""
         lines = [
-            f"joint {self.joint}: {FORM}, {self.method} fit on {self.temperature} temperature",
+            f"joint {self.joint}: {FORM}, {self.method} fit{warm}",
             f"  {'parameter':9s} {'estimate':>10s}  {'95 % interval':>22s}  unit",
         ]
         for name, entry in self.parameters.items():
@@ -178,7 +179,7 @@ class FrictionModel:
             f"  rmse {self.rmse:.3g} {self.torque_unit} over"
             f" {count_text(self.n_pairs, self.row_noun)}; noise: point {self.noise.point:.2g},"
             f" {self.row_noun} {self.noise.pair:.2g}, drift {self.noise.drift:.2g}"
-            f" {self.torque_unit} over {self.noise.drift_time / 60:.0f} min"
+            f" {self.torque_unit} over {duration_text(self.noise.drift_time)}"
         )
         return "\n".join([*lines, *(f"  note: {note}" for note in self.notes)])
 

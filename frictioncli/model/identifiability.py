@@ -13,6 +13,7 @@ from frictioncli.model.equations import COEFFICIENTS
 from frictioncli.model.identification import Estimate, fit_terms
 from frictioncli.model.observations import Observations
 from frictioncli.model.variable_projection import DELTA_BOUNDS
+from frictioncli.wording import range_text
 
 MIN_TEMPERATURE_SPAN = 10.0
 """Least span of temperature from which gamma and delta are fitted. [°C]"""
@@ -157,10 +158,11 @@ def _by_excitation(observed: Observations) -> Determination:
         )
     slowest, fastest = np.min(observed.speed), np.max(observed.speed)
     if fastest < MIN_SPEED_RATIO * slowest:
-        speeds = f"{slowest:.3g} to {fastest:.3g} deg/s"
+        speeds = f"{range_text([f'{slowest:.3g}', f'{fastest:.3g}'])} deg/s"
         chosen = chosen.without(
             "beta",
-            f"speeds of {speeds} do not separate viscous from Coulomb friction; merged into tau_c",
+            f"motion at {speeds} does not separate viscous from Coulomb friction; merged into"
+            " tau_c",
             "tau_c",
             f"holds Coulomb friction and the viscous part beta, at {speeds}",
         )
@@ -192,8 +194,9 @@ def _by_interval(
         if vague or doubtful or np.var(squares) <= of_noise:
             return chosen.without(
                 "alpha",
-                f"load spans {np.sqrt(np.min(squares)):.3g} to {np.sqrt(np.max(squares)):.3g}, too"
-                " little to show in the friction; left out (0)",
+                f"the magnitude of the load spans {np.sqrt(np.min(squares)):.3g} to"
+                f" {np.sqrt(np.max(squares)):.3g}, too little to show in the friction; left out"
+                " (0)",
                 None,
                 "",
             )

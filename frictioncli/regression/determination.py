@@ -205,8 +205,8 @@ def _without_vague_load(
         return None
     load = np.sqrt(estimate.squared_load)
     undetermined["alpha"] = (
-        f"load spans {load.min():.3g} to {load.max():.3g}, too little to show in the"
-        f" friction ({low:.2g} to {high:.2g}); left out (0)"
+        f"the magnitude of the load spans {load.min():.3g} to {load.max():.3g}, too little to show"
+        f" in the friction ({low:.2g} to {high:.2g}); left out (0)"
     )
     return estimate.terms.without("alpha")
 

@@ -7,6 +7,8 @@ from msgspec import UNSET
 
 from frictioncli.diagnosis.documents.document import DiagnosisDocument
 from frictioncli.diagnosis.documents.sentences import alternatives_text
+from frictioncli.model.document import PARAMETERS
+from frictioncli.report.labels import PARAMETER_SYMBOLS
 from frictioncli.report.operating_point import operating_point
 from frictioncli.report.results import JointResults
 from frictioncli.wording import duration_text, list_text, number_text, range_text
@@ -128,14 +130,30 @@ def _what_next(results: JointResults, document: DiagnosisDocument | None) -> Ans
         return Answer(question=question, value="diagnose", text="")
     gain = document.gain
     if gain is not None and gain.ci95[0] > 0:
+        if gain.basis == "new_run":
+            return Answer(
+                question=question,
+                value="use the extended model",
+                text="then 'frictioncli plan'",
+            )
         return Answer(
             question=question,
-            value="use the extended model",
-            text="then 'frictioncli plan'",
+            value="test on a new run",
+            text="",
         )
-    if document.verdict == "no_evidence":
+    unknown = [
+        PARAMETER_SYMBOLS[name]
+        for name in PARAMETERS
+        if not results.model.parameters[name].determined
+    ]
+    if document.verdict == "no_evidence" and not unknown:
         return Answer(question=question, value="use equation (16)", text="")
-    return Answer(question=question, value="measure more", text="'frictioncli plan' proposes what")
+    lacking = f"{list_text(unknown)} not determined; " if unknown else ""
+    return Answer(
+        question=question,
+        value="measure more",
+        text=f"{lacking}'frictioncli plan' proposes what",
+    )
 
 
 def word_count(found: list[Answer]) -> int:

@@ -41,11 +41,14 @@ class _CorrectionResult:
         Number of corrections, with its noun.
     uncorrected : str
         Error (21) without correction; empty if it cannot be compared.
+    worse : bool
+        Whether it is larger than without correction in any run.
     """
 
     error: str
     corrections: str
     uncorrected: str
+    worse: bool
 
 
 def summary_text(results: JointResults, diagnosis: DiagnosisDocument | None = None) -> str:
@@ -222,31 +225,37 @@ def _correction_sentence(results: JointResults) -> str:
         if result and result.uncorrected
     ]
     without = f", against {' and '.join(uncorrected)} without correction" if uncorrected else ""
+    worse = [PHASE_WORDS[phase] for phase, result in by_phase.items() if result and result.worse]
+    warning = f" In {list_text(worse)}, corrections make the prediction worse." if worse else ""
     return (
         f"With periodic temperature corrections ({setting_text(results)}), the error ε of the"
-        f" predicted friction is {' and '.join(errors)}{without}."
+        f" predicted friction is {' and '.join(errors)}{without}.{warning}"
     )
 
 
 def _correction_result(results: JointResults, phase: str) -> _CorrectionResult | None:
     schedule = results.schedule[results.schedule["phase"] == phase]
-    runs = [rows for _, rows in schedule.groupby("run")]
+    runs = dict(list(schedule.groupby("run")))
     if not runs:
         return None
-    errors = [_error(rows) for rows in runs]
-    counts = sorted(int((rows["corrected"].astype(bool) | rows["failed"]).sum()) for rows in runs)
+    errors = {run: _error(rows) for run, rows in runs.items()}
+    counts = sorted(
+        int((rows["corrected"].astype(bool) | rows["failed"]).sum()) for rows in runs.values()
+    )
     table = results.evaluation
-    uncorrected = table[(table["phase"] == phase) & (table["criterion"] == "none")]["epsilon"]
+    without = table[(table["phase"] == phase) & (table["criterion"] == "none")]
+    uncorrected = without.set_index("run")["epsilon"]
     if results.simulated_extended != results.evaluated_extended or not any(counts):
         # another model's errors, or equal to those of the schedule: no comparison
         uncorrected = uncorrected[:0]
     return _CorrectionResult(
-        error=range_text([number_text(error) for error in sorted(errors)]),
+        error=range_text([number_text(error) for error in sorted(errors.values())]),
         corrections=f"{range_text([str(n) for n in counts])}"
         f" correction{'' if counts[-1] == 1 else 's'}",
         uncorrected=range_text([number_text(error) for error in sorted(uncorrected)])
         if len(uncorrected)
         else "",
+        worse=any(errors[run] > error for run, error in uncorrected.items() if run in errors),
     )
 
 

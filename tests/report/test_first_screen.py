@@ -112,6 +112,36 @@ def test_the_picture_holds_the_point_and_both_intervals(diagnosed):
     assert heights == pytest.approx([1.96 * 2.0, 1.96 * 1.0])
 
 
+def test_a_gain_on_its_own_training_data_is_not_recommended(diagnosed):
+    document = diagnosed.diagnosis.document
+    own = structs.replace(document, gain=structs.replace(document.gain, basis="within_run"))
+    results = replace(diagnosed, diagnosis=replace(diagnosed.diagnosis, document=own))
+    assert by_question(results)["What to do next"].strip() == "test on a new run"
+    assert word_count(answers(results)) < 60
+
+
+def test_a_model_with_undetermined_parameters_is_not_recommended(diagnosed, without_temperature):
+    clean = structs.replace(diagnosed.diagnosis.document, verdict="no_evidence", gain=None)
+    found = replace(diagnosed.diagnosis, document=clean)
+    said = by_question(replace(diagnosed, diagnosis=found))
+    assert said["What to do next"].strip() == "use equation (16)"
+    said = by_question(replace(without_temperature, diagnosis=found))
+    assert said["What to do next"].startswith("measure more γ and δ not determined;")
+
+
+def test_curves_are_dotted_beyond_the_measured_speeds(diagnosed):
+    panel = overview_figure(diagnosed).axes[0]
+    curves = [line for line in panel.lines if len(line.get_xdata()) > 100]
+    solid = [line for line in curves if line.get_linestyle() == "-"]
+    dotted = [line for line in curves if line.get_linestyle() == ":"]
+    assert len(solid) == len(dotted) == 3
+    speeds = diagnosed.pairs["speed"]
+    for line in solid:
+        drawn = line.get_xdata()[np.isfinite(line.get_ydata())]
+        assert speeds.min() <= drawn.min() < drawn.max() <= speeds.max()
+    assert all(line.get_xdata()[0] == 0.0 for line in dotted)
+
+
 def test_a_gain_that_may_be_none_is_not_recommended(diagnosed):
     document = diagnosed.diagnosis.document
     unsure = structs.replace(document, gain=structs.replace(document.gain, ci95=(-0.1, 0.4)))

@@ -51,6 +51,16 @@ def test_verdict_gives_error_corrections_and_what_they_bring(two_runs):
     assert "predicts the friction of joint 2 to within 1.13 N·m (RMS)" in text
 
 
+def test_corrections_that_make_it_worse_are_said_to(two_runs):
+    assert "worse" not in summary_text(two_runs)
+    table = two_runs.evaluation
+    none = (table["criterion"] == "none") & (table["phase"] == "heat-up")
+    # one of two runs is enough
+    better = table.assign(epsilon=table["epsilon"].mask(none & (table["run"] == "day-2"), 0.01))
+    said = summary_text(replace(two_runs, evaluation=better))
+    assert " In heating, corrections make the prediction worse." in said
+
+
 def test_errors_of_two_models_are_not_set_against_each_other(two_runs):
     text = summary_text(replace(two_runs, simulated_extended=True))
     assert "extended model" in text
