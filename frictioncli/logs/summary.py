@@ -14,6 +14,7 @@ from frictioncli.logs.samples.poses import Poses
 from frictioncli.logs.samples.quantized_temperature import Knots
 from frictioncli.logs.samples.recording import RecordingSummary
 from frictioncli.logs.samples.timeline import Timeline
+from frictioncli.wording import count_text
 
 _NAMES_SHOWN = 6
 _ALIKE = 3
@@ -88,7 +89,8 @@ class IngestSummary:
             f"{reason} {count:,}" for reason, count in sorted(self.rows_rejected.items())
         )
         lines = [
-            f"{self.files_read} logs read, {len(self.files_rejected)} files rejected;"
+            f"{count_text(self.files_read, 'log')} read,"
+            f" {count_text(len(self.files_rejected), 'file')} rejected;"
             f" runs: {', '.join(self.runs)}",
             f"rows: {self.rows_read:,} read, {self.rows_kept:,} kept, {rejected:,} rejected"
             + (f" ({reasons})" if reasons else ""),

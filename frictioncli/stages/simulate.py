@@ -11,6 +11,7 @@ from frictioncli.correction.settings import CorrectionSettings, ScheduleSettings
 from frictioncli.model.document import FrictionModel
 from frictioncli.stages.correction_table import write_correction_table
 from frictioncli.stages.stage import StageResult, stage
+from frictioncli.wording import count_text
 from frictioncli.workfiles import SCHEDULE
 
 
@@ -57,7 +58,7 @@ def simulate(
         extended=extended,
     )
     lines = [
-        f"{run}, joint {joint}, {phase}: {int(group['corrected'].sum())} corrections"
+        f"{run}, joint {joint}, {phase}: {count_text(int(group['corrected'].sum()), 'correction')}"
         f" ({int(group['failed'].sum())} failed), epsilon"
         f" {correction.epsilon(group, 'friction_smoothed'):.3g} {unit}"
         f" ({correction.epsilon(group, 'friction_torque'):.3g} unsmoothed)"

@@ -2,6 +2,7 @@
 
 import gzip
 import json
+import os
 
 import numpy as np
 import pytest
@@ -82,11 +83,28 @@ def test_manifest_orders_and_labels(tmp_path):
     assert table.loc[0, ["payload", "ambient"]].tolist() == [3.5, 21.5]
     assert table["started_at"][1] == "2024-05-17T10:30:00+00:00"
     warnings = " ".join(summary.warnings)
-    assert "row 5: gone.csv is not in the folder" in warnings
+    assert "row 5: gone.csv is not a file in the folder" in warnings
     assert "no start time for c.csv" in warnings
     samples = tables.read(tmp_path / "work" / "samples.parquet", schemas.SAMPLES)
     assert samples["time"].iloc[0] == 0
     assert (np.diff(samples["time"]) > 0).all()
+
+
+def test_links_to_nothing_are_told(tmp_path):
+    write(tmp_path / "run" / "a.csv", kuka_columns(3.0))
+    for name in ("b.csv", "c.csv"):
+        (tmp_path / "run" / name).symlink_to("nowhere")
+    (tmp_path / "run" / "manifest.csv").write_text(
+        "file;started_at\na.csv;2024-05-17T09:30:00\nd.csv;2024-05-17T10:30:00\n"
+    )
+    os.mkfifo(tmp_path / "run" / "d.csv")
+    summary = ingest([tmp_path / "run"], tmp_path / "work")
+    assert summary.files_read == 1
+    text = str(summary)
+    assert "cannot be opened (No such file or directory)" in text
+    assert "b.csv" in text
+    assert "c.csv" in text
+    assert "row 3: d.csv is not a file in the folder" in " ".join(summary.warnings)
 
 
 def test_overlapping_starts_are_put_one_after_the_other(tmp_path):
@@ -160,7 +178,7 @@ def test_what_is_no_log_is_listed_but_not_fatal(tmp_path):
     assert table["row"].isna().all()
     assert set(recordings(tmp_path / "work")["file"]) == {str(folder / n) for n in tables_before}
     text = str(summary)
-    assert "1 logs read, 10 files rejected" in text
+    assert "1 log read, 10 files rejected" in text
     assert "empty.csv" in text
 
 

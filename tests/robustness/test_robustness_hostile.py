@@ -128,6 +128,6 @@ def test_nothing_is_written_outside_the_work_folder(tmp_path):
     before = {path for path in tmp_path.rglob("*")}
     result = called("run", inside, "-w", inside / "work", cwd=inside)
     assert result.returncode == 0, result.stderr
-    assert "outside is not in the folder" in result.stdout
+    assert "outside is not a file in the folder" in result.stdout
     made = {path for path in tmp_path.rglob("*")} - before
     assert all(inside / "work" in (path, *path.parents) for path in made)

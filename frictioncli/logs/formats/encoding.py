@@ -103,7 +103,8 @@ def read_head(path: Path) -> FileHead:
                 content += more
             return FileHead(content, size)
     except STREAM_ERRORS as error:
-        raise UnreadableLog(f"cannot be opened ({error}); expected a readable file") from error
+        why = getattr(error, "strerror", None) or error
+        raise UnreadableLog(f"cannot be opened ({why}); expected a readable file") from error
 
 
 def detect_encoding(head: bytes) -> str | None:

@@ -157,12 +157,17 @@ def _files_below(folder: Path, excluded: Path | None) -> list[Path]:
             continue
         folders[:] = [name for name in folders if not name.startswith(".")]
         named = (one for one in files if not one.startswith(".") and one.lower() not in _IGNORED)
-        found += [path for path in map(inside.joinpath, named) if path.is_file()]
+        found += [path for path in map(inside.joinpath, named) if path.is_file() or _is_lost(path)]
     keys = {
         place: [natural_key(part) for part in place.parts]
         for place in {path.parent for path in found}
     }
     return sorted(found, key=lambda path: [*keys[path.parent], natural_key(path.name)])
+
+
+def _is_lost(path: Path) -> bool:
+    """Return whether a path is a link to nothing: a log that is missing, as told on reading."""
+    return path.is_symlink() and not path.exists()
 
 
 def _unique_names(folders: list[Path]) -> dict[Path, str]:

@@ -85,9 +85,9 @@ def read_run_manifest(folder: Path, names: Sequence[str]) -> RunManifest:
     rows = read_manifest(path)
     entries = match_files(rows, names)
     present = {entry.file for entry in entries.values()}
-    present |= {path.name for path in folder.iterdir()}
+    present |= {path.name for path in folder.iterdir() if path.is_file()}
     warnings = tuple(
-        f"{path} row {row.row}: {row.file} is not in the folder"
+        f"{path} row {row.row}: {row.file} is not a file in the folder"
         for row in rows
         if row.file not in present
     )
