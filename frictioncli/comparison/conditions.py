@@ -79,7 +79,9 @@ def changes_at_references(
     load = float(np.sqrt(np.mean(np.square(problem.table.load))))
     coldest, warmest = _common_range(problem)
     conditions = []
-    for temperature in REFERENCE_TEMPERATURES:
+    # friction that does not depend on temperature is the same at each
+    falls = parameters.gamma > 0.0 and parameters.delta > 0.0
+    for temperature in REFERENCE_TEMPERATURES if falls else REFERENCE_TEMPERATURES[1:2]:
         for speed in common_speeds(problem):
             friction = float(
                 friction_torque(parameters, load=load, speed=speed, temperature=temperature)

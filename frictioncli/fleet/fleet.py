@@ -88,10 +88,11 @@ class FleetSummary:
             + f", {self.status[FAILED]} failed; {self.seconds:,.0f} s of work"
         ]
         if self.verdicts:
-            counts = ", ".join(
-                f"{count} {verdict}" for verdict, count in sorted(self.verdicts.items())
-            )
-            lines.append(f"verdicts  {counts}")
+            counts = [f"{count} {verdict}" for verdict, count in sorted(self.verdicts.items())]
+            rest = self.joints - self.status[FAILED] - sum(self.verdicts.values())
+            if rest:
+                counts.append(f"{rest} not diagnosed: see left_out in {self.path.name}")
+            lines.append(f"verdicts  {', '.join(counts)}")
         lines += [f"failed    {text}" for text in sorted(self.failures)]
         if self.status[FAILED] > len(self.failures):
             more = self.status[FAILED] - len(self.failures)

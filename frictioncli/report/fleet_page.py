@@ -261,11 +261,14 @@ def _key_numbers(
             if cause and " or " not in cause
         )
         most = [f"{in_words(name)} ({count})" for name, count in causes.most_common(3)]
+        most_often = f"most often {list_text(most)}" if most else ""
+        left_out = verdicts[_UNDIAGNOSED]
+        undiagnosed = f"{thousands_text(left_out)} not diagnosed" if left_out else ""
         numbers.append(
             KeyNumber(
                 name="cause named",
                 value=f"{thousands_text(verdicts['named'])} of {thousands_text(diagnosed)}",
-                context=f"most often {list_text(most)}" if most else "",
+                context="; ".join(part for part in (most_often, undiagnosed) if part),
             )
         )
     return numbers
