@@ -8,6 +8,7 @@ from frictioncli.inspection.monitors.constant_torque import Limit
 from frictioncli.inspection.monitors.resolution import Resolution
 from frictioncli.inspection.monitors.sampling import Sampling
 from frictioncli.inspection.other_clocks import OtherClock
+from frictioncli.logs.channels.channel_names import LOAD
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -110,6 +111,12 @@ class JointInspection:
     frozen_s: float = 0.0
     brake_closed_s: float | None = None
     moves: Mapping[str, int] = field(default_factory=dict)
+
+    @property
+    def load_unit(self) -> str:
+        """Unit of the load: N·m of a channel of its own, else that of the torque."""
+        own = any(channel.quantity == LOAD for channel in self.channels)
+        return "N·m" if own else self.torque_unit
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -104,6 +104,7 @@ def inspect(
         segments, pairs, other_motion = segments_and_pairs(
             combined(samples), inspected.conditions, pairing, folder
         )
+    found = {joint.joint: joint for file in inspected.files for joint in file.joints}
     inspected.remarks += other_motion.texts(pairs["joint"].unique().tolist())
     return Inspection(
         files=tuple(_with_segments(file, segments) for file in inspected.files),
@@ -113,6 +114,7 @@ def inspect(
                 _total(segments, joint),
                 inspected.recording_counts(joint),
                 pairs[pairs["joint"] == joint],
+                found[joint],
             )
             for joint in inspected.joints
         ),

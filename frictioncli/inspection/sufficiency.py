@@ -8,6 +8,7 @@ import pandas as pd
 
 from frictioncli.diagnosis.diagnose import LEAST_PAIRS as LEAST_TO_DIAGNOSE
 from frictioncli.errors import NotEnoughData
+from frictioncli.inspection.findings import JointInspection
 from frictioncli.inspection.pair_check import FORWARD, REVERSE
 from frictioncli.model.fitting import LEAST_PAIRS as LEAST_TO_FIT
 from frictioncli.model.identifiability import MIN_SPEED_RATIO, MIN_TEMPERATURE_SPAN
@@ -92,7 +93,11 @@ class RecordingCounts:
 
 
 def joint_summary(
-    joint: int, segments: Mapping[str, int], recordings: RecordingCounts, pairs: pd.DataFrame
+    joint: int,
+    segments: Mapping[str, int],
+    recordings: RecordingCounts,
+    pairs: pd.DataFrame,
+    found: JointInspection,
 ) -> JointSummary:
     """Return the summary of a joint.
 
@@ -106,10 +111,12 @@ def joint_summary(
         Its recordings.
     pairs : DataFrame
         Its pairs by :func:`frictioncli.inspection.pair_check.segments_and_pairs`.
+    found : JointInspection
+        What a file holds of it.
     """
     stages = [StageVerdict("ingest", YES, _recordings_text(recordings)), _pair(segments, pairs)]
     if len(pairs):
-        stages.append(_separate(joint, pairs))
+        stages.append(_separate(pairs, found))
     if len(pairs) and stages[-1].suffices != NO:
         later = [_fit(pairs), _diagnose(pairs, recordings), _simulate(pairs)]
         is_doubtful = stages[-1].suffices == IN_PART
@@ -168,17 +175,20 @@ def _pair(segments: Mapping[str, int], pairs: pd.DataFrame) -> StageVerdict:
     return StageVerdict("pair", YES, f"{_counted(len(pairs), 'pair')}: {text}{more} deg/s")
 
 
-def _separate(joint: int, pairs: pd.DataFrame) -> StageVerdict:
+def _separate(pairs: pd.DataFrame, found: JointInspection) -> StageVerdict:
     """Check the sign of the half differences: friction opposes motion in nearly every pair."""
     runs: dict[str, HalfDifferences] = {}
     for run, half in pairs.groupby("run")["half_difference"]:
         runs.setdefault(str(run), HalfDifferences()).add(half.to_numpy(float))
     try:
-        friction = inferred_sign(joint, runs) * pairs["half_difference"]
+        friction = inferred_sign(found.joint, runs) * pairs["half_difference"]
     except NotEnoughData as error:
         return StageVerdict("separate", NO, str(error))
     low, high = pairs["load_low"].min(), pairs["load_high"].max()
-    text = f"half difference {friction.mean():.3g} on average, load {low:.3g} to {high:.3g}"
+    text = (
+        f"friction {friction.mean():.3g} {found.torque_unit} on average, load {low:.3g} to"
+        f" {high:.3g} {found.load_unit}"
+    )
     opposing = float(np.mean(friction > 0))
     if opposing < LEAST_OPPOSING:
         return StageVerdict("separate", IN_PART, f"{text}, but {not_opposing(opposing)}")
