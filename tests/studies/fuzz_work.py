@@ -107,6 +107,16 @@ def _json(content: bytes, draw: random.Random) -> tuple[str, bytes]:
     return f"{kind} of {key}", json.dumps(document).encode("utf-8", "surrogatepass")
 
 
+def _retyped(column: pa.Array, draw: random.Random) -> pa.Array:
+    """Return a column as another type, as other tools write it; as it is where that cannot be."""
+    types = (pa.float32(), pa.int32(), pa.int64(), pa.large_string(), pa.string(), pa.bool_())
+    kind = draw.choice((*types, pa.decimal128(38, 9), pa.timestamp("us"), pa.null(), pa.binary()))
+    try:
+        return column.cast(kind, safe=False)
+    except pa.ArrowException:
+        return pa.nulls(len(column), kind)
+
+
 def _parquet(table: pa.Table, draw: random.Random) -> tuple[str, bytes]:
     at = draw.randrange(table.num_columns)
     name, column = table.column_names[at], table.column(at).combine_chunks()
@@ -122,6 +132,8 @@ def _parquet(table: pa.Table, draw: random.Random) -> tuple[str, bytes]:
             "reversed",
             "facts",
             "more",
+            "type",
+            "order",
         )
     )
     if kind == "lost":
@@ -140,6 +152,10 @@ def _parquet(table: pa.Table, draw: random.Random) -> tuple[str, bytes]:
         if document:
             _, stored = _json(json.dumps(document).encode(), draw)
             table = table.replace_schema_metadata({b"frictioncli": stored})
+    elif kind == "type":
+        table = table.set_column(at, name, _retyped(column, draw))
+    elif kind == "order":
+        table = table.select(draw.sample(table.column_names, table.num_columns))
     elif kind == "more":
         table = pa.concat_tables([table, table])
     else:
