@@ -7,10 +7,10 @@ from functools import partial
 from matplotlib.figure import Figure
 
 from frictioncli.diagnosis.documents.reload import Reloaded
+from frictioncli.diagnosis.documents.remainder_words import remainder_text
 from frictioncli.diagnosis.documents.sentences import (
     empirical_text,
     margin_text,
-    remainder_text,
     settling_text,
 )
 from frictioncli.report.challenge_section import PlantedText, planted_text

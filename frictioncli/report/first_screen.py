@@ -6,6 +6,7 @@ import numpy as np
 from msgspec import UNSET
 
 from frictioncli.diagnosis.documents.document import DiagnosisDocument
+from frictioncli.diagnosis.documents.remainder_words import AXES, extent
 from frictioncli.diagnosis.documents.sentences import alternatives_text
 from frictioncli.model.document import PARAMETERS
 from frictioncli.report.labels import PARAMETER_SYMBOLS
@@ -100,11 +101,11 @@ def _what_is_wrong(document: DiagnosisDocument | None) -> Answer:
     left = document.remainder
     rest = ""
     if left:
-        along = f"mainly over {left.axis}"
+        along = f", {extent(left)} over {AXES.get(left.axis, left.axis)}" if extent(left) else ""
         if document.structure is not None:
             axes = ["angle" if axis == "position" else axis for axis in document.structure.axis]
-            along = f"structure over {list_text(axes)}"
-        rest = f"{number_text(left.size, 2)} {document.torque_unit} unexplained, {along}"
+            along = f", structure over {list_text(axes)}"
+        rest = f"{number_text(left.size, 2)} {document.torque_unit} unexplained{along}"
     if named:
         if document.verdict == "unnamed":
             named.append("structure without a name")

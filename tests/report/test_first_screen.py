@@ -9,6 +9,7 @@ import pytest
 from msgspec import structs
 
 from frictioncli.diagnosis.documents.document import RemainderRecord, StructureRecord
+from frictioncli.diagnosis.documents.remainder_words import remainder_text
 from frictioncli.report.first_screen import answers, word_count
 from frictioncli.report.operating_point import operating_point, overview_figure
 from frictioncli.report.page import write_report
@@ -90,6 +91,31 @@ def test_structure_without_a_name_is_said_beside_the_causes(diagnosed):
     assert said.startswith("Stribeck friction")
     assert "and structure without a name" in said
     assert said.endswith("1.2 N·m unexplained, structure over angle")
+
+
+@pytest.mark.parametrize(
+    ("axis_size", "words"),
+    [(0.9, ", mostly over the joint angle"), (0.6, ", partly over the joint angle"), (0.1, "")],
+)
+def test_an_axis_is_said_as_far_as_the_remainder_varies_along_it(diagnosed, axis_size, words):
+    """The axis has 0.81, 0.36 and 0.01 of the mean square."""
+    left = RemainderRecord(
+        basis="new_run",
+        rmse=1.1,
+        noise_floor=0.5,
+        size=1.0,
+        axis="position",
+        channel="friction",
+        axis_size=axis_size,
+    )
+    document = structs.replace(diagnosed.diagnosis.document, remainder=left)
+    changed = replace(diagnosed, diagnosis=replace(diagnosed.diagnosis, document=document))
+    assert by_question(changed)["What the simulation gets wrong"].endswith(
+        f"1.0 N·m unexplained{words}"
+    )
+    told = remainder_text(document)
+    assert ("does not clearly vary" in told) == (not words)
+    assert ("most of it, 0.90 N·m" in told) == ("mostly" in words)
 
 
 def test_without_temperature_the_point_has_none(without_temperature):

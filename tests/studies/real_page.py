@@ -7,6 +7,7 @@ import pandas as pd
 
 from frictioncli.diagnosis.documents.document import CauseRecord, DiagnosisDocument
 from frictioncli.diagnosis.documents.reload import Reloaded
+from frictioncli.diagnosis.documents.remainder_words import remainder_text
 from frictioncli.diagnosis.documents.sentences import (
     chance_text,
     detectable_text,
@@ -14,7 +15,6 @@ from frictioncli.diagnosis.documents.sentences import (
     lasting_text,
     margin_text,
     note_text,
-    remainder_text,
     size_text,
     standing_text,
 )

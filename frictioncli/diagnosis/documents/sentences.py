@@ -14,14 +14,6 @@ _STANDING = {
     "undetermined": "not determined",
 }
 
-_AXES = {
-    "position": "the joint angle",
-    "speed": "the speed",
-    "temperature": "the temperature",
-    "time": "time",
-    "load": "the load",
-}
-
 _LEAST_SHARE = 0.1
 """Share of the mean square of an empirical term from which on a part of it is told."""
 
@@ -209,29 +201,6 @@ def detectable_text(document: DiagnosisDocument) -> str:
         ranges.append(text)
     noun = "Smallest effects" if sum(map(len, by_unit.values())) > 1 else "Smallest effect"
     return f"{noun} that would be named in 80 % of cases: {list_text(ranges)}.{hidden}"
-
-
-def remainder_text(document: DiagnosisDocument) -> str:
-    """Return what the extended model leaves, where and along which axis; empty if only noise is.
-
-    Parameters
-    ----------
-    document : DiagnosisDocument
-        The joint's diagnosis.
-    """
-    left, unit = document.remainder, document.torque_unit
-    if left is None:
-        return ""
-    on = f"on run {document.held_out}" if left.basis == "new_run" else "on the fitted data"
-    model = "extended" if document.modelled_causes else "base"
-    most = "most" if left.axis_size**2 >= 0.5 * left.size**2 else "the largest part"
-    return (
-        f"Unexplained structure remains: {on} the torque error of the {model} model is"
-        f" {number_text(left.rmse, 2)} {unit} (RMS), where noise alone is"
-        f" {number_text(left.noise_floor, 2)} {unit}. The difference is {number_text(left.size, 2)}"
-        f" {unit}; {most} of it, {number_text(left.axis_size, 2)} {unit} in the {left.channel},"
-        f" varies with {_AXES.get(left.axis, left.axis)}."
-    )
 
 
 def empirical_text(document: DiagnosisDocument) -> str:

@@ -7,6 +7,7 @@ from frictioncli.diagnosis.documents.document import (
     DiagnosisDocument,
     GainRecord,
 )
+from frictioncli.diagnosis.documents.remainder_words import remainder_text
 from frictioncli.diagnosis.documents.sentences import (
     chance_text,
     detectable_text,
@@ -16,7 +17,6 @@ from frictioncli.diagnosis.documents.sentences import (
     margin_text,
     note_text,
     percent_text,
-    remainder_text,
     settling_text,
     size_text,
     standing_text,

@@ -1,0 +1,56 @@
+"""What the extended model still misses, in words: how much, and along which axis."""
+
+from frictioncli.diagnosis.documents.document import DiagnosisDocument, RemainderRecord
+from frictioncli.wording import number_text
+
+_MOST, _PART = 0.5, 0.1
+"""Shares of the mean square of a remainder from which on an axis has most, or a part, of it."""
+
+AXES = {
+    "position": "the joint angle",
+    "speed": "the speed",
+    "temperature": "the temperature",
+    "time": "time",
+    "load": "the load",
+}
+"""Axis -> its name in a sentence."""
+
+
+def extent(left: RemainderRecord) -> str:
+    """Return how much of a remainder varies along its axis: ``mostly``, ``partly``, or empty.
+
+    Parameters
+    ----------
+    left : RemainderRecord
+        The remainder.
+    """
+    along, whole = left.axis_size**2, left.size**2
+    if along < _PART * whole:
+        return ""
+    return "mostly" if along >= _MOST * whole else "partly"
+
+
+def remainder_text(document: DiagnosisDocument) -> str:
+    """Return what the extended model leaves, where and along which axis; empty if only noise is.
+
+    Parameters
+    ----------
+    document : DiagnosisDocument
+        The joint's diagnosis.
+    """
+    left, unit = document.remainder, document.torque_unit
+    if left is None:
+        return ""
+    on = f"on run {document.held_out}" if left.basis == "new_run" else "on the fitted data"
+    model = "extended" if document.modelled_causes else "base"
+    part = {"mostly": "most of it", "partly": "a part of it"}.get(extent(left))
+    varies = "it does not clearly vary with any measured quantity"
+    if part:
+        varies = f"{part}, {number_text(left.axis_size, 2)} {unit} in the {left.channel}, varies"
+        varies += f" with {AXES.get(left.axis, left.axis)}"
+    return (
+        f"Unexplained structure remains: {on} the torque error of the {model} model is"
+        f" {number_text(left.rmse, 2)} {unit} (RMS), where noise alone is"
+        f" {number_text(left.noise_floor, 2)} {unit}. The difference is {number_text(left.size, 2)}"
+        f" {unit}; {varies}."
+    )
