@@ -64,9 +64,11 @@ def _values(info):
     if isinstance(info, inspect.UnionType):
         return st.one_of(*map(_values, info.types))
     if isinstance(info, inspect.DictType):
-        return st.dictionaries(WORDS, _values(info.value_type), max_size=2)
+        keys, values = _values(info.key_type), _values(info.value_type)
+        return st.dictionaries(keys, values, max_size=2)
     if isinstance(info, inspect.VarTupleType):
-        return st.lists(_values(info.item_type), max_size=2).map(tuple)
+        least = info.min_length or 0
+        return st.lists(_values(info.item_type), min_size=least, max_size=2).map(tuple)
     if isinstance(info, inspect.TupleType):
         return st.tuples(*map(_values, info.item_types))
     return PLAIN[type(info)]
@@ -81,7 +83,10 @@ def _fields(info):
     if issubclass(info.cls, FrictionModel):
         # what no fit gives is refused
         estimates = st.builds(replace, records(ParameterEstimate), estimate=st.floats(-1, 1))
-        strategies["parameters"] = st.fixed_dictionaries(dict.fromkeys(PARAMETERS, estimates))
+        falls = st.builds(replace, records(ParameterEstimate), estimate=st.floats(0, 1))
+        strategies["parameters"] = st.fixed_dictionaries(
+            dict.fromkeys(PARAMETERS, estimates) | {"delta": falls}
+        )
         strategies |= {"rmse": st.floats(0, 9), "delay": st.none() | estimates}
     return st.builds(info.cls, **strategies)
 

@@ -1,6 +1,7 @@
 """The records of ``plan.json``."""
 
 from collections.abc import Mapping
+from typing import Annotated
 
 import msgspec
 from msgspec import UNSET, UnsetType, field
@@ -151,7 +152,7 @@ class ProgrammeRecord(msgspec.Struct, frozen=True, kw_only=True):
 
     files: tuple[str, ...]
     duration_s: float
-    blocks: tuple[BlockRecord, ...]
+    blocks: Annotated[tuple[BlockRecord, ...], msgspec.Meta(min_length=1)]
 
 
 class CheckRecord(msgspec.Struct, frozen=True, kw_only=True):

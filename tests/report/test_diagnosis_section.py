@@ -224,8 +224,7 @@ def test_page_has_the_section_after_the_figures_escaped_and_the_same_twice(
     work = shutil.copytree(diagnosed_work, tmp_path / "copied")
     document = deepcopy(DIAGNOSIS_DOCUMENT)
     document["causes"][0] |= {"claim": HOSTILE, "equation": HOSTILE, "experiment": HOSTILE}
-    document["causes"][1]["effects"] = ["direction_asymmetry", HOSTILE]
-    document["detectable"][HOSTILE] = None
+    document["causes"][1]["claim"] = HOSTILE
     (work / "diagnosis.json").write_text(json.dumps(document), encoding="utf-8")
     page = write_report(work, png=True)
     text = page.read_text(encoding="utf-8")
@@ -245,6 +244,26 @@ def test_page_has_the_section_after_the_figures_escaped_and_the_same_twice(
         again = draw_figure(figure, results, png=True)
         assert again.svg in text
         assert again.png == (page.parent / f"{figure.name}.png").read_bytes()
+
+
+@pytest.mark.parametrize(
+    ("place", "value"),
+    [
+        (("causes", 0, "effects"), [HOSTILE]),
+        (("detectable",), {"gremlins": 0.3}),
+        (("verdict",), "maybe"),
+    ],
+)
+def test_names_that_the_catalogue_lacks_are_refused(tmp_path, diagnosed_work, place, value):
+    work = shutil.copytree(diagnosed_work, tmp_path / "copied")
+    document = deepcopy(DIAGNOSIS_DOCUMENT)
+    holder = document
+    for key in place[:-1]:
+        holder = holder[key]
+    holder[place[-1]] = value
+    (work / "diagnosis.json").write_text(json.dumps(document), encoding="utf-8")
+    with pytest.raises(TableError, match="run 'frictioncli diagnose' again"):
+        write_report(work)
 
 
 def test_an_effect_that_is_named_is_never_said_to_be_undetectable():

@@ -13,6 +13,7 @@ from frictioncli.diagnosis.documents.extended_document import ParameterRecord
 from frictioncli.diagnosis.documents.ramps_record import RampsRecord
 from frictioncli.diagnosis.ramps.settling import Settling
 from frictioncli.diagnosis.settings import DiagnosisSettings
+from frictioncli.effects import BY_NAME
 
 Channel = Annotated[str, msgspec.Meta(pattern="^(friction|load)$")]
 """The part of the torque in which something shows."""
@@ -23,8 +24,14 @@ Kind = Annotated[str, msgspec.Meta(pattern="^(friction|load|measurement)$")]
 Standing = Annotated[str, msgspec.Meta(pattern="^(named|visible|negligible|undetermined)$")]
 """What may be said of a cause."""
 
+Verdict = Annotated[str, msgspec.Meta(pattern="^(no_evidence|named|ambiguous|unnamed)$")]
+"""What a diagnosis says as a whole."""
+
 OTHER_JOINT = "other_joint"
 """Name of the motion of other joints: of the measurement, without a term in the extended model."""
+
+EffectName = Annotated[str, msgspec.Meta(pattern=f"^({'|'.join((*BY_NAME, OTHER_JOINT))})$")]
+"""An effect of the catalogue, or the motion of other joints."""
 
 
 class CauseRecord(msgspec.Struct, frozen=True, kw_only=True):
@@ -82,7 +89,7 @@ class CauseRecord(msgspec.Struct, frozen=True, kw_only=True):
     holds_on_new_run: bool | None = None
     only_on_new_run: bool = False
     reason: str = ""
-    effects: tuple[str, ...]
+    effects: tuple[EffectName, ...]
     probabilities: Mapping[str, float]
     channel: Channel
     statement: str = ""
@@ -250,7 +257,7 @@ class DiagnosisDocument(msgspec.Struct, frozen=True, kw_only=True):
     """
 
     joint: int
-    verdict: str
+    verdict: Verdict
     causes: tuple[CauseRecord, ...]
     visible: tuple[CauseRecord, ...] = ()
     structure: StructureRecord | None = None
@@ -259,7 +266,7 @@ class DiagnosisDocument(msgspec.Struct, frozen=True, kw_only=True):
     gain: GainRecord | None
     empirical: EmpiricalGainRecord | None = None
     remainder: RemainderRecord | None = None
-    detectable: Mapping[str, float | None]
+    detectable: Mapping[EffectName, float | None]
     undetectable: Mapping[str, str] = {}
     simulation: SimulationRecord
     ramps: RampsRecord | None = None
