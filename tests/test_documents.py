@@ -83,10 +83,7 @@ def _fields(info):
     if issubclass(info.cls, FrictionModel):
         # what no fit gives is refused
         estimates = st.builds(replace, records(ParameterEstimate), estimate=st.floats(-1, 1))
-        falls = st.builds(replace, records(ParameterEstimate), estimate=st.floats(0, 1))
-        strategies["parameters"] = st.fixed_dictionaries(
-            dict.fromkeys(PARAMETERS, estimates) | {"delta": falls}
-        )
+        strategies["parameters"] = st.fixed_dictionaries(dict.fromkeys(PARAMETERS, estimates))
         strategies |= {"rmse": st.floats(0, 9), "delay": st.none() | estimates}
     return st.builds(info.cls, **strategies)
 

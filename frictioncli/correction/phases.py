@@ -58,9 +58,10 @@ def correction_phases(
         If the model does not depend on temperature, or there is no such phase.
     """
     if not model.knows_temperature:
+        why = model.parameters["delta"].reason or "its friction does not fall with temperature"
         raise NotEnoughData(
             f"joint {model.joint}: the model has no dependence of friction on temperature"
-            f" ({model.parameters['delta'].reason}), so a correction cannot be computed"
+            f" ({why}), so a correction cannot be computed"
         )
     freed = without_delay(torques, model.late_by)
     pairs = friction_at_zero_load(freed, model.friction.alpha)

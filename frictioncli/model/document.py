@@ -138,8 +138,6 @@ class FrictionModel:
         unusual = [name for name in PARAMETERS if abs(self.parameters[name].estimate) > _LARGEST]
         if unusual:
             raise ValueError(f"parameters: expected {', '.join(unusual)} below {_LARGEST:g}")
-        if self.parameters["delta"].estimate < 0:
-            raise ValueError("parameters: expected delta from 0")
         if not 0 <= self.rmse <= _LARGEST:
             raise ValueError("rmse: expected an error, from 0")
         if self.late_by is not None and not abs(self.late_by) <= _LONGEST_DELAY:

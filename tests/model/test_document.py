@@ -61,7 +61,6 @@ def test_a_missing_model_names_the_command(tmp_path):
     [
         (lambda of: of.update(rmse=-1.0), "rmse: expected an error"),
         (lambda of: of["parameters"]["beta"].update(estimate=1e308), "expected beta below"),
-        (lambda of: of["parameters"]["delta"].update(estimate=-0.05), "expected delta from 0"),
         (lambda of: of.update(delay={**of["parameters"]["beta"], "estimate": -5.0}), "at most 1 s"),
     ],
 )
