@@ -35,7 +35,7 @@ def friction_formula(model: FrictionModel) -> Markup:
     """
     values = model.friction
 
-    def with_unit(name: str) -> Markup:
+    def with_unit(name: str, sign: float = 1.0) -> Markup:
         parameter = model.parameters[name]
         unit = (
             parameter.unit.removeprefix("1")
@@ -43,7 +43,7 @@ def friction_formula(model: FrictionModel) -> Markup:
             else f" {parameter.unit}"
         )
         return Markup("<b>{}</b>{}").format(
-            number_text(parameter.estimate, _DIGITS), unit_markup(unit)
+            number_text(sign * parameter.estimate, _DIGITS), unit_markup(unit)
         )
 
     terms = []
@@ -55,7 +55,7 @@ def friction_formula(model: FrictionModel) -> Markup:
     if values.beta:
         viscous.append(with_unit("beta"))
     if values.gamma:
-        exponential = Markup(" · e<sup>−{} · <i>T</i></sup>").format(with_unit("delta"))
+        exponential = Markup(" · e<sup>{} · <i>T</i></sup>").format(with_unit("delta", -1.0))
         viscous.append(with_unit("gamma") + exponential)
     if len(viscous) == 2:
         terms.append(Markup("({}) · √<i>v</i>").format(Markup(" + ").join(viscous)))

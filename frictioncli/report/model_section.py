@@ -119,7 +119,7 @@ def formula_text(model: FrictionModel) -> str:
     p = model.friction
     return (
         f"tau = {p.tau_c:.6g} + {p.alpha:.6g}*L**2"
-        f" + ({p.beta:.6g} + {p.gamma:.6g}*exp(-{p.delta:.6g}*T))*sqrt(abs(v))"
+        f" + ({p.beta:.6g} + {p.gamma:.6g}*exp({-p.delta:.6g}*T))*sqrt(abs(v))"
     )
 
 
