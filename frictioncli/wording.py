@@ -259,7 +259,7 @@ def change_text(value: float, interval: tuple[float, float], unit: str) -> str:
 def _alike(values: Sequence[float], interval: tuple[float, float]) -> list[str]:
     """Return values with the decimals that show an interval's half-width with one digit.
 
-    Two digits where the first is 1, since one would be off by up to a third of the half-width.
+    Two digits where the first is 1: one would be off by up to half of the half-width.
     """
     half = (interval[1] - interval[0]) / 2
     if not math.isfinite(half) or not half >= 1e-5:

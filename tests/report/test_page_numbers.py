@@ -219,7 +219,7 @@ def test_every_number_of_the_text_has_a_source(page, work, documents):
     sources += [factor * one for one in tuple(sources) for factor in (1 / 60, 100, 1000)]
     sources += [float(one) for one in derived(work, documents)]
     sources += operating_point(page, documents)
-    sources += [abs(one) for one in tuple(sources)]
+    sources += [-one for one in tuple(sources)]
     sources += [float(one) for one in FIXED]
     # provenance and citation quote files and settings, explanations of effects the catalogue
     quoted = ("origin", "cite", "effect")
