@@ -247,8 +247,8 @@ def change_text(value: float, interval: tuple[float, float], unit: str) -> str:
     >>> change_text(18.23, (16.04, 20.42), "%"), change_text(-0.3, (-0.6, 0.04), "")
     ('+18.2 % (+16.0 to +20.4)', '−0.30 (−0.60 to +0.04)')
     """
-    # a decimal more than elsewhere shows on which side of zero an end lies
-    texts = _alike((value, *interval), (0.1 * interval[0], 0.1 * interval[1]))
+    # two digits of the half-width, whatever its first, show on which side of zero an end lies
+    texts = _alike((value, *interval), (0.22 * interval[0], 0.22 * interval[1]))
     estimate, low, high = (
         f"+{text}" if any(digit in text for digit in "123456789") and text[0] != "−" else text
         for text in texts
