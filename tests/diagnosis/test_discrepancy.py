@@ -9,7 +9,8 @@ from frictioncli.diagnosis.fit.columns import base_rows
 from frictioncli.diagnosis.fit.left_by_base import span_of
 from frictioncli.diagnosis.fit.mixed_model import evaluate, weights_of
 from frictioncli.diagnosis.fit.products import Places, Products
-from frictioncli.diagnosis.noise.discrepancy import SPEED_RIPPLE, discrepancy_of
+from frictioncli.diagnosis.noise.discrepancy import discrepancy_of
+from frictioncli.diagnosis.noise.discrepancy_functions import SPEED_RIPPLE
 from frictioncli.diagnosis.search.precomputed import Precomputed
 from frictioncli.diagnosis.search.step import Step
 from tests.diagnosis.dense_noise import problem

@@ -1,5 +1,7 @@
 """Known parameters come back, with intervals that hold, and nothing is invented."""
 
+from dataclasses import asdict
+
 import numpy as np
 import pytest
 
@@ -43,7 +45,9 @@ def test_known_parameters_come_back_within_their_intervals(method):
 def test_order_of_rows_does_not_matter():
     table = torques(1)
     shuffled = table.sample(frac=1.0, random_state=4)
-    assert fitted(table).friction == fitted(shuffled).friction
+    one, other = (asdict(fitted(rows).friction) for rows in (table, shuffled))
+    # sums of the same numbers may be rounded in another order
+    assert one == pytest.approx(other, rel=1e-10)
 
 
 def test_scaling_the_torques_scales_the_torque_parameters():

@@ -20,7 +20,8 @@ from frictioncli.diagnosis.empirical.term import (
 )
 from frictioncli.diagnosis.fit.columns import RANK, base_rows
 from frictioncli.diagnosis.noise.cosine_series import CosineSeries
-from frictioncli.diagnosis.noise.discrepancy import FORM, SPEED_RIPPLE, Component, weight_of
+from frictioncli.diagnosis.noise.discrepancy import Component, weight_of
+from frictioncli.diagnosis.noise.discrepancy_functions import FORM, SPEED_RIPPLE
 from frictioncli.effects.base import Basis
 
 

@@ -10,9 +10,9 @@ from dataclasses import replace
 import numpy as np
 
 from frictioncli.arrays import Array
+from frictioncli.diagnosis.fit.base_products import BaseProducts
 from frictioncli.diagnosis.fit.mixed_model import (
     LEAST_VARIANCE,
-    BaseProducts,
     Components,
     MixedFit,
     Variances,

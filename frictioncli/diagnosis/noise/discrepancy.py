@@ -32,8 +32,9 @@ import numpy as np
 from frictioncli.arrays import Array
 from frictioncli.diagnosis.data.problem import Problem
 from frictioncli.diagnosis.fit.columns import ModelColumns, joined, reduced
-from frictioncli.diagnosis.noise.cosine_series import HALF, CosineSeries, ranges_of
-from frictioncli.effects.base import CHANNELS, Channel, EffectTable
+from frictioncli.diagnosis.noise.cosine_series import HALF
+from frictioncli.diagnosis.noise.discrepancy_functions import FORM, SPEED_RIPPLE, functions_of
+from frictioncli.effects.base import CHANNELS, Channel
 
 SHARE = 0.0075
 """RMS of the whole discrepancy that is expected beforehand, relative to the mean friction.
@@ -195,12 +196,7 @@ def discrepancy_of(problem: Problem, span: Array, share: float = SHARE) -> Discr
         RMS of the whole discrepancy relative to the mean friction; 0 for none.
     """
     rows = len(problem.friction)
-    parts: list[tuple[Channel, tuple[str, ...], Array]] = []
-    if share > 0:
-        parts.append(("friction", FORM, _form(problem.table)))
-        parts += [("friction", *one) for one in _functions(problem.table, _FRICTION)]
-        parts += [("load", *one) for one in _functions(problem.table, _LOAD)]
-        parts += [("load", *one) for one in _of_speed_ripple(problem.table)]
+    parts = functions_of(problem.table) if share > 0 else []
     mean = float(np.mean(np.abs(problem.friction)))
     # a load that is measured apart may have another unit: its share is one of the load
     apart = problem.has_load_channel and mean > 0
@@ -292,65 +288,3 @@ def _orthonormal_combination(columns: Array) -> Array:
     _, strength, right = np.linalg.svd(columns / size, full_matrices=False)
     kept = strength > _RANK * strength[0]
     return np.asarray((right[kept] / strength[kept, np.newaxis]).T / size[:, np.newaxis])
-
-
-FORM = ("speed", "temperature", "form")
-
-SPEED_RIPPLE = ("speed ripple",)
-
-_FRICTION = (
-    ("position",),
-    ("speed",),
-    ("temperature",),
-    ("position", "speed"),
-    ("position", "temperature"),
-    ("speed", "temperature"),
-)
-
-_LOAD = (
-    ("position",),
-    ("speed",),
-    ("temperature",),
-    ("position", "speed"),
-    ("position", "temperature"),
-)
-
-
-def _functions(
-    table: EffectTable, wanted: tuple[tuple[str, ...], ...]
-) -> list[tuple[tuple[str, ...], Array]]:
-    """Return the axes and the columns of each function whose quantities vary."""
-    ranges = ranges_of(table)
-    found = []
-    for axes in wanted:
-        if all(axis in ranges for axis in axes):
-            series = CosineSeries.of(axes, table, ranges)
-            found.append((axes, series.weights * series.columns(table, ranges)))
-    return found
-
-
-def _of_speed_ripple(table: EffectTable) -> list[tuple[tuple[str, ...], Array]]:
-    r"""Return the inertial torque of a speed that ripples, where speeds differ.
-
-    A ripple over the angle that is a share of the speed has the acceleration
-    :math:`v\,dv/dq`, which grows with its square.
-    """
-    if not {"position", "speed"} <= set(ranges_of(table)):
-        return []
-    ((_, along),) = _functions(table, (("position",),))
-    squared = np.square(table.speed / np.max(table.speed))[:, np.newaxis]
-    return [(SPEED_RIPPLE, squared * along)]
-
-
-def _form(table: EffectTable) -> Array:
-    """Return what small errors in the form of equation (16) add to friction, shape (rows, 3).
-
-    Of the exponent of the speed, of the way in which grease thins with temperature, and of a
-    Coulomb friction that does not depend on temperature.
-    """
-    viscous = table.viscous * np.sqrt(table.speed)
-    speed = np.log(np.maximum(table.speed, 1e-9))
-    speed = speed if np.ptp(speed) else np.zeros_like(speed)
-    away = table.temperature - np.mean(table.temperature)
-    # about the mean: the unit of speed must not matter
-    return np.column_stack([viscous * (speed - np.mean(speed)), viscous * np.square(away), away])

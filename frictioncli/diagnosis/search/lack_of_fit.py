@@ -30,7 +30,7 @@ from frictioncli.diagnosis.fit.left_by_base import Z95, left_by, span_of
 from frictioncli.diagnosis.fit.mixed_model import Components, MixedFit, Variances
 from frictioncli.diagnosis.fit.transformed_columns import Part
 from frictioncli.diagnosis.fit.variance_components import fit_variances
-from frictioncli.diagnosis.noise.discrepancy import SPEED_RIPPLE
+from frictioncli.diagnosis.noise.discrepancy_functions import SPEED_RIPPLE
 from frictioncli.diagnosis.search.axis_columns import axis_columns, can_be_judged
 from frictioncli.diagnosis.search.margin import channel_margin
 from frictioncli.diagnosis.search.step import Step

@@ -7,6 +7,7 @@ import numpy as np
 
 from frictioncli.arrays import Array
 from frictioncli.diagnosis.data.problem import Problem
+from frictioncli.diagnosis.fit.base_products import BaseProducts
 from frictioncli.diagnosis.fit.columns import (
     RANK,
     ModelColumns,
@@ -19,7 +20,6 @@ from frictioncli.diagnosis.fit.columns import (
 from frictioncli.diagnosis.fit.left_by_base import span_of
 from frictioncli.diagnosis.fit.mixed_model import (
     LEAST_VARIANCE,
-    BaseProducts,
     Components,
     Variances,
 )

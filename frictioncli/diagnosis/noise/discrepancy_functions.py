@@ -1,0 +1,89 @@
+"""Functions of which the discrepancy is the sum, as columns over the rows of a joint."""
+
+import numpy as np
+
+from frictioncli.arrays import Array
+from frictioncli.diagnosis.noise.cosine_series import CosineSeries, ranges_of
+from frictioncli.effects.base import Channel, EffectTable
+
+FORM = ("speed", "temperature", "form")
+
+SPEED_RIPPLE = ("speed ripple",)
+
+_FRICTION = (
+    ("position",),
+    ("speed",),
+    ("temperature",),
+    ("position", "speed"),
+    ("position", "temperature"),
+    ("speed", "temperature"),
+)
+
+_LOAD = (
+    ("position",),
+    ("speed",),
+    ("temperature",),
+    ("position", "speed"),
+    ("position", "temperature"),
+)
+
+
+def functions_of(table: EffectTable) -> list[tuple[Channel, tuple[str, ...], Array]]:
+    """Return the functions of friction, then those of load, whose quantities vary.
+
+    Parameters
+    ----------
+    table : EffectTable
+        Pairs and angle bins.
+
+    Returns
+    -------
+    list of (str, tuple of str, ndarray)
+        Channel of each function, the quantities that it depends on, or :data:`FORM` or
+        :data:`SPEED_RIPPLE`, and its columns, shape (rows, columns).
+    """
+    found: list[tuple[Channel, tuple[str, ...], Array]] = [("friction", FORM, _form(table))]
+    found += [("friction", *one) for one in _functions(table, _FRICTION)]
+    found += [("load", *one) for one in _functions(table, _LOAD)]
+    found += [("load", *one) for one in _of_speed_ripple(table)]
+    return found
+
+
+def _functions(
+    table: EffectTable, wanted: tuple[tuple[str, ...], ...]
+) -> list[tuple[tuple[str, ...], Array]]:
+    """Return the axes and the columns of each function whose quantities vary."""
+    ranges = ranges_of(table)
+    found = []
+    for axes in wanted:
+        if all(axis in ranges for axis in axes):
+            series = CosineSeries.of(axes, table, ranges)
+            found.append((axes, series.weights * series.columns(table, ranges)))
+    return found
+
+
+def _of_speed_ripple(table: EffectTable) -> list[tuple[tuple[str, ...], Array]]:
+    r"""Return the inertial torque of a speed that ripples, where speeds differ.
+
+    A ripple over the angle that is a share of the speed has the acceleration
+    :math:`v\,dv/dq`, which grows with its square.
+    """
+    if not {"position", "speed"} <= set(ranges_of(table)):
+        return []
+    ((_, along),) = _functions(table, (("position",),))
+    squared = np.square(table.speed / np.max(table.speed))[:, np.newaxis]
+    return [(SPEED_RIPPLE, squared * along)]
+
+
+def _form(table: EffectTable) -> Array:
+    """Return what small errors in the form of equation (16) add to friction, shape (rows, 3).
+
+    Of the exponent of the speed, of the way in which grease thins with temperature, and of a
+    Coulomb friction that does not depend on temperature.
+    """
+    viscous = table.viscous * np.sqrt(table.speed)
+    speed = np.log(np.maximum(table.speed, 1e-9))
+    speed = speed if np.ptp(speed) else np.zeros_like(speed)
+    away = table.temperature - np.mean(table.temperature)
+    # about the mean: the unit of speed must not matter
+    return np.column_stack([viscous * (speed - np.mean(speed)), viscous * np.square(away), away])
