@@ -16,6 +16,7 @@ from frictioncli.diagnosis.fit.extension import extend, misfits, refit
 from frictioncli.diagnosis.fit.hypotheses import EffectFit
 from frictioncli.diagnosis.fit.weighted_fit import WeightedFit
 from frictioncli.diagnosis.search.cause import Cause
+from frictioncli.diagnosis.search.doubtful_steps import doubtful_with_new_run
 from frictioncli.diagnosis.search.new_run import NewRunTest, new_run_test
 from frictioncli.diagnosis.search.standing import without_cancelling
 from frictioncli.diagnosis.search.step import Step
@@ -88,6 +89,8 @@ def judged_on_new_run(causes: Sequence[Cause], step: Step, new: Problem) -> tupl
     for number, one in enumerate(found):
         if not _is_change(one):
             found[number] = _with_test(one, _tested(found, number, step, new))
+        elif doubt := doubtful_with_new_run(one.fit, step.problem, new):
+            found[number] = replace(one, standing="undetermined", reason=doubt)
     return tuple(found)
 
 

@@ -1,9 +1,11 @@
 """Steps of friction that may be something else: by when they come, and at which temperature."""
 
+from collections.abc import Sequence
+
 import numpy as np
 import pandas as pd
 
-from frictioncli.arrays import Flags
+from frictioncli.arrays import Array, Flags
 from frictioncli.diagnosis.data.problem import Problem
 from frictioncli.diagnosis.fit.hypotheses import EffectFit
 from frictioncli.diagnosis.search.confounded import NO_TEMPERATURE, has_temperature
@@ -44,12 +46,32 @@ def doubtful_step(fit: EffectFit, problem: Problem) -> str:
     """
     if fit.effect is not STEP_CHANGE:
         return ""
+    there = _there(fit, problem)
+    if has_temperature(problem):
+        return _at_start_of_runs(there, problem) or _at_temperature(fit, (problem,))
+    return _after_pauses(there, problem) or _at_start_of_runs(there, problem)
+
+
+def doubtful_with_new_run(fit: EffectFit, problem: Problem, new: Problem) -> str:
+    """Return why a step that is on a held-out run, too, may be one of the temperature.
+
+    Parameters
+    ----------
+    fit : EffectFit
+        The effect, with its history in all runs.
+    problem, new : Problem
+        The runs seen, and the held-out run.
+    """
+    if fit.effect is not STEP_CHANGE or not has_temperature(problem):
+        return ""
+    return _at_temperature(fit, (problem, new))
+
+
+def _there(fit: EffectFit, problem: Problem) -> Flags:
+    """Return in which pairs of some rows a step is there, shape (pairs,)."""
     share = measured_share(problem.all_runs)[problem.rows]
     _, heads = np.unique(problem.layout.row_pair, return_index=True)
-    there = present(share[heads], fit.shape)
-    if has_temperature(problem):
-        return _at_start_of_runs(there, problem) or _at_temperature(there, problem)
-    return _after_pauses(there, problem) or _at_start_of_runs(there, problem)
+    return present(share[heads], fit.shape)
 
 
 def _after_pauses(there: Flags, problem: Problem) -> str:
@@ -66,21 +88,27 @@ def _at_start_of_runs(there: Flags, problem: Problem) -> str:
     return _AT_START if any(_is_start(one, problem) for one in (there, ~there)) else ""
 
 
-def _at_temperature(there: Flags, problem: Problem) -> str:
+def _at_temperature(fit: EffectFit, problems: Sequence[Problem]) -> str:
     """Return why a step may be one of the temperature; empty if it is not.
 
     It comes or goes in several runs, and all pairs with it are warmer than those without, or all
     are colder.
     """
-    run = problem.layout.run
-    own = [there[run == one] for one in np.unique(run)]
+    parts = [(_there(fit, one), one.layout.run) for one in problems]
+    own = [there[run == one] for there, run in parts for one in np.unique(run)]
     if sum(bool(one.any() and not one.all()) for one in own) < _SEVERAL:
         return ""
-    temperature = problem.table.measured_temperature[:, np.newaxis]
-    rank = pd.Series(problem.layout.means(temperature)[:, 0]).rank().to_numpy()
+    there = np.concatenate([part for part, _ in parts])
+    temperature = np.concatenate([_temperature(one) for one in problems])
+    rank = pd.Series(temperature).rank().to_numpy()
     with_it, without = int(there.sum()), int((~there).sum())
     warmer = (float(rank[there].sum()) - with_it * (with_it + 1) / 2) / (with_it * without)
     return _AT_TEMPERATURE if max(warmer, 1 - warmer) >= _APART else ""
+
+
+def _temperature(problem: Problem) -> Array:
+    """Return the measured temperature of each pair, shape (pairs,). [°C]."""
+    return problem.layout.means(problem.table.measured_temperature[:, np.newaxis])[:, 0]
 
 
 def _is_start(there: Flags, problem: Problem) -> bool:
