@@ -78,7 +78,7 @@ class Diagnosis:
     judged : Problem
         The rows on which the gain is measured: those of the hold-out run where there is one.
     floor : float
-        RMS of point and pair noise, which no model can predict. [N·m]
+        RMS of the noise that is new with each pair, which no model can predict. [N·m]
     search, tried : SearchResult, tuple of Effect
         The last search and the catalogue, for the sizes that would have been named.
     margin : float
@@ -304,6 +304,8 @@ def predicting(extension: Extension, causes: Sequence[Cause]) -> Extension:
 
 
 def _floor(found: SearchResult) -> float:
-    """Return the RMS of point and pair noise of the channels that are simulated."""
-    channels = found.step.noise()[: 1 if found.step.problem.has_load_channel else 2]
-    return float(np.sqrt(sum(noise.point**2 + noise.pair**2 for noise in channels)))
+    """Return the RMS of the noise of a pair's rows in the channels that are simulated."""
+    problem = found.step.problem
+    channels = found.step.noise()[: 1 if problem.has_load_channel else 2]
+    distance = problem.layout.distance
+    return float(np.sqrt(sum(noise.unpredictable(distance) ** 2 for noise in channels)))

@@ -17,6 +17,7 @@ References
 .. [2] H. Rue and L. Held, Gaussian Markov Random Fields, 2005, doi:10.1201/9780203492024.
 """
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -57,6 +58,19 @@ class Noise:
     pair: float
     drift: float
     drift_time: float
+
+    def unpredictable(self, distance: float) -> float:
+        """Return the RMS of what no model can predict: what is new with each pair [N·m].
+
+        Of the drift that is next to nothing, unless it changes from pair to pair, as pair noise.
+
+        Parameters
+        ----------
+        distance : float
+            Time from pair to pair. [s]
+        """
+        renewed = -math.expm1(-2 * distance / self.drift_time) if self.drift_time > 0 else 1.0
+        return math.sqrt(self.point**2 + self.pair**2 + renewed * self.drift**2)
 
 
 @dataclass(frozen=True, slots=True)

@@ -98,6 +98,12 @@ class PairLayout:
     noise: WithinNoise
     blocks: tuple[Indices, ...]
 
+    @property
+    def distance(self) -> float:
+        """Median time from pair to pair within a run [s]."""
+        gaps = np.diff(self.time)[np.diff(self.run) == 0]
+        return max(float(np.median(gaps)), 1e-3) if gaps.size else 1.0
+
     @classmethod
     def of(
         cls,

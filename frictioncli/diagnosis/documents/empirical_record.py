@@ -105,7 +105,7 @@ class EmpiricalGainRecord(msgspec.Struct, frozen=True, kw_only=True):
     ci95 : (float, float)
         Its 95 % interval.
     noise_floor : float
-        RMS of point and pair noise. [torque unit]
+        RMS of the noise that is new with each pair. [torque unit]
     ranges : mapping of str to (float, float)
         Angle ``position`` [deg], ``speed`` [deg/s], ``temperature`` [°C] and amount of the ``load``
         [N·m] within which it is valid.

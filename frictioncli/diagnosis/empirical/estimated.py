@@ -74,7 +74,7 @@ def reduced_by(
     basis : {"new_run", "within_run"}
         Whether these rows were new to base and causes.
     floor : float
-        RMS of point and pair noise. [N·m]
+        RMS of the noise that is new with each pair. [N·m]
     seed : int
         Seed of the block bootstrap.
     """

@@ -298,7 +298,7 @@ def measured_gain(
     basis : {"new_run", "within_run"}
         Whether these rows were new to it.
     floor : float
-        RMS of point and pair noise. [N·m]
+        RMS of the noise that is new with each pair. [N·m]
     seed : int
         Seed of the block bootstrap.
     """

@@ -29,7 +29,7 @@ class Gain:
     interval : (float, float)
         95 % interval of the reduction.
     floor : float
-        RMS of point and pair noise, which no model can predict. [N·m]
+        RMS of the noise that is new with each pair, which no model can predict. [N·m]
     """
 
     basis: str
@@ -54,7 +54,7 @@ def gain_of(
     basis : {"new_run", "within_run"}
         Whether these rows were new to it.
     floor : float
-        RMS of point and pair noise. [N·m]
+        RMS of the noise that is new with each pair. [N·m]
     seed : int
         Seed of the block bootstrap.
     """

@@ -138,8 +138,7 @@ def spectra_of(layout: PairLayout, point: float, extra: Array, residual: Array) 
     heads = np.flatnonzero(np.diff(layout.run, prepend=-1))
     ends = [*heads[1:], len(layout.run)]
     runs = tuple(slice(int(a), int(b)) for a, b in zip(heads, ends, strict=True))
-    gaps = np.diff(layout.time)[np.diff(layout.run) == 0]
-    shortest = max(float(np.median(gaps)), 1e-3) if gaps.size else 1.0
+    shortest = layout.distance
     longest = max(float(np.ptp(layout.time[part])) for part in runs)
     times = np.geomspace(shortest, max(longest, 2 * shortest), _TIMES)
     return Spectra(

@@ -88,7 +88,7 @@ def changes_on_new_run(
     tried : sequence of Effect
         Effects that are no cause yet; of them changes count.
     floor : float
-        RMS of point and pair noise. [N·m]
+        RMS of the noise that is new with each pair. [N·m]
     margin : float
         Smallest size worth a name. [N·m]
     """
