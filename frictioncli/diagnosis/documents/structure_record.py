@@ -8,6 +8,7 @@ from frictioncli.diagnosis.documents.empirical_record import LocatedRecord, gain
 from frictioncli.diagnosis.documents.torque_units import TorqueUnits
 from frictioncli.diagnosis.empirical.describe import experiment
 from frictioncli.diagnosis.search.axis_columns import friction_tells_load, load_over_angle
+from frictioncli.diagnosis.search.lack_of_fit import Structure
 
 
 def structure_record(diagnosis: Diagnosis) -> StructureRecord | None:
@@ -25,10 +26,11 @@ def structure_record(diagnosis: Diagnosis) -> StructureRecord | None:
         return None
     forms = _forms(diagnosis)
     if forms:
+        further = _further_axes(structure, forms)
         return StructureRecord(
-            axis=forms[0].axes,
+            axis=(*forms[0].axes, *further),
             channel=forms[0].channel,
-            description=f"{_in_words(forms)}.",
+            description=f"{_in_words(forms)}{_by_an_amount(further)}.",
             formula=" + ".join(one.formula or "" for one in forms),
             size=forms[0].size,
             ci95=forms[0].ci95,
@@ -88,6 +90,19 @@ def _forms(diagnosis: Diagnosis) -> tuple[LocatedRecord, ...]:
     return gain_record(diagnosis.empirical, TorqueUnits.of_diagnosis(diagnosis)).forms
 
 
+def _further_axes(structure: Structure, forms: tuple[LocatedRecord, ...]) -> tuple[str, ...]:
+    """Return what structure depends on besides the quantity of the only form that describes it."""
+    own = set(forms[0].axes)
+    if len(forms) > 1 or forms[0].channel != structure.channel or not own < set(structure.axes):
+        return ()
+    return tuple(axis for axis in structure.axes if axis not in own)
+
+
+def _by_an_amount(further: tuple[str, ...]) -> str:
+    """Return that a form is one of a mean over further quantities; empty without any."""
+    return f", on average: by an amount that changes with the {_along(further)}" if further else ""
+
+
 def _experiment(diagnosis: Diagnosis) -> str:
     """Return what to measure next about the largest form; empty without one."""
     found = diagnosis.empirical
@@ -98,6 +113,8 @@ def _experiment(diagnosis: Diagnosis) -> str:
 def _or_angle(diagnosis: Diagnosis) -> str:
     """Return that structure along the load may be one along the angle; empty if it may not."""
     structure, base = diagnosis.structure, diagnosis.base
+    if structure is not None and structure.or_load:
+        return " It may as well be along the load."
     if structure is None or structure.axes != ("load",) or load_over_angle(base) is None:
         return ""
     if structure.channel == "friction" and friction_tells_load(base):

@@ -139,7 +139,7 @@ def empirical_term(
     margin : float
         Smallest size worth a name. [N·m]
     floor : float
-        RMS of point and pair noise. [N·m]
+        RMS of the noise that is new with each pair. [N·m]
     seed : int
         Seed of the block bootstrap.
     structure : Structure, optional
@@ -256,10 +256,11 @@ def _is_along(form: Form, structure: Structure) -> bool:
     """Return whether a form may describe structure, or something else beside it.
 
     It is none of the same quantity that depends on another one as well; and none of the load where
-    friction has structure along the angle, of which the test tells the load. Of a load torque it
-    does not: with one payload both look alike, and the simpler form decides.
+    friction has structure along the angle, of which the test tells the load. Where it does not, as
+    of a load torque with one payload, the simpler form decides.
     """
     if "load" in form.axes and "position" in structure.axes:
-        return form.channel == structure.channel == "load"
+        undecided = structure.or_load or structure.channel == "load"
+        return undecided and form.channel == structure.channel
     own, located = set(form.axes), set(structure.axes)
     return not own > located

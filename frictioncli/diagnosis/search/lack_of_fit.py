@@ -19,7 +19,7 @@ References
    doi:10.1080/01621459.1987.10478472.
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -73,6 +73,8 @@ class Structure:
         RMS of what base and effects leave of it. [N·m]
     interval : (float, float)
         95 % interval of that. [N·m]
+    or_load : bool
+        Whether structure along the angle is about as likely along the load, which differs from it.
     """
 
     axes: tuple[str, ...]
@@ -81,6 +83,7 @@ class Structure:
     statistic: float
     size: float
     interval: tuple[float, float]
+    or_load: bool = False
 
     @property
     def axis(self) -> str:
@@ -109,14 +112,25 @@ def unnamed_structure(
     is_known : callable, optional
         Whether structure belongs to something that is known, and does not count.
     """
-    for one in structures(step):
+    found = structures(step)
+    for one in found:
         if is_known(one):
             continue
         least = one.size if one.p_value < _NO_DOUBT else one.interval[0]
         smallest = channel_margin(step.problem, one.channel, margin)
         if one.p_value < min(_SIGNIFICANT, alpha) and least > smallest:
-            return one
+            return replace(one, or_load=_may_be_of_load(one, found))
     return None
+
+
+def _may_be_of_load(one: Structure, found: Sequence[Structure]) -> bool:
+    """Return whether structure along the angle is about as likely along the load."""
+    return one.axes == ("position",) and any(
+        two.axes == ("load",)
+        and two.channel == one.channel
+        and two.statistic > one.statistic - _TOLD_BY_ANGLE
+        for two in found
+    )
 
 
 def structures(step: Step) -> list[Structure]:
