@@ -14,6 +14,7 @@ import pandas as pd
 
 from frictioncli.diagnosis.data.problem import Misfit, Problem
 from frictioncli.diagnosis.data.worst_misfits import worst_misfits
+from frictioncli.diagnosis.empirical.begun import begun_on_new_run
 from frictioncli.diagnosis.empirical.estimate import Empirical, empirical_term
 from frictioncli.diagnosis.empirical.unexplained import unexplained
 from frictioncli.diagnosis.fit.extension import Extension, extend, measured_gain
@@ -221,9 +222,10 @@ def diagnose_joint(
             problem, new = lag.problem, lag.new
         causes = sizes_behind_sensor(causes, extension, step, named.measurement, base)
     appeared: tuple[Cause, ...] = ()
+    floor = _floor(found)
     if new:
         before = extension or extend(problem, weighted_fit, [])
-        predicted, floor = predicting(before, causes), _floor(found)
+        predicted = predicting(before, causes)
         appeared = changes_on_new_run(
             NewRunMisfit.of(problem, new, predicted, weighted_fit, step.noise()),
             [one for one in effects if one not in [cause.fit.effect for cause in causes]],
@@ -240,19 +242,26 @@ def diagnose_joint(
             base=base_new or base,
             # a change that begins on the held-out run was fitted there
             basis="new_run" if new and not appeared else "within_run",
-            floor=_floor(found),
+            floor=floor,
             seed=settings.seed,
         )
+    modelled = extension or extend(problem, weighted_fit, [])
     empirical = empirical_term(
         step,
-        (problem, extension or extend(problem, weighted_fit, [])),
+        (problem, modelled),
         (new, lambda one: predicting(one, causes)) if new else None,
         margin=margin,
-        floor=_floor(found),
+        floor=floor,
         seed=settings.seed,
         structure=named.structure,
     )
     structure = unexplained(named.structure, causes, empirical, step, settings.alpha)
+    if new and structure is None and empirical is None and not appeared:
+        unseen = new, predicting(modelled, causes)
+        begun = begun_on_new_run(
+            step, causes, unseen, known, margin=margin, floor=floor, seed=settings.seed
+        )
+        structure, empirical = begun or (None, None)
     return Diagnosis(
         joint=joint,
         torque_unit=torque_unit,
@@ -265,7 +274,7 @@ def diagnose_joint(
         extension=extension,
         base=problem,
         judged=new or problem,
-        floor=_floor(found),
+        floor=floor,
         search=found,
         tried=tuple(effects),
         margin=margin,

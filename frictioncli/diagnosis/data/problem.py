@@ -163,6 +163,11 @@ class Problem:
         return Basis(friction[self.rows], load[self.rows])
 
     @property
+    def run_names(self) -> dict[int, str]:
+        """Name of each run by its number in the table."""
+        return dict(zip(np.unique(self.layout.run).tolist(), self.runs, strict=True))
+
+    @property
     def temperature_variance(self) -> Array:
         """Variance of pair means from the error of the temperature, shape (pairs,). [(N·m)²]."""
         slope = self.layout.means(self.table.temperature_slope[:, np.newaxis])[:, 0]
@@ -234,5 +239,5 @@ class Problem:
             load=self.load[chosen],
             friction_base=self.friction_base[chosen],
             load_base=self.load_base[chosen],
-            runs=tuple(self.runs[number] for number in np.unique(layout.run)),
+            runs=tuple(self.run_names[number] for number in np.unique(layout.run).tolist()),
         )

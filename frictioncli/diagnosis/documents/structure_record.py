@@ -24,21 +24,22 @@ def structure_record(diagnosis: Diagnosis) -> StructureRecord | None:
     structure = diagnosis.structure
     if structure is None:
         return None
-    forms = _forms(diagnosis)
+    forms, only_on = _forms(diagnosis), _only_on(structure)
+    in_time = ("time",) if only_on or _begins(diagnosis) else ()
     if forms:
-        further = _further_axes(structure, forms)
+        further = tuple(one for one in _further_axes(structure, forms) if one not in in_time)
         return StructureRecord(
-            axis=(*forms[0].axes, *further),
+            axis=(*forms[0].axes, *further, *in_time),
             channel=forms[0].channel,
-            description=f"{_in_words(forms)}{_by_an_amount(further)}.",
+            description=f"{_in_words(forms)}{_by_an_amount(further)}{only_on}.",
             formula=" + ".join(one.formula or "" for one in forms),
             size=forms[0].size,
             ci95=forms[0].ci95,
         )
     return StructureRecord(
-        axis=structure.axes,
+        axis=(*structure.axes, *in_time),
         channel=structure.channel,
-        description=_residuals(structure.channel, structure.axes) + _or_angle(diagnosis),
+        description=_residuals(structure.channel, structure.axes, only_on) + _or_angle(diagnosis),
         size=structure.size,
         ci95=known_interval(structure.interval),
     )
@@ -98,6 +99,17 @@ def _further_axes(structure: Structure, forms: tuple[LocatedRecord, ...]) -> tup
     return tuple(axis for axis in structure.axes if axis not in own)
 
 
+def _only_on(structure: Structure) -> str:
+    """Return which run alone has structure; empty if others have it, too."""
+    return f", on run {structure.only_on} only" if structure.only_on else ""
+
+
+def _begins(diagnosis: Diagnosis) -> bool:
+    """Return whether the largest form is there from a later run on."""
+    form = diagnosis.empirical.parts[0].form if diagnosis.empirical is not None else None
+    return form is not None and bool(form.since)
+
+
 def _by_an_amount(further: tuple[str, ...]) -> str:
     """Return that a form is one of a mean over further quantities; empty without any."""
     return f", on average: by an amount that changes with the {_along(further)}" if further else ""
@@ -136,8 +148,8 @@ def _in_words(forms: tuple[LocatedRecord, ...]) -> str:
     return ", and ".join(one.description or "" for one in forms)
 
 
-def _residuals(channel: str, axes: tuple[str, ...]) -> str:
-    return f"Residuals of the {channel} have structure along {_along(axes)}."
+def _residuals(channel: str, axes: tuple[str, ...], only_on: str = "") -> str:
+    return f"Residuals of the {channel} have structure along {_along(axes)}{only_on}."
 
 
 def _along(axes: tuple[str, ...]) -> str:

@@ -49,7 +49,8 @@ def described(form: FormFunction, unit: str, load_unit: str = "N·m") -> str:
     >>> described(form, "N·m")
     'a dent of friction of 1.4 N·m at 45.3 °C, 1.9 °C wide (standard deviation)'
     """
-    return _WORDS[form.kind](form, unit).replace(_LOAD_UNIT, load_unit)
+    since = f", since run {form.since}" if form.since else ""
+    return _WORDS[form.kind](form, unit).replace(_LOAD_UNIT, load_unit) + since
 
 
 def formula_with_numbers(form: FormFunction) -> str:

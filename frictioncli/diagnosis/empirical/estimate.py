@@ -188,7 +188,7 @@ def empirical_term(
         if not found.leads:
             break
         if is_worse:
-            candidates.remove(found.form)
+            candidates.remove(replace(found.form, since=0))
             continue
         accepted.append(found)
         search, before, without = tried, alone.after, more.gain.after

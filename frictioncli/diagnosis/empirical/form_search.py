@@ -197,11 +197,20 @@ class FormSearch:
         first, *others = sorted(found.values(), key=lambda one: -one.score)
         misfit = self._weighted(self.step.precomputed.noise(first.fit.variances))
         again = self._judged(first.form, misfit.refined(first.form, (first.shape, 0.0))[0])
-        first = max(first, again, key=lambda one: one.score)
+        first = self._since(max(first, again, key=lambda one: one.score), misfit)
         rivals = [one for one in others if self._is_rival(one, first, misfit)]
         near = [one for one in rivals if not _is_behind(one, first)]
         alike = all(_place_of(one) == _place_of(first) for one in near)
         return replace(first, leads=not near, is_located=alike)
+
+    def _since(self, found: FoundForm, misfit: WeightedMisfit) -> FoundForm:
+        """Return a form as it is there from a later run on, if that is much likelier."""
+        later = [found]
+        for run in np.unique(self.fitted.problem.layout.run)[1:].tolist():
+            form = replace(found.form, since=run)
+            later.append(self._judged(form, misfit.refined(form, (found.shape, 0.0))[0]))
+        best = max(later, key=lambda one: one.score)
+        return best if best.score > found.score + LEAST_SCORE else found
 
     def _weighted(self, noise: Noises) -> WeightedMisfit:
         return WeightedMisfit.of(self.fitted, noise, self.functions, self.misfit)

@@ -105,6 +105,8 @@ class Form:
         Names of the coefficients, all in units of torque.
     formula : str
         The formula.
+    since : int
+        Number of the run from which on it is there.
     """
 
     kind: str
@@ -113,11 +115,12 @@ class Form:
     shape: tuple[ShapeAxis, ...]
     coefficients: tuple[str, ...]
     formula: str
+    since: int = 0
 
     @property
     def parameters(self) -> int:
         """Number of all parameters."""
-        return len(self.shape) + len(self.coefficients)
+        return len(self.shape) + len(self.coefficients) + (self.since > 0)
 
     def shapes(self) -> list[dict[str, float]]:
         """Return the shapes that are tried first."""
@@ -137,7 +140,9 @@ class Form:
         shape : mapping of str to float
             The shape parameters.
         """
-        return columns_of(self.kind, self.axes, self.channel, table, shape)
+        there = (table.run >= self.since)[:, np.newaxis]
+        both = columns_of(self.kind, self.axes, self.channel, table, shape)
+        return Basis(*(there * one for one in both)) if self.since else both
 
 
 def is_special_case(one: Form, other: Form) -> bool:

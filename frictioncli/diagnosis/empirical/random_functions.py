@@ -183,6 +183,7 @@ def term_of(problem: Problem, functions: Sequence[Function], coefficients: Array
                 shape=dict(shape),
                 coefficients=dict(zip(form.coefficients, values, strict=True)),
                 formula=form.formula,
+                since=problem.run_names[form.since] if form.since else "",
             )
         )
     friction, gravity = np.split(-taken, [len(problem.names)])

@@ -86,6 +86,8 @@ class FormFunction:
         Its coefficients, in the order of its columns. [torque unit]
     formula : str
         Its formula: q in deg, v in deg/s, T in °C, L in N·m.
+    since : str
+        The run from which on it is there; empty where it always is.
     """
 
     kind: str
@@ -94,6 +96,7 @@ class FormFunction:
     shape: Mapping[str, float]
     coefficients: Mapping[str, float]
     formula: str
+    since: str = ""
 
     def at(self, table: EffectTable) -> Basis:
         """Return the form in both channels at some rows, shape (rows,) each [torque unit].

@@ -75,6 +75,8 @@ class Structure:
         95 % interval of that. [N·m]
     or_load : bool
         Whether structure along the angle is about as likely along the load, which differs from it.
+    only_on : str
+        The only run that has it, where that was kept out of the diagnosis; else empty.
     """
 
     axes: tuple[str, ...]
@@ -84,6 +86,7 @@ class Structure:
     size: float
     interval: tuple[float, float]
     or_load: bool = False
+    only_on: str = ""
 
     @property
     def axis(self) -> str:

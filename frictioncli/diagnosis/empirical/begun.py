@@ -1,0 +1,84 @@
+"""Structure without a name that begins on the run that was kept out.
+
+The runs seen have next to nothing of it: damage, or something that is mounted and rubs. Another day
+always differs a little, above all slowly and with the temperature. So it counts only where it is
+beyond doubt, along the angle, the speed or the load, and most of what is left on that run.
+"""
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from frictioncli.diagnosis.data.problem import Problem
+from frictioncli.diagnosis.empirical.estimate import Empirical, empirical_term
+from frictioncli.diagnosis.fit.extension import Extension, misfits
+from frictioncli.diagnosis.search.cause import Cause
+from frictioncli.diagnosis.search.cause_selection import BEYOND_DOUBT
+from frictioncli.diagnosis.search.lack_of_fit import Structure, structures, unnamed_structure
+from frictioncli.diagnosis.search.new_run_changes import ADEQUATE
+from frictioncli.diagnosis.search.preparation import Preparation
+from frictioncli.diagnosis.search.step import Step
+
+_LEAST_PAIRS = 12
+"""With fewer pairs noise cannot be distinguished from structure."""
+
+_SLOW = frozenset({"temperature", "time"})
+"""Axes along which days differ anyway."""
+
+_MOST_OF_IT = 0.5
+"""Least share of the mean square that is left beyond the noise."""
+
+_LESS_BEFORE = 0.5
+"""Greatest size on the runs seen, relative to that on the new run."""
+
+
+def begun_on_new_run(
+    step: Step,
+    causes: Sequence[Cause],
+    new: tuple[Problem, Extension],
+    preparation: Preparation,
+    *,
+    margin: float,
+    floor: float,
+    seed: int,
+) -> tuple[Structure, Empirical | None] | None:
+    """Return structure that begins on a new run, and a term for it; None where there is none.
+
+    Parameters
+    ----------
+    step : Step
+        Base and causes on the runs seen.
+    causes : sequence of Cause
+        The causes that are named.
+    new : (Problem, Extension)
+        Rows of the run that was kept out, and base with causes as they predict it.
+    preparation : Preparation
+        What is known of problems.
+    margin : float
+        Smallest size worth a name. [N·m]
+    floor : float
+        RMS of the noise that is new with each pair. [N·m]
+    seed : int
+        Seed of the block bootstrap.
+    """
+    problem, predicted = new
+    square = float(np.mean(problem.squared(*misfits(problem, predicted))))
+    if square <= (ADEQUATE * floor) ** 2 or len(problem.layout.time) < _LEAST_PAIRS:
+        return None
+    there = [
+        one.fit
+        for one in causes
+        if not one.fit.effect.measurement and one.holds_on_new_run is not False
+    ]
+    own = Step.of(preparation.beside(problem).precomputed, there)
+    found = unnamed_structure(own, margin, BEYOND_DOUBT)
+    if found is None or not _SLOW.isdisjoint(found.axes):
+        return None
+    place = (found.axes, found.channel)
+    before = (one.size for one in structures(step) if (one.axes, one.channel) == place)
+    is_most = found.size**2 >= _MOST_OF_IT * (square - floor**2)
+    if not is_most or next(before, 0.0) > _LESS_BEFORE * found.size:
+        return None
+    term = empirical_term(own, new, None, margin=margin, floor=floor, seed=seed, structure=found)
+    return replace(found, only_on=problem.runs[-1]), term
