@@ -30,9 +30,14 @@ def _joint_text(rows: Sequence[Row]) -> str:
 
 
 def _as_logged(row: Row) -> str:
-    told = [row["names"]] if row["names"] else []
-    told += [f"structure along {row['structure']}"] if row["structure"] else []
-    return f"{row['verdict']}" + (f" ({'; '.join(told)})" if told else "")
+    told = _told(row)
+    return f"{row['verdict']}" + (f" ({told})" if told else "")
+
+
+def _told(row: Row) -> str:
+    """Return what a diagnosis names, and along what it has structure without a name."""
+    structure = f"structure along {row['structure']}" if row["structure"] else ""
+    return "; ".join(filter(None, [row["names"], structure]))
 
 
 def _cells(row: Row) -> tuple[str, ...]:
@@ -45,7 +50,7 @@ def _cells(row: Row) -> tuple[str, ...]:
         _size(row["claimed"], unit),
         found_text(row),
         row["verdict"] or "",
-        row["names"] or (f"along {row['structure']}" if row["structure"] else ""),
+        _told(row),
         mark(row),
     )
 
