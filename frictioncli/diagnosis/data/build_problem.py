@@ -29,18 +29,13 @@ from frictioncli.diagnosis.data.motion_history import (
 from frictioncli.diagnosis.data.pair_layout import PairLayout
 from frictioncli.diagnosis.data.pose_gravity import gravities_by_pose
 from frictioncli.diagnosis.data.problem import Problem
+from frictioncli.diagnosis.data.temperature_error import temperature_error
 from frictioncli.diagnosis.data.within_noise import WithinNoise
 from frictioncli.effects.base import EffectTable
 from frictioncli.effects.pair_series import rows_of
 from frictioncli.model.document import PARAMETERS
 from frictioncli.model.friction import FrictionParameters, friction_torque
 from frictioncli.model.zero_load import PAIR_KEY, temperature_of
-
-_RECONSTRUCTED = 0.05
-"""Standard error of a motor temperature reconstructed between the steps of its register. [°C]"""
-
-_REGISTERED = 0.29
-"""Standard error of a motor temperature as registered in steps of 1 °C: 1/sqrt(12). [°C]"""
 
 
 def build_problems(
@@ -228,7 +223,6 @@ def _assembled(
         order=order[pair],
     )
     reading = rows["motor_temperature_reading"].to_numpy(float)
-    reconstructed = np.nanmax(np.abs(reading - known_temperature), initial=0.0) > 1e-6
     without_friction = Problem(
         table=table,
         all_runs=table,
@@ -245,7 +239,7 @@ def _assembled(
         reference_power=reference_power,
         counted=counted,
         has_load_channel=bool(rows["load"].notna().any()),
-        temperature_error=_RECONSTRUCTED if reconstructed else _REGISTERED,
+        temperature_error=temperature_error(reading, known_temperature),
         runs=tuple(str(name) for name in run_names),
     )
     return at_temperature(without_friction, parameters, hidden)
