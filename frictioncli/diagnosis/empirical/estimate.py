@@ -182,7 +182,8 @@ def empirical_term(
         more = estimated(tried.functions, tried.noise)
         alone = reduced(more.equations.of_forms())
         added = float(np.sqrt(max(before**2 - alone.after**2, 0.0)))
-        is_worse = added < margin or more.gain.after >= without or not recurs(more)
+        is_worse = added < margin or more.gain.after >= without
+        is_worse = is_worse or found.is_widest or not recurs(more)
         is_most = explained(alone) >= _MOST_OF_IT * explained(free.gain)
         evident = evident or (is_most and not is_worse)
         if not found.leads:

@@ -45,6 +45,9 @@ _LEAST_LEAD_ALIKE = 3.0
 """The same of forms of one quantity with as many parameters: what is at stake is the words alone,
 and no price of parameters decides. An odds ratio of more than four."""
 
+_WIDEST = 0.999
+"""Share of its greatest width at which a form has it."""
+
 _REFINED = 4
 """Forms whose shapes are refined, under each noise."""
 
@@ -81,6 +84,14 @@ class FoundForm:
     fit: MixedFit
     leads: bool = True
     is_located: bool = True
+
+    @property
+    def is_widest(self) -> bool:
+        """Whether it is as wide as it can be: the torque is smoother, and not of this form."""
+        return any(
+            axis.name == "width" and self.shape["width"] >= _WIDEST * axis.values[-1]
+            for axis in self.form.shape
+        )
 
     @property
     def places(self) -> frozenset[str]:
