@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from frictioncli.diagnosis.search.confounded import turns_elsewhere, unclaimed
+from frictioncli.diagnosis.search.doubtful_steps import doubtful_with_new_run
 from frictioncli.effects import BY_NAME
 from frictioncli.effects.history import history
 from tests.diagnosis.dense_noise import problem
@@ -133,6 +134,28 @@ def test_a_step_that_comes_in_each_run_at_a_temperature_may_be_one_of_temperatur
         ((found, reason),) = standing(replace(joint, table=table), step)
         assert found == standing_then
         assert ("depends on temperature" in reason) == (found != "named")
+
+
+@pytest.mark.parametrize(
+    ("parts", "expected"),
+    [
+        # the second half of the run seen and of the one that was kept out
+        ([(0.25, 0.5), (0.75, 1.0)], True),
+        # from the middle of the run seen on, for good
+        ([(0.25, 1.0)], False),
+    ],
+)
+def test_a_step_that_the_held_out_run_has_at_the_same_temperature_may_be_one_of_temperature(
+    joint, parts, expected
+):
+    pairs = len(joint.layout.time)
+    warming = 20.0 + 40.0 * ((np.arange(pairs) % (pairs // 2)) / pairs)[joint.layout.row_pair]
+    warm = replace(joint, table=replace(joint.table, measured_temperature=warming))
+    seen, new = (warm.part(warm.table.run == number) for number in (0, 1))
+    step = of("step_change", 0.6, shape=history(parts))
+    # one run alone does not show it
+    assert standing(seen, step)[0][0] == "named"
+    assert bool(doubtful_with_new_run(step.fit, seen, new)) is expected
 
 
 def test_a_play_at_one_speed_may_be_a_delay(joint):

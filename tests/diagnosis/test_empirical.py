@@ -11,7 +11,9 @@ from frictioncli.diagnosis.diagnose import diagnose_joint
 from frictioncli.diagnosis.documents.apply_extension import friction_beyond
 from frictioncli.diagnosis.documents.extended_document import ExtendedDocument, extended_model
 from frictioncli.diagnosis.documents.from_diagnosis import diagnosis_document, extended_document
+from frictioncli.diagnosis.documents.structure_record import structure_record
 from frictioncli.diagnosis.documents.text import verdict_text
+from frictioncli.diagnosis.empirical.begun import begun_on_new_run
 from frictioncli.diagnosis.empirical.describe import described, experiment
 from frictioncli.diagnosis.empirical.estimate import empirical_term
 from frictioncli.diagnosis.empirical.random_functions import functions_of
@@ -24,7 +26,9 @@ from frictioncli.diagnosis.empirical.term import (
 from frictioncli.diagnosis.fit.columns import base_rows
 from frictioncli.diagnosis.fit.extension import extend, misfits
 from frictioncli.diagnosis.noise.discrepancy import SHARE
+from frictioncli.diagnosis.search.lack_of_fit import Structure
 from frictioncli.diagnosis.search.precomputed import Precomputed
+from frictioncli.diagnosis.search.preparation import Preparation
 from frictioncli.diagnosis.search.step import Step
 from frictioncli.diagnosis.settings import DiagnosisSettings
 from frictioncli.errors import TableError
@@ -79,6 +83,59 @@ def test_where_nothing_is_there_it_is_not_used():
 def test_what_does_not_recur_on_the_new_run_is_not_used():
     assert found(problem(3, friction=hump)) is not None
     assert found(problem(3, friction=hump), problem(4)) is None
+
+
+def spot(rows):
+    """Friction at a spot: the base of one short day has no place for it."""
+    return 2.0 * np.exp(-np.square((rows.position - 70.0) / 10.0) / 2)
+
+
+@pytest.mark.parametrize(
+    ("before", "day", "expected"),
+    [(None, None, None), (spot, spot, None), (None, spot, ("position",))],
+)
+def test_what_only_the_new_run_has_is_located_and_described(before, day, expected):
+    seen, new = problem(3, every=16, friction=before), problem(4, every=16, friction=day)
+    step = Step.of(Precomputed.of(seen), [])
+    extension = extend(seen, step.predicting_fit(), [])
+    begun = begun_on_new_run(
+        step, [], (new, extension), Preparation(), margin=MARGIN, floor=0.3, seed=0
+    )
+    assert (begun and begun[0].axes) == expected
+    if begun is not None:
+        structure, empirical = begun
+        assert structure.only_on == new.runs[-1]
+        assert empirical.gain.basis == "within_run"
+        (form,) = empirical.term.forms
+        assert form.shape["centre"] == pytest.approx(70.0, abs=1.0)
+        assert form.coefficients["peak"] == pytest.approx(2.0, rel=0.3)
+
+
+@pytest.mark.parametrize("or_load", [pytest.param(False, marks=pytest.mark.long), True])
+def test_forms_of_the_load_count_where_the_angle_does_not_tell_it(or_load):
+    """Of structure that both explain alike; a peak at a load is at two angles."""
+    data = problem(3, friction=lambda rows: 2.5 / np.cosh((np.abs(rows.load_torque) - 40.0) / 6.0))
+    step = Step.of(Precomputed.of(data), [])
+    along = Structure(
+        axes=("position",),
+        channel="friction",
+        p_value=0.0,
+        statistic=900.0,
+        size=0.8,
+        interval=(0.7, 0.9),
+        or_load=or_load,
+    )
+    empirical = empirical_term(
+        step,
+        (data, extend(data, step.predicting_fit(), [])),
+        None,
+        margin=MARGIN,
+        floor=0.3,
+        seed=0,
+        structure=along,
+    )
+    axes = {axis for form in empirical.term.forms for axis in form.axes}
+    assert ("load" in axes) is or_load
 
 
 def test_columns_are_what_the_base_leaves_and_the_term_is_their_sum():
@@ -335,6 +392,21 @@ def test_documents_and_text_say_what_it_gains(diagnosed):
     low, high = document.empirical.ranges["temperature"]
     assert low == rows.loc[rows["run"] != diagnosis.held_out, "motor_temperature"].min()
     assert low < high
+
+
+@pytest.mark.slow
+def test_structure_says_all_that_it_depends_on(diagnosed):
+    """A form of the angle alone, of structure that changes with the temperature, on one run."""
+    _, diagnosis = diagnosed
+    (part,) = diagnosis.empirical.parts
+    of_angle = replace(diagnosis.empirical, parts=(replace(part, axes=("position",)),))
+    found = structure_record(replace(diagnosis, empirical=of_angle))
+    assert found.axis == ("position", "temperature")
+    assert "an amount that changes with the temperature" in found.description
+    only = replace(diagnosis.structure, only_on="monday")
+    found = structure_record(replace(diagnosis, structure=only))
+    assert found.axis == ("position", "temperature", "time")
+    assert found.description.endswith(", on run monday only.")
 
 
 @pytest.mark.slow

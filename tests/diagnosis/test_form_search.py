@@ -8,7 +8,11 @@ import pytest
 from frictioncli.diagnosis.empirical.fitted_columns import FittedColumns
 from frictioncli.diagnosis.empirical.form_search import LEAST_SCORE, FormSearch
 from frictioncli.diagnosis.empirical.forms import forms_of, is_special_case
-from frictioncli.diagnosis.empirical.random_functions import function_of_form, functions_of
+from frictioncli.diagnosis.empirical.random_functions import (
+    function_of_form,
+    functions_of,
+    term_of,
+)
 from frictioncli.diagnosis.empirical.term import ranges_seen
 from frictioncli.diagnosis.fit.extension import extend, misfits
 from frictioncli.diagnosis.search.precomputed import Precomputed
@@ -69,3 +73,31 @@ def test_a_peak_that_might_move_is_no_rival_of_one_that_does_not():
     assert not is_special_case(moving, still)
     found = first.best([still, moving])
     assert (found.form, found.leads) == (still, True)
+
+
+@pytest.mark.parametrize("since", [0, 1])
+def test_a_bump_that_a_later_run_has_alone_is_found_with_that_run(since):
+    """Mixed with a run that lacks it, a bump would be half as high."""
+    data = problem(
+        3,
+        every=16,
+        friction=lambda rows: (
+            3.0
+            * np.exp(-np.square((rows.position - 60.0) / 8.0) / 2)
+            * (rows.run >= f"day{since + 1}")
+        ),
+    )
+    first, fitted = search(data)
+    bumps = [one for one in forms_of(ranges_seen(data.table)) if one.kind == "bump"]
+    found = first.best(bumps)
+    assert found.form == replace(bumps[0], since=since)
+    assert found.shape["centre"] == pytest.approx(60.0, abs=1.0)
+    function = function_of_form(fitted, found.form, found.shape)
+    term = term_of(data, [function], np.array([3.0]))
+    assert term.forms[0].since == ("day2" if since else "")
+    # the joint as it is now has it
+    first_run = data.part(data.table.run == 0)
+    assert np.ptp(term.functions_at(first_run.table).friction) == pytest.approx(3.0, rel=0.05)
+    widest = {axis.name: axis.values[-1] for axis in found.form.shape}
+    assert not found.is_widest
+    assert replace(found, shape={**found.shape, "width": widest["width"]}).is_widest

@@ -91,3 +91,13 @@ def test_known_noise_is_found():
     ]
     np.testing.assert_allclose(likelihood[1:], likelihood[0], rtol=0, atol=1e-3)
     assert max(likelihood) == likelihood[0]
+
+
+@pytest.mark.parametrize(("distance", "drift_time"), [(10.0, 1e4), (10.0, 10.0), (10.0, 0.5)])
+def test_what_is_new_with_a_pair_is_what_the_pair_before_does_not_tell(distance, drift_time):
+    """The variance of the drift that is left once that at the pair before is known."""
+    noise = replace(NOISE, drift_time=drift_time)
+    both = noise.drift**2 * np.exp(-np.array([[0.0, distance], [distance, 0.0]]) / drift_time)
+    left = both[1, 1] - both[0, 1] ** 2 / both[0, 0]
+    expected = np.sqrt(noise.point**2 + noise.pair**2 + left)
+    assert noise.unpredictable(distance) == pytest.approx(expected, rel=1e-9)

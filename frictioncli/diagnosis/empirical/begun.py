@@ -2,7 +2,7 @@
 
 The runs seen have next to nothing of it: damage, or something that is mounted and rubs. Another day
 always differs a little, above all slowly and with the temperature. So it counts only where it is
-beyond doubt, along the angle, the speed or the load, and most of what is left on that run.
+beyond doubt, and along the angle, the speed or the load.
 """
 
 from collections.abc import Sequence
@@ -25,9 +25,6 @@ _LEAST_PAIRS = 12
 
 _SLOW = frozenset({"temperature", "time"})
 """Axes along which days differ anyway."""
-
-_MOST_OF_IT = 0.5
-"""Least share of the mean square that is left beyond the noise."""
 
 _LESS_BEFORE = 0.5
 """Greatest size on the runs seen, relative to that on the new run."""
@@ -77,8 +74,7 @@ def begun_on_new_run(
         return None
     place = (found.axes, found.channel)
     before = (one.size for one in structures(step) if (one.axes, one.channel) == place)
-    is_most = found.size**2 >= _MOST_OF_IT * (square - floor**2)
-    if not is_most or next(before, 0.0) > _LESS_BEFORE * found.size:
+    if next(before, 0.0) > _LESS_BEFORE * found.size:
         return None
     term = empirical_term(own, new, None, margin=margin, floor=floor, seed=seed, structure=found)
     return replace(found, only_on=problem.runs[-1]), term
