@@ -4,7 +4,7 @@ from dataclasses import dataclass, replace
 
 from frictioncli.diagnosis.documents.document import CauseRecord, DiagnosisDocument
 from frictioncli.diagnosis.documents.extended_document import ParameterRecord
-from frictioncli.diagnosis.documents.remainder_words import AXES, extent
+from frictioncli.diagnosis.documents.remainder_words import extent, variation
 from frictioncli.diagnosis.documents.sentences import (
     alternatives_text,
     chance_text,
@@ -207,14 +207,10 @@ def _against(cause: CauseRecord, document: DiagnosisDocument) -> list[str]:
         found.append("The extended model is not clearly better than the base model.")
     left = document.remainder
     if left is not None and left.channel == cause.channel:
-        varying = (
-            f", varying {extent(left)} with {AXES.get(left.axis, left.axis)}"
-            if extent(left)
-            else ""
-        )
+        how = f", {variation(left)}" if extent(left) else ""
         found.append(
             f"Even with it, {number_text(left.size, 2)} {document.unit_of(left.channel)} remain"
-            f" unexplained{varying}: its true form may differ."
+            f" unexplained{how}: its true form may differ."
         )
     return found
 

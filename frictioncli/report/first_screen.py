@@ -6,7 +6,7 @@ import numpy as np
 from msgspec import UNSET
 
 from frictioncli.diagnosis.documents.document import DiagnosisDocument
-from frictioncli.diagnosis.documents.remainder_words import AXES, extent
+from frictioncli.diagnosis.documents.remainder_words import extent, variation
 from frictioncli.diagnosis.documents.sentences import alternatives_text
 from frictioncli.model.document import PARAMETERS
 from frictioncli.report.labels import PARAMETER_SYMBOLS
@@ -101,7 +101,8 @@ def _what_is_wrong(document: DiagnosisDocument | None) -> Answer:
     left = document.remainder
     rest = ""
     if left:
-        along = f", {extent(left)} over {AXES.get(left.axis, left.axis)}" if extent(left) else ""
+        # the same in fewer words
+        along = f", {variation(left).removeprefix('varying ')}" if extent(left) else ""
         if document.structure is not None:
             axes = ["angle" if axis == "position" else axis for axis in document.structure.axis]
             along = f", structure over {list_text(axes)}"

@@ -131,6 +131,11 @@ def test_what_is_left_on_the_new_run_is_found_along_its_axis(found):
     assert (left.axis, left.channel, left.basis) == ("time", "friction", "new_run")
     assert left.size == pytest.approx(np.sqrt(np.mean(slow**2)), rel=0.1)
     assert left.axis_size == pytest.approx(left.size, rel=0.15)
+    # a day on which friction is higher throughout: bins of any axis have that mean, too
+    higher = replace(drifting, friction=drifting.friction + 2.0)
+    left = remainder_record(replace(clean, judged=higher))
+    assert (left.axis, left.channel) == ("run", "friction")
+    assert left.axis_size == pytest.approx(2.0 + np.mean(slow), abs=0.05)
 
 
 def test_noise_has_hardly_any_structure(found):

@@ -1,5 +1,7 @@
 """What the terminal says of a diagnosis."""
 
+from msgspec import structs
+
 from frictioncli.diagnosis.documents.document import RemainderRecord
 from frictioncli.diagnosis.documents.empirical_record import EmpiricalGainRecord, LocatedRecord
 from frictioncli.diagnosis.documents.sentences import empirical_text, lasting_text, size_text
@@ -86,6 +88,9 @@ def test_what_is_left_is_said_with_size_and_axis():
         " 1.4 N·m (RMS), where noise alone is 0.67 N·m. The difference is 1.2 N·m; most of it,"
         " 0.95 N·m in the friction, varies with time."
     ) in said
+    whole = structs.replace(left, axis="run")
+    said = "\n".join(lines(sets=[["coulomb_temperature"]], remainder=whole))
+    assert "0.95 N·m in the friction, is the same over the whole run." in said
     assert "Something is left" not in "\n".join(lines(sets=[["coulomb_temperature"]]))
 
 

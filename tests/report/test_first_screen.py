@@ -95,7 +95,7 @@ def test_structure_without_a_name_is_said_beside_the_causes(diagnosed):
 
 @pytest.mark.parametrize(
     ("axis_size", "words"),
-    [(0.9, ", mostly over the joint angle"), (0.6, ", partly over the joint angle"), (0.1, "")],
+    [(0.9, ", mostly with the joint angle"), (0.6, ", partly with the joint angle"), (0.1, "")],
 )
 def test_an_axis_is_said_as_far_as_the_remainder_varies_along_it(diagnosed, axis_size, words):
     """The axis has 0.81, 0.36 and 0.01 of the mean square."""

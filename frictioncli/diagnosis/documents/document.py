@@ -140,6 +140,10 @@ class StructureRecord(msgspec.Struct, frozen=True, kw_only=True):
     ci95: tuple[float, float] | None = None
 
 
+WHOLE_RUN = "run"
+"""Axis of a remainder that is the same over the whole run."""
+
+
 class RemainderRecord(msgspec.Struct, frozen=True, kw_only=True):
     """What the extended model still misses, where that is clearly more than noise.
 
@@ -152,11 +156,11 @@ class RemainderRecord(msgspec.Struct, frozen=True, kw_only=True):
     size : float
         RMS of what is left beside the noise. [torque unit]
     axis : str
-        The column along which most of it shows.
+        The column along which most of it shows; ``run`` where it is the same over the whole run.
     channel : {"friction", "load"}
         The part of the torque in which that is.
     axis_size : float
-        RMS of the means along that column. [torque unit]
+        RMS of the means along that column, or amount of the mean. [torque unit]
     """
 
     basis: str

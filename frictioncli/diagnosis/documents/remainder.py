@@ -8,7 +8,8 @@ means,
 .. math:: s^2 = \sum_b w_b (m_b^2 - e_b^2),
 
 with the share :math:`w_b` of the rows in a bin, their mean :math:`m_b` and its standard error
-:math:`e_b` from the scatter between pairs.
+:math:`e_b` from the scatter between pairs. The mean over the whole run is taken off before: where
+it is larger than all that varies, it is what is told.
 """
 
 from dataclasses import dataclass
@@ -18,7 +19,7 @@ import numpy as np
 from frictioncli.arrays import Array, Indices
 from frictioncli.diagnosis.data.problem import Problem
 from frictioncli.diagnosis.diagnose import Diagnosis, predicting
-from frictioncli.diagnosis.documents.document import RemainderRecord
+from frictioncli.diagnosis.documents.document import WHOLE_RUN, RemainderRecord
 from frictioncli.diagnosis.fit.extension import misfits
 from frictioncli.diagnosis.search.axis_columns import load_over_angle, varying_axes
 from frictioncli.diagnosis.search.new_run_changes import ADEQUATE
@@ -72,7 +73,14 @@ def remainder_record(diagnosis: Diagnosis) -> RemainderRecord | None:
     rmse = float(np.sqrt(np.mean(problem.squared(friction, load))))
     if rmse <= ADEQUATE * floor:
         return None
-    most = largest_structure(problem, friction, None if problem.has_load_channel else load)
+    whole = {"friction": float(np.mean(friction))}
+    if not problem.has_load_channel:
+        whole["load"] = float(np.mean(load))
+    varying = {"friction": friction, "load": load}
+    most = largest_structure(problem, *(varying[name] - mean for name, mean in whole.items()))
+    for channel, mean in whole.items():
+        if abs(mean) > most.size:
+            most = AxisStructure(WHOLE_RUN, channel, abs(mean))
     return RemainderRecord(
         basis="within_run" if diagnosis.held_out is None else "new_run",
         rmse=rmse,
@@ -84,7 +92,9 @@ def remainder_record(diagnosis: Diagnosis) -> RemainderRecord | None:
     )
 
 
-def largest_structure(problem: Problem, friction: Array, load: Array | None) -> AxisStructure:
+def largest_structure(
+    problem: Problem, friction: Array, load: Array | None = None
+) -> AxisStructure:
     """Return the axis and channel along which a misfit has the most structure.
 
     Axes along which nothing varies are left out.

@@ -1,12 +1,16 @@
 """What the extended model still misses, in words: how much, and along which axis."""
 
-from frictioncli.diagnosis.documents.document import DiagnosisDocument, RemainderRecord
+from frictioncli.diagnosis.documents.document import (
+    WHOLE_RUN,
+    DiagnosisDocument,
+    RemainderRecord,
+)
 from frictioncli.wording import number_text
 
 _MOST, _PART = 0.5, 0.1
 """Shares of the mean square of a remainder from which on an axis has most, or a part, of it."""
 
-AXES = {
+_AXES = {
     "position": "the joint angle",
     "speed": "the speed",
     "temperature": "the temperature",
@@ -30,6 +34,19 @@ def extent(left: RemainderRecord) -> str:
     return "mostly" if along >= _MOST * whole else "partly"
 
 
+def variation(left: RemainderRecord) -> str:
+    """Return how a remainder varies that does along its axis, as a participle.
+
+    Parameters
+    ----------
+    left : RemainderRecord
+        The remainder.
+    """
+    if left.axis == WHOLE_RUN:
+        return f"{extent(left)} the same over the whole run"
+    return f"varying {extent(left)} with {_AXES.get(left.axis, left.axis)}"
+
+
 def remainder_text(document: DiagnosisDocument) -> str:
     """Return what the extended model leaves, where and along which axis; empty if only noise is.
 
@@ -46,8 +63,10 @@ def remainder_text(document: DiagnosisDocument) -> str:
     part = {"mostly": "most of it", "partly": "a part of it"}.get(extent(left))
     varies = "it does not clearly vary with any measured quantity"
     if part:
-        varies = f"{part}, {number_text(left.axis_size, 2)} {unit} in the {left.channel}, varies"
-        varies += f" with {AXES.get(left.axis, left.axis)}"
+        does = f"varies with {_AXES.get(left.axis, left.axis)}"
+        if left.axis == WHOLE_RUN:
+            does = "is the same over the whole run"
+        varies = f"{part}, {number_text(left.axis_size, 2)} {unit} in the {left.channel}, {does}"
     return (
         f"Unexplained structure remains: {on} the torque error of the {model} model is"
         f" {number_text(left.rmse, 2)} {unit} (RMS), where noise alone is"
