@@ -10,6 +10,7 @@ from frictioncli.model.document import PARAMETERS, FrictionModel, InputRange, Pa
 from frictioncli.model.identifiability import Determination, at_bound, determined_fit
 from frictioncli.model.identification import Estimate, with_error_of
 from frictioncli.model.late_torque import (
+    FREED,
     UNKNOWN_ERROR,
     late_column,
     torque_delay,
@@ -20,9 +21,7 @@ from frictioncli.model.paper_method import consecutive_fit
 from frictioncli.model.settings import LEAST_OPPOSING, LEAST_PAIRS, FitSettings, not_opposing
 from frictioncli.wording import count_text, quantity_text
 
-_LATE = (
-    "the torque in these logs lags the position by {delay}; what this adds is taken off friction"
-)
+_LATE = f"the torque in these logs lags the position by {{delay}}; {FREED}"
 
 _MAY_BE_LATE = (
     "these moves do not tell whether the torque lags the position; the intervals allow for a delay"

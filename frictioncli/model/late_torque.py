@@ -43,6 +43,9 @@ _ANGLES = 400
 _TOLERANCE = 1e-9
 """Share of the squared length below which nothing is left of a column."""
 
+FREED = "what this adds is taken off friction"
+"""What a note on a delay says of a model that was fitted to friction freed of it."""
+
 _Z95 = 1.959963984540054
 
 UNKNOWN_ERROR = 0.01

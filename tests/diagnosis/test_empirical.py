@@ -33,6 +33,7 @@ from frictioncli.diagnosis.search.step import Step
 from frictioncli.diagnosis.settings import DiagnosisSettings
 from frictioncli.errors import TableError
 from frictioncli.model.fitting import fit_joint
+from frictioncli.model.late_torque import FREED
 from frictioncli.model.settings import FitSettings
 from frictioncli.simulator.settings import SynthesisSettings
 from tests.diagnosis.dense_noise import problem
@@ -428,6 +429,12 @@ def test_the_extended_model_as_it_is_read_back_predicts_the_new_run(diagnosed):
     assert added.loc[ordered].to_numpy() == pytest.approx(beyond.friction, abs=1e-9)
     assert np.std(added) > 0.8
     assert base.parameters["tau_c"].estimate == diagnosis.base.parameters.tau_c
+    # fitted to torques as logged: what a delay adds to friction must not be taken off as well
+    known = replace(model.parameters["tau_c"], estimate=0.006, ci95=(0.004, 0.008), unit="s")
+    late = replace(model, delay=known, notes=(f"a torque that lags; {FREED}",))
+    stated = extended_document(diagnosis, late)
+    assert (late.late_by, stated.late_by) == (0.006, None)
+    assert FREED not in stated.notes[0]
 
 
 @pytest.mark.long

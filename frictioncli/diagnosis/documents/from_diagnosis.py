@@ -48,6 +48,10 @@ from frictioncli.effects.base import Effect
 from frictioncli.effects.history_text import history_text
 from frictioncli.model.document import PARAMETERS, FrictionModel, ParameterEstimate
 from frictioncli.model.friction import FrictionParameters
+from frictioncli.model.late_torque import FREED
+
+_AS_LOGGED = "this model predicts it as it was logged"
+"""What a note on a delay says of an extended model."""
 
 
 def diagnosis_document(
@@ -136,11 +140,10 @@ def extended_document(diagnosis: Diagnosis, model: FrictionModel) -> ExtendedDoc
         )
         for number, one in enumerate(extension.effects)
     ]
-    if DELAY in {one.name for one in effects}:
-        # it is an effect of this model, and not taken off beforehand
-        stated["delay"] = None
+    # it was fitted to torques as they were logged: nothing is taken off beforehand
+    notes = tuple(one.replace(FREED, _AS_LOGGED) for one in model.notes)
     return ExtendedDocument(
-        **stated | {"parameters": parameters},
+        **stated | {"parameters": parameters, "delay": None, "notes": notes},
         effects=tuple(effects),
         linear_about=FrictionParameters(
             **{name: float(getattr(base, name)) for name in PARAMETERS}
