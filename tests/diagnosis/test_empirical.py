@@ -110,6 +110,12 @@ def test_what_only_the_new_run_has_is_located_and_described(before, day, expecte
         (form,) = empirical.term.forms
         assert form.shape["centre"] == pytest.approx(70.0, abs=1.0)
         assert form.coefficients["peak"] == pytest.approx(2.0, rel=0.3)
+        # the base, fitted to runs that lack it, has no part of it; without it the misfit is noise
+        without = problem(4, every=16)
+        left = misfits(without, extension)
+        noise = np.sqrt(np.mean(without.squared(*left)))
+        gained = empirical.gain.before**2 - empirical.gain.after**2
+        assert gained > 0.7 * (empirical.gain.before**2 - noise**2)
 
 
 @pytest.mark.parametrize("or_load", [pytest.param(False, marks=pytest.mark.long), True])

@@ -76,5 +76,14 @@ def begun_on_new_run(
     before = (one.size for one in structures(step) if (one.axes, one.channel) == place)
     if next(before, 0.0) > _LESS_BEFORE * found.size:
         return None
-    term = empirical_term(own, new, None, margin=margin, floor=floor, seed=seed, structure=found)
+    term = empirical_term(
+        own,
+        new,
+        None,
+        margin=margin,
+        floor=floor,
+        seed=seed,
+        structure=found,
+        base_is_of_others=True,
+    )
     return replace(found, only_on=problem.runs[-1]), term

@@ -125,6 +125,7 @@ def empirical_term(
     floor: float,
     seed: int,
     structure: Structure | None = None,
+    base_is_of_others: bool = False,
 ) -> Empirical | None:
     """Return an empirical term for what base and causes leave; None where it is not worth using.
 
@@ -144,6 +145,8 @@ def empirical_term(
         Seed of the block bootstrap.
     structure : Structure, optional
         Structure that was located.
+    base_is_of_others : bool, optional
+        Whether base and causes were fitted to other rows, so that they hold nothing of the term.
     """
     problem, misfit = seen[0], misfits(*seen)
     components = step.precomputed.discrepancy.components
@@ -202,7 +205,11 @@ def empirical_term(
     chosen = free
     if described is not None and described.gain.after <= _AS_GOOD * best.gain.after:
         chosen = described
-    used = _used(chosen, seen, new, margin=margin, floor=floor, seed=seed)
+    whole = chosen
+    if base_is_of_others:
+        whole = chosen.beyond_base()
+        whole = replace(whole, gain=reduced(whole.equations))
+    used = _used(whole, seen, new, margin=margin, floor=floor, seed=seed)
     if used is not None and chosen is described:
         first = accepted[0]
         chance = number * chi2_tail(first.statistic, first.form.parameters)

@@ -1,6 +1,6 @@
 """Functions estimated from a misfit, and what they reduce of rows that they have not seen."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -10,6 +10,7 @@ from frictioncli.diagnosis.empirical.located import sizes_of_parts
 from frictioncli.diagnosis.empirical.normal_equations import Misfits, NormalEquations
 from frictioncli.diagnosis.empirical.random_functions import Function, term_of
 from frictioncli.diagnosis.empirical.term import EmpiricalTerm
+from frictioncli.diagnosis.fit.columns import base_rows
 from frictioncli.diagnosis.fit.extension import Extension
 from frictioncli.diagnosis.fit.gain import Gain, gain_of
 from frictioncli.effects.base import Basis
@@ -39,6 +40,22 @@ class EstimatedFunctions:
     def term(self) -> EmpiricalTerm:
         """Return the term that they make."""
         return term_of(self.equations.problem, self.functions, self.equations.coefficients())
+
+    def beyond_base(self) -> "EstimatedFunctions":
+        """Return them with what the base would take of them: it was fitted to other rows."""
+        base = np.vstack(base_rows(self.equations.problem))
+        functions = [
+            replace(
+                one,
+                taken=np.zeros_like(one.taken),
+                columns=one.columns + base @ one.taken[: base.shape[1]],
+            )
+            for one in self.functions
+        ]
+        columns = np.hstack([one.columns for one in functions])
+        return replace(
+            self, functions=functions, equations=replace(self.equations, columns=columns)
+        )
 
     def refitted(self, extension: Extension) -> Extension:
         """Return base and causes refitted beside the forms.
