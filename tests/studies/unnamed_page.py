@@ -41,6 +41,14 @@ evidence against drift.
 |---|---|---|---|
 {table}
 
+## What is missed
+Lifting loss and dead zone of 1 N·m leave less than the margin on both programmes: four of the six
+rows of 1 N·m that are not on their axes. Of the two laws at once the bump is found. The peak at a
+temperature leaves 0.34 N·m on the day seen, and no form of the temperature is likelier than drift:
+the best scores, twice the log likelihood ratio less the price of the parameters, are −2 and −1, and
+must be 10. The second form along the angle on the enriched programme is of what the nuisances leave
+of that joint, 0.26 N·m.
+
 ## Laws
 {head}
 {laws}
