@@ -5,17 +5,19 @@ changes within the delay. A start with 400 deg/s² changes it within 20 ms by mo
 delay found is then too small, and so is the inertia. So the samples are read again with the torque
 that was logged so much later, and the regression is repeated about the delay that was found,
 until next to nothing is left of it: Gauss-Newton steps with the exact model of the delay. What then
-proves to be no delay is left out of the equation.
+proves to be no delay, or what friction may do as well
+(:mod:`frictioncli.regression.friction_rivals`), is left out of the equation.
 """
 
 from collections.abc import Callable, Iterable, Mapping
+from dataclasses import replace
 from typing import Protocol
 
 import pyarrow as pa
 
 from frictioncli.errors import NotEnoughData
 from frictioncli.regression.determination import JointRegression
-from frictioncli.regression.identification import LONGEST_DELAY
+from frictioncli.regression.identification import LONGEST_DELAY, identify, some_equations
 from frictioncli.regression.motion_rows import MotionLog, motion_rows
 
 _NEAR = 5e-4
@@ -95,6 +97,11 @@ def _is_far(motion: MotionLog, found: JointRegression) -> bool:
 
 
 def _is_late(found: JointRegression) -> bool:
-    """Return whether the delay is told from none, and within its bounds."""
+    """Return whether the delay is told from none, within its bounds, and no friction's doing."""
     estimate = found.estimate
-    return estimate.told("delay") and abs(estimate.delay) < _AT_BOUND * LONGEST_DELAY
+    if not estimate.told("delay") or abs(estimate.delay) >= _AT_BOUND * LONGEST_DELAY:
+        return False
+    terms = replace(estimate.terms, rivals=True)
+    beside = identify(some_equations(found.equations), terms)
+    (low, high), (least, most) = (one.interval("delay") for one in (estimate, beside))
+    return beside.told("delay") and low <= most and least <= high

@@ -135,7 +135,7 @@ def _torques(found: JointRegression) -> JointTorques:
     terms = estimate.terms
     delta = estimate.parameters.get("delta", 0.0)
     friction = friction_columns(equations, terms, estimate.squared_load, delta, estimate.delay)
-    own = friction @ np.array([estimate.parameters[name] for name in terms.friction])
+    own = friction @ np.array([estimate.parameters[name] for name in terms.friction_names])
     torque = equations.rows.torque - own - estimate.parameters.get("offset", 0.0)
     assert equations.arm is not None
     return JointTorques(

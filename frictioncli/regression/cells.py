@@ -179,6 +179,9 @@ def _frictionless_motion(found: JointRegression, group: Numbers, centre: Array) 
     speed = np.bincount(group, np.abs(equations.velocity)) / counts
     mean_viscous = np.bincount(group, viscous) / counts
     carried = mean_viscous[group] * np.sqrt(speed)[group] - viscous * root
+    law = estimate.terms.speed_law
+    falling = found.sign * np.array([fitted[name] for name in law.names])
+    carried += (law.columns(speed) @ falling)[group] - law.columns(np.square(root)) @ falling
     if "alpha" in fitted and _has_one_gravity(found):
         at_centre = np.square(_gravity_at(found, centre))
         carried += found.sign * fitted["alpha"] * (at_centre - estimate.squared_load)

@@ -17,6 +17,7 @@ from frictioncli.regression.equation import (
 from frictioncli.regression.estimate import RegressionEstimate
 from frictioncli.regression.identification import DELTA_BOUNDS, identify, identify_delay
 from frictioncli.regression.preparation import PreparedJoint
+from frictioncli.regression.speed_law import NO_LAW
 
 LEAST_ROWS = 100
 """Least rows for a regression: 5 s of motion, at the usual width of the filter."""
@@ -85,7 +86,7 @@ class JointRegression:
         columns = friction_columns(
             self.equations, one.terms, one.squared_load, one.parameters.get("delta", 0.0), one.delay
         )
-        coefficients = np.array([one.parameters[name] for name in one.terms.friction])
+        coefficients = np.array([one.parameters[name] for name in one.terms.friction_names])
         return np.asarray(self.sign * self.equations.direction * (columns @ coefficients))
 
 
@@ -181,7 +182,7 @@ def _by_excitation(prepared: PreparedJoint) -> tuple[EquationTerms, dict[str, st
     if high < _LEAST_SPEED_RATIO * low:
         reason = f"speeds of {low:.3g} to {high:.3g} deg/s do not determine viscous friction"
         undetermined["beta"] = f"{reason}; merged into tau_c"
-        terms = terms.without("beta")
+        terms = replace(terms.without("beta"), speed_law=NO_LAW)
     if not terms.offset:
         reason = "motion in one direction only; a constant offset counts as friction"
         undetermined["offset"] = reason
@@ -269,10 +270,12 @@ def _friction_at(
             "gamma": root * cold,
             "delta": -temperature * gamma * root * cold,
         }
+        law = estimate.terms.speed_law
+        slopes |= dict(zip(law.names, law.columns(np.array([speed]))[0].tolist(), strict=True))
         gradient = np.array([slopes.get(name, 0.0) for name in estimate.names])
         value = sign * sum(
             estimate.parameters[name] * slopes[name]
-            for name in ("tau_c", "beta", "gamma")
+            for name in ("tau_c", "beta", "gamma", *law.names)
             if name in estimate.parameters
         )
         variance = float(gradient @ estimate.covariance @ gradient)

@@ -4,13 +4,13 @@ r"""Equation of motion of one joint, linear in all but two of its parameters.
 
     u(t) = J \ddot\varphi + a \cos\varphi + b \sin\varphi + c
     + \operatorname{sign}(\dot\varphi) \left( \tau_c + \alpha L^2
-    + (\beta + \gamma e^{-\delta T}) \sqrt{|\dot\varphi|} \right)
+    + (\beta + \gamma e^{-\delta T}) \sqrt{|\dot\varphi|} + f(|\dot\varphi|) \right)
 
-with all of the right-hand side at :math:`t - d`: the logged torque may lag behind the logged
-position. The columns are Taylor series about a known delay, of which the torque of the rows is free
-already, and hold only near it. Only :math:`\delta` and :math:`d` are nonlinear. The load *L* is the
-gravity of the fit before, or that of a load channel, which then stands in place of cosine and sine
-beside them.
+with a free law of the speed *f* (:mod:`frictioncli.regression.speed_law`), and with all of the
+right-hand side at :math:`t - d`: the logged torque may lag behind the logged position. The columns
+are Taylor series about a known delay, of which the torque of the rows is free already, and hold
+only near it. Only :math:`\delta` and :math:`d` are nonlinear. The load *L* is the gravity of the
+fit before, or that of a load channel, which then stands in place of cosine and sine beside them.
 """
 
 from dataclasses import dataclass, replace
@@ -19,7 +19,9 @@ import numpy as np
 
 from frictioncli.arrays import Array, Flags, Numbers
 from frictioncli.regression.arm_dynamics import ArmColumns
+from frictioncli.regression.friction_rivals import RIVALS, rival_columns
 from frictioncli.regression.motion_rows import MotionRows
+from frictioncli.regression.speed_law import NO_LAW, SpeedLaw
 
 FRICTION_TERMS = ("tau_c", "alpha", "beta", "gamma")
 """Linear parameters of equation (16)."""
@@ -33,6 +35,11 @@ class EquationTerms:
     ----------
     friction : tuple of str
         Those of :data:`FRICTION_TERMS`.
+    speed_law : SpeedLaw
+        What friction has of the speed beside them; a law without functions where it has nothing.
+    rivals : bool
+        Whether there are the columns of :mod:`~frictioncli.regression.friction_rivals`, beside
+        which Coulomb friction and its kin have no meaning.
     offset : bool
         Whether there is a constant torque; motion in one direction cannot tell it from friction.
     gravity : bool
@@ -50,6 +57,8 @@ class EquationTerms:
     """
 
     friction: tuple[str, ...] = FRICTION_TERMS
+    speed_law: SpeedLaw = NO_LAW
+    rivals: bool = False
     offset: bool = True
     gravity: bool = True
     load_channel: bool = False
@@ -74,9 +83,14 @@ class EquationTerms:
         return (*names, *(["load"] if self.load_channel else []), *(["offset"] * self.offset))
 
     @property
+    def friction_names(self) -> tuple[str, ...]:
+        """Names of the linear parameters of friction."""
+        return (*self.friction, *self.speed_law.names, *(RIVALS if self.rivals else ()))
+
+    @property
     def linear(self) -> tuple[str, ...]:
         """Names of the linear parameters in the order of the columns."""
-        return (*self.load_names, *self.friction)
+        return (*self.load_names, *self.friction_names)
 
     @property
     def nonlinear(self) -> tuple[str, ...]:
@@ -231,7 +245,7 @@ def friction_columns(
     Returns
     -------
     ndarray, shape (rows, columns)
-        In the order of ``terms.friction``.
+        In the order of ``terms.friction_names``.
     """
     root = root_speed(equations, delay)
     of = {
@@ -240,10 +254,19 @@ def friction_columns(
         "beta": root,
         "gamma": root * np.exp(-delta * equations.temperature),
     }
-    if not terms.friction:
-        return np.empty((len(root), 0))
-    stacked = np.stack([of[name] for name in terms.friction], axis=1)
-    return np.asarray(equations.direction[:, np.newaxis] * stacked)
+    own = [of[name][:, np.newaxis] for name in terms.friction]
+    stacked = np.hstack([*own, terms.speed_law.columns(np.square(root))])
+    columns = equations.direction[:, np.newaxis] * stacked
+    if not terms.rivals:
+        return columns
+    rivals = rival_columns(
+        root=root,
+        acceleration=equations.acceleration,
+        direction=equations.direction,
+        travel=equations.rows.travel,
+        load=np.sqrt(squared_load),
+    )
+    return np.hstack([columns, rivals])
 
 
 def load_derivatives(equations: JointEquations, terms: EquationTerms, delay: float) -> Array:

@@ -13,6 +13,7 @@ from frictioncli.regression.arm_dynamics import ArmColumns
 from frictioncli.regression.equation import EquationTerms, JointEquations
 from frictioncli.regression.filters import STEP_TIMES, matched_filters
 from frictioncli.regression.motion_rows import MotionLog, MotionRows
+from frictioncli.regression.speed_law import SpeedLaw
 
 SLOW = "slower than friction's law holds"
 AFTER_REVERSAL = "just after a start or reversal"
@@ -179,6 +180,7 @@ def prepare(
         offset=len(np.unique(equations.direction)) > 1,
         gravity=bool(len(rows)) and float(np.ptp(rows.position)) > 1.0,
         load_channel=has_load,
+        speed_law=SpeedLaw.of(np.abs(equations.velocity)),
         payloads=payloads,
         poses=poses,
     )

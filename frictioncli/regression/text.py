@@ -12,7 +12,7 @@ from frictioncli.wording import count_text
 
 
 def parameter_units(found: JointRegression, torque_unit: str, load_unit: str) -> dict[str, str]:
-    """Return the unit of each parameter of a regression.
+    """Return the unit of each parameter of a regression that has a meaning by itself.
 
     Parameters
     ----------
@@ -32,16 +32,14 @@ def parameter_units(found: JointRegression, torque_unit: str, load_unit: str) ->
         "gamma": viscous,
         "delta": "1/°C",
         "delay": "s",
+        "inertia": "kg·m²" if torque_unit == "N·m" else f"{torque_unit}·s²/rad",
+        "gravity": torque_unit,
+        "base": "",
     }
-    inertia = "kg·m²" if torque_unit == "N·m" else f"{torque_unit}·s²/rad"
-    for name in found.estimate.names:
-        if name.startswith("inertia"):
-            units[name] = inertia
-        elif name.startswith("gravity"):
-            units[name] = torque_unit
-        elif name.startswith("base"):
-            units[name] = ""
-    return units
+    terms = found.estimate.terms
+    free = set(terms.friction_names) - set(terms.friction)
+    names = [name for name in found.estimate.names if name not in free]
+    return {name: units[name if name in units else name.split("_")[0]] for name in names}
 
 
 def regression_text(
@@ -73,7 +71,7 @@ def regression_text(
         f" (sign {found.sign:+d}); {count_text(pairs, 'group')} of one speed, temperature and time,"
         f" {ways}"
     ]
-    shown = [name for name in estimate.names if name not in estimate.terms.friction]
+    shown = [name for name in estimate.names if name not in estimate.terms.friction_names]
     if estimate.terms.base_parameters:
         lines.append(
             f"  dynamics of the whole arm: {estimate.terms.base_parameters} base parameters"
@@ -138,7 +136,7 @@ def regression_facts(
                 "ci95": list(estimate.interval(name)),
                 "unit": units[name],
             }
-            for name in estimate.names
+            for name in units
         },
         "undetermined": dict(found.undetermined),
         "friction": [
