@@ -109,4 +109,6 @@ class StartCounts:
             NUMBER: np.repeat(number[chosen], length),
             SHARED: channels["other_speed"][index] > 0,
         }
-        return {name: np.asarray(rows[name], kind) for name, kind in _KINDS.items()}
+        # samples before a gap in the log are not around the start
+        near = (rows["since"] >= -BEFORE - period) & (rows["since"] <= AFTER + period)
+        return {name: np.asarray(rows[name][near], kind) for name, kind in _KINDS.items()}

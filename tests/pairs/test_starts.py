@@ -71,3 +71,13 @@ def test_starts_during_which_another_joint_moves_are_left_out():
 def test_a_slowly_sampled_log_has_none():
     frame = samples(move_sequence([0, 40] * 3, [30.0] * 5, period=0.1), friction=8.0)
     assert rows_of(frame).empty
+
+
+def test_a_window_does_not_reach_across_a_gap_of_the_log():
+    """A pause that was not logged lasts minutes, of which a window would hold every sample."""
+    frame = log(4)
+    start = np.flatnonzero(np.diff((frame["velocity"].abs() > 1.0).astype(int)) == 1)[3]
+    late = frame["time"] + 180.0 * (np.arange(len(frame)) > start - 8)
+    found = rows_of(frame.assign(time=late))
+    assert found["since"].between(-0.27, 0.62).all()
+    assert found["move"].nunique() >= 6
