@@ -121,8 +121,20 @@ def regress(prepared: PreparedJoint, joint: int, sign: int | None = None) -> Joi
             f" {_row_time(equations):.2g} s for a regression ({dropped}), expected at least"
             f" {LEAST_ROWS}; log longer moves"
         )
+    try:
+        return _regressed(prepared, joint, sign)
+    except NotEnoughData:
+        if not prepared.terms.speed_law.names:
+            raise
+    # a motion that does not tell a free law of the speed may tell that of the root
+    terms = replace(prepared.terms, speed_law=NO_LAW)
+    return _regressed(replace(prepared, terms=terms), joint, sign)
+
+
+def _regressed(prepared: PreparedJoint, joint: int, sign: int | None) -> JointRegression:
+    """Fit the terms that the motion excites, without a delay where it does not tell one."""
     terms, undetermined = _by_excitation(prepared)
-    estimate, prompt = identify_delay(equations, terms)
+    estimate, prompt = identify_delay(prepared.equations, terms)
     try:
         return _determined(prepared, joint, sign, estimate, dict(undetermined))
     except NotEnoughData:
