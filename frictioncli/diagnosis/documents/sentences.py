@@ -51,7 +51,7 @@ def finding_text(cause: CauseRecord) -> str:
 def size_text(cause: CauseRecord, document: DiagnosisDocument) -> str:
     """Return the size of a cause with its interval, where it shows and what the base leaves of it.
 
-    Of an effect with several coefficients only what the base leaves is known.
+    Of some effects, such as those with several coefficients, only what the base leaves is known.
 
     Parameters
     ----------
@@ -68,8 +68,7 @@ def size_text(cause: CauseRecord, document: DiagnosisDocument) -> str:
     text = f"{quantity_text(cause.size, cause.size_ci95, unit)} RMS in the {cause.channel}"
     left = cause.visible_size
     if left is None or left >= _LEFT_BY_BASE * cause.size:
-        several = cause.effects and len(BY_NAME[cause.effects[0]].coefficients) > 1
-        only_that = several and left == cause.size
+        only_that = cause.effects and left == cause.size
         return f"{text} beyond what the base model absorbs" if only_that else text
     remaining = quantity_text(left, cause.visible_ci95, unit)
     return f"{text}, of which {remaining} would remain after refitting the base model"

@@ -125,11 +125,14 @@ def _stated(
         return size, (max(float(size - below), 0.0), float(size + above))
 
     visible, interval = size_of(left_by(span, columns))
-    size, size_interval = visible, None
+    size, size_interval = visible, interval
     if len(one.coefficients) == 1:
         in_friction = one.effect.channel == "friction"
         torque = columns.friction if in_friction else columns.load
-        size, size_interval = size_of(_in_one(torque, in_friction=in_friction))
+        whole, whole_interval = size_of(_in_one(torque, in_friction=in_friction))
+        # where the base may take any of it, only what the base leaves is known
+        if whole_interval[0] > 0.0 or interval[0] <= 0.0:
+            size, size_interval = whole, whole_interval
     return replace(
         cause,
         size=size,
