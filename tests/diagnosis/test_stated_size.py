@@ -83,7 +83,7 @@ def test_sizes_are_those_of_plain_least_squares(name):
         low, high = one.size_interval
         assert low < one.size < high
     else:
-        assert (one.size, one.size_interval) == (one.visible, None)
+        assert (one.size, one.size_interval) == (one.visible, one.visible_interval)
 
 
 @pytest.mark.parametrize("name", ["torque_constant", "direction_asymmetry"])
