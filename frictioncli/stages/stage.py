@@ -8,6 +8,8 @@ from html import escape
 from pathlib import Path
 from typing import ParamSpec
 
+from threadpoolctl import threadpool_limits
+
 from frictioncli.files import is_there
 from frictioncli.workfolder import locked, outdated
 
@@ -39,7 +41,9 @@ _Arguments = ParamSpec("_Arguments")
 
 
 def stage(function: Callable[_Arguments, StageResult]) -> Callable[_Arguments, StageResult]:
-    """Return a stage that locks its work folder and warns of outdated inputs.
+    """Return a stage that locks its work folder, and warns of outdated inputs.
+
+    Linear algebra uses one thread, as in a call of the command.
 
     Parameters
     ----------
@@ -51,7 +55,8 @@ def stage(function: Callable[_Arguments, StageResult]) -> Callable[_Arguments, S
     @functools.wraps(function)
     def locked_stage(*args: _Arguments.args, **kwargs: _Arguments.kwargs) -> StageResult:
         work: Path = signature.bind(*args, **kwargs).arguments["work"]
-        with locked(work):
+        # matrices here are small: threads of linear algebra cost more than they give
+        with locked(work), threadpool_limits(1):
             result = function(*args, **kwargs)
             # the report shows all tables of its folder
             outputs = [result.path] if result.path.parent == work else sorted(work.iterdir())

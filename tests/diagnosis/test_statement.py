@@ -25,7 +25,7 @@ def said(effect, interval, estimate=None):
 @pytest.mark.parametrize("name", ["rest_recovery", "stribeck", "payload_change"])
 def test_the_torque_of_an_effect_may_be_certain_where_its_coefficients_are_not(name):
     effect = BY_NAME[name]
-    assert "(5 to 8)" in said(effect, (5.0, 8.0))
+    assert "(5.0 to 8.0)" in said(effect, (5.0, 8.0))
     without = said(effect, (-77.0, 90.0))
     assert without.startswith(effect.summary)
     assert without.endswith("but not its parameters.")

@@ -100,7 +100,7 @@ def test_a_delay_that_the_starts_of_moves_contradict_has_no_name():
     (judged, *_), rivals = judged_by_timing(causes(-0.046, 0.0, shift_error=0.005), starts(0.1, 0))
     assert judged.fit.coefficients == early.fit.coefficients
     assert judged.standing == "undetermined"
-    assert "100 ms" in judged.reason
+    assert "100.0 ms" in judged.reason
     assert rivals is None
 
 

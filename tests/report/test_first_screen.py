@@ -8,7 +8,8 @@ import numpy as np
 import pytest
 from msgspec import structs
 
-from frictioncli.diagnosis.documents.document import RemainderRecord, StructureRecord
+from frictioncli.diagnosis.documents.document import StructureRecord
+from frictioncli.diagnosis.documents.remainder_record import RemainderRecord
 from frictioncli.diagnosis.documents.remainder_words import remainder_text
 from frictioncli.report.first_screen import answers, word_count
 from frictioncli.report.operating_point import operating_point, overview_figure

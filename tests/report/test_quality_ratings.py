@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import pytest
 
-from frictioncli.diagnosis.documents.document import RemainderRecord
+from frictioncli.diagnosis.documents.remainder_record import RemainderRecord
 from frictioncli.model.document import ParameterEstimate
 from frictioncli.report.quality_ratings import (
     FAIR,

@@ -11,12 +11,10 @@ from frictioncli.diagnosis.data.problem import Misfit
 from frictioncli.diagnosis.documents.empirical_record import EmpiricalGainRecord
 from frictioncli.diagnosis.documents.extended_document import ParameterRecord
 from frictioncli.diagnosis.documents.ramps_record import RampsRecord
+from frictioncli.diagnosis.documents.remainder_record import Channel, RemainderRecord
 from frictioncli.diagnosis.ramps.settling import Settling
 from frictioncli.diagnosis.settings import DiagnosisSettings
 from frictioncli.effects import BY_NAME
-
-Channel = Annotated[str, msgspec.Meta(pattern="^(friction|load)$")]
-"""The part of the torque in which something shows."""
 
 Kind = Annotated[str, msgspec.Meta(pattern="^(friction|load|measurement)$")]
 """What a cause is a property of."""
@@ -138,38 +136,6 @@ class StructureRecord(msgspec.Struct, frozen=True, kw_only=True):
     formula: str | None = None
     size: float
     ci95: tuple[float, float] | None = None
-
-
-WHOLE_RUN = "run"
-"""Axis of a remainder that is the same over the whole run."""
-
-
-class RemainderRecord(msgspec.Struct, frozen=True, kw_only=True):
-    """What the extended model still misses, where that is clearly more than noise.
-
-    Attributes
-    ----------
-    basis : {"new_run", "within_run"}
-        Whether it was measured on a run that the diagnosis has not used.
-    rmse, noise_floor : float
-        RMS misfit of the extended model, and RMS of the noise. [torque unit]
-    size : float
-        RMS of what is left beside the noise. [torque unit]
-    axis : str
-        The column along which most of it shows; ``run`` where it is the same over the whole run.
-    channel : {"friction", "load"}
-        The part of the torque in which that is.
-    axis_size : float
-        RMS of the means along that column, or amount of the mean. [torque unit]
-    """
-
-    basis: str
-    rmse: float
-    noise_floor: float
-    size: float
-    axis: str
-    channel: Channel
-    axis_size: float
 
 
 class GainRecord(msgspec.Struct, frozen=True, kw_only=True):

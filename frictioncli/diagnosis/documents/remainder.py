@@ -19,7 +19,7 @@ import numpy as np
 from frictioncli.arrays import Array, Indices
 from frictioncli.diagnosis.data.problem import Problem
 from frictioncli.diagnosis.diagnose import Diagnosis, predicting
-from frictioncli.diagnosis.documents.document import WHOLE_RUN, RemainderRecord
+from frictioncli.diagnosis.documents.remainder_record import WHOLE_RUN, RemainderRecord
 from frictioncli.diagnosis.fit.extension import misfits
 from frictioncli.diagnosis.search.axis_columns import load_over_angle, varying_axes
 from frictioncli.diagnosis.search.new_run_changes import ADEQUATE

@@ -1,10 +1,7 @@
 """What the extended model still misses, in words: how much, and along which axis."""
 
-from frictioncli.diagnosis.documents.document import (
-    WHOLE_RUN,
-    DiagnosisDocument,
-    RemainderRecord,
-)
+from frictioncli.diagnosis.documents.document import DiagnosisDocument
+from frictioncli.diagnosis.documents.remainder_record import WHOLE_RUN, RemainderRecord
 from frictioncli.wording import number_text
 
 _MOST, _PART = 0.5, 0.1
