@@ -12,9 +12,10 @@ from frictioncli.diagnosis.diagnose import diagnose_joint
 from frictioncli.diagnosis.documents.document import read_diagnoses
 from frictioncli.diagnosis.documents.from_diagnosis import diagnosis_document
 from frictioncli.diagnosis.documents.parameters import TorqueUnits
-from frictioncli.diagnosis.documents.remainder import largest_structure, remainder_record
+from frictioncli.diagnosis.documents.remainder import remainder_record
 from frictioncli.diagnosis.documents.structure_record import structure_record, unnamed_record
 from frictioncli.diagnosis.search.lack_of_fit import Structure
+from frictioncli.diagnosis.search.largest_structure import largest_structure
 from frictioncli.diagnosis.settings import DiagnosisSettings
 from frictioncli.effects import BY_NAME
 from frictioncli.errors import TableError

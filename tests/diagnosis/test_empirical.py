@@ -92,6 +92,36 @@ def spot(rows):
 
 
 @pytest.mark.parametrize(
+    ("level", "slope", "axis"), [(0.1, 0.0, None), (1.5, 0.0, "time"), (0.0, 0.1, "temperature")]
+)
+def test_a_model_that_misses_a_new_run_by_far_more_than_noise_lacks_something(level, slope, axis):
+    """A day with other grease: its own base would take what the base of the day before misses."""
+
+    def other(temperature):
+        return level + slope * (temperature - 40.0)
+
+    seen = problem(3, every=16)
+    new = problem(4, every=16, friction=lambda rows: other(rows["motor_temperature"]))
+    step = Step.of(Precomputed.of(seen), [])
+    extension = extend(seen, step.predicting_fit(), [])
+    alike = problem(4, every=16)
+    noise = np.sqrt(np.mean(alike.squared(*misfits(alike, extension))))
+    begun = begun_on_new_run(
+        step, [], (new, extension), Preparation(), margin=MARGIN, floor=noise, seed=0
+    )
+    if axis is None:
+        assert begun is None
+        return
+    structure, empirical = begun
+    assert (structure.axes, structure.channel, empirical) == ((axis,), "friction", None)
+    assert structure.only_on == new.runs[-1]
+    torque = other(new.table.temperature)
+    varying = torque if axis == "time" else torque - np.mean(torque)
+    assert structure.size == pytest.approx(np.sqrt(np.mean(np.square(varying))), rel=0.15)
+    assert structure.interval[0] < structure.size < structure.interval[1]
+
+
+@pytest.mark.parametrize(
     ("before", "day", "expected"),
     [(None, None, None), (spot, spot, None), (None, spot, ("position",))],
 )

@@ -7,7 +7,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from frictioncli.diagnosis.documents.reload import Reloaded
-from frictioncli.diagnosis.documents.remainder import largest_structure
+from frictioncli.diagnosis.search.largest_structure import largest_structure
 from frictioncli.report.binning import bin_means, bin_numbers, residual_series
 from frictioncli.report.evidence_figure import AXES
 from frictioncli.report.style import style_context

@@ -7,9 +7,6 @@ import msgspec
 Channel = Annotated[str, msgspec.Meta(pattern="^(friction|load)$")]
 """The part of the torque in which something shows."""
 
-WHOLE_RUN = "run"
-"""Axis of a remainder that is the same over the whole run."""
-
 
 class RemainderRecord(msgspec.Struct, frozen=True, kw_only=True):
     """What the extended model still misses, where that is clearly more than noise.

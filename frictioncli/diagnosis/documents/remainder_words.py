@@ -1,11 +1,12 @@
 """What the extended model still misses, in words: how much, and along which axis."""
 
 from frictioncli.diagnosis.documents.document import DiagnosisDocument
-from frictioncli.diagnosis.documents.remainder_record import WHOLE_RUN, RemainderRecord
+from frictioncli.diagnosis.documents.remainder_record import RemainderRecord
+from frictioncli.diagnosis.search.largest_structure import LEAST_PART, WHOLE_RUN
 from frictioncli.wording import number_text
 
-_MOST, _PART = 0.5, 0.1
-"""Shares of the mean square of a remainder from which on an axis has most, or a part, of it."""
+_MOST = 0.5
+"""Share of the mean square of a remainder from which on an axis has most of it."""
 
 _AXES = {
     "position": "the joint angle",
@@ -26,7 +27,7 @@ def extent(left: RemainderRecord) -> str:
         The remainder.
     """
     along, whole = left.axis_size**2, left.size**2
-    if along < _PART * whole:
+    if along < LEAST_PART * whole:
         return ""
     return "mostly" if along >= _MOST * whole else "partly"
 

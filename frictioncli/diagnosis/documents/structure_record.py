@@ -26,6 +26,7 @@ def structure_record(diagnosis: Diagnosis) -> StructureRecord | None:
         return None
     forms, only_on = _forms(diagnosis), _only_on(structure)
     in_time = ("time",) if only_on or _begins(diagnosis) else ()
+    in_time = in_time if "time" not in structure.axes else ()
     if forms:
         further = tuple(one for one in _further_axes(structure, forms) if one not in in_time)
         return StructureRecord(

@@ -2,7 +2,8 @@
 
 The runs seen have next to nothing of it: damage, or something that is mounted and rubs. Another day
 always differs a little, above all slowly and with the temperature. So it counts only where it is
-beyond doubt, and along the angle, the speed or the load.
+beyond doubt, and along the angle, the speed or the load; along all else where the misfit is so far
+above the noise that no day differs by as much.
 """
 
 from collections.abc import Sequence
@@ -16,6 +17,7 @@ from frictioncli.diagnosis.fit.extension import Extension, misfits
 from frictioncli.diagnosis.search.cause import Cause
 from frictioncli.diagnosis.search.cause_selection import BEYOND_DOUBT
 from frictioncli.diagnosis.search.lack_of_fit import Structure, structures, unnamed_structure
+from frictioncli.diagnosis.search.largest_structure import inadequacy
 from frictioncli.diagnosis.search.new_run_changes import ADEQUATE
 from frictioncli.diagnosis.search.preparation import Preparation
 from frictioncli.diagnosis.search.step import Step
@@ -42,6 +44,8 @@ def begun_on_new_run(
 ) -> tuple[Structure, Empirical | None] | None:
     """Return structure that begins on a new run, and a term for it; None where there is none.
 
+    What makes the model inadequate there counts as well, located and without a term.
+
     Parameters
     ----------
     step : Step
@@ -60,7 +64,8 @@ def begun_on_new_run(
         Seed of the block bootstrap.
     """
     problem, predicted = new
-    square = float(np.mean(problem.squared(*misfits(problem, predicted))))
+    misfit = misfits(problem, predicted)
+    square = float(np.mean(problem.squared(*misfit)))
     if square <= (ADEQUATE * floor) ** 2 or len(problem.layout.time) < _LEAST_PAIRS:
         return None
     there = [
@@ -70,12 +75,11 @@ def begun_on_new_run(
     ]
     own = Step.of(preparation.beside(problem).precomputed, there)
     found = unnamed_structure(own, margin, BEYOND_DOUBT)
+    if found is not None and _was_there(found, step):
+        return None
     if found is None or not _SLOW.isdisjoint(found.axes):
-        return None
-    place = (found.axes, found.channel)
-    before = (one.size for one in structures(step) if (one.axes, one.channel) == place)
-    if next(before, 0.0) > _LESS_BEFORE * found.size:
-        return None
+        lacking = inadequacy(problem, *misfit, floor=floor, margin=margin)
+        return None if lacking is None else (lacking, None)
     term = empirical_term(
         own,
         new,
@@ -87,3 +91,10 @@ def begun_on_new_run(
         base_is_of_others=True,
     )
     return replace(found, only_on=problem.runs[-1]), term
+
+
+def _was_there(found: Structure, step: Step) -> bool:
+    """Return whether the runs seen have much of the structure of a new run."""
+    place = (found.axes, found.channel)
+    before = (one.size for one in structures(step) if (one.axes, one.channel) == place)
+    return next(before, 0.0) > _LESS_BEFORE * found.size
