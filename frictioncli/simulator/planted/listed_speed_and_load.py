@@ -59,7 +59,8 @@ def _velocity_exponent(
 ) -> AddedTorque:
     """Viscous friction with an exponent of speed other than one half, and not quite constant."""
     ratio = state.speed / crossing
-    power = ratio ** (exponent + bend * np.log(ratio))
+    # at rest, as at a reversal, it is none
+    power = ratio ** (exponent + bend * np.log(np.maximum(ratio, 1e-9)))
     thin = np.exp(-thinning * (state.motor - 40.0))
     viscous = floor + (1.0 - floor) * thin
     # the exact difference of two powers, not a derivative with respect to the exponent
