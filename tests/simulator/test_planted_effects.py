@@ -182,6 +182,13 @@ def test_torque_is_that_of_the_equation(name):
     assert torque(name, magnitude=2.0, **parameters) == pytest.approx((friction, load), abs=1e-9)
 
 
+@pytest.mark.parametrize("name", CASES)
+def test_torque_at_rest_is_a_number(name):
+    """At a reversal the velocity passes through zero."""
+    found = torque(name, replace(STATE, velocity=one(0.0)), magnitude=2.0, **CASES[name][0])
+    assert np.isfinite(found).all()
+
+
 @pytest.mark.parametrize("name", ["step_change", "payload_change"])
 def test_a_change_lasts_or_vanishes_or_recurs(name):
     others = {"duration": 1.0} if name == "step_change" else {"along": 0.8, "across": 0.1}
