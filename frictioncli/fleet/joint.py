@@ -9,8 +9,6 @@ from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from typing import Any
 
-from threadpoolctl import threadpool_limits
-
 from frictioncli import __version__
 from frictioncli.errors import FrictionError, LogError
 from frictioncli.files import write_text
@@ -90,17 +88,13 @@ class JointOutcome:
 def run_joint(task: JointTask) -> JointOutcome:
     """Process a joint; a fault goes to its row and its folder and is not raised.
 
-    Linear algebra uses one thread: many joints share the processors, and more threads would change
-    the last digits.
-
     Parameters
     ----------
     task : JointTask
         The joint.
     """
     start = time.perf_counter()
-    with threadpool_limits(1):
-        outcome = _run_joint(task)
+    outcome = _run_joint(task)
     return replace(outcome, seconds=time.perf_counter() - start)
 
 

@@ -55,7 +55,7 @@ def stage(function: Callable[_Arguments, StageResult]) -> Callable[_Arguments, S
     @functools.wraps(function)
     def locked_stage(*args: _Arguments.args, **kwargs: _Arguments.kwargs) -> StageResult:
         work: Path = signature.bind(*args, **kwargs).arguments["work"]
-        # matrices here are small: threads of linear algebra cost more than they give
+        # matrices here are small: more threads cost more than they give, and change last digits
         with locked(work), threadpool_limits(1):
             result = function(*args, **kwargs)
             # the report shows all tables of its folder

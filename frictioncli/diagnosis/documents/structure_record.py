@@ -25,8 +25,8 @@ def structure_record(diagnosis: Diagnosis) -> StructureRecord | None:
     if structure is None:
         return None
     forms, only_on = _forms(diagnosis), _only_on(structure)
-    in_time = ("time",) if only_on or _begins(diagnosis) else ()
-    in_time = in_time if "time" not in structure.axes else ()
+    later = "time" not in structure.axes and (only_on or _begins(diagnosis))
+    in_time = ("time",) if later else ()
     if forms:
         further = tuple(one for one in _further_axes(structure, forms) if one not in in_time)
         return StructureRecord(

@@ -110,22 +110,23 @@ def inadequacy(
         Smallest size worth a name. [N·m]
     """
     square = float(np.mean(problem.squared(friction, load)))
-    if square <= (INADEQUATE * floor) ** 2 or square - floor**2 <= margin**2:
+    rest = square - floor**2
+    if square <= (INADEQUATE * floor) ** 2 or rest <= margin**2:
         return None
     found = left_structure(problem, friction, load)
     size, interval, pairs = found.size, found.interval, len(problem.layout.time)
     along = found.axis
     if along == WHOLE_RUN:
         along = "time"
-    elif size**2 < LEAST_PART * (square - floor**2):
-        along, size = "time", float(np.sqrt(square - floor**2))
-        interval = (0.0, np.inf)
+    elif size**2 < LEAST_PART * rest:
+        along, size, interval = "time", float(np.sqrt(rest)), (0.0, np.inf)
+    ratio = square / max(floor, 1e-9) ** 2
     return Structure(
         axes=(along,),
         channel=found.channel,
         # as if the pairs were all that is independent
-        p_value=chi2_tail(pairs * square / max(floor, 1e-9) ** 2, pairs),
-        statistic=pairs * (square / max(floor, 1e-9) ** 2 - 1.0),
+        p_value=chi2_tail(pairs * ratio, pairs),
+        statistic=pairs * (ratio - 1.0),
         size=size,
         interval=interval,
         only_on=problem.runs[-1],
