@@ -177,7 +177,7 @@ def diagnose_joint(
         )
     rows = settled_problems(torques, temperature, held_out, ramps, LEAST_PAIRS)
     known = Preparation()
-    late = late_torque(rows.problem, rows.timing, known.beside)
+    late = late_torque(rows.problem, rows.timing, known.beside, torques)
     base = replace(rows.problem, late=late, doubt=doubt)
     base_new = rows.new and replace(rows.new, late=late, doubt=doubt)
     margin = margin_of(base, torque_unit, settings)

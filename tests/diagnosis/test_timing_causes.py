@@ -5,13 +5,15 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from frictioncli.diagnosis.data.build_problem import build_problems
 from frictioncli.diagnosis.fit.hypotheses import EffectFit
 from frictioncli.diagnosis.ramps.evidence import RampEstimate
 from frictioncli.diagnosis.ramps.timing import TorqueTiming
 from frictioncli.diagnosis.ramps.timing_rivals import TimingRivals
 from frictioncli.diagnosis.search.cause import Cause
-from frictioncli.diagnosis.search.timing_causes import judged_by_timing
+from frictioncli.diagnosis.search.timing_causes import judged_by_timing, late_torque
 from frictioncli.effects import BY_NAME
+from tests.equation_16 import TRUTH, friction, table
 
 
 def cause(name, coefficients, errors, **fields):
@@ -115,3 +117,37 @@ def test_a_delay_that_the_starts_of_moves_contradict_has_no_name():
 )
 def test_starts_and_segments_may_differ_by_a_sample_and_their_errors(shift, error, contradicts):
     assert starts(0.012, 0.0).contradicts(shift, error) is contradicts
+
+
+@pytest.mark.parametrize("imprecise", [0.033, -0.004])
+def test_starts_that_hardly_tell_a_delay_do_not_decide_it(imprecise):
+    """Beside a ripple, whose period a move at 90 deg/s passes in 0.27 s, 23 ms matter."""
+    delay, generator = 0.010, np.random.default_rng(4)
+    position, speed = np.arange(-52.5, 53.0, 5.0), np.resize([10.0, 25.0, 50.0, 90.0], 80)
+    warm = np.linspace(25.0, 50.0, len(speed))
+    ways = []
+    for way in (1, -1):
+        angle = np.radians(position - way * delay * speed[:, np.newaxis])
+        load = 60.0 * np.cos(angle)
+        torque = friction(
+            TRUTH, load=load, speed=speed[:, np.newaxis], temperature=warm[:, np.newaxis]
+        )
+        torque = torque + 1.5 * np.sin(15 * angle)
+        ways.append(load + way * torque + 0.1 * generator.normal(size=load.shape))
+    half, mean = (ways[0] - ways[1]) / 2, (ways[0] + ways[1]) / 2
+    columns = {
+        "speed": speed,
+        "time": 60.0 * np.arange(len(speed)),
+        "phase": np.full(len(speed), "heat-up"),
+        "motor_temperature": warm,
+        "housing_temperature": np.full(len(speed), np.nan),
+        "motor_temperature_reading": warm,
+    }
+    rows = table(columns, position=position, friction_torque=half, load_torque=mean[0])
+    unknown = dict.fromkeys(("load", "payload"), np.nan)
+    rows = rows.assign(
+        load_torque=mean.ravel(), torque_forward=ways[0].ravel(), torque_reverse=ways[1].ravel()
+    ).assign(**unknown)
+    problem = build_problems(rows, "motor")[0]
+    late = late_torque(problem, starts(imprecise, 0.0, error=0.008), torques=rows)
+    assert late.delay == pytest.approx(delay, abs=0.002)

@@ -14,20 +14,22 @@ from collections.abc import Callable, Sequence
 from dataclasses import replace
 
 import numpy as np
+import pandas as pd
 
 from frictioncli.diagnosis.data.late_torque import LateTorque
 from frictioncli.diagnosis.data.problem import Problem
+from frictioncli.diagnosis.fit.left_by_base import Z95
 from frictioncli.diagnosis.noise.significance import credible_set, posterior_probabilities
 from frictioncli.diagnosis.ramps.timing import TorqueTiming
 from frictioncli.diagnosis.ramps.timing_rivals import TimingRivals
 from frictioncli.diagnosis.search.cause import CONVINCING, Cause
 from frictioncli.diagnosis.search.measurement import (
-    CLEAR,
     BesideBase,
     beside_base,
     measurement_causes,
 )
 from frictioncli.diagnosis.search.step import Step
+from frictioncli.model.late_torque import torque_delay
 from frictioncli.wording import quantity_text
 
 DELAY, FILTER = "torque_delay", "torque_filter"
@@ -43,8 +45,12 @@ def late_torque(
     problem: Problem,
     starts: TorqueTiming | None,
     beside_base_of: Callable[[Problem], BesideBase] = beside_base,
+    torques: pd.DataFrame | None = None,
 ) -> LateTorque | None:
-    """Return by how much the torque is late, from the starts of moves or else from the pairs.
+    """Return by how much the torque is late, from the pairs and from the starts of moves.
+
+    Each counts by its precision. Starts may tell it to some hundredths of a second only, in which a
+    ripple of friction passes.
 
     Parameters
     ----------
@@ -54,26 +60,36 @@ def late_torque(
         Delay and filter by the starts of moves.
     beside_base_of : callable, optional
         Returns what stands beside the base of the problem.
+    torques : DataFrame, optional
+        Rows of :data:`frictioncli.schemas.TORQUES` of the joint: they tell a delay whatever the
+        friction at each angle, unless the load was measured apart.
 
     Returns
     -------
     LateTorque or None
         None where it is not clearly late, or where both contradict each other.
     """
-    if starts is not None and starts.shift.low <= 0:
-        return None
     beside = beside_base_of(problem)
     causes = measurement_causes(Step.of(beside.precomputed, []), beside.effects)
     by_name = {cause.fit.effect.name: cause for cause in causes}
     late, smeared = by_name.get(DELAY), by_name.get(FILTER)
-    if starts is not None:
-        if late is not None and starts.contradicts(*_shift_of(late)):
-            return None
-        return LateTorque(delay=starts.shift.value, variance=max(starts.smear.value, 0.0))
-    if late is None or late.test.p_value >= CLEAR or late.fit.coefficients[0] <= 0:
+    if late is None and starts is None:
         return None
-    delay = float(late.fit.coefficients[0])
-    if smeared is None or (rivals := _of_pairs(late, smeared)).log_odds < CONVINCING:
+    known = _shift_by_pairs(late, problem, torques)
+    if starts is not None:
+        if known and starts.contradicts(*known[0]):
+            return None
+        known += [(float(starts.shift.value), float(np.sqrt(starts.rivals.covariance[0, 0])))]
+    shift, error = np.array(known).T
+    weight = 1 / np.square(error)
+    delay = float(weight @ shift / weight.sum())
+    if delay <= Z95 / np.sqrt(weight.sum()):
+        return None
+    if starts is not None:
+        return LateTorque(delay=delay, variance=max(starts.smear.value, 0.0))
+    if late is None or smeared is None:
+        return LateTorque(delay=delay)
+    if (rivals := _of_pairs(late, smeared)).log_odds < CONVINCING:
         return LateTorque(delay=delay)
     return LateTorque(delay=delay, variance=max(float(rivals.point[1]), 0.0))
 
@@ -129,6 +145,24 @@ def judged_by_timing(
 def _shift_of(late: Cause) -> tuple[float, float]:
     """Return the mean time by which the torque is late, and its standard error [s]."""
     return float(late.fit.coefficients[0]), float(np.sqrt(max(late.fit.covariance[0, 0], 0.0)))
+
+
+def _shift_by_pairs(
+    late: Cause | None, problem: Problem, torques: pd.DataFrame | None
+) -> list[tuple[float, float]]:
+    """Return the mean time by which the torque is late, and its standard error [s], if known.
+
+    Beside the base, with an error that allows for other structure, or beside any friction at each
+    angle, whichever is more precise.
+    """
+    found = []
+    if late is not None:
+        shift, error = _shift_of(late)
+        found.append((shift, float(np.hypot(error, _TOLERANCE[0] + _SHARE[0] * abs(shift)))))
+    if torques is not None and not problem.has_load_channel:
+        other = torque_delay(torques[torques["run"].isin(problem.runs)])
+        found += [] if other is None else [(other.value, other.error)]
+    return sorted(found, key=lambda one: one[1])[:1]
 
 
 def _of_pairs(late: Cause, smeared: Cause) -> TimingRivals:
