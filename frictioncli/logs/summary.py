@@ -19,6 +19,8 @@ from frictioncli.wording import count_text
 _NAMES_SHOWN = 6
 _ALIKE = 3
 """Least number of remarks that are told together."""
+_FEW = 0.01
+"""Share of rows whose times had passed that may be damaged, or out of order."""
 _NUMBER = re.compile(r"\d+(?:\.\d+)?")
 _JOINT = re.compile(r"\bjoint (\d+)\b")
 
@@ -144,13 +146,11 @@ class IngestedLogs:
             If the logs differ in unit or side of the torque, or in whether they have positions.
         """
         recordings = self.recordings
-        plans = [
-            (f"{recording.log.run.name}/{recording.log.file.path.name}", plan)
-            for recording in recordings
-            for plan in recording.planned.plans
-        ]
+        named = [(f"{one.log.run.name}/{one.log.file.path.name}", one) for one in recordings]
+        plans = [(name, plan) for name, one in named for plan in one.planned.plans]
         notes = ((name, text) for name, plan in plans for text in plan.notes)
-        warnings = ((name, text) for name, plan in plans for text in plan.warnings)
+        warnings = [(name, text) for name, plan in plans for text in plan.warnings]
+        warnings += [(name, text) for name, one in named if (text := _set_back(one))]
         return {
             "torque_unit": _common("torque unit", ((n, plan.torque_unit) for n, plan in plans)),
             "torque_side": _common(
@@ -199,6 +199,17 @@ class IngestedLogs:
             notes=tuple(facts["notes"]),
             warnings=tuple(facts["warnings"]),
         )
+
+
+def _set_back(recording: RecordingSummary) -> str:
+    """Return how to keep the rows that a clock that was set back costs; empty for a few rows."""
+    lost = recording.rejected.get("time_not_increasing", 0)
+    if lost <= _FEW * recording.rows_read:
+        return ""
+    return (
+        f"{lost:,} rows are left out because their times had passed before, as where the clock is"
+        " set back; 'frictioncli inspect' shows the line: divide the file there to keep them"
+    )
 
 
 def _constants(plans: Iterable[JointPlan]) -> dict[str, Any]:

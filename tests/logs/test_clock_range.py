@@ -64,8 +64,11 @@ def test_a_clock_that_is_set_back_otherwise_is_not_continued(tmp_path, back):
     clock = np.round(TIME * 1000) + 10_000
     clock[len(TIME) // 2 :] -= back
     summary = ingest([written(tmp_path / "log.csv", clock, "time [ms]")], tmp_path / "work")
-    assert summary.rows_rejected["time_not_increasing"] > 1000
+    lost = summary.rows_rejected["time_not_increasing"]
+    assert lost > 1000
     assert not any("begins anew" in note for note in summary.notes)
+    (warning,) = (one for one in summary.warnings if "set back" in one)
+    assert f"{lost:,} rows" in warning and "divide the file" in warning
 
 
 @pytest.mark.parametrize("damaged", [0, 1.5, 65_535, 70_000, 2**62, -(2**62)])
