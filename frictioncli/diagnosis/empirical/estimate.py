@@ -264,11 +264,13 @@ def _is_along(form: Form, structure: Structure) -> bool:
     """Return whether a form may describe structure, or something else beside it.
 
     It is none of the same quantity that depends on another one as well; and none of the load where
-    friction has structure along the angle, of which the test tells the load. Where it does not, as
-    of a load torque with one payload, the simpler form decides.
+    friction has structure along the angle, of which the test tells the load, nor the other way
+    round. Where it does not, as of a load torque with one payload, the simpler form decides.
     """
     if "load" in form.axes and "position" in structure.axes:
         undecided = structure.or_load or structure.channel == "load"
         return undecided and form.channel == structure.channel
     own, located = set(form.axes), set(structure.axes)
+    if own == {"position"} and located == {"load"}:
+        return form.channel != structure.channel
     return not own > located

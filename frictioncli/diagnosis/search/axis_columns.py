@@ -150,20 +150,20 @@ def axis_columns(problem: Problem) -> dict[tuple[tuple[str, ...], Channel], Arra
         [wave(n * angle) for n in range(1, _HARMONICS + 1) for wave in (np.sin, np.cos)]
     )
     speed = _indicators(problem.layout.level)[problem.layout.row_pair]
-    temperature = _cosines(table.temperature)
+    temperature = cosines(table.temperature)
     # a stroke of less than a turn has finer structure than harmonics of a turn show; the load has
     # as many columns, so that which of both it is does not depend on how fine they are
     for half_wave in _HALF_WAVES:
         halves = max(round(float(np.ptp(table.position)) / half_wave), _COSINES)
-        position = np.hstack([harmonics, _cosines(table.position, halves)])
+        position = np.hstack([harmonics, cosines(table.position, halves)])
         if can_be_judged(problem, position):
             break
-    load = _cosines(table.load, halves)
+    load = cosines(table.load, halves)
     # friction is the same for loads to either side: with one payload that tells it from the angle
     amount = np.abs(table.load)
     part = float(np.ptp(amount)) / max(float(np.ptp(table.load)), 1e-9)
-    of_load = _cosines(amount, max(round(part * halves), _COSINES))
-    time = _cosines(table.clock)[:, :_WAVES]
+    of_load = cosines(amount, max(round(part * halves), _COSINES))
+    time = cosines(table.clock)[:, :_WAVES]
     warming = _HYSTERESIS * (2 * _rising(problem) - 1)[:, np.newaxis]
     squared = np.square(table.load)[:, np.newaxis] / max(float(np.max(np.square(table.load))), 1e-9)
     waves = harmonics[:, : 2 * _SLOW_HARMONICS]
@@ -212,8 +212,16 @@ def can_be_judged(problem: Problem, columns: Array) -> bool:
     return bool(rank <= _MOST_OF_PAIRS * len(means))
 
 
-def _cosines(values: Array, count: int = _COSINES) -> Array:
-    """Return weighted cosines over the range of a quantity, shape (rows, count)."""
+def cosines(values: Array, count: int = _COSINES) -> Array:
+    """Return weighted cosines over the range of a quantity, shape (rows, count).
+
+    Parameters
+    ----------
+    values : ndarray, shape (rows,)
+        The quantity.
+    count : int, optional
+        Number of cosines.
+    """
     unit = (values - np.min(values)) / max(float(np.ptp(values)), 1e-9)
     orders = np.arange(1, count + 1)
     return np.asarray(_weights(orders) * np.cos(np.pi * orders * unit[:, np.newaxis]))

@@ -23,15 +23,17 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
+from scipy.optimize import minimize_scalar
 
 from frictioncli.arrays import Array
+from frictioncli.diagnosis.data.problem import Problem
 from frictioncli.diagnosis.fit.columns import reduced
 from frictioncli.diagnosis.fit.left_by_base import Z95, left_by, span_of
 from frictioncli.diagnosis.fit.mixed_model import Components, MixedFit, Variances
 from frictioncli.diagnosis.fit.transformed_columns import Part
 from frictioncli.diagnosis.fit.variance_components import fit_variances
 from frictioncli.diagnosis.noise.discrepancy_functions import SPEED_RIPPLE
-from frictioncli.diagnosis.search.axis_columns import axis_columns, can_be_judged
+from frictioncli.diagnosis.search.axis_columns import axis_columns, can_be_judged, cosines
 from frictioncli.diagnosis.search.margin import channel_margin
 from frictioncli.diagnosis.search.step import Step
 from frictioncli.distributions import chi2_exceeded, chi2_tail
@@ -49,6 +51,21 @@ _SIGNIFICANT = 5e-3
 _TOLD_BY_ANGLE = 10.0
 """By so much structure along the load must be likelier than another: with one payload and pose the
 load is a function of the angle, and what goes with it goes with the angle, too."""
+
+_CONSTANT = 0.1
+"""Greatest constant of the load channel that does not load the gear, relative to the mean friction
+and to the greatest load."""
+
+_CONSTANTS = 5
+"""Such constants that are tried, before the best is refined."""
+
+_REFINED = 8
+"""Greatest number of steps of that."""
+
+_LOAD: tuple[tuple[str, ...], Channel] = (("load",), "friction")
+
+_Found = tuple[tuple[str, ...], Channel, float, float, tuple[float, float]]
+"""Axes, channel, twice the log likelihood ratio, size [N·m] and its interval."""
 
 _NO_DOUBT = 1e-12
 """P-value below which there is no doubt that structure is there."""
@@ -159,21 +176,27 @@ def structures(step: Step) -> list[Structure]:
     null = fit_variances(expected, step.products, step.known, *starts)
     accepted = [problem.basis(one.effect, one.shape) for one in step.accepted]
     span = span_of(problem, [*step.precomputed.measurement, *accepted])
-    found = []
-    for (names, channel), columns in axes.items():
+
+    def judged(names: tuple[str, ...], channel: Channel, columns: Array) -> _Found | None:
         zeros = np.zeros_like(columns)
         basis = Basis(columns, zeros) if channel == "friction" else Basis(zeros, columns)
         left = left_by(span, basis)
         squares = float(np.sum(np.square(left)))
         if squares <= 0:
-            continue
+            return None
         scale = float(np.sqrt(len(columns) / squares))
         fit = _beside_function(step, expected, basis, scale, (null.variances, known))
         place = slice(step.known, step.known + columns.shape[1])
         size, interval = _realised(
             scale * left, fit.coefficients[place], fit.covariance[place, place]
         )
-        found.append((names, channel, null.objective - fit.objective, size, interval))
+        return names, channel, null.objective - fit.objective, size, interval
+
+    by_place = {place: judged(*place, columns) for place, columns in axes.items()}
+    load, angle = (by_place.get(((name,), "friction")) for name in ("load", "position"))
+    if load is not None and angle is not None and load[2] < angle[2] + _TOLD_BY_ANGLE:
+        by_place[_LOAD] = _carried(problem, load, axes[_LOAD].shape[1], judged)
+    found = [one for one in by_place.values() if one is not None]
     found += [_drift(step, expected, null, number) for number in range(2)]
     return sorted(
         (
@@ -191,7 +214,33 @@ def structures(step: Step) -> list[Structure]:
     )
 
 
-_Found = tuple[tuple[str, ...], Channel, float, float, tuple[float, float]]
+def _carried(
+    problem: Problem, found: _Found, count: int, judged: Callable[..., _Found | None]
+) -> _Found:
+    """Return what goes with the amount of the load that the gear carries.
+
+    The load channel has a constant besides, of the torque sensor or of friction that differs
+    between directions. It takes away the symmetry by which load and angle are told apart. The price
+    of that constant is taken off.
+    """
+    load = problem.table.load
+    most = _CONSTANT * min(float(np.mean(np.abs(problem.friction))), float(np.max(np.abs(load))))
+    price = float(np.log(len(problem.layout.time)))
+
+    def without(constant: float) -> _Found:
+        one = judged(*_LOAD, cosines(np.abs(load - constant), count))
+        return found if one is None else (*one[:2], one[2] - price, *one[3:])
+
+    tried = np.linspace(-most, most, _CONSTANTS)
+    best = max(tried, key=lambda one: without(float(one))[2])
+    reach = tried[1] - tried[0]
+    near = minimize_scalar(
+        lambda one: -without(float(one))[2],
+        bounds=(best - reach, best + reach),
+        method="bounded",
+        options={"maxiter": _REFINED, "xatol": 0.05 * reach},
+    )
+    return max(found, without(float(near.x)), key=lambda one: one[2])
 
 
 def expected_components(step: Step) -> Components:
