@@ -14,8 +14,8 @@ import pandas as pd
 
 from frictioncli.diagnosis.data.problem import Misfit, Problem
 from frictioncli.diagnosis.data.worst_misfits import worst_misfits
-from frictioncli.diagnosis.empirical.begun import begun_on_new_run
 from frictioncli.diagnosis.empirical.estimate import Empirical, empirical_term
+from frictioncli.diagnosis.empirical.on_new_run import structure_on_new_run
 from frictioncli.diagnosis.empirical.unexplained import unexplained
 from frictioncli.diagnosis.fit.extension import Extension, extend, measured_gain
 from frictioncli.diagnosis.fit.gain import Gain
@@ -258,7 +258,7 @@ def diagnose_joint(
     structure = unexplained(named.structure, causes, empirical, step, settings.alpha)
     if new and structure is None and empirical is None and not appeared:
         unseen = new, predicting(modelled, causes)
-        begun = begun_on_new_run(
+        begun = structure_on_new_run(
             step, causes, unseen, known, margin=margin, floor=floor, seed=settings.seed
         )
         structure, empirical = begun or (None, None)

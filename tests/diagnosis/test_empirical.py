@@ -13,9 +13,9 @@ from frictioncli.diagnosis.documents.extended_document import ExtendedDocument, 
 from frictioncli.diagnosis.documents.from_diagnosis import diagnosis_document, extended_document
 from frictioncli.diagnosis.documents.structure_record import structure_record
 from frictioncli.diagnosis.documents.text import verdict_text
-from frictioncli.diagnosis.empirical.begun import begun_on_new_run
 from frictioncli.diagnosis.empirical.describe import described, experiment
 from frictioncli.diagnosis.empirical.estimate import empirical_term
+from frictioncli.diagnosis.empirical.on_new_run import structure_on_new_run
 from frictioncli.diagnosis.empirical.random_functions import functions_of
 from frictioncli.diagnosis.empirical.term import (
     EmpiricalTerm,
@@ -106,7 +106,7 @@ def test_a_model_that_misses_a_new_run_by_far_more_than_noise_lacks_something(le
     extension = extend(seen, step.predicting_fit(), [])
     alike = problem(4, every=16)
     noise = np.sqrt(np.mean(alike.squared(*misfits(alike, extension))))
-    begun = begun_on_new_run(
+    begun = structure_on_new_run(
         step, [], (new, extension), Preparation(), margin=MARGIN, floor=noise, seed=0
     )
     if axis is None:
@@ -129,7 +129,7 @@ def test_what_only_the_new_run_has_is_located_and_described(before, day, expecte
     seen, new = problem(3, every=16, friction=before), problem(4, every=16, friction=day)
     step = Step.of(Precomputed.of(seen), [])
     extension = extend(seen, step.predicting_fit(), [])
-    begun = begun_on_new_run(
+    begun = structure_on_new_run(
         step, [], (new, extension), Preparation(), margin=MARGIN, floor=0.3, seed=0
     )
     assert (begun and begun[0].axes) == expected

@@ -23,7 +23,6 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-from scipy.optimize import minimize_scalar
 
 from frictioncli.arrays import Array
 from frictioncli.diagnosis.data.problem import Problem
@@ -34,6 +33,7 @@ from frictioncli.diagnosis.fit.transformed_columns import Part
 from frictioncli.diagnosis.fit.variance_components import fit_variances
 from frictioncli.diagnosis.noise.discrepancy_functions import SPEED_RIPPLE
 from frictioncli.diagnosis.search.axis_columns import axis_columns, can_be_judged, cosines
+from frictioncli.diagnosis.search.carried_load import most_likely_constant
 from frictioncli.diagnosis.search.margin import channel_margin
 from frictioncli.diagnosis.search.step import Step
 from frictioncli.distributions import chi2_exceeded, chi2_tail
@@ -51,16 +51,6 @@ _SIGNIFICANT = 5e-3
 _TOLD_BY_ANGLE = 10.0
 """By so much structure along the load must be likelier than another: with one payload and pose the
 load is a function of the angle, and what goes with it goes with the angle, too."""
-
-_CONSTANT = 0.1
-"""Greatest constant of the load channel that does not load the gear, relative to the mean friction
-and to the greatest load."""
-
-_CONSTANTS = 5
-"""Such constants that are tried, before the best is refined."""
-
-_REFINED = 8
-"""Greatest number of steps of that."""
 
 _LOAD: tuple[tuple[str, ...], Channel] = (("load",), "friction")
 
@@ -132,12 +122,32 @@ def unnamed_structure(
     is_known : callable, optional
         Whether structure belongs to something that is known, and does not count.
     """
-    found = structures(step)
+    return first_above(structures(step), step.problem, margin, alpha, is_known)
+
+
+def first_above(
+    found: Sequence[Structure],
+    problem: Problem,
+    margin: float,
+    alpha: float,
+    is_known: Callable[[Structure], bool] = lambda _: False,
+) -> Structure | None:
+    """Return the first of some structures that is significant and above the margin.
+
+    Parameters
+    ----------
+    found : sequence of Structure
+        The lack of fit along every axis, most likely first.
+    problem : Problem
+        The rows.
+    margin, alpha, is_known
+        As of :func:`unnamed_structure`.
+    """
     for one in found:
         if is_known(one):
             continue
         least = one.size if one.p_value < _NO_DOUBT else one.interval[0]
-        smallest = channel_margin(step.problem, one.channel, margin)
+        smallest = channel_margin(problem, one.channel, margin)
         if one.p_value < min(_SIGNIFICANT, alpha) and least > smallest:
             return replace(one, or_load=_may_be_of_load(one, found))
     return None
@@ -194,8 +204,17 @@ def structures(step: Step) -> list[Structure]:
 
     by_place = {place: judged(*place, columns) for place, columns in axes.items()}
     load, angle = (by_place.get(((name,), "friction")) for name in ("load", "position"))
-    if load is not None and angle is not None and load[2] < angle[2] + _TOLD_BY_ANGLE:
-        by_place[_LOAD] = _carried(problem, load, axes[_LOAD].shape[1], judged)
+    least = _TOLD_BY_ANGLE if load is None else max(_TOLD_BY_ANGLE, load[2] - _TOLD_BY_ANGLE)
+    if load is not None and angle is not None and angle[2] > least:
+        count = axes[_LOAD].shape[1]
+        price = float(np.log(len(problem.layout.time)))
+
+        def carried(constant: float) -> _Found:
+            one = judged(*_LOAD, cosines(np.abs(problem.table.load - constant), count))
+            return load if one is None else (*one[:2], one[2] - price, *one[3:])
+
+        constant = most_likely_constant(problem, lambda one: carried(one)[2])
+        by_place[_LOAD] = max(load, carried(constant), key=lambda one: one[2])
     found = [one for one in by_place.values() if one is not None]
     found += [_drift(step, expected, null, number) for number in range(2)]
     return sorted(
@@ -212,35 +231,6 @@ def structures(step: Step) -> list[Structure]:
         ),
         key=lambda one: -one.statistic + _TOLD_BY_ANGLE * (one.axes == ("load",)),
     )
-
-
-def _carried(
-    problem: Problem, found: _Found, count: int, judged: Callable[..., _Found | None]
-) -> _Found:
-    """Return what goes with the amount of the load that the gear carries.
-
-    The load channel has a constant besides, of the torque sensor or of friction that differs
-    between directions. It takes away the symmetry by which load and angle are told apart. The price
-    of that constant is taken off.
-    """
-    load = problem.table.load
-    most = _CONSTANT * min(float(np.mean(np.abs(problem.friction))), float(np.max(np.abs(load))))
-    price = float(np.log(len(problem.layout.time)))
-
-    def without(constant: float) -> _Found:
-        one = judged(*_LOAD, cosines(np.abs(load - constant), count))
-        return found if one is None else (*one[:2], one[2] - price, *one[3:])
-
-    tried = np.linspace(-most, most, _CONSTANTS)
-    best = max(tried, key=lambda one: without(float(one))[2])
-    reach = tried[1] - tried[0]
-    near = minimize_scalar(
-        lambda one: -without(float(one))[2],
-        bounds=(best - reach, best + reach),
-        method="bounded",
-        options={"maxiter": _REFINED, "xatol": 0.05 * reach},
-    )
-    return max(found, without(float(near.x)), key=lambda one: one[2])
 
 
 def expected_components(step: Step) -> Components:

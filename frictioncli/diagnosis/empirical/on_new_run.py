@@ -1,9 +1,10 @@
-"""Structure without a name that begins on the run that was kept out.
+"""Structure without a name that the run that was kept out shows, and the runs seen alone do not.
 
-The runs seen have next to nothing of it: damage, or something that is mounted and rubs. Another day
-always differs a little, above all slowly and with the temperature. So it counts only where it is
-beyond doubt, and along the angle, the speed or the load; along all else where the misfit is so far
-above the noise that no day differs by as much.
+It may be too weak there to be beyond chance, as friction that comes and goes with time, and recur.
+Or the runs seen have next to nothing of it: damage, or something that is mounted and rubs. Another
+day always differs a little, above all slowly and with the temperature. So what begins counts only
+where it is beyond doubt, and along the angle, the speed or the load; along all else where the
+misfit is so far above the noise that no day differs by as much.
 """
 
 from collections.abc import Sequence
@@ -16,10 +17,11 @@ from frictioncli.diagnosis.empirical.estimate import Empirical, empirical_term
 from frictioncli.diagnosis.fit.extension import Extension, misfits
 from frictioncli.diagnosis.search.cause import Cause
 from frictioncli.diagnosis.search.cause_selection import BEYOND_DOUBT
-from frictioncli.diagnosis.search.lack_of_fit import Structure, structures, unnamed_structure
+from frictioncli.diagnosis.search.lack_of_fit import Structure, first_above, structures
 from frictioncli.diagnosis.search.largest_structure import inadequacy
 from frictioncli.diagnosis.search.new_run_changes import ADEQUATE
 from frictioncli.diagnosis.search.preparation import Preparation
+from frictioncli.diagnosis.search.recurring_structure import recurring_structure
 from frictioncli.diagnosis.search.step import Step
 
 _LEAST_PAIRS = 12
@@ -32,7 +34,7 @@ _LESS_BEFORE = 0.5
 """Greatest size on the runs seen, relative to that on the new run."""
 
 
-def begun_on_new_run(
+def structure_on_new_run(
     step: Step,
     causes: Sequence[Cause],
     new: tuple[Problem, Extension],
@@ -42,9 +44,10 @@ def begun_on_new_run(
     floor: float,
     seed: int,
 ) -> tuple[Structure, Empirical | None] | None:
-    """Return structure that begins on a new run, and a term for it; None where there is none.
+    """Return structure that a new run shows, and a term for what begins there; None without any.
 
-    What makes the model inadequate there counts as well, located and without a term.
+    What recurs counts as well, and what makes the model inadequate there, located and without a
+    term.
 
     Parameters
     ----------
@@ -74,7 +77,12 @@ def begun_on_new_run(
         if not one.fit.effect.measurement and one.holds_on_new_run is not False
     ]
     own = Step.of(preparation.beside(problem).precomputed, there)
-    found = unnamed_structure(own, margin, BEYOND_DOUBT)
+    there = structures(own)
+    if all(one.fit.effect.measurement for one in causes):
+        recurring = recurring_structure(step, there, margin)
+        if recurring is not None:
+            return recurring, None
+    found = first_above(there, problem, margin, BEYOND_DOUBT)
     if found is not None and _was_there(found, step):
         return None
     if found is None or not _SLOW.isdisjoint(found.axes):
