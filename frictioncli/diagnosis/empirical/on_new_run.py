@@ -71,12 +71,12 @@ def structure_on_new_run(
     square = float(np.mean(problem.squared(*misfit)))
     if square <= (ADEQUATE * floor) ** 2 or len(problem.layout.time) < _LEAST_PAIRS:
         return None
-    there = [
+    holding = [
         one.fit
         for one in causes
         if not one.fit.effect.measurement and one.holds_on_new_run is not False
     ]
-    own = Step.of(preparation.beside(problem).precomputed, there)
+    own = Step.of(preparation.beside(problem).precomputed, holding)
     there = structures(own)
     if all(one.fit.effect.measurement for one in causes):
         recurring = recurring_structure(step, there, margin)
