@@ -161,11 +161,16 @@ def test_drift_beyond_what_any_joint_has_is_structure_along_the_time(drift, foun
         assert structure.interval[0] < structure.size < structure.interval[1]
 
 
-def test_a_peak_at_one_load_is_structure_along_the_load():
-    """Friction is the same for loads to either side, which no bump at an angle is."""
+@pytest.mark.parametrize("constant", [0.0, 2.5])
+def test_a_peak_at_one_load_is_structure_along_the_load(constant):
+    """Friction is the same for loads to either side, which no bump at an angle is.
+
+    A constant of the load channel that does not load the gear shifts one side from the other.
+    """
     data = problem(4)
-    peak = 1.5 * np.exp(-np.square((np.abs(data.table.load) - 20.0) / 8.0))
-    data = replace(data, friction=data.friction + peak)
+    peak = 1.5 * np.exp(-np.square((np.abs(data.table.load) - 40.0) / 8.0))
+    table = replace(data.table, load=data.table.load + constant)
+    data = replace(data, friction=data.friction + peak, table=table)
     first = structures(Step.of(Precomputed.of(data), []))[0]
     assert (first.axes, first.channel) == (("load",), "friction")
     assert first.p_value < 1e-6

@@ -28,30 +28,29 @@ _TOGETHER = 1e-4
 
 
 def recurring_structure(step: Step, again: Sequence[Structure], margin: float) -> Structure | None:
-    """Return structure of the runs seen that a new run has along the same axis; None without any.
+    """Return structure of the runs seen that a new run has again; None without any.
+
+    Both must have most of it along the same axis.
 
     Parameters
     ----------
     step : Step
         Base and causes on the runs seen.
     again : sequence of Structure
-        The lack of fit along every axis of the new run.
+        The lack of fit along every axis of the new run, most likely first.
     margin : float
         Smallest size worth a name. [N·m]
     """
-    smallest = {one.channel: channel_margin(step.problem, one.channel, margin) for one in again}
-    on_new_run = {
-        (one.axes, one.channel): chi2_tail(one.statistic, 1) / 2
-        for one in again
-        if one.interval[0] > smallest[one.channel]
-    }
-    if min(on_new_run.values(), default=1.0) > _CHANCE:
+    other = again[0]
+    least = channel_margin(step.problem, other.channel, margin)
+    alone = chi2_tail(other.statistic, 1) / 2
+    if alone > _CHANCE or other.interval[0] <= least:
         return None
-    for one in structures(step):
-        other = on_new_run.get((one.axes, one.channel), 1.0)
-        both = max(one.p_value * other, 1e-300)
-        together = both * (1 - math.log(both))
-        is_likely = max(one.p_value, other) < _CHANCE and together < _TOGETHER
-        if is_likely and one.interval[0] > smallest[one.channel]:
-            return replace(one, p_value=together)
-    return None
+    one = structures(step)[0]
+    both = max(one.p_value * alone, 1e-300)
+    together = both * (1 - math.log(both))
+    is_same = (one.axes, one.channel) == (other.axes, other.channel)
+    is_likely = one.p_value <= _CHANCE and together <= _TOGETHER
+    if not is_same or not is_likely or one.interval[0] <= least:
+        return None
+    return replace(one, p_value=together)
