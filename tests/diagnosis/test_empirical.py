@@ -123,9 +123,9 @@ def test_a_model_that_misses_a_new_run_by_far_more_than_noise_lacks_something(le
 
 @pytest.mark.parametrize(
     ("before", "day", "expected"),
-    [(None, None, None), (spot, spot, None), (None, spot, ("position",))],
+    [(None, None, None), (spot, spot, ("position",)), (None, spot, ("position",))],
 )
-def test_what_only_the_new_run_has_is_located_and_described(before, day, expected):
+def test_what_the_new_run_has_is_located_and_described_where_it_begins(before, day, expected):
     seen, new = problem(3, every=16, friction=before), problem(4, every=16, friction=day)
     step = Step.of(Precomputed.of(seen), [])
     extension = extend(seen, step.predicting_fit(), [])
@@ -133,7 +133,10 @@ def test_what_only_the_new_run_has_is_located_and_described(before, day, expecte
         step, [], (new, extension), Preparation(), margin=MARGIN, floor=0.3, seed=0
     )
     assert (begun and begun[0].axes) == expected
-    if begun is not None:
+    if before is not None:
+        structure, empirical = begun
+        assert (structure.only_on, empirical) == ("", None)
+    elif begun is not None:
         structure, empirical = begun
         assert structure.only_on == new.runs[-1]
         assert empirical.gain.basis == "within_run"
