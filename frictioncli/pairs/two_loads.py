@@ -181,14 +181,17 @@ class _Moves:
     ----------
     torque, way : ndarray, shape (rows,)
         Torque, and direction with the sign of friction in it.
-    gravity, friction : ndarray, shape (rows, 3)
-        Columns of gravity, and of friction without load.
+    speed : ndarray, shape (rows,)
+        Speed, always positive.
+    gravity, friction : ndarray, shape (rows, n)
+        Orthonormal columns that span gravity, and friction without load.
     move : ndarray of int, shape (rows,)
         Number of the move.
     """
 
     torque: Array
     way: Array
+    speed: Array
     gravity: Array
     friction: Array
     move: Indices
@@ -196,7 +199,8 @@ class _Moves:
     @classmethod
     def of(cls, rows: pd.DataFrame, pair: Indices, sign: int) -> "_Moves":
         angle = np.radians(rows["position"].to_numpy(float))
-        root = np.sqrt(rows["speed"].to_numpy(float))
+        speed = rows["speed"].to_numpy(float)
+        root = np.sqrt(speed)
         warm = rows["motor_temperature"].to_numpy(float)
         warm = np.nan_to_num(warm - pd.Series(warm).mean())
         gravity = np.column_stack([np.cos(angle), np.sin(angle), np.ones(len(angle))])
@@ -205,23 +209,28 @@ class _Moves:
         return cls(
             torque=rows[["torque_forward", "torque_reverse"]].to_numpy(float).T.ravel(),
             way=way,
-            gravity=np.vstack([gravity, gravity]),
-            friction=way[:, np.newaxis] * np.vstack([friction, friction]),
+            speed=np.concatenate([speed, speed]),
+            gravity=_orthonormal(np.vstack([gravity, gravity])),
+            friction=_orthonormal(way[:, np.newaxis] * np.vstack([friction, friction])),
             move=np.concatenate([pair, pair + int(pair.max()) + 1]),
         )
 
     def fit(self, group: Array) -> _Fit:
         """Return the least squares fit with a second gravity for the moves of group 1."""
         second = self.gravity * group[self.move][:, np.newaxis]
-        squared = np.zeros(len(self.torque))
+        ends = np.cumsum([self.gravity.shape[1], self.friction.shape[1], second.shape[1]])
+        columns = np.column_stack([self.gravity, self.friction, second, np.zeros(len(second))])
+        scale = 1.0
         for _ in range(4):
-            columns = np.column_stack([self.gravity, self.friction, self.way * squared, second])
-            found = np.asarray(
-                np.linalg.lstsq(columns, self.torque, rcond=1e-9)[0], dtype=np.float64
-            )
-            squared = np.square(self.gravity @ found[:3] + second @ found[7:])
-        residual = self.torque - columns @ found
-        return _Fit(found[:3], found[3:6], float(found[6]), found[7:], residual)
+            # columns of length 1, so that the normal equations lose no digit that counts
+            found = np.linalg.lstsq(columns.T @ columns, columns.T @ self.torque, rcond=1e-12)[0]
+            gravity, friction, difference, alpha = np.split(found, ends)
+            residual = self.torque - columns @ found
+            alpha = alpha / scale
+            squared = np.square(self.gravity @ gravity + second @ difference)
+            scale = max(float(np.linalg.norm(squared)), 1e-300)
+            columns[:, -1] = self.way * squared / scale
+        return _Fit(gravity, friction, float(alpha[0]), difference, residual)
 
     def grouped(self, group: Array) -> tuple[_Fit, Array]:
         """Return the fit and the groups to which a start leads."""
@@ -236,9 +245,9 @@ class _Moves:
 
     def by_speed(self, count: int) -> list[Array]:
         """Return groups of the moves in one direction at one speed, for each that is common."""
-        root = np.zeros(2 * count)
-        root[self.move] = np.abs(self.friction[:, 1])
-        level = np.unique(np.round(2.0 * np.log(root) / _ONE_SPEED), return_inverse=True)[1]
+        speed = np.zeros(2 * count)
+        speed[self.move] = self.speed
+        level = np.unique(np.round(np.log(speed) / _ONE_SPEED), return_inverse=True)[1]
         forward = np.arange(2 * count) < count
         groups = [
             ((level == one) & side).astype(float)
@@ -267,3 +276,9 @@ class _Moves:
             model = load + self.friction @ fit.friction + self.way * fit.alpha * np.square(load)
             misfit.append(np.bincount(self.move, np.square(self.torque - model)))
         return (misfit[1] < misfit[0]).astype(float)
+
+
+def _orthonormal(columns: Array) -> Array:
+    """Return orthonormal columns with the same span."""
+    left, singular, _ = np.linalg.svd(columns, full_matrices=False)
+    return np.asarray(left[:, singular > 1e-9 * singular[0]], dtype=np.float64)
