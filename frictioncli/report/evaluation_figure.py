@@ -18,14 +18,12 @@ from frictioncli.report.style import (
     legend_above,
     panels,
 )
+from frictioncli.report.target_error import target_error
 from frictioncli.report.tooltips import set_tooltips
 from frictioncli.wording import count_text, number_text, range_text
 
 BASELINES = ("none", "equal")
 """Criteria with which the others are compared."""
-
-_PAPER_BOUND = 2.0
-"""Error that the source paper reaches. [N·m]"""
 
 _MOST_GROUPS = 16
 """Greatest number of groups of bars."""
@@ -54,6 +52,7 @@ def error_figure(results: JointResults) -> Figure:
     evaluation = results.evaluation[results.evaluation["run"].isin(runs)]
     criteria = [criterion, *_other_criterion(criterion, evaluation)]
     counts = shown_counts(_drawn_rows(results))
+    target = target_error(results)
     figure, axes = panels(len(runs), height=3.4)
     for run, panel in zip(runs, axes, strict=True):
         own = evaluation[evaluation["run"] == run]
@@ -66,8 +65,8 @@ def error_figure(results: JointResults) -> Figure:
         for name in criteria[1:]:
             panel.plot([], [], label=CRITERION_WORDS[name], color=FAINT, **_OTHER)
         panel.plot([], [], color=FAINT, linestyle=_DASHES, linewidth=1.3, label="no correction")
-        if results.unit == "N·m":
-            panel.axhline(_PAPER_BOUND, color=MODEL, linewidth=1.0, linestyle=":", label="2 N·m")
+        label = f"{number_text(target, 2)} {results.unit}"
+        panel.axhline(target, color=MODEL, linewidth=1.0, linestyle=":", label=label)
         name_ticks(panel.xaxis, range(len(counts)), [str(count) for count in counts])
         panel.grid(visible=False, axis="x")
         panel.set_title(figure_text(run))
@@ -265,7 +264,7 @@ def uncertainty_text(results: JointResults) -> str:
     if rows.empty:
         return ""
     bounds = rows["bound"].unique()
-    bound = float(bounds[abs(bounds - _PAPER_BOUND).argmin()])
+    bound = float(bounds[abs(bounds - target_error(results)).argmin()])
     texts = []
     for phase in PHASES:
         own = rows[(rows["phase"] == phase) & (rows["bound"] == bound)]

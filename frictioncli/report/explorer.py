@@ -18,9 +18,10 @@ from frictioncli.report.evaluation_figure import compared_criterion
 from frictioncli.report.grid_replay import ReplayedPhase, ScheduleGrid, replayed_phases
 from frictioncli.report.labels import CRITERION_WORDS, TEMPERATURE_SYMBOLS
 from frictioncli.report.missing_data import evaluation_missing
-from frictioncli.report.recommendation import recommended_setting, target_error
+from frictioncli.report.recommendation import recommended_setting
 from frictioncli.report.results import MOST_RUNS, JointResults
 from frictioncli.report.style import PHASE_WORDS
+from frictioncli.report.target_error import target_error
 from frictioncli.wording import number_text, speed_text
 
 _MOST_POINTS = 400
@@ -107,6 +108,7 @@ def _explorer(results: JointResults) -> Explorer:
             missing="The evaluation is of another model than the one at hand, so its grid cannot be"
             " shown step by step. It needs 'frictioncli evaluate' again."
         )
+    target = target_error(results)
     return Explorer(
         data={
             "unit": results.unit,
@@ -121,11 +123,11 @@ def _explorer(results: JointResults) -> Explorer:
                 for speed, style in sorted(results.styles.items())
             ],
             "models": {
-                name: [_phase_data(phase, results) for phase in phases]
+                name: [_phase_data(phase, results, target) for phase in phases]
                 for name, phases in replays.items()
             },
             "recommended": {
-                name: recommended_setting(phases, results.unit) for name, phases in replays.items()
+                name: recommended_setting(phases, target) for name, phases in replays.items()
             },
         },
         without_extended=without_extended,
@@ -175,7 +177,7 @@ def _nearest(values: Sequence[float], target: float) -> int:
     return int(np.argmin(np.abs(np.array(values) - target)))
 
 
-def _phase_data(phase: ReplayedPhase, results: JointResults) -> dict[str, Any]:
+def _phase_data(phase: ReplayedPhase, results: JointResults, target: float) -> dict[str, Any]:
     """Return a phase in the form that the script reads; equal schedules are stored once.
 
     For each drawn pair it holds what the script needs to compute the error of friction for any
@@ -209,7 +211,7 @@ def _phase_data(phase: ReplayedPhase, results: JointResults) -> dict[str, Any]:
         "temperature": _rounded(phase.temperature[shown], 2),
         "term": _rounded(phase.term[shown], 4),
         "error": _rounded(phase.error[shown], 4),
-        "target": target_error(results.unit, phase.uncorrected),
+        "target": target,
         "none": number_text(phase.uncorrected),
         "epsilon": [number_text(float(value)) for value in phase.epsilon],
         "settings": settings,

@@ -34,6 +34,7 @@ from frictioncli.report.missing_data import (
 from frictioncli.report.residual_figure import residual_figure, residuals
 from frictioncli.report.results import MOST_RUNS, JointResults
 from frictioncli.report.style import PHASE_WORDS, PHASES
+from frictioncli.report.target_error import target_text
 from frictioncli.report.thermal_figures import (
     branch_means_figure,
     friction_temperature_figure,
@@ -179,7 +180,7 @@ def _evaluation_caption(results: JointResults) -> str:
         " corrections, equally spaced.",
         uncertainty_text(results),
         "Dashed lines: no correction at all.",
-        "Dotted: 2 N·m, the error that the paper reaches." if results.unit == "N·m" else "",
+        f"Dotted: {target_text(results)}.",
         f"Not drawn, for lack of room: {list_text([str(n) for n in left])} corrections."
         if (left := counts_left_out(results))
         else "",

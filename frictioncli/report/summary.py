@@ -14,9 +14,9 @@ from frictioncli.report.evaluation_figure import (
     setting_text,
 )
 from frictioncli.report.labels import CRITERION_WORDS, PARAMETER_SYMBOLS, TEMPERATURE_WORDS
-from frictioncli.report.recommendation import target_error
 from frictioncli.report.results import JointResults
 from frictioncli.report.style import PHASE_WORDS, PHASES
+from frictioncli.report.target_error import target_error, target_text
 from frictioncli.wording import count_text, list_text, number_text, range_text, speed_text
 
 
@@ -160,8 +160,7 @@ def key_numbers(results: JointResults, diagnosis: DiagnosisDocument | None) -> l
 def corrections_needed(results: JointResults) -> KeyNumber | None:
     """Return the least number of corrections per phase that reaches the target error.
 
-    The target is 2 N·m, the error that the source paper reaches; in another unit, a quarter of the
-    error without correction. Without an evaluation the result is None.
+    Without an evaluation the result is None.
 
     Parameters
     ----------
@@ -170,14 +169,13 @@ def corrections_needed(results: JointResults) -> KeyNumber | None:
     """
     criterion = compared_criterion(results)
     texts = []
-    in_torque = results.unit == "N·m"
+    limit = target_error(results)
     for phase in PHASES:
         rows = results.evaluation[results.evaluation["phase"] == phase]
         counts = []
         for _, own in rows.groupby("run"):
-            uncorrected = own.loc[own["criterion"] == "none", "epsilon"]
-            limit = target_error(results.unit, float(uncorrected.max()))
-            errors = error_per_count(own[own["criterion"] == criterion])["epsilon"]
+            tried = own["criterion"].isin([criterion, "none"])  # none may be needed
+            errors = error_per_count(own[tried])["epsilon"]
             enough = errors.index[errors <= limit]
             counts.append(int(enough.min()) if len(enough) else None)
         if reached := sorted(count for count in counts if count is not None):
@@ -190,12 +188,11 @@ def corrections_needed(results: JointResults) -> KeyNumber | None:
             texts.append(f"no number suffices in {PHASE_WORDS[phase]}")
     if not texts or not criterion:
         return None
-    small = "2 N·m, as in the paper" if in_torque else "a quarter of that without correction"
     return KeyNumber(
         name="corrections needed",
         value=", ".join(texts),
-        context=f"fewest whose median ε over the settings tried is at most {small}; criterion"
-        f" “{CRITERION_WORDS.get(criterion, criterion)}”"
+        context="fewest whose median ε over the settings tried is at most"
+        f" {target_text(results)}; criterion “{CRITERION_WORDS.get(criterion, criterion)}”"
         f"{', extended model' if results.evaluated_extended else ''}",
     )
 

@@ -9,7 +9,6 @@ from frictioncli.diagnosis.documents.document import GainRecord
 from frictioncli.report.figures import FIGURES
 from frictioncli.report.page_tables import epsilon_tables, pairs_table
 from frictioncli.report.quality_ratings import pairs_rating
-from frictioncli.report.results import read_results
 from frictioncli.report.summary import (
     corrections_needed,
     key_numbers,
@@ -109,7 +108,7 @@ def test_what_was_measured(two_runs, without_temperature):
     assert "without a motor temperature" in measurement_text(without_temperature)
 
 
-def test_fewest_corrections_that_suffice(two_runs, tmp_path, write_work):
+def test_fewest_corrections_that_suffice(two_runs):
     """The made evaluation has 4/n N·m in heating and 5/n in cooling, n of 2, 3, 6, 14, 25."""
     assert corrections_needed(two_runs).value == "2 in heating, 3 in cooling"
     poor = replace(two_runs, evaluation=two_runs.evaluation.assign(epsilon=9.0))
@@ -117,10 +116,12 @@ def test_fewest_corrections_that_suffice(two_runs, tmp_path, write_work):
         corrections_needed(poor).value
         == "no number suffices in heating, no number suffices in cooling"
     )
-    current = read_results(write_work(tmp_path, runs=("day-1",), unit="A")).joints[0]
-    # in another unit, a quarter of the error without correction: 4/n <= 1, 5/n <= 1.25
-    assert corrections_needed(current).value == "6 in heating, 6 in cooling"
-    assert "a quarter" in corrections_needed(current).context
+    # 4 % of 17.5 N·m: 4/n <= 0.7, 5/n <= 0.7
+    small = replace(two_runs, torques=two_runs.torques.assign(friction_torque=17.5))
+    assert corrections_needed(small).value == "6 in heating, 14 in cooling"
+    assert "0.70 N·m, 4% of the mean friction" in corrections_needed(small).context
+    exact = replace(two_runs, evaluation=two_runs.evaluation.assign(epsilon=0.5))
+    assert corrections_needed(exact).value == "0 in heating, 0 in cooling"
     empty = replace(two_runs, evaluation=two_runs.evaluation[:0])
     assert corrections_needed(empty) is None
 
