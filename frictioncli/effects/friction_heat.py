@@ -30,6 +30,10 @@ _THROUGHOUT = 0.6
 """A stretch whose estimated share of motion is greater than this had motion throughout: a balance
 of one node does not tell more. One in which the motor cools had none."""
 
+_LEAST_RATE = 5e-4
+"""Rate of warming below which a joint may as well stand: recorded moves before and after a pause,
+or the hall, warm a motor as much. [°C/s]"""
+
 _TYPICAL = 0.75
 """Quantile of the warming per power, among stretches that warmed the motor, that counts as that of
 motion throughout: some stretches have pauses."""
@@ -152,8 +156,8 @@ def _share_in_motion(time: Array, motor: Array, power: Array, gap: Flags) -> Arr
     earlier, later = np.interp(begin, time, motor), np.interp(end, time, motor)
     rate, mean = (later - earlier) / np.maximum(end - begin, 1e-9), (later + earlier) / 2
     warmed = gap & (power > 0) & (rate > 0)
-    if np.sum(warmed) < _FEW:
-        return (rate > 0).astype(float)
+    if np.sum(warmed & (rate > _LEAST_RATE)) < _FEW:
+        return (rate > _LEAST_RATE).astype(float)
     heat = rate + _loss(rate, mean, gap & (rate < 0))
     heat_of_motion = (power + np.median(power[warmed])) / 2
     typical = float(np.quantile(heat[warmed] / heat_of_motion[warmed], _TYPICAL))

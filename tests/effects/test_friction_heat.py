@@ -91,3 +91,11 @@ def test_a_joint_that_stands_is_not_heated_between_its_series():
     cooling = np.arange(8 * len(SPEEDS) + len(SPEEDS) - 1, len(heat), len(SPEEDS))
     found = found_heat(time, motor)
     np.testing.assert_allclose(found[cooling], heat[cooling], rtol=0.2)
+
+
+def test_a_rest_is_no_heat_where_the_moves_before_and_after_it_warm_the_motor():
+    """At the begin of a cold day the motor is warmer after a rest, since the series warm it."""
+    time, motor, heat = experiment([(0.0, 240.0)] * 3)
+    gaps = np.arange(len(SPEEDS) - 1, len(heat), len(SPEEDS))
+    assert (np.diff(motor)[gaps] > 0).all()
+    np.testing.assert_allclose(found_heat(time, motor)[gaps], heat[gaps], rtol=0.2)
