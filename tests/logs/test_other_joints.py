@@ -1,5 +1,6 @@
 """Motion of the joints beside the one that is read, from their positions alone."""
 
+import warnings
 from itertools import pairwise
 
 import numpy as np
@@ -100,3 +101,17 @@ def test_a_joint_that_is_not_asked_for_is_seen_in_samples(tmp_path):
         [10, 12.5], abs=0.1
     )
     assert table["other_speed"].max() == pytest.approx(30, rel=0.01)
+
+
+def test_damaged_angles_of_a_joint_that_is_not_read_end_nothing(tmp_path):
+    """10^308 rad in a binary recording is more than a number of degrees can be."""
+    angle = np.deg2rad(40 * np.abs((TIME / 5) % 2 - 1))
+    other = np.where(np.arange(len(TIME)) == 700, 1e308, 0.0)
+    log = np.column_stack([TIME, angle, np.cos(angle), other])
+    head = b"timestamp actual_q_0 actual_current_0 actual_q_1\nDOUBLE DOUBLE DOUBLE DOUBLE\n"
+    (tmp_path / "log.csv").write_bytes(head + log.astype(">f8").tobytes())
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        ingest([tmp_path / "log.csv"], tmp_path / "run", IngestSettings())
+    table = tables.read(tmp_path / "run" / "samples.parquet", schemas.SAMPLES)
+    assert (set(table["joint"]), len(table)) == ({1}, len(TIME))

@@ -179,10 +179,10 @@ def convert_chunk(batch: RawBatch, planned: PlannedLog) -> LogChunk:
 
 
 def _converted(batch: RawBatch, planned: PlannedLog) -> LogRows:
-    columns: dict[tuple[int, str], Array] = {
-        (joint, names.POSITION): batch.values[column] * factor
-        for joint, (column, factor) in planned.others.items()
-    }
+    columns: dict[tuple[int, str], Array] = {}
+    with np.errstate(over="ignore"):  # infinite values are rejected later
+        for joint, (column, factor) in planned.others.items():
+            columns[joint, names.POSITION] = batch.values[column] * factor
     for plan in planned.plans:
         for name, conversion in plan.conversions.items():
             values = batch.values[_column(plan, name)]
