@@ -65,7 +65,7 @@ def error_figure(results: JointResults) -> Figure:
         for name in criteria[1:]:
             panel.plot([], [], label=CRITERION_WORDS[name], color=FAINT, **_OTHER)
         panel.plot([], [], color=FAINT, linestyle=_DASHES, linewidth=1.3, label="no correction")
-        label = f"{number_text(target, 2)} {results.unit}"
+        label = f"{target:.2g} {results.unit}"
         panel.axhline(target, color=MODEL, linewidth=1.0, linestyle=":", label=label)
         name_ticks(panel.xaxis, range(len(counts)), [str(count) for count in counts])
         panel.grid(visible=False, axis="x")

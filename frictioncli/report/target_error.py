@@ -1,7 +1,6 @@
 """Error that corrections should reach: small beside the friction of the joint."""
 
 from frictioncli.report.results import JointResults
-from frictioncli.wording import number_text
 
 PAPER_ERROR = 2.0
 """Error that the source paper reaches on a joint of about 60 N·m of friction. [N·m]"""
@@ -29,4 +28,4 @@ def target_text(results: JointResults) -> str:
     target = target_error(results)
     if results.unit == "N·m" and target == PAPER_ERROR:
         return "2 N·m, as in the paper"
-    return f"{number_text(target, 2)} {results.unit}, {_SHARE:.0%} of the mean friction"
+    return f"{target:.2g} {results.unit}, {100 * _SHARE:g} % of the mean friction"

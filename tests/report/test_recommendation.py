@@ -56,8 +56,8 @@ def test_no_correction_where_all_settings_make_it_worse():
     ("unit", "friction", "target", "text"),
     [
         ("N·m", 60.0, 2.0, "2 N·m, as in the paper"),
-        ("N·m", 2.5, 0.1, "0.10 N·m, 4% of the mean friction"),
-        ("A", 60.0, 2.4, "2.4 A, 4% of the mean friction"),
+        ("N·m", 2.5, 0.1, "0.1 N·m, 4 % of the mean friction"),
+        ("A", 60.0, 2.4, "2.4 A, 4 % of the mean friction"),
     ],
 )
 def test_the_target_is_small_beside_the_friction(two_runs, unit, friction, target, text):

@@ -119,7 +119,7 @@ def test_fewest_corrections_that_suffice(two_runs):
     # 4 % of 17.5 N·m: 4/n <= 0.7, 5/n <= 0.7
     small = replace(two_runs, torques=two_runs.torques.assign(friction_torque=17.5))
     assert corrections_needed(small).value == "6 in heating, 14 in cooling"
-    assert "0.70 N·m, 4% of the mean friction" in corrections_needed(small).context
+    assert "0.7 N·m, 4 % of the mean friction" in corrections_needed(small).context
     exact = replace(two_runs, evaluation=two_runs.evaluation.assign(epsilon=0.5))
     assert corrections_needed(exact).value == "0 in heating, 0 in cooling"
     empty = replace(two_runs, evaluation=two_runs.evaluation[:0])
