@@ -22,6 +22,9 @@ _TOLERANCE = 1e-6
 """Tolerance of comparisons with a limit: relative, or [deg]."""
 
 
+_TEMPERATURE_MARGIN = 10.0
+"""All motion waits above the temperature at which heating ends plus this margin. [°C]"""
+
 LEAST_SPEED = 0.5
 """Least highest speed; slower moves would take hours, and be written as zero. [deg/s]"""
 
@@ -104,6 +107,11 @@ class Limits:
         high = min(self.fastest, self.highest_useful)
         low = min(max(self.slowest, slowest), high)
         return tuple(sorted({self.speed(float(one)) for one in np.geomspace(low, high, count)}))
+
+    @property
+    def waiting(self) -> float:
+        """Motor temperature above which all motion waits [°C]."""
+        return self.hottest + _TEMPERATURE_MARGIN
 
     @property
     def highest_useful(self) -> float:

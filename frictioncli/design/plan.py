@@ -184,6 +184,7 @@ def criterion_of(
         parameters=_planning_parameters(problem),
         gravity=_planning_gravity(problem, limits),
         thermal_model=thermal_model_of(torques),
+        waiting=limits.waiting,
     )
     return DesignCriterion.of(
         joint,

@@ -57,6 +57,8 @@ class PlannedJoint:
         Coefficients of the gravity torque. [N·m], [N·m/kg]
     thermal_model : ThermalModel or None
         Thermal model of the motor; None where its temperature is not known.
+    waiting : float
+        Motor temperature above which motion waits. [°C]
     """
 
     torques: pd.DataFrame
@@ -64,6 +66,7 @@ class PlannedJoint:
     parameters: FrictionParameters
     gravity: Array
     thermal_model: ThermalModel | None
+    waiting: float = np.inf
 
     @property
     def payload(self) -> float | None:
@@ -140,6 +143,7 @@ def predict_rows(
             payload = payload if step.payload is None else step.payload
             now, motor = now + LEAD, _after(joint, motor, LEAD, None)
             for speed in step.speeds:
+                now, motor = _cooled(joint, now, motor)
                 half = round_trip(speed, step.high - step.low) / 2
                 motor_at_mid = _after(joint, motor, half, speed)
                 bins = constant_speed_bins(speed, step.low, step.high, width)
@@ -193,6 +197,15 @@ def _heat(joint: PlannedJoint, motor: float, step: HeatStep) -> tuple[float, flo
         part = min(_HEATING_STEP, step.seconds - spent)
         motor, spent = _after(joint, motor, part, step.speed), spent + part
     return spent, motor
+
+
+def _cooled(joint: PlannedJoint, now: float, motor: float) -> tuple[float, float]:
+    """Return time and motor temperature at the next move, which waits while the motor is hot."""
+    model = joint.thermal_model
+    if model is None:
+        return now, motor
+    limit = max(joint.waiting, model.ambient + 1.0)  # colder than that it never gets
+    return (now, motor) if motor <= limit else (now + model.seconds_to(motor, limit), limit)
 
 
 def _after(joint: PlannedJoint, motor: float, seconds: float, speed: float | None) -> float:

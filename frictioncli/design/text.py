@@ -57,11 +57,19 @@ def plan_text(
     lines.append(
         f"  within {limits.low:g} to {limits.high:g} deg, {limits.slowest:.3g} to"
         f" {limits.fastest:.4g} deg/s"
-        + (f", motor up to {limits.hottest:.0f} °C" if plan.criterion.joint.thermal_model else "")
+        + _temperatures(plan)
         + (f"; beyond the data: {'; '.join(limits.beyond)}" if limits.beyond else "")
     )
     lines.append(f"  program: {', '.join(files)}. {SAFETY_NOTE}")
     return "\n".join(lines)
+
+
+def _temperatures(plan: Plan) -> str:
+    """Return the limits of the motor temperature, where it is known."""
+    if not plan.criterion.joint.thermal_model:
+        return ""
+    limits = plan.limits
+    return f"; heating ends at {limits.hottest:.0f} °C, above {limits.waiting:.0f} °C motion waits"
 
 
 def _alike(plan: Plan) -> list[tuple[int, int]]:

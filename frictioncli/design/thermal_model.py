@@ -85,6 +85,17 @@ class ThermalModel:
         decay = float(np.exp(-seconds / self.time_constant))
         return equilibrium + (temperature - equilibrium) * decay
 
+    def seconds_to(self, temperature: float, cooler: float) -> float:
+        """Return how long a motor at rest takes to cool [s].
+
+        Parameters
+        ----------
+        temperature, cooler : float
+            Motor temperature at the start and at the end, above ambient. [°C]
+        """
+        above, left = temperature - self.ambient, cooler - self.ambient
+        return self.time_constant * float(np.log(above / left))
+
     def housing(self, motor: Array) -> Array:
         """Return the housing temperature that belongs to motor temperatures.
 

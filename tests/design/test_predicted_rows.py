@@ -1,5 +1,6 @@
 """Predicted rows, against the simulator, which shares no code with the prediction."""
 
+from dataclasses import replace
 from itertools import pairwise
 
 import numpy as np
@@ -92,3 +93,18 @@ def test_unrecorded_heating_shows_in_the_travel(runs):
     problem, _ = build_problems(runs[0], "motor")
     last = problem.table.travel[problem.table.order == 0][-1]
     assert last == pytest.approx(hidden + known, rel=0.05)
+
+
+def test_moves_wait_while_the_motor_is_too_hot(joint):
+    """A first-order body cools from 30 to 20 °C above ambient in ln 1.5 time constants."""
+    model = joint.thermal_model
+    warm = replace(joint, waiting=model.ambient + 20.0)
+    heat = HeatStep(speed=FASTEST, low=0.0, high=180.0, seconds=36_000.0, until=model.ambient + 30)
+    series = SeriesStep(speeds=(20.0,) * 3, low=0.0, high=180.0)
+    table, timings = predict_rows(warm, [heat, series], "planned")
+    _, unhindered = predict_rows(joint, [heat, series], "planned")
+    hot = timings[0].temperatures[1] - model.ambient
+    assert hot >= 30.0
+    assert table["motor_temperature"].max() < warm.waiting + 0.5
+    waited = timings[1].end - unhindered[1].end
+    assert waited == pytest.approx(model.time_constant * np.log(hot / 20.0), rel=0.05)

@@ -13,7 +13,7 @@ References
 import math
 
 from frictioncli.design.blocks import Block
-from frictioncli.design.programs.robot_program import TEMPERATURE_MARGIN, RobotProgram, to_ascii
+from frictioncli.design.programs.robot_program import RobotProgram, to_ascii
 from frictioncli.design.steps import DWELL, LEAD, HeatStep, RestStep, SeriesStep
 from frictioncli.errors import OptionError
 
@@ -235,7 +235,7 @@ def _reason(block: Block) -> list[str]:
 
 def _data(program: RobotProgram, name: str, rated: float) -> str:
     limits = program.limits
-    hottest = math.floor(limits.hottest + TEMPERATURE_MARGIN) + KELVIN
+    hottest = math.floor(limits.waiting) + KELVIN
     constants = (
         ("REAL", "V_RATED", f"{rated:.3f}", "rated speed of the axis: CHECK IT (deg/s)"),
         ("REAL", "V_MAX", f"{limits.fastest * (1 + 1e-6):.3f}", "highest speed (deg/s)"),

@@ -9,9 +9,6 @@ from frictioncli.design.limits import Limits
 APPROACH_SPEED = 20.0
 """Speed of unrecorded moves to the start of a series. [deg/s]"""
 
-TEMPERATURE_MARGIN = 10.0
-"""All motion waits above the temperature at which heating ends plus this margin. [°C]"""
-
 SAFETY_NOTE = (
     "Try it at reduced speed first, with nobody within reach and a clear path for the axis."
 )

@@ -1,6 +1,6 @@
 """URScript programs, for robots of Universal Robots."""
 
-from frictioncli.design.programs.robot_program import TEMPERATURE_MARGIN, RobotProgram, to_ascii
+from frictioncli.design.programs.robot_program import RobotProgram, to_ascii
 from frictioncli.design.steps import (
     ACCELERATION,
     DWELL,
@@ -98,7 +98,7 @@ def program_files(program: RobotProgram) -> dict[str, str]:
         ("V_MAX", limits.fastest * (1 + 1e-6), "highest speed (deg/s)"),
         ("V_APPROACH", program.approach, "approach to the start of a series (deg/s)"),
         ("ACCELERATION", ACCELERATION, "of all moves (deg/s2)"),
-        ("T_STOP", limits.hottest + TEMPERATURE_MARGIN, "wait above (degC)"),
+        ("T_STOP", limits.waiting, "wait above (degC)"),
         ("DWELL", DWELL, "pause at each end (s)"),
         ("LEAD", LEAD, "pause after a recording starts (s)"),
     )
