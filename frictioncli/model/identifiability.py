@@ -142,7 +142,7 @@ def _by_excitation(observed: Observations) -> Determination:
     if not temperatures.size:
         chosen = chosen.without(
             "gamma",
-            "the log has no such temperature; merged with beta into one viscous coefficient",
+            "the temperature is not logged; merged with beta into one viscous coefficient",
             "beta",
             "holds the whole viscous coefficient at the unknown temperature of the log",
         )
