@@ -2,7 +2,7 @@
 
 from frictioncli.report.results import JointResults
 
-PAPER_ERROR = 2.0
+_PAPER_ERROR = 2.0
 """Error that the source paper reaches on a joint of about 60 N·m of friction. [N·m]"""
 
 _SHARE = 0.04
@@ -20,12 +20,12 @@ def target_error(results: JointResults) -> float:
         One joint's results.
     """
     share = _SHARE * float(results.torques["friction_torque"].abs().mean())
-    return min(share, PAPER_ERROR) if results.unit == "N·m" else share
+    return min(share, _PAPER_ERROR) if results.unit == "N·m" else share
 
 
 def target_text(results: JointResults) -> str:
     """Return the target in words, with where it comes from; parameter as of `target_error`."""
     target = target_error(results)
-    if results.unit == "N·m" and target == PAPER_ERROR:
+    if results.unit == "N·m" and target == _PAPER_ERROR:
         return "2 N·m, as in the paper"
     return f"{target:.2g} {results.unit}, {100 * _SHARE:g} % of the mean friction"
