@@ -62,7 +62,7 @@ _CLEARLY = 30.0
 """Statistic by which a change explains more than each of its rivals."""
 
 _CLEAR_SHARE = 0.02
-"""The same as a share of its statistic."""
+"""The same in torque, as a share of the mean square that it explains: no form is exactly true."""
 
 _LEAST_PRESENT = 0.1
 """Least share of the pairs of the run that have a change, and that lack one that begins later."""
@@ -174,9 +174,8 @@ def _change(
     columns = new.basis(effect, best)
     own = residual.with_own_noise(columns)
     coefficients, covariance, statistic = own.fitted(columns)
-    rivals = max(own.fitted(one)[2] for one in _rivals(new, best, effect))
-    slow = max(own.fitted(one)[2] for one in _slow(new, best, effect))
-    clearly = max(_CLEARLY, _CLEAR_SHARE * statistic)
+    is_rivalled, _ = _nearly_explained(own, columns, _rivals(new, best, effect))
+    is_slow, slow = _nearly_explained(own, columns, _slow(new, best, effect))
     gradual = [
         one.name for one in tried if one.name == DRIFT.name and effect.channel == one.channel
     ]
@@ -199,13 +198,13 @@ def _change(
         p_value > BEYOND_DOUBT
         or factor < CONVINCING
         or low < needed
-        or statistic - rivals < clearly
-        or statistic - slow < (0.0 if gradual else clearly)
+        or is_rivalled
+        or (is_slow if not gradual else statistic < slow)
         or np.any((coefficients < lower) | (coefficients > upper))
     ):
         return None
     probabilities = {effect.name: 1.0}
-    if statistic - slow < clearly:
+    if is_slow:
         slower = float(expit((slow - statistic) / 2))
         probabilities = {effect.name: 1 - slower, **dict.fromkeys(gradual, slower)}
     of_run = float(np.sqrt(np.mean(present_rows)))
@@ -241,6 +240,31 @@ def _size(columns: Array, coefficients: Array, covariance: Array) -> tuple[float
     size = float(np.sqrt(max(float(coefficients @ inner @ coefficients), 1e-300)))
     slope = inner @ coefficients / size
     return size, float(np.sqrt(max(float(slope @ covariance @ slope), 0.0)))
+
+
+def _nearly_explained(
+    residual: NewRunMisfit, columns: Basis, rivals: Sequence[Basis]
+) -> tuple[bool, float]:
+    """Return whether a rival explains nearly as much as a change does, and the best statistic.
+
+    Either is not clear: the evidence, or the torque in which the two differ.
+    """
+    whole = residual.mean_square(residual.misfit)
+
+    def explained(basis: Basis) -> tuple[float, float]:
+        coefficients, _, statistic = residual.fitted(basis)
+        friction, load = (
+            misfit - one @ coefficients for misfit, one in zip(residual.misfit, basis, strict=True)
+        )
+        return statistic, whole - residual.mean_square((friction, load))
+
+    statistic, square = explained(columns)
+    found = [explained(one) for one in rivals]
+    near = any(
+        statistic - other < _CLEARLY or square - least < _CLEAR_SHARE * square
+        for other, least in found
+    )
+    return near, max(other for other, _ in found)
 
 
 def _rivals(new: Problem, shape: Mapping[str, float], effect: Effect) -> list[Basis]:
