@@ -149,10 +149,16 @@ def size_intervals(joints: Sequence[Joint]) -> list[bool]:
 def measurement_intervals(
     joints: Sequence[Joint], names: Sequence[str] = MEASUREMENT
 ) -> list[bool]:
-    """Return whether intervals of what is found of the measurement hold the truth."""
+    """Return whether intervals of what is found of the measurement hold the truth.
+
+    Of a set whose first effect is a property of the joint, as a lag of the gear or of a sensor, the
+    parameters are those of that property.
+    """
     found = []
     for joint in joints:
         for cause in joint.causes:
+            if cause["kind"] != "measurement":
+                continue
             for name in set(cause["effects"]) & set(names):
                 truth = joint.nuisances.get(name, {})
                 for parameter, value in truth.items():
