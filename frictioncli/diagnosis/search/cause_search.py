@@ -29,7 +29,7 @@ from frictioncli.diagnosis.search.measurement import measurement_causes
 from frictioncli.diagnosis.search.possible import beyond_bounds
 from frictioncli.diagnosis.search.precomputed import Precomputed
 from frictioncli.diagnosis.search.preparation import Preparation
-from frictioncli.diagnosis.search.rivals import rival_log_bayes_factors
+from frictioncli.diagnosis.search.rivals import CLEARLY, likeliest, rival_log_bayes_factors
 from frictioncli.diagnosis.search.search_result import SearchResult
 from frictioncli.diagnosis.search.step import Step, free_coefficients
 from frictioncli.diagnosis.settings import DiagnosisSettings
@@ -41,9 +41,6 @@ from frictioncli.wording import in_words
 _LEAST_SHARE = 0.5
 """Share of the margin that the base must leave of an effect for the search to go on with it."""
 
-_REFINED = 3
-"""Number of effects whose shapes are refined off the grid before the best is accepted."""
-
 _SURELY = 4.0
 """Standard errors by which an effect of the measurement is beyond its bounds without doubt."""
 
@@ -51,9 +48,6 @@ _SUPERFLUOUS = "other causes explain it"
 
 _REMEMBERED = 3
 """Number of steps with accepted effects that are remembered, beside the first."""
-
-_CLEARLY = 3.0
-"""Log Bayes factor by which another effect must fit better to replace an accepted one."""
 
 
 def find_causes(
@@ -125,7 +119,7 @@ def find_causes(
                 superfluous.remove(one.name)
                 again.add(one.name)
                 del dropped[one.name]
-        candidates = [*accepted, _best(step, significant)]
+        candidates = [*accepted, likeliest(step, significant)]
         reason = search.impossible(candidates)
         if reason:
             dropped[candidates[-1].effect.name] = reason
@@ -156,17 +150,6 @@ def find_causes(
 
 def _names(fits: Sequence[EffectFit]) -> set[str]:
     return {one.effect.name for one in fits}
-
-
-def _best(step: Step, tests: Sequence[HypothesisTest]) -> EffectFit:
-    """Return the effect with the greatest Bayes factor once its shape is refined off the grid.
-
-    Where an effect is large, a shape between two of the grid may explain many times as much.
-    """
-    first = sorted(tests, key=lambda one: -one.log_bayes_factor)[:_REFINED]
-    refined = [step.refined(one.effect_fit(BY_NAME[one.name])) for one in first]
-    factors = [one.refined_log_bayes_factor(fit) for one, fit in zip(first, refined, strict=True)]
-    return refined[factors.index(max(factors))]
 
 
 @dataclass(frozen=True, slots=True)
@@ -285,8 +268,8 @@ class _Search:
             return None
         again = step.refined(one)
         factor = own.refined_log_bayes_factor(again)
-        if best.name != own.name and best.log_bayes_factor - factor > _CLEARLY:
-            replacement = _best(step, [best])
+        if best.name != own.name and best.log_bayes_factor - factor > CLEARLY:
+            replacement = likeliest(step, [best])
             return again if self.impossible([*others, replacement]) else replacement
         return again
 

@@ -71,6 +71,7 @@ def beside_base(
     problem: Problem,
     discrepancy: float = SHARE,
     measurement: Sequence[Effect] = MEASUREMENT_EFFECTS,
+    found: Sequence[EffectFit] = (),
 ) -> BesideBase:
     """Return what is computed once, with the effects of the measurement that stand beside the base.
 
@@ -87,6 +88,9 @@ def beside_base(
         RMS of the discrepancy that is expected, relative to the mean friction; 0 for none.
     measurement : sequence of Effect, optional
         Effects of the measurement that may stand there.
+    found : sequence of EffectFit, optional
+        Properties of the joint that are known to be there: without them, what they add may look
+        like an effect of the measurement, or hide one.
     """
     beside = applicable(measurement, problem.table)
     if problem.has_load_channel:
@@ -97,7 +101,7 @@ def beside_base(
     precomputed: Precomputed | None = None
     while True:
         precomputed = Precomputed.of(problem, beside, discrepancy, precomputed)
-        causes = measurement_causes(Step.of(precomputed, []), beside)
+        causes = measurement_causes(Step.of(precomputed, found), beside)
         against = _moved(before, causes, refused[-1:])
         before = ()
         if not against:
@@ -189,15 +193,17 @@ def measurement_causes(step: Step, effects: Sequence[Effect]) -> tuple[Cause, ..
     return tuple(found)
 
 
-def clear_effects(beside: BesideBase) -> tuple[Effect, ...]:
+def clear_effects(beside: BesideBase, found: Sequence[EffectFit] = ()) -> tuple[Effect, ...]:
     """Return the effects of the measurement beside the base that are clearly there.
 
     Parameters
     ----------
     beside : BesideBase
         What stands beside the base.
+    found : sequence of EffectFit, optional
+        Properties of the joint that are known to be there.
     """
-    causes = measurement_causes(Step.of(beside.precomputed, []), beside.effects)
+    causes = measurement_causes(Step.of(beside.precomputed, found), beside.effects)
     return tuple(one.fit.effect for one in causes if one.test.p_value < CLEAR)
 
 

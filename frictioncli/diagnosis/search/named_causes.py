@@ -23,6 +23,7 @@ from frictioncli.diagnosis.search.possible import is_seen_once
 from frictioncli.diagnosis.search.preparation import Preparation
 from frictioncli.diagnosis.search.search_result import SearchResult
 from frictioncli.diagnosis.search.standing import with_standing
+from frictioncli.diagnosis.search.stated_size import sizes_beside_each_other
 from frictioncli.diagnosis.search.step import Step
 from frictioncli.diagnosis.search.timing_causes import DELAY, judged_by_timing
 from frictioncli.diagnosis.search.understood import understood
@@ -94,9 +95,16 @@ class Judging:
         found : SearchResult
             What the search found.
         """
-        first = with_standing(
-            (*found.measurement, *found.causes), self.problem, self.margin, self.alpha
+        everything = (*found.measurement, *found.causes)
+        # without a margin only what is doubtful for other reasons has no name
+        at_all = with_standing(everything, self.problem, 0.0, self.alpha)
+        possible = [
+            one for one in at_all if one.standing == "named" and not one.fit.effect.measurement
+        ]
+        sized = sizes_beside_each_other(
+            possible, found.step, found.measurement, self.measured[0], self.margin
         )
+        first = with_standing(_with(everything, sized), self.problem, self.margin, self.alpha)
         causes, timing = judged_by_timing(first, self.starts)
         named = [cause for cause in causes if cause.standing == "named"]
         held = judged_together(named, found.step, self.problem, self.new)

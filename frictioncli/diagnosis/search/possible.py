@@ -9,6 +9,7 @@ from frictioncli.diagnosis.data.problem import Problem
 from frictioncli.diagnosis.fit.hypotheses import EffectFit, physical_bounds
 from frictioncli.diagnosis.fit.left_by_base import Z95
 from frictioncli.effects.parameter import Parameter
+from frictioncli.effects.thermal_lag import EFFECT as THERMAL_LAG
 from frictioncli.quantities import TORQUE
 from frictioncli.wording import in_words, number_text
 
@@ -184,6 +185,23 @@ def _coefficients(
     yield from zip(
         fit.effect.coefficients, fit.coefficients, standard_errors(fit), *bounds, strict=True
     )
+
+
+ON_BOUND = "the fit lies on a bound of what is physically possible"
+"""Why the size of an effect is not known of which a greater or smaller one may be there."""
+
+
+def lies_on_bound(fit: EffectFit) -> bool:
+    """Return whether bounds set all coefficients of an effect, so that no data determine them.
+
+    All friction at a temperature that is measured is no bound that something else asks for.
+
+    Parameters
+    ----------
+    fit : EffectFit
+        The effect, fitted beside the base.
+    """
+    return not standard_errors(fit).any() and fit.effect.name != THERMAL_LAG.name
 
 
 def standard_errors(fit: EffectFit) -> Array:

@@ -1,9 +1,10 @@
 """What searches of the same problem share: what stands beside the base, and the hypotheses."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass, fields, replace
 
 from frictioncli.diagnosis.data.problem import Problem
-from frictioncli.diagnosis.fit.hypotheses import Hypothesis, hypothesis_of
+from frictioncli.diagnosis.fit.hypotheses import EffectFit, Hypothesis, hypothesis_of
 from frictioncli.diagnosis.noise.discrepancy import SHARE
 from frictioncli.diagnosis.search.measurement import BesideBase, beside_base
 from frictioncli.effects import MEASUREMENT_EFFECTS
@@ -28,9 +29,15 @@ class Preparation:
     """What was computed for problems that are searched more than once.
 
     Nothing depends on whether a problem was seen before, but the time it takes.
+
+    Parameters
+    ----------
+    found : sequence of EffectFit, optional
+        Properties of the joint beside which effects of the measurement are judged.
     """
 
-    def __init__(self) -> None:
+    def __init__(self, found: Sequence[EffectFit] = ()) -> None:
+        self._found = tuple(found)
         self._known: list[_Prepared] = []
 
     def beside(
@@ -94,7 +101,7 @@ class Preparation:
             own = replace(before.precomputed, problem=problem)
             beside = replace(before, precomputed=own)
         else:
-            beside = beside_base(problem, discrepancy, measurement)
+            beside = beside_base(problem, discrepancy, measurement, self._found)
         found = _Prepared(problem, discrepancy, measurement, beside, {})
         others = [one for one in self._known if one not in alike]
         self._known = [*others[1 - _AT_ONCE :], found]

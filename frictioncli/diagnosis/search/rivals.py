@@ -1,10 +1,17 @@
-"""Rivals of a cause: effects that explain what it explains."""
+"""Rivals of a cause: effects that explain what it explains, and the likeliest of them."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 
 from frictioncli.diagnosis.fit.hypotheses import EffectFit, HypothesisTest
+from frictioncli.diagnosis.search.possible import lies_on_bound
 from frictioncli.diagnosis.search.step import Step
 from frictioncli.effects import BY_NAME
+
+CLEARLY = 3.0
+"""Log Bayes factor by which another effect must fit better to replace an accepted one."""
+
+_REFINED = 3
+"""Number of effects whose shapes are refined off the grid before the best is accepted."""
 
 _NEARLY = 5.0
 """Log Bayes factor below that of a cause at which another effect is too improbable to matter."""
@@ -18,6 +25,30 @@ _MOST_MISSED = 0.1
 
 _KEPT = 0.5
 """Share of its test statistic that a cause keeps beside an effect that explains something else."""
+
+
+def likeliest(step: Step, tests: Sequence[HypothesisTest]) -> EffectFit:
+    """Return the effect with the greatest Bayes factor once its shape is refined off the grid.
+
+    Where an effect is large, a shape between two of the grid may explain many times as much. One
+    whose size bounds set, not the data, stands back behind another that explains nearly as much.
+
+    Parameters
+    ----------
+    step : Step
+        Base and the effects accepted so far.
+    tests : sequence of HypothesisTest
+        Tests of the effects there.
+    """
+    first = sorted(tests, key=lambda one: -one.log_bayes_factor)[:_REFINED]
+    refined = [step.refined(one.effect_fit(BY_NAME[one.name])) for one in first]
+    factors = [one.refined_log_bayes_factor(fit) for one, fit in zip(first, refined, strict=True)]
+    both = [
+        (factor, fit)
+        for factor, fit in zip(factors, refined, strict=True)
+        if factor >= max(factors) - CLEARLY
+    ]
+    return max(both, key=lambda one: (not lies_on_bound(one[1]), one[0]))[1]
 
 
 def rival_log_bayes_factors(

@@ -19,13 +19,14 @@ from frictioncli.diagnosis.search.confounded import (
 from frictioncli.diagnosis.search.doubtful_steps import doubtful_step
 from frictioncli.diagnosis.search.margin import channel_margin
 from frictioncli.diagnosis.search.possible import (
+    ON_BOUND,
     beyond_bounds,
     impossible,
+    lies_on_bound,
     standard_errors,
     undetermined,
 )
 from frictioncli.effects.base import Effect
-from frictioncli.effects.thermal_lag import EFFECT as THERMAL_LAG
 
 _OF_CHANGES = 0.02
 """Significance level of a change, relative to that of other effects: drift over a few dozen pairs
@@ -139,9 +140,8 @@ def _impossible(cause: Cause, problem: Problem) -> str:
         return reason
     if cause.shown < _SHOWN:
         return "the residuals do not show an effect of this size"
-    if not errors.any() and cause.fit.effect.name != THERMAL_LAG.name:
-        # all friction at a temperature that is measured is no bound that something else asks for
-        return "the fit lies on a bound of what is physically possible"
+    if lies_on_bound(cause.fit):
+        return ON_BOUND
     if len(errors) == 1 and abs(cause.fit.coefficients[0]) <= Z95 * errors[0]:
         return "its coefficient may be zero"
     return ""

@@ -4,7 +4,8 @@ Causes are found under the noise and the discrepancy that suit them best. At a f
 few angles, discrepancy may then explain what the form of an effect misses, and the effect is as
 large as the many other rows have it. The extended model is fitted to all rows alike, so that it has
 what the residuals show of an effect at face value; its errors allow for noise, for discrepancy, for
-effects of the measurement that are not fitted, and for the shapes.
+effects of the measurement that are not fitted, and for the shapes. By these sizes a cause has a
+name, or not.
 """
 
 from collections.abc import Sequence
@@ -14,13 +15,15 @@ import numpy as np
 
 from frictioncli.arrays import Array
 from frictioncli.diagnosis.data.problem import Problem
-from frictioncli.diagnosis.fit.extension import Extension, with_shapes
+from frictioncli.diagnosis.fit.extension import Extension, extend, with_shapes
 from frictioncli.diagnosis.fit.hypotheses import EffectFit
 from frictioncli.diagnosis.fit.left_by_base import Z95, left_by, span_of, visible_size
 from frictioncli.diagnosis.fit.weighted_fit import WeightedFit
 from frictioncli.diagnosis.search.cause import Cause
 from frictioncli.diagnosis.search.effect_size import FORM, shown_of
-from frictioncli.diagnosis.search.measurement import beside_the_rest
+from frictioncli.diagnosis.search.margin import channel_margin
+from frictioncli.diagnosis.search.measurement import CLEAR, beside_the_rest
+from frictioncli.diagnosis.search.slow_sensor import behind_sensor
 from frictioncli.diagnosis.search.step import Step
 from frictioncli.effects.base import Basis
 
@@ -64,6 +67,81 @@ def sizing_fit(
     friction, load = np.split(torques, 2)
     fit = replace(step.predicting_fit(), unfitted=((friction, load),))
     return beside_the_rest(step.problem, fit, measurement, fitted)
+
+
+def sizes_in_model(
+    causes: Sequence[Cause],
+    extension: Extension,
+    step: Step,
+    measurement: Sequence[Cause],
+    base: Problem,
+) -> tuple[Cause, ...]:
+    """Return causes with their sizes in an extended model, a lag of the gear behind a slow sensor.
+
+    Parameters
+    ----------
+    causes : sequence of Cause
+        The causes, in the order of the first effects of the extension.
+    extension : Extension
+        The extended model.
+    step : Step
+        Base and causes, with the noise that suits them best.
+    measurement : sequence of Cause
+        Effects of the measurement beside the base.
+    base : Problem
+        The rows with the base model about the measured temperature, which takes torque from causes.
+    """
+    if all(one.fit.effect.measurement for one in causes):
+        return tuple(causes)
+    span = span_at_measured(base, measurement)
+    weighted_fit = sizing_fit(step, measurement, extension.effects)
+    stated = stated_sizes(causes, extension, step.problem, weighted_fit, span)
+    return behind_sensor(stated, measurement, step.problem, span)
+
+
+def sizes_beside_each_other(
+    causes: Sequence[Cause],
+    step: Step,
+    measurement: Sequence[Cause],
+    base: Problem,
+    margin: float,
+) -> tuple[Cause, ...]:
+    """Return causes with their sizes in a model that has those alone that are worth a name.
+
+    The smallest one that may be below the margin goes first, with the size that it had; the others
+    are estimated without it.
+
+    Parameters
+    ----------
+    causes : sequence of Cause
+        Causes, none of them an effect of the measurement.
+    step, measurement, base
+        As of :func:`sizes_in_model`.
+    margin : float
+        Smallest size worth a name. [N·m]
+
+    Returns
+    -------
+    tuple of Cause
+        In another order.
+    """
+    clear = [one.fit for one in measurement if one.test.p_value < CLEAR]
+    among, gone = list(causes), []
+
+    def over_margin(cause: Cause) -> float:
+        return cause.visible_interval[0] / channel_margin(base, cause.fit.effect.channel, margin)
+
+    while among:
+        fits = [*(one.fit for one in among), *clear]
+        weighted_fit = beside_the_rest(step.problem, step.predicting_fit(), measurement, fits)
+        extension = extend(step.problem, weighted_fit, fits)
+        among = list(sizes_in_model(among, extension, step, measurement, base))
+        smallest = min(among, key=over_margin)
+        if over_margin(smallest) > 1.0:
+            break
+        among.remove(smallest)
+        gone.append(smallest)
+    return (*among, *gone)
 
 
 def stated_sizes(
