@@ -4,8 +4,7 @@ Causes are found under the noise and the discrepancy that suit them best. At a f
 few angles, discrepancy may then explain what the form of an effect misses, and the effect is as
 large as the many other rows have it. The extended model is fitted to all rows alike, so that it has
 what the residuals show of an effect at face value; its errors allow for noise, for discrepancy, for
-effects of the measurement that are not fitted, and for the shapes. By these sizes a cause has a
-name, or not.
+effects of the measurement that are not fitted, and for the shapes.
 """
 
 from collections.abc import Sequence
@@ -106,10 +105,11 @@ def sizes_beside_each_other(
     base: Problem,
     margin: float,
 ) -> tuple[Cause, ...]:
-    """Return causes with their sizes in a model that has those alone that are worth a name.
+    """Return causes with the sizes that decide on their names, beside others that have one.
 
-    The smallest one that may be below the margin goes first, with the size that it had; the others
-    are estimated without it.
+    What the extended model has of a cause decides, or what the search found of it if the model
+    surely has some. The smallest one that may be below the margin goes first, with the size that it
+    has in the model; the others are estimated without it.
 
     Parameters
     ----------
@@ -126,22 +126,27 @@ def sizes_beside_each_other(
         In another order.
     """
     clear = [one.fit for one in measurement if one.test.p_value < CLEAR]
-    among, gone = list(causes), []
+    among: list[Cause] = list(causes)
+    gone: list[Cause] = []
 
     def over_margin(cause: Cause) -> float:
         return cause.visible_interval[0] / channel_margin(base, cause.fit.effect.channel, margin)
+
+    def deciding(found: Cause, stated: Cause) -> Cause:
+        return found if over_margin(found) > 1.0 and 0.0 < over_margin(stated) <= 1.0 else stated
 
     while among:
         fits = [*(one.fit for one in among), *clear]
         weighted_fit = beside_the_rest(step.problem, step.predicting_fit(), measurement, fits)
         extension = extend(step.problem, weighted_fit, fits)
-        among = list(sizes_in_model(among, extension, step, measurement, base))
-        smallest = min(among, key=over_margin)
-        if over_margin(smallest) > 1.0:
-            break
-        among.remove(smallest)
-        gone.append(smallest)
-    return (*among, *gone)
+        stated = sizes_in_model(among, extension, step, measurement, base)
+        sized = [deciding(one, two) for one, two in zip(among, stated, strict=True)]
+        least = min(range(len(sized)), key=lambda number: over_margin(sized[number]))
+        if over_margin(sized[least]) > 1.0:
+            return (*sized, *gone)
+        del among[least]
+        gone.append(stated[least])
+    return tuple(gone)
 
 
 def stated_sizes(
