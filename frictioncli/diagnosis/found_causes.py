@@ -4,7 +4,6 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 
-from frictioncli.diagnosis.data.problem import Problem
 from frictioncli.diagnosis.search.cause import Cause
 from frictioncli.diagnosis.search.cause_selection import BEYOND_DOUBT, refuted_by_new_run
 from frictioncli.diagnosis.search.measurement import clear_effects
@@ -46,7 +45,10 @@ class FoundCauses:
 def found_causes(
     judging: Judging, effects: Sequence[Effect], search: Callable[..., SearchResult]
 ) -> FoundCauses:
-    """Search for causes; without those that a new run refutes, search again.
+    """Search for causes, once more if they show that the measurement has one more effect.
+
+    What the joint adds may have made that impossible or undetermined. If it takes the name of a
+    cause, it is the cause in another form, and not there.
 
     Parameters
     ----------
@@ -57,22 +59,44 @@ def found_causes(
     search : callable
         As of :func:`frictioncli.diagnosis.thermal.lag_search.search_with_lag`.
     """
+    base, _ = judging.measured
+    before = judging.preparation.beside(base)
+    first = _not_refuted(judging, effects, search, clear_effects(before))
+    known = [
+        one.fit
+        for one in first.search.causes
+        if one.test.p_value < BEYOND_DOUBT and one.fit.effect.name != LAG
+    ]
+    if not known or not first.search.refused:
+        return first
+    preparation = Preparation(known)
+    clear = clear_effects(preparation.beside(base), known)
+    if set(clear) <= set(before.effects):
+        return first
+    again = _not_refuted(replace(judging, preparation=preparation), effects, search, clear)
+    return again if _names(first.judged) <= _names(again.judged) else first
+
+
+def _names(judged: JudgedCauses) -> set[str]:
+    """Return the names of the properties of the joint that are named."""
+    effects = (one.fit.effect for one in judged.named)
+    return {one.name for one in effects if not one.measurement}
+
+
+def _not_refuted(
+    judging: Judging,
+    effects: Sequence[Effect],
+    search: Callable[..., SearchResult],
+    measurement: Sequence[Effect],
+) -> FoundCauses:
+    """Search for causes; without those that a new run refutes, search again."""
     base, new = judging.measured
-    measurement = clear_effects(judging.preparation.beside(base))
+    search = partial(search, preparation=judging.preparation)
     refuted: tuple[Cause, ...] = ()
-    judged_again = False
     while True:
         gone = {one.fit.effect.name for one in refuted}
         tried = [one for one in effects if one.name not in gone]
-        searching = partial(search, preparation=judging.preparation)
-        found, lag = search_with_lag(base, new, tried, searching, judging.margin, measurement)
-        if not judged_again:
-            judged_again = True
-            told = _told_beside(found, base, judging.preparation)
-            if told is not None:
-                preparation, measurement = told
-                judging = replace(judging, preparation=preparation)
-                continue
+        found, lag = search_with_lag(base, new, tried, search, judging.margin, measurement)
         judging = judging.without_lag()
         if lag is not None:
             judging = replace(judging, problem=lag.problem, new=lag.new)
@@ -88,34 +112,3 @@ def found_causes(
         kept = without_refuted_rivals(judged.causes, found, judging.new)
         judged = replace(judged, causes=kept)
     return FoundCauses(search=found, judged=judged, judging=judging, lag=lag, refuted=refuted)
-
-
-def _told_beside(
-    found: SearchResult, base: Problem, before: Preparation
-) -> tuple[Preparation, tuple[Effect, ...]] | None:
-    """Return what searches share, and what is clear of the measurement, beside what was found.
-
-    None unless one more effect of the measurement is then clearly there: what the joint adds may
-    have made it impossible or undetermined.
-
-    Parameters
-    ----------
-    found : SearchResult
-        Result of a search.
-    base : Problem
-        The rows about the measured temperature.
-    before : Preparation
-        What the search was prepared with.
-    """
-    known = [
-        one.fit
-        for one in found.causes
-        if one.test.p_value < BEYOND_DOUBT and one.fit.effect.name != LAG
-    ]
-    if not known or not found.refused:
-        return None
-    preparation = Preparation(known)
-    clear = clear_effects(preparation.beside(base), known)
-    if set(clear) <= set(before.beside(base).effects):
-        return None
-    return preparation, clear
