@@ -61,7 +61,15 @@ def test_a_form_is_structure_where_no_property_of_the_joint_is_named():
     assert unexplained(None, (delay, drift), empirical, step, 0.05) is None
     assert unexplained(None, (), None, step, 0.05) is None
     # without a form only what the test along the axes shows: of this joint nothing
-    assert unexplained(None, (), replace(empirical, p_value=None), step, 0.05) is None
+    smooth = replace(empirical, p_value=None)
+    assert unexplained(None, (), smooth, step, 0.05) is None
+    # or what predicts a new run beyond doubt: a reduction of 6 standard errors, not of 4
+    for error, is_structure in ((0.06, True), (0.09, False)):
+        interval = (0.36 - 1.96 * error, 0.36 + 1.96 * error)
+        gain = replace(smooth.gain, basis="new_run", reduction=0.36, interval=interval)
+        one = unexplained(None, (), replace(smooth, gain=gain), step, 0.05)
+        assert (one is not None) == is_structure
+        assert one is None or one.axes == ("temperature",)
 
 
 @pytest.mark.parametrize(

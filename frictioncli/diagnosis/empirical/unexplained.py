@@ -6,10 +6,14 @@ from dataclasses import replace
 import numpy as np
 
 from frictioncli.diagnosis.empirical.estimate import Empirical
+from frictioncli.diagnosis.fit.gain import Gain
+from frictioncli.diagnosis.fit.left_by_base import Z95
 from frictioncli.diagnosis.search.cause import Cause
+from frictioncli.diagnosis.search.cause_selection import BEYOND_DOUBT
 from frictioncli.diagnosis.search.lack_of_fit import Structure, unnamed_structure
 from frictioncli.diagnosis.search.step import Step
 from frictioncli.diagnosis.search.understood import MOST_LEFT
+from frictioncli.distributions import chi2_tail
 
 
 def unexplained(
@@ -23,7 +27,9 @@ def unexplained(
 
     A form has fewer parameters than the functions of that test, and an effect of the measurement
     that is not corrected may hold a part of the structure: where a term is worth using although no
-    property of the joint is named, there is structure.
+    property of the joint is named, there is structure. Smooth functions of a term without a form
+    are structure where they predict a new run beyond doubt: the test along an axis takes what
+    varies little more than a discrepancy for one, from the runs seen alone.
 
     Parameters
     ----------
@@ -45,17 +51,33 @@ def unexplained(
         return structure
     if any(not one.fit.effect.measurement for one in causes):
         return None
+    if empirical.p_value is not None:
+        return _of_largest(empirical, empirical.p_value, empirical.statistic)
+    along = unnamed_structure(step, 0.0, alpha)
+    if along is not None or empirical.gain.basis != "new_run":
+        return along
+    statistic = _statistic(empirical.gain)
+    p_value = chi2_tail(statistic, 1)
+    return _of_largest(empirical, p_value, statistic) if p_value < BEYOND_DOUBT else None
+
+
+def _of_largest(empirical: Empirical, p_value: float, statistic: float) -> Structure:
+    """Return the largest part of a term as structure."""
     largest = empirical.parts[0]
-    if empirical.p_value is None:
-        return unnamed_structure(step, 0.0, alpha)
     return Structure(
         axes=largest.axes,
         channel="load" if largest.channel == "load" else "friction",
-        p_value=empirical.p_value,
-        statistic=empirical.statistic,
+        p_value=p_value,
+        statistic=statistic,
         size=largest.size,
         interval=largest.interval,
     )
+
+
+def _statistic(gain: Gain) -> float:
+    """Return the square of a gain in standard errors."""
+    error = (gain.interval[1] - gain.interval[0]) / (2 * Z95)
+    return float(np.square(gain.reduction / max(error, 1e-300)))
 
 
 def _with_second_axis(structure: Structure, empirical: Empirical) -> Structure:
