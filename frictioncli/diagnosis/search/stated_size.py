@@ -126,6 +126,7 @@ def sizes_beside_each_other(
         In another order.
     """
     clear = [one.fit for one in measurement if one.test.p_value < CLEAR]
+    alike = step.predicting_fit()
     among: list[Cause] = list(causes)
     gone: list[Cause] = []
 
@@ -137,7 +138,7 @@ def sizes_beside_each_other(
 
     while among:
         fits = [*(one.fit for one in among), *clear]
-        weighted_fit = beside_the_rest(step.problem, step.predicting_fit(), measurement, fits)
+        weighted_fit = beside_the_rest(step.problem, alike, measurement, fits)
         extension = extend(step.problem, weighted_fit, fits)
         stated = sizes_in_model(among, extension, step, measurement, base)
         sized = [deciding(one, two) for one, two in zip(among, stated, strict=True)]
