@@ -5,7 +5,13 @@ from collections.abc import Sequence
 
 _MOST_NAMES = 5
 
-_SPELLINGS = {"run_in": "run-in", "stribeck": "Stribeck friction", "coulomb": "Coulomb"}
+_SPELLINGS = {
+    "run_in": "run-in",
+    "stribeck": "Stribeck friction",
+    "coulomb": "Coulomb",
+    # a moment is also a torque
+    "moment": "start",
+}
 """Parts of identifiers that are written otherwise in a sentence."""
 
 _SHORT = 0.5
@@ -111,8 +117,8 @@ def count_text(count: int, singular: str, plural: str = "") -> str:
 
 
 def thousands_text(count: int) -> str:
-    """Return a count with thin spaces between groups of three digits."""
-    return f"{count:,}".replace(",", "\u202f")
+    """Return a count with commas between groups of three digits."""
+    return f"{count:,}"
 
 
 def duration_text(seconds: float) -> str:

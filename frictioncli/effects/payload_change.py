@@ -71,5 +71,5 @@ EFFECT = Effect(
         " a changed mass stays, an effect of the torque constant changes with temperature."
     ),
     mirror="Friction must change only by what the base model gives for the new load.",
-    statement="The payload added {cosine} to gravity at 0 deg and {sine} at 90 deg.",
+    statement="The payload changed the gravity torque by {cosine} at 0 deg and by {sine} at 90 deg.",
 )

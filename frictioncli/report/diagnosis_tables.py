@@ -63,8 +63,8 @@ def _size_cell(document: DiagnosisDocument, name: str, *, stated: bool) -> str:
 def worst_table(document: DiagnosisDocument) -> TextTable:
     """Return the conditions under which the simulated torque is furthest from the measured one."""
     return TextTable(
-        title="Largest errors of the simulated torque",
-        header=("where", "temperature", "speed", "channel", "measured − simulated, mean"),
+        title="Largest mean errors of the simulated torque",
+        header=("where", "temperature", "speed", "channel", "measured −\u00a0simulated"),
         rows=tuple(
             (
                 f"{place.axis} {number_text(place.low)} to {number_text(place.high)}"

@@ -61,7 +61,7 @@ def _how_much(results: JointResults) -> Answer:
     return Answer(
         question="How much",
         value=f"{number_text(point.friction)} {results.unit}",
-        text=f"at {point.motion}; all pairs {span} {results.unit}; unloaded",
+        text=f"unloaded, at {point.motion}; all pairs {span} {results.unit}",
     )
 
 
@@ -101,8 +101,7 @@ def _what_is_wrong(document: DiagnosisDocument | None) -> Answer:
     left = document.remainder
     rest = ""
     if left:
-        # the same in fewer words
-        along = f", {variation(left).removeprefix('varying ')}" if extent(left) else ""
+        along = f", {variation(left)}" if extent(left) else ""
         if document.structure is not None:
             axes = ["angle" if axis == "position" else axis for axis in document.structure.axis]
             along = f", structure over {list_text(axes)}"

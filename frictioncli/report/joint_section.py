@@ -13,7 +13,12 @@ from frictioncli.report.figures import runs_drawn_note
 from frictioncli.report.first_screen import Answer, answers
 from frictioncli.report.formula import formula_symbols
 from frictioncli.report.missing_data import evaluation_missing
-from frictioncli.report.model_section import ModelCard, model_cards, parameters_table
+from frictioncli.report.model_section import (
+    ModelCard,
+    model_cards,
+    parameters_table,
+    undetermined_base,
+)
 from frictioncli.report.page_tables import TextTable, epsilon_tables, pairs_table
 from frictioncli.report.parameters import (
     ParameterRow,
@@ -45,6 +50,8 @@ class JointSection:
         Base and extended model with numbers, and the meaning of their symbols.
     both : TextTable or None
         Parameters of both models side by side, if there are two.
+    both_open : str
+        Which of them the extended model leaves open; may be empty.
     experiment : Experiment or None
         The next experiment, if one was planned.
     key_numbers : list of KeyNumber
@@ -85,6 +92,7 @@ class JointSection:
     models: list[ModelCard]
     symbols: str
     both: TextTable | None
+    both_open: str
     experiment: Experiment | None
     key_numbers: list[KeyNumber]
     ratings: list[QualityRating]
@@ -135,6 +143,7 @@ def joint_section(
         measurement=measurement_text(results),
         models=model_cards(results),
         both=parameters_table(results),
+        both_open=undetermined_base(results),
         experiment=experiment(results),
         symbols=formula_symbols(results),
         key_numbers=key_numbers(results, document),

@@ -162,6 +162,31 @@ def parameters_table(results: JointResults) -> TextTable | None:
     )
 
 
+def undetermined_base(results: JointResults) -> str:
+    """Return which parameters of equation (16) the extended model leaves open; empty if none.
+
+    Parameters
+    ----------
+    results : JointResults
+        One joint's results.
+    """
+    extended = results.extended_model
+    if extended is None or not extended.effects or results.diagnosis is None:
+        return ""
+    # a parameter left out of the model has no interval
+    open_ends = [
+        PARAMETER_SYMBOLS[name]
+        for name in PARAMETERS
+        if (ci95 := extended.parameters[name].ci95) is not None and ci95[0] < 0 < ci95[1]
+    ]
+    if not open_ends:
+        return ""
+    return (
+        f"In the extended model these data do not determine {list_text(open_ends)}, not even the"
+        " sign: use it only within the measured ranges."
+    )
+
+
 def _cells(stated: object) -> tuple[str, str]:
     estimate, ci95 = getattr(stated, "estimate", None), getattr(stated, "ci95", None)
     if ci95 is None:

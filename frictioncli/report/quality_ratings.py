@@ -269,7 +269,7 @@ def model_rating(results: JointResults, diagnosis: DiagnosisDocument | None) -> 
     missed = f"{number_text(diagnosis.simulation.rmse)} {results.unit} (RMS)"
     left = diagnosis.remainder
     beside = (
-        f" {'On a new run it' if left.basis == 'new_run' else 'It'} still misses"
+        f" {'On a new run its' if left.basis == 'new_run' else 'Its'} error is still"
         f" {number_text(left.rmse)} {results.unit}, where noise alone is"
         f" {number_text(left.noise_floor)} {results.unit}."
         if left
@@ -285,7 +285,7 @@ def model_rating(results: JointResults, diagnosis: DiagnosisDocument | None) -> 
         return QualityRating(
             level=POOR,
             name="Model",
-            reason=f"The simulated torque misses {missed}, with structure that no known effect"
+            reason=f"The simulated torque is wrong by {missed}, with structure that no known effect"
             f" explains.{beside}",
         )
     lacking, measured = (
@@ -300,7 +300,7 @@ def model_rating(results: JointResults, diagnosis: DiagnosisDocument | None) -> 
     return QualityRating(
         level=FAIR,
         name="Model",
-        reason=f"Equation (16) {' and '.join(filter(None, [lacks, adds]))}: alone it misses"
+        reason=f"Equation (16) {' and '.join(filter(None, [lacks, adds]))}: alone it is wrong by"
         f" {missed}. The extended model includes it.{beside}",
     )
 

@@ -109,7 +109,7 @@ def simulation_figure(results: JointResults, *, diagnosis: Reloaded) -> Figure:
     fastest = rows[rows["speed"] == shown[-1]]
     series = _series_by_direction(fastest, results)
     _draw_torque(over_angle, _means_by_angle(fastest), series, "position")
-    shown_part = "torque u" if results.load_unit == results.unit else "friction's part of torque"
+    shown_part = _shown_part(results, "torque u")
     for upper, lower in columns:
         upper.set_ylabel(f"{shown_part} [{results.unit}]")
         lower.set_ylabel(f"measured − simulated [{results.unit}]")
@@ -121,6 +121,11 @@ def simulation_figure(results: JointResults, *, diagnosis: Reloaded) -> Figure:
     _legend(over_time[0], [(speed_text(speed), results.style(speed)) for speed in shown])
     _legend(over_angle[0], [(name, style) for name, _, style in series if name])
     return figure
+
+
+def _shown_part(results: JointResults, whole: str) -> str:
+    """Return the name of the torque that is drawn, which is friction's where load is logged."""
+    return whole if results.load_unit == results.unit else "friction's part of torque"
 
 
 def _legend(panel: Axes, series: list[tuple[str, SpeedStyle]]) -> None:
@@ -257,7 +262,7 @@ def gain_figure(results: JointResults, *, diagnosis: Reloaded, floor: float) -> 
     left.set_xlim(-reach, reach)
     # room above the curves for the legend
     left.set_ylim(0, 1.35 * left.get_ylim()[1])
-    left.set_xlabel(f"torque, measured − simulated [{results.unit}]")
+    left.set_xlabel(f"{_shown_part(results, 'torque')}, measured − simulated [{results.unit}]")
     left.set_ylabel(f"share of points per {results.unit}")
     right.set_xlim(0, reach)
     right.set_ylim(0, 100)

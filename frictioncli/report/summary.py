@@ -180,7 +180,7 @@ def corrections_needed(results: JointResults) -> KeyNumber | None:
             counts.append(int(enough.min()) if len(enough) else None)
         if reached := sorted(count for count in counts if count is not None):
             failing = counts.count(None)
-            not_all = f" (never in {count_text(failing, 'run')})" if failing else ""
+            not_all = f" (not reached in {count_text(failing, 'run')})" if failing else ""
             texts.append(
                 f"{range_text([str(n) for n in reached])} in {PHASE_WORDS[phase]}{not_all}"
             )

@@ -279,7 +279,7 @@ def test_a_suggested_map_of_an_arm_that_moves_as_a_whole_is_no_way_round_its_ref
     map_file = tmp_path / "channels.toml"
     map_file.write_text(text, encoding="utf-8")
     mapped = IngestSettings(map_file=map_file)
-    with pytest.raises(NotEnoughData, match="other joint moves in 100% of its motion"):
+    with pytest.raises(NotEnoughData, match="other joint moves in 100 % of its motion"):
         run([REAL / "nist-ur5"], tmp_path / "work", RunSettings(ingest=mapped))
 
 

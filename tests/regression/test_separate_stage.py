@@ -108,7 +108,7 @@ def test_pairs_that_suffice_are_used_and_said(tmp_path):
     ("count", "seconds", "said"),
     [
         (1, 120, "too few pairs (1 pair of joint 1): by regression"),
-        (4, 300, "4 pairs of joint 1 hold 5% of its motion: by regression"),
+        (4, 300, "4 pairs of joint 1 hold 5 % of its motion: by regression"),
         (4, 20, ""),
     ],
 )
@@ -208,7 +208,7 @@ def test_a_joint_that_moves_with_others_is_regressed_only_when_told(tmp_path):
     moving = table.append_column("other_speed", [np.full(len(table), 12.0)])
     work = tmp_path / "work"
     write_samples(work, moving)
-    with pytest.raises(NotEnoughData, match="other joint moves in 100% of its motion"):
+    with pytest.raises(NotEnoughData, match="other joint moves in 100 % of its motion"):
         separate(work)
     assert "friction includes what they add" in str(separate(work, REGRESSION))
 

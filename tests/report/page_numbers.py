@@ -3,7 +3,7 @@
 import re
 from html.parser import HTMLParser
 
-NUMBER = re.compile(r"(?<![\w.#])[−-]?\d+(?:[.\u202f,]\d+)*(?:e[−-]?\d+)?")
+NUMBER = re.compile(r"(?<![\w.#])[−-]?\d+(?:[.,]\d+)*(?:e[−-]?\d+)?")
 """A number with decimals, groups of thousands or an exponent; none inside a name such as day1."""
 
 _HIDDEN = {"script", "style", "svg", "noscript", "title", "code", "pre", "option", "select"}
@@ -59,7 +59,7 @@ def numbers(text):
 
 
 def value(written):
-    return float(written.replace("−", "-").replace("\u202f", "").replace(",", ""))
+    return float(written.replace("−", "-").replace(",", ""))
 
 
 def agrees(written, values):

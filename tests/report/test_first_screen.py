@@ -53,7 +53,7 @@ def test_how_much_is_equation_16_at_the_medians(diagnosed):
     )
     assert point.friction == pytest.approx(by_hand, rel=1e-12)
     said = by_question(diagnosed)["How much"]
-    assert said.startswith(f"{number_text(by_hand)} N·m at {point.speed:g} deg/s")
+    assert said.startswith(f"{number_text(by_hand)} N·m unloaded, at {point.speed:g} deg/s")
 
 
 def test_how_sure_is_the_misfit_on_the_new_run(diagnosed, two_runs):
@@ -96,7 +96,11 @@ def test_structure_without_a_name_is_said_beside_the_causes(diagnosed):
 
 @pytest.mark.parametrize(
     ("axis_size", "words"),
-    [(0.9, ", mostly with the joint angle"), (0.6, ", partly with the joint angle"), (0.1, "")],
+    [
+        (0.9, ", varying mostly with the joint angle"),
+        (0.6, ", varying partly with the joint angle"),
+        (0.1, ""),
+    ],
 )
 def test_an_axis_is_said_as_far_as_the_remainder_varies_along_it(diagnosed, axis_size, words):
     """The axis has 0.81, 0.36 and 0.01 of the mean square."""

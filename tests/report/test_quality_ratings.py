@@ -44,10 +44,8 @@ def test_reading_goes_by_the_share_of_rejected_rows(changed, level):
 
 
 def test_reading_tells_its_numbers():
-    told = reading_rating(replace(CLEAN, rejected=11, unusable_files=2)).reason.replace(
-        "\u202f", " "
-    )
-    assert told == "11 of 10 000 rows in 8 files rejected; 2 files could not be used at all."
+    told = reading_rating(replace(CLEAN, rejected=11, unusable_files=2)).reason
+    assert told == "11 of 10,000 rows in 8 files rejected; 2 files could not be used at all."
 
 
 def test_an_unknown_clock_is_poor_and_a_warning_fair():
@@ -129,7 +127,9 @@ def test_model_that_leaves_something_on_a_new_run_is_not_good(two_runs):
     )
     rating = model_rating(two_runs, diagnosis(verdict="no_evidence", remainder=left))
     assert rating.level == FAIR
-    assert "On a new run it still misses 1.40 N·m, where noise alone is 0.700 N·m" in rating.reason
+    assert (
+        "On a new run its error is still 1.40 N·m, where noise alone is 0.700 N·m." in rating.reason
+    )
 
 
 def test_measurement_is_no_fault_of_the_equation(two_runs):

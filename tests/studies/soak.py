@@ -52,8 +52,12 @@ class Soak:
         What was done.
     whole : dict of str to bytes
         All files that the undisturbed call made.
+    largest : int
+        Size of the largest output of a joint. [bytes]
+    joint_time : float
+        Time in which a worker makes one joint. [s]
     pause : float
-        Longest time between two disturbances. [s]
+        Longest time between two disturbances; several fall into each call. [s]
     """
 
     folder: Path
@@ -61,6 +65,8 @@ class Soak:
     round: list[str] = field(default_factory=list)
     counts: Counter[str] = field(default_factory=Counter)
     whole: dict[str, bytes] = field(default_factory=dict)
+    largest: int = 0
+    joint_time: float = 0.0
     pause: float = 0.0
 
     def build(self, joints: int) -> None:
@@ -73,8 +79,14 @@ class Soak:
         began = time.monotonic()
         status, said = self._ended(self._started("calm"))
         assert (status, f"{joints} done, 0 failed" in said) == (0, True), said
-        self.pause = 4 * WORKERS * (time.monotonic() - began) / joints
+        call_time = time.monotonic() - began
+        self.joint_time = WORKERS * call_time / joints
+        # workers that are killed more often than they finish a joint would never end
+        self.pause = min(4 * self.joint_time, call_time / 4)
         self.whole = contents(self.folder / "calm")
+        self.largest = max(len(one) for name, one in self.whole.items() if "/" in name)
+        # the first call has something to lose, too
+        shutil.copytree(self.folder / "calm", self.folder / "out")
 
     def disturbed_call(self) -> None:
         """Call once, with one kind of disturbance from begin to end."""
@@ -83,7 +95,7 @@ class Soak:
         self.counts[f"calls: {kind}"] += 1
         with ExitStack() as stack:
             more: list[str] = []
-            limit = self.draw.choice((20_000, 60_000, 200_000)) if kind == "disk" else None
+            limit = round(self.draw.choice((0.1, 0.5, 0.9)) * self.largest)
             if kind == "outputs":
                 self._damage_outputs()
             if kind == "dask":
@@ -97,14 +109,13 @@ class Soak:
                 # where all is done already, there is nothing to disturb
                 more.append("--redo")
             done = self._records()
-            call = self._started("out", *more, limit=limit)
-            until = self.draw.uniform(0.1, 0.9) * len(self._records("calm"))
+            call = self._started("out", *more, limit=limit if kind == "disk" else None)
+            until = self.draw.uniform(0.1, 0.7) * len(self._records("calm"))
+            disturb = {"workers": lambda: self._kill_worker(call), "logs": self._overwrite_log}
+            longest = self.pause if kind in disturb else 0.2 * self.joint_time
             while call.poll() is None and len(self._records() - done) < until:
-                time.sleep(self.draw.uniform(0.1, 1.0) * self.pause)
-                if kind == "workers":
-                    self._kill_worker(call)
-                elif kind == "logs":
-                    self._overwrite_log()
+                time.sleep(self.draw.uniform(0.1, 1.0) * longest)
+                disturb.get(kind, lambda: None)()
             if kind == "parent" and call.poll() is None:
                 number = self.draw.choice((signal.SIGKILL, signal.SIGTERM, signal.SIGINT))
                 call.send_signal(number)
@@ -113,6 +124,8 @@ class Soak:
                 process.send_signal(self.draw.choice((signal.SIGKILL, signal.SIGSTOP)))
                 self.counts["schedulers killed or stopped"] += 1
             status, said = self._ended(call)
+        if kind == "disk" and "too large" in said:
+            self.counts["disks full"] += 1
         assert "Traceback" not in said, said
         assert status in (0, 2, 130, -signal.SIGKILL, -signal.SIGTERM), (status, said)
         self.check()

@@ -53,12 +53,15 @@ class Misfits:
         """
         return self.after[channel] + self.terms[number].of(channel)
 
-    @staticmethod
-    def torque(channels: Mapping[str, Array]) -> Array:
-        """Return the misfit of the torque, all rows forward, then all in reverse [N·m]."""
-        return np.concatenate(
-            [channels["load"] + channels["friction"], channels["load"] - channels["friction"]]
-        )
+    def torque(self, channels: Mapping[str, Array]) -> Array:
+        """Return the misfit of the torque, all rows forward, then all in reverse [N·m].
+
+        If the log has a load channel, whose unit may be another, it is that of friction alone.
+        """
+        friction, load = channels["friction"], channels["load"]
+        if self.problem.has_load_channel:
+            load = np.zeros_like(load)
+        return np.concatenate([load + friction, load - friction])
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

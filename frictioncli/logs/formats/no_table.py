@@ -9,6 +9,9 @@ _ONE_NUMBER = re.compile(r"\s*+[+-]?[\d.,]++(?:[eE][+-]?\d++)?\s*+")
 _LEAST_DIGITS = 0.3
 """Share of the characters that are digits in rows of numbers."""
 
+_MAP_TABLES = frozenset({"[channels]", "[units]"})
+"""Lines that begin the tables of a mapping file."""
+
 
 def refuse_unequal(names: int, width: int, delimiter: str) -> Refusal:
     """Return the refusal of a table whose header does not fit its rows.
@@ -49,6 +52,8 @@ def refuse_no_table(filled: Sequence[str], delimiter: str | None) -> Refusal:
     delimiter : str or None
         What the user says separates the fields, in words.
     """
+    if _MAP_TABLES.intersection(line.strip() for line in filled):
+        return Refusal("not_a_log", "a mapping file, not a log; expected as --map FILE")
     first = f"the first line is {filled[0][:120]!r}"
     if delimiter is not None:
         return Refusal(
