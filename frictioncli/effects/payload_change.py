@@ -71,5 +71,7 @@ EFFECT = Effect(
         " a changed mass stays, an effect of the torque constant changes with temperature."
     ),
     mirror="Friction must change only by what the base model gives for the new load.",
-    statement="The payload changed the gravity torque by {cosine} at 0 deg and by {sine} at 90 deg.",
+    statement=(
+        "The payload changed the gravity torque by {cosine} at 0 deg and by {sine} at 90 deg."
+    ),
 )

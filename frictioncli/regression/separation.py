@@ -203,8 +203,8 @@ def _refuse_doubtful(joint: int, prepared: PreparedJoint, *, doubtful: bool) -> 
     """Refuse a joint whose friction holds something else, unless that is allowed."""
     if prepared.other_share and not doubtful:
         raise NotEnoughData(
-            f"joint {joint}: {OTHER_MOVES} in {100 * prepared.other_share:.0f} % of its motion, and the"
-            " weight and inertia of the others act on it; log it alone, give --urdf, or try"
+            f"joint {joint}: {OTHER_MOVES} in {100 * prepared.other_share:.0f} % of its motion,"
+            " and the weight and inertia of the others act on it; log it alone, give --urdf, or try"
             " 'frictioncli separate --by regression', whose friction then includes what they add"
         )
     if len(prepared.equations.rows) and not prepared.terms.offset and not doubtful:

@@ -109,7 +109,8 @@ def _with_few_pairs(
             told[joint] = f"too few pairs ({count_text(count, 'pair')} of joint {joint})"
         elif count < _MANY_PAIRS and share < _LEAST_SHARE:
             told[joint] = (
-                f"{count_text(count, 'pair')} of joint {joint} hold {100 * share:.0f} % of its motion"
+                f"{count_text(count, 'pair')} of joint {joint} hold {100 * share:.0f} %"
+                " of its motion"
             )
     return told
 
