@@ -25,7 +25,7 @@ _PAIR_COLUMNS = (
     "pair",
     "speed",
     "phase",
-    "motor_temperature",
+    "temperature",
     "half_difference",
     "load_low",
     "load_high",
@@ -60,8 +60,9 @@ def segments_and_pairs(
     counts : SegmentCounts
         Number of constant-speed segments.
     pairs : DataFrame
-        One row per pair: run, joint, pair, speed [deg/s], phase, motor temperature [°C], mean half
-        difference of the torques, lowest and highest load. [N·m or A]
+        One row per pair: run, joint, pair, speed [deg/s], phase, temperature of the motor, or of
+        the housing where it has none [°C], mean half difference of the torques, lowest and highest
+        load. [N·m or A]
     other_motion : OtherMotion
         Samples taken while other joints moved.
     """
@@ -98,13 +99,15 @@ def _pair_means(rows: pa.Table) -> pd.DataFrame:
     half = (frame["torque_forward"] - frame["torque_reverse"]) / 2
     load = (frame["torque_forward"] + frame["torque_reverse"]) / 2
     load = frame["load"].where(frame["load"].notna(), load)
-    grouped: Any = frame.assign(half_difference=half, load_torque=load).groupby("pair", sort=False)
+    temperature = frame["motor_temperature"].fillna(frame["housing_temperature"])
+    known = frame.assign(half_difference=half, load_torque=load, temperature=temperature)
+    grouped: Any = known.groupby("pair", sort=False)
     return grouped.agg(
         run=("run", "first"),
         joint=("joint", "first"),
         speed=("speed", "first"),
         phase=("phase", "first"),
-        motor_temperature=("motor_temperature", "first"),
+        temperature=("temperature", "first"),
         half_difference=("half_difference", "mean"),
         load_low=("load_torque", "min"),
         load_high=("load_torque", "max"),

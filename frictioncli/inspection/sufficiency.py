@@ -56,7 +56,7 @@ class JointSummary:
     speeds : tuple of float
         Speeds of the pairs. [deg/s]
     temperature : tuple of float or None
-        Lowest and highest motor temperature of the pairs. [°C]
+        Lowest and highest temperature of the pairs. [°C]
     load : tuple of float or None
         Lowest and highest load torque of the pairs. [N·m or A]
     stages : tuple of StageVerdict
@@ -138,7 +138,7 @@ def joint_summary(
         reverse=segments[REVERSE],
         pairs=len(pairs),
         speeds=tuple(sorted(pairs["speed"].unique().tolist())),
-        temperature=_range(pairs["motor_temperature"]),
+        temperature=_range(pairs["temperature"]),
         load=_range(pd.concat([pairs["load_low"], pairs["load_high"]])),
         stages=tuple(stages),
     )
@@ -211,14 +211,14 @@ def _fit(pairs: pd.DataFrame) -> StageVerdict:
     text = _counted(len(pairs), "pair")
     if limitations:
         return StageVerdict("fit", IN_PART, f"{text}, but {'; '.join(limitations)}")
-    temperature = _range(pairs["motor_temperature"]) or (0.0, 0.0)
+    temperature = _range(pairs["temperature"]) or (0.0, 0.0)
     return StageVerdict("fit", YES, f"{text} at {temperature[0]:.0f} to {temperature[1]:.0f} °C")
 
 
 def _temperature_limitations(pairs: pd.DataFrame) -> Iterable[str]:
-    temperature = _range(pairs["motor_temperature"])
+    temperature = _range(pairs["temperature"])
     if temperature is None:
-        yield "no motor temperature: terms of temperature are left out"
+        yield "no motor or housing temperature: terms of temperature are left out"
     elif temperature[1] - temperature[0] < MIN_TEMPERATURE_SPAN:
         yield (
             f"temperature spans {temperature[1] - temperature[0]:.1f} °C: its terms need at least"

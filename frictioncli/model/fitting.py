@@ -56,8 +56,7 @@ def fit_joint(torques: pd.DataFrame, facts: dict[str, Any], settings: FitSetting
     joint = int(torques["joint"].iloc[0])
     temperature = settings.temperature
     if temperature == "auto":
-        both = settings.method == "paper" and torques["housing_temperature"].notna().any()
-        temperature = "mean" if both else "motor"
+        temperature = _automatic_temperature(torques, settings)
     known, notes = _with_temperature(torques, temperature, joint)
     delay, may_be_late = None, _may_be_late(facts, settings, joint)
     if may_be_late:
@@ -117,6 +116,18 @@ def fit_joint(torques: pd.DataFrame, facts: dict[str, Any], settings: FitSetting
             estimate=delay.value, ci95=delay.interval, unit="s", determined=True
         ),
     )
+
+
+def _automatic_temperature(torques: pd.DataFrame, settings: FitSettings) -> str:
+    """Return the temperature of friction where none is chosen: one that is logged, if any is."""
+    motor, housing = (
+        bool(torques[f"{part}_temperature"].notna().any()) for part in ("motor", "housing")
+    )
+    if not housing:
+        return "motor"
+    if not motor:
+        return "housing"
+    return "mean" if settings.method == "paper" else "motor"
 
 
 def _may_be_late(facts: dict[str, Any], settings: FitSettings, joint: int) -> bool:

@@ -100,14 +100,15 @@ def determined_fit(
     observed : Observations
         Friction of one joint.
     vague_delta : bool, optional
-        Whether gamma and delta stay where delta is vague: what the model lacks may be the reason.
+        Whether gamma and delta stay where delta is vague, be it because the temperature hardly
+        varies: what the model lacks may be the reason, and what it could have is no other effect.
 
     Returns
     -------
     Estimate, Determination
         The fit, and which terms it has.
     """
-    chosen = _by_excitation(observed)
+    chosen = _by_excitation(observed, least_span=0.0 if vague_delta else MIN_TEMPERATURE_SPAN)
     while True:
         estimate = fit_terms(observed, chosen.terms)
         fewer = _by_interval(observed, estimate, chosen, vague_delta=vague_delta)
@@ -135,7 +136,7 @@ def at_bound(estimate: Estimate) -> dict[str, str]:
     return flags
 
 
-def _by_excitation(observed: Observations) -> Determination:
+def _by_excitation(observed: Observations, least_span: float) -> Determination:
     """Return the terms that the spans of temperature and speed excite."""
     chosen = Determination()
     temperatures = observed.temperature[np.isfinite(observed.temperature)]
@@ -146,7 +147,7 @@ def _by_excitation(observed: Observations) -> Determination:
             "beta",
             "holds the whole viscous coefficient at the unknown temperature of the log",
         )
-    elif np.ptp(temperatures) < MIN_TEMPERATURE_SPAN:
+    elif (span := float(np.ptp(temperatures))) < least_span or not span:
         low, high = np.min(temperatures), np.max(temperatures)
         chosen = chosen.without(
             "gamma",

@@ -33,8 +33,9 @@ class FitSettings:
     method : {"joint", "paper"}
         All parameters at once from all pairs, or one after the other as in the paper.
     temperature : {"auto", "motor", "housing", "mean"}
-        Temperature that friction depends on. ``auto`` is the motor temperature; with method
-        ``paper`` it is the mean of motor and housing temperature where the log has both.
+        Temperature that friction depends on. ``auto`` is the motor temperature, or that of the
+        housing where the log has no other; with method ``paper`` it is the mean of both where the
+        log has both.
     """
 
     method: str = field(default="joint", metadata=option(f"Identification: {', '.join(METHODS)}."))

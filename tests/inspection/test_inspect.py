@@ -84,8 +84,8 @@ def test_a_whole_experiment_suffices_for_every_stage(tmp_path):
 @pytest.mark.parametrize(
     ("change", "stage", "suffices", "told"),
     [
-        (lambda log: log.drop(columns=TEMPERATURE), "fit", "in part", "no motor temperature"),
-        (lambda log: log.drop(columns=TEMPERATURE), "simulate", "no", "no motor temperature"),
+        (lambda log: log.drop(columns=TEMPERATURE), "fit", "in part", "no motor or housing"),
+        (lambda log: log.drop(columns=TEMPERATURE), "simulate", "no", "no motor or housing"),
         (lambda log: log.assign(**{TEMPERATURE: 30.0}), "fit", "in part", "spans 0.0 °C"),
         (lambda log: log, "diagnose", "in part", "one run only"),
         (lambda log: log[: len(log) // 3], "diagnose", "no", "at least 12 are needed"),

@@ -82,6 +82,27 @@ def test_a_short_temperature_span_merges_the_viscous_terms():
     assert high - low < 2.0
 
 
+def test_what_a_short_temperature_span_could_do_is_no_other_effect():
+    """Too few °C for a claim on gamma, but the diagnosis must not seek another cause of its 8 %."""
+    temperature, time, phase = (values[:9] for values in cycle_temperatures())
+    (base,) = candidate_bases(torques(4, temperatures=(temperature, time, phase)), "motor")
+    assert {"gamma", "delta"} < set(base.names)
+    p = base.parameters
+    fall = p.gamma * (np.exp(-p.delta * 25.0) - np.exp(-p.delta * 33.0))
+    assert fall == pytest.approx(15.66 * (np.exp(-0.056 * 25.0) - np.exp(-0.056 * 33.0)), rel=0.1)
+
+
+@pytest.mark.parametrize("method", ["joint", "paper"])
+def test_the_only_temperature_of_a_log_is_that_of_friction(method):
+    """A log of the housing alone knows at which temperature it was."""
+    motor = torques(6)
+    housing = motor.assign(housing_temperature=motor["motor_temperature"], motor_temperature=np.nan)
+    model = fitted(housing, method=method)
+    assert model.temperature == "housing"
+    known = fitted(motor.assign(housing_temperature=np.nan), method=method)
+    assert model.friction == known.friction
+
+
 @pytest.mark.parametrize("seed", [1, 2, 3])
 def test_viscous_friction_that_does_not_fall_with_temperature_stays(seed):
     """A strong drift leaves delta vague: gamma takes beta's share, and gives it back."""

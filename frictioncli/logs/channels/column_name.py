@@ -35,7 +35,7 @@ _JOINT_FIRST = re.compile(
 )
 _MEASURED = re.compile(
     r"(?:^|(?<=[ _.\-]))(?:feedback|fbk|fb|actual|act|measured|meas|ist|value|averaged|average|avg"
-    r"|joint[ _]?states?)(?=$|[ _.\-])",
+    r"|joint[ _]?states?)(?=$|[ _.\-]|\d{1,2}$)",
     re.I,
 )
 _SYMBOL = re.compile(r"^T[ _]?(?P<joint>\d{1,2})$", re.I)
