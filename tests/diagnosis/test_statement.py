@@ -9,6 +9,7 @@ from frictioncli.diagnosis.documents.extended_document import ParameterRecord
 from frictioncli.diagnosis.documents.from_diagnosis import words_for
 from frictioncli.diagnosis.documents.parameters import statement
 from frictioncli.effects import BY_NAME
+from frictioncli.effects.dress_pack import PUSHING
 from frictioncli.effects.stribeck import EXTRAPOLATED
 
 
@@ -63,6 +64,29 @@ def test_boundary_friction_below_the_slowest_move_is_said_to_be_extrapolated():
     assert "extrapolated to standstill, it is 73 N·m" in text
     moves.speed[0] = 2.0
     assert words_for(diagnosis, effect, parameters) is None
+
+
+@pytest.mark.parametrize(
+    ("stiffness", "counted", "by_load_channel", "pushes"),
+    [
+        ((-3.1, -2.0), 1.0, False, True),
+        ((2.0, 3.1), -1.0, False, True),
+        ((2.0, 3.1), 1.0, False, False),
+        ((-3.1, 0.2), 1.0, False, False),
+        ((-3.1, -2.0), 1.0, True, False),
+    ],
+)
+def test_a_spring_that_pushes_the_joint_on_is_no_cable(stiffness, counted, by_load_channel, pushes):
+    """Held 1 rad further, it needs less torque: what pulls back would need more."""
+    parameters = {"stiffness": ParameterRecord(estimate=2.5, ci95=stiffness, unit="N·m/rad")}
+    problem = SimpleNamespace(
+        table=SimpleNamespace(speed=np.array([4.0])),
+        counted=counted,
+        has_load_channel=by_load_channel,
+    )
+    effect = BY_NAME["dress_pack"]
+    assert (words_for(SimpleNamespace(base=problem), effect, parameters) == PUSHING) == pushes
+    assert "counterbalance" in statement(effect, parameters)
 
 
 def test_an_order_is_no_coefficient():

@@ -43,7 +43,7 @@ from frictioncli.diagnosis.search.cause import Cause
 from frictioncli.diagnosis.search.timing_causes import DELAY, FILTER
 from frictioncli.diagnosis.settings import DiagnosisSettings
 from frictioncli.diagnosis.thermal.refine import LAG
-from frictioncli.effects import stribeck, torque_delay, torque_filter
+from frictioncli.effects import dress_pack, stribeck, torque_delay, torque_filter
 from frictioncli.effects.base import Effect
 from frictioncli.effects.history_text import history_text
 from frictioncli.model.document import PARAMETERS, FrictionModel, ParameterEstimate
@@ -256,7 +256,16 @@ def words_for(
     slowest = float(np.min(diagnosis.base.table.speed))
     if effect.name == stribeck.EFFECT.name and parameters["velocity"].estimate < slowest:
         return stribeck.EXTRAPOLATED
+    if effect.name == dress_pack.EFFECT.name and _pushes(diagnosis, parameters["stiffness"]):
+        return dress_pack.PUSHING
     return None
+
+
+def _pushes(diagnosis: Diagnosis, stiffness: ParameterRecord) -> bool:
+    """Return whether a spring certainly does not pull back; a load channel may count otherwise."""
+    if stiffness.ci95 is None or diagnosis.base.has_load_channel:
+        return False
+    return max(diagnosis.base.counted * bound for bound in stiffness.ci95) < 0
 
 
 def _seconds(found: RampEstimate) -> ParameterRecord:
