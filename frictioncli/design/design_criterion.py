@@ -15,13 +15,15 @@ from frictioncli.design.decision_probability import (
 from frictioncli.design.discrimination import Discrimination, discrimination_of
 from frictioncli.design.information import Information
 from frictioncli.design.located_forms import form_basis
+from frictioncli.design.planned_joint import PlannedJoint
 from frictioncli.design.precision import (
     Precision,
     information_on,
     precision,
     response_surface_log_determinants,
 )
-from frictioncli.design.predicted_rows import PlannedJoint, append_run, predict_rows
+from frictioncli.design.predicted_rows import append_run, predict_rows
+from frictioncli.design.prior import prior_precision, usual_sizes
 from frictioncli.design.rivals import OpenQuestions
 from frictioncli.design.steps import Step
 from frictioncli.diagnosis.data.build_problem import simulated
@@ -55,12 +57,6 @@ _COVERAGE_WEIGHT = 0.004
 
 _COVERAGE_WEIGHT_ALONE = 0.02
 """Weight of input coverage beside precision, without open questions. [nat/nat]"""
-
-_PRIOR_FACTOR = 10.0
-"""Prior standard deviation of a parameter, relative to its usual size."""
-
-_USUAL_DELTA = 0.05
-"""Usual rate of the decay with temperature. [1/°C]"""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -134,6 +130,11 @@ class DesignCriterion:
     def estimates(self) -> Mapping[str, float]:
         """Estimates by name: parameters of the base model, and of causes as ``effect.name``."""
         return _estimates(self.joint, self.open_questions)
+
+    @property
+    def usual_sizes(self) -> Mapping[str, float]:
+        """Usual sizes of the base model's parameters by name."""
+        return usual_sizes(self.joint, self.observed.problem)
 
     def information_after(self, *days: Sequence[Step]) -> Information:
         """Return the observed rows together with those that steps, day after day, would add."""
@@ -209,7 +210,7 @@ class DesignCriterion:
     def _of_forms(self, information: Information) -> float:
         """Return what some rows tell of the forms [nat]."""
         problem = information.problem
-        prior = _prior_precision(self.joint, self.open_questions, problem)
+        prior = prior_precision(self.joint, self.open_questions, problem)
         further = form_basis(self.forms, problem.table, self.ranges)
         return information_on(information, self.open_questions, prior, further)
 
@@ -279,7 +280,7 @@ def _precision(
         for one in open_questions.causes
         for parameter in one.effect.coefficients
     ]
-    prior = _prior_precision(joint, open_questions, problem)
+    prior = prior_precision(joint, open_questions, problem)
     names = (*PARAMETERS, *gravity, *causes)
     return precision(information, open_questions, prior, names, (*PARAMETERS, *causes))
 
@@ -290,30 +291,3 @@ def _estimates(joint: PlannedJoint, open_questions: OpenQuestions) -> dict[str, 
         for parameter, value in zip(one.effect.coefficients, one.coefficients, strict=True):
             found[f"{one.effect.name}.{parameter.name}"] = float(value)
     return found
-
-
-def _prior_precision(joint: PlannedJoint, open_questions: OpenQuestions, problem: Problem) -> Array:
-    """Return the weak prior precision of all coefficients, which keeps every interval finite."""
-    friction = max(float(np.mean(np.abs(problem.table.friction))), 1e-6)
-    load = max(float(np.max(np.abs(problem.load_base @ problem.gravity))), 1e-6)
-    size = {
-        "tau_c": friction,
-        "alpha": friction / load**2,
-        "beta": friction / np.sqrt(float(np.mean(problem.table.speed))),
-        "delta": _USUAL_DELTA,
-    }
-    size["gamma"] = size["beta"] * float(np.exp(_USUAL_DELTA * _mean_temperature(joint)))
-    usual = [*(size[name] for name in PARAMETERS), *(load for _ in problem.gravity)]
-    bounds = [
-        parameter.upper - parameter.lower
-        for one in open_questions.causes
-        for parameter in one.effect.coefficients
-    ]
-    deviations = np.array([*(_PRIOR_FACTOR * one for one in usual), *bounds])
-    return np.asarray(1 / np.square(deviations))
-
-
-def _mean_temperature(joint: PlannedJoint) -> float:
-    """Return the mean observed motor temperature, 20 °C where it is not known [°C]."""
-    mean = float(joint.torques["motor_temperature"].mean())
-    return mean if np.isfinite(mean) else 20.0

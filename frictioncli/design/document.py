@@ -225,8 +225,11 @@ class IntervalRecord(msgspec.Struct, frozen=True, kw_only=True):
     ----------
     parameter : str
         Name of the parameter.
-    estimate, half_width_now, half_width_after : float
-        Its value, and half the width of its interval now and after the programme. [unit]
+    estimate, half_width_now : float or None
+        Its value, and half the width of its interval; None where the data do not determine it.
+        [unit]
+    half_width_after : float or None
+        Half the width after the programme; None where that does not determine it either. [unit]
     unit : str
         Its unit.
     wide : bool
@@ -234,9 +237,9 @@ class IntervalRecord(msgspec.Struct, frozen=True, kw_only=True):
     """
 
     parameter: str
-    estimate: float
-    half_width_now: float
-    half_width_after: float
+    estimate: float | None
+    half_width_now: float | None
+    half_width_after: float | None
     unit: str
     wide: bool
 

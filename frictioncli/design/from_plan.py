@@ -1,5 +1,6 @@
 """``plan.json`` of a plan."""
 
+import math
 from collections.abc import Mapping, Sequence
 
 from msgspec import UNSET
@@ -221,10 +222,14 @@ def stated_half_widths(
     Returns
     -------
     dict of str to float
-        By name as in a plan, such as ``beta`` or ``stribeck.boundary_torque``; zero at a bound.
-        Parameters without an interval are left out.
+        By name as in a plan, such as ``beta`` or ``stribeck.boundary_torque``; zero at a bound,
+        infinite for a parameter of the base model that the data do not determine. Others without
+        an interval are left out.
     """
-    intervals = {name: one.ci95 for name, one in model.parameters.items()}
+    unknown = (-math.inf, math.inf)
+    intervals = {
+        name: one.ci95 if one.determined else unknown for name, one in model.parameters.items()
+    }
     for effect in model.effects:
         for name, one in effect.coefficients.items():
             intervals[f"{effect.name}.{name}"] = one.ci95
@@ -242,7 +247,8 @@ def interval_records(
     """Return the interval of each parameter, now and after the programme.
 
     What is known now is what the diagnosis states; the programme narrows it by the factor by which
-    it narrows the interval that is predicted from the rows.
+    it narrows the interval that is predicted from the rows. Of a parameter that is not determined
+    now, the predicted interval is stated, if it is narrower than the parameter's usual size.
 
     Parameters
     ----------
@@ -258,20 +264,44 @@ def interval_records(
         for parameter in one.effect.coefficients:
             unit = parameter.unit.replace(TORQUE, plan.torque_unit)
             known[f"{one.effect.name}.{parameter.name}"] = unit
-    first, last = plan.expected[0].half_widths, plan.expected[-1].half_widths
-    # a parameter at its bound has no interval to narrow
-    now = {name: stated.get(name) or first[name] for name in first}
     return [
-        IntervalRecord(
-            parameter=name,
-            estimate=_rounded(plan.criterion.estimates[name]),
-            half_width_now=_rounded(now[name]),
-            half_width_after=_rounded(now[name] * last[name] / first[name]),
+        _interval(
+            plan,
+            name,
+            stated.get(name),
             unit=known.get(name, ""),
             wide=name in plan.criterion.of_interest and stated.get(name) != 0.0,
         )
-        for name in first
+        for name in plan.expected[0].half_widths
     ]
+
+
+def _interval(
+    plan: Plan, name: str, stated: float | None, *, unit: str, wide: bool
+) -> IntervalRecord:
+    """Return the interval of one parameter, of which the diagnosis may state a half-width."""
+    first, last = plan.expected[0].half_widths[name], plan.expected[-1].half_widths[name]
+    if stated is not None and math.isinf(stated):
+        known_after = last < plan.criterion.usual_sizes[name]
+        return IntervalRecord(
+            parameter=name,
+            estimate=None,
+            half_width_now=None,
+            half_width_after=_rounded(last) if known_after else None,
+            unit=unit,
+            wide=wide,
+        )
+    # a parameter at its bound has no interval to narrow
+    now = stated or first
+    return IntervalRecord(
+        parameter=name,
+        estimate=_rounded(plan.criterion.estimates[name]),
+        half_width_now=_rounded(now),
+        # further rows tell no less; the predicted discrepancy may be another over a wider range
+        half_width_after=_rounded(now * min(last / first, 1.0)),
+        unit=unit,
+        wide=wide,
+    )
 
 
 def _rounded(value: float) -> float:

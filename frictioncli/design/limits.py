@@ -119,7 +119,9 @@ class Limits:
         return float(np.sqrt(ACCELERATION * self.stroke * 2 / 3))
 
 
-def limits_of(torques: pd.DataFrame, settings: PlanSettings) -> Limits:
+def limits_of(
+    torques: pd.DataFrame, settings: PlanSettings, *, angle_logged: bool = True
+) -> Limits:
     """Return the limits of one joint.
 
     Parameters
@@ -128,6 +130,9 @@ def limits_of(torques: pd.DataFrame, settings: PlanSettings) -> Limits:
         Rows of :data:`frictioncli.schemas.TORQUES` of a single joint.
     settings : PlanSettings
         Limits that the user sets.
+    angle_logged : bool
+        Whether the angles were measured; those integrated from velocity are unknown but for a
+        constant, and tell no range.
 
     Returns
     -------
@@ -137,18 +142,26 @@ def limits_of(torques: pd.DataFrame, settings: PlanSettings) -> Limits:
     Raises
     ------
     OptionError
-        If they contradict each other, or one per cent of the rated speed exceeds the highest speed.
+        If they contradict each other, one per cent of the rated speed exceeds the highest speed, or
+        the range of the angle is not known.
     """
-    half = bin_width(torques) / 2
+    if not angle_logged and (settings.low is None or settings.high is None):
+        raise OptionError(
+            "the log has no position, so it does not tell the range of the angle: expected --from"
+            " and --to-angle"
+        )
+    half = bin_width(torques) / 2 if angle_logged else -np.inf
     low, high = float(torques["position"].min() - half), float(torques["position"].max() + half)
     measured, fastest = float(torques["speed"].min()), float(torques["speed"].max())
     warmest = float(torques["motor_temperature"].max())
     hottest = DEFAULT_HOTTEST if np.isnan(warmest) else max(warmest, DEFAULT_HOTTEST)
     beyond = []
     if settings.low is not None and settings.low < low - _TOLERANCE:
-        beyond.append(f"--from {settings.low:g} deg (measured from {low:g})")
+        measured_from = f"measured from {low:g}" if angle_logged else "not measured"
+        beyond.append(f"--from {settings.low:g} deg ({measured_from})")
     if settings.high is not None and settings.high > high + _TOLERANCE:
-        beyond.append(f"--to-angle {settings.high:g} deg (measured to {high:g})")
+        measured_to = f"measured to {high:g}" if angle_logged else "not measured"
+        beyond.append(f"--to-angle {settings.high:g} deg ({measured_to})")
     if settings.max_speed is not None and settings.max_speed > fastest * (1 + _TOLERANCE):
         beyond.append(f"--max-speed {settings.max_speed:g} deg/s (measured to {fastest:.4g})")
     low = low if settings.low is None else settings.low

@@ -1,7 +1,7 @@
 """Plan of the next experiment for one joint."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 import pandas as pd
@@ -11,18 +11,16 @@ from frictioncli.design.decision_probability import decision_probability
 from frictioncli.design.design_criterion import DesignCriterion
 from frictioncli.design.limits import Limits, limits_of
 from frictioncli.design.place_blocks import blocks_about
-from frictioncli.design.predicted_rows import PlannedJoint, Timing, planning_columns, predict_rows
+from frictioncli.design.planned_joint import PlannedJoint, planned_joint
+from frictioncli.design.predicted_rows import Timing, predict_rows
 from frictioncli.design.rivals import open_questions_of
 from frictioncli.design.selection import choose_blocks, seconds_of, steps_of
 from frictioncli.design.settings import PlanSettings
 from frictioncli.design.steps import Step
-from frictioncli.design.thermal_model import thermal_model_of
 from frictioncli.diagnosis.data.build_problem import build_problems
-from frictioncli.diagnosis.data.problem import Problem
 from frictioncli.diagnosis.documents.document import CauseRecord, DiagnosisDocument
 from frictioncli.diagnosis.documents.extended_model import ExtendedModel
 from frictioncli.errors import NotEnoughData
-from frictioncli.model.friction import PUBLISHED, FrictionParameters
 
 CHECK = 0.28
 """Share of the time that is reserved for the check on the next day."""
@@ -35,9 +33,6 @@ _LACK_OF_FIT_WEIGHT = 0.3
 
 _CHECK_EXCHANGES = 40
 """Number of exchanges that are tried for the check."""
-
-_USUAL_LEVER = 0.5 * 9.80665
-"""Gravity torque of a mass at half a metre, where no payload was changed yet. [N·m/kg]"""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -111,6 +106,8 @@ def plan_joint(
     document: DiagnosisDocument,
     extended: ExtendedModel,
     settings: PlanSettings,
+    *,
+    angle_logged: bool = True,
 ) -> Plan:
     """Plan the next experiment for one joint.
 
@@ -126,6 +123,8 @@ def plan_joint(
         Its extended model.
     settings : PlanSettings
         Time budget and limits.
+    angle_logged : bool
+        Whether the log has the joint's angle.
 
     Returns
     -------
@@ -139,8 +138,8 @@ def plan_joint(
     NotEnoughData
         If no block fits into the time.
     """
-    limits = limits_of(torques, settings)
-    criterion = criterion_of(torques, document, extended, limits)
+    limits = limits_of(torques, settings, angle_logged=angle_logged)
+    criterion = criterion_of(torques, document, extended, limits, angle_logged=angle_logged)
     about = blocks_about(criterion.forms, limits, settings.seed)
     candidates = (*all_blocks(limits, settings.seed), *about)
     if criterion.joint.thermal_model is None:  # the effect of heating could not be predicted
@@ -174,18 +173,16 @@ def plan_joint(
 
 
 def criterion_of(
-    torques: pd.DataFrame, document: DiagnosisDocument, extended: ExtendedModel, limits: Limits
+    torques: pd.DataFrame,
+    document: DiagnosisDocument,
+    extended: ExtendedModel,
+    limits: Limits,
+    *,
+    angle_logged: bool,
 ) -> DesignCriterion:
     """Return the design criterion of one joint; parameters as for :func:`plan_joint`."""
     problem, _ = build_problems(torques, extended.temperature)
-    joint = PlannedJoint(
-        torques=planning_columns(torques),
-        temperature=extended.temperature,
-        parameters=_planning_parameters(problem),
-        gravity=_planning_gravity(problem, limits),
-        thermal_model=thermal_model_of(torques),
-        waiting=limits.waiting,
-    )
+    joint = planned_joint(torques, extended.temperature, problem, limits, angle_logged=angle_logged)
     return DesignCriterion.of(
         joint,
         open_questions_of(problem, document, extended),
@@ -279,39 +276,6 @@ def _timings(joint: PlannedJoint, blocks: Sequence[Block]) -> tuple[Timing, ...]
         temperatures = (own[0].temperatures[0], own[-1].temperatures[1])
         timings.append(Timing(own[0].start, own[-1].end, temperatures))
     return tuple(timings)
-
-
-def _planning_parameters(problem: Problem) -> FrictionParameters:
-    """Return the fitted friction parameters; undetermined ones have a usual value.
-
-    A locally optimal design needs a guess of the parameters [1]_. Where the decay with temperature
-    is not determined, the published rate is taken, and half of the viscous part decays.
-
-    References
-    ----------
-    .. [1] H. Chernoff, "Locally optimal designs for estimating parameters," Ann. Math. Stat. 24(4),
-       1953, doi:10.1214/aoms/1177728915.
-    """
-    fitted = problem.parameters
-    if fitted.gamma > 0 and fitted.delta > 0:
-        return fitted
-    temperature = float(np.mean(problem.table.temperature)) or 20.0
-    viscous = max(fitted.beta, 1e-3 * float(np.mean(np.abs(problem.friction))))
-    return replace(
-        fitted,
-        beta=viscous / 2,
-        gamma=viscous / 2 * float(np.exp(PUBLISHED.delta * temperature)),
-        delta=PUBLISHED.delta,
-    )
-
-
-def _planning_gravity(problem: Problem, limits: Limits) -> np.ndarray:
-    """Return the fitted gravity coefficients; an unmeasured payload gets a usual lever."""
-    # a programme is driven in one pose of the other joints
-    gravity = problem.gravity[: problem.gravity_form.first_coefficients]
-    if problem.gravity_form.payloads or not limits.payloads:
-        return gravity
-    return np.append(gravity, [_USUAL_LEVER, 0.0])
 
 
 def _joint_number(torques: pd.DataFrame) -> int:

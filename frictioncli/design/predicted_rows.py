@@ -9,6 +9,7 @@ import pandas as pd
 
 from frictioncli.arrays import Array
 from frictioncli.design.limits import bin_width
+from frictioncli.design.planned_joint import PLANNING_COLUMNS, PlannedJoint
 from frictioncli.design.steps import (
     ACCELERATION,
     LEAD,
@@ -20,9 +21,8 @@ from frictioncli.design.steps import (
     payload_changes,
     round_trip,
 )
-from frictioncli.design.thermal_model import ThermalModel
-from frictioncli.diagnosis.data.gravity import form_of, known_payload
-from frictioncli.model.friction import FrictionParameters, friction_torque
+from frictioncli.diagnosis.data.gravity import form_of
+from frictioncli.model.friction import friction_torque
 
 SETTLING = 0.2
 """Time after a ramp until the speed is constant. [s]"""
@@ -32,47 +32,6 @@ _LEAST_COVERAGE = 0.6
 
 _HEATING_STEP = 60.0
 """Heating moves are integrated in steps of this length. [s]"""
-
-_COLUMNS = (
-    *("run", "joint", "pair", "speed", "time", "phase", "motor_temperature"),
-    *("housing_temperature", "position", "motor_temperature_reading", "load", "payload"),
-    *("friction_torque", "load_torque"),
-)
-"""Columns of the torque table that planning needs."""
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class PlannedJoint:
-    """What is known of the joint that a programme is planned for.
-
-    Attributes
-    ----------
-    torques : DataFrame
-        Observed rows of a single joint, as returned by :func:`planning_columns`.
-    temperature : {"motor", "housing", "mean"}
-        Temperature that enters the friction model.
-    parameters : FrictionParameters
-        Parameters of the base model.
-    gravity : ndarray, shape (3,) or (5,)
-        Coefficients of the gravity torque. [N·m], [N·m/kg]
-    thermal_model : ThermalModel or None
-        Thermal model of the motor; None where its temperature is not known.
-    waiting : float
-        Motor temperature above which motion waits. [°C]
-    """
-
-    torques: pd.DataFrame
-    temperature: str
-    parameters: FrictionParameters
-    gravity: Array
-    thermal_model: ThermalModel | None
-    waiting: float = np.inf
-
-    @property
-    def payload(self) -> float | None:
-        """Mounted payload, as far as the last run tells [kg]."""
-        known = known_payload(self.torques)
-        return float(known[-1]) if len(known) and np.isfinite(known[-1]) else None
 
 
 @dataclass(frozen=True, slots=True)
@@ -147,6 +106,8 @@ def predict_rows(
                 half = round_trip(speed, step.high - step.low) / 2
                 motor_at_mid = _after(joint, motor, half, speed)
                 bins = constant_speed_bins(speed, step.low, step.high, width)
+                if not joint.angle_logged:
+                    bins = np.full(min(len(bins), 1), joint.torques["position"].iloc[0])
                 if len(bins):
                     pairs.append(_Pair(now + half, speed, motor_at_mid, bins, payload, travel))
                 travel += 2 * (step.high - step.low)
@@ -261,14 +222,13 @@ def _table(joint: PlannedJoint, pairs: Sequence[_Pair], run: str) -> pd.DataFram
     friction = _friction(joint, speed, motor, load)
     load_channel = load if joint.torques["load"].notna().any() else np.nan
     rows = table.assign(load=load_channel, friction_torque=friction, load_torque=load)
-    return rows[[*_COLUMNS, "travel"]]
-
-
-def planning_columns(torques: pd.DataFrame) -> pd.DataFrame:
-    """Return the columns of a torque table that planning needs, labels as plain text."""
-    return torques[list(_COLUMNS)].astype({"run": str, "phase": str}).reset_index(drop=True)
+    return rows[[*PLANNING_COLUMNS, "travel"]]
 
 
 def append_run(observed: pd.DataFrame, new: pd.DataFrame) -> pd.DataFrame:
-    """Return observed rows, as returned by :func:`planning_columns`, followed by those of a run."""
-    return pd.concat([observed, new[list(_COLUMNS)]], ignore_index=True) if len(new) else observed
+    """Return observed rows, as of ``planning_columns``, followed by those of a run."""
+    return (
+        pd.concat([observed, new[list(PLANNING_COLUMNS)]], ignore_index=True)
+        if len(new)
+        else observed
+    )

@@ -4,6 +4,7 @@ from collections import Counter
 from collections.abc import Mapping, Sequence
 from itertools import groupby
 
+from frictioncli.design.document import IntervalRecord
 from frictioncli.design.from_plan import interval_records, raised_chances
 from frictioncli.design.plan import Plan
 from frictioncli.design.programs.robot_program import SAFETY_NOTE
@@ -47,12 +48,7 @@ def plan_text(
         lines.append(f"  next day, cold, as a check: {', '.join(names)}")
         lines.append("    log each day as a separate run: diagnose fits all but the last, and")
         lines.append("    tests on that one")
-    wide = [one for one in interval_records(plan, units, stated) if one.wide]
-    for one in wide:
-        lines.append(
-            f"  {one.parameter} {one.estimate:.3g} {'' if one.unit == '1' else one.unit}".rstrip()
-            + f": ±{one.half_width_now:.2g} now, ±{one.half_width_after:.2g} after"
-        )
+    lines += [_interval_text(one) for one in interval_records(plan, units, stated) if one.wide]
     limits = plan.limits
     lines.append(
         f"  within {limits.low:g} to {limits.high:g} deg, {limits.slowest:.3g} to"
@@ -62,6 +58,19 @@ def plan_text(
     )
     lines.append(f"  program: {', '.join(files)}. {SAFETY_NOTE}")
     return "\n".join(lines)
+
+
+def _interval_text(interval: IntervalRecord) -> str:
+    """Return what is known of a parameter now, and what will be."""
+    unit = "" if interval.unit == "1" else f" {interval.unit}"
+    after = interval.half_width_after
+    if interval.estimate is None or interval.half_width_now is None:
+        later = ", nor by it" if after is None else f" now, ±{after:.2g}{unit} after"
+        return f"  {interval.parameter}: not determined{later}"
+    return (
+        f"  {interval.parameter} {interval.estimate:.3g}{unit}:"
+        f" ±{interval.half_width_now:.2g} now, ±{after:.2g} after"
+    )
 
 
 def _temperatures(plan: Plan) -> str:

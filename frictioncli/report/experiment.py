@@ -62,9 +62,9 @@ def experiment(results: JointResults) -> Experiment | None:
             rows=tuple(
                 (
                     in_words(one.parameter.replace(".", ": ")),
-                    number_text(one.estimate),
-                    f"±{number_text(one.half_width_now, 2)}",
-                    f"±{number_text(one.half_width_after, 2)}",
+                    "–" if one.estimate is None else number_text(one.estimate),
+                    _half_width(one.half_width_now),
+                    _half_width(one.half_width_after),
                     "" if one.unit == "1" else one.unit,
                 )
                 for one in intervals
@@ -74,6 +74,10 @@ def experiment(results: JointResults) -> Experiment | None:
         else None,
         files=(*plan.programme.files, *(check.files if check else ())),
     )
+
+
+def _half_width(value: float | None) -> str:
+    return "not determined" if value is None else f"±{number_text(value, 2)}"
 
 
 def _rows(blocks: tuple[BlockRecord, ...]) -> list[tuple[str, str, str, str]]:

@@ -73,8 +73,15 @@ def plan(work: Path, settings: PlanSettings | None = None) -> StageResult:
             f"joint {joint}: structure without a name, and no motor temperature in the log to plan"
             " with; log the temperature first"
         )
-    unit = str(tables.facts(work / TORQUES).get("torque_unit", "N·m"))
-    experiment = plan_joint(torques, unit, document, extended, settings)
+    facts = tables.facts(work / TORQUES)
+    experiment = plan_joint(
+        torques,
+        str(facts.get("torque_unit", "N·m")),
+        document,
+        extended,
+        settings,
+        angle_logged=facts.get("position") != "integrated",
+    )
     program = RobotProgram(
         name=f"friction_a{joint}",
         axis=joint,

@@ -91,3 +91,12 @@ def test_the_fastest_of_a_series_has_room_to_hold_its_speed():
 def test_a_highest_speed_that_no_program_can_state_is_refused(fastest):
     with pytest.raises(OptionError, match="highest speed"):
         Limits(low=0.0, high=90.0, slowest=1e-12, fastest=fastest, hottest=60.0)
+
+
+def test_a_log_without_angles_tells_no_range_of_the_angle():
+    with pytest.raises(OptionError, match="no position"):
+        limits_of(torques(), PlanSettings(low=-90.0), angle_logged=False)
+    found = limits_of(torques(), PlanSettings(low=-90.0, high=90.0), angle_logged=False)
+    assert (found.low, found.high) == (-90.0, 90.0)
+    assert all("not measured" in text for text in found.beyond)
+    assert len(found.beyond) == 2

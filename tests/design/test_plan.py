@@ -334,11 +334,22 @@ def test_intervals_now_are_those_that_the_diagnosis_states():
         },
     )
     model = SimpleNamespace(
-        parameters={"beta": SimpleNamespace(ci95=(3.0, 6.0))}, effects=(effect,)
+        parameters={
+            "beta": SimpleNamespace(ci95=(3.0, 6.0), determined=True),
+            "tau_c": SimpleNamespace(ci95=(0.0, 0.6), determined=False),
+            "delta": SimpleNamespace(ci95=None, determined=False),
+        },
+        effects=(effect,),
     )
     stated = stated_half_widths(model)
     assert stated == pytest.approx(
-        {"beta": 1.5, "stribeck.boundary_torque": 0.4, "stribeck.other": 0.0}
+        {
+            "beta": 1.5,
+            "tau_c": np.inf,
+            "delta": np.inf,
+            "stribeck.boundary_torque": 0.4,
+            "stribeck.other": 0.0,
+        }
     )
     # a cause's interval allows for its shape: the report states it, and so does the plan
     wide = SimpleNamespace(
@@ -359,10 +370,15 @@ def test_intervals_now_are_those_that_the_diagnosis_states():
         criterion=SimpleNamespace(
             open_questions=SimpleNamespace(causes=()),
             estimates=dict.fromkeys(names, 1.0),
+            usual_sizes={"tau_c": 0.5, "delta": 0.05},
             of_interest=names,
         ),
     )
     found = {one.parameter: one for one in interval_records(plan, {}, stated)}
     assert (found["beta"].half_width_now, found["beta"].half_width_after) == (1.5, 0.75)
     assert found["gamma"].half_width_now == 0.2
+    # the programme determines the one, ±0.1 is more than the other is
+    tau_c, delta = found["tau_c"], found["delta"]
+    assert (tau_c.estimate, tau_c.half_width_now, tau_c.half_width_after) == (None, None, 0.1)
+    assert (delta.estimate, delta.half_width_now, delta.half_width_after) == (None, None, None)
     assert [name for name, one in found.items() if not one.wide] == ["stribeck.other"]

@@ -6,12 +6,8 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
-from frictioncli.design.predicted_rows import (
-    PlannedJoint,
-    constant_speed_bins,
-    planning_columns,
-    predict_rows,
-)
+from frictioncli.design.planned_joint import PlannedJoint, planning_columns
+from frictioncli.design.predicted_rows import constant_speed_bins, predict_rows
 from frictioncli.design.steps import HeatStep, RestStep, SeriesStep
 from frictioncli.design.thermal_model import thermal_model_of
 from frictioncli.diagnosis.data.build_problem import build_problems
