@@ -69,7 +69,7 @@ _ALIASES: tuple[tuple[Meaning, str], ...] = (
         Meaning(TIME),
         "zeit time t timestamp zeitstempel sekunden seconds elapsed elapsedtime robottime tsec"
         " timesec times zeits temps datetime recordtime controllertime sec"
-        " tiempo tempo",
+        " tiempo tempo stamp secs",
     ),
     (Meaning(TIME, rank=1, unit="ms"), "sample timems zeitms timestampms millis timemillis"),
     (
@@ -79,7 +79,7 @@ _ALIASES: tuple[tuple[Meaning, str], ...] = (
         " robotactualjointpositions angle jointangle winkel achswinkel gelenkwinkel istwinkel"
         " axisangle axisposition achsposition jointpos qact observationstate observationqpos"
         " posestimate positionachse theta linkposition linkangle outputposition outputangle"
-        " posicion posicin posizione",
+        " posicion posicin posizione linkpos outputpos",
     ),
     (
         Meaning(POSITION, MOTOR_SIDE),
@@ -92,8 +92,9 @@ _ALIASES: tuple[tuple[Meaning, str], ...] = (
         " geschwindigkeit achsgeschwindigkeit gelenkgeschwindigkeit axisvelocity jointvel"
         " axisspeed jointspeed actvelo actvel observationvelocity observationqvel velestimate"
         " vitesse omega geschwindigkeitachse thetadot linkvelocity outputvelocity"
-        " velocidad velocita velocit",
+        " velocidad velocita velocit linkvel outputvel",
     ),
+    (Meaning(VELOCITY, unit="rpm"), "rpm"),
     (
         Meaning(VELOCITY, MOTOR_SIDE),
         "istgeschwindigkeit motorvelocity motorspeed motorvel motorgeschwindigkeit",
@@ -109,14 +110,15 @@ _ALIASES: tuple[tuple[Meaning, str], ...] = (
         " torqueaxisact actualtorque torqueact mt statetauj tauj measuredtorque achsmoment"
         " gelenkmoment torqact axistorqact acttorque acttorq observationeffort observationtorque"
         " tauest trq eff couple drehmomentachse jointeffort jointefforts acttrq trqact"
-        " linktorque outputtorque coppia",
+        " linktorque outputtorque coppia taumsr msrtorque currentastorque torquecur torquecurrent",
     ),
     (Meaning(TORQUE, JOINT_SIDE, 2), "geartorqact geartorque geartorq getriebemoment"),
     (
         Meaning(TORQUE, MOTOR_SIDE, 3, "A"),
         "iststrom strom current currents motorcurrent motorstrom actualcurrent actualjointcurrent"
         " robotactualjointcurrent currentact actcurrent curr jointcurrent macur observationcurrent"
-        " iqmeasured currentmotor iq iqa iqact iqactual qcurrent currentq qaxiscurrent motoriq",
+        " iqmeasured currentmotor iq iqa iqact iqactual qcurrent currentq qaxiscurrent motoriq cur"
+        " motorcurr motorcur courant corriente corrente",
     ),
     (Meaning(TORQUE, MOTOR_SIDE, 3, "%"), "curract"),
     (

@@ -30,14 +30,18 @@ _JOINT_LAST = re.compile(
     r"(?P<joint>\d{1,2})[)\]]?$"
 )
 _JOINT_FIRST = re.compile(
-    r"^(?:joint|axis|axle|achse|gelenk|motor|[aj])[ _.]?(?P<joint>\d{1,2})[ _.\-]+(?P<name>.+)$",
+    r"^(?:joint|axis|axle|achse|gelenk|motor|actuator|servo|drive|ax|[aj])[ _.]?(?P<joint>\d{1,2})"
+    r"[ _.\-]+(?P<name>.+)$",
     re.I,
 )
 _MEASURED = re.compile(
-    r"(?:^|(?<=[ _.\-]))(?:feedback|fbk|fb|actual|act|measured|meas|ist|value|averaged|average|avg"
-    r"|joint[ _]?states?)(?=$|[ _.\-]|\d{1,2}$)",
+    r"(?:^|(?<=[ _.\-]))(?:feedback|fbk|fb|actual|act|measured|meas|msr|present|inst|ist|value"
+    r"|averaged|average|avg|joint[ _]?states?)(?=$|[ _.\-\d])",
     re.I,
 )
+_WORD_ENDS = re.compile(r"(?<=[a-z])(?=[A-Z])")
+_OF_MESSAGE = re.compile(r"^(?:field|msg|data|feedback|(?:axis\d\.)?(?:encoder|controller))\.", re.I)
+"""What ``rostopic echo -p`` and others put before the name of each value of a message."""
 _SYMBOL = re.compile(r"^T[ _]?(?P<joint>\d{1,2})$", re.I)
 _PER = re.compile(r"[_ ]per[_ ]|_(?=s(?:ec)?$)", re.I)
 _NO_KEY = re.compile(r"[^a-z0-9]")
@@ -173,6 +177,7 @@ def _spellings(name: str) -> list[str]:
     Of ROS topics such as ``/joints/joint_2/position`` these alone, of ``arm.joint_2.position`` as
     well. Then the same without words that only say that a value was measured.
     """
+    name = _OF_MESSAGE.sub("", name)
     texts, path = [name], _PARTS.split(name)
     if COMMAND.search(name):
         return texts
@@ -181,7 +186,8 @@ def _spellings(name: str) -> list[str]:
         texts = ["_".join(path[-2:]), path[-1]]
     elif len(path) > 2 and _JOINT_ALONE.match(path[-2]):
         texts.append("_".join(path[-2:]))
-    plain = [" ".join(_MEASURED.sub("", text).replace("_", " ").split()) for text in texts]
+    spaced = [_MEASURED.sub("", _WORD_ENDS.sub(" ", text)) for text in texts]
+    plain = [" ".join(text.replace("_", " ").split()) for text in spaced]
     return [*texts, *(text for text in plain if text)]
 
 

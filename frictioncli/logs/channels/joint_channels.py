@@ -43,6 +43,8 @@ class JointChannels:
         Further torques and motor currents.
     notes : tuple of str
         Columns and joints that are not used.
+    warnings : tuple of str
+        What speaks against the columns.
     """
 
     joint: int
@@ -57,6 +59,7 @@ class JointChannels:
     payload: LogChannel | None = None
     other_torques: tuple[LogChannel, ...] = ()
     notes: tuple[str, ...] = ()
+    warnings: tuple[str, ...] = ()
 
 
 def assign_channels(

@@ -88,7 +88,7 @@ def plan_joint(
         Refused as ``no_torque_channel`` (an empty or all-zero column),
         ``unclear_position_unit``, ``no_gear_ratio`` or as the torque constant was.
     """
-    remarks = Remarks(notes=list(channels.notes))
+    remarks = Remarks(list(channels.notes), list(channels.warnings))
     torque_values = survey.pooled(channels.torque)
     if survey.n_rows and not np.any(np.abs(torque_values) > 1 / LARGEST):
         state = "holds only zeros" if len(torque_values) else "holds no number"
@@ -103,6 +103,7 @@ def plan_joint(
             "no position: it is the integral of velocity, from 0 in each log; moves are paired by"
             " speed alone, and terms of angle and gravity are off"
         )
+        _warn_of_speed_without_unit(channels.velocity, forced, remarks)
     channels = _without_zero_velocity(channels, survey, remarks)
     motion = joint_motion(channels, survey, forced, remarks)
     if motion.doubt:
@@ -168,6 +169,18 @@ def plan_joint(
         warnings=tuple(remarks.warnings),
         constant=constant if is_current and isinstance(constant, TorqueConstant) else None,
         shows_time=bool(found.evidence) and found.velocity is not None,
+    )
+
+
+def _warn_of_speed_without_unit(
+    velocity: LogChannel | None, forced: Mapping[str, str], remarks: Remarks
+) -> None:
+    """Warn of a velocity whose unit nothing shows, as the position is made from it."""
+    if velocity is None or names.VELOCITY in forced or velocity.unit or velocity.meaning.unit:
+        return
+    remarks.warnings.append(
+        f"{velocity.name} has no unit and there is no position that shows it: taken as deg/s; if it"
+        " is in rad/s or rpm, say so with --velocity-unit"
     )
 
 

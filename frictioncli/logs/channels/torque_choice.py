@@ -4,7 +4,7 @@ Torque that a controller has freed of friction, as some arms log beside the moto
 half difference between the two directions of motion that keeps one sign.
 """
 
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -31,6 +31,10 @@ _SMALL_SHARE = 0.25
 """Greatest share of the friction that a channel freed of it still shows."""
 _SAME_LOAD = 0.9
 """Least correlation of the half sums of two channels that show the same load."""
+_AT_REST = 0.05
+"""A joint that moves by less, relative to the one that moves most, says nothing of its torques."""
+_RANDOM = 0.5
+"""Half differences of a torque with a smaller mean, relative to their RMS, deserve a warning."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -85,7 +89,29 @@ def choose_torques(joints: Sequence[JointChannels], survey: Survey) -> list[Join
     survey : Survey
         Raw samples of logs with this layout.
     """
-    verdicts = {channels.joint: _verdict(channels, survey) for channels in joints}
+    ranges = {channels.joint: _range(channels, survey) for channels in joints}
+    least = _AT_REST * max(ranges.values(), default=0.0)
+    moving = {joint for joint, one in ranges.items() if one > least}
+    return [
+        _checked(channels, survey) if channels.joint in moving else channels
+        for channels in _chosen(joints, moving, survey)
+    ]
+
+
+def _range(channels: JointChannels, survey: Survey) -> float:
+    """Return the range of a joint's position but for its extreme values [raw]."""
+    values = survey.pooled(channels.position)
+    low, high = np.quantile(values, (0.001, 0.999)) if len(values) else (0.0, 0.0)
+    return float(high - low)
+
+
+def _chosen(
+    joints: Sequence[JointChannels], moving: Collection[int], survey: Survey
+) -> list[JointChannels]:
+    verdicts = {
+        channels.joint: _verdict(channels, survey) if channels.joint in moving else _Verdict(0)
+        for channels in joints
+    }
     kept = sum(one.weight for one in verdicts.values() if one.torque is None)
     replacing = {joint: one for joint, one in verdicts.items() if one.torque is not None}
     if sum(one.weight for one in replacing.values()) <= kept:
@@ -124,6 +150,41 @@ def _verdict(channels: JointChannels, survey: Survey) -> _Verdict:
                 f" {bins - preferred.contrary}: {name} is free of most friction",
             )
     return _Verdict(bins)
+
+
+def _checked(channels: JointChannels, survey: Survey) -> JointChannels:
+    """Return channels without a load that bears friction; warn of a torque that bears none."""
+    load = channels.load
+    torques = [channels.torque] if load is None else [channels.torque, load]
+    found = direction_differences(survey, channels, torques)
+    if found is None:
+        return channels
+    torque, *loads = found
+    warnings = list(channels.warnings)
+    bins = len(torque.half_sum)
+    if torque.steadiness < _RANDOM:
+        warnings.append(
+            f"torque of joint {channels.joint}, {channels.torque.name}, hardly shows friction: half"
+            f" its difference between the directions of motion has one sign in"
+            f" {bins - torque.contrary} of {bins} angle bins; {_why(channels, survey)}; name another"
+            " column with --map"
+        )
+    if loads and min(torque.steadiness, loads[0].steadiness) >= _STEADY:
+        warnings.append(
+            f"{channels.load.name if channels.load else ''} is not used as load: it changes with"
+            " the direction of motion, as friction does; is it the drive's own torque, or a"
+            " brake's?"
+        )
+        channels = replace(channels, load=None)
+    return replace(channels, warnings=tuple(warnings))
+
+
+def _why(channels: JointChannels, survey: Survey) -> str:
+    """Return why a torque may bear no friction."""
+    values = survey.pooled(channels.torque)
+    if np.all(values >= 0):
+        return "it is never negative: is it a magnitude without the direction?"
+    return "does a sensor behind the gear measure it, or has the controller removed friction?"
 
 
 def _with_torque(channels: JointChannels, torque: LogChannel, reason: str) -> JointChannels:
