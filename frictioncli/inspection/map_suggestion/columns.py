@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 from frictioncli.inspection.map_suggestion.log_head import LogHead
 from frictioncli.inspection.map_suggestion.measured_or_commanded import is_command
+from frictioncli.inspection.map_suggestion.telling_names import said_quantity
 from frictioncli.logs.channels import channel_names as names
 from frictioncli.logs.channels import units
 from frictioncli.logs.channels.column_name import split_unit
@@ -83,14 +84,21 @@ class LogColumns:
     def may_be(self, column: int, quantity: str) -> bool:
         """Return whether a column's name does not say that it is another quantity."""
         channel = self.recognised.get(column)
-        return channel is None or channel.quantity == quantity
+        if channel is None:
+            return said_quantity(self.head.names[column]) in (None, quantity)
+        return channel.quantity == quantity
 
     def no_torque(self) -> frozenset[int]:
         """Return the columns that are no torque by name or unit."""
         other = {
             c for c, channel in self.recognised.items() if channel.quantity not in _TORQUE_LIKE
         }
-        return frozenset(other | {c for c, n in enumerate(self.head.names) if _has_other_unit(n)})
+        unlike = {
+            c
+            for c, name in enumerate(self.head.names)
+            if _has_other_unit(name) or not (c in self.recognised or self.may_be(c, names.TORQUE))
+        }
+        return frozenset(other | unlike)
 
     def alternatives(self, columns: Sequence[int], reason: str) -> tuple[tuple[int, str], ...]:
         """Return columns with the evidence for them, which mentions commands."""

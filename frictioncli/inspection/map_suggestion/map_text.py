@@ -6,6 +6,7 @@ from dataclasses import asdict
 from frictioncli.inspection.map_suggestion.columns import ColumnGuess
 from frictioncli.inspection.map_suggestion.log_head import LogHead
 from frictioncli.inspection.map_suggestion.suggestion import Suggestion
+from frictioncli.inspection.map_suggestion.telling_names import is_counted
 from frictioncli.logs.channels import channel_names as names
 from frictioncli.logs.channels import units
 from frictioncli.logs.channels.column_name import split_unit
@@ -68,13 +69,13 @@ def map_text(
         if quantity == names.TORQUE and not split_unit(head.names[guess.column])[1]:
             doubt = "  # by name only, the values do not show it: N·m, or A if it is a current"
         unit = guess.unit
-        if units.is_count(split_unit(head.names[guess.column])[1]):
+        if is_counted(head.names[guess.column]):
             unit = next(iter(units.FACTORS[quantity]))
         lines.append(f'{quantity} = "{unit}"{doubt}')
     counted = [
         quantity
         for quantity, guess in suggestion.guesses.items()
-        if units.is_count(split_unit(head.names[guess.column])[1])
+        if is_counted(head.names[guess.column])
     ]
     if counted:
         lines += ["", "[scale]"]

@@ -7,8 +7,18 @@ import numpy as np
 
 from frictioncli.arrays import Array
 
-_COMMAND = re.compile(r"cmd|command|soll|target|desired|setpoint|_set\b|_ref\b|_d\b|nominal", re.I)
+_COMMAND = re.compile(
+    r"cmd|command|soll|target|desired|setpoint|_set\b|_d\b|nominal|goal"
+    r"|(?<![a-z])(?:ref|des|reference)(?![a-z])",
+    re.I,
+)
+_COMMAND_LAST = re.compile(r"[a-z](?:Ref|Reference|Des|Set)(?![a-z])")
 _DERIVED = re.compile(r"err|diff|dev|schlepp|residual|delta", re.I)
+_COMPUTED = re.compile(
+    r"(?<![a-z])(?:ext|external|grav|gravity|model|dyn|dynamics|fric|friction|comp|ff|feedforward"
+    r"|coriolis|inertia)(?![a-z])|(?<=[a-z])(?:Ext|External|Grav|Gravity|Model|Fric|Friction|FF)"
+    r"(?![a-z])|(?<![a-zA-Z])(?:Ext|External|Gravity|Model|Friction)(?=[A-Z])"
+)
 _MAX_LAG = 20
 """Longest lag between two columns. [samples]"""
 _SAME = 0.995
@@ -23,12 +33,23 @@ def is_command(name: str) -> bool:
     >>> is_command("AxisPos_Soll_A1"), is_command("AxisPos_Ist_A1")
     (True, False)
     """
-    return bool(_COMMAND.search(name))
+    return bool(_COMMAND.search(name) or _COMMAND_LAST.search(name))
 
 
 def is_derived(name: str) -> bool:
     """Return whether a column is a difference of other columns by its name."""
     return bool(_DERIVED.search(name))
+
+
+def is_computed(name: str) -> bool:
+    """Return whether a torque is one that a model gives, or what it leaves, by its name.
+
+    Examples
+    --------
+    >>> is_computed("tau_ext_1"), is_computed("ExtTorque_A1"), is_computed("torque_1")
+    (True, True, False)
+    """
+    return bool(_COMPUTED.search(name))
 
 
 def same_motion(one: Array, other: Array) -> bool:

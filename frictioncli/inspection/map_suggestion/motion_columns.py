@@ -154,7 +154,11 @@ def _by_position(
     """Choose a position by its name, else the smoothest column; and a velocity by its name."""
     named = _named_motion(columns, names.POSITION, joint)
     smooth = sorted(
-        (column for column in columns.head.values if column not in excluded),
+        (
+            column
+            for column in columns.head.values
+            if column not in excluded and columns.may_be(column, names.POSITION)
+        ),
         key=lambda column: _unevenness(columns.head.values[column]),
     )
     if not named and not (smooth and _unevenness(columns.head.values[smooth[0]]) < _MAX_UNEVENNESS):

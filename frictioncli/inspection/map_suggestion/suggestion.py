@@ -15,6 +15,7 @@ from frictioncli.inspection.map_suggestion.columns import (
     log_columns,
 )
 from frictioncli.inspection.map_suggestion.derivatives import Derivative, find_derivatives
+from frictioncli.inspection.map_suggestion.direction_dependence import direction_dependences
 from frictioncli.inspection.map_suggestion.log_head import LogHead
 from frictioncli.inspection.map_suggestion.motion_columns import MotionColumns, find_motion
 from frictioncli.inspection.map_suggestion.temperature_columns import guess_temperature
@@ -24,7 +25,6 @@ from frictioncli.inspection.map_suggestion.time_columns import (
     possible_time_units,
 )
 from frictioncli.inspection.map_suggestion.torque_columns import (
-    direction_dependences,
     guess_load,
     guess_torque,
     load_as_read,

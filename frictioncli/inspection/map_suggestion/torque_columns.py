@@ -1,11 +1,9 @@
 """Find the column of torque or current: it depends on the direction of motion."""
 
-from collections.abc import Collection, Sequence
-from dataclasses import dataclass
+from collections.abc import Sequence
 
 import numpy as np
 
-from frictioncli.arrays import Array
 from frictioncli.inspection.map_suggestion.columns import (
     GUESS,
     LIKELY,
@@ -14,9 +12,10 @@ from frictioncli.inspection.map_suggestion.columns import (
     ColumnGuess,
     LogColumns,
 )
-from frictioncli.inspection.map_suggestion.log_head import LogHead
+from frictioncli.inspection.map_suggestion.direction_dependence import DirectionDependence
 from frictioncli.inspection.map_suggestion.measured_or_commanded import (
     is_command,
+    is_computed,
     is_derived,
     roughness,
 )
@@ -25,101 +24,12 @@ from frictioncli.logs.channels import units
 from frictioncli.logs.channels.column_name import unit_in_name
 from frictioncli.logs.channels.joint_plan import JointPlan
 
-_LEAST_SPEED = 0.1
-"""Least speed of a moving joint, as a share of the highest speed."""
-_LEAST_SAMPLES = 20
-_LEAST_EXPLAINED = 0.05
-"""Least share of variance that the direction explains in a torque."""
 _LEAST_GRAVITY = 0.5
-"""Least share of variance that the angle explains in a load."""
+"""Least share of variance that the angle explains in a load beside a current."""
 _NEARLY = 0.9
 """Columns that agree so well show the same quantity."""
 _SURE_SHARE = 0.5
 _CURRENT_WORDS = ("curr", "strom", "amp", "i_")
-
-
-@dataclass(frozen=True, slots=True)
-class DirectionDependence:
-    """Dependence of a column on the direction of motion.
-
-    Attributes
-    ----------
-    column : int
-        Index in the file.
-    explained : float
-        Share of the variance left by gravity that direction and velocity explain. [-]
-    jump : float
-        Half the difference between the two directions. [raw]
-    by_angle : float
-        Share of the total variance that gravity explains. [-]
-    """
-
-    column: int
-    explained: float
-    jump: float
-    by_angle: float
-
-    @property
-    def is_significant(self) -> bool:
-        """Whether the column depends on the direction."""
-        return self.explained > _LEAST_EXPLAINED
-
-    @property
-    def is_load(self) -> bool:
-        """Whether the column depends on the angle and not on the direction, as a load does."""
-        return not self.is_significant and self.by_angle > _LEAST_GRAVITY
-
-
-def direction_dependences(
-    head: LogHead, position: Array, velocity: Array, excluded: Collection[int]
-) -> list[DirectionDependence]:
-    """Return how much each column depends on the direction of motion, in descending order.
-
-    Two linear regressions are compared: on gravity (a constant, sine and cosine of the angle), and
-    on gravity, the sign of velocity and velocity.
-
-    Parameters
-    ----------
-    head : LogHead
-        The beginning of the log.
-    position : ndarray, shape (n,)
-        The joint's position. [deg]
-    velocity : ndarray, shape (n,)
-        The joint's velocity. [deg/s]
-    excluded : collection of int
-        Columns that are no torque: times, positions, velocities.
-    """
-    speed = np.abs(velocity)
-    moving = speed > _LEAST_SPEED * float(np.max(speed, initial=0.0))
-    if np.count_nonzero(moving) < _LEAST_SAMPLES:
-        return []
-    angle = np.radians(position[moving])
-    ones = np.ones(len(angle))
-    gravity = np.stack([ones, np.sin(angle), np.cos(angle)], axis=1)
-    direction = np.stack([np.sign(velocity[moving]), velocity[moving]], axis=1)
-    both = np.concatenate([gravity, direction], axis=1)
-    found = []
-    for column, all_values in head.values.items():
-        if column in excluded:
-            continue
-        values = all_values[moving]
-        without_direction = _mean_squared_residual(gravity, values)
-        with_direction = _mean_squared_residual(both, values)
-        variance = float(np.var(values))
-        if variance <= 0 or without_direction <= 0:
-            continue
-        signed = np.column_stack([gravity, direction[:, 0]])
-        jump = float(np.linalg.lstsq(signed, values, rcond=None)[0][-1])
-        explained = 1 - with_direction / without_direction
-        by_angle = max(1 - without_direction / variance, 0.0)
-        found.append(DirectionDependence(column, explained, jump, by_angle))
-    return sorted(found, key=lambda one: -one.explained)
-
-
-def _mean_squared_residual(regressors: Array, values: Array) -> float:
-    """Return the mean squared residual of a linear regression."""
-    coefficients = np.linalg.lstsq(regressors, values, rcond=None)[0]
-    return float(np.mean((values - regressors @ coefficients) ** 2))
 
 
 def torque_as_read(
@@ -153,6 +63,15 @@ def torque_as_read(
     elif own is not None:
         reason, confidence = f"{reason}, but it does not change with the direction of motion", GUESS
     others = [channel.column for channel in plan.channels.other_torques if not channel.is_merged]
+    if confidence == GUESS:
+        others += [
+            one.column
+            for one in dependences
+            if one.explained > _SURE_SHARE
+            and one.column not in (torque.column, *others)
+            and not columns.is_of_another(one.column, plan.channels.joint)
+            and not _not_measured(columns.head.names[one.column])
+        ]
     alternatives = tuple(
         (column, _opposes(by_column[column]) if column in by_column else "by its name")
         for column in others[:MAX_ALTERNATIVES]
@@ -191,6 +110,15 @@ def _reason(one: DirectionDependence) -> str:
     )
 
 
+def _not_measured(name: str) -> str:
+    """Return what a torque is by its name where it was not measured; "" otherwise."""
+    if is_command(name):
+        return "a command by its name"
+    if is_derived(name):
+        return "a difference by its name"
+    return "that of a model by its name" if is_computed(name) else ""
+
+
 def _opposes(one: DirectionDependence) -> str:
     return f"opposes motion too, by {one.jump:.3g}"
 
@@ -216,8 +144,7 @@ def guess_torque(
     ranked = sorted(
         (one for one in usable if one.is_significant),
         key=lambda one: (
-            is_command(columns.head.names[one.column])
-            or is_derived(columns.head.names[one.column]),
+            bool(_not_measured(columns.head.names[one.column])),
             not columns.is_named(one.column, names.TORQUE),
             -one.explained,
         ),
@@ -231,7 +158,10 @@ def guess_torque(
         else "its name says so, but it does not change with the direction of motion"
     )
     confidence = GUESS
-    if ranked:
+    unlike = _not_measured(columns.head.names[best.column])
+    if unlike:
+        reason += f"; {unlike}: name the measured one if there is one"
+    elif ranked:
         confidence = SURE if best.explained > _SURE_SHARE else LIKELY
     others = [one for one in (ranked or named) if one.column != best.column]
     alternatives = tuple((one.column, _opposes(one)) for one in others[:MAX_ALTERNATIVES])
@@ -246,6 +176,7 @@ def _measured(columns: LogColumns, ranked: Sequence[DirectionDependence]) -> Dir
     """
     first = ranked[0]
     values = columns.head.values[first.column]
+    unlike = _not_measured(columns.head.names[first.column])
     if columns.is_named(first.column, names.TORQUE):
         return first
     same = [
@@ -253,6 +184,7 @@ def _measured(columns: LogColumns, ranked: Sequence[DirectionDependence]) -> Dir
         for one in ranked
         if not columns.is_named(one.column, names.TORQUE)
         and one.explained > _NEARLY * first.explained
+        and _not_measured(columns.head.names[one.column]) == unlike
         and np.corrcoef(values, columns.head.values[one.column])[0, 1] > _NEARLY
     ]
 

@@ -20,7 +20,8 @@ _UNIT_LAST = re.compile(
 )
 _UNIT_OF_QUANTITY = re.compile(
     r"^(?P<name>.+?)(?:[_ ]in)?[_ /,](?P<unit>"
-    r"(?:deg(?:rees?)?|grad|°|rad(?:ians?)?)(?:(?:[_ ]per[_ ]|[_/])?s(?:ec)?|ps)?|rpm|turns|revs"
+    r"(?:deg(?:rees?)?|grad|°|rad(?:ians?)?)(?:(?:[_ ]per[_ ]|[_/])?s(?:ec)?|ps)?|rpm"
+    r"|turns?|revs|rot|(?:turns?|revs?|rot)(?:[_ ]per[_ ]|[_/])s(?:ec)?"
     r"|[mk]?N[_ .·*]?m|N[_ .·*]?cm|mA|percent|pct|%|deg[_ ]?[CF]|°[CF]|[CFK]|celsius|kelvin"
     r"|s|sec|seconds?|[mun]s|kg|g)(?P<joint>[_ ][AJ]?\d{1,2})?$",
     re.I,
@@ -40,7 +41,9 @@ _MEASURED = re.compile(
     re.I,
 )
 _WORD_ENDS = re.compile(r"(?<=[a-z])(?=[A-Z])")
-_OF_MESSAGE = re.compile(r"^(?:field|msg|data|feedback|(?:axis\d\.)?(?:encoder|controller))\.", re.I)
+_OF_MESSAGE = re.compile(
+    r"^(?:field|msg|data|feedback|(?:axis\d\.)?(?:encoder|controller))\.", re.I
+)
 """What ``rostopic echo -p`` and others put before the name of each value of a message."""
 _SYMBOL = re.compile(r"^T[ _]?(?P<joint>\d{1,2})$", re.I)
 _PER = re.compile(r"[_ ]per[_ ]|_(?=s(?:ec)?$)", re.I)

@@ -123,10 +123,27 @@ def assign_channels(
         notes = [f"joint {joint}: no position and torque channel" for joint in lacking]
         if not any(one.motor_temperature or one.housing_temperature for one in chosen):
             notes += _unread_temperatures(channels, columns)
-        return replace(chosen[0], notes=(*chosen[0].notes, *notes)), *chosen[1:]
+        first = replace(
+            chosen[0],
+            notes=(*chosen[0].notes, *notes),
+            warnings=_of_the_same_name(channels, columns),
+        )
+        return first, *chosen[1:]
     if not times:
         return _missing("time", "", channels, columns)
     return _missing("position", f" of joint {', '.join(map(str, wanted))}", channels, columns)
+
+
+def _of_the_same_name(channels: Sequence[LogChannel], columns: Sequence[str]) -> tuple[str, ...]:
+    """Return a warning of columns that are read while later ones have the same name."""
+    again = [c.name for c in channels if c.name in columns[c.column + 1 :]]
+    if not again:
+        return ()
+    shown = ", ".join(map(printable, again[:_SHOWN]))
+    return (
+        f"several columns are named {shown}: the first is read; rename them, or give numbers"
+        " with --map",
+    )
 
 
 def _unread_temperatures(channels: Sequence[LogChannel], columns: Sequence[str]) -> list[str]:

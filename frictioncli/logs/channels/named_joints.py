@@ -17,6 +17,16 @@ _BODY = re.compile(
 COMMAND = re.compile(r"cmd|command|target|desired|setpoint|soll|goal|reference", re.I)
 """Words of names that tell what was asked for, not what was measured."""
 
+_NO_JOINT = re.compile(
+    r"(?:err|filt|est|model|ext|grav|fric|comp|limit|ref|des|set|act|meas|obs|sim|calc|pred)\w*"
+    r"|min|max|mean|std|rms|raw|offset|ff|fb|fbk|real|motor|link|load|drive|total|norm|dot"
+    r"|left|right|input|output|in|out|[dmlxyz]|\d+",
+    re.I,
+)
+"""Words beside a quantity that say what kind it is of; others are joints, if enough have all."""
+_LEAST_UNKNOWN = 3
+"""Least number of joints with a position and a torque whose names nothing else tells."""
+
 _MOST_JOINTS = 99
 """As many joints as a log may have by their numbers, which have two digits."""
 _OF_JOINTS = (POSITION, VELOCITY, TORQUE)
@@ -48,7 +58,13 @@ def named_joints(names: Sequence[str], least: int = 2) -> dict[int, tuple[str, s
     >>> named_joints(columns)[3]
     ('knee', 'pos')
     """
-    found = {column: parts for column, name in enumerate(names) if (parts := _parted(name))}
+    known = _joints_of(names, least, known=True)
+    more = _joints_of(names, _LEAST_UNKNOWN, known=False)
+    return more if len(more) > len(known) else known
+
+
+def _joints_of(names: Sequence[str], least: int, *, known: bool) -> dict[int, tuple[str, str]]:
+    found = {column: parts for column, name in enumerate(names) if (parts := _parted(name, known))}
     quantities: dict[str, set[str]] = {}
     for joint, text in found.values():
         quantities.setdefault(joint, set()).add(MEANINGS[_key(text)].quantity)
@@ -58,8 +74,11 @@ def named_joints(names: Sequence[str], least: int = 2) -> dict[int, tuple[str, s
     return {column: parts for column, parts in found.items() if parts[0] in joints}
 
 
-def _parted(name: str) -> tuple[str, str] | None:
-    """Return the names of joint and quantity; None where the name is of another kind."""
+def _parted(name: str, known: bool) -> tuple[str, str] | None:
+    """Return the names of joint and quantity; None where the name is of another kind.
+
+    If not ``known``, words that are no part of a body may name a joint.
+    """
     path = [part for part in name.split("/") if part]
     if name.startswith("/") and len(path) > 1:
         # the name of a topic is no joint's: of a joint's values at least the last part differs
@@ -72,9 +91,20 @@ def _parted(name: str) -> tuple[str, str] | None:
             (words[:-count], words[-count:]),
             (words[count:], words[:count]),
         ):
-            if _is_quantity("".join(quantity)) and _BODY.search("_".join(joint)):
+            if _is_quantity("".join(quantity)) and _may_be_joint(joint, known):
                 return "_".join(joint), "_".join(quantity)
     return None
+
+
+def _may_be_joint(words: Sequence[str], known: bool) -> bool:
+    if _BODY.search("_".join(words)):
+        return True
+    # FR_0 is a joint, 0 none: numbers are read elsewhere
+    return (
+        not known
+        and not _NO_JOINT.fullmatch(words[0])
+        and not any(_NO_JOINT.fullmatch(word) and not word.isdigit() for word in words)
+    )
 
 
 def _is_quantity(text: str) -> bool:

@@ -21,6 +21,16 @@ _JOINT_IN_FILE_NAME = re.compile(
     re.I,
 )
 _AMPERE = re.compile(r"^(?P<name>.+)_A(?:mps?)?$", re.I)
+_NUMBERED_CURRENT = re.compile(r"^[iI][_ ]?(\d{1,2})$")
+_CLOCK = re.compile(r"(?:^|[_ .])(?:time|timestamp|stamp|zeit)$", re.I)
+_DURATION = re.compile(
+    r"cycle|step|delta|diff|delay|dead|settling|exec|comp|solv|process|latency|sampl|period"
+    r"|duration|trip|remaining|zyklus",
+    re.I,
+)
+"""Words in front of ``time`` in the name of a duration, not of a clock."""
+_CLOCK_WITH_UNIT = re.compile(r"^(?P<name>.+)_(?P<unit>s|secs?|seconds|[mun]s|msec|usec|nsec)$")
+_WORD_ENDS = re.compile(r"(?<=[a-z])(?=[A-Z])")
 _BARE_JOINT = re.compile(r"^(?:joint|axis|achse|gelenk)[ _.]?(\d{1,2})$", re.I)
 _ID_COLUMN = re.compile(r"^(?:motor|joint|axis|achse|servo)[ _.]?(?:id|no|nr|number|nummer)$", re.I)
 
@@ -99,11 +109,18 @@ def recognise_channels(
             found.append(replace(channel, is_merged=is_merged))
     found = _with_symbol(found)
     if not any(channel.quantity == TORQUE for channel in found):
-        found += _currents_in_ampere(columns)
+        found += _currents_in_ampere(columns) or _numbered_currents(columns, found)
+    if not any(channel.quantity == TIME for channel in found):
+        found += _clocks(columns)
     if not any(channel.quantity == POSITION for channel in found):
         found += _bare_joints(columns, {channel.column for channel in found})
-    if all(channel.joint is None for channel in found):
+    unnumbered = [channel for channel in found if channel.joint is None]
+    if len(unnumbered) == len(found):
         return _with_named_joints(found, columns)
+    if not any(channel.quantity == TORQUE for channel in found):
+        named = _with_named_joints(unnumbered, columns)
+        if len(named) > len(unnumbered):
+            return named
     from_zero = any(channel.joint == 0 for channel in found)
     if not from_zero:
         return tuple(found)
@@ -136,6 +153,33 @@ def _currents_in_ampere(columns: Sequence[str]) -> list[LogChannel]:
     return found
 
 
+def _numbered_currents(columns: Sequence[str], found: Sequence[LogChannel]) -> list[LogChannel]:
+    """Return columns such as ``i_2`` where each joint with a position has one."""
+    numbers = {
+        index: int(parts[1])
+        for index, column in enumerate(columns)
+        if (parts := _NUMBERED_CURRENT.match(column.strip()))
+    }
+    joints = {channel.joint for channel in found if channel.quantity == POSITION}
+    if not joints or set(numbers.values()) != joints:
+        return []
+    meaning = MEANINGS["current"]
+    return [LogChannel(index, columns[index], meaning, n, "", "i") for index, n in numbers.items()]
+
+
+def _clocks(columns: Sequence[str]) -> list[LogChannel]:
+    """Return columns such as ``sim_time [s]``, which are times where a log has no others."""
+    found = []
+    for index, column in enumerate(columns):
+        name, unit = split_unit(column)
+        if not unit and (parts := _CLOCK_WITH_UNIT.match(name)):
+            name, unit = parts["name"], parts["unit"]
+        words = _WORD_ENDS.sub(" ", name)
+        if _CLOCK.search(words) and not _DURATION.search(words):
+            found.append(LogChannel(index, column, Meaning(TIME, rank=2), None, unit, "time"))
+    return found
+
+
 def _bare_joints(columns: Sequence[str], known: Collection[int]) -> list[LogChannel]:
     """Return columns such as ``Joint1``, which are positions where a log has no others."""
     found = []
@@ -158,6 +202,8 @@ def _with_named_joints(
     numbers: dict[str, int] = {}
     channels = {channel.column: channel for channel in found}
     for column, (joint, quantity) in named.items():
+        if columns.index(columns[column]) < column:
+            continue
         number = numbers.setdefault(joint, len(numbers) + 1)
         meaning, unit = MEANINGS[key_of(quantity)], parted[column][1]
         channels[column] = LogChannel(

@@ -166,8 +166,7 @@ def _checked(channels: JointChannels, survey: Survey) -> JointChannels:
         warnings.append(
             f"torque of joint {channels.joint}, {channels.torque.name}, hardly shows friction: half"
             f" its difference between the directions of motion has one sign in"
-            f" {bins - torque.contrary} of {bins} angle bins; {_why(channels, survey)}; name another"
-            " column with --map"
+            f" {bins - torque.contrary} of {bins} angle bins; {_why(channels, survey)}"
         )
     if loads and min(torque.steadiness, loads[0].steadiness) >= _STEADY:
         warnings.append(
@@ -183,8 +182,11 @@ def _why(channels: JointChannels, survey: Survey) -> str:
     """Return why a torque may bear no friction."""
     values = survey.pooled(channels.torque)
     if np.all(values >= 0):
-        return "it is never negative: is it a magnitude without the direction?"
-    return "does a sensor behind the gear measure it, or has the controller removed friction?"
+        return "it is never negative: if it is a magnitude without direction, it shows no friction"
+    return (
+        "if a sensor behind the gear measures it, or the controller has removed friction, name a"
+        " motor's torque or current with --map"
+    )
 
 
 def _with_torque(channels: JointChannels, torque: LogChannel, reason: str) -> JointChannels:
